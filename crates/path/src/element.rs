@@ -1,0 +1,175 @@
+//! Path elements: what the interpreter hands to motion.
+
+use crate::{Axis, Curve, Plane, Position};
+
+/// Where in the programs a movement comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BlockRef {
+    /// Index of the program in the run's list of programs; 0 is the main program.
+    pub program: u16,
+    /// Block number of the normalised listing; BEGIN PGM is 0.
+    pub block: u32,
+}
+
+/// How fast the path is programmed to run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FeedRate {
+    /// Rapid traverse (FMAX): as fast as the axes allow.
+    Rapid,
+    /// Feed along the path of the tool centre, mm/min (degrees/min when only rotary axes move).
+    Programmed(f64),
+}
+
+/// What the feed override may do to an element.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum OverrideLaw {
+    /// The override acts fully.
+    #[default]
+    Free,
+    /// The override acts only between these percentages (tapping with floating holder, MP7110)
+    /// [000:6094-6098].
+    Limited {
+        /// Lowest effective override, %.
+        from_percent: f64,
+        /// Highest effective override, %.
+        to_percent: f64,
+    },
+    /// The feed override has no effect; the feed follows the spindle (rigid tapping) [003:5106].
+    Disabled,
+}
+
+/// One movement: geometry, feed and the functions that go out with it. Immutable once made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathElement {
+    /// The block that programmed it; the call block for the movements of a cycle.
+    pub block: BlockRef,
+    /// Count of executed blocks up to and with this one: names the checkpoint before it.
+    pub sequence: u64,
+    /// Shape between `start` and `end`.
+    pub curve: Curve,
+    /// Start; an axis that has no position yet is NaN.
+    pub start: Position,
+    /// End. An axis that gets its first position by this element has it here only; it adds no length.
+    pub end: Position,
+    /// Feed rate.
+    pub feed: FeedRate,
+    /// What the feed override may do.
+    pub override_law: OverrideLaw,
+    /// Constant path speed is kept over the corner at the *end* of the element whatever its angle
+    /// (M90) [003:3439-3457].
+    pub constant_speed: bool,
+    /// The path continues without a corner check at the end: the joint is tangential by construction
+    /// (rounding, transition arc).
+    pub tangential_end: bool,
+    /// Time the element takes in addition to its movement (dwell), s.
+    pub dwell_s: f64,
+    /// Functions that go out with the element, in the order of output.
+    pub functions: Option<Box<[TechnologyFunction]>>,
+}
+
+impl PathElement {
+    /// Path length that the feed rate refers to, see [`Curve::length`].
+    pub fn length(&self) -> f64 {
+        self.curve.length(&self.start, &self.end)
+    }
+
+    /// The functions that go out with the element.
+    pub fn functions(&self) -> &[TechnologyFunction] {
+        self.functions.as_deref().unwrap_or_default()
+    }
+}
+
+/// A function output to the PLC or the spindle with the place on the path where it happens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TechnologyFunction {
+    /// What is output.
+    pub function: Function,
+    /// Where on the element.
+    pub at: At,
+    /// Whether axes wait for the acknowledgement.
+    pub synchronisation: Synchronisation,
+}
+
+/// Place of a function on its element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum At {
+    /// Before the movement.
+    Start,
+    /// After the movement.
+    End,
+    /// At a path length from the start, mm.
+    Length(f64),
+}
+
+/// Synchronisation of a function with the path, in the terms of TF5200 [004:54].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Synchronisation {
+    /// Output before the movement, axes do not wait (MP7440 bit 2).
+    Mos,
+    /// Output before the movement; the movement waits for the acknowledgement (start of block).
+    MvsSvs,
+    /// Output after the movement; the next block waits for the acknowledgement (end of block).
+    MnsSns,
+}
+
+/// The functions that a program can output.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Function {
+    /// Miscellaneous function M.
+    M(u16),
+    /// Tool call: tool data, tool axis and spindle speed.
+    Tool(ToolCall),
+    /// Pre-selection of the next tool (TOOL DEF with a tool table) [003:1931-1933].
+    NextTool(u32),
+    /// Spindle speed alone, rpm (TOOL CALL S).
+    SpindleSpeed(f64),
+    /// Oriented spindle stop at an angle, degrees (cycle 13, M19) [003:6500-6528].
+    SpindleOrientation(f64),
+    /// Programmed stop: STOP, M0, M1, M6 where it stops.
+    Stop,
+    /// Program end (M2, M30, END PGM).
+    ProgramEnd,
+    /// FN14: ERROR number [003:4352-4362].
+    ErrorNumber(u16),
+    /// FN15: PRINT, the finished output line [003:4371-4385].
+    Print(String),
+    /// FN19: PLC, one or two values already in the unit of the control model [003:4387-4395].
+    Plc([Option<f64>; 2]),
+    /// The blank of the graphics (BLK FORM).
+    Blank(Blank),
+}
+
+/// A tool call as it reaches motion, workpiece and PLC.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolCall {
+    /// Tool number 0..254.
+    pub tool: u32,
+    /// Tool axis.
+    pub axis: Axis,
+    /// Spindle speed, rpm.
+    pub speed_rpm: f64,
+    /// Shape of the tool.
+    pub shape: ToolShape,
+}
+
+/// Geometry of a tool.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToolShape {
+    /// Length compensation value L, mm.
+    pub length: f64,
+    /// Radius R, mm.
+    pub radius: f64,
+    /// Corner radius R2, mm: 0 flat end, equal to `radius` ball end.
+    pub corner_radius: f64,
+}
+
+/// The blank of BLK FORM: a cuboid with sides parallel to the axes [003:2105-2121].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blank {
+    /// Working plane, from the tool axis named in BLK FORM 0.1.
+    pub plane: Plane,
+    /// Least corner X, Y, Z, mm.
+    pub min: [f64; 3],
+    /// Greatest corner X, Y, Z, mm.
+    pub max: [f64; 3],
+}

@@ -1,0 +1,103 @@
+//! Coordinate transformations of the program as one frame.
+
+use crate::{Axis, Plane, Position};
+
+/// Datum shift, mirror image, rotation and scaling combined in the recommended order
+/// (inferred) [003:6240] [003:6315]:
+///
+/// `point_machine = shift + R(rotation) · M(mirror) · S(scale) · p`
+///
+/// Rotation turns in the working plane about the active datum; mirroring and scaling act on each axis.
+///
+/// ```
+/// use bahn_path::{Axis, Frame, Plane, Position};
+/// let mut frame = Frame::identity(Plane::XY);
+/// frame.shift[Axis::X] = 40.0;
+/// frame.rotation_deg = 90.0;
+/// let mut p = Position::UNKNOWN;
+/// p[Axis::X] = 10.0;
+/// p[Axis::Y] = 0.0;
+/// let q = frame.to_outer(&p);
+/// assert!((q[Axis::X] - 40.0).abs() < 1e-12 && (q[Axis::Y] - 10.0).abs() < 1e-12);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Plane of rotation.
+    pub plane: Plane,
+    /// Datum shift of each axis, mm or degrees.
+    pub shift: Position,
+    /// Rotation in the plane, degrees, counter-clockwise positive.
+    pub rotation_deg: f64,
+    /// Factor of each axis: the scaling factor, negative where the axis is mirrored.
+    pub factor: Position,
+}
+
+impl Frame {
+    /// The frame that changes nothing.
+    pub fn identity(plane: Plane) -> Frame {
+        Frame {
+            plane,
+            shift: Position::ZERO,
+            rotation_deg: 0.0,
+            factor: Position::from([1.0; Axis::COUNT]),
+        }
+    }
+
+    /// Whether the frame changes nothing.
+    pub fn is_identity(&self) -> bool {
+        *self == Frame::identity(self.plane)
+    }
+
+    /// From programmed coordinates to those of the workpiece datum. An axis without a position keeps
+    /// none; with a rotation both axes of the plane must have one, else neither has one afterwards.
+    pub fn to_outer(&self, programmed: &Position) -> Position {
+        let mut result = *programmed;
+        for axis in Axis::ALL {
+            result[axis] *= self.factor[axis];
+        }
+        self.rotate(&mut result, self.rotation_deg);
+        for axis in Axis::ALL {
+            result[axis] += self.shift[axis];
+        }
+        result
+    }
+
+    /// From coordinates of the workpiece datum back to programmed ones.
+    pub fn to_programmed(&self, outer: &Position) -> Position {
+        let mut result = *outer;
+        for axis in Axis::ALL {
+            result[axis] -= self.shift[axis];
+        }
+        self.rotate(&mut result, -self.rotation_deg);
+        for axis in Axis::ALL {
+            result[axis] /= self.factor[axis];
+        }
+        result
+    }
+
+    /// Whether the frame turns the sense of rotation around in a plane (an odd number of its axes is
+    /// mirrored), so that DR and the side of the tool change [003:6276-6284].
+    pub fn reverses(&self, plane: Plane) -> bool {
+        (self.factor[plane.first] < 0.0) != (self.factor[plane.second] < 0.0)
+    }
+
+    fn rotate(&self, position: &mut Position, angle_deg: f64) {
+        if angle_deg == 0.0 {
+            return;
+        }
+        let (sin, cos) = sin_cos_deg(angle_deg);
+        let [a, b] = self.plane.point(position);
+        self.plane.set(position, [a * cos - b * sin, a * sin + b * cos]);
+    }
+}
+
+/// Sine and cosine of degrees, exact at multiples of 90 degrees so that a quarter turn stays on the grid.
+fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
+    match angle_deg.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => angle_deg.to_radians().sin_cos(),
+    }
+}

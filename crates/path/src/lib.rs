@@ -1,0 +1,29 @@
+//! Geometry of the tool path, the ground floor of the house.
+//!
+//! The face of this room is small:
+//! - [`Axis`], [`AxisSet`], [`Position`]: the nine programmable axes and a point of them;
+//! - [`Plane`]: a working plane, which is two axes and the tool axis that stands on it;
+//! - [`Curve`], [`Arc`]: line, circular arc and helix with length, tangent and splitting;
+//! - [`Frame`]: datum shift, mirror image, rotation and scaling as one transformation;
+//! - [`PathElement`]: one movement with its feed, block and technology functions;
+//! - [`ElementSource`] and [`Step`]: how every stage pulls elements from the stage before it.
+//!
+//! Lengths are millimetres, angles degrees, feed rates mm/min, times seconds at every public face.
+//! Nothing here knows of program text, time or hardware.
+
+mod axis;
+mod curve;
+mod element;
+mod frame;
+mod plane;
+mod source;
+
+pub use axis::{Axis, AxisSet, Position};
+pub use curve::{Arc, Curve, angle_deg, sweep_deg};
+pub use element::{
+    At, Blank, BlockRef, FeedRate, Function, OverrideLaw, PathElement, Synchronisation, TechnologyFunction,
+    ToolCall, ToolShape,
+};
+pub use frame::Frame;
+pub use plane::{Plane, Point2};
+pub use source::{Barrier, ElementSource, LiveData, Step, Touch};

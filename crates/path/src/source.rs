@@ -1,0 +1,78 @@
+//! How every stage pulls path elements from the stage before it.
+
+use crate::{BlockRef, PathElement, Position};
+
+/// A stage that yields path elements. Everything is pulled: a stage asks for the next element only
+/// when it has room, so programs of any length run in constant memory. Stages that split, join or
+/// annotate elements take an `ElementSource` and are one themselves.
+pub trait ElementSource {
+    /// What can be wrong with a program.
+    type Error;
+
+    /// The next step of the path. After [`Step::End`] and [`Step::Error`] the answer stays the same;
+    /// after [`Step::Barrier`] the source waits for [`ElementSource::resume`].
+    fn next(&mut self) -> Step<Self::Error>;
+
+    /// Goes on after a barrier with what was found out there. Without a barrier it does nothing.
+    fn resume(&mut self, live: LiveData);
+}
+
+/// An answer of an [`ElementSource`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step<E> {
+    /// The next element of the path.
+    Element(PathElement),
+    /// What follows depends on live data: everything before must be executed first.
+    Barrier(Barrier),
+    /// A drip-fed source has nothing yet. The path is planned to a stop at the end of what is known.
+    Starved,
+    /// The program has ended.
+    End,
+    /// The program cannot go on.
+    Error(E),
+}
+
+/// Why the source waits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Barrier {
+    /// A probing movement: from `from` in a straight line to `to` at most; the answer is
+    /// [`LiveData::touch`] [003:4401-4410].
+    Probe {
+        /// The probe block.
+        block: BlockRef,
+        /// Pre-position, tip of the stylus.
+        from: Position,
+        /// Farthest position.
+        to: Position,
+        /// Probing feed, mm/min.
+        feed_mm_min: f64,
+        /// Radius of the stylus, mm.
+        stylus_radius: f64,
+    },
+    /// A programmed stop (STOP, M0, M1): the operator or the driver lets it go on.
+    Stop {
+        /// The stop block.
+        block: BlockRef,
+    },
+    /// Data that the PLC may write (Q100-Q107) must be current before the next block is read.
+    Acknowledge {
+        /// The block whose strobe is waited for.
+        block: BlockRef,
+    },
+}
+
+/// What was found out at a barrier.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LiveData {
+    /// Where the stylus touched; `None` when it did not.
+    pub touch: Option<Touch>,
+    /// Q parameters that were written meanwhile (by the PLC: Q100-Q107): number, value.
+    pub q_values: Vec<(u16, f64)>,
+}
+
+/// A touch of the probe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Position of the stylus tip's centre at the touch.
+    pub position: Position,
+}
