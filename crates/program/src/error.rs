@@ -7,7 +7,9 @@ use bahn_parameters::MessageId;
 pub struct BlockError {
     /// The control's message.
     pub message: MessageId,
-    /// Column in the line, counted from 1.
+    /// Line within the block, 0 for its first; greater only in blocks of several lines joined by `~`.
+    pub line: u32,
+    /// Column in the line, in characters counted from 1.
     pub column: u32,
     /// Number of characters it covers, at least 1.
     pub length: u32,

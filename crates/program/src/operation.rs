@@ -129,16 +129,29 @@ pub enum Operation {
     CycleCall(MFunctions),
     /// `TCH PROBE n.m ...`: one block of a probe function.
     Probe(Box<CycleBlock>),
-    /// A block of comment (`; text`) or structuring (`* - text`) only.
+    /// `DLG-DEF n/...` or `DLG-CALL n/...`: first block of an OEM cycle [000:17732-17744].
+    Dialog(Box<Dialog>),
+    /// A block of comment (`; text`) or structuring (`* - text`) only. The text of a structuring block
+    /// begins with its `*`.
     Comment(Box<str>),
     /// Something that no control here knows or that is written wrongly.
     Invalid(Box<InvalidBlock>),
 }
 
+/// The dialog block of an OEM cycle: which dialog texts name the cycle and its parameters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dialog {
+    /// `DLG-CALL` (acts at the cycle call) instead of `DLG-DEF` (acts at its definition).
+    pub call: bool,
+    /// Numbers of the dialog texts: the cycle's name, then its parameters.
+    pub texts: Box<[u16]>,
+}
+
 /// A block that could not be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InvalidBlock {
-    /// The block as it stands in the file, without block number.
+    /// The block as it stands in the file, with its comment, without block number and `/`. Lines that
+    /// `~` joins stay lines.
     pub text: Box<str>,
     /// What is wrong with it.
     pub error: BlockError,
@@ -245,11 +258,17 @@ impl Coordinates {
         }
         let raw = self.values[axis.index()];
         let value = if self.parameters.contains(axis) {
-            Value::Q { number: raw.abs() as u16, negative: raw.is_sign_negative() }
+            Value::Q {
+                number: raw.abs() as u16,
+                negative: raw.is_sign_negative(),
+            }
         } else {
             Value::Number(raw)
         };
-        Some(Word { value, incremental: self.incremental.contains(axis) })
+        Some(Word {
+            value,
+            incremental: self.incremental.contains(axis),
+        })
     }
 
     /// Sets the word of an axis.
@@ -276,7 +295,9 @@ impl Coordinates {
 
     /// All words in the order X Y Z A B C U V W.
     pub fn iter(&self) -> impl Iterator<Item = (Axis, Word)> {
-        Axis::ALL.into_iter().filter_map(|axis| self.get(axis).map(|word| (axis, word)))
+        Axis::ALL
+            .into_iter()
+            .filter_map(|axis| self.get(axis).map(|word| (axis, word)))
     }
 }
 
@@ -409,7 +430,10 @@ impl MFunctions {
     /// The argument of an M function by its address letter.
     pub fn argument(&self, code: u16, letter: char) -> Option<Value> {
         let arguments = self.arguments.as_deref()?;
-        arguments.iter().find(|a| a.code == code && a.letter == letter).map(|a| a.value)
+        arguments
+            .iter()
+            .find(|a| a.code == code && a.letter == letter)
+            .map(|a| a.value)
     }
 }
 
@@ -546,7 +570,8 @@ pub enum CycleWord {
     Coordinate(Axis, Word),
     /// An axis letter alone (mirror image, probe axis).
     Axis(Axis),
-    /// An axis letter with a direction `X-` (probing).
+    /// An axis letter with a direction `X-` (probing); `+` is [`Direction::CounterClockwise`], `-` is
+    /// [`Direction::Clockwise`].
     AxisDirection(Axis, Direction),
     /// `F value` or `FMAX`.
     Feed(Feed),

@@ -1,0 +1,147 @@
+//! Cuts a file into the raw text of its blocks: one line each, or several that `~` joins.
+
+use crate::text::is_blank;
+
+/// Where the text of a block lies in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RawBlock {
+    /// First byte of its first line.
+    pub(crate) start: usize,
+    /// Behind the last byte of its last line, without the line end.
+    pub(crate) end: usize,
+    /// Number of its first line in the file, from 1.
+    pub(crate) line: u32,
+    /// Whether `~` joins several lines.
+    pub(crate) joined: bool,
+}
+
+impl RawBlock {
+    /// The block's bytes.
+    #[inline]
+    pub(crate) fn bytes(self, file: &[u8]) -> &[u8] {
+        file.get(self.start..self.end).unwrap_or_default()
+    }
+}
+
+/// Iterator over the blocks of a file. Lines without text are no blocks.
+///
+/// Lines end with LF, CR LF or CR; a form feed ends a block too [001:267] but does not count as a line.
+#[derive(Clone, Debug)]
+pub(crate) struct RawBlocks<'a> {
+    file: &'a [u8],
+    next: usize,
+    line: u32,
+}
+
+impl<'a> RawBlocks<'a> {
+    /// Blocks from a byte that begins the line of the given number.
+    pub(crate) fn from(file: &'a [u8], start: usize, line: u32) -> RawBlocks<'a> {
+        RawBlocks {
+            file,
+            next: start,
+            line,
+        }
+    }
+
+    /// The extent of the next line, which is consumed.
+    #[inline]
+    fn line(&mut self) -> Option<(usize, usize)> {
+        let start = self.next;
+        let rest = self.file.get(start..).filter(|rest| !rest.is_empty())?;
+        let Some(length) = memchr::memchr3(b'\n', b'\r', b'\x0c', rest) else {
+            self.next = self.file.len();
+            return Some((start, self.next));
+        };
+        let after = rest.get(length..).unwrap_or_default();
+        let (terminator, lines) = match after {
+            [b'\r', b'\n', ..] => (2, 1),
+            [b'\x0c', ..] => (1, 0),
+            _ => (1, 1),
+        };
+        self.next = start + length + terminator;
+        self.line = self.line.saturating_add(lines);
+        Some((start, start + length))
+    }
+}
+
+impl Iterator for RawBlocks<'_> {
+    type Item = RawBlock;
+
+    #[inline]
+    fn next(&mut self) -> Option<RawBlock> {
+        loop {
+            let line = self.line;
+            let (start, mut end) = self.line()?;
+            let bytes = self.file.get(start..end).unwrap_or_default();
+            let Some(last) = bytes.iter().rposition(|&b| !is_blank(b)) else {
+                continue;
+            };
+            let mut joined = false;
+            if bytes.get(last) == Some(&b'~') && !stands_alone(bytes) {
+                while let Some((next_start, next_end)) = self.line() {
+                    joined = true;
+                    end = next_end;
+                    let next = self.file.get(next_start..next_end).unwrap_or_default();
+                    if next.iter().rfind(|&&b| !is_blank(b)) != Some(&b'~') {
+                        break;
+                    }
+                }
+            }
+            return Some(RawBlock {
+                start,
+                end,
+                line,
+                joined,
+            });
+        }
+    }
+}
+
+/// Whether a line is a comment or structuring only: a rule of `~` in it joins nothing.
+fn stands_alone(line: &[u8]) -> bool {
+    let first = line
+        .iter()
+        .find(|&&b| !is_blank(b) && b != b'/' && !b.is_ascii_digit());
+    matches!(first, Some(b';' | b'*'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn blocks(file: &[u8]) -> Vec<(&[u8], u32, bool)> {
+        RawBlocks::from(file, 0, 1)
+            .map(|raw| (raw.bytes(file), raw.line, raw.joined))
+            .collect()
+    }
+
+    #[test]
+    fn every_line_end_counts_once() {
+        assert_eq!(blocks(b"A\nB"), [(&b"A"[..], 1, false), (b"B", 2, false)]);
+        assert_eq!(blocks(b"A\r\nB\r\n"), [(&b"A"[..], 1, false), (b"B", 2, false)]);
+        assert_eq!(blocks(b"A\rB\r"), [(&b"A"[..], 1, false), (b"B", 2, false)]);
+        assert_eq!(blocks(b"A\n\x0cB"), [(&b"A"[..], 1, false), (b"B", 2, false)]);
+        assert_eq!(
+            blocks(b"A\x0cB\nC"),
+            [(&b"A"[..], 1, false), (b"B", 1, false), (b"C", 2, false)]
+        );
+    }
+
+    #[test]
+    fn blank_lines_are_no_blocks() {
+        assert_eq!(blocks(b"\n \t\r\n\nA\n\n\0\0\x1a"), [(&b"A"[..], 4, false)]);
+    }
+
+    #[test]
+    fn tildes_join_lines() {
+        assert_eq!(
+            blocks(b"A ~\n B ~ \n C\nD"),
+            [(&b"A ~\n B ~ \n C"[..], 1, true), (b"D", 4, false)]
+        );
+        assert_eq!(blocks(b"A ~"), [(&b"A ~"[..], 1, false)]);
+        assert_eq!(
+            blocks(b"12 ; ~~~\nB"),
+            [(&b"12 ; ~~~"[..], 1, false), (b"B", 2, false)]
+        );
+    }
+}

@@ -1,0 +1,425 @@
+//! The plain-language parser: the text of a block to a [`Block`]. It never fails; what cannot be read
+//! becomes [`Operation::Invalid`].
+
+mod blank;
+mod cursor;
+mod cycle;
+mod formula;
+mod header;
+mod label;
+mod m_function;
+mod number;
+mod path;
+mod probe;
+mod q_parameter;
+mod tool;
+
+use bahn_parameters::MessageId;
+
+use crate::lines::RawBlock;
+use crate::text::{character_count, to_text, trim, trim_continuation};
+use crate::{Block, BlockError, InvalidBlock, Operation};
+pub(crate) use cursor::code_length;
+use cursor::{Cursor, Fault, Parsed};
+
+/// Reads the block that lies at `raw` in the file.
+#[inline]
+pub(crate) fn parse_block(file: &[u8], raw: RawBlock) -> Block {
+    let bytes = raw.bytes(file);
+    if raw.joined {
+        parse_joined(bytes)
+    } else {
+        parse_line(bytes)
+    }
+}
+
+/// Reads a block that stands in one line.
+#[inline]
+fn parse_line(line: &[u8]) -> Block {
+    let mut c = Cursor::new(line);
+    let skip = prefix(&mut c);
+    let start = c.position();
+    if let Some(operation) = stand_alone(&mut c) {
+        return Block {
+            skip,
+            operation,
+            comment: None,
+        };
+    }
+    match complete_operation(&mut c) {
+        Ok(operation) => {
+            let comment = if c.peek() == b';' {
+                comment_text(c.rest())
+            } else {
+                None
+            };
+            Block {
+                skip,
+                operation,
+                comment,
+            }
+        }
+        Err(fault) => {
+            let text = to_text(trim_continuation(line.get(start..).unwrap_or_default())).into_boxed_str();
+            let error = located(&fault, 0, line, fault.start, fault.end);
+            Block {
+                skip,
+                operation: Operation::Invalid(Box::new(InvalidBlock { text, error })),
+                comment: None,
+            }
+        }
+    }
+}
+
+/// Reads optional block number and `/`, in either order, and the blanks behind; whether the block is
+/// optional.
+#[inline]
+fn prefix(c: &mut Cursor) -> bool {
+    c.skip_blanks();
+    let mut skip = false;
+    if c.peek() == b'/' {
+        skip = true;
+        c.advance(1);
+        c.skip_blanks();
+    }
+    while c.peek().is_ascii_digit() {
+        c.advance(1);
+    }
+    c.skip_blanks();
+    if c.peek() == b'/' {
+        skip = true;
+        c.advance(1);
+        c.skip_blanks();
+    }
+    skip
+}
+
+/// Reads a block that is no function: comment, structuring, or nothing but a block number.
+#[inline]
+fn stand_alone(c: &mut Cursor) -> Option<Operation> {
+    let text = match c.peek() {
+        b';' => c.rest().get(1..).unwrap_or_default(),
+        b'*' => c.rest(),
+        _ if c.at_end() => c.rest(),
+        _ => return None,
+    };
+    Some(Operation::Comment(to_text(trim(text)).into_boxed_str()))
+}
+
+/// Reads a function up to the end of the block.
+#[inline]
+fn complete_operation(c: &mut Cursor) -> Parsed<Operation> {
+    let operation = operation(c)?;
+    if c.at_end() { Ok(operation) } else { c.unexpected() }
+}
+
+/// Reads a function by its first letters.
+#[inline]
+fn operation(c: &mut Cursor) -> Parsed<Operation> {
+    let found = match c.peek_upper() {
+        b'L' => match c.peek_at(1).to_ascii_uppercase() {
+            b'B' => label::label(c),
+            _ => path::path(c),
+        },
+        b'X' | b'Y' | b'Z' | b'I' | b'A' | b'U' | b'V' | b'W' | b'R' => path::path(c),
+        b'C' => match c.peek_at(1).to_ascii_uppercase() {
+            b'Y' => cycle::cycle(c),
+            b'A' => label::call(c),
+            _ => path::path(c),
+        },
+        b'B' => match c.peek_at(1).to_ascii_uppercase() {
+            b'L' => blank::blank_form(c),
+            b'E' => header::begin(c),
+            _ => path::path(c),
+        },
+        b'F' => q_parameter::function(c),
+        b'Q' => q_parameter::formula(c),
+        b'T' => match c.peek_at(2).to_ascii_uppercase() {
+            b'O' => tool::tool(c),
+            _ => probe::probe(c),
+        },
+        b'S' => tool::stop(c),
+        b'M' => m_function::block(c),
+        b'E' => header::end(c),
+        b'P' => label::program_call(c),
+        b'D' => cycle::dialog(c),
+        _ => Ok(None),
+    };
+    match found? {
+        Some(operation) => Ok(operation),
+        None if c.peek().is_ascii_alphabetic() || c.peek() == b'%' => {
+            c.fault_at_word(MessageId::BlockNotKnown, "no control here knows this block")
+        }
+        None => c.fault_at_word(MessageId::UnexpectedText, "a block cannot begin like this"),
+    }
+}
+
+/// What follows `;`, if anything.
+#[cold]
+fn comment_text(rest: &[u8]) -> Option<Box<str>> {
+    let text = trim_continuation(trim(rest.get(1..).unwrap_or_default()));
+    let text = trim(text);
+    (!text.is_empty()).then(|| to_text(text).into_boxed_str())
+}
+
+/// The error of a fault that lies from `start` to `end` in a line.
+#[cold]
+fn located(fault: &Fault, line_in_block: u32, line: &[u8], start: usize, end: usize) -> BlockError {
+    let start = start.min(line.len());
+    let covered = line.get(start..end.clamp(start, line.len())).unwrap_or_default();
+    BlockError {
+        message: fault.message,
+        line: line_in_block,
+        column: character_count(line.get(..start).unwrap_or_default()).saturating_add(1),
+        length: character_count(trim(covered)).max(1),
+        detail: fault.detail.as_ref().into(),
+    }
+}
+
+/// One line of a block of several.
+struct Piece<'a> {
+    line: &'a [u8],
+    /// Where its code begins in the line.
+    code_start: usize,
+    /// Where its code begins in the joined code.
+    joined_start: usize,
+}
+
+/// Reads a block of several lines joined by `~`. Its comments become one.
+#[cold]
+fn parse_joined(bytes: &[u8]) -> Block {
+    let mut pieces = Vec::new();
+    let mut joined = Vec::new();
+    let mut comments = String::new();
+    let mut skip = false;
+    for (index, line) in physical_lines(bytes).enumerate() {
+        let mut c = Cursor::new(line);
+        if index == 0 {
+            skip = prefix(&mut c);
+        } else {
+            c.skip_blanks();
+            joined.push(b' ');
+        }
+        let code_start = c.position();
+        pieces.push(Piece {
+            line,
+            code_start,
+            joined_start: joined.len(),
+        });
+        let rest = trim_continuation(c.rest());
+        let (code, behind) = rest.split_at_checked(code_length(rest)).unwrap_or_default();
+        joined.extend_from_slice(trim_continuation(code));
+        if behind.first() == Some(&b';')
+            && let Some(comment) = comment_text(behind)
+        {
+            if !comments.is_empty() {
+                comments.push_str(" ; ");
+            }
+            comments.push_str(&comment);
+        }
+    }
+    let mut c = Cursor::new(&joined);
+    c.skip_blanks();
+    if c.at_end() {
+        return Block {
+            skip,
+            operation: Operation::Comment(comments.into()),
+            comment: None,
+        };
+    }
+    match complete_operation(&mut c) {
+        Ok(operation) => {
+            let comment = (!comments.is_empty()).then(|| comments.into());
+            Block {
+                skip,
+                operation,
+                comment,
+            }
+        }
+        Err(fault) => {
+            let error = located_in_pieces(&fault, &pieces);
+            let operation = Operation::Invalid(Box::new(InvalidBlock {
+                text: pieces_text(&pieces),
+                error,
+            }));
+            Block {
+                skip,
+                operation,
+                comment: None,
+            }
+        }
+    }
+}
+
+/// The lines of a block, with one for each line end.
+fn physical_lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = Some(bytes);
+    std::iter::from_fn(move || {
+        let line = rest?;
+        let Some(length) = memchr::memchr3(b'\n', b'\r', b'\x0c', line) else {
+            rest = None;
+            return Some(line);
+        };
+        let (line, after) = line.split_at_checked(length)?;
+        rest = after.strip_prefix(b"\r\n").or_else(|| after.get(1..));
+        Some(line)
+    })
+}
+
+/// The text of an invalid block of several lines: each trimmed, with `~` at all ends but the last.
+fn pieces_text(pieces: &[Piece]) -> Box<str> {
+    let mut text = String::new();
+    for piece in pieces {
+        if !text.is_empty() || piece.joined_start != 0 {
+            text.push_str(" ~\n");
+        }
+        text.push_str(&to_text(trim_continuation(
+            piece.line.get(piece.code_start..).unwrap_or_default(),
+        )));
+    }
+    while let Some(shorter) = text.strip_suffix(" ~\n") {
+        text.truncate(shorter.len());
+    }
+    text.into()
+}
+
+fn located_in_pieces(fault: &Fault, pieces: &[Piece]) -> BlockError {
+    let index = pieces
+        .partition_point(|piece| piece.joined_start <= fault.start)
+        .saturating_sub(1);
+    let Some(piece) = pieces.get(index) else {
+        return located(fault, 0, &[], 0, 0);
+    };
+    let in_line = |joined: usize| joined.saturating_sub(piece.joined_start) + piece.code_start;
+    let line = trim_continuation(piece.line);
+    let line_in_block = u32::try_from(index).unwrap_or(u32::MAX);
+    located(
+        fault,
+        line_in_block,
+        line,
+        in_line(fault.start),
+        in_line(fault.end),
+    )
+}
+
+/// Helpers of the parsers' tests.
+#[cfg(test)]
+mod test {
+    use super::*;
+    use crate::{Coordinates, MFunctions, Value};
+
+    pub(super) fn block(text: &str) -> Block {
+        let joined = text.contains('\n');
+        let raw = RawBlock {
+            start: 0,
+            end: text.len(),
+            line: 1,
+            joined,
+        };
+        parse_block(text.as_bytes(), raw)
+    }
+
+    /// What the text does; it must be a valid block.
+    pub(super) fn operation(text: &str) -> Operation {
+        let operation = block(text).operation;
+        assert!(
+            !matches!(operation, Operation::Invalid(_)),
+            "{text}: {operation:?}"
+        );
+        operation
+    }
+
+    /// Message, column and length of the fault of an invalid block.
+    pub(super) fn fault(text: &str) -> (MessageId, u32, u32) {
+        match block(text).operation {
+            Operation::Invalid(invalid) => {
+                (invalid.error.message, invalid.error.column, invalid.error.length)
+            }
+            other => panic!("{text}: {other:?}"),
+        }
+    }
+
+    /// The value of Qn, negative for `-Qn`.
+    pub(super) fn q(number: i32) -> Value {
+        Value::Q {
+            number: number.unsigned_abs() as u16,
+            negative: number < 0,
+        }
+    }
+
+    pub(super) fn m(codes: &[u16]) -> MFunctions {
+        let mut m = MFunctions::default();
+        assert!(codes.iter().all(|&code| m.push(code)));
+        m
+    }
+
+    /// Coordinates from words.
+    pub(super) fn words(text: &str) -> Coordinates {
+        path::coordinates(&mut Cursor::new(text.as_bytes())).unwrap()
+    }
+
+    #[test]
+    fn numbers_comments_and_skips() {
+        for text in [
+            "L X+5",
+            "7 L X+5",
+            "  0007  L X+5",
+            "7L X+5",
+            "L X+5.....up",
+            "L X+5 \0\0\x1a",
+        ] {
+            let plain = block(text);
+            assert_eq!((plain.skip, plain.comment), (false, None), "{text}");
+            assert_eq!(plain.operation, operation("L X+5"), "{text}");
+        }
+        for text in ["/L X+5", "/ 7 L X+5", "7 / L X+5", "7 /L X+5", "/7L X+5"] {
+            assert!(block(text).skip, "{text}");
+            assert_eq!(block(text).operation, operation("L X+5"), "{text}");
+        }
+        let commented = block("L X+5 ;  up ; and away ");
+        assert_eq!(commented.comment.as_deref(), Some("up ; and away"));
+        assert_eq!(block("L X+5 ;").comment, None);
+        assert_eq!(block("L X+5 ; H\u{f6}he").comment.as_deref(), Some("Höhe"));
+    }
+
+    #[test]
+    fn comments_and_structure_are_blocks() {
+        let comment = |text: &str| Operation::Comment(text.into());
+        assert_eq!(operation("; outside"), comment("outside"));
+        assert_eq!(operation("12 ;outside"), comment("outside"));
+        assert_eq!(operation("12 ;"), comment(""));
+        assert_eq!(operation("12 * - Finish ; it"), comment("* - Finish ; it"));
+        assert_eq!(operation("12"), comment(""));
+        assert_eq!(operation("....print"), comment("....print"));
+    }
+
+    #[test]
+    fn joined_lines_are_one_block() {
+        let cycle = block("5 CYCL DEF 200 DRILLING ~\n  Q200=2 ;SET-UP ~\r\n  Q201=-20 ;DEPTH");
+        assert_eq!(
+            cycle.operation,
+            operation("CYCL DEF 200 DRILLING Q200=2 Q201=-20")
+        );
+        assert_eq!(cycle.comment.as_deref(), Some("SET-UP ; DEPTH"));
+        assert_eq!(operation("L X+5 ~\nY+6 ~\n"), operation("L X+5 Y+6"));
+        let Operation::Invalid(invalid) = block("3 L X+5 ~\n  Y+6 oops ; c ~\n Z+1").operation else {
+            panic!("oops is no word")
+        };
+        assert_eq!(
+            (invalid.error.line, invalid.error.column, invalid.error.length),
+            (1, 7, 4)
+        );
+        assert_eq!(&*invalid.text, "L X+5 ~\nY+6 oops ; c ~\nZ+1");
+    }
+
+    #[test]
+    fn invalid_blocks_keep_their_text() {
+        let Operation::Invalid(invalid) = block("12 FN16: F-PRINT A.A / B ; log ").operation else {
+            panic!("FN16 is not known")
+        };
+        assert_eq!(&*invalid.text, "FN16: F-PRINT A.A / B ; log");
+        assert_eq!((invalid.error.column, invalid.error.length), (4, 4));
+        assert_eq!(fault("H\u{f6}he 5").1, 1);
+        assert_eq!(fault("= 5").0, MessageId::UnexpectedText);
+    }
+}

@@ -1,0 +1,612 @@
+//! Path functions: L, C, CR, CT, LP, CP, CTP, single-axis blocks, CC, RND and chamfers.
+
+use bahn_parameters::MessageId::{AxisDoubleProgrammed, BlockNotKnown, EntryValueIncorrect, UnexpectedText};
+use bahn_path::Axis;
+
+use super::cursor::{Cursor, Parsed};
+use super::m_function::m_function;
+use crate::{
+    Compensation, Coordinates, Direction, Feed, MFunctions, Motion, MotionKind, Operation, Value, Word,
+};
+
+/// A block that opens with L, C, R or an axis letter; `None` if it is no path function.
+#[inline]
+pub(super) fn path(c: &mut Cursor) -> Parsed<Option<Operation>> {
+    let start = c.position();
+    let second = c.peek_at(1).to_ascii_uppercase();
+    let (length, kind) = match (c.peek_upper(), second) {
+        (b'L', b'P') => (2, MotionKind::LinePolar),
+        (b'L', _) => return line(c),
+        (b'C', b'C') => return circle_centre(c).map(Some),
+        (b'C', b'H') => return chamfer_word(c),
+        (b'C', b'P') => (2, MotionKind::CirclePolar),
+        (b'C', b'R') => (2, MotionKind::CircleRadius),
+        (b'C', b'T') if c.peek_at(2).eq_ignore_ascii_case(&b'P') => (3, MotionKind::CircleTangentialPolar),
+        (b'C', b'T') => (2, MotionKind::CircleTangential),
+        (b'C', _) if !axis_block_follows(c) => (1, MotionKind::Circle),
+        (b'R', b'N') => return rounding(c),
+        (b'I', _) if Axis::from_letter(second).is_some() => (0, MotionKind::Paraxial),
+        (letter, _) if Axis::from_letter(letter).is_some() && axis_block_follows(c) => {
+            (0, MotionKind::Paraxial)
+        }
+        _ => return Ok(None),
+    };
+    c.advance(length);
+    if length > 0 && joins_unknown_letter(c) {
+        c.go_to(start);
+        return Ok(None);
+    }
+    motion(c, kind).map(Some)
+}
+
+/// Whether the letter at the position is followed by a value: a block opened with an axis key, also of the
+/// C axis.
+fn axis_block_follows(c: &Cursor) -> bool {
+    let mut behind = c.clone();
+    behind.advance(1);
+    behind.skip_blanks();
+    matches!(
+        behind.peek_upper(),
+        b'+' | b'-' | b'0'..=b'9' | b'.' | b',' | b'Q'
+    )
+}
+
+/// Whether the path function just read goes on with a letter that begins no word of a path block, so that
+/// it is the word of a later control (LN, LT, CTL ...).
+fn joins_unknown_letter(c: &Cursor) -> bool {
+    let letter = c.peek_upper();
+    letter.is_ascii_alphabetic()
+        && !matches!(
+            letter,
+            b'X' | b'Y' | b'Z' | b'A' | b'B' | b'C' | b'U' | b'V' | b'W'
+        )
+        && !matches!(letter, b'I' | b'P' | b'R' | b'F' | b'M' | b'D' | b'Q')
+}
+
+/// `L` with coordinates and the like, or a chamfer, which is `L` with a bare number [003:2685].
+#[inline]
+fn line(c: &mut Cursor) -> Parsed<Option<Operation>> {
+    let start = c.position();
+    c.advance(1);
+    if joins_unknown_letter(c) {
+        c.go_to(start);
+        return Ok(None);
+    }
+    // A letter behind L is never a value but Q: spare the look for a number.
+    c.skip_blanks();
+    let next = c.peek_upper();
+    if (!next.is_ascii_alphabetic() || next == b'Q')
+        && let Some(length) = c.value()?
+    {
+        return chamfer(c, length).map(Some);
+    }
+    motion(c, MotionKind::Line).map(Some)
+}
+
+/// `CHF length`, a synonym of the chamfer `L length` [003:7964].
+fn chamfer_word(c: &mut Cursor) -> Parsed<Option<Operation>> {
+    let start = c.position();
+    if !c.keyword("CHF") {
+        return Ok(None);
+    }
+    let length = c.required_value(start)?;
+    chamfer(c, length).map(Some)
+}
+
+fn chamfer(c: &mut Cursor, length: Value) -> Parsed<Operation> {
+    Ok(Operation::Chamfer {
+        length,
+        feed: lone_feed(c)?,
+    })
+}
+
+/// `RND [R]radius [F]` [003:3042] [003:3060].
+fn rounding(c: &mut Cursor) -> Parsed<Option<Operation>> {
+    let start = c.position();
+    if !c.keyword("RND") {
+        return Ok(None);
+    }
+    c.accept(b'R');
+    let radius = c.required_value(start)?;
+    Ok(Some(Operation::Rounding {
+        radius,
+        feed: lone_feed(c)?,
+    }))
+}
+
+/// The F word of a block that takes nothing else; rapid traverse has no sense there.
+fn lone_feed(c: &mut Cursor) -> Parsed<Option<Value>> {
+    while !c.at_end() && c.peek_upper() == b'F' {
+        let start = c.position();
+        c.advance(1);
+        match feed_word(c)? {
+            Some(Feed::Value(value)) => return Ok(Some(value)),
+            Some(Feed::Max) => return c.fault_from(start, UnexpectedText, "this block takes no FMAX"),
+            None => {}
+        }
+    }
+    Ok(None)
+}
+
+/// `CC`, with two coordinates or none [003:2754] [003:2781].
+fn circle_centre(c: &mut Cursor) -> Parsed<Operation> {
+    c.advance(2);
+    Ok(Operation::CircleCentre(coordinates(c)?))
+}
+
+/// Axis words up to the first word that is none.
+pub(super) fn coordinates(c: &mut Cursor) -> Parsed<Coordinates> {
+    let mut coordinates = Coordinates::default();
+    while !c.at_end() {
+        let start = c.position();
+        let incremental = c.peek_upper() == b'I';
+        if incremental {
+            c.advance(1);
+        }
+        let Some(axis) = Axis::from_letter(c.peek()) else {
+            c.go_to(start);
+            break;
+        };
+        coordinate(c, start, axis, incremental, &mut coordinates)?;
+    }
+    Ok(coordinates)
+}
+
+/// Reads axis letter and value of the word that begins at `start`.
+#[inline]
+fn coordinate(
+    c: &mut Cursor,
+    start: usize,
+    axis: Axis,
+    incremental: bool,
+    coordinates: &mut Coordinates,
+) -> Parsed<()> {
+    c.advance(1);
+    let value = c.required_value(start)?;
+    if coordinates.axes().contains(axis) {
+        return c.fault_from(
+            start,
+            AxisDoubleProgrammed,
+            "the axis has two values in this block",
+        );
+    }
+    coordinates.set(axis, Word { value, incremental });
+    Ok(())
+}
+
+/// The words of a positioning block.
+#[inline]
+fn motion(c: &mut Cursor, kind: MotionKind) -> Parsed<Operation> {
+    let mut motion = Motion {
+        kind,
+        coordinates: Coordinates::default(),
+        polar_radius: None,
+        polar_angle: None,
+        radius: None,
+        direction: None,
+        compensation: None,
+        feed: None,
+        m: MFunctions::default(),
+    };
+    while !c.at_end() {
+        let start = c.position();
+        let letter = c.peek_upper();
+        match letter {
+            b'X' | b'Y' | b'Z' | b'A' | b'B' | b'C' | b'U' | b'V' | b'W' => {
+                axis_word(c, start, letter, false, &mut motion)?;
+            }
+            b'F' => {
+                c.advance(1);
+                let feed = feed_word(c)?;
+                set_once(c, start, feed, &mut motion.feed)?;
+            }
+            b'R' => radius_word(c, start, &mut motion)?,
+            b'M' => m_function(c, &mut motion.m)?,
+            b'I' => {
+                c.advance(1);
+                let letter = c.peek_upper();
+                match letter {
+                    b'P' => polar_word(c, start, true, &mut motion)?,
+                    _ => axis_word(c, start, letter, true, &mut motion)?,
+                }
+            }
+            b'P' => polar_word(c, start, false, &mut motion)?,
+            b'D' => direction_word(c, start, &mut motion)?,
+            _ => return c.unexpected(),
+        }
+    }
+    Ok(Operation::Motion(motion))
+}
+
+#[inline]
+fn axis_word(c: &mut Cursor, start: usize, letter: u8, incremental: bool, motion: &mut Motion) -> Parsed<()> {
+    let Some(axis) = Axis::from_letter(letter) else {
+        c.go_to(start);
+        return c.unexpected();
+    };
+    coordinate(c, start, axis, incremental, &mut motion.coordinates)?;
+    if motion.kind == MotionKind::Paraxial && motion.coordinates.axes().len() > 1 {
+        return c.fault_from(
+            start,
+            UnexpectedText,
+            "a block that opens with an axis moves this axis only",
+        );
+    }
+    Ok(())
+}
+
+fn set_once<T>(c: &Cursor, start: usize, value: Option<T>, slot: &mut Option<T>) -> Parsed<()> {
+    match value {
+        Some(_) if slot.is_some() => {
+            c.fault_from(start, UnexpectedText, "the word stands twice in the block")
+        }
+        Some(value) => {
+            *slot = Some(value);
+            Ok(())
+        }
+        None => Ok(()),
+    }
+}
+
+/// `FMAX`, `F value` or an empty `F`, behind the letter [003:303] [003:2142].
+#[inline]
+pub(super) fn feed_word(c: &mut Cursor) -> Parsed<Option<Feed>> {
+    let behind = c.position();
+    if let Some(value) = c.value()? {
+        return Ok(Some(Feed::Value(value)));
+    }
+    if c.keyword("MAX") {
+        return Ok(Some(Feed::Max));
+    }
+    // `FM3` is an empty F before M3; `FU`, `FZ`, `FAUTO` are feeds of later controls.
+    if c.peek().is_ascii_alphabetic() && c.peek_upper() != b'M' {
+        c.go_to(behind.saturating_sub(1));
+        return c.not_known();
+    }
+    Ok(None)
+}
+
+/// `R0`, `RL`, `RR`, `R+`, `R-`, the radius of CR, or an empty `R`.
+fn radius_word(c: &mut Cursor, start: usize, motion: &mut Motion) -> Parsed<()> {
+    c.advance(1);
+    let touches = c.peek().is_ascii_alphabetic();
+    c.skip_blanks();
+    let compensation = match c.peek_upper() {
+        b'L' => Some(Compensation::Left),
+        b'R' => Some(Compensation::Right),
+        b'0' if !matches!(c.peek_at(1), b'0'..=b'9' | b'.' | b',') || annotation_behind(c) => {
+            Some(Compensation::Off)
+        }
+        b'+' if !value_behind_sign(c) => Some(Compensation::Lengthen),
+        b'-' if !value_behind_sign(c) => Some(Compensation::Shorten),
+        _ => None,
+    };
+    if let Some(compensation) = compensation {
+        c.advance(1);
+        let single_axis = matches!(compensation, Compensation::Lengthen | Compensation::Shorten);
+        if single_axis != (motion.kind == MotionKind::Paraxial) && compensation != Compensation::Off {
+            let detail = "R+ and R- belong to single-axis blocks, RL and RR to all others";
+            return c.fault_from(start, UnexpectedText, detail);
+        }
+        return set_once(c, start, Some(compensation), &mut motion.compensation);
+    }
+    let value = c.value()?;
+    match value {
+        Some(_) if motion.kind != MotionKind::CircleRadius => {
+            c.fault_from(start, UnexpectedText, "only CR has a radius")
+        }
+        Some(_) => set_once(c, start, value, &mut motion.radius),
+        None if touches => {
+            c.go_to(start);
+            c.unexpected()
+        }
+        None => Ok(()),
+    }
+}
+
+/// Whether annotation follows the byte at the position.
+fn annotation_behind(c: &Cursor) -> bool {
+    let mut behind = c.clone();
+    behind.advance(1);
+    behind.at_annotation()
+}
+
+/// Whether a number or Q parameter follows the sign at the position.
+fn value_behind_sign(c: &Cursor) -> bool {
+    let mut behind = c.clone();
+    behind.advance(1);
+    behind.skip_blanks();
+    let digit_follows = behind.peek_at(1).is_ascii_digit();
+    match behind.peek_upper() {
+        b'0'..=b'9' | b'Q' => true,
+        b'.' | b',' => digit_follows,
+        _ => false,
+    }
+}
+
+/// `PR` or `PA` of the polar forms.
+fn polar_word(c: &mut Cursor, start: usize, incremental: bool, motion: &mut Motion) -> Parsed<()> {
+    let polar = matches!(
+        motion.kind,
+        MotionKind::LinePolar | MotionKind::CirclePolar | MotionKind::CircleTangentialPolar
+    );
+    let slot = match c.peek_at(1).to_ascii_uppercase() {
+        b'R' if polar => &mut motion.polar_radius,
+        b'A' if polar => &mut motion.polar_angle,
+        _ => {
+            c.go_to(start);
+            return c.unexpected();
+        }
+    };
+    c.advance(2);
+    let value = c.required_value(start)?;
+    set_once(c, start, Some(Word { value, incremental }), slot)
+}
+
+/// `DR+` or `DR-` of the arcs.
+fn direction_word(c: &mut Cursor, start: usize, motion: &mut Motion) -> Parsed<()> {
+    let arc = matches!(
+        motion.kind,
+        MotionKind::Circle | MotionKind::CircleRadius | MotionKind::CirclePolar
+    );
+    if !c.keyword("DR") || !arc {
+        c.go_to(start);
+        return c.unexpected();
+    }
+    let direction = direction(c, start)?;
+    set_once(c, start, Some(direction), &mut motion.direction)
+}
+
+/// The sign behind `DR`.
+pub(super) fn direction(c: &mut Cursor, start: usize) -> Parsed<Direction> {
+    if c.accept(b'+') {
+        Ok(Direction::CounterClockwise)
+    } else if c.accept(b'-') {
+        Ok(Direction::Clockwise)
+    } else if c.peek().is_ascii_alphanumeric() && c.position() == start + 2 {
+        c.go_to(start);
+        c.fault_at_word(BlockNotKnown, "no control here knows this word")
+    } else {
+        c.fault_from(start, EntryValueIncorrect, "DR needs a sign")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test::{fault, m, operation, q, words};
+    use super::*;
+    use Value::Number;
+
+    fn motion(text: &str) -> Motion {
+        match operation(text) {
+            Operation::Motion(motion) => motion,
+            other => panic!("{text}: {other:?}"),
+        }
+    }
+
+    fn absolute(value: Value) -> Option<Word> {
+        Some(Word {
+            value,
+            incremental: false,
+        })
+    }
+
+    fn incremental(value: Value) -> Option<Word> {
+        Some(Word {
+            value,
+            incremental: true,
+        })
+    }
+
+    #[test]
+    fn lines() {
+        let full = motion("L IX-50 Y+10 Z-20 RR F100 M3");
+        assert_eq!(full.kind, MotionKind::Line);
+        assert_eq!(full.coordinates, words("IX-50 Y10 Z-20"));
+        assert_eq!(full.compensation, Some(Compensation::Right));
+        assert_eq!(full.feed, Some(Feed::Value(Number(100.0))));
+        assert_eq!(full.m, m(&[3]));
+        for text in [
+            "L IX-50 Y10 Z-20 RR F 100 M03",
+            "12 L IX-50Y10Z-20RRF100M3",
+            "l ix-50 y10,0 z -20. rr f100 m3",
+            "\tL  IX - 50 Y + 10 Z-20.000 RR F100 M3 ; comment",
+            "LIX-50 Y+10 Z-20 M3 F100 RR....milling",
+        ] {
+            assert_eq!(motion(text), full, "{text}");
+        }
+        assert_eq!(motion("LY+5").coordinates, words("Y5"));
+        assert_eq!(motion("LB+90").coordinates, words("B90"));
+        assert_eq!(motion("L X+Q1 Y-Q2 FQ20").coordinates, words("XQ1 Y-Q2"));
+        assert_eq!(motion("L X+Q1 Y-Q2 FQ20").feed, Some(Feed::Value(q(20))));
+        assert_eq!(
+            motion("L A+1 B+2 C+3 U+4 V+5 W+6").coordinates,
+            words("A1 B2 C3 U4 V5 W6")
+        );
+    }
+
+    #[test]
+    fn lines_without_coordinates() {
+        assert_eq!(motion("L M99").m, m(&[99]));
+        assert_eq!(motion("L R0 F500 M3").compensation, Some(Compensation::Off));
+        assert_eq!(motion("L").coordinates, Coordinates::default());
+        assert_eq!(motion("LFMAX").feed, Some(Feed::Max));
+    }
+
+    #[test]
+    fn placeholders_of_the_screen() {
+        assert_eq!(motion("L X+5 R F5000 M"), motion("L X+5 F5000"));
+        assert_eq!(motion("L X+5 R F M"), motion("L X+5"));
+        assert_eq!(motion("L X+5 R0 F MAX M"), motion("L X+5 R0 FMAX"));
+        assert_eq!(motion("L X+5 F M3"), motion("L X+5 M3"));
+        assert_eq!(motion("L X+5 R0 FMAXM3"), motion("L X+5 R0 FMAX M3"));
+        assert_eq!(motion("L X+5 M3 M8").m, m(&[3, 8]));
+    }
+
+    #[test]
+    fn chamfers() {
+        let chamfer = |length, feed| Operation::Chamfer { length, feed };
+        for text in ["L5", "L 5", "CHF 5", "CHF5", "L +5", "chf 5,0"] {
+            assert_eq!(operation(text), chamfer(Number(5.0), None), "{text}");
+        }
+        assert_eq!(operation("L 10"), chamfer(Number(10.0), None));
+        assert_eq!(operation("L Q5"), chamfer(q(5), None));
+        assert_eq!(operation("CHF 5 F200"), chamfer(Number(5.0), Some(Number(200.0))));
+        assert_eq!(fault("L5 X+10"), (UnexpectedText, 4, 4));
+    }
+
+    #[test]
+    fn arcs() {
+        let c = motion("C IX+5 Y-5 DR-");
+        assert_eq!(
+            (c.kind, c.direction),
+            (MotionKind::Circle, Some(Direction::Clockwise))
+        );
+        assert_eq!(c.coordinates, words("IX5 Y-5"));
+        let cr = motion("CR X+10 Y+2 R-5 DR- RL");
+        assert_eq!(
+            (cr.kind, cr.radius),
+            (MotionKind::CircleRadius, Some(Number(-5.0)))
+        );
+        assert_eq!(cr.compensation, Some(Compensation::Left));
+        assert_eq!(motion("CR X+1 Y+2 R0.5 DR+ R0").radius, Some(Number(0.5)));
+        assert_eq!(motion("CR X+1 Y+2 R+Q11 DR+").radius, Some(q(11)));
+        assert_eq!(motion("CR X+1 Y+2 R+2,5 DR+").radius, Some(Number(2.5)));
+        let ct = motion("CT IX+50 IY-10 RR");
+        assert_eq!(
+            (ct.kind, ct.compensation),
+            (MotionKind::CircleTangential, Some(Compensation::Right))
+        );
+        assert_eq!(motion("CX+5Y+5DR+").kind, MotionKind::Circle);
+        assert_eq!(motion("C C+90 DR+").coordinates, words("C90"));
+    }
+
+    #[test]
+    fn circle_centres() {
+        assert_eq!(
+            operation("CC X+20 Y-10"),
+            Operation::CircleCentre(words("X20 Y-10"))
+        );
+        assert_eq!(operation("CC"), Operation::CircleCentre(Coordinates::default()));
+        assert_eq!(
+            operation("CCIX+1 IZ+Q3"),
+            Operation::CircleCentre(words("IX1 IZQ3"))
+        );
+        assert_eq!(fault("CC X+1 Y+1 F100"), (UnexpectedText, 12, 4));
+    }
+
+    #[test]
+    fn roundings() {
+        let rounding = |radius, feed| Operation::Rounding { radius, feed };
+        assert_eq!(
+            operation("RND 10 F 100"),
+            rounding(Number(10.0), Some(Number(100.0)))
+        );
+        assert_eq!(operation("RND R20"), rounding(Number(20.0), None));
+        assert_eq!(operation("RND R10"), rounding(Number(10.0), None));
+        assert_eq!(operation("RND RQ16 FQ17"), rounding(q(16), Some(q(17))));
+        assert_eq!(operation("RND2,5F"), rounding(Number(2.5), None));
+        assert_eq!(fault("RND 5 FMAX"), (UnexpectedText, 7, 4));
+        assert_eq!(fault("RND"), (EntryValueIncorrect, 1, 3));
+    }
+
+    #[test]
+    fn polar_forms() {
+        let lp = motion("LP PR+5 PA+30");
+        assert_eq!(lp.kind, MotionKind::LinePolar);
+        assert_eq!(
+            (lp.polar_radius, lp.polar_angle),
+            (absolute(Number(5.0)), absolute(Number(30.0)))
+        );
+        assert_eq!(motion("LP IPA-60").polar_angle, incremental(Number(-60.0)));
+        assert_eq!(motion("7 LP PR +Q2 PA +Q60 R0 FMAX").polar_angle, absolute(q(60)));
+        let cp = motion("CP PA+10 DR-");
+        assert_eq!(
+            (cp.kind, cp.direction),
+            (MotionKind::CirclePolar, Some(Direction::Clockwise))
+        );
+        let ctp = motion("CTP PR+10 PA+80");
+        assert_eq!(ctp.kind, MotionKind::CircleTangentialPolar);
+        let helix = motion("CP IPA+1080 IZ+5 DR-RL");
+        assert_eq!(helix.polar_angle, incremental(Number(1080.0)));
+        assert_eq!(helix.coordinates, words("IZ5"));
+        assert_eq!(helix.compensation, Some(Compensation::Left));
+    }
+
+    #[test]
+    fn single_axis_blocks() {
+        let x = motion("X+20 R+ F100 M3");
+        assert_eq!(
+            (x.kind, x.compensation),
+            (MotionKind::Paraxial, Some(Compensation::Lengthen))
+        );
+        assert_eq!(motion("IY-5 R- FMAX").compensation, Some(Compensation::Shorten));
+        assert_eq!(motion("12 X 20 R0 F100").coordinates, words("X20"));
+        assert_eq!(motion("C+90 F100").kind, MotionKind::Paraxial);
+        assert_eq!(motion("IC+90 F100").coordinates, words("IC90"));
+        assert_eq!(motion("B-Q3").coordinates, words("B-Q3"));
+        assert_eq!(fault("X+20 Y+10"), (UnexpectedText, 6, 4));
+        assert_eq!(fault("X+20 RL"), (UnexpectedText, 6, 2));
+        assert_eq!(fault("L X+20 R+ F100"), (UnexpectedText, 8, 2));
+    }
+
+    #[test]
+    fn faulty_numbers_are_located() {
+        assert_eq!(fault("L Xnan"), (EntryValueIncorrect, 3, 4));
+        assert_eq!(fault("L X1.2.3 Y5"), (EntryValueIncorrect, 4, 5));
+        assert_eq!(fault("L X--5"), (EntryValueIncorrect, 4, 3));
+        assert_eq!(fault("L X+ Y+5"), (EntryValueIncorrect, 4, 1));
+        assert_eq!(fault("L X Y+5"), (EntryValueIncorrect, 3, 1));
+        assert_eq!(fault("L X+5 Y+"), (EntryValueIncorrect, 8, 1));
+        assert_eq!(fault("L Xinf"), (EntryValueIncorrect, 3, 4));
+        assert_eq!(fault("L X123456789012345678901"), (EntryValueIncorrect, 4, 21));
+        assert_eq!(fault("L X+Q2000"), (EntryValueIncorrect, 4, 6));
+        assert_eq!(fault("C X+5 Y+5 DR"), (EntryValueIncorrect, 11, 2));
+        assert_eq!(fault("C X+5 Y+5 DR RL"), (EntryValueIncorrect, 11, 2));
+    }
+
+    #[test]
+    fn words_out_of_place_are_located() {
+        assert_eq!(fault("L X+5 X+6"), (AxisDoubleProgrammed, 7, 3));
+        assert_eq!(fault("L X+5 IX+6 R0"), (AxisDoubleProgrammed, 7, 4));
+        assert_eq!(fault("CC X+5 X+5"), (AxisDoubleProgrammed, 8, 3));
+        assert_eq!(fault("L X+5 Y+6 hop"), (UnexpectedText, 11, 3));
+        assert_eq!(fault("L X+5 F100 F200"), (UnexpectedText, 12, 4));
+        assert_eq!(fault("L PR+5"), (UnexpectedText, 3, 4));
+        assert_eq!(fault("L X+5 R5"), (UnexpectedText, 7, 2));
+        assert_eq!(fault("L X+5 DR+"), (UnexpectedText, 7, 3));
+        assert_eq!(fault("L X+5 FZ0.1"), (BlockNotKnown, 7, 5));
+        assert_eq!(fault("L X+5 RX"), (UnexpectedText, 7, 2));
+        assert_eq!(fault("Höhe"), (BlockNotKnown, 1, 4));
+    }
+
+    #[test]
+    fn blocks_of_later_controls() {
+        for text in [
+            "APPR LT X+5 Y+5 LEN10 RL F100",
+            "DEP LCT X+5 R5",
+            "FPOL X+0 Y+0",
+            "FL AN+30",
+            "FC DR+ R10",
+            "FCT DR- R5",
+            "FSELECT 2",
+            "FLT",
+            "PLANE SPATIAL SPA+45 SPB+0 SPC+0 STAY",
+            "FUNCTION MODE TURN",
+            "SEL PGM \"A.H\"",
+            "SPL X+5 Y+5",
+            "LN X+5 Y+5 Z+5 NX+0 NY+0 NZ+1",
+            "PATTERN DEF POS1 (X+1 Y+2 Z+0)",
+            "DECLARE STRING QS1",
+            "N10 G01 X5",
+            "%1000 G71",
+            "G00 X5",
+            "CALL SELECTED PGM",
+            "SECTION",
+            "WMAT \"STEEL\"",
+        ] {
+            assert_eq!(fault(text).0, BlockNotKnown, "{text}");
+            assert_eq!(fault(text).1, 1, "{text}");
+        }
+    }
+}

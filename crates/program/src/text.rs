@@ -1,0 +1,102 @@
+//! Characters of part-program files: 8-bit code pages, UTF-8 and UTF-16, blanks, line ends.
+
+/// Whether a byte separates words: blank, tab and every other control character, so that NUL padding,
+/// Ctrl-Z and ETX at the end of transferred files do no harm.
+#[inline]
+pub(crate) fn is_blank(byte: u8) -> bool {
+    byte <= b' ' || byte == 0x7f
+}
+
+/// The bytes without blanks at both ends.
+pub(crate) fn trim(bytes: &[u8]) -> &[u8] {
+    let Some(start) = bytes.iter().position(|&b| !is_blank(b)) else {
+        return &[];
+    };
+    let end = bytes
+        .iter()
+        .rposition(|&b| !is_blank(b))
+        .map_or(start, |last| last + 1);
+    bytes.get(start..end).unwrap_or_default()
+}
+
+/// The bytes without blanks and continuation marks at the end.
+pub(crate) fn trim_continuation(bytes: &[u8]) -> &[u8] {
+    let end = bytes
+        .iter()
+        .rposition(|&b| !is_blank(b) && b != b'~')
+        .map_or(0, |last| last + 1);
+    bytes.get(..end).unwrap_or_default()
+}
+
+/// Text of names and comments: UTF-8 where the bytes are, else one character per byte (Latin-1), which
+/// loses nothing whatever the code page was.
+pub(crate) fn to_text(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+    }
+}
+
+/// Number of characters that [`to_text`] would give.
+pub(crate) fn character_count(bytes: &[u8]) -> u32 {
+    let count = std::str::from_utf8(bytes).map_or(bytes.len(), |text| text.chars().count());
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+/// [`to_text`] with every run of blanks turned into one space and none at the ends.
+pub(crate) fn to_words(bytes: &[u8]) -> Box<str> {
+    let mut joined = Vec::with_capacity(bytes.len());
+    for word in bytes.split(|&b| is_blank(b)).filter(|word| !word.is_empty()) {
+        if !joined.is_empty() {
+            joined.push(b' ');
+        }
+        joined.extend_from_slice(word);
+    }
+    to_text(&joined).into_boxed_str()
+}
+
+/// Turns a file in UTF-16 with a byte-order mark into UTF-8; any other file stays as it is.
+pub(crate) fn without_utf16(bytes: Vec<u8>) -> Vec<u8> {
+    let unit: fn([u8; 2]) -> u16 = match bytes.get(..2) {
+        Some([0xff, 0xfe]) => u16::from_le_bytes,
+        Some([0xfe, 0xff]) => u16::from_be_bytes,
+        _ => return bytes,
+    };
+    let units = bytes.chunks_exact(2).skip(1).map(|pair| match pair {
+        [a, b] => unit([*a, *b]),
+        _ => 0,
+    });
+    char::decode_utf16(units)
+        .map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER))
+        .collect::<String>()
+        .into_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_keeps_every_code_page() {
+        assert_eq!(to_text("Höhe".as_bytes()), "Höhe");
+        assert_eq!(to_text(b"H\xf6he"), "Höhe");
+        assert_eq!(character_count("Höhe".as_bytes()), 4);
+        assert_eq!(character_count(b"H\xf6he"), 4);
+        assert_eq!(&*to_words(b"  PECK\t  DRILLING "), "PECK DRILLING");
+    }
+
+    #[test]
+    fn ends_are_trimmed() {
+        assert_eq!(trim(b" \t a b \x1a\0"), b"a b");
+        assert_eq!(trim(b" \0 "), b"");
+        assert_eq!(trim_continuation(b"Q200=2 ~ ~ "), b"Q200=2");
+        assert_eq!(trim_continuation(b"~"), b"");
+    }
+
+    #[test]
+    fn utf16_becomes_utf8() {
+        assert_eq!(without_utf16(b"\xff\xfeL\0 \0X\x001\0".to_vec()), b"L X1");
+        assert_eq!(without_utf16(b"\xfe\xff\0L\0\xf6".to_vec()), "Lö".as_bytes());
+        assert_eq!(without_utf16(b"L X1".to_vec()), b"L X1");
+    }
+}
