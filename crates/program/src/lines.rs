@@ -1,6 +1,6 @@
 //! Cuts a file into the raw text of its blocks: one line each, or several that `~` joins.
 
-use crate::text::is_blank;
+use crate::text::{is_blank, trim_continuation};
 
 /// Where the text of a block lies in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +78,8 @@ impl Iterator for RawBlocks<'_> {
             };
             let mut joined = false;
             if bytes.get(last) == Some(&b'~') && !stands_alone(bytes) {
+                // At the end of the file there is nothing to join.
+                end = start + trim_continuation(bytes).len();
                 while let Some((next_start, next_end)) = self.line() {
                     joined = true;
                     end = next_end;
@@ -138,7 +140,7 @@ mod tests {
             blocks(b"A ~\n B ~ \n C\nD"),
             [(&b"A ~\n B ~ \n C"[..], 1, true), (b"D", 4, false)]
         );
-        assert_eq!(blocks(b"A ~"), [(&b"A ~"[..], 1, false)]);
+        assert_eq!(blocks(b"A ~"), [(&b"A"[..], 1, false)]);
         assert_eq!(
             blocks(b"12 ; ~~~\nB"),
             [(&b"12 ; ~~~"[..], 1, false), (b"B", 2, false)]

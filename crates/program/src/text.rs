@@ -43,8 +43,10 @@ pub(crate) fn character_count(bytes: &[u8]) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// [`to_text`] with every run of blanks turned into one space and none at the ends.
+/// [`to_text`] with every run of blanks turned into one space and none at the ends, where a `~` would join
+/// the next line.
 pub(crate) fn to_words(bytes: &[u8]) -> Box<str> {
+    let bytes = trim_continuation(bytes);
     let mut joined = Vec::with_capacity(bytes.len());
     for word in bytes.split(|&b| is_blank(b)).filter(|word| !word.is_empty()) {
         if !joined.is_empty() {

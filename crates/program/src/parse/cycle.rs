@@ -93,7 +93,11 @@ fn label_list(c: &mut Cursor) -> Parsed<Vec<CycleWord>> {
     let mut words = Vec::new();
     let mut text = Vec::new();
     while !c.at_end() && !c.peek().is_ascii_digit() && c.peek() != b'/' {
-        decoration(c, &mut text);
+        if matches!(c.peek(), b':' | b'=') {
+            c.advance(1);
+        } else {
+            decoration(c, &mut text);
+        }
     }
     words.extend(text_word(to_words(&text)));
     let mut labels = Vec::new();
@@ -124,8 +128,7 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
     let mut text: Vec<u8> = Vec::new();
     let mut axes = AxisSet::EMPTY;
     while !c.at_end() {
-        if matches!(c.peek(), b':' | b'=' | b'/' | b',') && !c.peek_at(1).is_ascii_digit() || c.peek() == b'/'
-        {
+        if matches!(c.peek(), b':' | b'=' | b'/') {
             c.advance(1);
             continue;
         }
@@ -134,7 +137,8 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
             decoration(c, &mut text);
             continue;
         };
-        if let Some(CycleWord::Coordinate(axis, _)) = word {
+        let Some(word) = word else { continue };
+        if let CycleWord::Coordinate(axis, _) = word {
             if axes.contains(axis) {
                 return c.fault_from(
                     start,
@@ -146,7 +150,7 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
         }
         words.extend(text_word(to_words(&text)));
         text.clear();
-        words.extend(word);
+        words.push(word);
     }
     words.extend(text_word(to_words(&text)));
     Ok(words)

@@ -56,6 +56,9 @@ pub(super) fn m_function(c: &mut Cursor, m: &mut MFunctions) -> Parsed<()> {
         return c.fault_from(start, BlockNotKnown, "no control here knows this M function");
     }
     let code = number as u16;
+    if m.contains(code) {
+        return c.fault_from(start, UnexpectedText, "the M function stands twice in the block");
+    }
     if !m.push(code) {
         return c.fault_from(start, UnexpectedText, "too many M functions in the block");
     }

@@ -19,8 +19,9 @@ use bahn_parameters::MessageId;
 use crate::lines::RawBlock;
 use crate::text::{character_count, to_text, trim, trim_continuation};
 use crate::{Block, BlockError, InvalidBlock, Operation};
-pub(crate) use cursor::code_length;
-use cursor::{Cursor, Fault, Parsed};
+use cursor::{Cursor, Fault, Parsed, code_length};
+pub(crate) use cycle::FIRST_PARAMETER_CYCLE;
+pub(crate) use formula::FUNCTIONS;
 
 /// Reads the block that lies at `raw` in the file.
 #[inline]

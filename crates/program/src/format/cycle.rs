@@ -1,0 +1,121 @@
+//! Cycle and probe blocks in listings.
+
+use super::Output;
+use super::path::direction_text;
+use crate::parse::FIRST_PARAMETER_CYCLE;
+use crate::{CycleBlock, CycleWord, Direction, Value};
+
+/// Cycle blocks whose values are printed without `+`: dwell times, radii, scaling factor, spindle angle
+/// [003:4978] [003:5381] [003:6434].
+const UNSIGNED_CYCLE_BLOCKS: &[(u16, u16)] = &[(1, 4), (2, 3), (4, 6), (5, 4), (9, 1), (11, 1), (13, 1)];
+/// Probe blocks whose values are printed without `+` [003:6690-6696] [003:6810-6818].
+const UNSIGNED_PROBE_BLOCKS: &[(u16, u16)] = &[(6, 2), (7, 1), (7, 3)];
+
+impl Output {
+    pub(super) fn cycle(&mut self, block: &CycleBlock) {
+        self.text.push_str("CYCL DEF ");
+        self.integer(u32::from(block.number));
+        let first_touches = match block.words.first() {
+            Some(CycleWord::Text(text)) => text.starts_with(['.', ',']),
+            _ => false,
+        };
+        if block.number < FIRST_PARAMETER_CYCLE || block.sub != 0 || first_touches {
+            self.text.push('.');
+            self.integer(u32::from(block.sub));
+        }
+        if block.number == 12 && block.sub > 0 {
+            self.word("PGM");
+        }
+        let unsigned = UNSIGNED_CYCLE_BLOCKS.contains(&(block.number, block.sub));
+        self.cycle_words(&block.words, |_| unsigned);
+    }
+
+    pub(super) fn probe(&mut self, block: &CycleBlock) {
+        self.text.push_str("TCH PROBE ");
+        self.integer(u32::from(block.number));
+        self.text.push('.');
+        self.integer(u32::from(block.sub));
+        if (block.number, block.sub) == (5, 1) {
+            self.word("PGM NAME:");
+        }
+        let unsigned = UNSIGNED_PROBE_BLOCKS.contains(&(block.number, block.sub));
+        // An unsigned Q would be the parameter for the result.
+        self.cycle_words(&block.words, |value| {
+            unsigned && matches!(value, Value::Number(_))
+        });
+    }
+
+    fn cycle_words(&mut self, words: &[CycleWord], unsigned: impl Fn(Value) -> bool) {
+        for (i, word) in words.iter().enumerate() {
+            let before = i.checked_sub(1).and_then(|i| words.get(i));
+            if before.is_some_and(|before| needs_separator(before, word)) {
+                self.text
+                    .push(if matches!(before, Some(CycleWord::AxisDirection(..))) {
+                        '/'
+                    } else {
+                        ':'
+                    });
+            }
+            match word {
+                CycleWord::Text(text) => self.word(text),
+                CycleWord::Number(value) if unsigned(*value) => self.unsigned_word("", Some(*value)),
+                CycleWord::Number(value) => self.signed_word("", Some(*value)),
+                CycleWord::Coordinate(axis, word) => {
+                    self.word(if word.incremental { "I" } else { "" });
+                    self.text.push(axis.letter());
+                    self.signed(word.value);
+                }
+                CycleWord::Axis(axis) => {
+                    self.word("");
+                    self.text.push(axis.letter());
+                }
+                CycleWord::AxisDirection(axis, direction) => {
+                    self.word("");
+                    self.text.push(axis.letter());
+                    self.text.push(if *direction == Direction::Clockwise {
+                        '-'
+                    } else {
+                        '+'
+                    });
+                }
+                CycleWord::Feed(feed) => self.feed_word(*feed),
+                CycleWord::Direction(direction) => self.word(direction_text(*direction)),
+                CycleWord::Labels(labels) => {
+                    for (i, label) in labels.iter().enumerate() {
+                        self.text.push(if i == 0 { ' ' } else { '/' });
+                        self.integer(u32::from(*label));
+                    }
+                }
+                CycleWord::Target(number) => {
+                    self.word("Q");
+                    self.integer(u32::from(*number));
+                }
+                CycleWord::Assignment(number, value) => {
+                    self.word("Q");
+                    self.integer(u32::from(*number));
+                    self.text.push('=');
+                    self.signed(*value);
+                }
+                CycleWord::M(code) => {
+                    self.word("M");
+                    self.integer(u32::from(*code));
+                }
+            }
+        }
+    }
+}
+
+/// Whether two words would read as one without a separator: an axis letter, a short text that may be an
+/// address, or a sign, before a value.
+fn needs_separator(before: &CycleWord, word: &CycleWord) -> bool {
+    let value = matches!(word, CycleWord::Number(_) | CycleWord::Target(_));
+    match before {
+        CycleWord::Axis(_) => value,
+        CycleWord::AxisDirection(..) => value || matches!(word, CycleWord::AxisDirection(..)),
+        CycleWord::Text(text) => {
+            let last = text.rsplit(' ').next().unwrap_or_default();
+            value && (last.len() <= 2 || last.ends_with(['+', '-']))
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,60 @@
+//! Positioning blocks in listings.
+
+use super::Output;
+use crate::{Compensation, Direction, Motion, MotionKind, Word};
+
+impl Output {
+    pub(super) fn motion(&mut self, motion: &Motion) {
+        let start = self.text.len();
+        self.text.push_str(match motion.kind {
+            MotionKind::Line => "L",
+            MotionKind::Circle => "C",
+            MotionKind::CircleRadius => "CR",
+            MotionKind::CircleTangential => "CT",
+            MotionKind::LinePolar => "LP",
+            MotionKind::CirclePolar => "CP",
+            MotionKind::CircleTangentialPolar => "CTP",
+            MotionKind::Paraxial => "",
+        });
+        self.polar_word("PR", motion.polar_radius);
+        self.polar_word("PA", motion.polar_angle);
+        self.coordinates(&motion.coordinates);
+        self.signed_word("R", motion.radius);
+        if let Some(direction) = motion.direction {
+            self.word(direction_text(direction));
+        }
+        if let Some(compensation) = motion.compensation {
+            self.word(match compensation {
+                Compensation::Off => "R0",
+                Compensation::Left => "RL",
+                Compensation::Right => "RR",
+                Compensation::Lengthen => "R+",
+                Compensation::Shorten => "R-",
+            });
+        }
+        if let Some(feed) = motion.feed {
+            self.feed_word(feed);
+        }
+        self.m_functions(&motion.m);
+        if motion.kind == MotionKind::Paraxial && self.text.len() > start {
+            // The axis word opens the block.
+            self.text.remove(start);
+        }
+    }
+
+    fn polar_word(&mut self, address: &str, word: Option<Word>) {
+        if let Some(word) = word {
+            self.word(if word.incremental { "I" } else { "" });
+            self.text.push_str(address);
+            self.signed(word.value);
+        }
+    }
+}
+
+/// `DR+` or `DR-`.
+pub(super) fn direction_text(direction: Direction) -> &'static str {
+    match direction {
+        Direction::CounterClockwise => "DR+",
+        Direction::Clockwise => "DR-",
+    }
+}
