@@ -55,9 +55,8 @@ impl Index {
             }
             let number = next;
             next += 1;
-            match keyword(raw.bytes(file)) {
-                Keyword::None => {}
-                Keyword::Label | Keyword::BeginOrEnd => match parse_block(file, raw).operation {
+            if raw.joined || has_keyword(raw.bytes(file)) {
+                match parse_block(file, raw, true).operation {
                     Operation::Label(label) if label > 0 => index.set_label(label, number),
                     Operation::Begin(header) if index.begin.is_none() => {
                         // What stands before BEGIN PGM is no part of the program.
@@ -76,7 +75,7 @@ impl Index {
                     }
                     Operation::End(header) => index.end = Some(*header),
                     _ => {}
-                },
+                }
             }
             if number.is_multiple_of(CHUNK_SIZE) || chunks.is_empty() {
                 chunks.push(ChunkStart {
@@ -134,25 +133,18 @@ fn byte(offset: usize) -> u32 {
     u32::try_from(offset).unwrap_or(u32::MAX)
 }
 
-/// What a block may be by its first letters.
-enum Keyword {
-    Label,
-    BeginOrEnd,
-    None,
-}
-
-/// Looks at the first letters behind block number and `/`.
+/// Whether a line may be LBL, BEGIN or END by its first letters.
 #[inline]
-fn keyword(block: &[u8]) -> Keyword {
-    let first = block
+fn has_keyword(line: &[u8]) -> bool {
+    let first = line
         .iter()
         .position(|b| b.is_ascii_alphabetic())
-        .unwrap_or(block.len());
-    let at = |offset: usize| block.get(first + offset).map_or(b' ', u8::to_ascii_uppercase);
+        .unwrap_or(line.len());
+    let at = |offset: usize| line.get(first + offset).map_or(b' ', u8::to_ascii_uppercase);
     match at(0) {
-        b'L' if at(1) == b'B' && at(2) == b'L' => Keyword::Label,
-        b'B' if at(1) == b'E' => Keyword::BeginOrEnd,
-        b'E' if at(1) == b'N' => Keyword::BeginOrEnd,
-        _ => Keyword::None,
+        b'L' => at(1) == b'B' && at(2) == b'L',
+        b'B' => at(1) == b'E',
+        b'E' => at(1) == b'N',
+        _ => false,
     }
 }

@@ -3,9 +3,8 @@
 use crate::index::{CHUNK_SIZE, ChunkStart, Index};
 use crate::lines::{RawBlock, RawBlocks};
 use crate::parse::parse_block;
-use crate::text::{to_text, without_utf16};
-use crate::{Block, BlockError, Header, InvalidBlock, Operation, Unit};
-use bahn_parameters::MessageId;
+use crate::text::{BYTE_ORDER_MARK, to_text, without_utf16};
+use crate::{Block, Header, Operation, Unit};
 
 /// A part program in plain language.
 ///
@@ -194,11 +193,7 @@ impl Program {
     /// Reads one block. Only the first block can begin a program.
     #[inline]
     fn parse(&self, number: u32, raw: RawBlock) -> Block {
-        let mut block = parse_block(&self.file, raw);
-        if number > 0 && matches!(block.operation, Operation::Begin(_)) {
-            block = second_begin(to_text(raw.bytes(&self.file)), block.skip);
-        }
-        block
+        parse_block(&self.file, raw, number == 0)
     }
 
     /// Number, line and place in the file of all blocks; implied ones have none.
@@ -242,7 +237,11 @@ impl Program {
 
 /// Where the text begins, behind a byte-order mark.
 pub(crate) fn text_start(file: &[u8]) -> usize {
-    if file.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }
+    if file.starts_with(BYTE_ORDER_MARK) {
+        BYTE_ORDER_MARK.len()
+    } else {
+        0
+    }
 }
 
 /// A BEGIN or END block that the file lacks.
@@ -255,28 +254,6 @@ fn implied(kind: fn(Box<Header>) -> Operation) -> Block {
     Block {
         skip: false,
         operation: kind(Box::new(header)),
-        comment: None,
-    }
-}
-
-#[cold]
-fn second_begin(text: String, skip: bool) -> Block {
-    let column = text.chars().take_while(|c| !c.is_ascii_alphabetic()).count() as u32 + 1;
-    let code: String = text.chars().skip(column as usize - 1).collect();
-    let error = BlockError {
-        message: MessageId::UnexpectedText,
-        line: 0,
-        column,
-        length: "BEGIN".len() as u32,
-        detail: "the program has begun already".into(),
-    };
-    let text = code.trim_end_matches(|c: char| c.is_ascii_whitespace() || c.is_ascii_control() || c == '~');
-    Block {
-        skip,
-        operation: Operation::Invalid(Box::new(InvalidBlock {
-            text: text.into(),
-            error,
-        })),
         comment: None,
     }
 }

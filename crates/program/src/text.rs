@@ -1,5 +1,8 @@
 //! Characters of part-program files: 8-bit code pages, UTF-8 and UTF-16, blanks, line ends.
 
+/// The byte-order mark of UTF-8.
+pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Whether a byte separates words: blank, tab and every other control character, so that NUL padding,
 /// Ctrl-Z and ETX at the end of transferred files do no harm.
 #[inline]

@@ -108,7 +108,10 @@ impl Output {
 /// Whether two words would read as one without a separator: an axis letter, a short text that may be an
 /// address, or a sign, before a value.
 fn needs_separator(before: &CycleWord, word: &CycleWord) -> bool {
-    let value = matches!(word, CycleWord::Number(_) | CycleWord::Target(_));
+    let value = matches!(
+        word,
+        CycleWord::Number(_) | CycleWord::Target(_) | CycleWord::Assignment(..)
+    );
     match before {
         CycleWord::Axis(_) => value,
         CycleWord::AxisDirection(..) => value || matches!(word, CycleWord::AxisDirection(..)),

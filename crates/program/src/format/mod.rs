@@ -7,7 +7,8 @@ mod path;
 
 use std::fmt::{self, Display, Write};
 
-use crate::text::{to_text, trim};
+use crate::parse::physical_lines;
+use crate::text::{BYTE_ORDER_MARK, is_blank, to_text, trim};
 use crate::{
     Block, Calculation, Condition, Coordinates, Feed, Header, MFunctions, NumberedBlock, Operation, Program,
     Unit, Value,
@@ -76,22 +77,33 @@ impl Display for Listing<'_> {
             f.write_str(&out.text)?;
         }
         if let Some((start, _)) = index.trailing {
-            verbatim(f, file.get(start as usize..).unwrap_or_default())?;
+            verbatim(f, trim(file.get(start as usize..).unwrap_or_default()))?;
         }
         Ok(())
     }
 }
 
-/// Writes lines as they are, without blanks at their ends and without empty ones.
-fn verbatim(f: &mut fmt::Formatter<'_>, bytes: &[u8]) -> fmt::Result {
-    for line in bytes
-        .split(|b| matches!(b, b'\n' | b'\r' | b'\x0c'))
-        .map(trim)
-        .filter(|line| !line.is_empty())
-    {
-        writeln!(f, "{}", to_text(line))?;
+/// Writes lines as they are, without blanks at their ends. Empty ones stay: they keep a `~` before them from
+/// joining more.
+fn verbatim(f: &mut fmt::Formatter<'_>, mut bytes: &[u8]) -> fmt::Result {
+    // At the front of a file these are no text.
+    while let Some(rest) = bytes.strip_prefix(BYTE_ORDER_MARK).or_else(|| strip_blank(bytes)) {
+        bytes = rest;
+    }
+    let mut lines = physical_lines(bytes).map(trim).peekable();
+    while let Some(line) = lines.next() {
+        if !line.is_empty() || lines.peek().is_some() {
+            writeln!(f, "{}", to_text(line))?;
+        }
     }
     Ok(())
+}
+
+fn strip_blank(bytes: &[u8]) -> Option<&[u8]> {
+    bytes
+        .split_first()
+        .filter(|(first, _)| is_blank(**first))
+        .map(|(_, rest)| rest)
 }
 
 /// Text being written. Words other than the first begin with a blank.

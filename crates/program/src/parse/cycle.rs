@@ -93,7 +93,7 @@ fn label_list(c: &mut Cursor) -> Parsed<Vec<CycleWord>> {
     let mut words = Vec::new();
     let mut text = Vec::new();
     while !c.at_end() && !c.peek().is_ascii_digit() && c.peek() != b'/' {
-        if matches!(c.peek(), b':' | b'=') {
+        if is_separator(c.peek()) {
             c.advance(1);
         } else {
             decoration(c, &mut text);
@@ -128,7 +128,7 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
     let mut text: Vec<u8> = Vec::new();
     let mut axes = AxisSet::EMPTY;
     while !c.at_end() {
-        if matches!(c.peek(), b':' | b'=' | b'/') {
+        if is_separator(c.peek()) {
             c.advance(1);
             continue;
         }
@@ -188,7 +188,7 @@ fn address(c: &mut Cursor, scope: Scope) -> Parsed<Option<Option<CycleWord>>> {
                 "no control here knows this M function",
             )?))
         }
-        (b'D', b'R') if matches!(c.peek_at(2), b'+' | b'-') || ends_word(c, 2) => {
+        (b'D', b'R') if matches!(c.peek_at(2), b'+' | b'-' | b'0'..=b'9') || ends_word(c, 2) => {
             c.advance(2);
             Some(CycleWord::Direction(direction(c, start)?))
         }
@@ -298,12 +298,17 @@ fn parameter_begins(text: &[u8]) -> bool {
     matches!(text, [b'Q' | b'q', b'0'..=b'9', ..])
 }
 
+/// What separates words like a blank: `HEIGHT: +100`, `ORDER Y-/X+`. A `~` would join lines in a listing.
+fn is_separator(byte: u8) -> bool {
+    matches!(byte, b':' | b'=' | b'/' | b'~')
+}
+
 /// Whether the word ends `offset` behind the position.
 fn ends_word(c: &Cursor, offset: usize) -> bool {
     let rest = c.rest().get(offset..).unwrap_or_default();
     match rest.first() {
-        None | Some(b';' | b':' | b'=' | b'/') => true,
-        Some(&byte) => is_blank(byte) || rest.starts_with(b"..."),
+        None => true,
+        Some(&byte) => is_blank(byte) || byte == b';' || is_separator(byte) || rest.starts_with(b"..."),
     }
 }
 
@@ -318,7 +323,8 @@ fn decoration(c: &mut Cursor, text: &mut Vec<u8>) {
             let touches_dot = rest.get(i) == Some(&b'.') && !behind.starts_with(b"...");
             let byte = behind.first().copied().unwrap_or(b' ');
             is_blank(byte)
-                || matches!(byte, b';' | b':' | b'=' | b'/')
+                || byte == b';'
+                || is_separator(byte)
                 || behind.starts_with(b"...")
                 || (number_begins(behind) && !touches_dot)
         })

@@ -23,20 +23,20 @@ use cursor::{Cursor, Fault, Parsed, code_length};
 pub(crate) use cycle::FIRST_PARAMETER_CYCLE;
 pub(crate) use formula::FUNCTIONS;
 
-/// Reads the block that lies at `raw` in the file.
+/// Reads the block that lies at `raw` in the file. `BEGIN PGM` is a fault where it is not permitted.
 #[inline]
-pub(crate) fn parse_block(file: &[u8], raw: RawBlock) -> Block {
+pub(crate) fn parse_block(file: &[u8], raw: RawBlock, may_begin: bool) -> Block {
     let bytes = raw.bytes(file);
     if raw.joined {
-        parse_joined(bytes)
+        parse_joined(bytes, may_begin)
     } else {
-        parse_line(bytes)
+        parse_line(bytes, may_begin)
     }
 }
 
 /// Reads a block that stands in one line.
 #[inline]
-fn parse_line(line: &[u8]) -> Block {
+fn parse_line(line: &[u8], may_begin: bool) -> Block {
     let mut c = Cursor::new(line);
     let skip = prefix(&mut c);
     let start = c.position();
@@ -47,7 +47,7 @@ fn parse_line(line: &[u8]) -> Block {
             comment: None,
         };
     }
-    match complete_operation(&mut c) {
+    match complete_operation(&mut c, may_begin) {
         Ok(operation) => {
             let comment = if c.peek() == b';' {
                 comment_text(c.rest())
@@ -109,8 +109,12 @@ fn stand_alone(c: &mut Cursor) -> Option<Operation> {
 
 /// Reads a function up to the end of the block.
 #[inline]
-fn complete_operation(c: &mut Cursor) -> Parsed<Operation> {
+fn complete_operation(c: &mut Cursor, may_begin: bool) -> Parsed<Operation> {
+    let start = c.position();
     let operation = operation(c)?;
+    if !may_begin && matches!(operation, Operation::Begin(_)) {
+        return c.fault_from(start, MessageId::UnexpectedText, "the program has begun already");
+    }
     if c.at_end() { Ok(operation) } else { c.unexpected() }
 }
 
@@ -188,7 +192,7 @@ struct Piece<'a> {
 
 /// Reads a block of several lines joined by `~`. Its comments become one.
 #[cold]
-fn parse_joined(bytes: &[u8]) -> Block {
+fn parse_joined(bytes: &[u8], may_begin: bool) -> Block {
     let mut pieces = Vec::new();
     let mut joined = Vec::new();
     let mut comments = String::new();
@@ -228,7 +232,7 @@ fn parse_joined(bytes: &[u8]) -> Block {
             comment: None,
         };
     }
-    match complete_operation(&mut c) {
+    match complete_operation(&mut c, may_begin) {
         Ok(operation) => {
             let comment = (!comments.is_empty()).then(|| comments.into());
             Block {
@@ -253,7 +257,7 @@ fn parse_joined(bytes: &[u8]) -> Block {
 }
 
 /// The lines of a block, with one for each line end.
-fn physical_lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(crate) fn physical_lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut rest = Some(bytes);
     std::iter::from_fn(move || {
         let line = rest?;
@@ -317,7 +321,7 @@ mod test {
             line: 1,
             joined,
         };
-        parse_block(text.as_bytes(), raw)
+        parse_block(text.as_bytes(), raw, true)
     }
 
     /// What the text does; it must be a valid block.

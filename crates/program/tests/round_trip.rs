@@ -1,0 +1,149 @@
+//! Laws of listings: reading one gives the same blocks, writing it again the same text, for every kind of
+//! block and for any bytes.
+
+mod generate;
+
+use bahn_program::{Block, FormatOptions, Operation, Program, format_block, format_program};
+use proptest::prelude::*;
+
+const POINT: FormatOptions = FormatOptions { decimal_comma: false };
+const COMMA: FormatOptions = FormatOptions { decimal_comma: true };
+
+fn read(bytes: impl Into<Vec<u8>>) -> Program {
+    Program::from_bytes("TEST.H", bytes.into())
+}
+
+/// The blocks without the places of faults, which move with the text before them.
+fn blocks(program: &Program) -> Vec<Block> {
+    let without_place = |mut block: Block| {
+        if let Operation::Invalid(invalid) = &mut block.operation {
+            invalid.error.line = 0;
+            invalid.error.column = 0;
+            invalid.error.length = 0;
+        }
+        block
+    };
+    program
+        .blocks()
+        .map(|numbered| without_place(numbered.block))
+        .collect()
+}
+
+fn check_laws(bytes: &[u8]) {
+    let program = read(bytes);
+    let all = blocks(&program);
+    assert_eq!(all.len(), program.block_count() as usize);
+    for options in [POINT, COMMA] {
+        let listing = format_program(&program, options).to_string();
+        let again = read(listing.clone());
+        assert_eq!(
+            blocks(&again),
+            all,
+            "{:?}\n{listing}",
+            String::from_utf8_lossy(bytes)
+        );
+        assert_eq!(
+            format_program(&again, options).to_string(),
+            listing,
+            "{listing:?}"
+        );
+    }
+    let mut joined = 0;
+    for chunk in 0..program.chunk_count() {
+        joined += program.decode(chunk).blocks.len();
+    }
+    assert_eq!(joined, all.len());
+    let last = program.block_count() - 1;
+    assert!(program.line_of(last) >= 1 && program.text_of(last).len() <= bytes.len() * 2);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+
+    #[test]
+    fn every_block_reads_back(block in generate::block()) {
+        for options in [POINT, COMMA] {
+            let text = format_block(&block, options);
+            let program = read(format!("BEGIN PGM 1 MM\n{text}\nEND PGM 1 MM"));
+            let found = program.decode(0).blocks.swap_remove(1);
+            prop_assert_eq!(&found, &block, "{}", text);
+        }
+    }
+
+    #[test]
+    fn every_program_keeps_the_laws(all in prop::collection::vec(generate::block(), 0..40)) {
+        let text: String = all.iter().map(|block| format_block(block, POINT) + "\n").collect();
+        check_laws(text.as_bytes());
+    }
+
+    #[test]
+    fn any_bytes_keep_the_laws(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        check_laws(&bytes);
+    }
+
+    #[test]
+    fn any_words_keep_the_laws(words in prop::collection::vec(generate::fragment(), 0..80)) {
+        check_laws(words.concat().as_bytes());
+    }
+
+    #[test]
+    fn damaged_programs_keep_the_laws(
+        all in prop::collection::vec(generate::block(), 1..12),
+        damages in prop::collection::vec((any::<prop::sample::Index>(), generate::damage()), 1..8),
+    ) {
+        let text: String = all.iter().map(|block| format_block(block, POINT) + "\n").collect();
+        let mut bytes = text.into_bytes();
+        for (place, damage) in damages {
+            if !bytes.is_empty() {
+                let place = place.index(bytes.len());
+                damage.apply(&mut bytes, place);
+            }
+        }
+        check_laws(&bytes);
+    }
+}
+
+#[test]
+fn nasty_texts_keep_the_laws() {
+    for text in [
+        "",
+        "~",
+        "~\n~\n~",
+        "CALL PGM A~ ;",
+        "CALL PGM A~...b\nL X+1",
+        "12 ~\n* - heading ; c",
+        "L X+5 ~\n\n\nY+6",
+        "/5 / / L X+5",
+        "5 7 L X+5",
+        "CYCL DEF 200.0 .X",
+        "CYCL DEF 1.1 X: 5",
+        "CYCL DEF 1.1 IX: 5 AB-: 5",
+        "CYCL DEF 1.1 SET F UP",
+        "TCH PROBE 6.2 -: Q5",
+        "TCH PROBE 7.2 ORDER X-/5 Y+/Z-",
+        "CYCL DEF 12.1 PGM PGM",
+        "BEGIN PGM A~ MM ~\nP",
+        "1 BEGIN PGM A\n2 begin pgm B ~\r\n ~ \n~",
+        "; a ~~~\nL X+1",
+        "\u{c}L X+5\u{c}END PGM\u{c}BEGIN",
+        "x\n~\nBEGIN PGM 1 MM\nEND PGM 1 MM\n tail ~\n  more \x00",
+        "x ~\n\r BEGIN PGM 1",
+        "...L  ~\nBEGIN PGM ",
+        "...L  ~\nBEGIN PGM ",
+        "Q1; ~\n~",
+        "\n\u{feff}\nBEGIN PGM ",
+        "\n\u{feff}\r\n \n\u{feff}x\nBEGIN PGM ",
+        "CYCL DEF 1.1 X~ +5 Y~",
+        "CYCL DEF 14.1 L~ 5 / 6~;",
+        "L X\u{e4} \u{85}",
+        "Q1 = -(2) ^ -Q3 - (4 - -5)",
+        "FN15: PRINT 0,5/-Q1",
+        "X+5 R- F M M118 X1 Y2 M103",
+        "TOOL CALL ZS1DR-Q1",
+    ] {
+        check_laws(text.as_bytes());
+    }
+    check_laws(b"L X\xff+5 ; \xe4\xf6 \x80\nCALL PGM \xc3\xa4\xff ~\n\xb5");
+    check_laws(b"\xff\xfeL\0 \0X\0+\x005\0");
+    check_laws(b"\xef\xbb\xbf0 BEGIN PGM 1 MM");
+}
