@@ -1,0 +1,96 @@
+//! Blocks per second of indexing, decoding and formatting a program of a million blocks.
+//!
+//! ```text
+//! cargo bench -p bahn-program
+//! ```
+
+use std::fmt::Write;
+
+use bahn_program::{Block, Chunk, FormatOptions, Operation, Program, format_program};
+use divan::counter::{BytesCount, ItemsCount};
+use divan::{Bencher, black_box};
+
+const BLOCKS: u32 = 1_000_000;
+
+fn main() {
+    for (name, text) in [("short", short_lines()), ("numbered", numbered_lines()), ("fn", calculations())] {
+        println!("{name}: {:.1} MB, {} bytes a block", text.len() as f64 / 1e6, text.len() as u32 / BLOCKS);
+    }
+    println!("Block: {} bytes, Operation: {} bytes", size_of::<Block>(), size_of::<Operation>());
+    divan::main();
+}
+
+/// Three-axis blocks as CAM systems write them.
+fn short_lines() -> String {
+    let mut text = String::from("BEGIN PGM BENCH MM\n");
+    for i in 0..BLOCKS {
+        let i = f64::from(i);
+        let (x, y, z) = (50.0 + 40.0 * (i * 0.01).cos(), 50.0 + 40.0 * (i * 0.01).sin(), -i * 1e-5);
+        writeln!(text, "L X{x:+.3} Y{y:+.3} Z{z:+.3} F1000").unwrap();
+    }
+    text.push_str("END PGM BENCH MM\n");
+    text
+}
+
+/// The same with block numbers, compensation and M functions.
+fn numbered_lines() -> String {
+    let mut text = String::new();
+    for (number, line) in short_lines().lines().enumerate() {
+        let tail = if line.starts_with("L X") { " R0 M" } else { "" };
+        writeln!(text, "{number} {line}{tail}").unwrap();
+    }
+    text
+}
+
+/// A program of calculations.
+fn calculations() -> String {
+    let mut text = String::from("BEGIN PGM BENCH MM\n");
+    for i in 0..BLOCKS {
+        writeln!(text, "FN1: Q{} = +Q{} + +{}.25", i % 100, i % 50, i % 1000).unwrap();
+    }
+    text.push_str("END PGM BENCH MM\n");
+    text
+}
+
+const PROGRAMS: &[&str] = &["short", "numbered", "fn"];
+
+fn text(name: &str) -> String {
+    match name {
+        "short" => short_lines(),
+        "numbered" => numbered_lines(),
+        _ => calculations(),
+    }
+}
+
+#[divan::bench(args = PROGRAMS, sample_count = 20)]
+fn index(bencher: Bencher, name: &str) {
+    let text = text(name);
+    bencher
+        .counter(BytesCount::of_str(&text))
+        .counter(ItemsCount::new(BLOCKS))
+        .with_inputs(|| text.clone().into_bytes())
+        .bench_values(|bytes| Program::from_bytes("BENCH.H", bytes));
+}
+
+#[divan::bench(args = PROGRAMS, sample_count = 20)]
+fn decode(bencher: Bencher, name: &str) {
+    let program = Program::from_bytes("BENCH.H", text(name).into_bytes());
+    let mut chunk = Chunk::default();
+    bencher.counter(ItemsCount::new(BLOCKS)).bench_local(|| {
+        for index in 0..program.chunk_count() {
+            program.decode_into(index, &mut chunk);
+            black_box(&chunk);
+        }
+    });
+}
+
+#[divan::bench(args = PROGRAMS, sample_count = 10)]
+fn format(bencher: Bencher, name: &str) {
+    let program = Program::from_bytes("BENCH.H", text(name).into_bytes());
+    let mut listing = String::new();
+    bencher.counter(ItemsCount::new(BLOCKS)).bench_local(|| {
+        listing.clear();
+        write!(listing, "{}", format_program(&program, FormatOptions::default())).unwrap();
+        black_box(&listing);
+    });
+}
