@@ -13,10 +13,22 @@ use divan::{Bencher, black_box};
 const BLOCKS: u32 = 1_000_000;
 
 fn main() {
-    for (name, text) in [("short", short_lines()), ("numbered", numbered_lines()), ("fn", calculations())] {
-        println!("{name}: {:.1} MB, {} bytes a block", text.len() as f64 / 1e6, text.len() as u32 / BLOCKS);
+    for (name, text) in [
+        ("short", short_lines()),
+        ("numbered", numbered_lines()),
+        ("fn", calculations()),
+    ] {
+        println!(
+            "{name}: {:.1} MB, {} bytes a block",
+            text.len() as f64 / 1e6,
+            text.len() as u32 / BLOCKS
+        );
     }
-    println!("Block: {} bytes, Operation: {} bytes", size_of::<Block>(), size_of::<Operation>());
+    println!(
+        "Block: {} bytes, Operation: {} bytes",
+        size_of::<Block>(),
+        size_of::<Operation>()
+    );
     divan::main();
 }
 
@@ -25,7 +37,11 @@ fn short_lines() -> String {
     let mut text = String::from("BEGIN PGM BENCH MM\n");
     for i in 0..BLOCKS {
         let i = f64::from(i);
-        let (x, y, z) = (50.0 + 40.0 * (i * 0.01).cos(), 50.0 + 40.0 * (i * 0.01).sin(), -i * 1e-5);
+        let (x, y, z) = (
+            50.0 + 40.0 * (i * 0.01).cos(),
+            50.0 + 40.0 * (i * 0.01).sin(),
+            -i * 1e-5,
+        );
         writeln!(text, "L X{x:+.3} Y{y:+.3} Z{z:+.3} F1000").unwrap();
     }
     text.push_str("END PGM BENCH MM\n");

@@ -2,7 +2,7 @@
 
 use crate::index::{CHUNK_SIZE, ChunkStart, Index};
 use crate::lines::{RawBlock, RawBlocks};
-use crate::parse::parse_block;
+use crate::parse::{EMPTY_BLOCK, parse_block, parse_block_into};
 use crate::text::{BYTE_ORDER_MARK, to_text, without_utf16};
 use crate::{Block, Header, Operation, Unit};
 
@@ -134,7 +134,10 @@ impl Program {
         let remaining = (count as usize).saturating_sub(decoded.blocks.len());
         for raw in self.raw_blocks(chunk).take(remaining) {
             let number = decoded.first_block + decoded.blocks.len() as u32;
-            decoded.blocks.push(self.parse(number, raw));
+            decoded.blocks.push(EMPTY_BLOCK);
+            if let Some(block) = decoded.blocks.last_mut() {
+                parse_block_into(&self.file, raw, number == 0, block);
+            }
         }
         if decoded.blocks.len() < count as usize {
             decoded.blocks.push(implied(Operation::End));
@@ -147,7 +150,7 @@ impl Program {
             number,
             line,
             block: match raw {
-                Some(raw) => self.parse(number, raw),
+                Some(raw) => parse_block(&self.file, raw, number == 0),
                 None if number == 0 => implied(Operation::Begin),
                 None => implied(Operation::End),
             },
@@ -188,12 +191,6 @@ impl Program {
         };
         let start = self.index.chunks.get(chunk as usize).copied().unwrap_or(end);
         RawBlocks::from(&self.file, start.byte as usize, start.line)
-    }
-
-    /// Reads one block. Only the first block can begin a program.
-    #[inline]
-    fn parse(&self, number: u32, raw: RawBlock) -> Block {
-        parse_block(&self.file, raw, number == 0)
     }
 
     /// Number, line and place in the file of all blocks; implied ones have none.

@@ -5,7 +5,7 @@ mod formula;
 mod number;
 mod path;
 
-use std::fmt::{self, Display, Write};
+use std::fmt::{self, Display};
 
 use crate::parse::physical_lines;
 use crate::text::{BYTE_ORDER_MARK, is_blank, to_text, trim};
@@ -13,7 +13,7 @@ use crate::{
     Block, Calculation, Condition, Coordinates, Feed, Header, MFunctions, NumberedBlock, Operation, Program,
     Unit, Value,
 };
-use number::{push_signed, push_unsigned};
+use number::{push_integer, push_signed, push_unsigned};
 
 /// How a listing is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -406,7 +406,6 @@ impl Output {
     }
 
     fn integer(&mut self, number: u32) {
-        // Writing to a string cannot fail.
-        let _ = write!(self.text, "{number}");
+        push_integer(&mut self.text, u64::from(number), 1);
     }
 }

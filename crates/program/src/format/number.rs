@@ -1,7 +1,5 @@
 //! Numbers in listings: the shortest decimal that reads back as the same value, never with an exponent.
 
-use std::fmt::Write;
-
 use crate::Value;
 
 /// Most decimals that the fast way tries; part programs have up to four, angles and factors up to six.
@@ -39,29 +37,40 @@ pub(super) fn push_unsigned(text: &mut String, value: Value, comma: bool) {
 }
 
 fn push_parameter(text: &mut String, number: u16) {
-    // Writing to a string cannot fail.
-    let _ = write!(text, "Q{number}");
+    text.push('Q');
+    push_integer(text, u64::from(number), 1);
+}
+
+/// Writes an integer with at least so many digits.
+pub(super) fn push_integer(text: &mut String, mut integer: u64, min_digits: u32) {
+    let mut digits = [b'0'; 20];
+    let mut count = 0;
+    for digit in digits.iter_mut().rev() {
+        if integer == 0 && count >= min_digits {
+            break;
+        }
+        *digit = b'0' + (integer % 10) as u8;
+        integer /= 10;
+        count += 1;
+    }
+    let written = digits.get(digits.len() - count as usize..).unwrap_or_default();
+    text.extend(written.iter().map(|&digit| char::from(digit)));
 }
 
 fn push_number(text: &mut String, number: f64, comma: bool) {
-    let magnitude = number.abs();
-    let Some((integer, decimals)) = scaled(magnitude) else {
-        let start = text.len();
-        let _ = write!(text, "{number}");
-        if comma {
-            let written = text.split_off(start);
-            text.push_str(&written.replace('.', ","));
-        }
+    let Some((integer, decimals)) = scaled(number.abs()) else {
+        let written = format!("{number}");
+        text.push_str(&if comma { written.replace('.', ",") } else { written });
         return;
     };
     if number < 0.0 {
         text.push('-');
     }
     let unit = 10_u64.pow(decimals);
-    let _ = write!(text, "{}", integer / unit);
+    push_integer(text, integer / unit, 1);
     if decimals > 0 {
         text.push(if comma { ',' } else { '.' });
-        let _ = write!(text, "{:0width$}", integer % unit, width = decimals as usize);
+        push_integer(text, integer % unit, decimals);
     }
 }
 

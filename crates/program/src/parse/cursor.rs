@@ -56,6 +56,12 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.position + offset).copied().unwrap_or(b' ')
     }
 
+    /// Whether there is a byte `offset` behind the next one.
+    #[inline]
+    pub(crate) fn remains(&self, offset: usize) -> bool {
+        self.position + offset < self.bytes.len()
+    }
+
     /// The next byte as a capital.
     #[inline]
     pub(crate) fn peek_upper(&self) -> u8 {

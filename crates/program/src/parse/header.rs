@@ -8,29 +8,33 @@ use crate::{Header, Operation, Unit};
 /// `BEGIN PGM name MM|INCH [P]`; name and unit may be missing.
 pub(super) fn begin(c: &mut Cursor) -> Parsed<Option<Operation>> {
     let start = c.position();
-    if !c.keyword("BEGIN") {
-        return super::path::path(c);
-    }
-    Ok(header(c, start).map(|header| Operation::Begin(Box::new(header))))
+    let header = if c.keyword("BEGIN") {
+        header(c, start)
+    } else {
+        None
+    };
+    Ok(header.map(|header| Operation::Begin(Box::new(header))))
 }
 
-/// `END PGM name MM|INCH [P]`, or `ERROR = ...`, which a control stores for a block that it could not read
-/// [000:17761].
+/// `END PGM name MM|INCH [P]`.
 pub(super) fn end(c: &mut Cursor) -> Parsed<Option<Operation>> {
-    if c.word("ERROR") {
-        let start = c.position() - "ERROR".len();
-        c.code();
-        return c.fault_from(
-            start,
-            MessageId::ErrorBlock,
-            "a control could not read this block",
-        );
-    }
     let start = c.position();
-    if !c.keyword("END") {
+    let header = if c.keyword("END") { header(c, start) } else { None };
+    Ok(header.map(|header| Operation::End(Box::new(header))))
+}
+
+/// `ERROR = ...`, which a control stores for a block that it could not read [000:17761].
+pub(super) fn stored_error(c: &mut Cursor) -> Parsed<Option<Operation>> {
+    let start = c.position();
+    if !c.word("ERROR") {
         return Ok(None);
     }
-    Ok(header(c, start).map(|header| Operation::End(Box::new(header))))
+    c.code();
+    c.fault_from(
+        start,
+        MessageId::ErrorBlock,
+        "a control could not read this block",
+    )
 }
 
 /// What follows BEGIN or END; `None` if that, which begins at `start`, is part of a longer word.

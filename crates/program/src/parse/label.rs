@@ -8,7 +8,7 @@ use crate::{Limits, Operation};
 /// `LBL n` [003:3662-3670].
 pub(super) fn label(c: &mut Cursor) -> Parsed<Option<Operation>> {
     if !c.keyword("LBL") {
-        return super::path::path(c);
+        return Ok(None);
     }
     Ok(Some(Operation::Label(label_number(c)?)))
 }
@@ -37,10 +37,9 @@ pub(super) fn call(c: &mut Cursor) -> Parsed<Option<Operation>> {
         if c.keyword("PGM") {
             return call_program(c).map(Some);
         }
-        c.go_to(start);
-        return Ok(None);
     }
-    super::path::path(c)
+    c.go_to(start);
+    Ok(None)
 }
 
 /// `PGM CALL name`: the name of the key in the text of the manual [003:3894-3898] [003:4288].

@@ -24,52 +24,72 @@ pub(crate) use cycle::FIRST_PARAMETER_CYCLE;
 pub(crate) use formula::FUNCTIONS;
 
 /// Reads the block that lies at `raw` in the file. `BEGIN PGM` is a fault where it is not permitted.
-#[inline]
 pub(crate) fn parse_block(file: &[u8], raw: RawBlock, may_begin: bool) -> Block {
+    let mut block = EMPTY_BLOCK;
+    parse_block_into(file, raw, may_begin, &mut block);
+    block
+}
+
+/// [`parse_block`] into a place where a block, best an [`EMPTY_BLOCK`], stands already, so that the large
+/// positioning blocks are not copied.
+#[inline]
+pub(crate) fn parse_block_into(file: &[u8], raw: RawBlock, may_begin: bool, block: &mut Block) {
     let bytes = raw.bytes(file);
     if raw.joined {
-        parse_joined(bytes, may_begin)
+        *block = parse_joined(bytes, may_begin);
     } else {
-        parse_line(bytes, may_begin)
+        parse_line(bytes, may_begin, block);
     }
 }
 
+/// A block to be overwritten.
+pub(crate) const EMPTY_BLOCK: Block = Block {
+    skip: false,
+    operation: Operation::Label(0),
+    comment: None,
+};
+
 /// Reads a block that stands in one line.
 #[inline]
-fn parse_line(line: &[u8], may_begin: bool) -> Block {
+fn parse_line(line: &[u8], may_begin: bool, block: &mut Block) {
     let mut c = Cursor::new(line);
-    let skip = prefix(&mut c);
+    block.skip = prefix(&mut c);
+    block.comment = None;
     let start = c.position();
-    if let Some(operation) = stand_alone(&mut c) {
-        return Block {
-            skip,
-            operation,
-            comment: None,
-        };
-    }
-    match complete_operation(&mut c, may_begin) {
-        Ok(operation) => {
-            let comment = if c.peek() == b';' {
-                comment_text(c.rest())
-            } else {
-                None
-            };
-            Block {
-                skip,
-                operation,
-                comment,
-            }
+    let read = if let Some(kind) = path::motion_kind(&mut c) {
+        block.operation = Operation::Motion(path::empty_motion(kind));
+        match &mut block.operation {
+            Operation::Motion(motion) => path::motion_words(&mut c, motion),
+            _ => Ok(()),
         }
-        Err(fault) => {
-            let text = to_text(trim_continuation(line.get(start..).unwrap_or_default())).into_boxed_str();
-            let error = located(&fault, 0, line, fault.start, fault.end);
-            Block {
-                skip,
-                operation: Operation::Invalid(Box::new(InvalidBlock { text, error })),
-                comment: None,
-            }
-        }
+    } else {
+        other_operation(&mut c, may_begin, &mut block.operation)
+    };
+    match read {
+        Ok(()) if c.peek() == b';' => block.comment = comment_text(c.rest()),
+        Ok(()) => {}
+        Err(fault) => block.operation = invalid(line, start, &fault),
     }
+}
+
+/// Reads a block that is no positioning block up to its end, or what stands alone in a line.
+fn other_operation(c: &mut Cursor, may_begin: bool, operation: &mut Operation) -> Parsed<()> {
+    *operation = match stand_alone(c) {
+        Some(comment) => {
+            c.advance(c.rest().len());
+            comment
+        }
+        None => complete_operation(c, may_begin)?,
+    };
+    Ok(())
+}
+
+/// The invalid block of a line whose code begins at `start`.
+#[cold]
+fn invalid(line: &[u8], start: usize, fault: &Fault) -> Operation {
+    let text = to_text(trim_continuation(line.get(start..).unwrap_or_default())).into_boxed_str();
+    let error = located(fault, 0, line, fault.start, fault.end);
+    Operation::Invalid(Box::new(InvalidBlock { text, error }))
 }
 
 /// Reads optional block number and `/`, in either order, and the blanks behind; whether the block is
@@ -96,7 +116,6 @@ fn prefix(c: &mut Cursor) -> bool {
 }
 
 /// Reads a block that is no function: comment, structuring, or nothing but a block number.
-#[inline]
 fn stand_alone(c: &mut Cursor) -> Option<Operation> {
     let text = match c.peek() {
         b';' => c.rest().get(1..).unwrap_or_default(),
@@ -108,7 +127,6 @@ fn stand_alone(c: &mut Cursor) -> Option<Operation> {
 }
 
 /// Reads a function up to the end of the block.
-#[inline]
 fn complete_operation(c: &mut Cursor, may_begin: bool) -> Parsed<Operation> {
     let start = c.position();
     let operation = operation(c)?;
@@ -119,35 +137,32 @@ fn complete_operation(c: &mut Cursor, may_begin: bool) -> Parsed<Operation> {
 }
 
 /// Reads a function by its first letters.
-#[inline]
 fn operation(c: &mut Cursor) -> Parsed<Operation> {
-    let found = match c.peek_upper() {
-        b'L' => match c.peek_at(1).to_ascii_uppercase() {
-            b'B' => label::label(c),
-            _ => path::path(c),
-        },
-        b'X' | b'Y' | b'Z' | b'I' | b'A' | b'U' | b'V' | b'W' | b'R' => path::path(c),
-        b'C' => match c.peek_at(1).to_ascii_uppercase() {
-            b'Y' => cycle::cycle(c),
-            b'A' => label::call(c),
-            _ => path::path(c),
-        },
-        b'B' => match c.peek_at(1).to_ascii_uppercase() {
-            b'L' => blank::blank_form(c),
-            b'E' => header::begin(c),
-            _ => path::path(c),
-        },
-        b'F' => q_parameter::function(c),
-        b'Q' => q_parameter::formula(c),
-        b'T' => match c.peek_at(2).to_ascii_uppercase() {
-            b'O' => tool::tool(c),
-            _ => probe::probe(c),
-        },
-        b'S' => tool::stop(c),
-        b'M' => m_function::block(c),
-        b'E' => header::end(c),
-        b'P' => label::program_call(c),
-        b'D' => cycle::dialog(c),
+    if let Some(kind) = path::motion_kind(c) {
+        let mut motion = path::empty_motion(kind);
+        path::motion_words(c, &mut motion)?;
+        return Ok(Operation::Motion(motion));
+    }
+    let found = match (c.peek_upper(), c.peek_at(1).to_ascii_uppercase()) {
+        (b'B', b'E') => header::begin(c),
+        (b'B', b'L') => blank::blank_form(c),
+        (b'C', b'A') => label::call(c),
+        (b'C', b'C') => path::circle_centre(c),
+        (b'C', b'H') => path::chamfer_word(c),
+        (b'C', b'Y') => cycle::cycle(c),
+        (b'D', _) => cycle::dialog(c),
+        (b'E', b'N') => header::end(c),
+        (b'E', b'R') => header::stored_error(c),
+        (b'F', b'N') => q_parameter::function(c),
+        (b'L', b'B') => label::label(c),
+        (b'L', _) => path::chamfer_line(c),
+        (b'M', _) => m_function::block(c),
+        (b'P', _) => label::program_call(c),
+        (b'Q', _) => q_parameter::formula(c),
+        (b'R', _) => path::rounding(c),
+        (b'S', _) => tool::stop(c),
+        (b'T', b'O') if c.peek_at(2).eq_ignore_ascii_case(&b'O') => tool::tool(c),
+        (b'T', _) => probe::probe(c),
         _ => Ok(None),
     };
     match found? {

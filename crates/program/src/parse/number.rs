@@ -24,6 +24,19 @@ impl Cursor<'_> {
     #[inline]
     pub(crate) fn value(&mut self) -> Parsed<Option<Value>> {
         let start = self.position();
+        let sign = self.peek();
+        let signed = usize::from(sign == b'-' || sign == b'+');
+        if !self.peek_at(signed).is_ascii_digit() {
+            return self.uncommon_value();
+        }
+        self.advance(signed);
+        let magnitude = self.magnitude(start)?;
+        Ok(Some(Value::Number(with_sign(sign == b'-', magnitude))))
+    }
+
+    /// [`Cursor::value`] where no number with at most a sign begins.
+    fn uncommon_value(&mut self) -> Parsed<Option<Value>> {
+        let start = self.position();
         self.skip_blanks();
         let first = self.position();
         let sign = self.peek();
@@ -36,13 +49,7 @@ impl Cursor<'_> {
         let byte = self.peek();
         if byte.is_ascii_digit() || (matches!(byte, b'.' | b',') && self.peek_at(1).is_ascii_digit()) {
             let magnitude = self.magnitude(first)?;
-            // Zero has no sign: -0 and +0 are the same block.
-            let number = if negative && magnitude != 0.0 {
-                -magnitude
-            } else {
-                magnitude
-            };
-            return Ok(Some(Value::Number(number)));
+            return Ok(Some(Value::Number(with_sign(negative, magnitude))));
         }
         if byte.eq_ignore_ascii_case(&b'Q') {
             let number = self.parameter(first)?;
@@ -184,6 +191,16 @@ impl Cursor<'_> {
             Ok(number) if number <= MAX_NUMBER => Ok(number),
             _ => self.fault_from(start, EntryValueIncorrect, "the number is too large"),
         }
+    }
+}
+
+/// Zero has no sign: -0 and +0 are the same block.
+#[inline]
+fn with_sign(negative: bool, magnitude: f64) -> f64 {
+    if negative && magnitude != 0.0 {
+        -magnitude
+    } else {
+        magnitude
     }
 }
 

@@ -5,86 +5,71 @@ use bahn_path::Axis;
 
 use super::cursor::{Cursor, Parsed};
 use super::m_function::m_function;
+use crate::text::is_blank;
 use crate::{
     Compensation, Coordinates, Direction, Feed, MFunctions, Motion, MotionKind, Operation, Value, Word,
 };
 
-/// A block that opens with L, C, R or an axis letter; `None` if it is no path function.
+/// Reads what opens a positioning block; `None`, with nothing read, if it is another block.
 #[inline]
-pub(super) fn path(c: &mut Cursor) -> Parsed<Option<Operation>> {
+pub(super) fn motion_kind(c: &mut Cursor) -> Option<MotionKind> {
     let start = c.position();
+    let first = c.peek_upper();
     let second = c.peek_at(1).to_ascii_uppercase();
-    let (length, kind) = match (c.peek_upper(), second) {
-        (b'L', b'P') => (2, MotionKind::LinePolar),
-        (b'L', _) => return line(c),
-        (b'C', b'C') => return circle_centre(c).map(Some),
-        (b'C', b'H') => return chamfer_word(c),
-        (b'C', b'P') => (2, MotionKind::CirclePolar),
-        (b'C', b'R') => (2, MotionKind::CircleRadius),
-        (b'C', b'T') if c.peek_at(2).eq_ignore_ascii_case(&b'P') => (3, MotionKind::CircleTangentialPolar),
-        (b'C', b'T') => (2, MotionKind::CircleTangential),
-        (b'C', _) if !axis_block_follows(c) => (1, MotionKind::Circle),
-        (b'R', b'N') => return rounding(c),
-        (b'I', _) if Axis::from_letter(second).is_some() => (0, MotionKind::Paraxial),
-        (letter, _) if Axis::from_letter(letter).is_some() && axis_block_follows(c) => {
-            (0, MotionKind::Paraxial)
-        }
-        _ => return Ok(None),
+    let third = c.peek_at(2).to_ascii_uppercase();
+    let (length, kind) = match (first, second, third) {
+        (b'L', b'P', _) => (2, MotionKind::LinePolar),
+        (b'L', b'B', b'L') => return None,
+        // A bare number makes it a chamfer.
+        (b'L', ..) if !value_follows(c) => (1, MotionKind::Line),
+        (b'C', b'C' | b'H', _) | (b'C', b'A', b'L') | (b'C', b'Y', b'C') => return None,
+        (b'C', b'P', _) => (2, MotionKind::CirclePolar),
+        (b'C', b'R', _) => (2, MotionKind::CircleRadius),
+        (b'C', b'T', b'P') => (3, MotionKind::CircleTangentialPolar),
+        (b'C', b'T', _) => (2, MotionKind::CircleTangential),
+        (b'C', ..) if !value_follows(c) => (1, MotionKind::Circle),
+        (b'I', ..) if Axis::from_letter(second).is_some() => (0, MotionKind::Paraxial),
+        _ if Axis::from_letter(first).is_some() && value_follows(c) => (0, MotionKind::Paraxial),
+        _ => return None,
     };
     c.advance(length);
-    if length > 0 && joins_unknown_letter(c) {
+    // A letter that begins no word of a path block makes it the word of a later control (LN, LT, CTL ...).
+    let touching = c.peek_upper();
+    if length > 0 && touching.is_ascii_alphabetic() && !b"XYZABCUVWIPRFMDQ".contains(&touching) {
         c.go_to(start);
-        return Ok(None);
+        return None;
     }
-    motion(c, kind).map(Some)
+    Some(kind)
 }
 
-/// Whether the letter at the position is followed by a value: a block opened with an axis key, also of the
-/// C axis.
-fn axis_block_follows(c: &Cursor) -> bool {
-    let mut behind = c.clone();
-    behind.advance(1);
-    behind.skip_blanks();
-    matches!(
-        behind.peek_upper(),
-        b'+' | b'-' | b'0'..=b'9' | b'.' | b',' | b'Q'
-    )
-}
-
-/// Whether the path function just read goes on with a letter that begins no word of a path block, so that
-/// it is the word of a later control (LN, LT, CTL ...).
-fn joins_unknown_letter(c: &Cursor) -> bool {
-    let letter = c.peek_upper();
-    letter.is_ascii_alphabetic()
-        && !matches!(
-            letter,
-            b'X' | b'Y' | b'Z' | b'A' | b'B' | b'C' | b'U' | b'V' | b'W'
-        )
-        && !matches!(letter, b'I' | b'P' | b'R' | b'F' | b'M' | b'D' | b'Q')
-}
-
-/// `L` with coordinates and the like, or a chamfer, which is `L` with a bare number [003:2685].
+/// Whether a value follows the letter at the position.
 #[inline]
-fn line(c: &mut Cursor) -> Parsed<Option<Operation>> {
+fn value_follows(c: &Cursor) -> bool {
+    let mut offset = 1;
+    while c.remains(offset) && is_blank(c.peek_at(offset)) {
+        offset += 1;
+    }
+    match c.peek_at(offset) {
+        b'+' | b'-' | b'0'..=b'9' | b'Q' | b'q' => true,
+        b'.' | b',' => c.peek_at(offset + 1).is_ascii_digit(),
+        _ => false,
+    }
+}
+
+/// A chamfer, which is `L` with a bare number [003:2685].
+pub(super) fn chamfer_line(c: &mut Cursor) -> Parsed<Option<Operation>> {
     let start = c.position();
     c.advance(1);
-    if joins_unknown_letter(c) {
-        c.go_to(start);
-        return Ok(None);
-    }
-    // A letter behind L is never a value but Q: spare the look for a number.
-    c.skip_blanks();
-    let next = c.peek_upper();
-    if (!next.is_ascii_alphabetic() || next == b'Q')
-        && let Some(length) = c.value()?
-    {
+    if !c.peek().is_ascii_alphabetic() || c.peek_upper() == b'Q' {
+        let length = c.required_value(start)?;
         return chamfer(c, length).map(Some);
     }
-    motion(c, MotionKind::Line).map(Some)
+    c.go_to(start);
+    Ok(None)
 }
 
 /// `CHF length`, a synonym of the chamfer `L length` [003:7964].
-fn chamfer_word(c: &mut Cursor) -> Parsed<Option<Operation>> {
+pub(super) fn chamfer_word(c: &mut Cursor) -> Parsed<Option<Operation>> {
     let start = c.position();
     if !c.keyword("CHF") {
         return Ok(None);
@@ -101,7 +86,7 @@ fn chamfer(c: &mut Cursor, length: Value) -> Parsed<Operation> {
 }
 
 /// `RND [R]radius [F]` [003:3042] [003:3060].
-fn rounding(c: &mut Cursor) -> Parsed<Option<Operation>> {
+pub(super) fn rounding(c: &mut Cursor) -> Parsed<Option<Operation>> {
     let start = c.position();
     if !c.keyword("RND") {
         return Ok(None);
@@ -129,9 +114,9 @@ fn lone_feed(c: &mut Cursor) -> Parsed<Option<Value>> {
 }
 
 /// `CC`, with two coordinates or none [003:2754] [003:2781].
-fn circle_centre(c: &mut Cursor) -> Parsed<Operation> {
+pub(super) fn circle_centre(c: &mut Cursor) -> Parsed<Option<Operation>> {
     c.advance(2);
-    Ok(Operation::CircleCentre(coordinates(c)?))
+    Ok(Some(Operation::CircleCentre(coordinates(c)?)))
 }
 
 /// Axis words up to the first word that is none.
@@ -174,10 +159,10 @@ fn coordinate(
     Ok(())
 }
 
-/// The words of a positioning block.
+/// A positioning block without words.
 #[inline]
-fn motion(c: &mut Cursor, kind: MotionKind) -> Parsed<Operation> {
-    let mut motion = Motion {
+pub(super) fn empty_motion(kind: MotionKind) -> Motion {
+    Motion {
         kind,
         coordinates: Coordinates::default(),
         polar_radius: None,
@@ -187,35 +172,40 @@ fn motion(c: &mut Cursor, kind: MotionKind) -> Parsed<Operation> {
         compensation: None,
         feed: None,
         m: MFunctions::default(),
-    };
+    }
+}
+
+/// Reads the words of a positioning block up to the end of the block.
+#[inline]
+pub(super) fn motion_words(c: &mut Cursor, motion: &mut Motion) -> Parsed<()> {
     while !c.at_end() {
         let start = c.position();
         let letter = c.peek_upper();
         match letter {
             b'X' | b'Y' | b'Z' | b'A' | b'B' | b'C' | b'U' | b'V' | b'W' => {
-                axis_word(c, start, letter, false, &mut motion)?;
+                axis_word(c, start, letter, false, motion)?;
             }
             b'F' => {
                 c.advance(1);
                 let feed = feed_word(c)?;
                 set_once(c, start, feed, &mut motion.feed)?;
             }
-            b'R' => radius_word(c, start, &mut motion)?,
+            b'R' => radius_word(c, start, motion)?,
             b'M' => m_function(c, &mut motion.m)?,
             b'I' => {
                 c.advance(1);
                 let letter = c.peek_upper();
                 match letter {
-                    b'P' => polar_word(c, start, true, &mut motion)?,
-                    _ => axis_word(c, start, letter, true, &mut motion)?,
+                    b'P' => polar_word(c, start, true, motion)?,
+                    _ => axis_word(c, start, letter, true, motion)?,
                 }
             }
-            b'P' => polar_word(c, start, false, &mut motion)?,
-            b'D' => direction_word(c, start, &mut motion)?,
+            b'P' => polar_word(c, start, false, motion)?,
+            b'D' => direction_word(c, start, motion)?,
             _ => return c.unexpected(),
         }
     }
-    Ok(Operation::Motion(motion))
+    Ok(())
 }
 
 #[inline]
