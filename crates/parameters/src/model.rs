@@ -1,0 +1,86 @@
+//! The control models.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// A control model: every difference between controls hangs on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ControlModel {
+    /// TNC 151: contouring control with character screen [001:186].
+    Tnc151,
+    /// TNC 155: TNC 151 with graphics [001:186].
+    Tnc155,
+    /// TNC 360: control for up to 4 axes [003:7745-7825].
+    Tnc360,
+    /// TNC 407: up to 5 axes, 6 ms contour cycle [000:130-321].
+    Tnc407,
+    /// TNC 415 B: up to 5 axes, 3 ms contour cycle, 0.1 µm [000:130-321].
+    #[default]
+    Tnc415b,
+    /// TNC 425: TNC 415 B with digital speed control [000:18117-18152].
+    Tnc425,
+}
+
+impl ControlModel {
+    /// All models, oldest first.
+    pub const ALL: [ControlModel; 6] = [
+        ControlModel::Tnc151,
+        ControlModel::Tnc155,
+        ControlModel::Tnc360,
+        ControlModel::Tnc407,
+        ControlModel::Tnc415b,
+        ControlModel::Tnc425,
+    ];
+
+    /// The identifier used on the command line and in files: `tnc415b`.
+    pub const fn id(self) -> &'static str {
+        match self {
+            ControlModel::Tnc151 => "tnc151",
+            ControlModel::Tnc155 => "tnc155",
+            ControlModel::Tnc360 => "tnc360",
+            ControlModel::Tnc407 => "tnc407",
+            ControlModel::Tnc415b => "tnc415b",
+            ControlModel::Tnc425 => "tnc425",
+        }
+    }
+}
+
+impl fmt::Display for ControlModel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.id())
+    }
+}
+
+impl FromStr for ControlModel {
+    type Err = UnknownModel;
+
+    /// Reads an identifier, upper or lower case.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        ControlModel::ALL
+            .into_iter()
+            .find(|model| model.id().eq_ignore_ascii_case(text))
+            .ok_or_else(|| UnknownModel(text.to_owned()))
+    }
+}
+
+/// The text names no control model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown control model `{0}`; known are tnc151, tnc155, tnc360, tnc407, tnc415b, tnc425")]
+pub struct UnknownModel(pub String);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identifiers_read_back() {
+        for model in ControlModel::ALL {
+            assert_eq!(model.to_string().parse(), Ok(model));
+            assert_eq!(model.id().to_uppercase().parse(), Ok(model));
+        }
+        assert_eq!(
+            "tnc430".parse::<ControlModel>(),
+            Err(UnknownModel("tnc430".into()))
+        );
+    }
+}
