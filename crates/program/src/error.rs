@@ -1,0 +1,16 @@
+//! What can be wrong with a block's text.
+
+use bahn_parameters::MessageId;
+
+/// A fault in the text of a block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockError {
+    /// The control's message.
+    pub message: MessageId,
+    /// Column in the line, counted from 1.
+    pub column: u32,
+    /// Number of characters it covers, at least 1.
+    pub length: u32,
+    /// What exactly, in a few words for people.
+    pub detail: Box<str>,
+}

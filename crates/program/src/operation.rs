@@ -1,0 +1,563 @@
+//! The canonical operations that every part-program language lowers to.
+
+use bahn_path::{Axis, AxisSet};
+
+use crate::BlockError;
+
+/// One block of a part program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Optional block (`/`): passed over when block skip is on.
+    pub skip: bool,
+    /// What the block does.
+    pub operation: Operation,
+    /// Text after `;`, without the semicolon and surrounding blanks.
+    pub comment: Option<Box<str>>,
+}
+
+/// What a block does. Blocks that cannot be read are [`Operation::Invalid`]: an error when executed,
+/// not a refusal to load.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Operation {
+    /// `BEGIN PGM name MM|INCH` [003:2093-2101].
+    Begin(Box<Header>),
+    /// `END PGM name MM|INCH`.
+    End(Box<Header>),
+    /// `BLK FORM 0.1 axis X Y Z`: least corner, tool axis [003:2638].
+    BlankMin(Coordinates, Option<Axis>),
+    /// `BLK FORM 0.2 X Y Z`: greatest corner, absolute or incremental [003:2639].
+    BlankMax(Coordinates),
+    /// `TOOL DEF n [L R]`; without data it announces the next tool [003:1875] [003:1931].
+    ToolDefinition {
+        /// Tool number.
+        tool: Value,
+        /// Length compensation value, program units.
+        length: Option<Value>,
+        /// Tool radius, program units.
+        radius: Option<Value>,
+    },
+    /// `TOOL CALL [n] [axis] [S]` [003:1929] [003:2188].
+    ToolCall {
+        /// Tool number; absent keeps the tool.
+        tool: Option<Value>,
+        /// Tool axis; absent keeps the axis.
+        axis: Option<Axis>,
+        /// Spindle speed, rpm.
+        speed: Option<Value>,
+        /// Oversize in length DL, program units.
+        delta_length: Option<Value>,
+        /// Oversize in radius DR, program units.
+        delta_radius: Option<Value>,
+    },
+    /// A positioning block: L, C, CR, CT, LP, CP, CTP or paraxial.
+    Motion(Motion),
+    /// `CC` circle centre or pole; without coordinates the last programmed position [003:2754].
+    CircleCentre(Coordinates),
+    /// `RND R F` [003:3042].
+    Rounding {
+        /// Rounding radius, program units.
+        radius: Value,
+        /// Feed of the rounding only.
+        feed: Option<Value>,
+    },
+    /// Chamfer `L length` or `CHF length` [003:2685].
+    Chamfer {
+        /// Length cut off each side, program units.
+        length: Value,
+        /// Feed of the chamfer only (later controls).
+        feed: Option<Value>,
+    },
+    /// `STOP [M]` [003:2226].
+    Stop(MFunctions),
+    /// A block of M functions only (`M8`).
+    Miscellaneous(MFunctions),
+    /// `LBL n`; 0 ends a subprogram [003:3662-3670].
+    Label(u16),
+    /// `CALL LBL n [REP r/r]`; `repeats` is `None` for a subprogram call or an empty REP
+    /// [003:3678] [003:3782] [003:4648].
+    CallLabel {
+        /// Label number.
+        label: u16,
+        /// How often the section is repeated.
+        repeats: Option<Value>,
+    },
+    /// `CALL PGM name` [003:3898].
+    CallProgram(Box<str>),
+    /// FN 0-8 and 13: `target = a op b`; one-operand functions leave `b` at zero [003:4149-4276].
+    Calculate {
+        /// The function.
+        function: Calculation,
+        /// Number of the Q parameter that takes the result.
+        target: u16,
+        /// First operand.
+        a: Value,
+        /// Second operand.
+        b: Value,
+    },
+    /// FN 9-12: jump to a label if the condition holds [003:4301-4315].
+    Jump {
+        /// The comparison.
+        condition: Condition,
+        /// First operand.
+        a: Value,
+        /// Second operand.
+        b: Value,
+        /// Label to go to.
+        label: u16,
+    },
+    /// FN 14: ERROR = number [003:4352-4362].
+    ErrorNumber(Value),
+    /// FN 15: PRINT, at most six items [003:4371-4385].
+    Print(Box<[Value]>),
+    /// FN 19: PLC = a [/ b] [003:4387-4395].
+    Plc {
+        /// First value.
+        a: Value,
+        /// Second value.
+        b: Option<Value>,
+    },
+    /// `Q1 = formula` (TNC 415) [000:744].
+    Formula {
+        /// Number of the Q parameter that takes the result.
+        target: u16,
+        /// The expression.
+        expression: Box<Expression>,
+    },
+    /// `CYCL DEF n.m ...`: one block of a cycle definition.
+    Cycle(Box<CycleBlock>),
+    /// `CYCL CALL [M]`.
+    CycleCall(MFunctions),
+    /// `TCH PROBE n.m ...`: one block of a probe function.
+    Probe(Box<CycleBlock>),
+    /// A block of comment (`; text`) or structuring (`* - text`) only.
+    Comment(Box<str>),
+    /// Something that no control here knows or that is written wrongly.
+    Invalid(Box<InvalidBlock>),
+}
+
+/// A block that could not be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InvalidBlock {
+    /// The block as it stands in the file, without block number.
+    pub text: Box<str>,
+    /// What is wrong with it.
+    pub error: BlockError,
+}
+
+/// Name and unit of BEGIN PGM and END PGM.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// Program name as written; may be empty.
+    pub name: Box<str>,
+    /// Unit; `None` when the block does not say.
+    pub unit: Option<Unit>,
+    /// Erase and edit protection (`P`) [003:1019].
+    pub protected: bool,
+}
+
+/// Unit of measure of a program [003:2101].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Millimetres.
+    Mm,
+    /// Inches (25.4 mm).
+    Inch,
+}
+
+/// A number or a signed Q parameter [003:4066].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A literal number in program units.
+    Number(f64),
+    /// The value of a Q parameter, with its sign turned when `negative`.
+    Q {
+        /// Parameter number.
+        number: u16,
+        /// Written as `-Qn`.
+        negative: bool,
+    },
+}
+
+/// An absolute or incremental value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Word {
+    /// The value.
+    pub value: Value,
+    /// Written with `I` [003:767-777].
+    pub incremental: bool,
+}
+
+/// Coordinate words of a block, at most one for each axis.
+///
+/// ```
+/// use bahn_path::Axis;
+/// use bahn_program::{Coordinates, Value, Word};
+/// let mut c = Coordinates::default();
+/// c.set(Axis::X, Word { value: Value::Number(10.0), incremental: true });
+/// assert!(c.get(Axis::X).is_some_and(|w| w.incremental));
+/// assert_eq!(c.get(Axis::Y), None);
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Coordinates {
+    present: AxisSet,
+    incremental: AxisSet,
+    /// Axes whose value is a Q parameter: `values` then holds its number, negative zero and below for `-Q`.
+    parameters: AxisSet,
+    values: [f64; Axis::COUNT],
+}
+
+impl Coordinates {
+    /// The axes that have a word.
+    #[inline]
+    pub fn axes(&self) -> AxisSet {
+        self.present
+    }
+
+    /// The axes whose word is incremental.
+    #[inline]
+    pub fn incremental(&self) -> AxisSet {
+        self.incremental
+    }
+
+    /// The axes whose value is a Q parameter.
+    #[inline]
+    pub fn parameters(&self) -> AxisSet {
+        self.parameters
+    }
+
+    /// Whether there is no word.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.present.is_empty()
+    }
+
+    /// The literal numbers, for axes that are neither absent nor a Q parameter.
+    #[inline]
+    pub fn numbers(&self) -> &[f64; Axis::COUNT] {
+        &self.values
+    }
+
+    /// The word of an axis.
+    #[inline]
+    pub fn get(&self, axis: Axis) -> Option<Word> {
+        if !self.present.contains(axis) {
+            return None;
+        }
+        let raw = self.values[axis.index()];
+        let value = if self.parameters.contains(axis) {
+            Value::Q { number: raw.abs() as u16, negative: raw.is_sign_negative() }
+        } else {
+            Value::Number(raw)
+        };
+        Some(Word { value, incremental: self.incremental.contains(axis) })
+    }
+
+    /// Sets the word of an axis.
+    #[inline]
+    pub fn set(&mut self, axis: Axis, word: Word) {
+        self.present.insert(axis);
+        if word.incremental {
+            self.incremental.insert(axis);
+        } else {
+            self.incremental.remove(axis);
+        }
+        match word.value {
+            Value::Number(number) => {
+                self.parameters.remove(axis);
+                self.values[axis.index()] = number;
+            }
+            Value::Q { number, negative } => {
+                self.parameters.insert(axis);
+                let magnitude = f64::from(number);
+                self.values[axis.index()] = if negative { -magnitude } else { magnitude };
+            }
+        }
+    }
+
+    /// All words in the order X Y Z A B C U V W.
+    pub fn iter(&self) -> impl Iterator<Item = (Axis, Word)> {
+        Axis::ALL.into_iter().filter_map(|axis| self.get(axis).map(|word| (axis, word)))
+    }
+}
+
+impl PartialEq for Coordinates {
+    fn eq(&self, other: &Self) -> bool {
+        self.present == other.present && self.iter().eq(other.iter())
+    }
+}
+
+/// A positioning block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Which path function.
+    pub kind: MotionKind,
+    /// Cartesian words.
+    pub coordinates: Coordinates,
+    /// `PR` of the polar forms.
+    pub polar_radius: Option<Word>,
+    /// `PA` of the polar forms, degrees.
+    pub polar_angle: Option<Word>,
+    /// `R` of CR with its sign [003:2861-2869].
+    pub radius: Option<Value>,
+    /// `DR+` / `DR-`.
+    pub direction: Option<Direction>,
+    /// Radius compensation word.
+    pub compensation: Option<Compensation>,
+    /// Feed word.
+    pub feed: Option<Feed>,
+    /// M functions.
+    pub m: MFunctions,
+}
+
+/// The path function of a positioning block [003:2548-2560].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionKind {
+    /// `L`.
+    Line,
+    /// `C`: arc about CC.
+    Circle,
+    /// `CR`: arc with radius.
+    CircleRadius,
+    /// `CT`: tangential arc.
+    CircleTangential,
+    /// `LP`.
+    LinePolar,
+    /// `CP`, with a tool-axis word a helix.
+    CirclePolar,
+    /// `CTP`.
+    CircleTangentialPolar,
+    /// Opened with an axis key, no `L` [003:2046-2057].
+    Paraxial,
+}
+
+/// Sense of rotation: DR+ counter-clockwise, DR- clockwise [003:2715-2720].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// `DR+`.
+    CounterClockwise,
+    /// `DR-`.
+    Clockwise,
+}
+
+/// Radius compensation word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compensation {
+    /// `R0`: tool centre on the contour.
+    Off,
+    /// `RL`: tool to the left of the contour.
+    Left,
+    /// `RR`: tool to the right of the contour.
+    Right,
+    /// `R+`: paraxial path lengthened by the radius.
+    Lengthen,
+    /// `R-`: paraxial path shortened by the radius.
+    Shorten,
+}
+
+/// Feed word.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Feed {
+    /// `FMAX`: rapid traverse in this block.
+    Max,
+    /// `F value`, mm/min or 0.1 inch/min.
+    Value(Value),
+}
+
+/// The M functions of a block in the order written. Controls here take one in a block; later ones two.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MFunctions {
+    codes: [u16; MFunctions::MAX],
+    count: u8,
+    /// Arguments of M103 F, M112 T A, M120 LA and their like.
+    pub arguments: Option<Box<[MArgument]>>,
+}
+
+impl MFunctions {
+    /// Most M functions in one block.
+    pub const MAX: usize = 3;
+
+    /// The codes.
+    #[inline]
+    pub fn codes(&self) -> &[u16] {
+        self.codes.get(..usize::from(self.count)).unwrap_or_default()
+    }
+
+    /// Whether there is none.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Whether a code is among them.
+    #[inline]
+    pub fn contains(&self, code: u16) -> bool {
+        self.codes().contains(&code)
+    }
+
+    /// Adds a code; `false` when the block is full.
+    pub fn push(&mut self, code: u16) -> bool {
+        match self.codes.get_mut(usize::from(self.count)) {
+            Some(slot) => {
+                *slot = code;
+                self.count += 1;
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// The argument of an M function by its address letter.
+    pub fn argument(&self, code: u16, letter: char) -> Option<Value> {
+        let arguments = self.arguments.as_deref()?;
+        arguments.iter().find(|a| a.code == code && a.letter == letter).map(|a| a.value)
+    }
+}
+
+/// An argument of an M function, like the F of `M103 F25`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MArgument {
+    /// The M function it belongs to.
+    pub code: u16,
+    /// Address letter.
+    pub letter: char,
+    /// Its value.
+    pub value: Value,
+}
+
+/// The calculations of FN 0-8 and 13.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Calculation {
+    /// FN0: assign.
+    Assign,
+    /// FN1: addition.
+    Add,
+    /// FN2: subtraction.
+    Subtract,
+    /// FN3: multiplication.
+    Multiply,
+    /// FN4: division (DIV).
+    Divide,
+    /// FN5: square root (SQRT).
+    SquareRoot,
+    /// FN6: sine of degrees (SIN).
+    Sine,
+    /// FN7: cosine of degrees (COS).
+    Cosine,
+    /// FN8: root of the sum of squares (LEN).
+    Length,
+    /// FN13: angle from opposite and adjacent side (ANG), degrees.
+    Angle,
+}
+
+/// The comparisons of FN 9-12.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// FN9: EQU.
+    Equal,
+    /// FN10: NE.
+    NotEqual,
+    /// FN11: GT.
+    Greater,
+    /// FN12: LT.
+    Less,
+}
+
+/// A bracketed formula of the TNC 415.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Expression {
+    /// A number or Q parameter.
+    Value(Value),
+    /// A function of one operand.
+    Unary(UnaryFunction, Box<Expression>),
+    /// An operator between two operands.
+    Binary(BinaryOperator, Box<Expression>, Box<Expression>),
+}
+
+/// Functions of one operand; angles in degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnaryFunction {
+    /// `NEG`, or a sign before a bracket.
+    Negate,
+    /// `SQ`.
+    Square,
+    /// `SQRT`.
+    SquareRoot,
+    /// `SIN`.
+    Sine,
+    /// `COS`.
+    Cosine,
+    /// `TAN`.
+    Tangent,
+    /// `ASIN`.
+    ArcSine,
+    /// `ACOS`.
+    ArcCosine,
+    /// `ATAN`.
+    ArcTangent,
+    /// `LN`.
+    NaturalLogarithm,
+    /// `LOG`, base 10.
+    Logarithm,
+    /// `EXP`.
+    Exponential,
+    /// `ABS`.
+    Absolute,
+    /// `INT`: decimals cut off.
+    Integer,
+    /// `FRAC`: decimals only.
+    Fraction,
+}
+
+/// Operators between two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOperator {
+    /// `+`.
+    Add,
+    /// `-`.
+    Subtract,
+    /// `*`.
+    Multiply,
+    /// `/` or `DIV`.
+    Divide,
+    /// `^`.
+    Power,
+}
+
+/// One block of a cycle definition or a probe function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CycleBlock {
+    /// Cycle number before the point.
+    pub number: u16,
+    /// Sub-block number behind the point.
+    pub sub: u16,
+    /// Words in the order written.
+    pub words: Vec<CycleWord>,
+}
+
+/// A word of a cycle block. Names are decoration and vary with the language; numbers and addresses
+/// decide [003:3713-3714] [003:4979].
+#[derive(Clone, Debug, PartialEq)]
+pub enum CycleWord {
+    /// Decoration, or a program name (cycle 12, RANGE).
+    Text(Box<str>),
+    /// A number without an address: the value of a named parameter like `SET UP -2`.
+    Number(Value),
+    /// An axis word `X+40`, `IX+40`.
+    Coordinate(Axis, Word),
+    /// An axis letter alone (mirror image, probe axis).
+    Axis(Axis),
+    /// An axis letter with a direction `X-` (probing).
+    AxisDirection(Axis, Direction),
+    /// `F value` or `FMAX`.
+    Feed(Feed),
+    /// `DR+` / `DR-`.
+    Direction(Direction),
+    /// Label list `1/2/3` (cycle 14).
+    Labels(Box<[u16]>),
+    /// `Qn` alone: the parameter that takes a result (probing).
+    Target(u16),
+    /// `Qn = value` (OEM cycles).
+    Assignment(u16, Value),
+    /// `M` function.
+    M(u16),
+}
