@@ -122,24 +122,26 @@ impl Definition {
             .ok()
     }
 
-    /// Checks a value and rounds it to the decimal places that are stored [000:10019].
+    /// Checks a value and rounds it to the decimal places that are stored [000:10015].
     ///
     /// # Errors
-    /// [`ParameterError::OutOfRange`] for a value outside the range, or a fraction where bits are meant.
+    /// [`ParameterError::OutOfRange`] for a value outside the range, [`ParameterError::NotWhole`] for a
+    /// fraction where whole numbers or bits are meant.
     pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
         let scale = 10f64.powi(self.decimals.into());
         let rounded = (value * scale).round() / scale;
-        let fraction_of_bits = self.format != Format::Decimal && rounded != value;
-        if (self.min..=self.max).contains(&rounded) && rounded.is_finite() && !fraction_of_bits {
-            Ok(rounded + 0.0) // no negative zero
-        } else {
-            Err(ParameterError::OutOfRange {
+        if !rounded.is_finite() || !(self.min..=self.max).contains(&rounded) {
+            return Err(ParameterError::OutOfRange {
                 id: self.id,
                 value,
                 min: self.min,
                 max: self.max,
-            })
+            });
         }
+        if self.decimals == 0 && rounded != value {
+            return Err(ParameterError::NotWhole(self.id, value));
+        }
+        Ok(rounded + 0.0) // no negative zero
     }
 
     /// Writes a value in the best format, without needless zeros.

@@ -32,6 +32,9 @@ pub enum ParameterError {
         /// Greatest value.
         max: f64,
     },
+    /// The value has a fraction, and the parameter takes whole numbers.
+    #[error("{0}: {1} is no whole number")]
+    NotWhole(ParameterId, f64),
     /// The list gives the parameter twice; the first value counts.
     #[error("{id} is already defined in line {first_line}")]
     DoublyDefined {
@@ -49,7 +52,9 @@ impl ParameterError {
             ParameterError::NoNumber => 0,
             ParameterError::UnknownNumber(_) | ParameterError::IndexMissing(_) => 1,
             ParameterError::NoSeparator(..) => 2,
-            ParameterError::NotANumber(..) | ParameterError::OutOfRange { .. } => 3,
+            ParameterError::NotANumber(..)
+            | ParameterError::OutOfRange { .. }
+            | ParameterError::NotWhole(..) => 3,
             ParameterError::DoublyDefined { .. } => 4,
         }
     }

@@ -9,7 +9,9 @@
 //!   getters that answer for every model.
 //!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
-//! `message/table.rs`, beside their citations. Nothing here knows what the values are used for.
+//! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
+//! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `003` the user's manual
+//! of the TNC 360. Nothing here knows what the values are used for.
 
 #![allow(
     rustdoc::broken_intra_doc_links,

@@ -110,7 +110,7 @@ impl ParameterList {
     /// taken, and the errors are returned in the order of lines.
     ///
     /// A line holds number, separator (`:`, `=` or blanks), value and, behind a semicolon, a comment
-    /// [000:10015-10017]. The value is decimal, `%` binary or `$` hexadecimal [000:10019-10046]. A line
+    /// [000:10017]. The value is decimal, `%` binary or `$` hexadecimal [000:10019-10046]. A line
     /// that starts with `;` or `*` is a comment [001:2521-2523].
     ///
     /// ```

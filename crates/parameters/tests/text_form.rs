@@ -104,9 +104,13 @@ fn single_assignments() {
         list.assign("7420"),
         Err(ParameterError::NotANumber(id(7420, None), String::new()))
     );
-    assert!(
-        matches!(list.assign("7420=1.5"), Err(ParameterError::OutOfRange { .. })),
-        "bits are whole"
+    assert_eq!(
+        list.assign("7420=1.5"),
+        Err(ParameterError::NotWhole(id(7420, None), 1.5))
+    );
+    assert_eq!(
+        list.assign("7410=0.4"),
+        Err(ParameterError::NotWhole(id(7410, None), 0.4))
     );
     assert!(matches!(
         list.set(7460, 0, f64::NAN),
