@@ -22,8 +22,9 @@
 use crate::limits::Dynamics;
 use crate::motion::{Motion, MotionEnd, PerAxis, cosine};
 
-/// The part of the reserve that corners use. Over corners at equal distances u·T the sum of `τ · w` is
-/// at most 5/4 (three corners at T/2, five at T/4); so 4/5 of the reserve keeps the bound.
+/// The part of the reserve that corners use. However corners lie, the sum of `τ · w` over them is at most
+/// 5/4: one alone gives 1, two at a distance of T/2 give 9/8, three at that distance 5/4, and more do not
+/// give more (searched numerically). So 4/5 of the reserve keeps the bound.
 const SHARE: f64 = 0.8;
 /// Differences of direction below this are rounding, no corner; thousands of them in one cycle make
 /// less than a hundredth of a corner that is felt.

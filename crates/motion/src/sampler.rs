@@ -28,8 +28,10 @@ pub struct Sampler<S: ElementSource, K: Kinematics> {
     kinematics: K,
     cycle_s: f64,
     current: Option<Planned>,
-    /// Time of the next sample from the start of the current element, s.
-    time_s: f64,
+    /// Samples given of the current element.
+    cycles: f64,
+    /// Time of the first of them from the start of the element, s.
+    offset_s: f64,
     /// The step that comes after the end of the path was given.
     after: Option<Sample<S::Error>>,
 }
@@ -57,7 +59,8 @@ impl<S: ElementSource, K: Kinematics> Sampler<S, K> {
             kinematics,
             cycle_s,
             current: None,
-            time_s: 0.0,
+            cycles: 0.0,
+            offset_s: 0.0,
             after: None,
         }
     }
@@ -75,12 +78,13 @@ impl<S: ElementSource, K: Kinematics> Sampler<S, K> {
         loop {
             if let Some(planned) = &self.current {
                 let duration = planned.duration_s();
-                if self.time_s < duration {
-                    let axes = self.kinematics.axes(&planned.position_at(self.time_s));
-                    self.time_s += self.cycle_s;
-                    return Sample::Axes(axes);
+                // Counted, not added up, so that long elements do not drift.
+                let time = self.offset_s + self.cycles * self.cycle_s;
+                if time < duration {
+                    self.cycles += 1.0;
+                    return Sample::Axes(self.kinematics.axes(&planned.position_at(time)));
                 }
-                self.time_s -= duration;
+                (self.cycles, self.offset_s) = (0.0, time - duration);
             }
             let step = match self.planner.next() {
                 PlannedStep::Element(planned) => {
@@ -96,7 +100,7 @@ impl<S: ElementSource, K: Kinematics> Sampler<S, K> {
             let Some(planned) = self.current.take() else {
                 return step;
             };
-            self.time_s = 0.0;
+            (self.cycles, self.offset_s) = (0.0, 0.0);
             self.after = Some(step);
             return Sample::Axes(self.kinematics.axes(&planned.element.end));
         }

@@ -120,24 +120,19 @@ impl Window {
     /// become faster is planned to stop within what is known.
     #[inline]
     pub(crate) fn pop(&mut self, now: bool) -> Option<Profile> {
-        let first = *self.segments.front()?;
+        let first = *self.segments.front().filter(|_| self.decided > self.first)?;
         // The end of the first undecided segment is where a stop is possible.
-        let known = match usize::try_from(self.decided - self.first)
-            .ok()
+        let undecided = usize::try_from(self.decided - self.first).ok();
+        let known = undecided
             .and_then(|i| self.segments.get(i))
-        {
-            Some(segment) => segment.energy,
-            None => f64::INFINITY,
-        };
+            .map_or(f64::INFINITY, |s| s.energy);
         let reachable = self.entry.squared + 2.0 * first.acceleration * first.length;
-        let low = self
-            .lows
-            .front()
-            .map_or(f64::INFINITY, |low| low.key - first.energy);
-        let mut exit = reachable.min(low).min(first.speed * first.speed);
-        if self.decided > self.first {
-            exit = exit.min(first.cap);
-        }
+        // The joint's own cap is taken as it is, not as what rounding leaves of it in `cap + E - E`.
+        let low = match self.lows.front() {
+            Some(low) if low.joint != self.first => low.key - first.energy,
+            _ => first.cap,
+        };
+        let mut exit = reachable.min(low).min(first.cap);
         if exit + first.energy > known {
             if !now {
                 return None;
@@ -171,7 +166,6 @@ impl Window {
             self.lows.pop_front();
         }
         self.first += 1;
-        self.decided = self.decided.max(self.first);
         self.since_rebase += 1;
         // Once per window length E starts at the first segment again, so that sums stay small and
         // their rounding with them: one subtraction per segment on the average.
@@ -203,5 +197,133 @@ impl Window {
     fn segment_mut(&mut self, joint: u64) -> Option<&mut Segment> {
         self.segments
             .get_mut(usize::try_from(joint.checked_sub(self.first)?).ok()?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Length, acceleration, feed, speed cap of the joint at the end (0 is a stop), and whether that
+    /// joint is held until so many more segments are known.
+    type Input = (f64, f64, f64, f64, Option<usize>);
+
+    /// The classic two passes over the whole path: backward so that braking is in time, forward so that
+    /// accelerating is. Squared speeds at the ends of the segments.
+    fn two_passes(path: &[Input]) -> Vec<f64> {
+        let mut speeds: Vec<f64> = path
+            .iter()
+            .enumerate()
+            .map(|(i, (_, _, feed, cap, _))| {
+                let next = path.get(i + 1).map_or(0.0, |next| next.2.min(*cap));
+                next.min(*feed).powi(2)
+            })
+            .collect();
+        for i in (1..path.len()).rev() {
+            let (length, a, ..) = path[i];
+            speeds[i - 1] = speeds[i - 1].min(speeds[i] + 2.0 * a * length);
+        }
+        let mut entry = 0.0f64;
+        for (speed, (length, a, ..)) in speeds.iter_mut().zip(path) {
+            *speed = speed.min(entry + 2.0 * a * length);
+            entry = *speed;
+        }
+        speeds
+    }
+
+    /// Runs the window like the planner does: takes out what is final after every segment.
+    fn run(path: &[Input]) -> Vec<Profile> {
+        let mut window = Window::new();
+        let mut held: Option<(f64, usize)> = None;
+        let mut profiles = Vec::new();
+        for (i, (length, a, feed, _, _)) in path.iter().enumerate() {
+            if let Some((_, _, last_feed, cap, hold)) = i.checked_sub(1).map(|last| path[last]) {
+                let speed = cap.min(last_feed).min(*feed);
+                match (held, hold) {
+                    (None, Some(count)) => {
+                        window.hold();
+                        held = Some((speed, i + count));
+                    }
+                    _ => window.join(speed),
+                }
+            }
+            window.push(*length, *a, *feed);
+            if let Some((speed, _)) = held.take_if(|(_, until)| *until <= i) {
+                window.settle(speed);
+            }
+            profiles.extend(std::iter::from_fn(|| window.pop(false)));
+        }
+        if let Some((speed, _)) = held {
+            window.settle(speed);
+        }
+        window.join(0.0);
+        profiles.extend(std::iter::from_fn(|| window.pop(false)));
+        profiles
+    }
+
+    fn input() -> impl Strategy<Value = Input> {
+        (
+            prop_oneof![1 => Just(0.0), 9 => 0.001..10.0f64],
+            prop_oneof![Just(1000.0), 10.0..5000.0f64],
+            1.0..500.0f64,
+            prop_oneof![1 => Just(0.0), 3 => 0.0..200.0f64, 3 => Just(1000.0)],
+            prop_oneof![2 => Just(None), 1 => (0usize..5).prop_map(Some)],
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn look_ahead_is_as_good_as_knowing_the_whole_path(path in prop::collection::vec(input(), 1..300)) {
+            let profiles = run(&path);
+            prop_assert_eq!(profiles.len(), path.len());
+            for (profile, expected) in profiles.iter().zip(two_passes(&path)) {
+                // Squares, as they are what is added up; E is some 1e5 here, some 1e-11 of it are rounding.
+                let exit = profile.exit_mm_s.powi(2);
+                prop_assert!((exit - expected).abs() <= 1e-9 * (1.0 + expected), "{exit} {expected}");
+            }
+        }
+    }
+
+    /// 1000 mm/s needs 500 mm to brake with 1000 mm/s². A joint is final as soon as that is known, and
+    /// while the path accelerates even sooner: the first of the segments of 1 mm is final at its end,
+    /// for the next one lets the path stop from sqrt(2 · 1000 · 1) mm/s.
+    #[test]
+    fn the_window_is_as_long_as_the_way_of_braking() {
+        let mut window = Window::new();
+        let mut longest = 0;
+        let mut count = 0;
+        for i in 0..5000 {
+            if i > 0 {
+                window.join(1000.0);
+            }
+            window.push(1.0, 1000.0, 1000.0);
+            longest = longest.max(window.segments.len());
+            count += std::iter::from_fn(|| window.pop(false)).count();
+            if i == 1 {
+                assert_eq!(count, 1);
+            }
+        }
+        assert_eq!(longest, 501, "a segment and the 500 mm after it");
+    }
+
+    /// Planned at once, every segment can still stop within what is known.
+    #[test]
+    fn a_full_window_leaves_room_to_stop() {
+        let mut window = Window::new();
+        for _ in 0..10 {
+            window.push(1.0, 1000.0, 1000.0);
+            window.join(1000.0);
+        }
+        window.push(1.0, 1000.0, 1000.0);
+        let exits: Vec<f64> = std::iter::from_fn(|| window.pop(true))
+            .map(|profile| profile.exit_mm_s.powi(2))
+            .collect();
+        // v² rises by 2000 with every mm and falls with the rest of the 11 mm: up to 5 mm, then down.
+        let expected = (1..=10).map(|i| 2000.0 * f64::from(i.min(11 - i)));
+        for (exit, expected) in exits.iter().zip(expected) {
+            assert!((exit - expected).abs() < 1e-6, "{exit} {expected}");
+        }
+        assert_eq!(exits.len(), 10);
     }
 }
