@@ -160,9 +160,8 @@ fn tangential_arcs(bencher: Bencher<'_, '_>) {
 }
 
 fn surface(n: usize, mut at: Position) -> (Curve, Position) {
-    let n = n as f64;
     at[Axis::X] += 0.2;
-    at[Axis::Y] += 0.010 * (0.7 * n).rem_euclid(1.0);
-    at[Axis::Z] += 0.010 * ((1.3 * n).rem_euclid(1.0) - 0.5);
+    at[Axis::Y] += 0.001 * (7 * n % 10) as f64;
+    at[Axis::Z] += 0.001 * ((13 * n % 10) as f64 - 5.0);
     (Curve::Line, at)
 }

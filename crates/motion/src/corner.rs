@@ -19,8 +19,12 @@
 //! - [`SHARE`] covers that a step acts at one instant of its own time, in the worst case the middle of
 //!   the triangle.
 
+use std::ops::Range;
+
+use bahn_path::Axis;
+
 use crate::limits::Dynamics;
-use crate::motion::{Motion, MotionEnd, PerAxis, cosine};
+use crate::motion::{MAIN, Motion, MotionEnd, PerAxis, cosine};
 
 /// The part of the reserve that corners use. However corners lie, the sum of `τ · w` over them is at most
 /// 5/4: one alone gives 1, two at a distance of T/2 give 9/8, three at that distance 5/4, and more do not
@@ -91,8 +95,13 @@ impl Joint {
         if cosine(&from.direction, &to.direction, last.rotary) < dynamics.corner_cosine && !any_angle {
             return Joint::Stop;
         }
+        let axes = if last.main_axes && next.main_axes {
+            MAIN
+        } else {
+            0..Axis::COUNT
+        };
         let speed = last.speed.min(next.speed);
-        let steps = Steps::between(&from, &to, last.acceleration, next.acceleration, dynamics);
+        let steps = Steps::between(&from, &to, [last.acceleration, next.acceleration], axes, dynamics);
         match steps {
             None => Joint::Smooth(speed),
             Some(steps) => Joint::Corner(Corner {
@@ -179,15 +188,21 @@ impl Corner {
 impl Steps {
     /// `None` when no axis changes its velocity.
     #[inline]
-    fn between(from: &MotionEnd, to: &MotionEnd, a0: f64, a1: f64, dynamics: &Dynamics) -> Option<Steps> {
+    fn between(
+        from: &MotionEnd,
+        to: &MotionEnd,
+        acceleration: [f64; 2],
+        axes: Range<usize>,
+        dynamics: &Dynamics,
+    ) -> Option<Steps> {
         let (d0, d1) = (&from.direction, &to.direction);
-        let mut change = [0.0; 9];
-        let mut reserve = [0.0; 9];
+        let mut change = [0.0; Axis::COUNT];
+        let mut reserve = [0.0; Axis::COUNT];
         let mut greatest = 0.0f64;
-        for i in 0..change.len() {
+        for i in axes.clone() {
             change[i] = (d1[i] - d0[i]).abs();
             greatest = if change[i] > greatest { change[i] } else { greatest };
-            let (along0, along1) = (a0 * d0[i].abs(), a1 * d1[i].abs());
+            let (along0, along1) = (acceleration[0] * d0[i].abs(), acceleration[1] * d1[i].abs());
             reserve[i] = dynamics.bound[i] - if along0 > along1 { along0 } else { along1 };
         }
         if greatest <= NO_CHANGE {
@@ -195,13 +210,13 @@ impl Steps {
         }
         if from.curvature.is_none() && to.curvature.is_none() {
             let mut limit = f64::INFINITY;
-            for i in 0..change.len() {
+            for i in axes {
                 let own = SHARE * reserve[i] / change[i].max(NO_CHANGE);
                 limit = if own < limit { own } else { limit };
             }
             return Some(Steps::Lines(limit));
         }
-        let zero = [0.0; 9];
+        let zero = [0.0; Axis::COUNT];
         let (c0, c1) = (from.curvature.unwrap_or(zero), to.curvature.unwrap_or(zero));
         let mut curvature = zero;
         for i in 0..curvature.len() {

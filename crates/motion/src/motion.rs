@@ -7,6 +7,8 @@ use crate::limits::Dynamics;
 /// One value per axis in the order of [`Axis::ALL`].
 pub(crate) type PerAxis = [f64; Axis::COUNT];
 
+/// Indices of the main axes X, Y, Z.
+pub(crate) const MAIN: std::ops::Range<usize> = Axis::X as usize..Axis::Z as usize + 1;
 /// Indices of the rotary axes; all others are linear.
 const ROTARY: std::ops::Range<usize> = Axis::A as usize..Axis::C as usize + 1;
 /// Shorter movements are none, mm or degrees: a thousandth of the finest resolution of any model.
@@ -28,6 +30,8 @@ pub(crate) struct Motion {
     pub(crate) acceleration: f64,
     /// Whether the length counts degrees of the rotary axes.
     pub(crate) rotary: bool,
+    /// A line of X, Y and Z alone, which most are: formulas may leave out the other axes.
+    pub(crate) main_axes: bool,
     /// Derivative of the axes by the path length at the start; of a line everywhere.
     direction: PerAxis,
     bend: Option<Bend>,
@@ -69,11 +73,14 @@ impl Motion {
         let per_length = 1.0 / length;
         let direction = delta.map(|d| d * per_length);
         let share = direction.map(f64::abs);
+        let main_axes = delta[MAIN.len()..].iter().all(|d| *d == 0.0);
+        let share = if main_axes { &share[MAIN] } else { &share[..] };
         Some(Motion {
             length: length.min(LONGEST),
-            speed: dynamics.speed(element.feed, element.override_law, slowest(&share, dynamics)),
-            acceleration: acceleration(&share, dynamics),
+            speed: dynamics.speed(element.feed, element.override_law, slowest(share, dynamics)),
+            acceleration: acceleration(share, dynamics),
             rotary,
+            main_axes,
             direction,
             bend: None,
         })
@@ -130,6 +137,7 @@ impl Motion {
             speed: speed.min(radial_speed),
             acceleration: acceleration(&share, dynamics),
             rotary,
+            main_axes: false,
             direction,
             bend: Some(Bend {
                 plane,
@@ -211,7 +219,7 @@ fn path_length(delta: &PerAxis) -> Option<(f64, bool)> {
 
 /// The time, s, that a mm of path takes the axis that needs longest for its share of it.
 #[inline]
-fn slowest(share: &PerAxis, dynamics: &Dynamics) -> f64 {
+fn slowest(share: &[f64], dynamics: &Dynamics) -> f64 {
     let mut slowest = 0.0f64;
     for (share, slowness) in share.iter().zip(&dynamics.slowness) {
         let time = if *share > MOVES { share * slowness } else { 0.0 };
@@ -223,7 +231,7 @@ fn slowest(share: &PerAxis, dynamics: &Dynamics) -> f64 {
 /// The smallest MP1060 of the moving axes [000:4749]. An axis that moves farther than the path is long
 /// (a rotary axis beside a short line) must not exceed its own either (inferred).
 #[inline]
-fn acceleration(share: &PerAxis, dynamics: &Dynamics) -> f64 {
+fn acceleration(share: &[f64], dynamics: &Dynamics) -> f64 {
     let mut least = f64::INFINITY;
     let mut farthest = 0.0f64;
     for (share, acceleration) in share.iter().zip(&dynamics.acceleration) {
