@@ -24,7 +24,7 @@ use std::ops::Range;
 use bahn_path::Axis;
 
 use crate::limits::Dynamics;
-use crate::motion::{MAIN, Motion, MotionEnd, PerAxis, cosine};
+use crate::motion::{MAIN, Motion, MotionEnd, PerAxis, product};
 
 /// The part of the reserve that corners use. However corners lie, the sum of `τ · w` over them is at most
 /// 5/4: one alone gives 1, two at a distance of T/2 give 9/8, three at that distance 5/4, and more do not
@@ -92,7 +92,7 @@ impl Joint {
             return Joint::Stop;
         }
         let (from, to) = (last.end(), next.start());
-        if cosine(&from.direction, &to.direction, last.rotary) < dynamics.corner_cosine && !any_angle {
+        if !any_angle && cosine(&from, &to, last.rotary) < dynamics.corner_cosine {
             return Joint::Stop;
         }
         let axes = if last.main_axes && next.main_axes {
@@ -112,6 +112,19 @@ impl Joint {
                 steps,
             }),
         }
+    }
+}
+
+/// Cosine of the change of direction between two motions of the same kind.
+#[inline]
+fn cosine(from: &MotionEnd, to: &MotionEnd, rotary: bool) -> f64 {
+    let (a, b) = (&from.direction, &to.direction);
+    let dot = product(a, b, rotary);
+    if from.curvature.is_none() && to.curvature.is_none() {
+        dot
+    } else {
+        // Where the radius of an arc changes the direction is not quite of length 1.
+        dot / (product(a, a, rotary) * product(b, b, rotary)).sqrt()
     }
 }
 

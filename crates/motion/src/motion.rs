@@ -1,5 +1,7 @@
 //! The geometry of an element as planning needs it.
 
+use std::ops::Range;
+
 use bahn_path::{Arc, Axis, Curve, PathElement, Point2, Position};
 
 use crate::limits::Dynamics;
@@ -8,9 +10,11 @@ use crate::limits::Dynamics;
 pub(crate) type PerAxis = [f64; Axis::COUNT];
 
 /// Indices of the main axes X, Y, Z.
-pub(crate) const MAIN: std::ops::Range<usize> = Axis::X as usize..Axis::Z as usize + 1;
-/// Indices of the rotary axes; all others are linear.
-const ROTARY: std::ops::Range<usize> = Axis::A as usize..Axis::C as usize + 1;
+pub(crate) const MAIN: Range<usize> = Axis::X as usize..Axis::Z as usize + 1;
+/// Indices of the rotary axes A, B, C.
+const ROTARY: Range<usize> = Axis::A as usize..Axis::C as usize + 1;
+/// Indices of the parallel axes U, V, W.
+const PARALLEL: Range<usize> = Axis::U as usize..Axis::W as usize + 1;
 /// Shorter movements are none, mm or degrees: a thousandth of the finest resolution of any model.
 const NO_LENGTH: f64 = 1e-7;
 /// Longer movements count as this long, mm: no machine has them, and sums stay finite.
@@ -18,6 +22,8 @@ const LONGEST: f64 = 1e12;
 /// An axis with a smaller share of the path does not move; it is rounding (a µm on a metre). At any
 /// speed and acceleration of the machine parameters such an axis is far below its own limits.
 const MOVES: f64 = 1e-6;
+/// An axis that moves the length of the path, and what rounding adds.
+const WHOLE: f64 = 1.0 + 1e-9;
 
 /// An element that moves: its length, how fast it can be, and the direction at its ends.
 #[derive(Clone, Debug)]
@@ -181,14 +187,14 @@ impl Bend {
     }
 }
 
-/// Cosine of the change of direction between two path directions of the same kind.
+/// Scalar product over the axes that the path length counts.
 #[inline]
-pub(crate) fn cosine(a: &PerAxis, b: &PerAxis, rotary: bool) -> f64 {
+pub(crate) fn product(a: &PerAxis, b: &PerAxis, rotary: bool) -> f64 {
+    let sum = |axes: Range<usize>| axes.map(|i| a[i] * b[i]).sum::<f64>();
     if rotary {
-        ROTARY.map(|i| a[i] * b[i]).sum()
+        sum(ROTARY)
     } else {
-        let all: f64 = (0..3).map(|i| a[i] * b[i]).sum();
-        all + (6..9).map(|i| a[i] * b[i]).sum::<f64>()
+        sum(MAIN) + sum(PARALLEL)
     }
 }
 
@@ -243,7 +249,7 @@ fn acceleration(share: &[f64], dynamics: &Dynamics) -> f64 {
         least = if a < least { a } else { least };
         farthest = if *share > farthest { *share } else { farthest };
     }
-    if farthest > 1.0 {
+    if farthest > WHOLE {
         for (share, acceleration) in share.iter().zip(&dynamics.acceleration) {
             least = least.min(acceleration / share.max(MOVES));
         }

@@ -154,6 +154,28 @@ fn tangential_transitions_pass() {
     assert!(plan(&path.elements, &limits())[0].profile.exit_mm_s > 49.999);
 }
 
+/// An arc whose end is a little off its circle (MP7431) has its tangent as direction, however long the
+/// step of its radius makes that: 0.0005 mm on a quarter of a circle of 1 mm are 0.0003 rad, 0.018 degrees.
+#[test]
+fn arcs_with_rounded_end_points_pass() {
+    let mut path = Path::new(1000.0);
+    path.line(&[(X, 20.0)])
+        .spiral(0.0, [1.0, 1.0005], 90.0, 0.0)
+        .by(&[(Y, 20.0)]);
+    let exits = |corner_angle_deg: f64| {
+        let planned = plan(
+            &path.elements,
+            &Limits {
+                corner_angle_deg,
+                ..limits()
+            },
+        );
+        [planned[0].profile.exit_mm_s, planned[1].profile.exit_mm_s]
+    };
+    assert_eq!(exits(0.017), [0.0, 0.0]);
+    assert!(exits(0.019).iter().all(|exit| *exit > 16.6));
+}
+
 /// The speed at which a corner of `deg` from the direction of X between long lines is passed, mm/s. By
 /// the law of corners, for MP1060 = 1 and MP1070 = 0.5 m/s²: along X 1000 mm/s² may be in use, along the
 /// new direction the parts of it; a step may take 4/5 of the rest of sqrt(1000² + 500²) over 3 ms.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use bahn_motion::{AuxiliaryTimes, Identity, PlannedStep, Planner, Sample, Sampler};
+use bahn_motion::{AuxiliaryTimes, Identity, MAX_LOOK_AHEAD, PlannedStep, Planner, Sample, Sampler};
 use bahn_path::{
     At, Axis, Barrier, BlockRef, Function, LiveData, PathElement, Step, Synchronisation, TechnologyFunction,
     ToolCall, ToolShape,
@@ -85,6 +85,36 @@ fn reads_no_farther_than_braking_needs() {
         let read = 1000 - planner.source().steps.len();
         assert!(read <= handed_out + 3, "{read} read for {handed_out}");
     }
+}
+
+/// When braking needs more elements than look-ahead holds, the path runs as fast as it can stop from
+/// within these: lines of 1 µm allow `v² = 2 · 1000 · 65.536`, whatever the feed.
+#[test]
+fn look_ahead_is_bounded() {
+    let count = 3 * MAX_LOOK_AHEAD;
+    let mut path = Path::new(300_000.0);
+    for i in 1..=count {
+        path.line(&[(X, 0.001 * i as f64)]);
+    }
+    let mut l = limits();
+    l.max_feed_mm_min[X.index()] = 300_000.0;
+    let steps = path.elements.into_iter().map(Step::Element).collect();
+    let mut planner = Planner::new(list(steps), &l, &AuxiliaryTimes::default());
+    let (mut handed_out, mut speed, mut greatest) = (0, 0.0, 0.0f64);
+    while let PlannedStep::Element(planned) = planner.next() {
+        handed_out += 1;
+        let read = count - planner.source().steps.len();
+        assert!(read - handed_out < MAX_LOOK_AHEAD);
+        assert_eq!(planned.profile.entry_mm_s, speed);
+        speed = planned.profile.exit_mm_s;
+        greatest = greatest.max(speed);
+    }
+    assert_eq!((handed_out, speed), (count, 0.0));
+    let reachable = (2.0 * 1000.0 * 0.001 * MAX_LOOK_AHEAD as f64).sqrt();
+    assert!(
+        (greatest - reachable).abs() < 1e-4 * reachable,
+        "{greatest} {reachable}"
+    );
 }
 
 /// Functions for which the axes wait stop the path at their end of the block; others do not.

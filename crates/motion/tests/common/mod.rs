@@ -125,15 +125,20 @@ impl Path {
 
     /// An arc in XY that starts in the direction `heading_deg`, radius and sweep given, with height.
     pub fn turn(&mut self, heading_deg: f64, radius: f64, sweep_deg: f64, height: f64) -> &mut Path {
+        self.spiral(heading_deg, [radius, radius], sweep_deg, height)
+    }
+
+    /// The same with different radii at start and end.
+    pub fn spiral(&mut self, heading_deg: f64, radii: [f64; 2], sweep_deg: f64, height: f64) -> &mut Path {
         let side = (heading_deg + 90.0f64.copysign(sweep_deg)).to_radians();
         let centre = [
-            self.at[Axis::X] + radius * side.cos(),
-            self.at[Axis::Y] + radius * side.sin(),
+            self.at[Axis::X] + radii[0] * side.cos(),
+            self.at[Axis::Y] + radii[0] * side.sin(),
         ];
         let out = side + std::f64::consts::PI + sweep_deg.to_radians();
         let mut end = self.at;
-        end[Axis::X] = centre[0] + radius * out.cos();
-        end[Axis::Y] = centre[1] + radius * out.sin();
+        end[Axis::X] = centre[0] + radii[1] * out.cos();
+        end[Axis::Y] = centre[1] + radii[1] * out.sin();
         end[Axis::Z] += height;
         self.to(
             Curve::Arc(Arc {
