@@ -118,7 +118,7 @@ impl Joint {
 /// Cosine of the change of direction between two motions of the same kind.
 #[inline]
 fn cosine(from: &MotionEnd, to: &MotionEnd, rotary: bool) -> f64 {
-    let (a, b) = (&from.direction, &to.direction);
+    let (a, b) = (from.direction, to.direction);
     let dot = product(a, b, rotary);
     if from.curvature.is_none() && to.curvature.is_none() {
         dot
@@ -208,7 +208,7 @@ impl Steps {
         axes: Range<usize>,
         dynamics: &Dynamics,
     ) -> Option<Steps> {
-        let (d0, d1) = (&from.direction, &to.direction);
+        let (d0, d1) = (from.direction, to.direction);
         let mut change = [0.0; Axis::COUNT];
         let mut reserve = [0.0; Axis::COUNT];
         let mut greatest = 0.0f64;

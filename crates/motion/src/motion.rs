@@ -48,15 +48,15 @@ pub(crate) struct Motion {
 struct Bend {
     /// The axes of its plane.
     plane: [usize; 2],
-    /// Derivative of these axes by the path length at the end.
-    end_direction: Point2,
-    /// Second derivative of these axes by the path length at the start and the end, 1/mm.
+    /// Derivative of the axes by the path length at the end.
+    end_direction: PerAxis,
+    /// Second derivative of the axes of the plane by the path length at the start and the end, 1/mm.
     curvature: [Point2; 2],
 }
 
 /// The end of a motion at a joint: direction and curvature.
-pub(crate) struct MotionEnd {
-    pub(crate) direction: PerAxis,
+pub(crate) struct MotionEnd<'a> {
+    pub(crate) direction: &'a PerAxis,
     /// Second derivative of the axes by the path length, 1/mm; `None` for lines.
     pub(crate) curvature: Option<PerAxis>,
 }
@@ -147,44 +147,49 @@ impl Motion {
             direction,
             bend: Some(Bend {
                 plane,
-                end_direction,
+                end_direction: in_plane(&direction, plane, end_direction),
                 curvature: [curvature(from, r0), curvature(to, r1)],
             }),
         })
     }
 
     #[inline]
-    pub(crate) fn start(&self) -> MotionEnd {
-        let curvature = self
-            .bend
-            .map(|bend| bend.in_plane([0.0; Axis::COUNT], bend.curvature[0]));
+    pub(crate) fn start(&self) -> MotionEnd<'_> {
+        let curvature = self.bend.as_ref().map(|bend| bend.curvature(0));
         MotionEnd {
-            direction: self.direction,
+            direction: &self.direction,
             curvature,
         }
     }
 
     #[inline]
-    pub(crate) fn end(&self) -> MotionEnd {
-        match self.bend {
+    pub(crate) fn end(&self) -> MotionEnd<'_> {
+        match &self.bend {
             None => MotionEnd {
-                direction: self.direction,
+                direction: &self.direction,
                 curvature: None,
             },
             Some(bend) => MotionEnd {
-                direction: bend.in_plane(self.direction, bend.end_direction),
-                curvature: Some(bend.in_plane([0.0; Axis::COUNT], bend.curvature[1])),
+                direction: &bend.end_direction,
+                curvature: Some(bend.curvature(1)),
             },
         }
     }
 }
 
 impl Bend {
-    fn in_plane(&self, mut axes: PerAxis, values: Point2) -> PerAxis {
-        axes[self.plane[0]] = values[0];
-        axes[self.plane[1]] = values[1];
-        axes
+    /// At the start (0) or the end (1).
+    fn curvature(&self, end: usize) -> PerAxis {
+        in_plane(&[0.0; Axis::COUNT], self.plane, self.curvature[end])
     }
+}
+
+/// The axes with other values in a plane.
+fn in_plane(axes: &PerAxis, plane: [usize; 2], values: Point2) -> PerAxis {
+    let mut axes = *axes;
+    axes[plane[0]] = values[0];
+    axes[plane[1]] = values[1];
+    axes
 }
 
 /// Scalar product over the axes that the path length counts.
