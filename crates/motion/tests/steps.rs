@@ -2,10 +2,12 @@
 
 mod common;
 
-use bahn_motion::{AuxiliaryTimes, Identity, MAX_LOOK_AHEAD, PlannedStep, Planner, Sample, Sampler};
+use bahn_motion::{
+    AuxiliaryTimes, Identity, Kinematics, MAX_LOOK_AHEAD, PlannedStep, Planner, Sample, Sampler,
+};
 use bahn_path::{
-    At, Axis, Barrier, BlockRef, Function, LiveData, PathElement, Step, Synchronisation, TechnologyFunction,
-    ToolCall, ToolShape,
+    At, Axis, Barrier, BlockRef, Function, LiveData, PathElement, Position, Step, Synchronisation,
+    TechnologyFunction, ToolCall, ToolShape,
 };
 use common::{Path, limits, list, plan};
 
@@ -262,6 +264,27 @@ fn sampler_walks_the_path_in_cycles() {
         };
         assert!((x - expected).abs() < 1e-9, "{x} {expected} at {t}");
     }
+}
+
+/// A machine whose table moves instead of the tool: its X axis goes the other way.
+#[test]
+fn sampler_goes_through_the_kinematics() {
+    struct MovingTable;
+    impl Kinematics for MovingTable {
+        fn axes(&self, path: &Position) -> Position {
+            let mut axes = *path;
+            axes[X] = -axes[X];
+            axes
+        }
+    }
+    let steps = straight(1).into_iter().map(Step::Element).collect();
+    let planner = Planner::new(list(steps), &limits(), &AuxiliaryTimes::default());
+    let mut sampler = Sampler::new(planner, MovingTable, 0.003);
+    let mut last = None;
+    while let Sample::Axes(axes) = sampler.next() {
+        last = Some(axes[X]);
+    }
+    assert_eq!(last, Some(-1.0));
 }
 
 /// Time that waits before and after the movement is sampled at its ends.
