@@ -1,1 +1,75 @@
-//! placeholder
+//! Motion: how fast the path runs and how long it takes.
+//!
+//! - [`Planner`] pulls path elements from an [`ElementSource`](bahn_path::ElementSource), looks ahead
+//!   as far as the braking distance needs, and hands out each element as [`Planned`] with its speed
+//!   [`Profile`]; barriers, starvation, end and error come after everything before them, which is then
+//!   planned to a stop;
+//! - [`Limits`] says what the machine can do: feed limits, accelerations, corners, overrides;
+//! - [`AuxiliaryTimes`] says how long tool changes, spindle starts and M functions take;
+//! - [`Sampler`] walks the planned path in contour cycles through [`Kinematics`].
+//!
+//! The rules of planning:
+//! - along the path the smallest acceleration (MP1060) of the moving axes is effective, on the rising
+//!   and on the falling slope [000:4749];
+//! - the speed never exceeds the programmed feed times the override, the rapid traverse of any moving
+//!   axis (MP1010), nor on circles `sqrt(radius * MP1070)` [000:5080-5086];
+//! - corners up to MP7460, and with M90 in operation with servo lag all corners, are passed as fast as
+//!   the change of velocity allows; the path stops at all others [000:5094-5114] [003:3421-3461];
+//! - every axis stays below `sqrt(MP1060² + MP1070²)` everywhere, seen in contour cycles.
+//!
+//! Public faces speak of mm, degrees, s and mm/min; speeds inside a profile are mm/s. Where only rotary
+//! axes move, read degrees for mm. One m/s² is 1000 mm/s², and 1000 degrees/s² on a rotary axis
+//! (inferred: the manual gives m/s² for all five axes [000:4790-4797]).
+//!
+//! ```
+//! use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
+//! # use bahn_path::*;
+//! # struct Program(Option<PathElement>);
+//! # impl ElementSource for Program {
+//! #     type Error = ();
+//! #     fn next(&mut self) -> Step<()> { self.0.take().map_or(Step::End, Step::Element) }
+//! #     fn resume(&mut self, _: LiveData) {}
+//! # }
+//! # let mut end = Position::ZERO;
+//! # end[Axis::X] = 100.0;
+//! # let program = Program(Some(PathElement {
+//! #     block: BlockRef::default(), sequence: 1, curve: Curve::Line, start: Position::ZERO, end,
+//! #     feed: FeedRate::Programmed(6000.0), override_law: OverrideLaw::Free, constant_speed: false,
+//! #     tangential_end: false, dwell_s: 0.0, functions: None,
+//! # }));
+//! let limits = Limits {
+//!     max_feed_mm_min: [15_000.0; 9],
+//!     acceleration_m_s2: [1.0; 9],
+//!     radial_acceleration_m_s2: 0.5,
+//!     corner_angle_deg: 10.0,
+//!     servo_lag: true,
+//!     cycle_s: 0.003,
+//!     feed_override_percent: 100.0,
+//!     rapid_override_percent: 100.0,
+//! };
+//! // The program is one block: L X+100 F6000, from standstill to standstill.
+//! let mut planner = Planner::new(program, &limits, &AuxiliaryTimes::default());
+//! let mut time_s = 0.0;
+//! while let PlannedStep::Element(planned) = planner.next() {
+//!     time_s += planned.duration_s();
+//! }
+//! // 100 mm at 100 mm/s, and 0.1 s more for the two ramps of 0.1 s.
+//! assert!((time_s - 1.1).abs() < 1e-12);
+//! ```
+
+mod corner;
+mod gate;
+mod limits;
+mod motion;
+mod planner;
+mod profile;
+mod sampler;
+mod times;
+mod window;
+
+pub use limits::Limits;
+pub use planner::{Planned, PlannedStep, Planner};
+pub use profile::Profile;
+pub use sampler::{Identity, Kinematics, Sample, Sampler};
+pub use times::AuxiliaryTimes;
+pub use window::MAX_LOOK_AHEAD;

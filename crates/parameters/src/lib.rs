@@ -1,11 +1,40 @@
-//! What differs between control models, as data: limits and functions, machine parameters, messages.
+//! What differs between control models and between machines, as data.
 //!
 //! The face of this room is small:
-//! - [`ControlModel`]: which control is meant;
-//! - [`MessageId`]: the control's messages with text, cause, remedy and source.
+//! - [`ControlModel`]: which control is meant, and its [`Limits`];
+//! - [`MessageId`]: the control's messages with text, cause, remedy and source; [`error_text`] for the
+//!   numbered ones;
+//! - [`Definition`]: what the manual's list says of each machine parameter;
+//! - [`ParameterList`]: the machine parameters of one machine, read and written as text, with typed
+//!   getters that answer for every model.
+//!
+//! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
+//! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
+//! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `003` the user's manual
+//! of the TNC 360. Nothing here knows what the values are used for.
 
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "citations as [003:7868] look like links"
+)]
+
+mod definition;
+mod error;
+mod fn14;
+mod limits;
+mod list;
 mod message;
 mod model;
+mod settings;
 
+pub use definition::{Change, Definition, Format, ParameterId, Reaction};
+pub use error::{ListError, ParameterError};
+pub use fn14::error_text;
+pub use limits::{Limits, MachineZero};
+pub use list::ParameterList;
 pub use message::MessageId;
 pub use model::{ControlModel, UnknownModel};
+pub use settings::{
+    ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
+    Tapping,
+};

@@ -5,9 +5,9 @@
 use super::Message;
 use crate::ControlModel::{self, Tnc151, Tnc155, Tnc407, Tnc415b, Tnc425};
 
-/// The models of the technical manual, seed 000.
+/// The models of manual 000.
 const TNC_4XX: &[ControlModel] = &[Tnc407, Tnc415b, Tnc425];
-/// The models of seed 001.
+/// The models of manual 001.
 const TNC_15X: &[ControlModel] = &[Tnc151, Tnc155];
 
 macro_rules! messages {

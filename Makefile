@@ -1,0 +1,39 @@
+# Everyday commands. Each works on a fresh Debian machine that has the Rust toolchain and a C compiler.
+CARGO ?= cargo
+OUT := out
+
+.PHONY: run test bench doc pictures tools clean
+
+# The main job on a shipped example: report on the screen, picture and mesh beside it.
+run:
+	@mkdir -p $(OUT)
+	$(CARGO) run --quiet --release -p bahn -- test examples/flange.H \
+		--view 3d --image $(OUT)/flange.png --path $(OUT)/flange.svg --mesh $(OUT)/flange.stl
+	@echo "Picture: $(OUT)/flange.png   tool path: $(OUT)/flange.svg   part: $(OUT)/flange.stl"
+
+# Everything that must hold: format, lints, documentation, tests.
+test: tools
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked --quiet
+	$(CARGO) test --workspace --locked --quiet
+
+bench:
+	$(CARGO) bench --workspace --locked
+
+doc:
+	$(CARGO) doc --workspace --no-deps --open
+
+# The pictures of README and examples/README.md, made anew.
+pictures:
+	$(CARGO) build --quiet --release -p bahn
+	./examples/pictures.sh
+
+# Parts of the toolchain that a minimal installation lacks.
+tools:
+	@$(CARGO) fmt --version >/dev/null 2>&1 || rustup component add rustfmt
+	@$(CARGO) clippy --version >/dev/null 2>&1 || rustup component add clippy
+
+clean:
+	$(CARGO) clean
+	rm -rf $(OUT)

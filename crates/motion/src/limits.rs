@@ -1,0 +1,126 @@
+//! What the machine can do.
+
+use bahn_path::{Axis, FeedRate, OverrideLaw};
+
+/// The limits that planning obeys, in the units of the machine parameters. Values that no machine can
+/// have (NaN, negative) count as the least one: nothing moves, or moves with the least acceleration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// Rapid traverse and greatest feed of each axis in the order of [`Axis::ALL`], mm/min or
+    /// degrees/min: MP1010 [000:4836-4841].
+    pub max_feed_mm_min: [f64; Axis::COUNT],
+    /// Acceleration of each axis, m/s²; 1000 degrees/s² per unit for rotary axes (inferred): MP1060
+    /// [000:4790-4797].
+    pub acceleration_m_s2: [f64; Axis::COUNT],
+    /// Radial acceleration on circles, m/s²: MP1070 [000:5089-5092].
+    pub radial_acceleration_m_s2: f64,
+    /// Change of direction up to which a corner is passed without a stop, degrees: MP7460
+    /// [000:5096-5108].
+    pub corner_angle_deg: f64,
+    /// Operation with servo lag (MP1390 = 1), in which alone M90 is effective [000:5114].
+    pub servo_lag: bool,
+    /// Contour cycle: the time from one nominal position to the next, s. 0.003 for TNC 415 and 425,
+    /// 0.006 for TNC 407 and 360 [000:4749].
+    pub cycle_s: f64,
+    /// Feed override, 0 to 150 % [003:1135-1145].
+    pub feed_override_percent: f64,
+    /// Override of rapid traverse, 0 to 150 %; more than 100 % is without effect as MP1010 limits.
+    pub rapid_override_percent: f64,
+}
+
+/// Least entry of MP1060 and MP1070, m/s².
+const LEAST_ACCELERATION_M_S2: f64 = 0.001;
+/// Greatest override, % [003:1135-1145].
+const GREATEST_OVERRIDE_PERCENT: f64 = 150.0;
+/// Contour cycle in place of one that is not positive, s.
+const LEAST_CYCLE_S: f64 = 0.0001;
+/// Speeds below this are standstill, mm/s: a millionth of the least feed that can be programmed.
+const STANDSTILL_MM_S: f64 = 1e-9;
+/// A joint whose direction changes less than this is no corner, degrees (inferred). It covers the
+/// rounding of programmed coordinates, not a change of direction that somebody wants.
+const TANGENTIAL_DEG: f64 = 0.01;
+
+/// Stands for the feed limit 0: slow enough to be standstill, without infinities in the formulas, mm/min.
+const NO_FEED_MM_MIN: f64 = 1e-30;
+/// Greatest feed limit that counts, mm/min: far above MP1010's 300 000, without infinities.
+const FASTEST_MM_MIN: f64 = 1e9;
+
+/// [`Limits`] in the units of the formulas, made once.
+#[derive(Clone, Debug)]
+pub(crate) struct Dynamics {
+    /// Seconds that a mm takes each axis at its greatest feed.
+    pub(crate) slowness: [f64; Axis::COUNT],
+    /// MP1060, mm/s².
+    pub(crate) acceleration: [f64; Axis::COUNT],
+    /// `sqrt(MP1060² + MP1070²)` of each axis, mm/s².
+    pub(crate) bound: [f64; Axis::COUNT],
+    /// MP1070, mm/s².
+    pub(crate) radial: f64,
+    /// Cosine of the greatest change of direction that is passed.
+    pub(crate) corner_cosine: f64,
+    /// Whether M90 acts.
+    pub(crate) servo_lag: bool,
+    /// Contour cycle, s.
+    pub(crate) cycle: f64,
+    feed_override: f64,
+    rapid_override: f64,
+}
+
+impl Dynamics {
+    pub(crate) fn new(limits: &Limits) -> Dynamics {
+        let acceleration = limits.acceleration_m_s2.map(mm_s2);
+        let radial = mm_s2(limits.radial_acceleration_m_s2);
+        let corner = limits.corner_angle_deg.clamp(TANGENTIAL_DEG, 180.0);
+        Dynamics {
+            slowness: limits
+                .max_feed_mm_min
+                .map(|feed| 60.0 / feed.clamp(NO_FEED_MM_MIN, FASTEST_MM_MIN).max(NO_FEED_MM_MIN)),
+            acceleration,
+            bound: acceleration.map(|a| a.hypot(radial)),
+            radial,
+            corner_cosine: if corner.is_nan() { TANGENTIAL_DEG } else { corner }
+                .to_radians()
+                .cos(),
+            servo_lag: limits.servo_lag,
+            cycle: limits.cycle_s.clamp(LEAST_CYCLE_S, 1.0).max(LEAST_CYCLE_S),
+            feed_override: limits.feed_override_percent,
+            rapid_override: limits.rapid_override_percent,
+        }
+    }
+
+    /// Greatest path speed, mm/s, of a movement: the programmed feed with its override, and no axis
+    /// faster than it can be. `slowest` is the time that a mm of path takes the axis that needs longest
+    /// for its part of it.
+    pub(crate) fn speed(&self, feed: FeedRate, law: OverrideLaw, slowest: f64) -> f64 {
+        let speed = match feed {
+            FeedRate::Rapid => effective(self.rapid_override, law).min(1.0) / slowest,
+            FeedRate::Programmed(feed) => {
+                let speed = feed / 60.0 * effective(self.feed_override, law);
+                // The comparison is false for NaN, which stays and is standstill below.
+                if speed * slowest > 1.0 {
+                    1.0 / slowest
+                } else {
+                    speed
+                }
+            }
+        };
+        if speed > STANDSTILL_MM_S { speed } else { 0.0 }
+    }
+}
+
+/// The effective override as a factor [000:6094-6098] [003:5106].
+fn effective(percent: f64, law: OverrideLaw) -> f64 {
+    let percent = match law {
+        OverrideLaw::Free => percent,
+        OverrideLaw::Limited {
+            from_percent,
+            to_percent,
+        } => percent.max(from_percent).min(to_percent),
+        OverrideLaw::Disabled => 100.0,
+    };
+    percent.clamp(0.0, GREATEST_OVERRIDE_PERCENT) / 100.0
+}
+
+fn mm_s2(m_s2: f64) -> f64 {
+    1000.0 * m_s2.max(LEAST_ACCELERATION_M_S2).min(f64::from(u16::MAX))
+}

@@ -1,0 +1,270 @@
+//! The geometry of an element as planning needs it.
+
+use std::ops::Range;
+
+use bahn_path::{Arc, Axis, Curve, PathElement, Point2, Position};
+
+use crate::limits::Dynamics;
+
+/// One value per axis in the order of [`Axis::ALL`].
+pub(crate) type PerAxis = [f64; Axis::COUNT];
+
+/// Indices of the main axes X, Y, Z.
+pub(crate) const MAIN: Range<usize> = Axis::X as usize..Axis::Z as usize + 1;
+/// Indices of the rotary axes A, B, C.
+const ROTARY: Range<usize> = Axis::A as usize..Axis::C as usize + 1;
+/// Indices of the parallel axes U, V, W.
+const PARALLEL: Range<usize> = Axis::U as usize..Axis::W as usize + 1;
+/// Shorter movements are none, mm or degrees: a thousandth of the finest resolution of any model.
+const NO_LENGTH: f64 = 1e-7;
+/// Longer movements count as this long, mm: no machine has them, and sums stay finite.
+const LONGEST: f64 = 1e12;
+/// An axis with a smaller share of the path does not move; it is rounding (a µm on a metre). At any
+/// speed and acceleration of the machine parameters such an axis is far below its own limits.
+const MOVES: f64 = 1e-6;
+/// An axis that moves the length of the path, and what rounding adds.
+const WHOLE: f64 = 1.0 + 1e-9;
+
+/// An element that moves: its length, how fast it can be, and the direction at its ends.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion {
+    /// Path length, mm, or degrees when only rotary axes move.
+    pub(crate) length: f64,
+    /// Greatest path speed, mm/s; 0 when it cannot move.
+    pub(crate) speed: f64,
+    /// Path acceleration, mm/s².
+    pub(crate) acceleration: f64,
+    /// Whether the length counts degrees of the rotary axes.
+    pub(crate) rotary: bool,
+    /// A line of X, Y and Z alone, which most are: formulas may leave out the other axes.
+    pub(crate) main_axes: bool,
+    /// Derivative of the axes by the path length at the start; of a line everywhere.
+    direction: PerAxis,
+    bend: Option<Bend>,
+}
+
+/// What an arc has beyond a line.
+#[derive(Clone, Copy, Debug)]
+struct Bend {
+    /// The axes of its plane.
+    plane: [usize; 2],
+    /// Derivative of the axes by the path length at the end.
+    end_direction: PerAxis,
+    /// Second derivative of the axes of the plane by the path length at the start and the end, 1/mm.
+    curvature: [Point2; 2],
+}
+
+/// The end of a motion at a joint: direction and curvature.
+pub(crate) struct MotionEnd<'a> {
+    pub(crate) direction: &'a PerAxis,
+    /// Second derivative of the axes by the path length, 1/mm; `None` for lines.
+    pub(crate) curvature: Option<PerAxis>,
+}
+
+impl Motion {
+    /// The motion of an element, `None` when it has no length. Axes without a position at the start
+    /// add nothing.
+    #[inline]
+    pub(crate) fn of(element: &PathElement, dynamics: &Dynamics) -> Option<Motion> {
+        match &element.curve {
+            Curve::Hold => None,
+            Curve::Line => Motion::line(element, dynamics),
+            Curve::Arc(arc) => Motion::arc(element, arc, dynamics),
+        }
+    }
+
+    fn line(element: &PathElement, dynamics: &Dynamics) -> Option<Motion> {
+        let delta = known_delta(&element.start, &element.end);
+        let (length, rotary) = path_length(&delta)?;
+        let per_length = 1.0 / length;
+        let direction = delta.map(|d| d * per_length);
+        let share = direction.map(f64::abs);
+        let main_axes = delta[MAIN.len()..].iter().all(|d| *d == 0.0);
+        let share = if main_axes { &share[MAIN] } else { &share[..] };
+        Some(Motion {
+            length: length.min(LONGEST),
+            speed: dynamics.speed(element.feed, element.override_law, slowest(share, dynamics)),
+            acceleration: acceleration(share, dynamics),
+            rotary,
+            main_axes,
+            direction,
+            bend: None,
+        })
+    }
+
+    fn arc(element: &PathElement, arc: &Arc, dynamics: &Dynamics) -> Option<Motion> {
+        let plane = [arc.plane.first.index(), arc.plane.second.index()];
+        let (from, r0) = polar(arc.plane.point(&element.start), arc.centre);
+        let (to, r1) = polar(arc.plane.point(&element.end), arc.centre);
+        let sweep = arc.sweep_deg.to_radians();
+        let mut delta = known_delta(&element.start, &element.end);
+        // Put the length in the plane in the place of the chord.
+        delta[plane[0]] = 0.5 * (r0 + r1) * sweep.abs();
+        delta[plane[1]] = 0.0;
+        let (length, rotary) = path_length(&delta)?;
+        let per_length = 1.0 / length;
+
+        // By the path length the angle changes with `turn` and the radius with `outward`.
+        let turn = sweep * per_length;
+        let outward = (r1 - r0) * per_length;
+        let tangent = |radial: Point2, r: f64| {
+            [
+                -radial[1] * turn * r + radial[0] * outward,
+                radial[0] * turn * r + radial[1] * outward,
+            ]
+        };
+        let curvature = |radial: Point2, r: f64| radial.map(|x| -x * r * turn * turn);
+        let (start_direction, end_direction) = (tangent(from, r0), tangent(to, r1));
+        let greatest = r0.max(r1);
+        let fastest = (greatest * turn).hypot(outward);
+
+        let mut direction = delta.map(|d| d * per_length);
+        let mut share = direction.map(f64::abs);
+        for i in 0..2 {
+            direction[plane[i]] = start_direction[i];
+            // The axis is fastest where the arc crosses the direction of the other axis from the
+            // centre, else at one of its ends; the ends alone do not decide when the radius changes.
+            let crosses = sweep.abs() >= std::f64::consts::PI || from[i] * to[i] <= 0.0;
+            let at_ends = start_direction[i].abs().max(end_direction[i].abs());
+            let spiral = (r1 - r0).abs() > NO_LENGTH;
+            share[plane[i]] = if crosses || spiral { fastest } else { at_ends };
+        }
+        // Radial acceleration of a point that turns and moves outward: r·w² and 2·r'·w. On a circle
+        // this is v = sqrt(r · MP1070) [000:5080-5086].
+        let per_square = turn * turn * greatest.hypot(2.0 * outward / turn);
+        let radial_speed = if per_square > 0.0 {
+            (dynamics.radial / per_square).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        let speed = dynamics.speed(element.feed, element.override_law, slowest(&share, dynamics));
+        Some(Motion {
+            length: length.min(LONGEST),
+            speed: speed.min(radial_speed),
+            acceleration: acceleration(&share, dynamics),
+            rotary,
+            main_axes: false,
+            direction,
+            bend: Some(Bend {
+                plane,
+                end_direction: in_plane(&direction, plane, end_direction),
+                curvature: [curvature(from, r0), curvature(to, r1)],
+            }),
+        })
+    }
+
+    #[inline]
+    pub(crate) fn start(&self) -> MotionEnd<'_> {
+        let curvature = self.bend.as_ref().map(|bend| bend.curvature(0));
+        MotionEnd {
+            direction: &self.direction,
+            curvature,
+        }
+    }
+
+    #[inline]
+    pub(crate) fn end(&self) -> MotionEnd<'_> {
+        match &self.bend {
+            None => MotionEnd {
+                direction: &self.direction,
+                curvature: None,
+            },
+            Some(bend) => MotionEnd {
+                direction: &bend.end_direction,
+                curvature: Some(bend.curvature(1)),
+            },
+        }
+    }
+}
+
+impl Bend {
+    /// At the start (0) or the end (1).
+    fn curvature(&self, end: usize) -> PerAxis {
+        in_plane(&[0.0; Axis::COUNT], self.plane, self.curvature[end])
+    }
+}
+
+/// The axes with other values in a plane.
+fn in_plane(axes: &PerAxis, plane: [usize; 2], values: Point2) -> PerAxis {
+    let mut axes = *axes;
+    axes[plane[0]] = values[0];
+    axes[plane[1]] = values[1];
+    axes
+}
+
+/// Scalar product over the axes that the path length counts.
+#[inline]
+pub(crate) fn product(a: &PerAxis, b: &PerAxis, rotary: bool) -> f64 {
+    let sum = |axes: Range<usize>| axes.map(|i| a[i] * b[i]).sum::<f64>();
+    if rotary {
+        sum(ROTARY)
+    } else {
+        sum(MAIN) + sum(PARALLEL)
+    }
+}
+
+#[inline]
+fn known_delta(start: &Position, end: &Position) -> PerAxis {
+    let (start, end) = (start.values(), end.values());
+    let mut delta = [0.0; Axis::COUNT];
+    for i in 0..Axis::COUNT {
+        let d = end[i] - start[i];
+        delta[i] = if d.is_nan() { 0.0 } else { d };
+    }
+    delta
+}
+
+/// Path length and whether it counts rotary axes: they do only when no linear axis moves
+/// [003:7424-7430].
+#[inline]
+fn path_length(delta: &PerAxis) -> Option<(f64, bool)> {
+    let square = |i: usize| delta[i] * delta[i];
+    let linear = (square(0) + square(1) + square(2)) + (square(6) + square(7) + square(8));
+    let least = NO_LENGTH * NO_LENGTH;
+    if linear > least {
+        return linear.is_finite().then(|| (linear.sqrt(), false));
+    }
+    let rotary = square(3) + square(4) + square(5);
+    (rotary > least && rotary.is_finite()).then(|| (rotary.sqrt(), true))
+}
+
+/// The time, s, that a mm of path takes the axis that needs longest for its share of it.
+#[inline]
+fn slowest(share: &[f64], dynamics: &Dynamics) -> f64 {
+    let mut slowest = 0.0f64;
+    for (share, slowness) in share.iter().zip(&dynamics.slowness) {
+        let time = if *share > MOVES { share * slowness } else { 0.0 };
+        slowest = if time > slowest { time } else { slowest };
+    }
+    slowest
+}
+
+/// The smallest MP1060 of the moving axes [000:4749]. An axis that moves farther than the path is long
+/// (a rotary axis beside a short line) must not exceed its own either (inferred).
+#[inline]
+fn acceleration(share: &[f64], dynamics: &Dynamics) -> f64 {
+    let mut least = f64::INFINITY;
+    let mut farthest = 0.0f64;
+    for (share, acceleration) in share.iter().zip(&dynamics.acceleration) {
+        let a = if *share > MOVES {
+            *acceleration
+        } else {
+            f64::INFINITY
+        };
+        least = if a < least { a } else { least };
+        farthest = if *share > farthest { *share } else { farthest };
+    }
+    if farthest > WHOLE {
+        for (share, acceleration) in share.iter().zip(&dynamics.acceleration) {
+            least = least.min(acceleration / share.max(MOVES));
+        }
+    }
+    least
+}
+
+/// Unit vector from the centre to a point, and the distance.
+fn polar(point: Point2, centre: Point2) -> (Point2, f64) {
+    let d = [point[0] - centre[0], point[1] - centre[1]];
+    let r = d[0].hypot(d[1]);
+    (if r > 0.0 { d.map(|x| x / r) } else { [1.0, 0.0] }, r)
+}

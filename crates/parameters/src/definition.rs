@@ -1,0 +1,405 @@
+//! What the manuals' lists say of each machine parameter.
+
+use std::fmt;
+use std::sync::OnceLock;
+
+use crate::{ControlModel, ParameterError};
+
+/// The list of the TNC 407/415/425 [000:10068-10531].
+const TNC_4XX: &str = include_str!("../data/machine-parameters.tsv");
+/// What the TNC 360 prints differently: its user parameters [003:7160-7455]. The numbers and ranges of
+/// its other parameters, for the machine builder only, are those of the TNC 407 (inferred).
+const TNC_360: &str = include_str!("../data/machine-parameters-tnc360.tsv");
+/// The list of the TNC 151/155 [001:3144-3369].
+const TNC_15X: &str = include_str!("../data/machine-parameters-tnc151-155.tsv");
+
+/// The name of a machine parameter: `MP1010.0`, `MP7410`, or `MP0` on a TNC 151.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ParameterId {
+    /// The number.
+    pub number: u16,
+    /// The index behind the point; a parameter with one value only has none.
+    pub index: Option<u8>,
+}
+
+impl fmt::Display for ParameterId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "MP{}", self.number)?;
+        self.index.map_or(Ok(()), |index| write!(f, ".{index}"))
+    }
+}
+
+/// How a value is best written [000:10019-10046].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Decimal number.
+    Decimal,
+    /// Binary number of so many digits, `%00110`; bit 0 is the rightmost.
+    Binary(usize),
+    /// Hexadecimal number of so many digits, `$030200C`.
+    Hexadecimal(usize),
+}
+
+/// When a changed value takes effect [000:10088].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reaction {
+    /// At once.
+    None,
+    /// The control must be restarted.
+    Reset,
+    /// The reference marks must be traversed again.
+    ReferenceMarks,
+}
+
+/// By what a value may be changed while the control runs [000:10088].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// In the list only.
+    List,
+    /// By the PLC while no program runs.
+    PlcEdit,
+    /// By the PLC, also while a program runs.
+    PlcRun,
+}
+
+/// One row of the list of machine parameters.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Definition {
+    /// Number and index.
+    pub id: ParameterId,
+    /// What it is.
+    pub name: &'static str,
+    /// Least value. Minus infinity where no range is printed.
+    pub min: f64,
+    /// Greatest value. Infinity where no range is printed.
+    pub max: f64,
+    /// Decimal places that are stored.
+    pub decimals: u8,
+    /// Unit, empty for a number without one.
+    pub unit: &'static str,
+    /// How it is best written.
+    pub format: Format,
+    /// Value that the manual recommends or uses as a standard, in its words.
+    pub recommended: &'static str,
+    /// By what it may be changed.
+    pub change: Change,
+    /// Whether the operator may change it, code number 123.
+    pub user: bool,
+    /// What a change needs.
+    pub reaction: Reaction,
+    /// What the index stands for: the axis, mostly.
+    pub axis: &'static str,
+    /// Meaning of values or bits.
+    pub values: &'static str,
+    /// Controls and software versions that have it.
+    pub versions: &'static str,
+    /// Contradictions and decisions.
+    pub notes: &'static str,
+    /// Where the manuals print it, as `000:10095`.
+    pub source: &'static str,
+}
+
+impl Definition {
+    /// All machine parameters of a model in ascending order.
+    pub fn all(model: ControlModel) -> &'static [Definition] {
+        static LISTS: [OnceLock<Vec<Definition>>; ControlModel::ALL.len()] =
+            [const { OnceLock::new() }; ControlModel::ALL.len()];
+        LISTS[model as usize].get_or_init(|| list(model))
+    }
+
+    /// The machine parameter of a number and index. A parameter with one value only is found with
+    /// index 0.
+    pub fn find(model: ControlModel, number: u16, index: u8) -> Option<&'static Definition> {
+        let all = Definition::all(model);
+        Definition::position(model, number, index).and_then(|at| all.get(at))
+    }
+
+    /// Where it stands in [`Definition::all`].
+    pub(crate) fn position(model: ControlModel, number: u16, index: u8) -> Option<usize> {
+        Definition::all(model)
+            .binary_search_by_key(&(number, index), Definition::key)
+            .ok()
+    }
+
+    /// Checks a value and rounds it to the decimal places that are stored [000:10015].
+    ///
+    /// # Errors
+    /// [`ParameterError::OutOfRange`] for a value outside the range, [`ParameterError::NotWhole`] for a
+    /// fraction where whole numbers or bits are meant.
+    pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
+        let scale = 10f64.powi(self.decimals.into());
+        let rounded = (value * scale).round() / scale;
+        if !rounded.is_finite() || !(self.min..=self.max).contains(&rounded) {
+            return Err(ParameterError::OutOfRange {
+                id: self.id,
+                value,
+                min: self.min,
+                max: self.max,
+            });
+        }
+        if self.decimals == 0 && rounded != value {
+            return Err(ParameterError::NotWhole(self.id, value));
+        }
+        Ok(rounded + 0.0) // no negative zero
+    }
+
+    /// Writes a value in the best format, without needless zeros.
+    pub fn format_value(&self, value: f64) -> String {
+        match self.format {
+            Format::Binary(digits) => format!("%{:0digits$b}", value as u64),
+            Format::Hexadecimal(digits) => format!("${:0digits$X}", value as u64),
+            Format::Decimal => {
+                let text = format!("{value:.*}", self.decimals.into());
+                if text.contains('.') {
+                    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+                } else {
+                    text
+                }
+            }
+        }
+    }
+
+    fn key(&self) -> (u16, u8) {
+        (self.id.number, self.id.index.unwrap_or(0))
+    }
+
+    /// Whether the versions column gives the parameter to the model.
+    fn exists_on(&self, model: ControlModel) -> bool {
+        let versions = self.versions;
+        match model {
+            ControlModel::Tnc151 | ControlModel::Tnc155 => true,
+            ControlModel::Tnc360 => {
+                !versions.starts_with("TNC 4")
+                    && !versions.starts_with("not TNC 407")
+                    && !self.axis.starts_with("5th")
+            }
+            ControlModel::Tnc407 => {
+                !versions.starts_with("TNC 425 only")
+                    && !versions.starts_with("not TNC 407")
+                    && !versions.contains("TNC 415/425")
+            }
+            ControlModel::Tnc415b => {
+                !versions.starts_with("TNC 425 only") && !versions.starts_with("TNC 407 only")
+            }
+            ControlModel::Tnc425 => !versions.starts_with("TNC 407 only"),
+        }
+    }
+}
+
+/// The rows of a model: those of its own list, and the rest from the list of its family.
+fn list(model: ControlModel) -> Vec<Definition> {
+    let (own, family) = match model {
+        ControlModel::Tnc151 | ControlModel::Tnc155 => (TNC_15X, ""),
+        ControlModel::Tnc360 => (TNC_360, TNC_4XX),
+        _ => (TNC_4XX, ""),
+    };
+    let mut rows: Vec<Definition> = rows(own).collect();
+    let numbers: Vec<u16> = rows.iter().map(|row| row.id.number).collect();
+    rows.extend(self::rows(family).filter(|row| !numbers.contains(&row.id.number)));
+    rows.retain(|row| row.exists_on(model));
+    rows.sort_by_key(Definition::key);
+    rows
+}
+
+fn rows(table: &'static str) -> impl Iterator<Item = Definition> {
+    table.lines().skip(1).filter_map(row)
+}
+
+/// Reads one row; a test proves that every row can be read.
+fn row(line: &'static str) -> Option<Definition> {
+    let mut columns = line.split('\t');
+    let mut next = || columns.next();
+    let id = parse_id(next()?)?;
+    let name = next()?;
+    let (min_text, max_text) = (next()?, next()?);
+    let unprinted = min_text.is_empty() && max_text.is_empty();
+    Some(Definition {
+        id,
+        name,
+        min: if unprinted {
+            f64::NEG_INFINITY
+        } else {
+            parse_number(min_text)?
+        },
+        max: if unprinted {
+            f64::INFINITY
+        } else {
+            parse_number(max_text)?
+        },
+        decimals: match next()? {
+            "" => 0,
+            digits => digits.parse().ok()?,
+        },
+        unit: next()?,
+        format: match next()? {
+            "bits" => Format::Binary(max_text.len().saturating_sub(1)),
+            "hex" if max_text.starts_with('$') => Format::Hexadecimal(max_text.len() - 1),
+            "hex" => Format::Hexadecimal(4),
+            _ => Format::Decimal,
+        },
+        recommended: next()?,
+        change: match next()? {
+            "PLC RUN" => Change::PlcRun,
+            "PLC EDIT" => Change::PlcEdit,
+            _ => Change::List,
+        },
+        user: next()? == "yes",
+        reaction: match next()? {
+            "RESET" => Reaction::Reset,
+            "REF" => Reaction::ReferenceMarks,
+            _ => Reaction::None,
+        },
+        axis: next()?,
+        values: next()?,
+        versions: next()?,
+        notes: next()?,
+        source: next()?,
+    })
+}
+
+/// Reads `1010.0`, `MP7410` or `mp 7410`.
+pub(crate) fn parse_id(text: &str) -> Option<ParameterId> {
+    let digits = match text.get(..2) {
+        Some(prefix) if prefix.eq_ignore_ascii_case("MP") => text[2..].trim_start(),
+        _ => text,
+    };
+    let only_digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let (number, index) = match digits.split_once('.') {
+        Some((number, index)) => (number, Some(index)),
+        None => (digits, None),
+    };
+    if !only_digits(number) || !index.is_none_or(only_digits) {
+        return None;
+    }
+    let index = match index {
+        Some(index) => Some(index.parse().ok()?),
+        None => None,
+    };
+    Some(ParameterId {
+        number: number.parse().ok()?,
+        index,
+    })
+}
+
+/// Reads a decimal number with point or comma, `%` binary or `$` hexadecimal [000:10019-10046].
+pub(crate) fn parse_number(text: &str) -> Option<f64> {
+    let radix = |digits: &str, radix| {
+        // The sign that `from_str_radix` would accept is none of the format's.
+        let plain = digits.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        plain
+            .then(|| u64::from_str_radix(digits, radix).ok())
+            .flatten()
+            .map(|number| number as f64)
+    };
+    if let Some(digits) = text.strip_prefix('%') {
+        return radix(digits, 2);
+    }
+    if let Some(digits) = text.strip_prefix('$') {
+        return radix(digits, 16);
+    }
+    let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
+    let starts_with_digit = unsigned.starts_with(|c: char| c.is_ascii_digit());
+    let decimal = unsigned
+        .bytes()
+        .all(|byte| byte.is_ascii_digit() || byte == b'.' || byte == b',');
+    (starts_with_digit && decimal)
+        .then(|| text.replace(',', ".").parse().ok())
+        .flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_is_read() {
+        for table in [TNC_4XX, TNC_360, TNC_15X] {
+            for line in table.lines().skip(1) {
+                assert_eq!(line.split('\t').count(), 16, "{line}");
+                let row = row(line).unwrap_or_else(|| panic!("unreadable: {line}"));
+                assert!(row.min <= row.max, "{line}");
+                assert!(!row.name.is_empty() && !row.source.is_empty(), "{line}");
+            }
+        }
+        assert_eq!(rows(TNC_4XX).count(), 890);
+        assert_eq!(rows(TNC_15X).count(), 264, "MP0 to MP263 [001:3144-3369]");
+    }
+
+    #[test]
+    fn a_number_has_either_indices_or_one_value() {
+        for model in ControlModel::ALL {
+            for pair in Definition::all(model).windows(2) {
+                assert!(pair[0].key() < pair[1].key(), "{} twice on {model}", pair[1].id);
+                if pair[0].id.number == pair[1].id.number {
+                    assert!(
+                        pair[0].id.index.is_some() && pair[1].id.index.is_some(),
+                        "{}",
+                        pair[0].id
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_smallest_value_is_in_its_own_range() {
+        for model in ControlModel::ALL {
+            for row in Definition::all(model).iter().filter(|row| row.min.is_finite()) {
+                assert_eq!(row.check(row.min), Ok(row.min), "{}", row.id);
+                assert_eq!(row.check(row.max), Ok(row.max), "{}", row.id);
+            }
+        }
+    }
+
+    #[test]
+    fn a_row_of_the_list_reads_as_printed() {
+        // "MP1060.0 Acceleration, Entry: 0.001 to 5.000 [m/s2]", PLC EDIT [000:10155].
+        let row = Definition::find(ControlModel::Tnc415b, 1060, 0).unwrap();
+        assert_eq!(
+            (row.min, row.max, row.decimals, row.unit),
+            (0.001, 5.0, 3, "m/s^2")
+        );
+        assert_eq!(
+            (row.change, row.user, row.reaction),
+            (Change::PlcEdit, false, Reaction::None)
+        );
+        // MP7440, five bits [000:10491].
+        let row = Definition::find(ControlModel::Tnc407, 7440, 0).unwrap();
+        assert_eq!((row.format, row.max), (Format::Binary(5), 31.0));
+        assert_eq!(row.format_value(6.0), "%00110");
+        // MP10 may be changed with a restart only [000:10095].
+        assert_eq!(
+            Definition::find(ControlModel::Tnc407, 10, 0).unwrap().reaction,
+            Reaction::Reset
+        );
+    }
+
+    #[test]
+    fn models_have_their_own_parameters() {
+        use ControlModel::{Tnc155, Tnc360, Tnc407, Tnc415b, Tnc425};
+        let has = |model, number| Definition::find(model, number, 0).is_some();
+        // Digital speed controller: TNC 425 only; swivel axes: not TNC 407; EXE factor: TNC 407 only.
+        assert!(has(Tnc425, 1920) && !has(Tnc415b, 1920));
+        assert!(has(Tnc415b, 7510) && !has(Tnc407, 7510));
+        assert!(has(Tnc407, 340) && !has(Tnc415b, 340));
+        // The TNC 360 adds up to 7 in MP7440 [003:7400].
+        assert_eq!(Definition::find(Tnc360, 7440, 0).unwrap().max, 7.0);
+        assert!(Definition::find(Tnc360, 1010, 3).is_some() && Definition::find(Tnc360, 1010, 4).is_none());
+        assert!(has(Tnc155, 54) && !has(Tnc155, 1060));
+    }
+
+    #[test]
+    fn numbers_in_three_formats() {
+        // Disabling file types, one value in three spellings [000:10027-10046].
+        assert_eq!(parse_number("%111000"), Some(56.0));
+        assert_eq!(parse_number("$38"), Some(56.0));
+        assert_eq!(parse_number("56"), Some(56.0));
+        assert_eq!(parse_number("-0,5"), Some(-0.5));
+        for wrong in [
+            "", "-", ".", "1e3", "inf", "nan", "%2", "$", "%", "$+1", "1.2.3", "--1", "é",
+        ] {
+            assert_eq!(parse_number(wrong), None, "{wrong}");
+        }
+    }
+}

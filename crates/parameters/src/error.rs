@@ -1,0 +1,71 @@
+//! What can be wrong with a machine parameter or a list of them.
+
+use crate::ParameterId;
+
+/// What is wrong with one machine parameter.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ParameterError {
+    /// The line or assignment does not start with a machine parameter.
+    #[error("no machine parameter number found")]
+    NoNumber,
+    /// The control model has no such parameter.
+    #[error("{0} is no machine parameter of this control")]
+    UnknownNumber(ParameterId),
+    /// The parameter has one value for each index, and none is given.
+    #[error("{0} needs an index, as {0}.0")]
+    IndexMissing(ParameterId),
+    /// Something stands behind the value that is not a comment.
+    #[error("{0}: no separator `;` found before `{1}`")]
+    NoSeparator(ParameterId, String),
+    /// The value is no number.
+    #[error("{0}: `{1}` is no number")]
+    NotANumber(ParameterId, String),
+    /// The value is outside the parameter's range.
+    #[error("{id}: {value} is not between {min} and {max}")]
+    OutOfRange {
+        /// The parameter.
+        id: ParameterId,
+        /// The value given.
+        value: f64,
+        /// Least value.
+        min: f64,
+        /// Greatest value.
+        max: f64,
+    },
+    /// The value has a fraction, and the parameter takes whole numbers.
+    #[error("{0}: {1} is no whole number")]
+    NotWhole(ParameterId, f64),
+    /// The list gives the parameter twice; the first value counts.
+    #[error("{id} is already defined in line {first_line}")]
+    DoublyDefined {
+        /// The parameter.
+        id: ParameterId,
+        /// Line of the list, from 1, that defines it first.
+        first_line: usize,
+    },
+}
+
+impl ParameterError {
+    /// The number by which the control shows the error in its list editor [000:10054-10062].
+    pub fn number(&self) -> u8 {
+        match self {
+            ParameterError::NoNumber => 0,
+            ParameterError::UnknownNumber(_) | ParameterError::IndexMissing(_) => 1,
+            ParameterError::NoSeparator(..) => 2,
+            ParameterError::NotANumber(..)
+            | ParameterError::OutOfRange { .. }
+            | ParameterError::NotWhole(..) => 3,
+            ParameterError::DoublyDefined { .. } => 4,
+        }
+    }
+}
+
+/// An error in the text of a list of machine parameters.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("line {line}: {error}")]
+pub struct ListError {
+    /// Line of the text, from 1.
+    pub line: usize,
+    /// What is wrong there.
+    pub error: ParameterError,
+}

@@ -1,0 +1,202 @@
+//! Limits and functions of the control models: the table that programs are checked against.
+//!
+//! The columns are, in this order: TNC 151, TNC 155, TNC 360, TNC 407, TNC 415 B, TNC 425. A value
+//! that no manual prints for a model is taken from its nearest sister and marked (inferred).
+
+use crate::ControlModel::{self, Tnc151, Tnc155, Tnc360, Tnc407, Tnc415b, Tnc425};
+
+macro_rules! limits {
+    ($($(#[$doc:meta])* $field:ident: $kind:ty =
+        $tnc151:expr, $tnc155:expr, $tnc360:expr, $tnc407:expr, $tnc415b:expr, $tnc425:expr;)+) => {
+        /// What a control model can do and between which limits.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub struct Limits {
+            $($(#[$doc])* pub $field: $kind,)+
+        }
+
+        impl ControlModel {
+            /// Limits and functions of the model.
+            pub const fn limits(self) -> &'static Limits {
+                match self {
+                    Tnc151 => &Limits { $($field: $tnc151),+ },
+                    Tnc155 => &Limits { $($field: $tnc155),+ },
+                    Tnc360 => &Limits { $($field: $tnc360),+ },
+                    Tnc407 => &Limits { $($field: $tnc407),+ },
+                    Tnc415b => &Limits { $($field: $tnc415b),+ },
+                    Tnc425 => &Limits { $($field: $tnc425),+ },
+                }
+            }
+        }
+    };
+}
+
+limits! {
+    // Programs.
+
+    /// Longest program name, characters [001:2142] [003:979] [000:6847].
+    program_name_max: u8 = 8, 8, 8, 16, 16, 16;
+    /// Highest label number; label 0 ends subprograms [003:3623-3629]; others than TNC 360 (inferred).
+    label_max: u32 = 254, 254, 254, 254, 254, 254;
+    /// Highest count behind REP [003:3747-3763]; others than TNC 360 (inferred).
+    repeat_max: u32 = 65_534, 65_534, 65_534, 65_534, 65_534, 65_534;
+    /// Levels of nested subprograms [003:3915-3921]; others than TNC 360 (inferred).
+    subprogram_nesting_max: u8 = 8, 8, 8, 8, 8, 8;
+    /// Levels of nested program calls [003:3915-3921] [001:2829-2833] [000:17711].
+    program_nesting_max: u8 = 4, 4, 4, 4, 4, 4;
+
+    // Q parameters.
+
+    /// Highest Q parameter. TNC 151/155: Q113 is the last one named [001:2931-2960]; TNC 360: Q123
+    /// [003:7653-7662]; TNC 407/415/425: Q299 (inferred, the technical manual names Q119 at most).
+    q_max: u16 = 113, 113, 123, 299, 299, 299;
+    /// FN functions that exist [003:4147-4395] [000:17842-17846]; TNC 151/155 (inferred from FN0, FN1,
+    /// FN4, FN12 in [001:2857-2866]).
+    fn_functions: &'static [u8] = FN_151, FN_151, FN_360, FN_360, FN_360, FN_360;
+    /// Formulas with brackets, `Q1 = SIN 30 + SQRT Q2` [000:151-159].
+    formulas: bool = false, false, false, true, true, true;
+    /// What FN19 hands to the PLC for 1 mm or 1 degree: TNC 360 counts in 1 µm [003:4391-4395],
+    /// TNC 407/415/425 in 1/10 000 mm [000:11597-11655].
+    fn19_per_mm: Option<f64> = None, None, Some(1e3), Some(1e4), Some(1e4), Some(1e4);
+    /// Highest number of FN14 [003:4364-4367]; others than TNC 360 (inferred).
+    fn14_max: u16 = 499, 499, 499, 499, 499, 499;
+    /// Items of one FN15 PRINT block [003:4371-4385]; others than TNC 360 (inferred).
+    print_items_max: u8 = 6, 6, 6, 6, 6, 6;
+
+    // Tools, spindle, feed.
+
+    /// Highest tool number; tool 0 has length and radius 0 [001:736] [003:1814] [000:180].
+    tool_max: u32 = 254, 254, 254, 254, 254, 254;
+    /// Most tools of the central tool table [001:1600] [003:7299] [000:10397].
+    tool_table_max: u16 = 99, 99, 99, 254, 254, 254;
+    /// Highest spindle speed, rpm [001:1502] [003:2180-2182] [000:5478-5480].
+    spindle_speed_max_rpm: f64 = 99_999.0, 99_999.0, 99_999.0, 99999.999, 99999.999, 99999.999;
+    /// Highest feed rate, mm/min [001:471] [003:2142-2144] [000:264-266].
+    feed_max_mm_min: f64 = 15_999.0, 15_999.0, 29_999.0, 300_000.0, 300_000.0, 300_000.0;
+    /// Feed rate that means rapid traverse where FMAX is not a word of its own [001:471].
+    rapid_feed_mm_min: Option<f64> = Some(15_999.0), Some(15_999.0), None, None, None, None;
+
+    // Positions.
+
+    /// Greatest coordinate, mm or degrees, either sign [001:3188-3195] [003:7821] [000:577-589].
+    coordinate_max: f64 = 30_000.0, 30_000.0, 30_000.0, 99999.9999, 99999.9999, 99999.9999;
+    /// Greatest radius of a CR block, mm [003:2853-2855]; others than TNC 360 by their coordinates
+    /// (inferred).
+    circle_radius_max_mm: f64 = 30_000.0, 30_000.0, 30_000.0, 99999.9999, 99999.9999, 99999.9999;
+    /// Greatest polar angle PA of LP, degrees, either sign [003:3089]; others than TNC 360 (inferred).
+    polar_angle_max_deg: f64 = 360.0, 360.0, 360.0, 360.0, 360.0, 360.0;
+    /// Greatest polar angle PA of CP, helix included, degrees, either sign: 15 turns [003:3173-3183];
+    /// others than TNC 360 (inferred).
+    circle_angle_max_deg: f64 = 5400.0, 5400.0, 5400.0, 5400.0, 5400.0, 5400.0;
+    /// Input step of lengths, mm [001:1612-1614] [003:7825] [000:6419-6424].
+    resolution_mm: f64 = 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4;
+    /// Input step of angles, degrees [003:7825] [000:6419-6424]; TNC 151/155 (inferred).
+    resolution_deg: f64 = 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4;
+    /// Axes that a machine can have [001:1089-1103] [003:7751] [000:133].
+    axes_max: u8 = 4, 4, 4, 5, 5, 5;
+    /// Axes that move together on a straight line [001:167-173] [003:7761-7763] [000:139].
+    line_axes_max: u8 = 3, 3, 3, 3, 5, 5;
+    /// Axes that move together on a circle [003:7761-7763] [000:140]; TNC 151/155 (inferred).
+    circle_axes_max: u8 = 2, 2, 2, 2, 3, 3;
+    /// Axes that move together on a helix [003:7761-7763] [000:141]; others than TNC 360 (inferred).
+    helix_axes_max: u8 = 3, 3, 3, 3, 3, 3;
+    /// Zero of M91.
+    machine_zero: MachineZero = SCALE, SCALE, SCALE, MP960, MP960, MP960;
+    /// Longest side of the blank, mm [003:2105]; TNC 407/415/425 [000:704-708]; TNC 151/155 (inferred).
+    blank_side_max_mm: f64 = 30_000.0, 30_000.0, 30_000.0, 30_000.0, 30_000.0, 30_000.0;
+    /// The ratio of the blank's sides must stay below it [003:2121]; others than TNC 360 (inferred).
+    blank_ratio_limit: f64 = 84.0, 84.0, 84.0, 84.0, 84.0, 84.0;
+
+    // Cycles and miscellaneous functions.
+
+    /// Standard cycles that exist [003:4811-4816] [000:6655-6699] [000:6143] [000:836]; TNC 151/155
+    /// (inferred: those of the TNC 360 without rigid tapping, which they lack).
+    cycles: &'static [u8] = CYCLES_151, CYCLES_151, CYCLES_360, CYCLES_407, CYCLES_415, CYCLES_415;
+    /// Most subcontours of cycle 14 [003:5466]; others than TNC 360 (inferred).
+    contour_labels_max: u8 = 12, 12, 12, 12, 12, 12;
+    /// Longest dwell of cycle 9, s [003:6462-6474]; others than TNC 360 (inferred).
+    dwell_max_s: f64 = 30_000.0, 30_000.0, 30_000.0, 30_000.0, 30_000.0, 30_000.0;
+    /// Greatest rotation of cycle 10, degrees, either sign [003:6313-6333]; others than TNC 360 (inferred).
+    rotation_max_deg: f64 = 360.0, 360.0, 360.0, 360.0, 360.0, 360.0;
+    /// Least and greatest factor of cycle 11 [003:6385-6412]; others than TNC 360 (inferred).
+    scaling_range: [f64; 2] = SCALING, SCALING, SCALING, SCALING, SCALING, SCALING;
+    /// Highest M function [001:554-558] [003:7459-7577] [000:7076-7206]: 99 go to the PLC; the
+    /// TNC 407/415/425 have more that act inside the control, up to M204.
+    m_max: u16 = 99, 99, 99, 204, 204, 204;
+
+    // Time.
+
+    /// Block processing time of a straight line in space, ms [003:7815] [000:143]; TNC 151/155 (inferred).
+    block_time_ms: f64 = 40.0, 40.0, 40.0, 25.0, 4.0, 4.0;
+    /// Contour cycle: period of the interpolated nominal positions, µs [003:7817] [000:212-222];
+    /// TNC 151/155 (inferred).
+    contour_cycle_us: u32 = 6000, 6000, 6000, 6000, 3000, 3000;
+    /// Period of the fine interpolation between them, µs: TNC 415 B of the contour, TNC 425 of the
+    /// speed loop [000:212-224].
+    fine_cycle_us: Option<u32> = None, None, None, None, Some(600), Some(600);
+}
+
+/// Zero of the coordinates in a block with M91.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MachineZero {
+    /// The scale datum, that is the reference point of the scales [003:3533-3545] [001:704].
+    ScaleDatum,
+    /// The machine datum, which MP960 places away from the scale datum [000:6242-6269].
+    Mp960,
+}
+
+impl Limits {
+    /// Whether the model has a standard cycle.
+    pub fn has_cycle(&self, cycle: u32) -> bool {
+        self.cycles.iter().any(|known| u32::from(*known) == cycle)
+    }
+
+    /// Whether the model has an FN function.
+    pub fn has_fn(&self, function: u32) -> bool {
+        self.fn_functions
+            .iter()
+            .any(|known| u32::from(*known) == function)
+    }
+}
+
+const SCALE: MachineZero = MachineZero::ScaleDatum;
+const MP960: MachineZero = MachineZero::Mp960;
+const SCALING: [f64; 2] = [0.000_001, 99.999_999];
+const FN_151: &[u8] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14];
+const FN_360: &[u8] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 19];
+const CYCLES_151: &[u8] = &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16];
+const CYCLES_360: &[u8] = &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
+/// Without cycle 19, tilting of the working plane [000:147].
+const CYCLES_407: &[u8] = &[
+    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 21, 22, 23, 24, 25, 26, 27, 31,
+];
+const CYCLES_415: &[u8] = &[
+    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 21, 22, 23, 24, 25, 26, 27, 31,
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_differ_where_the_manuals_say_so() {
+        assert_eq!(Tnc360.limits().fn19_per_mm, Some(1000.0));
+        assert_eq!(Tnc407.limits().fn19_per_mm, Some(10_000.0));
+        assert!(!Tnc155.limits().has_cycle(17) && Tnc360.limits().has_cycle(17));
+        assert!(!Tnc407.limits().has_cycle(19) && Tnc415b.limits().has_cycle(19));
+        assert!(!Tnc151.limits().has_fn(19) && Tnc425.limits().has_fn(19));
+        assert_eq!(Tnc360.limits().machine_zero, MachineZero::ScaleDatum);
+        assert_eq!(Tnc415b.limits().machine_zero, MachineZero::Mp960);
+    }
+
+    #[test]
+    fn fine_interpolation_divides_the_contour_cycle() {
+        for model in ControlModel::ALL {
+            let limits = model.limits();
+            assert!(limits.line_axes_max <= limits.axes_max);
+            if let Some(fine) = limits.fine_cycle_us {
+                assert_eq!(limits.contour_cycle_us % fine, 0, "{model}");
+            }
+        }
+    }
+}

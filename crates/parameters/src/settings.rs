@@ -1,0 +1,41 @@
+//! Typed getters: the settings that other rooms use, the same for every control model.
+//!
+//! The TNC 151/155 have numbers of their own (MP0 to MP263); each getter names both. An axis that the
+//! machine does not have answers too, so that a test run need not refuse a program for another machine:
+//! a parallel axis answers like the main axis of its direction, a rotary axis like the machine's first
+//! rotary axis, otherwise like the 4th axis (inferred).
+
+mod axes;
+mod machining;
+mod spindle;
+
+pub use machining::{
+    ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
+};
+pub use spindle::Tapping;
+
+use crate::{ControlModel, ParameterList};
+
+impl ParameterList {
+    /// Whether the list has the numbers of the TNC 151/155.
+    pub(crate) fn has_old_numbers(&self) -> bool {
+        matches!(self.model(), ControlModel::Tnc151 | ControlModel::Tnc155)
+    }
+
+    /// A value under the number of the new or the old list. Every model has every parameter asked for
+    /// with this function; a test proves it.
+    fn value(&self, new: (u16, u8), old: (u16, u8)) -> f64 {
+        let (number, index) = if self.has_old_numbers() { old } else { new };
+        self.get(number, index).unwrap_or_default()
+    }
+
+    /// Whether a bit of a bit-coded parameter is set.
+    fn bit(&self, new: (u16, u8), old: (u16, u8), bit: u32) -> bool {
+        bit_of(self.value(new, old), bit)
+    }
+}
+
+/// Whether a bit of a value is set.
+fn bit_of(value: f64, bit: u32) -> bool {
+    value as u64 >> bit & 1 == 1
+}
