@@ -4,6 +4,8 @@
 //! cargo bench -p bahn-program
 //! ```
 
+#![expect(clippy::unwrap_used, reason = "writing to a string cannot fail")]
+
 use std::fmt::Write;
 
 use bahn_program::{Block, Chunk, FormatOptions, Operation, Program, format_program};

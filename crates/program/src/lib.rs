@@ -4,11 +4,13 @@
 //! - [`Program`]: a file with a light index; decodes its blocks a [`Chunk`] at a time;
 //! - [`Block`] and [`Operation`]: what a block does, the same whatever language or spelling it came from;
 //! - [`BlockError`]: what is wrong with a block that cannot be read, and where;
+//! - [`Program::diagnostics`]: all faults of a program in one pass; [`check_limits`] for one block;
 //! - [`format_program`]: the normalised listing.
 //!
 //! Reading never fails: a block that cannot be read is [`Operation::Invalid`], an error when it is executed.
 
 mod check;
+mod diagnostics;
 mod error;
 mod format;
 mod index;
@@ -16,9 +18,11 @@ mod lines;
 mod operation;
 mod parse;
 mod program;
+mod sequence;
 mod text;
 
-pub use check::Limits;
+pub use check::{LimitFault, check_limits};
+pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity};
 pub use error::BlockError;
 pub use format::{FormatOptions, format_block, format_program};
 pub use operation::*;

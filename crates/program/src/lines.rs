@@ -1,6 +1,6 @@
 //! Cuts a file into the raw text of its blocks: one line each, or several that `~` joins.
 
-use crate::text::{is_blank, trim_continuation};
+use crate::text::{is_blank, to_text, trim_continuation};
 
 /// Where the text of a block lies in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,6 +95,21 @@ impl Iterator for RawBlocks<'_> {
                 line,
                 joined,
             });
+        }
+    }
+}
+
+/// The line `offset` lines behind the front of a text, without its line end.
+pub(crate) fn file_line(text: &[u8], offset: u32) -> String {
+    let mut lines = RawBlocks::from(text, 0, 0);
+    loop {
+        let number = lines.line;
+        match lines.line() {
+            Some((start, end)) if number == offset => {
+                return to_text(text.get(start..end).unwrap_or_default());
+            }
+            Some(_) => {}
+            None => return String::new(),
         }
     }
 }

@@ -7,8 +7,9 @@ use bahn_path::{Axis, AxisSet};
 use super::cursor::{Cursor, Parsed};
 use super::m_function::m_functions;
 use super::path::{direction, feed_word};
+use crate::check::ANY_LABEL_MAX;
 use crate::text::{is_blank, to_words};
-use crate::{CycleBlock, CycleWord, Dialog, Direction, Limits, Operation, Word};
+use crate::{CycleBlock, CycleWord, Dialog, Direction, Operation, Word};
 
 /// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
 pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
@@ -105,7 +106,7 @@ fn label_list(c: &mut Cursor) -> Parsed<Vec<CycleWord>> {
         c.accept(b'/');
         c.skip_blanks();
         let start = c.position();
-        labels.push(c.required_integer(start, Limits::ANY_MODEL.label, "a label number is missing")?);
+        labels.push(c.required_integer(start, ANY_LABEL_MAX, "a label number is missing")?);
     }
     if !labels.is_empty() {
         words.push(CycleWord::Labels(labels.into()));

@@ -3,7 +3,8 @@
 use bahn_parameters::MessageId::{BlockNotKnown, EntryValueIncorrect};
 
 use super::cursor::{Cursor, Parsed};
-use crate::{Limits, Operation};
+use crate::Operation;
+use crate::check::ANY_LABEL_MAX;
 
 /// `LBL n` [003:3662-3670].
 pub(super) fn label(c: &mut Cursor) -> Parsed<Option<Operation>> {
@@ -20,11 +21,7 @@ pub(super) fn label_number(c: &mut Cursor) -> Parsed<u16> {
         return c.fault_at_word(BlockNotKnown, "labels have numbers on the controls here");
     }
     let start = c.position();
-    c.required_integer(
-        start,
-        Limits::ANY_MODEL.label,
-        "a label number from 0 to 65534 is missing",
-    )
+    c.required_integer(start, ANY_LABEL_MAX, "a label number from 0 to 65534 is missing")
 }
 
 /// `CALL LBL n [REP r/r]` and `CALL PGM name`.

@@ -3,7 +3,8 @@
 use bahn_parameters::MessageId::EntryValueIncorrect;
 
 use super::cursor::{Cursor, Parsed};
-use crate::{Limits, Value};
+use crate::Value;
+use crate::check::ANY_Q_MAX;
 
 /// Most digits of a number; longer ones are an error.
 const MAX_DIGITS: usize = 20;
@@ -80,7 +81,7 @@ impl Cursor<'_> {
             return self.not_known();
         }
         match self.integer(start)? {
-            Some(number) if number <= u32::from(Limits::ANY_MODEL.q_parameter) => Ok(number as u16),
+            Some(number) if number <= u32::from(ANY_Q_MAX) => Ok(number as u16),
             Some(_) => self.fault_from(start, EntryValueIncorrect, "no control has this Q parameter"),
             None => self.number_missing(start, "the number of the Q parameter is missing"),
         }

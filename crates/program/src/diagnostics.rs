@@ -1,0 +1,299 @@
+//! All faults of a program in one pass.
+
+use bahn_parameters::Limits;
+use bahn_parameters::MessageId::{
+    self, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted, LabelNumberAllocated,
+    LabelNumberNotAllocated, UnexpectedText,
+};
+
+use crate::program::text_start;
+use crate::sequence::{Sequence, SequenceFault};
+use crate::text::trim_continuation;
+use crate::{CycleWord, NumberedBlock, Operation, Program, check_limits};
+
+/// Most diagnostics of one program; with more it is not a program at all.
+pub const MAX_DIAGNOSTICS: usize = 1000;
+
+/// How bad a fault is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The program runs all the same.
+    Warning,
+    /// The control would stop at the block.
+    Error,
+}
+
+/// A fault of a program and its place in the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// The control's message.
+    pub message: MessageId,
+    /// How bad it is.
+    pub severity: Severity,
+    /// Block number in the normalised listing.
+    pub block: u32,
+    /// Line in the file, from 1.
+    pub line: u32,
+    /// Column in the line, in characters counted from 1.
+    pub column: u32,
+    /// Number of characters it covers, at least 1.
+    pub length: u32,
+    /// What exactly, in a few words for people.
+    pub detail: Box<str>,
+}
+
+impl Program {
+    /// All faults that can be seen without running the program, in the order of its blocks, at most
+    /// [`MAX_DIAGNOSTICS`]: blocks that cannot be read, labels set twice or missing, cycles with missing or
+    /// unordered blocks, a missing or unlike BEGIN and END, text around the program; with the limits of a
+    /// control model also what that control does not take.
+    ///
+    /// ```
+    /// use bahn_parameters::MessageId;
+    /// use bahn_program::Program;
+    ///
+    /// let program = Program::from_bytes("1.H", b"BEGIN PGM 1 MM\n  CALL LBL 7\nEND PGM 1 MM".to_vec());
+    /// let faults = program.diagnostics(None);
+    /// assert_eq!(faults[0].message, MessageId::LabelNumberNotAllocated);
+    /// assert_eq!((faults[0].block, faults[0].line, faults[0].column, faults[0].length), (1, 2, 12, 1));
+    /// ```
+    pub fn diagnostics(&self, limits: Option<&Limits>) -> Vec<Diagnostic> {
+        let mut pass = Pass {
+            program: self,
+            limits,
+            sequence: Sequence::default(),
+            found: Vec::new(),
+        };
+        pass.around_the_front();
+        for numbered in self.blocks() {
+            if pass.found.len() >= MAX_DIAGNOSTICS {
+                break;
+            }
+            pass.block(&numbered);
+        }
+        pass.around_the_end();
+        pass.found.truncate(MAX_DIAGNOSTICS);
+        pass.found.sort_by_key(|diagnostic| diagnostic.block);
+        pass.found
+    }
+
+    /// A line of the file without its line end, numbered from 1.
+    pub fn text_of_line(&self, line: u32) -> String {
+        // The last chunk that begins at or before the line, so that only some lines are passed over.
+        let chunks = &self.index().chunks;
+        let chunk = chunks.partition_point(|start| start.line <= line).checked_sub(1);
+        let start = chunk
+            .and_then(|chunk| chunks.get(chunk))
+            .filter(|start| start.line > 1);
+        let front = (text_start(self.file()), 1);
+        let (byte, first) = start.map_or(front, |start| (start.byte as usize, start.line));
+        let rest = self.file().get(byte..).unwrap_or_default();
+        crate::lines::file_line(rest, line.saturating_sub(first))
+    }
+}
+
+struct Pass<'a> {
+    program: &'a Program,
+    limits: Option<&'a Limits>,
+    sequence: Sequence,
+    found: Vec<Diagnostic>,
+}
+
+impl Pass<'_> {
+    fn around_the_front(&mut self) {
+        if let Some((_, line)) = self.program.index().leading {
+            self.at_line(0, line, "text before BEGIN PGM is no part of the program");
+        }
+        if self.program.begin().is_none() {
+            self.at_line(0, 1, "the program does not begin with BEGIN PGM");
+        }
+    }
+
+    fn around_the_end(&mut self) {
+        let last = self.program.block_count().saturating_sub(1);
+        match (self.program.begin(), self.program.end()) {
+            (_, None) => {
+                let detail = "the program does not end with END PGM";
+                self.at_word(EndOfProgramMissing, Severity::Warning, last, "", detail);
+            }
+            (Some(begin), Some(end)) if !begin.name.eq_ignore_ascii_case(&end.name) => {
+                let detail = format!("the program began as \"{}\"", begin.name);
+                self.at_word(UnexpectedText, Severity::Warning, last, "", &detail);
+            }
+            (Some(begin), Some(end)) if begin.unit != end.unit => {
+                let detail = "END PGM names another unit than BEGIN PGM";
+                self.at_word(UnexpectedText, Severity::Warning, last, "", detail);
+            }
+            _ => {}
+        }
+        if let Some((_, line)) = self.program.index().trailing {
+            self.at_line(last, line, "text behind END PGM is no part of the program");
+        }
+    }
+
+    fn block(&mut self, numbered: &NumberedBlock) {
+        let NumberedBlock { number, line, block } = numbered;
+        if let Some(fault) = self.sequence.next(*number, &block.operation) {
+            self.sequence_fault(fault);
+        }
+        match &block.operation {
+            Operation::Invalid(invalid) => {
+                let error = &invalid.error;
+                self.found.push(Diagnostic {
+                    message: error.message,
+                    severity: Severity::Error,
+                    block: *number,
+                    line: line.saturating_add(error.line),
+                    column: error.column,
+                    length: error.length,
+                    detail: error.detail.clone(),
+                });
+                return;
+            }
+            Operation::Label(label) if *label > 0 => {
+                if let Some(first) = self.program.label(*label).filter(|first| first != number) {
+                    let detail = format!("label {label} is set in block {first} already");
+                    self.error(LabelNumberAllocated, *number, "LBL", &detail);
+                }
+            }
+            Operation::CallLabel { label, .. } | Operation::Jump { label, .. } => {
+                self.called(*number, *label, "LBL")
+            }
+            Operation::Cycle(block) => {
+                for word in &block.words {
+                    if let CycleWord::Labels(labels) = word {
+                        labels
+                            .iter()
+                            .for_each(|label| self.called(*number, *label, "14.1"));
+                    }
+                }
+            }
+            _ => {}
+        }
+        let limits = self.limits;
+        let fault = limits.and_then(|limits| check_limits(&block.operation, self.program.unit(), limits));
+        if let Some(fault) = fault {
+            self.error(fault.message, *number, &fault.address, &fault.detail);
+        }
+    }
+
+    /// A label that is called or jumped to.
+    fn called(&mut self, block: u32, label: u16, address: &str) {
+        if label == 0 {
+            self.error(
+                JumpToLabelZeroNotPermitted,
+                block,
+                address,
+                "label 0 only ends subprograms",
+            );
+        } else if self.program.label(label).is_none() {
+            self.error(
+                LabelNumberNotAllocated,
+                block,
+                address,
+                &format!("no block sets label {label}"),
+            );
+        }
+    }
+
+    fn sequence_fault(&mut self, fault: SequenceFault) {
+        self.error(CyclIncomplete, fault.block, "", &fault.detail);
+    }
+
+    fn error(&mut self, message: MessageId, block: u32, address: &str, detail: &str) {
+        self.at_word(message, Severity::Error, block, address, detail);
+    }
+
+    /// A diagnostic at the value behind an address in a block; without it at the whole block.
+    fn at_word(&mut self, message: MessageId, severity: Severity, block: u32, address: &str, detail: &str) {
+        let text = self.program.text_of(block);
+        let (line, column, length) = locate(&text, address);
+        self.found.push(Diagnostic {
+            message,
+            severity,
+            block,
+            line: self.program.line_of(block).saturating_add(line),
+            column,
+            length,
+            detail: detail.into(),
+        });
+    }
+
+    /// A warning about the text that begins in a line.
+    fn at_line(&mut self, block: u32, line: u32, detail: &str) {
+        let text = self.program.text_of_line(line);
+        let (_, column, length) = locate(&text, "");
+        self.found.push(Diagnostic {
+            message: UnexpectedText,
+            severity: Severity::Warning,
+            block,
+            line,
+            column,
+            length,
+            detail: detail.into(),
+        });
+    }
+}
+
+/// Line within the text of a block, column and length of the value behind an address, or of the address
+/// itself if that ends with its number; else of the code in the first line.
+fn locate(text: &str, address: &str) -> (u32, u32, u32) {
+    let lines = text.split("\r\n").flat_map(|lines| lines.split(['\n', '\r']));
+    if !address.is_empty() {
+        for (number, line) in lines.clone().enumerate() {
+            if let Some((column, length)) = locate_in_line(line, address) {
+                return (number as u32, column, length);
+            }
+        }
+    }
+    let first = lines.into_iter().next().unwrap_or_default();
+    let code = first
+        .split(';')
+        .next()
+        .filter(|code| !code.trim().is_empty())
+        .unwrap_or(first);
+    let code = String::from_utf8_lossy(trim_continuation(code.as_bytes())).into_owned();
+    let blanks = code
+        .chars()
+        .take_while(|c| c.is_ascii_whitespace() || c.is_ascii_control())
+        .count();
+    let length = code.chars().count().saturating_sub(blanks).max(1);
+    (0, blanks as u32 + 1, length as u32)
+}
+
+fn locate_in_line(line: &str, address: &str) -> Option<(u32, u32)> {
+    let line: Vec<char> = line.chars().map(|c| c.to_ascii_uppercase()).collect();
+    let address: Vec<char> = address.chars().collect();
+    let own_number = address.last().is_some_and(char::is_ascii_digit);
+    (0..line.len()).find_map(|start| {
+        let rest = line.get(start..)?.strip_prefix(address.as_slice())?;
+        let before = start.checked_sub(1).and_then(|before| line.get(before));
+        if before.is_some_and(char::is_ascii_alphabetic)
+            && address.first().is_some_and(char::is_ascii_alphabetic)
+        {
+            // Only the I of incremental words may touch an address.
+            if before != Some(&'I') {
+                return None;
+            }
+        }
+        let blanks = rest
+            .iter()
+            .take_while(|c| c.is_ascii_whitespace() || **c == '=')
+            .count();
+        let value = rest
+            .get(blanks..)?
+            .iter()
+            .take_while(|c| is_of_value(**c))
+            .count();
+        let address_start = start as u32 + 1;
+        if own_number && value == 0 {
+            return Some((address_start, address.len() as u32));
+        }
+        let value_start = address_start + (address.len() + blanks) as u32;
+        (value > 0).then_some((value_start, value as u32))
+    })
+}
+
+fn is_of_value(c: char) -> bool {
+    c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | 'Q')
+}
