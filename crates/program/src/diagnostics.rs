@@ -6,6 +6,7 @@ use bahn_parameters::MessageId::{
     LabelNumberNotAllocated, UnexpectedText,
 };
 
+use crate::lines::line_at;
 use crate::program::text_start;
 use crate::sequence::{Sequence, SequenceFault};
 use crate::text::trim_continuation;
@@ -88,7 +89,7 @@ impl Program {
         let front = (text_start(self.file()), 1);
         let (byte, first) = start.map_or(front, |start| (start.byte as usize, start.line));
         let rest = self.file().get(byte..).unwrap_or_default();
-        crate::lines::file_line(rest, line.saturating_sub(first))
+        line_at(rest, line.saturating_sub(first))
     }
 }
 

@@ -25,7 +25,7 @@ impl RawBlock {
 
 /// Iterator over the blocks of a file. Lines without text are no blocks.
 ///
-/// Lines end with LF, CR LF or CR; a form feed ends a block too [001:267] but does not count as a line.
+/// Lines end with LF, CR LF or CR; between two blocks a form feed does it too [001:267].
 #[derive(Clone, Debug)]
 pub(crate) struct RawBlocks<'a> {
     file: &'a [u8],
@@ -48,20 +48,48 @@ impl<'a> RawBlocks<'a> {
     fn line(&mut self) -> Option<(usize, usize)> {
         let start = self.next;
         let rest = self.file.get(start..).filter(|rest| !rest.is_empty())?;
-        let Some(length) = memchr::memchr3(b'\n', b'\r', b'\x0c', rest) else {
-            self.next = self.file.len();
-            return Some((start, self.next));
-        };
-        let after = rest.get(length..).unwrap_or_default();
-        let (terminator, lines) = match after {
-            [b'\r', b'\n', ..] => (2, 1),
-            [b'\x0c', ..] => (1, 0),
-            _ => (1, 1),
-        };
+        let (length, terminator) = line_end(rest);
         self.next = start + length + terminator;
-        self.line = self.line.saturating_add(lines);
+        self.line = self.line.saturating_add(u32::from(terminator > 0));
         Some((start, start + length))
     }
+}
+
+/// Length of the line at the front of a text, and of its line end, which is 0 at the end of the text.
+#[inline]
+fn line_end(text: &[u8]) -> (usize, usize) {
+    let mut from = 0;
+    loop {
+        let rest = text.get(from..).unwrap_or_default();
+        let Some(length) = memchr::memchr3(b'\n', b'\r', b'\x0c', rest) else {
+            return (text.len(), 0);
+        };
+        let end = from + length;
+        match rest.get(length..).unwrap_or_default() {
+            [b'\r', b'\n', ..] => return (end, 2),
+            // Beside another line end a form feed is a blank.
+            [b'\x0c', b'\r' | b'\n' | b'\x0c', ..] | [b'\x0c'] => from = end + 1,
+            [b'\x0c', ..] if end == 0 => from = 1,
+            _ => return (end, 1),
+        }
+    }
+}
+
+/// The lines of a text without their line ends. Behind the last line end comes one more line.
+pub(crate) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = Some(text);
+    std::iter::from_fn(move || {
+        let (line, behind) = {
+            let text = rest?;
+            let (length, terminator) = line_end(text);
+            (
+                text.get(..length)?,
+                (terminator > 0).then_some(text.get(length + terminator..)?),
+            )
+        };
+        rest = behind;
+        Some(line)
+    })
 }
 
 impl Iterator for RawBlocks<'_> {
@@ -100,18 +128,9 @@ impl Iterator for RawBlocks<'_> {
 }
 
 /// The line `offset` lines behind the front of a text, without its line end.
-pub(crate) fn file_line(text: &[u8], offset: u32) -> String {
-    let mut lines = RawBlocks::from(text, 0, 0);
-    loop {
-        let number = lines.line;
-        match lines.line() {
-            Some((start, end)) if number == offset => {
-                return to_text(text.get(start..end).unwrap_or_default());
-            }
-            Some(_) => {}
-            None => return String::new(),
-        }
-    }
+pub(crate) fn line_at(text: &[u8], offset: u32) -> String {
+    let line = lines(text).nth(usize::try_from(offset).unwrap_or(usize::MAX));
+    to_text(line.unwrap_or_default())
 }
 
 /// Whether a line is a comment or structuring only: a rule of `~` in it joins nothing.
@@ -137,10 +156,14 @@ mod tests {
         assert_eq!(blocks(b"A\nB"), [(&b"A"[..], 1, false), (b"B", 2, false)]);
         assert_eq!(blocks(b"A\r\nB\r\n"), [(&b"A"[..], 1, false), (b"B", 2, false)]);
         assert_eq!(blocks(b"A\rB\r"), [(&b"A"[..], 1, false), (b"B", 2, false)]);
-        assert_eq!(blocks(b"A\n\x0cB"), [(&b"A"[..], 1, false), (b"B", 2, false)]);
+        assert_eq!(blocks(b"A\n\x0cB"), [(&b"A"[..], 1, false), (b"\x0cB", 2, false)]);
         assert_eq!(
             blocks(b"A\x0cB\nC"),
-            [(&b"A"[..], 1, false), (b"B", 1, false), (b"C", 2, false)]
+            [(&b"A"[..], 1, false), (b"B", 2, false), (b"C", 3, false)]
+        );
+        assert_eq!(
+            blocks(b"A\n\x0c\nB\x0c"),
+            [(&b"A"[..], 1, false), (b"B\x0c", 3, false)]
         );
     }
 

@@ -3,6 +3,7 @@
 
 mod generate;
 
+use bahn_parameters::ControlModel;
 use bahn_program::{Block, FormatOptions, Operation, Program, format_block, format_program};
 use proptest::prelude::*;
 
@@ -53,6 +54,16 @@ fn check_laws(bytes: &[u8]) {
         joined += program.decode(chunk).blocks.len();
     }
     assert_eq!(joined, all.len());
+    for diagnostic in program.diagnostics(Some(ControlModel::Tnc360.limits())) {
+        let line = program.text_of_line(diagnostic.line);
+        let end = diagnostic.column + diagnostic.length - 1;
+        let inside = diagnostic.column >= 1 && end as usize <= line.chars().count() + 1;
+        assert!(
+            inside,
+            "{diagnostic:?} lies outside of {line:?} {:?}",
+            String::from_utf8_lossy(bytes)
+        );
+    }
     let last = program.block_count() - 1;
     assert!(program.line_of(last) >= 1 && program.text_of(last).len() <= bytes.len() * 2);
 }

@@ -70,7 +70,10 @@ impl Output {
                     self.text.push(axis.letter());
                 }
                 CycleWord::AxisDirection(axis, direction) => {
-                    self.word("");
+                    // `Y-/X+`.
+                    if !self.text.ends_with('/') {
+                        self.word("");
+                    }
                     self.text.push(axis.letter());
                     self.text.push(if *direction == Direction::Clockwise {
                         '-'

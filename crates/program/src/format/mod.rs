@@ -7,7 +7,7 @@ mod path;
 
 use std::fmt::{self, Display};
 
-use crate::parse::physical_lines;
+use crate::lines::lines;
 use crate::text::{BYTE_ORDER_MARK, is_blank, to_text, trim};
 use crate::{
     Block, Calculation, Condition, Coordinates, Feed, Header, MFunctions, NumberedBlock, Operation, Program,
@@ -90,7 +90,7 @@ fn verbatim(f: &mut fmt::Formatter<'_>, mut bytes: &[u8]) -> fmt::Result {
     while let Some(rest) = bytes.strip_prefix(BYTE_ORDER_MARK).or_else(|| strip_blank(bytes)) {
         bytes = rest;
     }
-    let mut lines = physical_lines(bytes).map(trim).peekable();
+    let mut lines = lines(bytes).map(trim).peekable();
     while let Some(line) = lines.next() {
         if !line.is_empty() || lines.peek().is_some() {
             writeln!(f, "{}", to_text(line))?;

@@ -16,7 +16,7 @@ mod tool;
 
 use bahn_parameters::MessageId;
 
-use crate::lines::RawBlock;
+use crate::lines::{RawBlock, lines};
 use crate::text::{character_count, to_text, trim, trim_continuation};
 use crate::{Block, BlockError, InvalidBlock, Operation};
 use cursor::{Cursor, Fault, Parsed, code_length};
@@ -212,7 +212,7 @@ fn parse_joined(bytes: &[u8], may_begin: bool) -> Block {
     let mut joined = Vec::new();
     let mut comments = String::new();
     let mut skip = false;
-    for (index, line) in physical_lines(bytes).enumerate() {
+    for (index, line) in lines(bytes).enumerate() {
         let mut c = Cursor::new(line);
         if index == 0 {
             skip = prefix(&mut c);
@@ -269,21 +269,6 @@ fn parse_joined(bytes: &[u8], may_begin: bool) -> Block {
             }
         }
     }
-}
-
-/// The lines of a block, with one for each line end.
-pub(crate) fn physical_lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let mut rest = Some(bytes);
-    std::iter::from_fn(move || {
-        let line = rest?;
-        let Some(length) = memchr::memchr3(b'\n', b'\r', b'\x0c', line) else {
-            rest = None;
-            return Some(line);
-        };
-        let (line, after) = line.split_at_checked(length)?;
-        rest = after.strip_prefix(b"\r\n").or_else(|| after.get(1..));
-        Some(line)
-    })
 }
 
 /// The text of an invalid block of several lines: each trimmed, with `~` at all ends but the last.
