@@ -102,13 +102,8 @@ impl Stopwatch {
                 self.spindle = Spindle::Stopped;
                 self.times.spindle_orientation_s
             }
-            Function::ProgramEnd => {
-                self.spindle = Spindle::Stopped;
-                0.0
-            }
             Function::NextTool(_)
             | Function::Stop
-            | Function::ErrorNumber(_)
             | Function::Print(_)
             | Function::Plc(_)
             | Function::Blank(_) => 0.0,

@@ -213,7 +213,7 @@ fn auxiliary_times() {
             0.0,
         ),
         (vec![end(Function::Stop)], 0.0, 0.0),
-        (vec![end(Function::M(30)), end(Function::ProgramEnd)], 0.0, 0.125),
+        (vec![end(Function::M(30))], 0.0, 0.125),
     ];
     let mut path = Path::new(3000.0);
     for (functions, ..) in &blocks {

@@ -127,10 +127,6 @@ pub enum Function {
     SpindleOrientation(f64),
     /// Programmed stop: STOP, M0, M1, M6 where it stops.
     Stop,
-    /// Program end (M2, M30, END PGM).
-    ProgramEnd,
-    /// FN14: ERROR number [003:4352-4362].
-    ErrorNumber(u16),
     /// FN15: PRINT, the finished output line [003:4371-4385].
     Print(String),
     /// FN19: PLC, one or two values already in the unit of the control model [003:4387-4395].
