@@ -1,5 +1,7 @@
 //! Cuts a file into the raw text of its blocks: one line each, or several that `~` joins.
 
+use std::ops::Range;
+
 use crate::text::{is_blank, to_text, trim_continuation};
 
 /// Where the text of a block lies in the file.
@@ -55,43 +57,6 @@ impl<'a> RawBlocks<'a> {
     }
 }
 
-/// Length of the line at the front of a text, and of its line end, which is 0 at the end of the text.
-#[inline]
-fn line_end(text: &[u8]) -> (usize, usize) {
-    let mut from = 0;
-    loop {
-        let rest = text.get(from..).unwrap_or_default();
-        let Some(length) = memchr::memchr3(b'\n', b'\r', b'\x0c', rest) else {
-            return (text.len(), 0);
-        };
-        let end = from + length;
-        match rest.get(length..).unwrap_or_default() {
-            [b'\r', b'\n', ..] => return (end, 2),
-            // Beside another line end a form feed is a blank.
-            [b'\x0c', b'\r' | b'\n' | b'\x0c', ..] | [b'\x0c'] => from = end + 1,
-            [b'\x0c', ..] if end == 0 => from = 1,
-            _ => return (end, 1),
-        }
-    }
-}
-
-/// The lines of a text without their line ends. Behind the last line end comes one more line.
-pub(crate) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let mut rest = Some(text);
-    std::iter::from_fn(move || {
-        let (line, behind) = {
-            let text = rest?;
-            let (length, terminator) = line_end(text);
-            (
-                text.get(..length)?,
-                (terminator > 0).then_some(text.get(length + terminator..)?),
-            )
-        };
-        rest = behind;
-        Some(line)
-    })
-}
-
 impl Iterator for RawBlocks<'_> {
     type Item = RawBlock;
 
@@ -127,9 +92,42 @@ impl Iterator for RawBlocks<'_> {
     }
 }
 
+/// Length of the line at the front of a text, and of its line end, which is 0 at the end of the text.
+#[inline]
+fn line_end(text: &[u8]) -> (usize, usize) {
+    let mut from = 0;
+    loop {
+        let rest = text.get(from..).unwrap_or_default();
+        let Some(length) = memchr::memchr3(b'\n', b'\r', b'\x0c', rest) else {
+            return (text.len(), 0);
+        };
+        let end = from + length;
+        match rest.get(length..).unwrap_or_default() {
+            [b'\r', b'\n', ..] => return (end, 2),
+            // Beside another line end a form feed is a blank.
+            [b'\x0c', b'\r' | b'\n' | b'\x0c', ..] | [b'\x0c'] => from = end + 1,
+            [b'\x0c', ..] if end == 0 => from = 1,
+            _ => return (end, 1),
+        }
+    }
+}
+
+/// The lines that begin in a range of the file, without their line ends.
+pub(crate) fn lines(file: &[u8], range: Range<usize>) -> impl Iterator<Item = &[u8]> {
+    let mut lines = RawBlocks::from(file, range.start, 0);
+    std::iter::from_fn(move || {
+        let (start, end) = lines.line()?;
+        if start < range.end {
+            file.get(start..end)
+        } else {
+            None
+        }
+    })
+}
+
 /// The line `offset` lines behind the front of a text, without its line end.
 pub(crate) fn line_at(text: &[u8], offset: u32) -> String {
-    let line = lines(text).nth(usize::try_from(offset).unwrap_or(usize::MAX));
+    let line = lines(text, 0..text.len()).nth(usize::try_from(offset).unwrap_or(usize::MAX));
     to_text(line.unwrap_or_default())
 }
 

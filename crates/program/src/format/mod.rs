@@ -6,6 +6,7 @@ mod number;
 mod path;
 
 use std::fmt::{self, Display};
+use std::ops::Range;
 
 use crate::lines::lines;
 use crate::text::{BYTE_ORDER_MARK, is_blank, to_text, trim};
@@ -59,10 +60,7 @@ impl Display for Listing<'_> {
         let file = self.program.file();
         let index = self.program.index();
         if let (Some((start, _)), Some(begin)) = (index.leading, index.chunks.first()) {
-            verbatim(
-                f,
-                file.get(start as usize..begin.byte as usize).unwrap_or_default(),
-            )?;
+            verbatim(f, file, start as usize..begin.byte as usize)?;
         }
         let mut out = Output {
             text: String::new(),
@@ -77,33 +75,30 @@ impl Display for Listing<'_> {
             f.write_str(&out.text)?;
         }
         if let Some((start, _)) = index.trailing {
-            verbatim(f, trim(file.get(start as usize..).unwrap_or_default()))?;
+            let end = file
+                .iter()
+                .rposition(|&b| !is_blank(b))
+                .map_or(0, |last| last + 1);
+            verbatim(f, file, start as usize..end)?;
         }
         Ok(())
     }
 }
 
-/// Writes lines as they are, without blanks at their ends. Empty ones stay: they keep a `~` before them from
-/// joining more.
-fn verbatim(f: &mut fmt::Formatter<'_>, mut bytes: &[u8]) -> fmt::Result {
-    // At the front of a file these are no text.
-    while let Some(rest) = bytes.strip_prefix(BYTE_ORDER_MARK).or_else(|| strip_blank(bytes)) {
-        bytes = rest;
-    }
-    let mut lines = lines(bytes).map(trim).peekable();
-    while let Some(line) = lines.next() {
-        if !line.is_empty() || lines.peek().is_some() {
-            writeln!(f, "{}", to_text(line))?;
+/// Writes the lines that begin in a range of the file as they are, without blanks at their ends. Empty ones
+/// stay: they keep a `~` before them from joining more.
+fn verbatim(f: &mut fmt::Formatter<'_>, file: &[u8], mut range: Range<usize>) -> fmt::Result {
+    // At the front of a file blanks and byte-order marks are no text.
+    while let Some(rest) = file.get(range.clone()).filter(|rest| !rest.is_empty()) {
+        match rest {
+            _ if rest.starts_with(BYTE_ORDER_MARK) => range.start += BYTE_ORDER_MARK.len(),
+            [first, ..] if is_blank(*first) => range.start += 1,
+            _ => break,
         }
     }
-    Ok(())
-}
-
-fn strip_blank(bytes: &[u8]) -> Option<&[u8]> {
-    bytes
-        .split_first()
-        .filter(|(first, _)| is_blank(**first))
-        .map(|(_, rest)| rest)
+    lines(file, range)
+        .map(trim)
+        .try_for_each(|line| writeln!(f, "{}", to_text(line)))
 }
 
 /// Text being written. Words other than the first begin with a blank.

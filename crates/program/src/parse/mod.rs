@@ -212,7 +212,7 @@ fn parse_joined(bytes: &[u8], may_begin: bool) -> Block {
     let mut joined = Vec::new();
     let mut comments = String::new();
     let mut skip = false;
-    for (index, line) in lines(bytes).enumerate() {
+    for (index, line) in lines(bytes, 0..bytes.len()).enumerate() {
         let mut c = Cursor::new(line);
         if index == 0 {
             skip = prefix(&mut c);
