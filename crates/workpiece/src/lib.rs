@@ -25,17 +25,22 @@
 //! Lengths are millimetres in workpiece coordinates, volumes mm³, angles degrees.
 
 mod batch;
+mod canvas;
 mod chords;
 mod event;
 mod grid;
 mod part;
 mod setup;
 mod sweep;
+mod text;
 mod tool;
 mod touch;
+mod view;
 mod workpiece;
 
+pub use canvas::{Image, ImageError};
 pub use event::{Event, EventKind};
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
+pub use view::{Page, PageError, PlanView, Projection, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};
