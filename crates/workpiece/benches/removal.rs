@@ -1,5 +1,7 @@
 //! Material removal: a million moves of 1 mm with a 10 mm tool in a blank of 100 x 100 mm at 0.1 mm.
 
+#![expect(clippy::expect_used, reason = "a benchmark may stop")]
+
 use bahn_path::{
     Axis, Blank, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Plane, Position, ToolShape,
 };

@@ -141,34 +141,6 @@ impl Image {
         self.outline(&points, width, colour);
     }
 
-    /// Fills a convex polygon whose points go clockwise as seen on the screen.
-    pub(crate) fn polygon(&mut self, points: &[[f64; 2]], colour: Colour) {
-        const SAMPLES: i32 = 4;
-        let bound = |k: usize| {
-            points
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {
-                    (p[k].min(l), p[k].max(h))
-                })
-        };
-        let ((left, right), (top, bottom)) = (bound(0), bound(1));
-        let inside = |x: f64, y: f64| {
-            points
-                .iter()
-                .zip(points.iter().cycle().skip(1))
-                .all(|(a, b)| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) >= 0.0)
-        };
-        for y in self.span(top, bottom, self.height) {
-            for x in self.span(left, right, self.width) {
-                let sample = |k: i32| (f64::from(k) + 0.5) / f64::from(SAMPLES);
-                let hits = (0..SAMPLES * SAMPLES)
-                    .filter(|k| inside(x as f64 + sample(k % SAMPLES), y as f64 + sample(k / SAMPLES)))
-                    .count();
-                self.blend(x, y, colour, hits as f64 / f64::from(SAMPLES * SAMPLES));
-            }
-        }
-    }
-
     /// Pixels between two coordinates, kept inside the picture.
     fn span(&self, low: f64, high: f64, size: u32) -> std::ops::Range<i64> {
         let bound = |value: f64| value.clamp(0.0, f64::from(size)) as i64;

@@ -4,8 +4,9 @@ use bahn_path::{Axis, Curve, PathElement, Position};
 
 use crate::setup::{Local, Setup};
 
-/// Hands the straight movements of an element to `emit`. Arcs become chords that keep within
-/// `tolerance_mm`. Nothing comes while an axis has no position.
+/// Hands the straight movements of an element that come within `reach_mm` of the blank's outline to
+/// `emit`. Arcs become chords that keep within `tolerance_mm`. Nothing comes while an axis has no
+/// position.
 ///
 /// An axis that gets its first position by the element stands there from the beginning: how the tool
 /// came there is not known (inferred).
@@ -13,6 +14,7 @@ pub(crate) fn chop(
     element: &PathElement,
     setup: &Setup,
     tolerance_mm: f64,
+    reach_mm: f64,
     mut emit: impl FnMut(Local, Local),
 ) {
     let start = filled(&element.start, &element.end);
@@ -25,29 +27,80 @@ pub(crate) fn chop(
         Curve::Arc(arc) => {
             let (r0, r1) = arc.radii(&start, &element.end);
             let count = chord_count(r0.max(r1), arc.sweep_deg, tolerance_mm);
-            let mut last = from;
-            for k in 1..=count {
-                let t = k as f64 / count as f64;
-                let Some(next) = setup.local(&element.curve.position(&start, &element.end, t)) else {
-                    return;
-                };
-                emit(last, next);
-                last = next;
+            let length = element.curve.linear_length(&start, &element.end) + (r1 - r0).abs();
+            if !length.is_finite() || count == 0 {
+                return;
             }
+            let place = |k: u64| {
+                let t = k as f64 / count as f64;
+                setup.local(&element.curve.position(&start, &element.end, t))
+            };
+            let chord = length / count as f64;
+            Chords {
+                place,
+                chord,
+                reach_mm,
+                size: setup.size,
+                last: (0, from),
+            }
+            .walk(0, count, &mut emit);
+        }
+    }
+}
+
+/// Walks along the chords of an arc, leaping over runs of them that are out of reach of the blank: an
+/// arc of a kilometre costs no more than what of it lies over the blank.
+struct Chords<P> {
+    /// End of a chord by its number.
+    place: P,
+    /// Greatest length of a chord.
+    chord: f64,
+    reach_mm: f64,
+    size: Local,
+    /// The end that was computed last.
+    last: (u64, Local),
+}
+
+impl<P: Fn(u64) -> Option<Local>> Chords<P> {
+    fn walk(&mut self, first: u64, end: u64, emit: &mut impl FnMut(Local, Local)) {
+        if end <= first + 1 {
+            let from = if self.last.0 == first {
+                Some(self.last.1)
+            } else {
+                (self.place)(first)
+            };
+            if let (Some(from), Some(to)) = (from, (self.place)(end)) {
+                emit(from, to);
+                self.last = (end, to);
+            }
+            return;
+        }
+        let middle = first + (end - first) / 2;
+        let Some(place) = (self.place)(middle) else { return };
+        let outside = |k: usize| (-place[k]).max(place[k] - self.size[k]).max(0.0);
+        let farthest = (end - middle) as f64 * self.chord;
+        if outside(0).hypot(outside(1)) <= farthest + self.reach_mm {
+            self.walk(first, middle, emit);
+            self.walk(middle, end, emit);
         }
     }
 }
 
 /// Chords of an arc whose middle is not farther from it than the tolerance: sagitta = r (1 - cos(a/2)).
+/// 0 when the arc is none.
 fn chord_count(radius: f64, sweep_deg: f64, tolerance_mm: f64) -> u64 {
     /// Coarsest chord, however small the arc.
     const MOST_DEG: f64 = 30.0;
+    /// Helices of more turns than any control takes get coarser chords.
+    const MOST_TURNS: f64 = 1000.0;
     if !(radius.is_finite() && sweep_deg.is_finite()) {
         return 0;
     }
-    let half_angle = (1.0 - tolerance_mm / radius.max(tolerance_mm)).acos();
+    // acos(1 - x) without its loss of digits for small x.
+    let half_angle = 2.0 * (0.5 * tolerance_mm / radius.max(tolerance_mm)).sqrt().asin();
     let step_deg = (2.0 * half_angle).to_degrees().min(MOST_DEG);
-    (sweep_deg.abs() / step_deg).ceil().max(1.0) as u64
+    let sweep = sweep_deg.abs().min(360.0 * MOST_TURNS);
+    (sweep / step_deg).ceil().clamp(1.0, 1e15) as u64
 }
 
 fn filled(start: &Position, end: &Position) -> Position {

@@ -31,6 +31,7 @@ mod event;
 mod grid;
 mod part;
 mod setup;
+mod stl;
 mod sweep;
 mod text;
 mod tool;

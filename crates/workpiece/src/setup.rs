@@ -44,9 +44,9 @@ impl Setup {
     /// The point of the blank where the tool tip is; `None` while an axis has no position.
     pub fn local(&self, position: &Position) -> Option<Local> {
         let mut local = [0.0; 3];
-        for k in 0..3 {
-            local[k] = coordinate(position, self.axes[k])? - self.min[k];
-            if !local[k].is_finite() {
+        for (k, value) in local.iter_mut().enumerate() {
+            *value = coordinate(position, self.axes[k])? - self.min[k];
+            if !value.is_finite() {
                 return None;
             }
         }

@@ -64,25 +64,25 @@ fn centres_between(low: f64, high: f64, step: f64, count: usize) -> Range<usize>
 /// `ceil` as a bounded index. (`f64::ceil` is a library call on the x86-64 base line.)
 #[inline]
 fn first_at_or_above(value: f64, count: usize) -> usize {
-    if !(value > 0.0) {
-        return 0;
-    }
     if value >= count as f64 {
-        return count;
+        count
+    } else if value > 0.0 {
+        let whole = value as i32;
+        whole as usize + usize::from(f64::from(whole) < value)
+    } else {
+        0
     }
-    let whole = value as i32;
-    whole as usize + usize::from(f64::from(whole) < value)
 }
 
 #[inline]
 fn count_at_or_below(value: f64, count: usize) -> usize {
-    if !(value >= 0.0) {
-        return 0;
-    }
     if value >= count as f64 {
-        return count;
+        count
+    } else if value >= 0.0 {
+        value as i32 as usize + 1
+    } else {
+        0
     }
-    value as i32 as usize + 1
 }
 
 /// A segment reckoned from its lower end: `u` is the direction to the higher end in the plane.

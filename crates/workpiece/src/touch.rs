@@ -45,7 +45,7 @@ impl Part {
         let length = delta.iter().map(|d| d * d).sum::<f64>().sqrt();
         let reach = |low: f64, high: f64, step: f64, count: usize| {
             let first = ((low - radius) / step).floor().clamp(0.0, count as f64) as usize;
-            let end = ((high + radius) / step).ceil().clamp(0.0, count as f64) as usize;
+            let end = (((high + radius) / step).floor() + 1.0).clamp(0.0, count as f64) as usize;
             first..end
         };
         let columns = reach(a[0].min(b[0]), a[0].max(b[0]), self.grid.dx, self.grid.nx);

@@ -100,9 +100,9 @@ impl Workpiece {
         let rapid = element.feed == FeedRate::Rapid;
         let tolerance = CHORD_TOLERANCE * self.part.grid.cell();
         let setup = self.part.setup;
-        chords::chop(element, &setup, tolerance, |from, to| {
-            self.push(from, to, tool, rapid, element.block)
-        });
+        let reach = tool.radius + self.part.grid.cell();
+        let push = |from, to| self.push(from, to, tool, rapid, element.block);
+        chords::chop(element, &setup, tolerance, reach, push);
     }
 
     /// The material as it is now.
