@@ -5,11 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::grid::Grid;
-use crate::sweep::{Segment, Sink};
-
-/// Rows of a band. Small enough that a batch of neighbouring cuts meets several bands, great enough
-/// that the work of a row outweighs the sorting into bands.
-const BAND_ROWS: usize = 32;
+use crate::sweep::{BAND_ROWS, Segment, Sink};
 
 /// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
 const RAPID_CUT_MM: f32 = 0.002;

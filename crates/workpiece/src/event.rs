@@ -29,7 +29,7 @@ pub enum EventKind {
     /// [003:7967-7971].
     ToolAxisNotShown,
     /// `PGM SECTION CANNOT BE SHOWN`: a rotary axis moves, or stands at another angle than in the
-    /// beginning. Nothing is removed until it is back (inferred) [003:876] [003:7967-7971].
+    /// beginning. Nothing is removed until it is back (inferred) [003:876-877] [003:7967-7971].
     RotaryAxisNotShown,
 }
 

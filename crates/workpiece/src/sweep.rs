@@ -12,6 +12,10 @@ use crate::grid::Grid;
 use crate::setup::Local;
 use crate::tool::{Bottom, Tool};
 
+/// Most rows that are swept in one go: enough to reckon them side by side, few enough that the work of
+/// a batch can be shared out by bands of rows.
+pub(crate) const BAND_ROWS: usize = 32;
+
 /// A straight movement of the tool tip.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
@@ -40,10 +44,13 @@ impl Segment {
         centres_between(low, high, grid.dy, grid.ny)
     }
 
-    /// Presents all columns under the tool in the given rows.
+    /// Presents all columns under the tool in the given rows, at most [`BAND_ROWS`] of them.
     pub fn sweep(&self, grid: &Grid, rows: Range<usize>, sink: &mut impl Sink) {
         let covered = self.rows(grid);
         let rows = covered.start.max(rows.start)..covered.end.min(rows.end);
+        if rows.is_empty() {
+            return;
+        }
         let track = Track::new(self);
         match self.tool.bottom() {
             Bottom::Flat => track.sweep_flat(grid, rows, sink),
@@ -53,36 +60,12 @@ impl Segment {
     }
 }
 
-/// Indices of the columns (or rows) whose centres lie between two coordinates.
-#[inline]
+/// Indices of the rows whose centres lie between two coordinates.
 fn centres_between(low: f64, high: f64, step: f64, count: usize) -> Range<usize> {
-    let start = first_at_or_above(low / step - 0.5, count);
-    let end = count_at_or_below(high / step - 0.5, count);
+    // Casts of floating point numbers saturate, also for what is not a number.
+    let start = ((low / step - 0.5).ceil() as usize).min(count);
+    let end = ((high / step + 0.5).floor() as usize).min(count);
     start..end.max(start)
-}
-
-/// `ceil` as a bounded index. (`f64::ceil` is a library call on the x86-64 base line.)
-#[inline]
-fn first_at_or_above(value: f64, count: usize) -> usize {
-    if value >= count as f64 {
-        count
-    } else if value > 0.0 {
-        let whole = value as i32;
-        whole as usize + usize::from(f64::from(whole) < value)
-    } else {
-        0
-    }
-}
-
-#[inline]
-fn count_at_or_below(value: f64, count: usize) -> usize {
-    if value >= count as f64 {
-        count
-    } else if value >= 0.0 {
-        value as i32 as usize + 1
-    } else {
-        0
-    }
 }
 
 /// A segment reckoned from its lower end: `u` is the direction to the higher end in the plane.
@@ -96,10 +79,10 @@ struct Track {
     corner: f64,
     /// What the tool covers at the lower end is cut already.
     low_is_cut: bool,
-    /// Normal of the track's edge with the greater first coordinate.
-    right: [f64; 2],
-    inverse_u1: f64,
 }
+
+/// Columns that are cut side by side: two registers of the x86-64 base line.
+const GROUP: usize = 8;
 
 /// Tracks shorter than this in the plane are plunges, mm.
 const PLUNGE_MM: f64 = 1e-9;
@@ -123,7 +106,6 @@ impl Track {
         } else {
             ([1.0, 0.0], 0.0, 0.0)
         };
-        let right = if u[1] > 0.0 { [u[1], -u[0]] } else { [-u[1], u[0]] };
         Track {
             low,
             u,
@@ -132,74 +114,93 @@ impl Track {
             radius: segment.tool.radius,
             corner: segment.tool.corner,
             low_is_cut: segment.start_is_cut && rises,
-            right,
-            inverse_u1: 1.0 / u[1],
         }
     }
 
-    /// First and last coordinate of the capsule in the row at `y` (both from the lower end).
+    /// The columns that the tool covers in each of the rows.
     ///
-    /// The outermost disc of a side is the one whose edge point has the track's normal there, or the
-    /// end disc next to it.
-    #[inline]
-    fn capsule(&self, y: f64) -> (f64, f64) {
-        let (mut at_left, mut at_right) = if self.u[0] > 0.0 {
-            (0.0, self.length)
+    /// At either side of the capsule the outermost disc is the one whose edge point has the track's
+    /// normal there, or the end disc next to it. All rows are reckoned side by side in the precision of
+    /// the map, from a column near the lower end, so that no digits are lost in a great blank.
+    fn spans(&self, grid: &Grid, rows: &Range<usize>) -> Spans {
+        let base = (self.low[0] / grid.dx).floor();
+        let offset = (self.low[0] / grid.dx - base) as f32;
+        let base = base as i64;
+        let per_mm = (1.0 / grid.dx) as f32;
+        let (first_y, dy) = (
+            ((rows.start as f64 + 0.5) * grid.dy - self.low[1]) as f32,
+            grid.dy as f32,
+        );
+        let [ux, uy] = self.u.map(|u| u as f32);
+        let (length, radius) = (self.length as f32, self.radius as f32);
+        // Where on the track the outermost disc of the row at y is: y * per_y + left or right.
+        let (per_y, at_left, at_right) = if self.u[1].abs() > 1e-9 {
+            // Second component of the normal at the right edge.
+            let normal = if self.u[1] > 0.0 { -self.u[0] } else { self.u[0] };
+            let edge = self.radius * normal / self.u[1];
+            ((1.0 / self.u[1]) as f32, edge as f32, -edge as f32)
+        } else if self.u[0] > 0.0 {
+            (0.0, 0.0, length)
         } else {
-            (self.length, 0.0)
+            (0.0, length, 0.0)
         };
-        if self.u[1].abs() > 1e-12 {
-            let edge = self.radius * self.right[1];
-            at_left = ((y + edge) * self.inverse_u1).max(0.0).min(self.length);
-            at_right = ((y - edge) * self.inverse_u1).max(0.0).min(self.length);
+        let column = |x: f32| nearest(x * per_mm + offset);
+        let mut spans = Spans {
+            base,
+            columns: grid.nx as i64,
+            all: [[0; 2]; BAND_ROWS],
+            low: [[0; 2]; BAND_ROWS],
+        };
+        for (k, (all, low)) in spans.all.iter_mut().zip(&mut spans.low).enumerate() {
+            let y = first_y + k as i32 as f32 * dy;
+            let half_chord = |y: f32| positive((radius - y) * (radius + y)).sqrt();
+            let s = least(positive(y * per_y + at_left), length);
+            let t = least(positive(y * per_y + at_right), length);
+            *all = [
+                column(s * ux - half_chord(y - s * uy)),
+                column(t * ux + half_chord(y - t * uy)),
+            ];
+            let half = half_chord(y);
+            *low = [column(-half), column(half)];
         }
-        let left = at_left * self.u[0] - half_chord(self.radius, y - at_left * self.u[1]);
-        let right = at_right * self.u[0] + half_chord(self.radius, y - at_right * self.u[1]);
-        (left, right)
-    }
-
-    /// Columns between two coordinates that count from the lower end.
-    #[inline]
-    fn columns(&self, grid: &Grid, left: f64, right: f64) -> Range<usize> {
-        centres_between(self.low[0] + left, self.low[0] + right, grid.dx, grid.nx)
+        spans
     }
 
     /// A flat end is at the height of the lower end where its disc there covers the column. Elsewhere
     /// it is lowest when it enters the column.
     fn sweep_flat(&self, grid: &Grid, rows: Range<usize>, sink: &mut impl Sink) {
         let floor = self.low[2].max(0.0) as f32;
-        for row in rows {
-            let y = (row as f64 + 0.5) * grid.dy - self.low[1];
-            let (left, right) = self.capsule(y);
-            let all = self.columns(grid, left, right);
+        let spans = self.spans(grid, &rows);
+        for (k, row) in rows.enumerate() {
+            let all = spans.all(k);
             if self.slope == 0.0 && !self.low_is_cut {
                 sink.level(row, all, floor);
                 continue;
             }
-            let mut disc = all.start..all.start;
-            if y.abs() < self.radius {
-                let half = half_chord(self.radius, y);
-                disc = self.columns(grid, -half, half);
-                disc = disc.start.clamp(all.start, all.end)..disc.end.clamp(all.start, all.end);
-            }
+            let low = spans.low(k);
+            let low = low.start.clamp(all.start, all.end)..low.end.clamp(all.start, all.end);
+            // Some columns more under the disc do no harm, and whole groups go without leftovers.
+            let before = (low.start - all.start).next_multiple_of(GROUP);
+            let behind = (all.end - low.end).next_multiple_of(GROUP);
+            let rest = [
+                all.start..(all.start + before).min(low.end),
+                all.end.saturating_sub(behind).max(low.start)..all.end,
+            ];
             if !self.low_is_cut {
-                sink.level(row, disc.clone(), floor);
+                sink.level(row, low, floor);
             }
-            for rest in [all.start..disc.start, disc.end..all.end] {
-                if rest.is_empty() {
-                    continue;
-                }
+            for columns in rest {
                 if self.slope == 0.0 {
-                    sink.level(row, rest, floor);
-                } else {
-                    let height = self.flat_height(grid, rest.start, y);
-                    sink.shaped(row, rest, height);
+                    sink.level(row, columns, floor);
+                } else if !columns.is_empty() {
+                    let height = self.flat_height(self.row(grid, columns.start, row));
+                    sink.shaped(row, columns, height);
                 }
             }
         }
     }
 
-    fn flat_height(&self, grid: &Grid, first: usize, y: f64) -> impl Fn(f32) -> f32 + use<> {
+    fn flat_height(&self, row: Row) -> impl Fn(f32) -> f32 + use<> {
         let Row {
             x,
             dx,
@@ -210,12 +211,12 @@ impl Track {
             length,
             slope,
             low,
-        } = self.row(grid, first, y);
-        let square = (self.radius * self.radius) as f32;
+        } = row;
+        let radius = self.radius as f32;
         move |k| {
             let x = x + k * dx;
             let b = x * uy - across;
-            let half = positive(square - b * b).sqrt();
+            let half = positive((radius - b) * (radius + b)).sqrt();
             let s = least(positive(x * ux + along - half), length);
             positive(low + slope * s)
         }
@@ -223,12 +224,11 @@ impl Track {
 
     fn sweep_ball(&self, grid: &Grid, rows: Range<usize>, sink: &mut impl Sink) {
         let radius = self.radius as f32;
-        let square = radius * radius;
         // Sine of the slope: so far behind the axis lies the lowest point of the moving ball.
         let lag = (self.slope / self.slope.hypot(1.0)) as f32;
-        for row in rows {
-            let y = (row as f64 + 0.5) * grid.dy - self.low[1];
-            let columns = self.uncut_columns(grid, y);
+        let spans = self.spans(grid, &rows);
+        for (k, row) in rows.enumerate() {
+            let columns = self.uncut(grid, spans.all(k), row);
             if columns.is_empty() {
                 continue;
             }
@@ -242,12 +242,12 @@ impl Track {
                 length,
                 slope,
                 low,
-            } = self.row(grid, columns.start, y);
+            } = self.row(grid, columns.start, row);
             let low = low + radius;
             sink.shaped(row, columns, move |k| {
                 let x = x + k * dx;
                 let b = x * uy - across;
-                let chord = positive(square - b * b);
+                let chord = positive((radius - b) * (radius + b));
                 let a = x * ux + along;
                 let s = least(positive(a - lag * chord.sqrt()), length);
                 let e = a - s;
@@ -259,11 +259,11 @@ impl Track {
     fn sweep_torus(&self, grid: &Grid, rows: Range<usize>, sink: &mut impl Sink) {
         let flat = (self.radius - self.corner) as f32;
         let corner = self.corner as f32;
-        let square = (self.radius * self.radius) as f32;
-        let is_level = self.slope == 0.0;
-        for row in rows {
-            let y = (row as f64 + 0.5) * grid.dy - self.low[1];
-            let columns = self.uncut_columns(grid, y);
+        let radius = self.radius as f32;
+        let leads = (self.slope > 0.0).then(|| Leads::new(flat, corner, self.slope as f32));
+        let spans = self.spans(grid, &rows);
+        for (k, row) in rows.enumerate() {
+            let columns = self.uncut(grid, spans.all(k), row);
             if columns.is_empty() {
                 continue;
             }
@@ -277,50 +277,45 @@ impl Track {
                 length,
                 slope,
                 low,
-            } = self.row(grid, columns.start, y);
-            let height = move |b: f32, a: f32, s: f32| {
+            } = self.row(grid, columns.start, row);
+            let height = move |a: f32, b: f32, lead: f32| {
+                let s = least(positive(a - lead), length);
                 let e = a - s;
                 let rise = positive((b * b + e * e).sqrt() - flat);
-                positive(low + slope * s + corner - positive(corner * corner - rise * rise).sqrt())
+                positive(low + slope * s + corner - positive((corner - rise) * (corner + rise)).sqrt())
             };
-            if is_level {
-                sink.shaped(row, columns, move |k| {
+            match &leads {
+                None => sink.shaped(row, columns, move |k| {
                     let x = x + k * dx;
-                    let a = x * ux + along;
-                    height(x * uy - across, a, least(positive(a), length))
-                });
-            } else {
-                sink.shaped(row, columns, move |k| {
+                    height(x * ux + along, x * uy - across, 0.0)
+                }),
+                Some(leads) => sink.shaped(row, columns, move |k| {
                     let x = x + k * dx;
-                    let (a, b) = (x * ux + along, x * uy - across);
-                    let half = positive(square - b * b).sqrt();
-                    let s = lowest_of_torus(a, b, [flat, corner], slope, [a - half, a + half], length);
-                    height(b, a, s)
-                });
+                    let b = x * uy - across;
+                    let chord = positive((radius - b) * (radius + b)).sqrt();
+                    height(x * ux + along, b, leads.at(chord / radius))
+                }),
             }
         }
     }
 
-    /// Columns of the row that the tool covers, without those that are nearest to a lower end that is
-    /// cut already.
-    #[inline]
-    fn uncut_columns(&self, grid: &Grid, y: f64) -> Range<usize> {
-        let (mut left, mut right) = self.capsule(y);
-        if self.low_is_cut {
-            let behind = -y * self.u[1];
-            if self.u[0] > 0.0 {
-                left = left.max(behind / self.u[0]);
-            } else if self.u[0] < 0.0 {
-                right = right.min(behind / self.u[0]);
-            } else if behind >= 0.0 {
-                return 0..0;
-            }
+    /// Without the columns that are nearest to a lower end that is cut already: those behind it.
+    fn uncut(&self, grid: &Grid, columns: Range<usize>, row: usize) -> Range<usize> {
+        if !self.low_is_cut || self.u[0].abs() < 1e-6 {
+            return columns;
         }
-        self.columns(grid, left, right)
+        let y = (row as f64 + 0.5) * grid.dy - self.low[1];
+        let border = ((self.low[0] - y * self.u[1] / self.u[0]) / grid.dx).floor() as usize;
+        if self.u[0] > 0.0 {
+            border.clamp(columns.start, columns.end)..columns.end
+        } else {
+            columns.start..(border.saturating_add(1)).clamp(columns.start, columns.end)
+        }
     }
 
     #[inline]
-    fn row(&self, grid: &Grid, first: usize, y: f64) -> Row {
+    fn row(&self, grid: &Grid, first: usize, row: usize) -> Row {
+        let y = (row as f64 + 0.5) * grid.dy - self.low[1];
         Row {
             x: ((first as f64 + 0.5) * grid.dx - self.low[0]) as f32,
             dx: grid.dx as f32,
@@ -350,32 +345,97 @@ struct Row {
     low: f32,
 }
 
-/// Where on the track a tool with flat radius and corner radius is lowest over the point (a, b): its
-/// height is convex along the track, so the sign of the derivative leads there.
-fn lowest_of_torus(a: f32, b: f32, [flat, corner]: [f32; 2], slope: f32, over: [f32; 2], length: f32) -> f32 {
-    // Halves 2 * radius to less than a thousandth of a column.
-    const STEPS: usize = 20;
-    let mut from = least(positive(over[0]), length);
-    let mut to = least(positive(over[1]), length);
-    for _ in 0..STEPS {
-        let s = 0.5 * (from + to);
-        let e = a - s;
-        let distance = (b * b + e * e).sqrt();
-        let rise = distance - flat;
-        let rises =
-            rise <= 0.0 || slope * distance * positive(corner * corner - rise * rise).sqrt() > rise * e;
-        if rises {
-            to = s;
-        } else {
-            from = s;
-        }
-    }
-    0.5 * (from + to)
+/// How far before its axis a tool with a corner radius touches what it leaves on a slope, by the
+/// distance across the track.
+///
+/// The bottom of the moving tool is touched where its normal is perpendicular to the movement. At the
+/// angle `p` from the track the point of the corner with the tangent `slope / cos p` is such a point:
+/// `(flat + corner * sin) * cos p` before the axis and `(flat + corner * sin) * sin p` beside it. The
+/// height that follows from the place has its minimum there, so a small error of the place does not
+/// count.
+struct Leads {
+    /// By equal steps of the half chord as part of the radius, which straightens the curve.
+    leads: [f32; Leads::COUNT + 1],
 }
 
-#[inline]
-fn half_chord(radius: f64, distance: f64) -> f64 {
-    (radius * radius - distance * distance).max(0.0).sqrt()
+impl Leads {
+    const COUNT: usize = 64;
+
+    fn new(flat: f32, corner: f32, slope: f32) -> Leads {
+        let radius = flat + corner;
+        let point = |k: usize| {
+            let cos = 1.0 - k as f32 / Leads::COUNT as f32;
+            let sine = slope / (slope * slope + cos * cos).sqrt();
+            let r = flat + corner * sine;
+            let beside = r * (1.0 - cos * cos).sqrt();
+            let chord = positive((radius - beside) * (radius + beside)).sqrt() / radius;
+            (chord, r * cos)
+        };
+        let mut leads = [0.0; Leads::COUNT + 1];
+        let (mut near, mut far, mut next) = (point(0), point(1), 1);
+        for (k, lead) in leads.iter_mut().enumerate().rev() {
+            let chord = k as f32 / Leads::COUNT as f32;
+            while far.0 > chord && next < Leads::COUNT {
+                next += 1;
+                (near, far) = (far, point(next));
+            }
+            let share = if near.0 > far.0 {
+                (near.0 - chord) / (near.0 - far.0)
+            } else {
+                0.0
+            };
+            *lead = near.1 + (far.1 - near.1) * least(positive(share), 1.0);
+        }
+        Leads { leads }
+    }
+
+    #[inline]
+    fn at(&self, chord: f32) -> f32 {
+        let place = chord * Leads::COUNT as f32;
+        // A cast that needs no care for what does not fit; the place is between 0 and COUNT.
+        let k = (place as i32 as usize).min(Leads::COUNT - 1);
+        let (a, b) = (self.leads[k], self.leads[k + 1]);
+        a + (b - a) * (place - k as f32)
+    }
+}
+
+/// The columns under the tool in some rows, as borders between columns relative to `base`.
+struct Spans {
+    base: i64,
+    /// Columns of the map.
+    columns: i64,
+    /// Under the whole capsule.
+    all: [[i32; 2]; BAND_ROWS],
+    /// Under the disc at the lower end.
+    low: [[i32; 2]; BAND_ROWS],
+}
+
+impl Spans {
+    fn all(&self, k: usize) -> Range<usize> {
+        self.range(self.all.get(k))
+    }
+
+    fn low(&self, k: usize) -> Range<usize> {
+        self.range(self.low.get(k))
+    }
+
+    #[inline]
+    fn range(&self, span: Option<&[i32; 2]>) -> Range<usize> {
+        let Some([start, end]) = span else { return 0..0 };
+        let bound = |border: &i32| (self.base + i64::from(*border)).clamp(0, self.columns) as usize;
+        let start = bound(start);
+        start..bound(end).max(start)
+    }
+}
+
+/// The nearest whole number, where the base line of x86-64 has no instruction for it: added to such a
+/// great number only the whole part is left.
+#[inline(always)]
+fn nearest(value: f32) -> i32 {
+    const GREAT: f32 = 12_582_912.0; // 1.5 * 2^23
+    const MOST: f32 = 4_000_000.0;
+    let value = if value > -MOST { least(value, MOST) } else { -MOST };
+    ((value + GREAT).to_bits() as i32).wrapping_sub(GREAT.to_bits() as i32)
 }
 
 // `f32::max` and `f32::min` look after NaN, which costs the inner loops a third of their speed.

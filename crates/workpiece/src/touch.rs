@@ -18,7 +18,7 @@ impl Part {
     /// Positions are those of the stylus tip: the centre of the ball in the working plane, its lowest
     /// point in the tool axis. So a touch in the tool axis gives the height of the surface, and a touch
     /// in the plane gives the surface plus or minus the radius. A stylus that is in contact from the
-    /// beginning (STYLUS ALREADY IN CONTACT [003:8005]) touches at `from`.
+    /// beginning (STYLUS ALREADY IN CONTACT [003:8005-8006]) touches at `from`.
     pub fn touch(&self, from: &Position, to: &Position, stylus_radius: f64) -> Option<Position> {
         let radius = if stylus_radius > 0.0 { stylus_radius } else { 0.0 };
         let ball_centre = |p: &Position| {

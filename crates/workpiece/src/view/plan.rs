@@ -10,7 +10,7 @@ use crate::text::Anchor;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanView {
     /// Number of brightness levels between the upper face and the deepest point; 0 for a continuous
-    /// scale. The control has 7 [003:888].
+    /// scale. The control has 7 [003:888-889].
     pub levels: u8,
 }
 
