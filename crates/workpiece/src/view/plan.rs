@@ -163,13 +163,13 @@ impl DepthShade {
         }
         let colour = self.colour(height);
         // A line of shadow where a wall stands, so that neighbours of one level do not run together.
-        let wall = 2.0 * part.grid.cell() as f32;
+        let wall = 6.0 * part.grid.cell() as f32;
         let higher = |i: usize, j: usize| part.height(i, j) > height + wall;
         let edge = higher(i + 1, j)
             || higher(i, j + 1)
             || (i > 0 && higher(i - 1, j))
             || (j > 0 && higher(i, j - 1));
-        if edge { mix(colour, INK, 0.55) } else { colour }
+        if edge { mix(colour, INK, 0.4) } else { colour }
     }
 
     fn colour(&self, height: f32) -> Colour {

@@ -65,7 +65,11 @@ impl Ruler<'_> {
         let size = self.text_size;
         let widest = text_width(&number(self.low, 1.0), size).max(text_width(&number(self.high, 1.0), size));
         let step = self.step(widest + 2.0 * size);
+        let end = self.from.max(self.to);
+        let mut name = end + 0.6 * size;
         for (value, x) in self.marks(step) {
+            let text = number(value, step);
+            name = name.max(x + 0.5 * text_width(&text, size) + 0.5 * size);
             image.line([x, self.line], [x, self.line + 0.4 * size], 1.0, FAINT);
             image.text(
                 [x, self.line + 1.15 * size],

@@ -8,11 +8,27 @@ use crate::part::Part;
 /// to look round.
 const WALL_WINDOW: i64 = 6;
 
+/// Neighbouring columns belong to one surface when their heights differ by less than this many
+/// columns: up to some 76 degrees.
+const SLOPE_STEP: f64 = 4.0;
+
+/// Rays along each side of a pixel.
+pub(super) const SAMPLES: usize = 3;
+
+/// What a ray brings to the eye.
+#[derive(Clone, Copy)]
+pub(super) struct Seen {
+    /// Linear red, green, blue.
+    pub light: [f64; 3],
+    pub normal: Vector,
+    /// Length of the ray.
+    pub t: f64,
+}
+
 /// Light and material of a 3D view.
 pub(super) struct Shader<'a> {
     pub caster: &'a Caster<'a>,
-    /// Direction to the lamp, a unit vector, and two others of a disc that the lamp has, for soft
-    /// shadows.
+    /// Direction to the middle of the lamp, a unit vector.
     pub lamp: Vector,
     pub to_eye: Vector,
     /// Exaggeration of heights: light sees the part as the eye does.
@@ -20,36 +36,45 @@ pub(super) struct Shader<'a> {
 }
 
 impl Shader<'_> {
-    /// The light that the eye receives from a hit: linear red, green, blue. `jitter` shifts the lamp
-    /// within its disc, -1..1.
-    pub fn light(&self, point: Vector, hit: &Hit, jitter: [f64; 2]) -> [f64; 3] {
+    /// What the eye receives from a hit. `sample` is the number of the ray within its pixel: each
+    /// looks at another place of the lamp and of the sky, together they see all of it.
+    pub fn light(&self, point: Vector, hit: &Hit, sample: usize) -> Seen {
         let part = self.caster.part;
         let normal = self.stretched(self.normal(point, hit));
         let cell = part.grid.cell();
         let outside = [0, 1, 2].map(|k| point[k] + normal[k] * 0.6 * cell);
-        let occlusion = self.openness(outside, normal);
-        let lamp = self.lamp_direction(jitter);
+        let occlusion = self.openness(outside, normal, sample);
+        let lamp = self.lamp_direction(sample);
         let facing = dot(normal, lamp);
         let lit = if facing > 0.0 && !self.in_shadow(point, normal, lamp) {
             facing
         } else {
             0.0
         };
-        let sky = 0.5 + 0.5 * normal[2];
-        let ambient = occlusion * (0.30 + 0.30 * sky);
+        // The sky is brighter above, and the table throws some light back.
+        let ambient = occlusion * (0.40 + 0.12 * normal[2].abs() + 0.06 * normal[2]);
         let half = unit([0, 1, 2].map(|k| lamp[k] + self.to_eye[k]));
         let gloss = if lit > 0.0 {
-            dot(normal, half).max(0.0).powi(40) * 0.16
+            dot(normal, half).max(0.0).powi(50) * 0.12
         } else {
             0.0
         };
         let base = material(part, point, hit).map(linear);
-        [0, 1, 2].map(|k| base[k] * (ambient * SKY[k] + 0.78 * lit * SUN[k]) + gloss)
+        let light = [0, 1, 2].map(|k| base[k] * (ambient * SKY[k] + 0.74 * lit * SUN[k]) + gloss);
+        Seen {
+            light,
+            normal,
+            t: hit.t,
+        }
     }
 
-    fn lamp_direction(&self, jitter: [f64; 2]) -> Vector {
+    fn lamp_direction(&self, sample: usize) -> Vector {
         /// Radius of the lamp's disc, as tangent of its angle.
-        const LAMP: f64 = 0.09;
+        const LAMP: f64 = 0.08;
+        // Places of the lamp in another order than those of the rays in the pixel.
+        let place = (sample * 4) % (SAMPLES * SAMPLES);
+        let jitter =
+            [place % SAMPLES, place / SAMPLES].map(|k| 2.0 * (k as f64 + 0.5) / SAMPLES as f64 - 1.0);
         let side = unit([-self.lamp[1], self.lamp[0], 0.0]);
         let up = cross(self.lamp, side);
         unit([0, 1, 2].map(|k| self.lamp[k] + LAMP * (jitter[0] * side[k] + jitter[1] * up[k])))
@@ -64,9 +89,9 @@ impl Shader<'_> {
         from[2] < top && self.caster.cast(from, direction).is_some()
     }
 
-    /// How much of the sky a point sees: horizons in eight directions.
-    fn openness(&self, point: Vector, normal: Vector) -> f64 {
-        const DIRECTIONS: usize = 8;
+    /// How much of the sky a point sees: horizons in some directions, others for every ray of a pixel.
+    fn openness(&self, point: Vector, normal: Vector, sample: usize) -> f64 {
+        const DIRECTIONS: usize = 4;
         const STEPS: i32 = 7;
         let part = self.caster.part;
         let cell = part.grid.cell();
@@ -74,7 +99,8 @@ impl Shader<'_> {
         let growth = (reach / (2.0 * cell)).max(1.5).powf(1.0 / f64::from(STEPS - 1));
         let (mut open, mut all) = (0.0, 0.0);
         for k in 0..DIRECTIONS {
-            let (sin, cos) = ((k as f64 + 0.3) * std::f64::consts::TAU / DIRECTIONS as f64).sin_cos();
+            let turn = (k * SAMPLES * SAMPLES + sample) as f64 / (DIRECTIONS * SAMPLES * SAMPLES) as f64;
+            let (sin, cos) = (turn * std::f64::consts::TAU).sin_cos();
             // Directions behind a wall do not count.
             let weight = normal[2].max(0.0) + 2.0 * (normal[0] * cos + normal[1] * sin).max(0.0);
             if weight <= 1e-6 {
@@ -150,6 +176,12 @@ fn wall_normal(part: &Part, point: Vector, hit: &Hit, axis: usize) -> Vector {
     if is_outline(part, point, axis) {
         return face;
     }
+    // A small step is part of a slope.
+    let before = [0, 1].map(|k| [hit.i, hit.j][k].wrapping_add_signed(face[k] as isize));
+    let step = f64::from(part.height(hit.i, hit.j) - part.height(before[0], before[1]));
+    if step < SLOPE_STEP * part.grid.cell() {
+        return top_normal(part, hit.i, hit.j);
+    }
     let mut sum = [0.0, 0.0];
     for v in -WALL_WINDOW..=WALL_WINDOW {
         for u in -WALL_WINDOW..=WALL_WINDOW {
@@ -197,8 +229,8 @@ fn material(part: &Part, point: Vector, hit: &Hit) -> Colour {
 }
 
 /// The blank as it came, and where a tool was.
-const SKIN: Colour = [142, 158, 178];
-const CUT: Colour = [238, 206, 138];
+const SKIN: Colour = [134, 152, 176];
+const CUT: Colour = [232, 204, 146];
 const SKY: [f64; 3] = [0.94, 0.98, 1.06];
 const SUN: [f64; 3] = [1.04, 1.0, 0.94];
 

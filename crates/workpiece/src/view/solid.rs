@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::plan::fit;
 use super::raycast::{Caster, Vector};
 use super::scale::{number, round_step};
-use super::shade::{Shader, cross, dot, screen, to_linear, unit};
+use super::shade::{SAMPLES, Seen, Shader, cross, dot, screen, to_linear, unit};
 use super::{Area, INK, Page};
 use crate::canvas::{Colour, Image, mix};
 use crate::part::Part;
@@ -33,9 +33,6 @@ impl Default for View3d {
         }
     }
 }
-
-/// Rays along each side of a pixel.
-const SAMPLES: usize = 3;
 
 impl Part {
     /// The part in parallel projection, shaded, from any angle. The skin of the blank and the machined
@@ -75,62 +72,93 @@ impl Part {
         let caster = Caster::new(self);
         let shader = Shader {
             caster: &caster,
-            lamp: unit([0, 1, 2].map(|k| {
-                -0.55 * camera.right[k] + 0.35 * camera.up[k] - 0.35 * camera.forward[k] + [0.0, 0.0, 0.75][k]
-            })),
+            lamp: camera.lamp(),
             to_eye: camera.forward.map(|v| -v),
             height_factor: camera.height_factor,
         };
         let first = area.min[1] as usize;
         let count = area.size()[1];
-        image
+        let width = image.width() as usize;
+        let mut edges = vec![0.0f32; width * image.height() as usize];
+        let rows = image
             .rows_mut()
+            .zip(edges.chunks_exact_mut(width))
             .skip(first)
-            .enumerate()
-            .par_bridge()
-            .for_each(|(row, pixels)| {
-                let background = mix(BACKGROUND_TOP, BACKGROUND_BOTTOM, row as f64 / count);
-                for (x, pixel) in pixels.iter_mut().enumerate() {
-                    *pixel = self.pixel(camera, &shader, [x, row + first], background);
-                }
-            });
+            .enumerate();
+        rows.par_bridge().for_each(|(row, (pixels, edges))| {
+            let background = mix(BACKGROUND_TOP, BACKGROUND_BOTTOM, row as f64 / count);
+            for (x, (pixel, edge)) in pixels.iter_mut().zip(edges).enumerate() {
+                (*pixel, *edge) = pixel_at(camera, &shader, [x, row + first], background);
+            }
+        });
+        draw_edges(image, &edges);
     }
+}
 
-    fn pixel(&self, camera: &Camera, shader: &Shader, [x, y]: [usize; 2], background: Colour) -> Colour {
-        let behind = to_linear(background);
-        let mut sum = [0.0; 3];
-        let mut any = false;
-        for k in 0..SAMPLES * SAMPLES {
-            let offset = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
-            let (u, v) = (offset(k % SAMPLES), offset(k / SAMPLES));
-            let (origin, direction) = camera.ray(x as f64 + u, y as f64 + v);
-            let light = match shader.caster.cast(origin, direction) {
-                Some(hit) => {
-                    any = true;
-                    let point = [0, 1, 2].map(|k| origin[k] + direction[k] * hit.t);
-                    // A fixed order of the lamp's places, unlike the order of the pixel's parts.
-                    let place = (k * 4) % (SAMPLES * SAMPLES);
-                    shader.light(
-                        point,
-                        &hit,
-                        [
-                            2.0 * offset(place % SAMPLES) - 1.0,
-                            2.0 * offset(place / SAMPLES) - 1.0,
-                        ],
-                    )
-                }
-                None => behind,
-            };
-            for (sum, light) in sum.iter_mut().zip(light) {
-                *sum += light;
+/// Colour of a pixel, and how much of an edge goes through it.
+fn pixel_at(camera: &Camera, shader: &Shader, [x, y]: [usize; 2], background: Colour) -> (Colour, f32) {
+    let mut seen = [None; SAMPLES * SAMPLES];
+    for (k, seen) in seen.iter_mut().enumerate() {
+        let offset = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
+        let (u, v) = (offset(k % SAMPLES), offset(k / SAMPLES));
+        let (origin, direction) = camera.ray(x as f64 + u, y as f64 + v);
+        *seen = shader.caster.cast(origin, direction).map(|hit| {
+            let point = [0, 1, 2].map(|k| origin[k] + direction[k] * hit.t);
+            shader.light(point, &hit, k)
+        });
+    }
+    if seen.iter().all(Option::is_none) {
+        return (background, 0.0);
+    }
+    let behind = to_linear(background);
+    let mut sum = [0.0; 3];
+    for light in seen.iter().map(|seen| seen.map_or(behind, |seen| seen.light)) {
+        for (sum, light) in sum.iter_mut().zip(light) {
+            *sum += light;
+        }
+    }
+    let colour = screen(sum.map(|value| value / (SAMPLES * SAMPLES) as f64));
+    (colour, edge(&seen, camera) as f32)
+}
+
+/// Draws the edges as lines, softened over the neighbouring pixels.
+fn draw_edges(image: &mut Image, edges: &[f32]) {
+    /// Darkness of the lines.
+    const DARKNESS: f64 = 0.4;
+    let width = image.width() as usize;
+    for (y, row) in image.rows_mut().enumerate() {
+        for (x, pixel) in row.iter_mut().enumerate() {
+            let at = y * width + x;
+            let value = |index: Option<usize>| index.and_then(|k| edges.get(k)).copied().unwrap_or(0.0);
+            let around = value(at.checked_sub(1))
+                + value(Some(at + 1))
+                + value(at.checked_sub(width))
+                + value(Some(at + width));
+            let line = f64::from(0.5 * value(Some(at)) + 0.25 * around).min(1.0);
+            if line > 0.0 {
+                *pixel = mix(*pixel, EDGE, DARKNESS * line);
             }
         }
-        if any {
-            screen(sum.map(|value| value / (SAMPLES * SAMPLES) as f64))
-        } else {
-            background
-        }
     }
+}
+
+/// How much of an edge goes through a pixel, 0..1: its rays meet surfaces of other directions or far
+/// behind each other. Most where they are shared half and half.
+fn edge(seen: &[Option<Seen>; SAMPLES * SAMPLES], camera: &Camera) -> f64 {
+    /// Cosine of the angle from which on surfaces meet in an edge.
+    const BEND: f64 = 0.8;
+    let like = |a: &Seen, b: &Seen| {
+        let slant = dot(a.normal, camera.forward).abs().max(0.05);
+        dot(a.normal, b.normal) > BEND && (a.t - b.t).abs() < 5.0 * camera.mm / slant
+    };
+    let first = seen.iter().flatten().next();
+    let same = seen
+        .iter()
+        .flatten()
+        .filter(|other| first.is_some_and(|first| like(first, other)))
+        .count();
+    let share = same as f64 / seen.len() as f64;
+    (2.5 * share.min(1.0 - share)).min(1.0)
 }
 
 /// Parallel projection onto the picture.
@@ -192,6 +220,14 @@ impl Camera {
         (origin, direction)
     }
 
+    /// The lamp stands on the left of the eye, over it as seen in the picture, and over the part on the
+    /// side that is looked at.
+    fn lamp(&self) -> Vector {
+        let over = if self.forward[2] > 0.0 { -0.75 } else { 0.75 };
+        let [r, u, f] = [self.right, self.up, self.forward];
+        unit([0, 1, 2].map(|k| -0.62 * r[k] + 0.3 * u[k] - 0.35 * f[k] + [0.0, 0.0, over][k]))
+    }
+
     /// The directions of the axes.
     fn triad(&self, image: &mut Image, part: &Part, at: [f64; 2], size: f64) {
         let colours: [Colour; 3] = [[196, 60, 52], [52, 140, 70], [48, 96, 190]];
@@ -238,5 +274,6 @@ impl Camera {
     }
 }
 
+const EDGE: Colour = [30, 34, 42];
 const BACKGROUND_TOP: Colour = [246, 248, 250];
 const BACKGROUND_BOTTOM: Colour = [214, 221, 229];
