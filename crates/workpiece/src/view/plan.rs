@@ -1,6 +1,6 @@
 //! Plan view: the deeper, the darker.
 
-use super::scale::{Ruler, number};
+use super::scale::{Ruler, number, round_step};
 use super::{Area, FAINT, INK, Page};
 use crate::canvas::{Colour, Image, mix};
 use crate::part::Part;
@@ -197,55 +197,88 @@ impl DepthShade {
         }
     }
 
+    /// The scale of heights: one field for each level or one for each row of pixels.
     fn legend(&self, image: &mut Image, part: &Part, area: &Area, size: f64) {
-        let [left, top] = area.min;
-        let height = area.size()[1];
+        /// Labels of a scale.
+        const LABELS: u32 = 7;
+        let Area {
+            min: [left, top],
+            max: [right, bottom],
+        } = *area;
         let range = f64::from(self.top - self.deepest);
-        let face = part.max()[2];
-        let name = part.axes()[2].to_string();
+        let pixels = (bottom - top).max(1.0) as u32;
+        let fields = match self.levels {
+            _ if range <= 0.0 => 1,
+            0 => pixels,
+            levels => u32::from(levels.max(2)).min(pixels),
+        };
+        // Few fields are not taller than on a scale of seven.
+        let tall = (bottom - top) / f64::from(fields.max(LABELS));
+        let title = format!("{} mm", part.axes()[2]);
+        image.text([left, top - 1.2 * size], Anchor::Left, size, INK, &title);
+        let digits = round_step(range / 100.0).min(0.1);
+        let every = if self.levels == 0 {
+            (fields - 1) as f64 / f64::from(LABELS - 1)
+        } else {
+            f64::from(fields.div_ceil(20))
+        };
+        let mut next_label = 0.0;
+        for k in 0..fields {
+            let share = f64::from(k) / f64::from((fields - 1).max(1));
+            let y = [f64::from(k), f64::from(k + 1)].map(|k| (top + k * tall).round());
+            image.rectangle([left, y[0]], [right, y[1]], gradient(share));
+            if f64::from(k) + 0.5 > next_label {
+                let text = number(part.max()[2] - range * share, digits);
+                let at = [right + 0.6 * size, 0.5 * (y[0] + y[1])];
+                image.text(at, Anchor::Left, size, INK, &text);
+                next_label += every.max(1.0);
+            }
+        }
+        let end = (top + f64::from(fields) * tall).round();
+        image.outline(
+            &[[left, top], [right, top], [right, end], [left, end], [left, top]],
+            1.0,
+            FAINT,
+        );
+        if part.heights.iter().any(|height| *height <= 0.0) {
+            self.legend_of_holes(image, [left, end + 1.2 * size], right - left, size);
+        }
+    }
+
+    fn legend_of_holes(&self, image: &mut Image, [left, top]: [f64; 2], side: f64, size: f64) {
+        for y in 0..side as i64 {
+            for x in 0..side as i64 {
+                image.blend(left as i64 + x, top as i64 + y, hatched((x + y) as usize), 1.0);
+            }
+        }
+        let (right, bottom) = (left + side, top + side);
+        image.outline(
+            &[
+                [left, top],
+                [right, top],
+                [right, bottom],
+                [left, bottom],
+                [left, top],
+            ],
+            1.0,
+            FAINT,
+        );
         image.text(
-            [left, top - 1.2 * size],
+            [right + 0.6 * size, top + 0.5 * side],
             Anchor::Left,
             size,
             INK,
-            &format!("{name} mm"),
+            "through",
         );
-        let rows = if range <= 0.0 {
-            1
-        } else {
-            u32::from(if self.levels == 0 { 64 } else { self.levels.max(2) })
-        };
-        let row = height / f64::from(rows.max(6));
-        let digits = 0.1f64.min(super::scale::round_step(range / 100.0));
-        for k in 0..rows {
-            let y = top + f64::from(k) * row;
-            let share = if rows > 1 {
-                f64::from(k) / f64::from(rows - 1)
-            } else {
-                0.0
-            };
-            image.rectangle([left, y], [area.max[0], y + row], gradient(share));
-            let labelled = if self.levels == 0 { k % 9 == 0 } else { true };
-            if labelled {
-                let text = number(face - range * share, digits);
-                image.text(
-                    [area.max[0] + 0.6 * size, y + 0.5 * row],
-                    Anchor::Left,
-                    size,
-                    INK,
-                    &text,
-                );
-            }
-        }
-        let bottom = top + f64::from(rows) * row;
-        let corners = [
-            [left, top],
-            [area.max[0], top],
-            [area.max[0], bottom],
-            [left, bottom],
-            [left, top],
-        ];
-        image.outline(&corners, 1.0, FAINT);
+    }
+}
+
+/// Hatching where nothing is left, by the count of pixels along a diagonal.
+fn hatched(stripe: usize) -> Colour {
+    if stripe % 8 < 2 {
+        THROUGH_STRIPE
+    } else {
+        BACKGROUND
     }
 }
 
@@ -265,3 +298,49 @@ fn gradient(share: f64) -> Colour {
 
 const BACKGROUND: Colour = [252, 252, 250];
 const THROUGH_STRIPE: Colour = [224, 168, 120];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Resolution, Workpiece};
+    use bahn_path::{Blank, Plane};
+
+    fn brightness(colour: Colour) -> u32 {
+        colour.into_iter().map(u32::from).sum()
+    }
+
+    /// 7 mm thick; one column each at 7 (untouched), 6.9, 4, 1 and 0 (through).
+    fn part() -> Part {
+        let blank = Blank {
+            plane: Plane::XY,
+            min: [0.0; 3],
+            max: [5.0, 1.0, 7.0],
+        };
+        let mut part = Workpiece::new(&blank, Resolution::Millimetres(1.0))
+            .unwrap()
+            .finished();
+        part.heights.copy_from_slice(&[7.0, 6.9, 4.0, 1.0, 0.0]);
+        part
+    }
+
+    #[test]
+    fn deeper_is_darker() {
+        for levels in [0, 7] {
+            let shade = DepthShade::new(&part(), levels);
+            let colours = [7.0, 6.9, 4.0, 1.0].map(|h| brightness(shade.colour(h)));
+            assert!(colours.windows(2).all(|pair| pair[0] > pair[1]), "{colours:?}");
+        }
+    }
+
+    /// The deepest point that is left is 6 mm deep; the upper face alone is the first of 7 levels, so
+    /// each of the others holds 1 mm.
+    #[test]
+    fn seven_levels() {
+        let shade = DepthShade::new(&part(), 7);
+        let level = |depth: f64| shade.level(depth / 6.0);
+        assert_eq!(
+            [0.0, 0.1, 1.0, 1.1, 5.5, 6.0].map(level),
+            [0.0, 1.0, 1.0, 2.0, 6.0, 6.0]
+        );
+    }
+}
