@@ -59,8 +59,7 @@ impl Grid {
 
     /// The column that holds a point; `None` outside.
     pub fn cell_at(&self, x: f64, y: f64) -> Option<(usize, usize)> {
-        let i = (x / self.dx).floor();
-        let j = (y / self.dy).floor();
+        let (i, j) = (x / self.dx, y / self.dy);
         let inside = i >= 0.0 && j >= 0.0 && i < self.nx as f64 && j < self.ny as f64;
         inside.then_some((i as usize, j as usize))
     }

@@ -69,6 +69,39 @@ impl Part {
         (height > 0.0).then(|| self.setup.min[2] + f64::from(height))
     }
 
+    /// A detail for magnified views (MAGN [003:940-945]): the columns that a rectangle of the working
+    /// plane touches, in the full height of the blank. `None` when it touches none.
+    pub fn detail(&self, min: [f64; 2], max: [f64; 2]) -> Option<Part> {
+        let columns = |k: usize, step: f64, count: usize| {
+            // Borders that fall on the rectangle's side do not count as touched.
+            const ON_BORDER: f64 = 1e-6;
+            let first = ((min[k] - self.setup.min[k]) / step + ON_BORDER).floor().max(0.0) as usize;
+            let end = (((max[k] - self.setup.min[k]) / step - ON_BORDER).ceil().max(0.0) as usize).min(count);
+            (first < end).then_some(first..end)
+        };
+        let Grid { nx, ny, dx, dy } = self.grid;
+        let (i, j) = (columns(0, dx, nx)?, columns(1, dy, ny)?);
+        let mut heights = Vec::with_capacity(i.len() * j.len());
+        for row in self.heights.chunks(nx).take(j.end).skip(j.start) {
+            heights.extend_from_slice(row.get(i.clone())?);
+        }
+        let mut setup = self.setup;
+        setup.min[0] += i.start as f64 * dx;
+        setup.min[1] += j.start as f64 * dy;
+        setup.size[0] = i.len() as f64 * dx;
+        setup.size[1] = j.len() as f64 * dy;
+        Some(Part {
+            setup,
+            grid: Grid {
+                nx: i.len(),
+                ny: j.len(),
+                dx,
+                dy,
+            },
+            heights,
+        })
+    }
+
     /// Height of a column over the lower face; 0 outside.
     #[inline]
     pub(crate) fn height(&self, i: usize, j: usize) -> f32 {

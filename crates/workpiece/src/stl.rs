@@ -59,7 +59,7 @@ impl Part {
             *to = *from;
         }
         writer.write_all(&header)?;
-        let count: usize = mesh.faces.iter().map(|face| mesh.triangles(face).count()).sum();
+        let count: usize = mesh.faces.iter().map(|face| mesh.triangles(face).len()).sum();
         let count = u32::try_from(count).map_err(|_| io::Error::other("too many triangles for STL"))?;
         writer.write_all(&count.to_le_bytes())?;
         for face in &mesh.faces {
@@ -162,14 +162,16 @@ impl<'a> Mesh<'a> {
         range.unwrap_or_default()
     }
 
-    /// All corners on the border of a face, counter-clockwise as seen from outside.
-    fn border(&self, face: &Face) -> Vec<Corner> {
-        let mut border = Vec::with_capacity(8);
-        let corners = rectangle(face);
-        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            self.side(*from, *to, &mut border);
-        }
-        border
+    /// The corners on each side of a face, counter-clockwise as seen from outside; the end of a side
+    /// is the start of the next.
+    fn sides(&self, face: &Face) -> [Vec<Corner>; 4] {
+        let [a, b, c, d] = rectangle(face);
+        [(a, b), (b, c), (c, d), (d, a)].map(|(from, to)| {
+            let mut side = Vec::with_capacity(4);
+            self.side(from, to, &mut side);
+            side.push(to);
+            side
+        })
     }
 
     /// Corners from one corner of a rectangle to the next, without the latter.
@@ -207,22 +209,35 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// A plain rectangle is two triangles; with more corners on its border it is a fan about its
-    /// middle, so that no triangle is flat. Triangles whose corners fall together in the precision of
-    /// STL are left out: their edges cancel each other.
-    fn triangles(&self, face: &Face) -> impl Iterator<Item = Triangle> + use<> {
-        let mut border: Vec<[f32; 3]> = self.border(face).into_iter().map(|c| self.point(c)).collect();
-        let corners = rectangle(face).map(|c| self.point(c));
-        let mut fan = [0, 1, 2].map(|k| 0.5 * (corners[0][k] + corners[2][k]));
-        if border.len() == 4 {
-            fan = border.remove(0);
-        } else {
-            border.extend(border.first().copied());
+    /// The triangles of a face: a strip between two opposite sides when only these have additional
+    /// corners, else a fan about the middle, so that no triangle is flat. Triangles whose corners fall
+    /// together in the precision of STL are left out: their edges cancel each other.
+    fn triangles(&self, face: &Face) -> Vec<Triangle> {
+        let mut triangles = Vec::with_capacity(4);
+        let mut add = |triangle: Triangle| {
+            let [a, b, c] = triangle;
+            if a != b && b != c && c != a {
+                triangles.push(triangle);
+            }
+        };
+        let sides = self
+            .sides(face)
+            .map(|side| side.into_iter().map(|c| self.point(c)).collect::<Vec<_>>());
+        match &sides {
+            [a, b, c, d] if b.len() == 2 && d.len() == 2 => strip(a, c, &mut add),
+            [a, b, c, d] if a.len() == 2 && c.len() == 2 => strip(b, d, &mut add),
+            [a, _, c, _] => {
+                let middle =
+                    |k: usize| 0.5 * (a.first().map_or(0.0, |p| p[k]) + c.first().map_or(0.0, |p| p[k]));
+                let middle = [0, 1, 2].map(middle);
+                for pair in sides.iter().flat_map(|side| side.windows(2)) {
+                    if let [from, to] = pair {
+                        add([middle, *from, *to]);
+                    }
+                }
+            }
         }
-        (1..border.len()).filter_map(move |k| {
-            let (a, b) = (*border.get(k - 1)?, *border.get(k)?);
-            (a != b && b != fan && fan != a).then_some([fan, a, b])
-        })
+        triangles
     }
 
     /// A corner in workpiece coordinates X, Y, Z.
@@ -240,6 +255,34 @@ impl<'a> Mesh<'a> {
             }
         }
         point
+    }
+}
+
+/// Triangles between two opposite sides of a rectangle that go around it in one sense.
+fn strip(side: &[[f32; 3]], opposite: &[[f32; 3]], add: &mut impl FnMut(Triangle)) {
+    let mut near = side.windows(2).enumerate().peekable();
+    let mut far = opposite.windows(2).rev().enumerate().peekable();
+    let (Some(mut p), Some(mut q)) = (side.first(), opposite.last()) else {
+        return;
+    };
+    loop {
+        // Both sides are followed at the same pace.
+        let ahead = |k: usize, count: usize| (k + 1) as f64 / count as f64;
+        let near_first = match (near.peek(), far.peek()) {
+            (None, None) => return,
+            (Some(_), None) => true,
+            (None, Some(_)) => false,
+            (Some((k, _)), Some((l, _))) => ahead(*k, side.len()) <= ahead(*l, opposite.len()),
+        };
+        if near_first {
+            if let Some((_, [_, next])) = near.next() {
+                add([*p, *next, *q]);
+                p = next;
+            }
+        } else if let Some((_, [next, _])) = far.next() {
+            add([*p, *next, *q]);
+            q = next;
+        }
     }
 }
 

@@ -79,6 +79,8 @@ struct Track {
     corner: f64,
     /// What the tool covers at the lower end is cut already.
     low_is_cut: bool,
+    /// The same at the higher end.
+    high_is_cut: bool,
 }
 
 /// Columns that are cut side by side: two registers of the x86-64 base line.
@@ -114,6 +116,7 @@ impl Track {
             radius: segment.tool.radius,
             corner: segment.tool.corner,
             low_is_cut: segment.start_is_cut && rises,
+            high_is_cut: segment.start_is_cut && !rises,
         }
     }
 
@@ -299,18 +302,35 @@ impl Track {
         }
     }
 
-    /// Without the columns that are nearest to a lower end that is cut already: those behind it.
+    /// Without the columns over which a round tool was lowest at an end that is cut already: those
+    /// behind the lower end, and those so far behind the higher end that the tool, which touches a
+    /// slope before its axis, leads no more.
     fn uncut(&self, grid: &Grid, columns: Range<usize>, row: usize) -> Range<usize> {
-        if !self.low_is_cut || self.u[0].abs() < 1e-6 {
-            return columns;
+        let Range { mut start, mut end } = columns;
+        let [ux, uy] = self.u;
+        if ux.abs() > 1e-6 {
+            let y = (row as f64 + 0.5) * grid.dy - self.low[1];
+            // The column in which the coordinate along the track has a value.
+            let column = |along: f64| (((along - y * uy) / ux + self.low[0]) / grid.dx) as usize;
+            let after = |along: f64| column(along).saturating_add(1);
+            if self.low_is_cut {
+                (start, end) = if ux > 0.0 {
+                    (start.max(column(0.0)), end)
+                } else {
+                    (start, end.min(after(0.0)))
+                };
+            }
+            if self.high_is_cut {
+                let sine = self.slope / self.slope.hypot(1.0);
+                let lead = self.length + self.radius - self.corner + self.corner * sine;
+                (start, end) = if ux > 0.0 {
+                    (start, end.min(after(lead)))
+                } else {
+                    (start.max(column(lead)), end)
+                };
+            }
         }
-        let y = (row as f64 + 0.5) * grid.dy - self.low[1];
-        let border = ((self.low[0] - y * self.u[1] / self.u[0]) / grid.dx).floor() as usize;
-        if self.u[0] > 0.0 {
-            border.clamp(columns.start, columns.end)..columns.end
-        } else {
-            columns.start..(border.saturating_add(1)).clamp(columns.start, columns.end)
-        }
+        start..end.max(start)
     }
 
     #[inline]

@@ -153,6 +153,29 @@ fn odd_blanks_have_pictures() {
 }
 
 #[test]
+fn a_detail_is_a_part_of_its_own() {
+    let part = pocketed();
+    // The middle of the pocket: 10 x 10 mm, 10 mm deep.
+    let detail = part.detail([20.0, 35.0], [30.0, 45.0]).unwrap();
+    assert_eq!(
+        (detail.min(), detail.max()),
+        ([20.0, 35.0, -20.0], [30.0, 45.0, 0.0])
+    );
+    assert_eq!(detail.columns(), [20, 20]);
+    assert!((detail.removed_mm3() - 1000.0).abs() < 1e-6);
+    assert_eq!(detail.height_at([25.0, 40.0]), Some(-10.0));
+    detail.view_3d(&page(), &View3d::default());
+    // Wider than the blank: all of it. Beside the blank: nothing.
+    assert_eq!(
+        part.detail([-50.0, -50.0], [500.0, 500.0]).unwrap().columns(),
+        part.columns()
+    );
+    assert!(part.detail([200.0, 0.0], [300.0, 50.0]).is_none());
+    assert!(part.detail([30.0, 0.0], [20.0, 50.0]).is_none());
+    assert!(part.detail([f64::NAN; 2], [f64::NAN; 2]).is_none());
+}
+
+#[test]
 fn long_titles_are_cut() {
     let title = "x".repeat(5000);
     let page = Page::new(320, 240, &title, &title).unwrap();

@@ -10,7 +10,7 @@ use crate::text::Anchor;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanView {
     /// Number of brightness levels between the upper face and the deepest point; 0 for a continuous
-    /// scale. The control has 7 [003:888-889].
+    /// scale. The control has 7 [003:882-883].
     pub levels: u8,
 }
 
@@ -22,7 +22,7 @@ impl Default for PlanView {
 
 impl Part {
     /// The part seen against the tool axis. Brightness tells the height: the deeper the contour, the
-    /// darker the image [003:880-890].
+    /// darker the image [003:878-882].
     pub fn plan_view(&self, page: &Page, options: &PlanView) -> Image {
         let (mut image, area) = page.start(BACKGROUND);
         let size = page.text_size();

@@ -71,18 +71,11 @@ impl Ruler<'_> {
             let text = number(value, step);
             name = name.max(x + 0.5 * text_width(&text, size) + 0.5 * size);
             image.line([x, self.line], [x, self.line + 0.4 * size], 1.0, FAINT);
-            image.text(
-                [x, self.line + 1.15 * size],
-                Anchor::Centre,
-                size,
-                INK,
-                &number(value, step),
-            );
+            image.text([x, self.line + 1.15 * size], Anchor::Centre, size, INK, &text);
         }
-        let end = self.from.max(self.to) + 1.1 * size;
         image.text(
-            [end, self.line + 1.15 * size],
-            Anchor::Centre,
+            [name, self.line + 1.15 * size],
+            Anchor::Left,
             1.15 * size,
             INK,
             self.name,

@@ -59,7 +59,7 @@ impl Shader<'_> {
         } else {
             0.0
         };
-        let base = material(part, point, hit).map(linear);
+        let base = material(part, point, hit);
         let light = [0, 1, 2].map(|k| base[k] * (ambient * SKY[k] + 0.74 * lit * SUN[k]) + gloss);
         Seen {
             light,
@@ -118,7 +118,7 @@ impl Shader<'_> {
                 distance *= growth;
             }
             let sine = horizon / horizon.hypot(1.0);
-            open += weight * (1.0 - sine).powf(0.9);
+            open += weight * (1.0 - sine);
             all += weight;
         }
         if all > 0.0 { open / all } else { 1.0 }
@@ -219,7 +219,7 @@ fn is_outline(part: &Part, point: Vector, axis: usize) -> bool {
     point[axis] < tolerance || point[axis] > part.setup.size[axis] - tolerance
 }
 
-fn material(part: &Part, point: Vector, hit: &Hit) -> Colour {
+fn material(part: &Part, point: Vector, hit: &Hit) -> [f64; 3] {
     let skin = match hit.face {
         Face::Top => part.height(hit.i, hit.j) >= part.top(),
         Face::Side(axis) => is_outline(part, point, axis),
@@ -228,9 +228,9 @@ fn material(part: &Part, point: Vector, hit: &Hit) -> Colour {
     if skin { SKIN } else { CUT }
 }
 
-/// The blank as it came, and where a tool was.
-const SKIN: Colour = [134, 152, 176];
-const CUT: Colour = [232, 204, 146];
+/// The blank as it came, and where a tool was: linear red, green, blue of steel blue and brass.
+const SKIN: [f64; 3] = [0.243, 0.320, 0.443];
+const CUT: [f64; 3] = [0.812, 0.612, 0.293];
 const SKY: [f64; 3] = [0.94, 0.98, 1.06];
 const SUN: [f64; 3] = [1.04, 1.0, 0.94];
 

@@ -15,12 +15,12 @@ use crate::text::Anchor;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View3d {
     /// Where the eye stands about the tool axis, degrees: 0 in front (looking along the second axis),
-    /// 90 on the right. The control turns in steps of 90 degrees [003:905-915].
+    /// 90 on the right. The control turns in steps of 90 degrees [003:909-919].
     pub azimuth_deg: f64,
     /// How high the eye stands, degrees over the working plane: 90 looks along the tool axis; negative
     /// values look from below.
     pub elevation_deg: f64,
-    /// Heights are drawn this much greater: 1 is true to scale [003:917-921].
+    /// Heights are drawn this much greater: 1 is true to scale [003:923-927].
     pub height_factor: f64,
 }
 

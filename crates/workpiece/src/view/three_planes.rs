@@ -7,7 +7,7 @@ use crate::canvas::{Colour, Image, mix};
 use crate::part::Part;
 use crate::text::Anchor;
 
-/// How the views are arranged (ISO 6433) [003:892-897].
+/// How the views are arranged (ISO 6433) [003:891-892].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Projection {
     /// First angle, European (MP7310 bit 0 = 0): plan view below the front view, the view from the
@@ -25,14 +25,14 @@ pub struct ThreePlanes {
     /// Arrangement of the views.
     pub projection: Projection,
     /// Where the sectional planes lie: coordinate on the first axis of the plane perpendicular to it,
-    /// and on the second axis, mm; `None` for the middle of the blank [003:899-903].
+    /// and on the second axis, mm; `None` for the middle of the blank [003:893-895].
     pub sections: [Option<f64>; 2],
     /// Brightness levels of the plan view, as in [`PlanView`](super::PlanView).
     pub levels: u8,
 }
 
 impl Part {
-    /// Plan view and two sections as in a technical drawing [003:892-903].
+    /// Plan view and two sections as in a technical drawing [003:891-895].
     pub fn three_planes(&self, page: &Page, options: &ThreePlanes) -> Image {
         let (mut image, area) = page.start(BACKGROUND);
         let sheet = Sheet::new(self, page, options, &area);
@@ -68,7 +68,7 @@ struct Sheet<'a> {
 impl<'a> Sheet<'a> {
     fn new(part: &'a Part, page: &Page, options: &ThreePlanes, area: &Area) -> Sheet<'a> {
         let size = page.text_size();
-        let gap = 3.6 * size;
+        let gap = (3.6 * size).round();
         let inner = area.shrunk(4.5 * size, 2.4 * size, 2.6 * size, 3.2 * size);
         let [a, b, c] = part.setup.size;
         let room = inner.size();
