@@ -13,7 +13,7 @@ pub(crate) enum Anchor {
 }
 
 fn font() -> Option<FontRef<'static>> {
-    FontRef::try_from_slice(epaint_default_fonts::HACK_REGULAR).ok()
+    FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).ok()
 }
 
 /// Width of a text, pixels.
@@ -47,7 +47,9 @@ impl Image {
                 let corner = outline.px_bounds().min;
                 outline.draw(|dx, dy, share| {
                     let pixel = [corner.x as i64 + i64::from(dx), corner.y as i64 + i64::from(dy)];
-                    self.blend(pixel[0], pixel[1], colour, f64::from(share.clamp(0.0, 1.0)));
+                    // A little more ink makes up for the thin strokes of the typeface.
+                    let ink = share.clamp(0.0, 1.0).powf(0.75);
+                    self.blend(pixel[0], pixel[1], colour, f64::from(ink));
                 });
             }
             x += advance;

@@ -14,15 +14,15 @@ pub(super) fn round_step(least: f64) -> f64 {
         .unwrap_or(10.0 * decade)
 }
 
-/// A length without needless zeros.
+/// A length with the decimals that the step needs, and a true minus sign.
 pub(super) fn number(value: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 4.0) as usize;
-    let text = format!("{value:.decimals$}");
-    // -0 is 0.
-    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
-        "0".to_owned()
-    } else {
-        text
+    let text = format!("{:.decimals$}", value.abs());
+    let is_zero = text.chars().all(|c| c == '0' || c == '.');
+    match (is_zero, value < 0.0) {
+        (true, _) => "0".to_owned(),
+        (false, true) => format!("−{text}"),
+        (false, false) => text,
     }
 }
 
@@ -118,6 +118,6 @@ mod tests {
         assert_eq!(round_step(50.0), 50.0);
         assert_eq!(number(-0.0, 1.0), "0");
         assert_eq!(number(2.5, 0.5), "2.5");
-        assert_eq!(number(-40.0, 20.0), "-40");
+        assert_eq!(number(-40.0, 20.0), "−40");
     }
 }
