@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// behind it.
 const ROOMS: &[(&str, &[&str])] = &[
     ("path", &[]),
-    ("parameters", &[]),
+    ("parameters", &["path"]),
     ("program", &["path", "parameters"]),
     ("interpreter", &["path", "parameters", "program"]),
     ("motion", &["path"]),

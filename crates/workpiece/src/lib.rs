@@ -1,1 +1,47 @@
-//! placeholder
+//! What is left of the workpiece.
+//!
+//! The face of this room:
+//! - [`Workpiece`]: takes a [`bahn_path::Blank`] and path elements, removes what the tool sweeps, and
+//!   collects what the operator should know ([`Event`]);
+//! - [`Part`]: the material as it is now ([`Workpiece::part`]): removed volume, heights, probing;
+//! - views of it as an [`Image`]: [`Part::plan_view`], [`Part::three_planes`], [`Part::view_3d`], each
+//!   on a [`Page`] with a title line;
+//! - [`Part::write_stl`]: the finished part as a closed mesh.
+//!
+//! The material is a height map over the working plane of the blank: square columns of equal size
+//! that tile the blank exactly, each with one height along the tool axis. Everything that a tool in
+//! the tool axis can leave behind, undercuts excepted, is such a map.
+//!
+//! ```
+//! use bahn_path::{Axis, Blank, Plane, Position};
+//! use bahn_workpiece::{Resolution, Workpiece};
+//!
+//! let blank = Blank { plane: Plane::XY, min: [0.0, 0.0, -20.0], max: [100.0, 80.0, 0.0] };
+//! let workpiece = Workpiece::new(&blank, Resolution::BySize)?;
+//! assert_eq!(workpiece.finished().removed_mm3(), 0.0);
+//! # Ok::<(), bahn_workpiece::WorkpieceError>(())
+//! ```
+//!
+//! Lengths are millimetres in workpiece coordinates, volumes mm³, angles degrees.
+
+mod batch;
+mod canvas;
+mod chords;
+mod event;
+mod grid;
+mod part;
+mod setup;
+mod stl;
+mod sweep;
+mod text;
+mod tool;
+mod touch;
+mod view;
+mod workpiece;
+
+pub use canvas::{Image, ImageError};
+pub use event::{Event, EventKind};
+pub use grid::{MAX_CELLS, Resolution};
+pub use part::Part;
+pub use view::{Page, PageError, PlanView, Projection, ThreePlanes, View3d};
+pub use workpiece::{Workpiece, WorkpieceError};

@@ -1,0 +1,161 @@
+//! Many segments at once, shared out to the cores by bands of rows.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::grid::Grid;
+use crate::sweep::{BAND_ROWS, Segment, Sink};
+
+/// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
+const RAPID_CUT_MM: f32 = 0.002;
+
+/// Segments that wait to be cut.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Batch {
+    segments: Vec<Segment>,
+    /// Segments that are looked at for a cut in rapid traverse.
+    rapid: Vec<bool>,
+    bands: Vec<Vec<u32>>,
+}
+
+impl Batch {
+    pub fn len(&self) -> usize {
+        self.segments.len()
+    }
+
+    pub fn push(&mut self, segment: Segment, rapid: bool) {
+        self.segments.push(segment);
+        self.rapid.push(rapid);
+    }
+
+    /// Cuts all segments in their order and forgets them. The answer tells which rapid segments
+    /// removed material, by index.
+    pub fn cut(&mut self, grid: &Grid, heights: &mut [f32]) -> Vec<u32> {
+        self.bands.resize_with(grid.ny.div_ceil(BAND_ROWS), Vec::new);
+        for (index, segment) in self.segments.iter().enumerate() {
+            let rows = segment.rows(grid);
+            if !rows.is_empty() {
+                for band in self
+                    .bands
+                    .iter_mut()
+                    .take(rows.end.div_ceil(BAND_ROWS))
+                    .skip(rows.start / BAND_ROWS)
+                {
+                    band.push(index as u32);
+                }
+            }
+        }
+        let (segments, rapid) = (&self.segments, &self.rapid);
+        let mut hits: Vec<u32> = heights
+            .par_chunks_mut(BAND_ROWS * grid.nx)
+            .zip(self.bands.par_iter_mut())
+            .enumerate()
+            .filter(|(_, (_, todo))| !todo.is_empty())
+            .flat_map_iter(|(band, (cells, todo))| {
+                let first = band * BAND_ROWS;
+                let rows = first..(first + BAND_ROWS).min(grid.ny);
+                let mut hits = Vec::new();
+                for index in todo.drain(..) {
+                    let at = index as usize;
+                    let (Some(segment), Some(rapid)) = (segments.get(at), rapid.get(at)) else {
+                        continue;
+                    };
+                    if *rapid && is_rapid_cut(segment, grid, rows.clone(), cells) {
+                        hits.push(index);
+                    }
+                    let mut cut = Cut {
+                        cells: &mut *cells,
+                        width: grid.nx,
+                        first_row: first,
+                    };
+                    segment.sweep(grid, rows.clone(), &mut cut);
+                }
+                hits
+            })
+            .collect();
+        self.segments.clear();
+        self.rapid.clear();
+        hits.sort_unstable();
+        hits.dedup();
+        hits
+    }
+}
+
+fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32]) -> bool {
+    let mut detect = Detect {
+        cells,
+        width: grid.nx,
+        first_row: rows.start,
+        found: false,
+    };
+    let thinner = Segment {
+        tool: segment.tool.thinner(grid),
+        ..*segment
+    };
+    thinner.sweep(grid, rows, &mut detect);
+    detect.found
+}
+
+/// Lowers the columns to the tool.
+struct Cut<'a> {
+    cells: &'a mut [f32],
+    width: usize,
+    first_row: usize,
+}
+
+impl Sink for Cut<'_> {
+    #[inline]
+    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
+        let start = (row - self.first_row) * self.width;
+        for cell in self
+            .cells
+            .get_mut(start + columns.start..start + columns.end)
+            .unwrap_or_default()
+        {
+            *cell = if height < *cell { height } else { *cell };
+        }
+    }
+
+    #[inline]
+    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
+        let start = (row - self.first_row) * self.width;
+        let cells = self
+            .cells
+            .get_mut(start + columns.start..start + columns.end)
+            .unwrap_or_default();
+        for (k, cell) in cells.iter_mut().enumerate() {
+            let height = height(k as i32 as f32);
+            *cell = if height < *cell { height } else { *cell };
+        }
+    }
+}
+
+/// Finds out whether any column is higher than the tool.
+struct Detect<'a> {
+    cells: &'a [f32],
+    width: usize,
+    first_row: usize,
+    found: bool,
+}
+
+impl Sink for Detect<'_> {
+    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
+        self.shaped(row, columns, |_| height);
+    }
+
+    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
+        if self.found {
+            return;
+        }
+        let start = (row - self.first_row) * self.width;
+        let cells = self
+            .cells
+            .get(start + columns.start..start + columns.end)
+            .unwrap_or_default();
+        self.found = cells
+            .iter()
+            .enumerate()
+            .any(|(k, cell)| *cell > height(k as f32) + RAPID_CUT_MM);
+    }
+}

@@ -1,0 +1,118 @@
+//! The material that is left.
+
+use bahn_path::Axis;
+use rayon::prelude::*;
+
+use crate::grid::Grid;
+use crate::setup::Setup;
+
+/// What is left of the blank: one height for every column over the working plane.
+#[derive(Clone, Debug)]
+pub struct Part {
+    pub(crate) setup: Setup,
+    pub(crate) grid: Grid,
+    /// Height of every column over the lower face of the blank, mm; 0 where nothing is left. Rows run
+    /// along the first axis of the plane.
+    pub(crate) heights: Vec<f32>,
+}
+
+impl Part {
+    pub(crate) fn new(setup: Setup, grid: Grid) -> Part {
+        Part {
+            setup,
+            grid,
+            heights: vec![setup.size[2] as f32; grid.nx * grid.ny],
+        }
+    }
+
+    /// The main axes of the blank: first and second of the working plane, tool axis.
+    pub fn axes(&self) -> [Axis; 3] {
+        self.setup.axes
+    }
+
+    /// Least coordinates of the blank in the order of [`Part::axes`], mm.
+    pub fn min(&self) -> [f64; 3] {
+        self.setup.min
+    }
+
+    /// Greatest coordinates of the blank in the order of [`Part::axes`], mm.
+    pub fn max(&self) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.setup.min[k] + self.setup.size[k])
+    }
+
+    /// Side lengths of the columns along the first and second axis, mm.
+    pub fn resolution_mm(&self) -> [f64; 2] {
+        [self.grid.dx, self.grid.dy]
+    }
+
+    /// Number of columns along the first and second axis.
+    pub fn columns(&self) -> [usize; 2] {
+        [self.grid.nx, self.grid.ny]
+    }
+
+    /// Volume of the removed material, mm³.
+    pub fn removed_mm3(&self) -> f64 {
+        let full = self.setup.size[2] as f32;
+        let missing = |row: &[f32]| row.iter().map(|height| f64::from(full - height)).sum::<f64>();
+        // Summed by rows and then in order, so that the last digit does not depend on the cores.
+        let rows: Vec<f64> = self.heights.par_chunks(self.grid.nx).map(missing).collect();
+        rows.iter().sum::<f64>() * self.grid.dx * self.grid.dy
+    }
+
+    /// Coordinate of the surface in the tool axis at a point of the working plane, mm. `None` outside
+    /// the blank and where nothing is left.
+    pub fn height_at(&self, point: [f64; 2]) -> Option<f64> {
+        let (i, j) = self
+            .grid
+            .cell_at(point[0] - self.setup.min[0], point[1] - self.setup.min[1])?;
+        let height = self.height(i, j);
+        (height > 0.0).then(|| self.setup.min[2] + f64::from(height))
+    }
+
+    /// A detail for magnified views (MAGN [003:940-945]): the columns that a rectangle of the working
+    /// plane touches, in the full height of the blank. `None` when it touches none.
+    pub fn detail(&self, min: [f64; 2], max: [f64; 2]) -> Option<Part> {
+        let columns = |k: usize, step: f64, count: usize| {
+            // Borders that fall on the rectangle's side do not count as touched.
+            const ON_BORDER: f64 = 1e-6;
+            let first = ((min[k] - self.setup.min[k]) / step + ON_BORDER).floor().max(0.0) as usize;
+            let end = (((max[k] - self.setup.min[k]) / step - ON_BORDER).ceil().max(0.0) as usize).min(count);
+            (first < end).then_some(first..end)
+        };
+        let Grid { nx, ny, dx, dy } = self.grid;
+        let (i, j) = (columns(0, dx, nx)?, columns(1, dy, ny)?);
+        let mut heights = Vec::with_capacity(i.len() * j.len());
+        for row in self.heights.chunks(nx).take(j.end).skip(j.start) {
+            heights.extend_from_slice(row.get(i.clone())?);
+        }
+        let mut setup = self.setup;
+        setup.min[0] += i.start as f64 * dx;
+        setup.min[1] += j.start as f64 * dy;
+        setup.size[0] = i.len() as f64 * dx;
+        setup.size[1] = j.len() as f64 * dy;
+        Some(Part {
+            setup,
+            grid: Grid {
+                nx: i.len(),
+                ny: j.len(),
+                dx,
+                dy,
+            },
+            heights,
+        })
+    }
+
+    /// Height of a column over the lower face; 0 outside.
+    #[inline]
+    pub(crate) fn height(&self, i: usize, j: usize) -> f32 {
+        if i >= self.grid.nx {
+            return 0.0;
+        }
+        self.heights.get(j * self.grid.nx + i).copied().unwrap_or(0.0)
+    }
+
+    /// Height of an untouched column.
+    pub(crate) fn top(&self) -> f32 {
+        self.setup.size[2] as f32
+    }
+}

@@ -1,0 +1,54 @@
+//! The shape of the tool from below.
+
+use bahn_path::ToolShape;
+
+use crate::grid::Grid;
+
+/// Tool with a round bottom profile: flat inside `flat`, then a quarter circle of radius `corner` up
+/// to `radius = flat + corner`, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tool {
+    pub radius: f64,
+    pub corner: f64,
+}
+
+/// The three cases that have their own arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bottom {
+    Flat,
+    Ball,
+    Torus,
+}
+
+impl Tool {
+    /// `None` for a tool without a radius: it removes nothing. A tool that is thinner than the columns
+    /// is widened so that its trace stays visible (inferred).
+    pub fn new(shape: &ToolShape, grid: &Grid) -> Option<Tool> {
+        if !(shape.radius.is_finite() && shape.radius > 0.0) {
+            return None;
+        }
+        let radius = shape.radius.max(grid.half_diagonal());
+        let corner = shape.corner_radius.max(0.0).min(shape.radius);
+        Some(Tool { radius, corner })
+    }
+
+    pub fn bottom(&self) -> Bottom {
+        if self.corner <= 0.0 {
+            Bottom::Flat
+        } else if self.corner >= self.radius {
+            Bottom::Ball
+        } else {
+            Bottom::Torus
+        }
+    }
+
+    /// The tool that a rapid traverse is checked with: thinner by a column, so that a wall which lies
+    /// between two columns is no cut.
+    pub fn thinner(&self, grid: &Grid) -> Tool {
+        let radius = (self.radius - grid.cell()).max(0.5 * self.radius);
+        Tool {
+            radius,
+            corner: self.corner.min(radius),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Pictures of the part: what all views share.
+
+mod plan;
+mod raycast;
+mod scale;
+mod shade;
+mod solid;
+mod three_planes;
+
+pub use plan::PlanView;
+pub use solid::View3d;
+pub use three_planes::{Projection, ThreePlanes};
+
+use thiserror::Error;
+
+use crate::canvas::{Colour, Image};
+use crate::text::Anchor;
+
+/// The sheet that a view is drawn on: its size and what its title line says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Page {
+    width: u32,
+    height: u32,
+    title: String,
+    note: String,
+}
+
+/// A page that cannot be drawn.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("a picture has from {min} x {min} to {max} x {max} pixels", min = Page::MIN_SIDE, max = Page::MAX_SIDE)]
+pub struct PageError;
+
+impl Page {
+    /// Shortest side, pixels.
+    pub const MIN_SIDE: u32 = 200;
+    /// Longest side, pixels.
+    pub const MAX_SIDE: u32 = 8000;
+
+    /// A page of a size in pixels. The title line shows `title` on the left, usually the name of the
+    /// program, and `note` on the right.
+    ///
+    /// # Errors
+    /// When a side is shorter than [`Page::MIN_SIDE`] or longer than [`Page::MAX_SIDE`].
+    pub fn new(width: u32, height: u32, title: &str, note: &str) -> Result<Page, PageError> {
+        let sides = Page::MIN_SIDE..=Page::MAX_SIDE;
+        if !(sides.contains(&width) && sides.contains(&height)) {
+            return Err(PageError);
+        }
+        Ok(Page {
+            width,
+            height,
+            title: title.to_owned(),
+            note: note.to_owned(),
+        })
+    }
+
+    /// A page of 1000 x 800 pixels.
+    pub fn standard(title: &str, note: &str) -> Page {
+        Page {
+            width: 1000,
+            height: 800,
+            title: title.to_owned(),
+            note: note.to_owned(),
+        }
+    }
+
+    /// Size of ordinary text, pixels: it grows with the page.
+    fn text_size(&self) -> f64 {
+        (f64::from(self.width.min(self.height)) / 50.0).clamp(9.0, 60.0)
+    }
+
+    /// Width of thin lines, pixels.
+    fn line_width(&self) -> f64 {
+        (self.text_size() / 13.0).max(1.0)
+    }
+
+    /// Draws the title line; returns the picture and the free rectangle below the line.
+    fn start(&self, background: Colour) -> (Image, Area) {
+        let mut image = Image::new(self.width, self.height, background);
+        let size = self.text_size();
+        let width = f64::from(self.width);
+        let bar = (2.4 * size).round();
+        image.rectangle([0.0, 0.0], [width, bar], TITLE_BACKGROUND);
+        let inner = width - 2.0 * size;
+        let note = Image::fitting(&self.note, size, 0.6 * inner);
+        let note_width = crate::text::text_width(&note, size);
+        let title = Image::fitting(&self.title, 1.15 * size, inner - note_width - size);
+        image.text([size, 0.5 * bar], Anchor::Left, 1.15 * size, TITLE_TEXT, &title);
+        image.text([width - size, 0.5 * bar], Anchor::Right, size, TITLE_NOTE, &note);
+        (
+            image,
+            Area {
+                min: [0.0, bar],
+                max: [width, f64::from(self.height)],
+            },
+        )
+    }
+}
+
+/// A rectangle of the picture, pixels.
+#[derive(Clone, Copy, Debug)]
+struct Area {
+    min: [f64; 2],
+    max: [f64; 2],
+}
+
+impl Area {
+    fn shrunk(&self, left: f64, top: f64, right: f64, bottom: f64) -> Area {
+        let min = [self.min[0] + left, self.min[1] + top];
+        let max = [
+            (self.max[0] - right).max(min[0] + 1.0),
+            (self.max[1] - bottom).max(min[1] + 1.0),
+        ];
+        Area { min, max }
+    }
+
+    fn size(&self) -> [f64; 2] {
+        [self.max[0] - self.min[0], self.max[1] - self.min[1]]
+    }
+
+    fn centre(&self) -> [f64; 2] {
+        [
+            0.5 * (self.min[0] + self.max[0]),
+            0.5 * (self.min[1] + self.max[1]),
+        ]
+    }
+}
+
+const TITLE_BACKGROUND: Colour = [38, 50, 66];
+const TITLE_TEXT: Colour = [255, 255, 255];
+const TITLE_NOTE: Colour = [190, 205, 222];
+const INK: Colour = [45, 55, 68];
+const FAINT: Colour = [150, 160, 172];

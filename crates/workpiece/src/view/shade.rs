@@ -1,0 +1,269 @@
+//! Light on the part: normals, ambient occlusion, colours.
+
+use super::raycast::{Caster, Face, Hit, Vector};
+use crate::canvas::Colour;
+use crate::part::Part;
+
+/// Reach of the window that smooths the normals of walls, columns: a round wall on square columns has
+/// to look round.
+const WALL_WINDOW: i64 = 6;
+
+/// Neighbouring columns belong to one surface when their heights differ by less than this many
+/// columns: up to some 76 degrees.
+const SLOPE_STEP: f64 = 4.0;
+
+/// Rays along each side of a pixel.
+pub(super) const SAMPLES: usize = 3;
+
+/// What a ray brings to the eye.
+#[derive(Clone, Copy)]
+pub(super) struct Seen {
+    /// Linear red, green, blue.
+    pub light: [f64; 3],
+    pub normal: Vector,
+    /// Length of the ray.
+    pub t: f64,
+}
+
+/// Light and material of a 3D view.
+pub(super) struct Shader<'a> {
+    pub caster: &'a Caster<'a>,
+    /// Direction to the middle of the lamp, a unit vector.
+    pub lamp: Vector,
+    pub to_eye: Vector,
+    /// Exaggeration of heights: light sees the part as the eye does.
+    pub height_factor: f64,
+}
+
+impl Shader<'_> {
+    /// What the eye receives from a hit. `sample` is the number of the ray within its pixel: each
+    /// looks at another place of the lamp and of the sky, together they see all of it.
+    pub fn light(&self, point: Vector, hit: &Hit, sample: usize) -> Seen {
+        let part = self.caster.part;
+        let normal = self.stretched(self.normal(point, hit));
+        let cell = part.grid.cell();
+        let outside = [0, 1, 2].map(|k| point[k] + normal[k] * 0.6 * cell);
+        let occlusion = self.openness(outside, normal, sample);
+        let lamp = self.lamp_direction(sample);
+        let facing = dot(normal, lamp);
+        let lit = if facing > 0.0 && !self.in_shadow(point, normal, lamp) {
+            facing
+        } else {
+            0.0
+        };
+        // The sky is brighter above, and the table throws some light back.
+        let ambient = occlusion * (0.40 + 0.12 * normal[2].abs() + 0.06 * normal[2]);
+        let half = unit([0, 1, 2].map(|k| lamp[k] + self.to_eye[k]));
+        let gloss = if lit > 0.0 {
+            dot(normal, half).max(0.0).powi(50) * 0.12
+        } else {
+            0.0
+        };
+        let base = material(part, point, hit);
+        let light = [0, 1, 2].map(|k| base[k] * (ambient * SKY[k] + 0.74 * lit * SUN[k]) + gloss);
+        Seen {
+            light,
+            normal,
+            t: hit.t,
+        }
+    }
+
+    fn lamp_direction(&self, sample: usize) -> Vector {
+        /// Radius of the lamp's disc, as tangent of its angle.
+        const LAMP: f64 = 0.08;
+        // Places of the lamp in another order than those of the rays in the pixel.
+        let place = (sample * 4) % (SAMPLES * SAMPLES);
+        let jitter =
+            [place % SAMPLES, place / SAMPLES].map(|k| 2.0 * (k as f64 + 0.5) / SAMPLES as f64 - 1.0);
+        let side = unit([-self.lamp[1], self.lamp[0], 0.0]);
+        let up = cross(self.lamp, side);
+        unit([0, 1, 2].map(|k| self.lamp[k] + LAMP * (jitter[0] * side[k] + jitter[1] * up[k])))
+    }
+
+    fn in_shadow(&self, point: Vector, normal: Vector, lamp: Vector) -> bool {
+        let cell = self.caster.part.grid.cell();
+        let mut from = [0, 1, 2].map(|k| point[k] + normal[k] * 1.5 * cell);
+        from[2] = point[2] + normal[2] * 1.5 * cell / self.height_factor;
+        let direction = [lamp[0], lamp[1], lamp[2] / self.height_factor];
+        let top = f64::from(self.caster.part.top());
+        from[2] < top && self.caster.cast(from, direction).is_some()
+    }
+
+    /// How much of the sky a point sees: horizons in some directions, others for every ray of a pixel.
+    fn openness(&self, point: Vector, normal: Vector, sample: usize) -> f64 {
+        const DIRECTIONS: usize = 4;
+        const STEPS: i32 = 7;
+        let part = self.caster.part;
+        let cell = part.grid.cell();
+        let reach = 0.16 * part.setup.size[0].max(part.setup.size[1]);
+        let growth = (reach / (2.0 * cell)).max(1.5).powf(1.0 / f64::from(STEPS - 1));
+        let (mut open, mut all) = (0.0, 0.0);
+        for k in 0..DIRECTIONS {
+            let turn = (k * SAMPLES * SAMPLES + sample) as f64 / (DIRECTIONS * SAMPLES * SAMPLES) as f64;
+            let (sin, cos) = (turn * std::f64::consts::TAU).sin_cos();
+            // Directions behind a wall do not count.
+            let weight = normal[2].max(0.0) + 2.0 * (normal[0] * cos + normal[1] * sin).max(0.0);
+            if weight <= 1e-6 {
+                continue;
+            }
+            let mut horizon = 0.0f64;
+            let mut distance = 2.0 * cell;
+            for _ in 0..STEPS {
+                let (x, y) = (point[0] + distance * cos, point[1] + distance * sin);
+                let Some((i, j)) = part.grid.cell_at(x, y) else {
+                    break;
+                };
+                let rise = (f64::from(part.height(i, j)) - point[2]) * self.height_factor;
+                horizon = horizon.max(rise / distance);
+                distance *= growth;
+            }
+            let sine = horizon / horizon.hypot(1.0);
+            open += weight * (1.0 - sine);
+            all += weight;
+        }
+        if all > 0.0 { open / all } else { 1.0 }
+    }
+
+    fn stretched(&self, n: Vector) -> Vector {
+        unit([n[0], n[1], n[2] / self.height_factor])
+    }
+
+    fn normal(&self, point: Vector, hit: &Hit) -> Vector {
+        let part = self.caster.part;
+        match hit.face {
+            Face::Bottom => [0.0, 0.0, -1.0],
+            Face::Top => top_normal(part, hit.i, hit.j),
+            Face::Side(axis) => wall_normal(part, point, hit, axis),
+        }
+    }
+}
+
+/// Normal of the upper surface. Of the slopes to both neighbours the smaller one counts, so that flat
+/// floors stay flat beside walls, and slopes are as steep as they are.
+fn top_normal(part: &Part, i: usize, j: usize) -> Vector {
+    let h = part.height(i, j);
+    let slope = |before: Option<f32>, after: Option<f32>, step: f64| {
+        let a = f64::from(h - before.unwrap_or(h)) / step;
+        let b = f64::from(after.unwrap_or(h) - h) / step;
+        if a * b <= 0.0 {
+            0.0
+        } else if a.abs() < b.abs() {
+            a
+        } else {
+            b
+        }
+    };
+    let at = |i: Option<usize>, j: Option<usize>| {
+        let (i, j) = (i?, j?);
+        (i < part.grid.nx && j < part.grid.ny).then(|| part.height(i, j))
+    };
+    let gx = slope(
+        at(i.checked_sub(1), Some(j)),
+        at(Some(i + 1), Some(j)),
+        part.grid.dx,
+    );
+    let gy = slope(
+        at(Some(i), j.checked_sub(1)),
+        at(Some(i), Some(j + 1)),
+        part.grid.dy,
+    );
+    unit([-gx, -gy, 1.0])
+}
+
+/// Normal of a wall: away from the material around, at the height of the hit.
+fn wall_normal(part: &Part, point: Vector, hit: &Hit, axis: usize) -> Vector {
+    let face = face_normal(part, point, hit, axis);
+    if is_outline(part, point, axis) {
+        return face;
+    }
+    // A small step is part of a slope.
+    let before = [0, 1].map(|k| [hit.i, hit.j][k].wrapping_add_signed(face[k] as isize));
+    let step = f64::from(part.height(hit.i, hit.j) - part.height(before[0], before[1]));
+    if step < SLOPE_STEP * part.grid.cell() {
+        return top_normal(part, hit.i, hit.j);
+    }
+    let mut sum = [0.0, 0.0];
+    for v in -WALL_WINDOW..=WALL_WINDOW {
+        for u in -WALL_WINDOW..=WALL_WINDOW {
+            let square = (u * u + v * v) as f64;
+            let reach = ((WALL_WINDOW + 1) * (WALL_WINDOW + 1)) as f64;
+            let (i, j) = (hit.i as i64 + u, hit.j as i64 + v);
+            if square > reach || i < 0 || j < 0 || j >= part.grid.ny as i64 {
+                continue;
+            }
+            if f64::from(part.height(i as usize, j as usize)) > point[2] {
+                let weight = 1.0 - square / reach;
+                sum[0] -= u as f64 * weight;
+                sum[1] -= v as f64 * weight;
+            }
+        }
+    }
+    let smooth = unit([sum[0], sum[1], 0.0]);
+    // Thin walls have material on no side in particular.
+    if dot(smooth, face) > 0.05 { smooth } else { face }
+}
+
+fn face_normal(part: &Part, point: Vector, hit: &Hit, axis: usize) -> Vector {
+    let centre = [
+        (hit.i as f64 + 0.5) * part.grid.dx,
+        (hit.j as f64 + 0.5) * part.grid.dy,
+    ];
+    let mut normal = [0.0; 3];
+    normal[axis] = if point[axis] < centre[axis] { -1.0 } else { 1.0 };
+    normal
+}
+
+/// Whether a wall is the outer side of the blank.
+fn is_outline(part: &Part, point: Vector, axis: usize) -> bool {
+    let tolerance = 1e-6 * part.setup.size[axis];
+    point[axis] < tolerance || point[axis] > part.setup.size[axis] - tolerance
+}
+
+fn material(part: &Part, point: Vector, hit: &Hit) -> [f64; 3] {
+    let skin = match hit.face {
+        Face::Top => part.height(hit.i, hit.j) >= part.top(),
+        Face::Side(axis) => is_outline(part, point, axis),
+        Face::Bottom => true,
+    };
+    if skin { SKIN } else { CUT }
+}
+
+/// The blank as it came, and where a tool was: linear red, green, blue of steel blue and brass.
+const SKIN: [f64; 3] = [0.243, 0.320, 0.443];
+const CUT: [f64; 3] = [0.812, 0.612, 0.293];
+const SKY: [f64; 3] = [0.94, 0.98, 1.06];
+const SUN: [f64; 3] = [1.04, 1.0, 0.94];
+
+fn linear(value: u8) -> f64 {
+    (f64::from(value) / 255.0).powf(2.2)
+}
+
+/// A linear light as a value of the screen.
+pub(super) fn screen(light: [f64; 3]) -> Colour {
+    light.map(|value| (value.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0).round() as u8)
+}
+
+pub(super) fn to_linear(colour: Colour) -> [f64; 3] {
+    colour.map(linear)
+}
+
+pub(super) fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(super) fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+pub(super) fn unit(v: Vector) -> Vector {
+    let length = dot(v, v).sqrt();
+    if length > 0.0 {
+        v.map(|value| value / length)
+    } else {
+        [0.0, 0.0, 0.0]
+    }
+}

@@ -1,0 +1,293 @@
+//! Projection in three planes: plan view and two sections.
+
+use super::plan::{DepthShade, draw_plan, frame};
+use super::scale::{Ruler, number};
+use super::{Area, FAINT, INK, Page};
+use crate::canvas::{Colour, Image, mix};
+use crate::part::Part;
+use crate::text::Anchor;
+
+/// How the views are arranged (ISO 6433) [003:891-892].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Projection {
+    /// First angle, European (MP7310 bit 0 = 0): plan view below the front view, the view from the
+    /// left on its right.
+    #[default]
+    FirstAngle,
+    /// Third angle, American (MP7310 bit 0 = 1): plan view above the front view, the view from the
+    /// right on its right.
+    ThirdAngle,
+}
+
+/// Options of the projection in three planes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ThreePlanes {
+    /// Arrangement of the views.
+    pub projection: Projection,
+    /// Where the sectional planes lie: coordinate on the first axis of the plane perpendicular to it,
+    /// and on the second axis, mm; `None` for the middle of the blank [003:893-895].
+    pub sections: [Option<f64>; 2],
+    /// Brightness levels of the plan view, as in [`PlanView`](super::PlanView).
+    pub levels: u8,
+}
+
+impl Part {
+    /// Plan view and two sections as in a technical drawing [003:891-895].
+    pub fn three_planes(&self, page: &Page, options: &ThreePlanes) -> Image {
+        let (mut image, area) = page.start(BACKGROUND);
+        let sheet = Sheet::new(self, page, options, &area);
+        let shade = DepthShade::new(self, options.levels);
+        draw_plan(&mut image, self, &sheet.plan, &shade);
+        sheet.draw_front(&mut image);
+        sheet.draw_side(&mut image);
+        for drawing in [&sheet.plan, &sheet.front, &sheet.side] {
+            frame(&mut image, drawing, page);
+        }
+        sheet.draw_section_lines(&mut image);
+        sheet.draw_rulers(&mut image);
+        sheet.draw_corner(&mut image);
+        image
+    }
+}
+
+/// Where everything lies on the page.
+struct Sheet<'a> {
+    part: &'a Part,
+    projection: Projection,
+    plan: Area,
+    front: Area,
+    side: Area,
+    /// The free quarter beside the plan view.
+    corner: Area,
+    /// Sections on the first and second axis, mm from the least corner of the blank.
+    sections: [f64; 2],
+    text_size: f64,
+    line_width: f64,
+}
+
+impl<'a> Sheet<'a> {
+    fn new(part: &'a Part, page: &Page, options: &ThreePlanes, area: &Area) -> Sheet<'a> {
+        let size = page.text_size();
+        let gap = (3.6 * size).round();
+        let inner = area.shrunk(4.5 * size, 2.4 * size, 2.6 * size, 3.2 * size);
+        let [a, b, c] = part.setup.size;
+        let room = inner.size();
+        let scale = ((room[0] - gap) / (a + b))
+            .min((room[1] - gap) / (b + c))
+            .max(1e-9);
+        let [w, d, h] = [a, b, c].map(|side| (side * scale).round().max(2.0));
+        let left = (inner.min[0] + 0.5 * (room[0] - gap - w - d)).round();
+        let top = (inner.min[1] + 0.5 * (room[1] - gap - d - h)).round();
+        let right = left + w + gap;
+        let (front_top, plan_top) = match options.projection {
+            Projection::FirstAngle => (top, top + h + gap),
+            Projection::ThirdAngle => (top + d + gap, top),
+        };
+        let place = |x: f64, y: f64, width: f64, height: f64| Area {
+            min: [x, y],
+            max: [x + width, y + height],
+        };
+        let section = |k: usize| {
+            let middle = 0.5 * part.setup.size[k];
+            let wanted = options.sections[k].map_or(middle, |s| s - part.setup.min[k]);
+            if wanted.is_finite() {
+                wanted.clamp(0.0, part.setup.size[k])
+            } else {
+                middle
+            }
+        };
+        Sheet {
+            part,
+            projection: options.projection,
+            plan: place(left, plan_top, w, d),
+            front: place(left, front_top, w, h),
+            side: place(right, front_top, d, h),
+            corner: place(right, plan_top, d, d),
+            sections: [section(0), section(1)],
+            text_size: size,
+            line_width: page.line_width(),
+        }
+    }
+
+    /// Front view: the section at the second axis, looking along it.
+    fn draw_front(&self, image: &mut Image) {
+        let grid = &self.part.grid;
+        let row = ((self.sections[1] / grid.dy) as usize).min(grid.ny - 1);
+        self.draw_section(image, &self.front, |share, back| {
+            let i = ((share * grid.nx as f64) as usize).min(grid.nx - 1);
+            (row + back < grid.ny).then(|| self.part.height(i, row + back))
+        });
+    }
+
+    /// Side view: the section at the first axis, looking along it from the left (first angle) or
+    /// against it from the right (third angle).
+    fn draw_side(&self, image: &mut Image) {
+        let grid = &self.part.grid;
+        let column = ((self.sections[0] / grid.dx) as usize).min(grid.nx - 1);
+        let row = |share: f64| ((share * grid.ny as f64) as usize).min(grid.ny - 1);
+        match self.projection {
+            Projection::FirstAngle => self.draw_section(image, &self.side, |share, back| {
+                (column + back < grid.nx).then(|| self.part.height(column + back, row(1.0 - share)))
+            }),
+            Projection::ThirdAngle => self.draw_section(image, &self.side, |share, back| {
+                column.checked_sub(back).map(|i| self.part.height(i, row(share)))
+            }),
+        }
+    }
+
+    /// Draws a section and what is seen behind it. `height(share, back)` is the height at a share of
+    /// the drawing's width, so many columns behind the section.
+    fn draw_section(&self, image: &mut Image, drawing: &Area, height: impl Fn(f64, usize) -> Option<f32>) {
+        let [width, tall] = drawing.size();
+        let per_mm = tall / self.part.setup.size[2];
+        let depth = self.part.grid.nx.max(self.part.grid.ny) as f64;
+        for px in 0..width as usize {
+            let x = drawing.min[0] + px as f64;
+            let share = (px as f64 + 0.5) / width;
+            let pixel = |height: f32| drawing.max[1] - f64::from(height) * per_mm;
+            let Some(cut) = height(share, 0) else { continue };
+            self.hatch(image, x, pixel(cut), drawing.max[1]);
+            let mut seen = cut;
+            for back in 1.. {
+                let Some(behind) = height(share, back) else { break };
+                if behind > seen {
+                    let colour = mix(BEHIND_NEAR, BEHIND_FAR, (back as f64 / depth).sqrt());
+                    image.rectangle([x, pixel(behind)], [x + 1.0, pixel(seen)], colour);
+                    seen = behind;
+                }
+            }
+        }
+        self.contour(image, drawing, |share| height(share, 0));
+    }
+
+    /// Hatching at 45 degrees of the cut face in one column of pixels.
+    fn hatch(&self, image: &mut Image, x: f64, top: f64, bottom: f64) {
+        if bottom - top < 0.01 {
+            return;
+        }
+        image.rectangle([x, top], [x + 1.0, bottom], CUT_FACE);
+        let pitch = (0.75 * self.text_size).max(6.0);
+        for y in top.ceil() as i64..bottom as i64 {
+            let phase = (x + y as f64).rem_euclid(pitch);
+            let distance = (phase - 0.5 * pitch).abs();
+            let share = (0.5 * self.line_width + 0.7 - distance).clamp(0.0, 1.0);
+            image.blend(x as i64, y, CUT_LINE, 0.8 * share);
+        }
+    }
+
+    /// The line of the cut surface.
+    fn contour(&self, image: &mut Image, drawing: &Area, height: impl Fn(f64) -> Option<f32>) {
+        let [width, tall] = drawing.size();
+        let per_mm = tall / self.part.setup.size[2];
+        let points: Vec<[f64; 2]> = (0..width as usize)
+            .flat_map(|px| {
+                let top = height((px as f64 + 0.5) / width).unwrap_or(0.0);
+                let y = drawing.max[1] - f64::from(top) * per_mm;
+                let x = drawing.min[0] + px as f64;
+                [[x, y], [x + 1.0, y]]
+            })
+            .collect();
+        image.outline(&points, self.line_width, INK);
+    }
+
+    fn draw_section_lines(&self, image: &mut Image) {
+        let [a, b, _] = self.part.setup.size;
+        let over = 0.9 * self.text_size;
+        let pattern = [
+            1.1 * self.text_size,
+            0.35 * self.text_size,
+            0.2 * self.text_size,
+            0.35 * self.text_size,
+        ];
+        let plan = &self.plan;
+        let x = plan.min[0] + plan.size()[0] * self.sections[0] / a;
+        let y = plan.max[1] - plan.size()[1] * self.sections[1] / b;
+        let side_x = match self.projection {
+            Projection::FirstAngle => self.side.max[0] - self.side.size()[0] * self.sections[1] / b,
+            Projection::ThirdAngle => self.side.min[0] + self.side.size()[0] * self.sections[1] / b,
+        };
+        let upright = |x: f64, area: &Area| ([x, area.min[1] - over], [x, area.max[1] + over]);
+        let across = ([plan.min[0] - over, y], [plan.max[0] + over, y]);
+        for (from, to) in [
+            across,
+            upright(x, plan),
+            upright(x, &self.front),
+            upright(side_x, &self.side),
+        ] {
+            image.dashed(from, to, &pattern, self.line_width, SECTION);
+        }
+    }
+
+    fn draw_rulers(&self, image: &mut Image) {
+        let names = self.part.axes().map(|axis| axis.to_string());
+        let (min, max) = (self.part.min(), self.part.max());
+        let ruler = |k: usize, from: f64, to: f64, line: f64| Ruler {
+            name: &names[k],
+            low: min[k],
+            high: max[k],
+            from,
+            to,
+            line,
+            text_size: 0.9 * self.text_size,
+        };
+        let (plan, front, side) = (&self.plan, &self.front, &self.side);
+        ruler(0, plan.min[0], plan.max[0], plan.max[1].max(front.max[1])).below(image);
+        ruler(1, plan.max[1], plan.min[1], plan.min[0]).left(image);
+        ruler(2, front.max[1], front.min[1], front.min[0]).left(image);
+        let (low, high) = match self.projection {
+            Projection::FirstAngle => (side.max[0], side.min[0]),
+            Projection::ThirdAngle => (side.min[0], side.max[0]),
+        };
+        ruler(1, low, high, side.max[1]).below(image);
+    }
+
+    /// Symbol of the projection and positions of the sectional planes.
+    fn draw_corner(&self, image: &mut Image) {
+        let size = self.text_size;
+        let centre = self.corner.centre();
+        let [first, second, _] = self.part.axes();
+        let position = |k: usize| number(self.part.setup.min[k] + self.sections[k], 0.001);
+        let lines = [
+            format!("{first} {:>10}", position(0)),
+            format!("{second} {:>10}", position(1)),
+        ];
+        for (k, line) in lines.iter().enumerate() {
+            let y = centre[1] + (1.5 + 1.6 * k as f64) * size;
+            image.text([centre[0], y], Anchor::Centre, 1.1 * size, SECTION, line);
+        }
+        self.draw_symbol(image, [centre[0], centre[1] - 1.5 * size], 1.2 * size);
+    }
+
+    /// The truncated cone of ISO 6433: its small end is on the left, and it is seen from there. First
+    /// angle draws what is seen from the left on the right, third angle on the left.
+    fn draw_symbol(&self, image: &mut Image, at: [f64; 2], size: f64) {
+        let side = if self.projection == Projection::FirstAngle {
+            -1.0
+        } else {
+            1.0
+        };
+        let cone = at[0] + 1.6 * side * size;
+        let circles = [at[0] - 1.6 * side * size, at[1]];
+        let (small, great) = (0.5 * size, size);
+        let corners = [
+            [cone - size, at[1] - small],
+            [cone + size, at[1] - great],
+            [cone + size, at[1] + great],
+            [cone - size, at[1] + small],
+            [cone - size, at[1] - small],
+        ];
+        image.outline(&corners, self.line_width, INK);
+        image.circle(circles, small, self.line_width, INK);
+        image.circle(circles, great, self.line_width, INK);
+        let axis = [size * 0.6, size * 0.15, size * 0.1, size * 0.15];
+        let (a, b) = ([at[0] - 3.0 * size, at[1]], [at[0] + 3.0 * size, at[1]]);
+        image.dashed(a, b, &axis, 0.7 * self.line_width, FAINT);
+    }
+}
+
+const BACKGROUND: Colour = [252, 252, 250];
+const CUT_FACE: Colour = [240, 222, 180];
+const CUT_LINE: Colour = [176, 132, 62];
+const BEHIND_NEAR: Colour = [186, 200, 214];
+const BEHIND_FAR: Colour = [232, 237, 242];
+const SECTION: Colour = [190, 48, 44];
