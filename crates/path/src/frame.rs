@@ -92,7 +92,7 @@ impl Frame {
 }
 
 /// Sine and cosine of degrees, exact at multiples of 90 degrees so that a quarter turn stays on the grid.
-fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
+pub(crate) fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
     match angle_deg.rem_euclid(360.0) {
         0.0 => (0.0, 1.0),
         90.0 => (1.0, 0.0),

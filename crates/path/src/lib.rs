@@ -5,6 +5,7 @@
 //! - [`Plane`]: a working plane, which is two axes and the tool axis that stands on it;
 //! - [`Curve`], [`Arc`]: line, circular arc and helix with length, tangent and splitting;
 //! - [`Frame`]: datum shift, mirror image, rotation and scaling as one transformation;
+//! - [`region`]: areas of a plane with holes and true arcs, for the SL cycles;
 //! - [`PathElement`]: one movement with its feed, block and technology functions;
 //! - [`ElementSource`] and [`Step`]: how every stage pulls elements from the stage before it.
 //!
@@ -16,6 +17,7 @@ mod curve;
 mod element;
 mod frame;
 mod plane;
+pub mod region;
 mod source;
 
 pub use axis::{Axis, AxisSet, Position};
