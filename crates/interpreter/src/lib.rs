@@ -1,1 +1,398 @@
-//! placeholder
+//! Runs part programs: turns the blocks of a [`Program`] into path elements, one when it is asked for.
+//!
+//! The face of this room:
+//! - [`Interpreter`]: an [`ElementSource`] over a main program and the programs it calls;
+//! - [`Settings`]: control model, machine parameters, tools and options of a run;
+//! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it;
+//! - [`Library`]: where called programs come from;
+//! - [`Checkpoint`]: the whole state of a run, to go back to.
+//!
+//! A block is executed by [`run`], positioning blocks by [`positioning`], cycles in [`cycles`]. Movements
+//! then pass the stages of [`contour`] (rounding, radius compensation) into the queue of finished steps.
+//! Nothing here knows of time or of the machine's axes.
+
+mod arc;
+mod code;
+mod contour;
+mod cycles;
+mod error;
+mod flow;
+mod functions;
+mod modal;
+mod output;
+mod positioning;
+mod probe;
+mod q_parameters;
+mod run;
+mod settings;
+mod tools;
+
+use std::sync::Arc;
+
+use bahn_parameters::MessageId;
+use bahn_path::{AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
+use bahn_program::{Block, MotionKind, Operation, Program};
+
+pub use code::{Library, NoLibrary};
+pub use error::{Message, ProgramError, Warning, WarningKind};
+pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolTable};
+
+use crate::code::Code;
+use crate::contour::Contour;
+use crate::cycles::{ContourJob, contour_plane};
+use crate::error::Fault;
+use crate::flow::Flow;
+use crate::output::{Item, Output};
+use crate::run::Run;
+
+/// Runs a program and hands out its path element by element.
+///
+/// ```
+/// use std::sync::Arc;
+/// use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+/// use bahn_path::{Axis, ElementSource, Step};
+/// use bahn_program::Program;
+///
+/// let text = "0 BEGIN PGM 1 MM\n1 L X+10 Y+5 R0 F100\n2 L IX+20\n3 END PGM 1 MM\n";
+/// let program = Arc::new(Program::from_bytes("1.H", text.into()));
+/// let mut run = Interpreter::new(program, Settings::default(), Box::new(NoLibrary));
+/// let mut ends = Vec::new();
+/// while let Step::Element(element) = run.next() {
+///     ends.push(element.end[Axis::X]);
+/// }
+/// assert_eq!(ends, [10.0, 30.0]);
+/// ```
+pub struct Interpreter {
+    settings: Settings,
+    library: Box<dyn Library + Send>,
+    code: Code,
+    run: Run,
+    ended: Option<Ended>,
+    waiting: Option<Barrier>,
+    /// End of the last element that was handed out.
+    position: Position,
+}
+
+#[derive(Clone, Debug)]
+enum Ended {
+    Finished,
+    Failed(Box<ProgramError>),
+}
+
+/// The state of a run at a block: Q parameters, calls, repeats, pole, transformations, tool.
+#[derive(Clone)]
+pub struct Checkpoint {
+    run: Box<Run>,
+}
+
+impl Interpreter {
+    /// Prepares the run of a main program.
+    pub fn new(main: Arc<Program>, settings: Settings, library: Box<dyn Library + Send>) -> Interpreter {
+        let run = Run::new(&settings, main.unit());
+        let position = settings.start;
+        Interpreter {
+            settings,
+            library,
+            code: Code::new(main),
+            run,
+            ended: None,
+            waiting: None,
+            position,
+        }
+    }
+
+    /// Executed blocks; BEGIN, END, comments and skipped blocks do not count.
+    pub fn blocks_executed(&self) -> u64 {
+        self.run.sequence
+    }
+
+    /// The Q parameters by number. Numbers are those of the control model.
+    pub fn q_values(&self) -> &[f64] {
+        self.run.q.values()
+    }
+
+    /// Position of the tool centre at the end of the last element handed out, workpiece coordinates, mm and
+    /// degrees.
+    pub fn position(&self) -> Position {
+        self.position
+    }
+
+    /// A program of the run: 0 is the main program.
+    pub fn program(&self, index: u16) -> Option<&Arc<Program>> {
+        self.code.program(index)
+    }
+
+    /// Takes the warnings that came up since the last call.
+    pub fn take_warnings(&mut self) -> Vec<Warning> {
+        std::mem::take(&mut self.run.warnings)
+    }
+
+    /// The state as of the next block to be executed.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            run: Box::new(self.run.clone()),
+        }
+    }
+
+    /// Goes back to a checkpoint of this run.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) {
+        self.run = (*checkpoint.run).clone();
+        self.ended = None;
+        self.waiting = None;
+    }
+
+    /// Executes blocks until a step is finished or the run ends.
+    fn advance(&mut self) {
+        while self.run.out.queue.is_empty() && self.ended.is_none() {
+            let at = self.run.at.block_ref();
+            if let Err(fault) = self.step() {
+                self.fail(fault, at);
+            }
+        }
+    }
+
+    /// Executes the next block.
+    #[inline]
+    fn step(&mut self) -> Result<(), Fault> {
+        let at = self.run.at.block_ref();
+        let Some((block, next)) = self.code.block(at.program, at.block) else {
+            return self.end_of_program();
+        };
+        self.run.line_follows = next.is_some_and(is_line);
+        if block.skip && self.settings.skip_blocks {
+            self.run.at.block += 1;
+            return Ok(());
+        }
+        self.run.block = at;
+        if !matches!(
+            block.operation,
+            Operation::Begin(_) | Operation::End(_) | Operation::Comment(_)
+        ) {
+            self.run.sequence += 1;
+            self.run.since_motion += 1;
+            if self.run.since_motion > self.settings.max_blocks_without_motion {
+                let blocks = self.settings.max_blocks_without_motion;
+                return Err(Fault::new(
+                    MessageId::EndlessLoop,
+                    format!("{blocks} blocks without a movement"),
+                ));
+            }
+        }
+        let flow = self.run.execute(block, &self.settings)?;
+        if flow == Flow::Next {
+            self.run.at.block += 1;
+            return Ok(());
+        }
+        self.follow(flow)
+    }
+
+    fn follow(&mut self, flow: Flow) -> Result<(), Fault> {
+        let limits = self.settings.model.limits();
+        match flow {
+            Flow::Next => self.run.at.block += 1,
+            Flow::Jump(label) => self.run.at.block = self.label(label)?,
+            Flow::Call(label) => {
+                let target = self.label(label)?;
+                self.run.at.call(label, target, limits)?;
+            }
+            Flow::Repeat(label, count) => {
+                let target = self.label(label)?;
+                self.run.at.repeat(target, count)?;
+            }
+            Flow::Return => self.run.at.return_from_label(),
+            Flow::CallProgram(name) => self.call_program(&name)?,
+            Flow::EndOfProgram => return self.end_of_program(),
+            Flow::EndOfRun => return self.end_of_run(),
+            Flow::ContourCycle => {
+                let job = self.record_contours()?;
+                self.run.contour_cycle(&job, &self.settings)?;
+                self.run.at.block += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// The block of a label in the running program.
+    fn label(&self, label: u16) -> Result<u32, Fault> {
+        if label == 0 {
+            return Err(MessageId::JumpToLabelZeroNotPermitted.into());
+        }
+        let program = self.run.at.program;
+        let Some(loaded) = self.code.program(program) else {
+            return Err(MessageId::LabelNumberNotAllocated.into());
+        };
+        if let Some(&(_, block)) = loaded
+            .repeated_labels()
+            .iter()
+            .find(|(number, _)| *number == label)
+        {
+            let detail = format!("LBL {label} is set twice");
+            return Err(Fault::new(MessageId::LabelNumberAllocated, detail).at(BlockRef { program, block }));
+        }
+        loaded.label(label).ok_or_else(|| {
+            Fault::new(
+                MessageId::LabelNumberNotAllocated,
+                format!("there is no LBL {label}"),
+            )
+        })
+    }
+
+    fn call_program(&mut self, name: &str) -> Result<(), Fault> {
+        let caller = self.run.at.program;
+        let found = self
+            .code
+            .open(name, caller, self.library.as_mut())
+            .map_err(|reason| Fault::new(MessageId::ProgramNotFound, reason))?;
+        let Some(index) = found else {
+            return Err(Fault::new(
+                MessageId::ProgramNotFound,
+                format!("there is no program {name}"),
+            ));
+        };
+        self.run.at.call_program(index, self.settings.model.limits())?;
+        self.enter_unit();
+        Ok(())
+    }
+
+    /// Each program has its own unit; Q113 keeps that of the main program (inferred).
+    fn enter_unit(&mut self) {
+        if let Some(program) = self.code.program(self.run.at.program) {
+            self.run.unit_mm = modal::unit_mm(program.unit());
+        }
+    }
+
+    fn end_of_program(&mut self) -> Result<(), Fault> {
+        if self.run.at.return_from_program()? {
+            self.enter_unit();
+            return Ok(());
+        }
+        self.end_of_run()
+    }
+
+    fn end_of_run(&mut self) -> Result<(), Fault> {
+        self.run.finish_contour()?;
+        self.ended = Some(Ended::Finished);
+        Ok(())
+    }
+
+    fn fail(&mut self, fault: Fault, at: BlockRef) {
+        let block = fault.block.unwrap_or(at);
+        if block == at {
+            // What was complete before the block still counts; a second fault on the way changes nothing.
+            let _ = self.run.finish_contour();
+        } else {
+            // Found by looking ahead: the path ends before the element that causes it.
+            self.run.contour = Contour::default();
+        }
+        let program = self
+            .code
+            .program(block.program)
+            .map(|p| p.name().to_owned())
+            .unwrap_or_default();
+        self.ended = Some(Ended::Failed(Box::new(ProgramError {
+            message: fault.message,
+            program,
+            block,
+            detail: fault.detail,
+        })));
+    }
+
+    /// Executes the contour subprograms of cycle 14 aside and records their geometry; nothing else of them
+    /// has an effect [003:5389-5454].
+    fn record_contours(&mut self) -> Result<ContourJob, Fault> {
+        let labels = self.run.modal.contour_labels.clone();
+        if labels.is_empty() {
+            return Err(Fault::new(
+                MessageId::CyclIncomplete,
+                "cycle 14 CONTOUR GEOMETRY is not defined",
+            ));
+        }
+        let mut recorder = self.run.clone();
+        recorder.contour = Contour::recorder();
+        recorder.out = Output::default();
+        recorder.modal.compensation = bahn_program::Compensation::Off;
+        std::mem::swap(&mut self.run, &mut recorder);
+        let job = self.record_labels(&labels);
+        std::mem::swap(&mut self.run, &mut recorder);
+        job
+    }
+
+    fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Fault> {
+        let home = self.run.at.clone();
+        let mut job = None;
+        for &label in labels {
+            self.run.at = home.clone();
+            self.run.recording = Some(AxisSet::EMPTY);
+            let target = self.label(label)?;
+            self.run.at.call(label, target, self.settings.model.limits())?;
+            while self.run.at.depth() > home.depth() {
+                let at = self.run.at.block_ref();
+                self.step().map_err(|fault| fault.at(at))?;
+                if self.ended.take().is_some() {
+                    let detail = format!("the contour subprogram LBL {label} does not end with LBL 0");
+                    return Err(Fault::new(MessageId::ExcessiveSubprogramming, detail).at(at));
+                }
+            }
+            let moves = self.run.contour.take_recorded(&mut self.run.out)?;
+            let axes = self.run.recording.unwrap_or(AxisSet::EMPTY);
+            let job = job.get_or_insert_with(|| ContourJob::new(contour_plane(self.run.modal.plane, axes)));
+            job.add(&moves).map_err(|fault| {
+                fault.at(BlockRef {
+                    program: home.program,
+                    block: target,
+                })
+            })?;
+        }
+        job.ok_or_else(|| MessageId::CyclIncomplete.into())
+    }
+}
+
+/// Whether a block certainly moves on a straight line.
+#[inline]
+fn is_line(block: &Block) -> bool {
+    let Operation::Motion(motion) = &block.operation else {
+        return false;
+    };
+    motion.kind == MotionKind::Line && !motion.coordinates.is_empty() && !block.skip
+}
+
+impl ElementSource for Interpreter {
+    type Error = Box<ProgramError>;
+
+    fn next(&mut self) -> Step<Self::Error> {
+        if let Some(barrier) = self.waiting {
+            return Step::Barrier(barrier);
+        }
+        if self.run.out.queue.is_empty() {
+            self.advance();
+        }
+        match self.run.out.queue.pop_front() {
+            Some(Item::Element(element)) => {
+                self.position = element.end;
+                Step::Element(element)
+            }
+            Some(Item::Barrier(barrier)) => {
+                self.waiting = Some(barrier);
+                Step::Barrier(barrier)
+            }
+            None => match &self.ended {
+                Some(Ended::Failed(error)) => Step::Error(error.clone()),
+                _ => Step::End,
+            },
+        }
+    }
+
+    fn resume(&mut self, live: LiveData) {
+        let Some(barrier) = self.waiting.take() else {
+            return;
+        };
+        for &(number, value) in &live.q_values {
+            self.run.q.preassign(number, value);
+        }
+        if let Barrier::Probe { block, .. } = barrier
+            && let Err(fault) = self.run.finish_probing(&live, &self.settings)
+        {
+            self.fail(fault, block);
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The programs of a run and their decoded blocks.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use bahn_program::{Block, Chunk, Program};
+
+/// Where called programs come from.
+pub trait Library {
+    /// Finds a program by the name written in CALL PGM or cycle 12, beside the calling program.
+    /// `Ok(None)` when there is none; `Err` says why it cannot be read.
+    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
+}
+
+/// A library without programs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoLibrary;
+
+impl Library for NoLibrary {
+    fn find(&mut self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+        Ok(None)
+    }
+}
+
+/// Chunks of decoded blocks kept at once over all programs: programs up to this size run from memory,
+/// larger ones are decoded again where loops come back. Bounds the memory of a run.
+const CHUNKS_KEPT: usize = 128;
+
+/// The programs of a run; index 0 is the main program.
+pub(crate) struct Code {
+    programs: Vec<Loaded>,
+    /// Chunks in memory in the order they came: the oldest goes first.
+    kept: VecDeque<(u16, usize)>,
+}
+
+struct Loaded {
+    program: Arc<Program>,
+    chunks: Vec<Option<Box<Chunk>>>,
+}
+
+impl Code {
+    pub fn new(main: Arc<Program>) -> Code {
+        let mut code = Code {
+            programs: Vec::new(),
+            kept: VecDeque::new(),
+        };
+        code.add(main);
+        code
+    }
+
+    fn add(&mut self, program: Arc<Program>) -> u16 {
+        let chunks = program.chunk_count() as usize;
+        self.programs.push(Loaded {
+            program,
+            chunks: std::iter::repeat_with(|| None).take(chunks).collect(),
+        });
+        (self.programs.len() - 1) as u16
+    }
+
+    /// The index of a called program; loads it when it is called for the first time.
+    pub fn open(
+        &mut self,
+        name: &str,
+        caller: u16,
+        library: &mut dyn Library,
+    ) -> Result<Option<u16>, String> {
+        if let Some(index) = self.programs.iter().position(|p| p.program.name() == name) {
+            return Ok(Some(index as u16));
+        }
+        if self.programs.len() > usize::from(u16::MAX) {
+            return Err("too many programs".into());
+        }
+        let caller_name = self
+            .program(caller)
+            .map(|p| p.name().to_owned())
+            .unwrap_or_default();
+        Ok(library.find(name, &caller_name)?.map(|program| {
+            // The same file under another spelling of its name is the same program.
+            let known = self
+                .programs
+                .iter()
+                .position(|p| Arc::ptr_eq(&p.program, &program));
+            known.map_or_else(|| self.add(program), |index| index as u16)
+        }))
+    }
+
+    pub fn program(&self, index: u16) -> Option<&Arc<Program>> {
+        self.programs
+            .get(usize::from(index))
+            .map(|loaded| &loaded.program)
+    }
+
+    /// The block at a place, and the one after it where that is at hand; `None` behind the last one.
+    #[inline]
+    pub fn block(&mut self, program: u16, number: u32) -> Option<(&Block, Option<&Block>)> {
+        let loaded = self.programs.get_mut(usize::from(program))?;
+        let chunk = (number / Program::CHUNK_SIZE) as usize;
+        let offset = (number % Program::CHUNK_SIZE) as usize;
+        if loaded.chunks.get(chunk)?.is_none() {
+            self.load(program, chunk);
+        }
+        let loaded = self.programs.get(usize::from(program))?;
+        let blocks = &loaded.chunks.get(chunk)?.as_ref()?.blocks;
+        Some((blocks.get(offset)?, blocks.get(offset + 1)))
+    }
+
+    #[cold]
+    fn load(&mut self, program: u16, chunk: usize) {
+        if self.kept.len() >= CHUNKS_KEPT
+            && let Some((old_program, old_chunk)) = self.kept.pop_front()
+            && let Some(slot) = self
+                .programs
+                .get_mut(usize::from(old_program))
+                .and_then(|p| p.chunks.get_mut(old_chunk))
+        {
+            *slot = None;
+        }
+        if let Some(loaded) = self.programs.get_mut(usize::from(program)) {
+            let decoded = Box::new(loaded.program.decode(chunk as u32));
+            if let Some(slot) = loaded.chunks.get_mut(chunk) {
+                *slot = Some(decoded);
+                self.kept.push_back((program, chunk));
+            }
+        }
+    }
+}

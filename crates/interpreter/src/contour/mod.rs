@@ -1,0 +1,160 @@
+//! From contour elements to the path of the tool centre.
+//!
+//! Positioning blocks arrive as [`ContourMove`]s in workpiece coordinates. Two stages follow, each
+//! holding back one element because it needs to see the next one:
+//! [`rounding`] inserts roundings and chamfers, [`compensation`] offsets by the tool radius.
+
+pub(crate) mod compensation;
+pub(crate) mod flat;
+pub(crate) mod rounding;
+
+use bahn_path::{Barrier, PathElement, Plane};
+
+use self::compensation::CompensationStage;
+use self::rounding::RoundingStage;
+use crate::error::Fault;
+use crate::output::Output;
+
+/// A movement (or a hold with functions) on its way to the output.
+#[derive(Clone, Debug)]
+pub(crate) struct ContourMove {
+    /// Start and end on the programmed contour.
+    pub element: PathElement,
+    /// Working plane of radius compensation.
+    pub plane: Plane,
+    /// Side of the tool.
+    pub side: Side,
+    /// Tool radius including oversize, mm.
+    pub radius: f64,
+    /// What happens at the corner at the end of the element.
+    pub corner: Corner,
+    /// What the feed refers to on arcs.
+    pub feed_law: FeedLaw,
+    /// The movement touches an axis of the plane.
+    pub in_plane: bool,
+    /// Smooth approach or departure by RND [003:2477-2495].
+    pub smooth: Option<Smooth>,
+    /// What the run waits for after the element.
+    pub barrier: Option<Barrier>,
+}
+
+/// Side of the tool, seen in the direction of travel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Side {
+    #[default]
+    Off,
+    Left,
+    Right,
+}
+
+impl Side {
+    /// +1 left, -1 right, 0 off.
+    pub fn sign(self) -> f64 {
+        match self {
+            Side::Off => 0.0,
+            Side::Left => 1.0,
+            Side::Right => -1.0,
+        }
+    }
+
+    /// The side in a mirrored system.
+    pub fn mirrored(self) -> Side {
+        match self {
+            Side::Off => Side::Off,
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        }
+    }
+}
+
+/// How the compensated path goes round the corner at the end of an element.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Corner {
+    /// Transition arc outside, intersection inside [003:2061-2076].
+    #[default]
+    Normal,
+    /// M97: intersection outside too [003:3467-3493].
+    Intersection,
+    /// M98: both elements completely machined [003:3497-3512].
+    Open,
+}
+
+/// What the programmed feed refers to on arcs [000:5120-5126].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum FeedLaw {
+    /// M111: path of the tool centre.
+    #[default]
+    Centre,
+    /// M109: cutting edge, raised or lowered.
+    Edge,
+    /// M110: cutting edge, lowered only.
+    EdgeReduced,
+}
+
+/// A smooth approach or departure on an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Smooth {
+    pub radius: f64,
+    pub feed_mm_min: Option<f64>,
+    pub block: bahn_path::BlockRef,
+}
+
+/// The stages in a row.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Contour {
+    rounding: RoundingStage,
+    compensation: CompensationStage,
+}
+
+impl Contour {
+    /// Stages that record a contour subprogram.
+    pub fn recorder() -> Contour {
+        Contour {
+            rounding: RoundingStage::default(),
+            compensation: CompensationStage::recorder(),
+        }
+    }
+
+    /// Ends a recorded contour and gives its elements.
+    pub fn take_recorded(&mut self, out: &mut Output) -> Result<Vec<ContourMove>, Fault> {
+        self.flush(out)?;
+        self.rounding = RoundingStage::default();
+        Ok(self.compensation.take_recorded())
+    }
+
+    /// Takes the next movement.
+    #[inline]
+    pub fn push(&mut self, item: ContourMove, out: &mut Output) -> Result<(), Fault> {
+        self.rounding.push(item, &mut self.compensation, out)
+    }
+
+    /// Whether the next uncompensated movement passes through unchanged.
+    #[inline]
+    pub fn is_idle(&self) -> bool {
+        self.rounding.has_no_join() && self.compensation.is_idle()
+    }
+
+    /// Hands out the movement held back for a rounding that does not come. Only when idle.
+    #[inline]
+    pub fn release(&mut self, out: &mut Output) {
+        if let Some(held) = self.rounding.release() {
+            out.push(held.element, held.barrier);
+        }
+    }
+
+    /// Takes a rounding or chamfer between the last movement and the next.
+    pub fn join(&mut self, join: rounding::Join) -> Result<(), Fault> {
+        self.rounding.join(join)
+    }
+
+    /// Hands out everything that is held back, as if nothing followed.
+    pub fn flush(&mut self, out: &mut Output) -> Result<(), Fault> {
+        self.rounding.flush(&mut self.compensation, out)?;
+        self.compensation.flush(out)
+    }
+
+    /// Where the tool centre really stands in the plane, when that is beside the programmed position.
+    pub fn displaced(&self) -> Option<(Plane, bahn_path::Point2)> {
+        self.compensation.displaced()
+    }
+}

@@ -1,0 +1,300 @@
+//! Roundings and chamfers between two contour elements.
+
+use bahn_parameters::MessageId;
+use bahn_path::{Arc, BlockRef, Curve, FeedRate, PathElement, Point2};
+
+use super::compensation::CompensationStage;
+use super::flat::{self, Flat, SAME_POINT_MM};
+use super::{ContourMove, Side, Smooth};
+use crate::error::Fault;
+use crate::output::Output;
+
+/// A rounding or chamfer asked for by a block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Join {
+    pub kind: JoinKind,
+    /// Feed of the joint only [003:3034].
+    pub feed_mm_min: Option<f64>,
+    pub block: BlockRef,
+    pub sequence: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum JoinKind {
+    /// RND: radius, mm [003:3008-3034].
+    Rounding(f64),
+    /// Chamfer: length cut off each side, mm [003:2664-2680].
+    Chamfer(f64),
+}
+
+/// Holds the last movement until it is known whether a rounding follows.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RoundingStage {
+    held: Option<ContourMove>,
+    join: Option<Join>,
+    /// Holds (functions without movement) that came after the join was asked for.
+    after: Vec<ContourMove>,
+    /// Side of the plane movement before the held one: tells the first compensated block.
+    side_before: Side,
+}
+
+impl RoundingStage {
+    #[inline]
+    pub fn push(
+        &mut self,
+        item: ContourMove,
+        next: &mut CompensationStage,
+        out: &mut Output,
+    ) -> Result<(), Fault> {
+        if let Some(join) = self.join {
+            return self.push_joined(join, item, next, out);
+        }
+        if let Some(held) = self.held.replace(item) {
+            if held.in_plane {
+                self.side_before = held.side;
+            }
+            next.push(held, out)?;
+        }
+        Ok(())
+    }
+
+    #[inline]
+    pub fn has_no_join(&self) -> bool {
+        self.join.is_none() && self.held.as_ref().is_none_or(|held| held.side == Side::Off)
+    }
+
+    /// The held movement, when an uncompensated one follows.
+    #[inline]
+    pub fn release(&mut self) -> Option<ContourMove> {
+        self.held.as_ref()?;
+        self.side_before = Side::Off;
+        self.held.take()
+    }
+
+    pub fn join(&mut self, join: Join) -> Result<(), Fault> {
+        let fault = match join.kind {
+            JoinKind::Rounding(_) => MessageId::RoundingOffNotDefined,
+            JoinKind::Chamfer(_) => MessageId::ChamferNotPermitted,
+        };
+        if self.join.is_some() || !self.held.as_ref().is_some_and(|held| held.in_plane) {
+            return Err(Fault::new(
+                fault,
+                "the block before must be a movement in the working plane",
+            ));
+        }
+        self.join = Some(join);
+        Ok(())
+    }
+
+    pub fn flush(&mut self, next: &mut CompensationStage, out: &mut Output) -> Result<(), Fault> {
+        if let Some(join) = self.join.take() {
+            return Err(not_between(join));
+        }
+        if let Some(held) = self.held.take() {
+            if held.in_plane {
+                self.side_before = held.side;
+            }
+            next.push(held, out)?;
+        }
+        Ok(())
+    }
+
+    fn push_joined(
+        &mut self,
+        join: Join,
+        mut item: ContourMove,
+        next: &mut CompensationStage,
+        out: &mut Output,
+    ) -> Result<(), Fault> {
+        if item.element.curve == Curve::Hold {
+            self.after.push(item);
+            return Ok(());
+        }
+        let Some(mut held) = self.held.take().filter(|_| item.in_plane) else {
+            return Err(not_between(join));
+        };
+        self.join = None;
+        let started = held.side != Side::Off && self.side_before == Side::Off;
+        let ends = held.side != Side::Off && item.side == Side::Off;
+        match (started, ends, join.kind) {
+            (true, false, JoinKind::Rounding(radius)) if item.side == held.side => {
+                held.smooth = Some(smooth(radius, join));
+                next.push(held, out)?;
+            }
+            (false, true, JoinKind::Rounding(radius)) => {
+                item.smooth = Some(smooth(radius, join));
+                next.push(held, out)?;
+            }
+            (false, false, _) if item.side == held.side => {
+                let joint = match join.kind {
+                    JoinKind::Rounding(radius) => round(&mut held, &mut item, radius, join)?,
+                    JoinKind::Chamfer(length) => Some(chamfer(&mut held, &mut item, length, join)?),
+                };
+                next.push(held, out)?;
+                if let Some(joint) = joint {
+                    next.push(joint, out)?;
+                }
+            }
+            // Different compensation before and after the block [003:7962-7964].
+            _ => return Err(Fault::from(MessageId::PathOffsetWronglyStarted).at(join.block)),
+        }
+        for hold in self.after.drain(..) {
+            next.push(hold, out)?;
+        }
+        self.side_before = item.side;
+        self.held = Some(item);
+        Ok(())
+    }
+}
+
+fn smooth(radius: f64, join: Join) -> Smooth {
+    Smooth {
+        radius,
+        feed_mm_min: join.feed_mm_min,
+        block: join.block,
+    }
+}
+
+fn not_between(join: Join) -> Fault {
+    let message = match join.kind {
+        JoinKind::Rounding(_) => MessageId::RoundingOffNotDefined,
+        JoinKind::Chamfer(_) => MessageId::ChamferNotPermitted,
+    };
+    Fault::new(message, "no contour element follows in the working plane").at(join.block)
+}
+
+/// Arc tangent to both elements; the corner point is not reached [003:3008-3033]. `None` when the
+/// elements already are tangential: there is no corner to round.
+fn round(
+    held: &mut ContourMove,
+    item: &mut ContourMove,
+    radius: f64,
+    join: Join,
+) -> Result<Option<ContourMove>, Fault> {
+    let (Some(a), Some(b)) = (
+        Flat::of(&held.element, held.plane),
+        Flat::of(&item.element, item.plane),
+    ) else {
+        return Err(Fault::from(MessageId::RoundingOffNotDefined).at(join.block));
+    };
+    let (ta, tb) = (a.end_tangent(), b.start_tangent());
+    let turn = flat::cross(ta, tb);
+    const TANGENTIAL: f64 = 1e-6;
+    if turn.abs() < TANGENTIAL && flat::dot(ta, tb) > 0.0 {
+        return Ok(None);
+    }
+    let too_large = || Fault::from(MessageId::RoundingRadiusTooLarge).at(join.block);
+    let side = if turn > 0.0 { 1.0 } else { -1.0 };
+    let (oa, ob) = match (a.offset(side * radius), b.offset(side * radius)) {
+        (Some(oa), Some(ob)) => (oa, ob),
+        _ => return Err(too_large()),
+    };
+    // The centre is the intersection of the parallels; with arcs take the one nearest to the corner
+    // whose tangent points lie on both elements.
+    let corner = a.end();
+    let fits = |centre: &Point2| {
+        let (back, forward) = (oa.before_end(*centre), ob.beyond_start(*centre));
+        let slack = SAME_POINT_MM;
+        back >= -slack && forward >= -slack && back <= oa.length() + slack && forward <= ob.length() + slack
+    };
+    let centre = oa
+        .intersections(&ob)
+        .into_iter()
+        .flatten()
+        .filter(fits)
+        .min_by(|p, q| flat::distance(*p, corner).total_cmp(&flat::distance(*q, corner)))
+        .ok_or_else(too_large)?;
+    let from = nearest_on(&a, centre);
+    let to = nearest_on(&b, centre);
+    let sweep = bahn_path::sweep_deg(centre, from, to, side > 0.0);
+    let mut joint = joint_element(held, join, from, to);
+    joint.element.curve = Curve::Arc(Arc {
+        plane: held.plane,
+        centre,
+        sweep_deg: sweep,
+    });
+    cut(held, item, &a, &b, from, to);
+    joint.element.tangential_end = true;
+    held.element.tangential_end = true;
+    Ok(Some(joint))
+}
+
+/// Straight cut between two straight lines [003:2664-2680].
+fn chamfer(
+    held: &mut ContourMove,
+    item: &mut ContourMove,
+    length: f64,
+    join: Join,
+) -> Result<ContourMove, Fault> {
+    let (Some(a @ Flat::Line { .. }), Some(b @ Flat::Line { .. })) = (
+        Flat::of(&held.element, held.plane),
+        Flat::of(&item.element, item.plane),
+    ) else {
+        return Err(Fault::from(MessageId::ChamferNotPermitted).at(join.block));
+    };
+    if length > a.length() + SAME_POINT_MM || length > b.length() + SAME_POINT_MM {
+        return Err(Fault::new(
+            MessageId::ChamferNotPermitted,
+            "the chamfer is longer than a side",
+        )
+        .at(join.block));
+    }
+    let from = flat::along(a.end(), a.end_tangent(), -length);
+    let to = flat::along(b.start(), b.start_tangent(), length);
+    let joint = joint_element(held, join, from, to);
+    cut(held, item, &a, &b, from, to);
+    Ok(joint)
+}
+
+fn nearest_on(curve: &Flat, centre: Point2) -> Point2 {
+    match *curve {
+        Flat::Line { start, end } => {
+            let u = flat::unit(flat::sub(end, start));
+            flat::along(start, u, flat::dot(flat::sub(centre, start), u))
+        }
+        Flat::Arc {
+            start, centre: own, ..
+        } => flat::along(
+            own,
+            flat::unit(flat::sub(centre, own)),
+            flat::distance(start, own),
+        ),
+    }
+}
+
+/// The joint takes compensation and (unless it has its own) feed of the element before it.
+fn joint_element(held: &ContourMove, join: Join, from: Point2, to: Point2) -> ContourMove {
+    let mut joint = held.clone();
+    joint.smooth = None;
+    joint.corner = Default::default();
+    joint.barrier = None;
+    joint.element = PathElement {
+        block: join.block,
+        sequence: join.sequence,
+        curve: Curve::Line,
+        functions: None,
+        dwell_s: 0.0,
+        start: held.element.end,
+        ..joint.element
+    };
+    if let Some(feed) = join.feed_mm_min {
+        joint.element.feed = FeedRate::Programmed(feed);
+    }
+    held.plane.set(&mut joint.element.start, from);
+    held.plane.set(&mut joint.element.end, to);
+    joint
+}
+
+/// Shortens both elements to the joint.
+fn cut(held: &mut ContourMove, item: &mut ContourMove, a: &Flat, b: &Flat, from: Point2, to: Point2) {
+    shorten(&mut held.element.curve, a.before_end(from) / a.length());
+    held.plane.set(&mut held.element.end, from);
+    shorten(&mut item.element.curve, b.beyond_start(to) / b.length());
+    item.plane.set(&mut item.element.start, to);
+}
+
+fn shorten(curve: &mut Curve, fraction: f64) {
+    if let Curve::Arc(arc) = curve {
+        arc.sweep_deg *= 1.0 - fraction;
+    }
+}

@@ -1,0 +1,386 @@
+//! SL cycles: rough-out (6), pilot drilling (15) and contour milling (16) of superimposed subcontours.
+
+use bahn_parameters::MessageId;
+use bahn_path::region::{
+    Contour as PlaneContour, HatchPattern, Kind, Merge, PocketArea, Region, Segment, SubContour, superimpose,
+};
+use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2};
+
+use super::Definition;
+use super::machining::{Heights, Tracer, infeeds};
+use crate::contour::flat::Flat;
+use crate::contour::{ContourMove, Side};
+use crate::error::Fault;
+use crate::modal::Spindle;
+use crate::run::Run;
+use crate::settings::Settings;
+
+/// What an SL cycle is asked to do: the subcontours that its labels describe.
+#[derive(Clone, Debug)]
+pub(crate) struct ContourJob {
+    pub subcontours: Vec<SubContour>,
+    pub plane: Plane,
+}
+
+/// Farthest distance of the last point from the first one of a closed contour, mm: end points are
+/// calculated and rounded in many programs (inferred).
+const CLOSED_MM: f64 = 0.01;
+
+impl ContourJob {
+    pub fn new(plane: Plane) -> ContourJob {
+        ContourJob {
+            subcontours: Vec::new(),
+            plane,
+        }
+    }
+
+    /// Adds what a contour subprogram recorded. Its first block gives the start point [003:5389-5454].
+    pub fn add(&mut self, moves: &[ContourMove]) -> Result<(), Fault> {
+        let mut moves = moves.iter().filter(|item| item.in_plane);
+        let Some(first) = moves.next() else {
+            return Err(Fault::new(
+                MessageId::CyclIncomplete,
+                "the subprogram describes no contour",
+            ));
+        };
+        let mut contour = PlaneContour::start_at(self.plane.point(&first.element.end));
+        let mut side = first.side;
+        let mut last = first.element.block;
+        for item in moves {
+            if item.side == Side::Off && side != Side::Off {
+                // The contour ends where the compensation does.
+                break;
+            }
+            side = item.side;
+            last = item.element.block;
+            match Flat::of(&item.element, self.plane) {
+                Some(Flat::Line { start, end }) => contour.push(Segment::line(start, end)),
+                Some(Flat::Arc {
+                    start,
+                    end,
+                    centre,
+                    sweep_deg,
+                }) => {
+                    contour.push(Segment::Arc {
+                        from: start,
+                        to: end,
+                        centre,
+                        sweep_deg,
+                    });
+                }
+                None if matches!(item.element.curve, Curve::Arc(_)) => {
+                    return Err(Fault::from(MessageId::PlaneWronglyDefined).at(item.element.block));
+                }
+                None => {}
+            }
+        }
+        if side == Side::Off {
+            return Err(Fault::from(MessageId::RadiusCompensationUndefined).at(first.element.block));
+        }
+        let (start, end) = (contour.start(), contour.end());
+        let gap = (end[0] - start[0]).hypot(end[1] - start[1]);
+        if gap > CLOSED_MM || gap.is_nan() || contour.segments().is_empty() {
+            let detail = format!("the contour does not close: its end is {gap:.3} mm from its start");
+            return Err(Fault::new(MessageId::CyclIncomplete, detail).at(last));
+        }
+        self.subcontours
+            .push(SubContour::programmed(contour.closed(), side == Side::Left));
+        Ok(())
+    }
+}
+
+/// The plane of the subcontours: the working plane, where parallel axes of the first coordinate block
+/// stand for their main axes [003:5397-5432].
+pub(crate) fn contour_plane(working: Plane, first_axes: AxisSet) -> Plane {
+    let substitute = |axis: Axis| {
+        let parallel = first_axes.iter().find(|a| *a != axis && a.main() == axis.main());
+        parallel.filter(|_| !first_axes.contains(axis)).unwrap_or(axis)
+    };
+    Plane {
+        first: substitute(working.first),
+        second: substitute(working.second),
+        normal: working.normal,
+    }
+}
+
+impl Run {
+    /// Runs cycle 6, 15 or 16 on the contours of cycle 14.
+    pub(crate) fn contour_cycle(&mut self, job: &ContourJob, settings: &Settings) -> Result<(), Fault> {
+        let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
+            return Err(MessageId::CyclIncomplete.into());
+        };
+        match definition.number {
+            6 => self.rough_out(job, &definition, settings),
+            15 => self.pilot_drilling(job, &definition, settings),
+            _ => self.contour_milling(job, &definition, settings),
+        }
+    }
+
+    /// Cycle 6 ROUGH-OUT [003:5477-5521].
+    fn rough_out(&mut self, job: &ContourJob, d: &Definition, settings: &Settings) -> Result<(), Fault> {
+        let pecking = d.length(2, 0, "PECKG")?;
+        let plunge_feed = d.feed(2, 0, "F for pecking")?;
+        let allowance = d.length(2, 1, "ALLOW")?;
+        let angle = d.number(3, 0, "ANGLE")?;
+        let feed = d.feed(3, 0, "F")?;
+        let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
+        let areas = self.areas(job, allowance, settings)?;
+        let rules = settings.rules.contour_pocket;
+        let mill = Milling {
+            heights,
+            plunge_feed,
+            feed,
+            reversed: rules.channel_clockwise,
+        };
+        let direction = self.plane_direction_of(angle);
+        let stepover = self.modal.tool_radius();
+        for area in &areas {
+            check_passes(area, stepover)?;
+        }
+        let clearing: Vec<_> = areas
+            .iter()
+            .map(|area| area.region.hatch(direction, stepover, HatchPattern::Zigzag))
+            .collect();
+        let mut trace = self.tracer();
+        trace.set_plane(job.plane);
+        // The depths of one operation: all of them, or one after the other in turn with the other operation.
+        let rounds: Vec<&[f64]> = if rules.per_infeed {
+            pecks.chunks(1).collect()
+        } else {
+            vec![&pecks]
+        };
+        for (area, passes) in areas.iter().zip(&clearing) {
+            for depths in &rounds {
+                let channel = |trace: &mut Tracer<'_>| {
+                    for outline in &area.outlines {
+                        mill.outline(trace, &outline.contour, depths);
+                    }
+                };
+                let clear = |trace: &mut Tracer<'_>| {
+                    for depth in *depths {
+                        mill.clear(trace, passes, *depth);
+                    }
+                };
+                if rules.clear_first {
+                    clear(&mut trace);
+                    channel(&mut trace);
+                } else {
+                    channel(&mut trace);
+                    clear(&mut trace);
+                }
+            }
+        }
+        finish(trace, settings)
+    }
+
+    /// Cycle 15 PILOT DRILLING: pecks as cycle 1 at each infeed point [003:5993-6014].
+    fn pilot_drilling(&mut self, job: &ContourJob, d: &Definition, settings: &Settings) -> Result<(), Fault> {
+        let pecking = d.length(2, 0, "PECKG")?;
+        let feed = d.feed(2, 0, "F")?;
+        let allowance = d.length(2, 1, "ALLOW")?;
+        let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
+        let areas = self.areas(job, allowance, settings)?;
+        let mut trace = self.tracer();
+        trace.set_plane(job.plane);
+        for outline in areas.iter().flat_map(|area| &area.outlines) {
+            trace.rapid_to(outline.infeed());
+            super::drilling::peck(&mut trace, &heights, &pecks, feed, 0.0);
+        }
+        finish(trace, settings)
+    }
+
+    /// Cycle 16 CONTOUR MILLING: DR+ climb, DR- up-cut with M3 [003:6028-6066].
+    fn contour_milling(
+        &mut self,
+        job: &ContourJob,
+        d: &Definition,
+        settings: &Settings,
+    ) -> Result<(), Fault> {
+        let pecking = d.length(2, 0, "PECKG")?;
+        let plunge_feed = d.feed(2, 0, "F for pecking")?;
+        let feed = d.feed(2, 1, "F")?;
+        let climb = d.counter_clockwise(2) != (self.modal.spindle == Spindle::CounterClockwise);
+        let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
+        let areas = self.areas(job, 0.0, settings)?;
+        let mill = Milling {
+            heights,
+            plunge_feed,
+            feed,
+            reversed: !climb,
+        };
+        let mut trace = self.tracer();
+        trace.set_plane(job.plane);
+        for outline in areas.iter().flat_map(|area| &area.outlines) {
+            mill.outline(&mut trace, &outline.contour, &pecks);
+        }
+        finish(trace, settings)
+    }
+
+    fn contour_heights(
+        &mut self,
+        d: &Definition,
+        pecking: f64,
+        settings: &Settings,
+    ) -> Result<(Heights, Vec<f64>), Fault> {
+        let setup = d.length(1, 0, "SETUP")?;
+        let depth = d.length(1, 1, "DEPTH")?;
+        let heights = self.heights(d, [setup, depth], Some(pecking), settings)?;
+        Ok((
+            heights,
+            infeeds(heights.depth, pecking * heights.depth / depth.abs()),
+        ))
+    }
+
+    /// The areas of the tool centre at a finishing allowance.
+    fn areas(&self, job: &ContourJob, allowance: f64, settings: &Settings) -> Result<Vec<PocketArea>, Fault> {
+        let radius = self.modal.tool_radius();
+        if radius <= 0.0 {
+            return Err(Fault::new(
+                MessageId::ToolRadiusTooLarge,
+                "a contour pocket cannot be milled with tool radius 0",
+            ));
+        }
+        let rules = settings.rules.contour_pocket;
+        let merge = if rules.merge_programmed {
+            Merge::ProgrammedContours
+        } else {
+            Merge::CentrePaths
+        };
+        // The finishing allowance is a positive number [003:5508].
+        let distance = radius + allowance.abs();
+        // Compensated one by one, a pocket narrower than the tool would silently stay unmachined.
+        let vanishes = |sub: &SubContour| {
+            sub.kind == Kind::Pocket && Region::from_contour(&sub.contour).offset(-distance).is_empty()
+        };
+        let areas = superimpose(&job.subcontours, distance, merge);
+        if areas.is_empty() || (merge == Merge::CentrePaths && job.subcontours.iter().any(vanishes)) {
+            return Err(Fault::new(
+                MessageId::ToolRadiusTooLarge,
+                "the tool does not fit into a pocket",
+            ));
+        }
+        Ok(areas)
+    }
+
+    /// Angle in workpiece coordinates of an angle in the programmed plane, degrees.
+    fn plane_direction_of(&self, angle_deg: f64) -> f64 {
+        let (sin, cos) = (
+            crate::q_parameters::sin_deg(angle_deg),
+            crate::q_parameters::cos_deg(angle_deg),
+        );
+        bahn_path::angle_deg(self.plane_direction([cos, sin]))
+    }
+}
+
+/// How outlines and passes are milled.
+struct Milling {
+    heights: Heights,
+    plunge_feed: f64,
+    feed: f64,
+    /// Against the sense of the outlines (area on the left).
+    reversed: bool,
+}
+
+impl Milling {
+    /// One outline at all given depths: the tool comes back to the infeed point and is advanced there.
+    fn outline(&self, trace: &mut Tracer<'_>, contour: &PlaneContour, depths: &[f64]) {
+        let contour = if self.reversed {
+            contour.reversed()
+        } else {
+            contour.clone()
+        };
+        trace.rapid_to(contour.start());
+        for depth in depths {
+            if trace.is_full() {
+                return;
+            }
+            trace.feed_height(self.heights.at_depth(*depth), self.plunge_feed);
+            for segment in contour.segments() {
+                self.segment(trace, segment);
+            }
+        }
+        trace.rapid_height(self.heights.clearance);
+    }
+
+    /// Parallel passes; where a link would leave the area the tool jumps over the island.
+    fn clear(&self, trace: &mut Tracer<'_>, passes: &[bahn_path::region::Pass], depth: f64) {
+        for pass in passes {
+            match &pass.link {
+                Some(way) => {
+                    for segment in way {
+                        self.segment(trace, segment);
+                    }
+                }
+                None => {
+                    trace.rapid_height(self.heights.clearance);
+                    trace.rapid_to(pass.from);
+                    trace.feed_height(self.heights.at_depth(depth), self.plunge_feed);
+                }
+            }
+            trace.line_to(pass.to, self.feed);
+        }
+        trace.rapid_height(self.heights.clearance);
+    }
+
+    fn segment(&self, trace: &mut Tracer<'_>, segment: &Segment) {
+        match *segment {
+            Segment::Line { to, .. } => trace.line_to(to, self.feed),
+            Segment::Arc {
+                to,
+                centre,
+                sweep_deg,
+                ..
+            } => {
+                trace.arc_to(centre, to, sweep_deg, self.feed);
+            }
+        }
+    }
+}
+
+/// Refuses a stepover so small that an area would take more passes than a cycle may have movements.
+fn check_passes(area: &PocketArea, stepover: f64) -> Result<(), Fault> {
+    const PASSES_MAX: f64 = 50_000.0;
+    let Some((min, max)) = area.region.bounding_box() else {
+        return Ok(());
+    };
+    if (max[0] - min[0]).hypot(max[1] - min[1]) / stepover > PASSES_MAX {
+        let detail = "the tool is too small to clear an area of this size";
+        return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
+    }
+    Ok(())
+}
+
+/// Bit 4 of MP7420: back to the position before the call, or stay at the clearance height
+/// [000:6739-6753].
+fn finish(mut trace: Tracer<'_>, settings: &Settings) -> Result<(), Fault> {
+    if !settings.rules.contour_pocket.stay_at_clearance {
+        trace.rapid([0.0, 0.0]);
+    }
+    trace.finish()
+}
+
+impl Tracer<'_> {
+    fn rapid_to(&mut self, point: Point2) {
+        self.to(Curve::Line, point, FeedRate::Rapid);
+    }
+
+    fn line_to(&mut self, point: Point2, feed_mm_min: f64) {
+        self.to(Curve::Line, point, FeedRate::Programmed(feed_mm_min));
+    }
+
+    fn arc_to(&mut self, centre: Point2, point: Point2, sweep_deg: f64, feed_mm_min: f64) {
+        let curve = Curve::Arc(Arc {
+            plane: self.plane(),
+            centre,
+            sweep_deg,
+        });
+        self.to(curve, point, FeedRate::Programmed(feed_mm_min));
+    }
+
+    /// A movement to a point in workpiece coordinates.
+    fn to(&mut self, curve: Curve, point: Point2, feed: FeedRate) {
+        let mut end = self.position();
+        self.plane().set(&mut end, point);
+        self.movement(curve, end, feed);
+    }
+}

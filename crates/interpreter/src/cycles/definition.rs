@@ -1,0 +1,197 @@
+//! Cycle definitions as they are read, block by block.
+
+use bahn_parameters::MessageId;
+use bahn_path::Axis;
+use bahn_program::{CycleBlock, CycleWord, Direction, Feed, Value};
+
+use crate::error::Fault;
+use crate::run::Run;
+
+/// The definitions in force: the machining cycle for the call, and the one that acts at definition.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CycleData {
+    pub machining: Collector,
+    pub effective: Collector,
+}
+
+/// Collects the blocks n.0, n.1, ... of a definition.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Collector {
+    definition: Option<Definition>,
+    broken: bool,
+}
+
+impl Collector {
+    pub fn take(&mut self, number: u16, sub: u16, words: Vec<Resolved>, unit_mm: f64) {
+        if sub == 0 {
+            self.definition = Some(Definition {
+                number,
+                blocks: vec![words],
+                unit_mm,
+            });
+            self.broken = false;
+            return;
+        }
+        match &mut self.definition {
+            Some(definition)
+                if definition.number == number && definition.blocks.len() == usize::from(sub) =>
+            {
+                definition.blocks.push(words);
+            }
+            // Missing or unordered blocks [003:7923-7928].
+            _ => self.broken = true,
+        }
+    }
+
+    /// The definition, when its blocks came complete and in order so far.
+    pub fn ready(&self) -> Option<&Definition> {
+        self.definition.as_ref().filter(|_| !self.broken)
+    }
+}
+
+/// A cycle definition with the values that its Q parameters had when it was read (inferred).
+#[derive(Clone, Debug)]
+pub(crate) struct Definition {
+    pub number: u16,
+    blocks: Vec<Vec<Resolved>>,
+    unit_mm: f64,
+}
+
+/// A word with its value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Resolved {
+    Text(Box<str>),
+    Number(f64),
+    Coordinate {
+        axis: Axis,
+        value: f64,
+        incremental: bool,
+    },
+    Axis(Axis),
+    AxisDirection(Axis, Direction),
+    Feed(Option<f64>),
+    Direction(Direction),
+    Labels(Box<[u16]>),
+    Target(u16),
+    Assignment(u16, f64),
+}
+
+impl Resolved {
+    /// The word as part of a program name.
+    pub fn as_name(&self) -> Option<String> {
+        match self {
+            Resolved::Text(text) => Some(text.to_string()),
+            Resolved::Number(number) => Some(format!("{number}")),
+            _ => None,
+        }
+    }
+}
+
+impl Definition {
+    /// The words of a block.
+    pub fn block(&self, sub: u16) -> &[Resolved] {
+        self.blocks.get(usize::from(sub)).map_or(&[], Vec::as_slice)
+    }
+
+    fn missing(&self, what: &str) -> Fault {
+        Fault::new(
+            MessageId::CyclIncomplete,
+            format!("cycle {}: {what} is missing", self.number),
+        )
+    }
+
+    /// The `index`th number of a block.
+    pub fn number(&self, sub: u16, index: usize, what: &str) -> Result<f64, Fault> {
+        self.optional_number(sub, index).ok_or_else(|| self.missing(what))
+    }
+
+    pub fn optional_number(&self, sub: u16, index: usize) -> Option<f64> {
+        let numbers = self.block(sub).iter().filter_map(|word| match word {
+            Resolved::Number(number) => Some(*number),
+            _ => None,
+        });
+        numbers.into_iter().nth(index)
+    }
+
+    /// The `index`th number of a block as a length, mm.
+    pub fn length(&self, sub: u16, index: usize, what: &str) -> Result<f64, Fault> {
+        in_range(self.number(sub, index, what)? * self.unit_mm)
+    }
+
+    pub fn optional_length(&self, sub: u16, index: usize) -> Option<f64> {
+        self.optional_number(sub, index)
+            .map(|number| number * self.unit_mm)
+    }
+
+    /// The `index`th feed of a block, mm/min.
+    pub fn feed(&self, sub: u16, index: usize, what: &str) -> Result<f64, Fault> {
+        let feeds = self.block(sub).iter().filter_map(|word| match word {
+            Resolved::Feed(feed) => *feed,
+            _ => None,
+        });
+        let feed = feeds.into_iter().nth(index).ok_or_else(|| self.missing(what))?;
+        if feed <= 0.0 {
+            return Err(MessageId::FeedRateIsMissing.into());
+        }
+        Ok(feed * self.unit_mm)
+    }
+
+    /// The axis word of a block, mm.
+    pub fn coordinate(&self, sub: u16, what: &str) -> Result<(Axis, f64), Fault> {
+        let found = self.block(sub).iter().find_map(|word| match word {
+            Resolved::Coordinate { axis, value, .. } => Some((*axis, *value * self.unit_mm)),
+            _ => None,
+        });
+        let (axis, value) = found.ok_or_else(|| self.missing(what))?;
+        Ok((axis, in_range(value)?))
+    }
+
+    /// DR of a block; counter-clockwise (climb with M3 in pockets) when it is not given (inferred).
+    pub fn counter_clockwise(&self, sub: u16) -> bool {
+        !self
+            .block(sub)
+            .contains(&Resolved::Direction(Direction::Clockwise))
+    }
+}
+
+/// Refuses lengths that no machine has.
+fn in_range(length_mm: f64) -> Result<f64, Fault> {
+    const LENGTH_MAX_MM: f64 = 100_000.0;
+    if length_mm.abs() <= LENGTH_MAX_MM {
+        Ok(length_mm)
+    } else {
+        Err(Fault::new(
+            MessageId::EntryValueIncorrect,
+            "a length of the cycle is beyond the input range",
+        ))
+    }
+}
+
+impl Run {
+    /// Gives every word of a cycle block its value.
+    pub(crate) fn resolve(&self, block: &CycleBlock) -> Result<Vec<Resolved>, Fault> {
+        let value = |value: Value| self.q.value(value);
+        let mut words = Vec::with_capacity(block.words.len());
+        for word in &block.words {
+            words.push(match word {
+                CycleWord::Text(text) => Resolved::Text(text.clone()),
+                CycleWord::Number(number) => Resolved::Number(value(*number)?),
+                CycleWord::Coordinate(axis, word) => Resolved::Coordinate {
+                    axis: *axis,
+                    value: value(word.value)?,
+                    incremental: word.incremental,
+                },
+                CycleWord::Axis(axis) => Resolved::Axis(*axis),
+                CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
+                CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
+                CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(value(*feed)?)),
+                CycleWord::Direction(direction) => Resolved::Direction(*direction),
+                CycleWord::Labels(labels) => Resolved::Labels(labels.clone()),
+                CycleWord::Target(number) => Resolved::Target(*number),
+                CycleWord::Assignment(number, assigned) => Resolved::Assignment(*number, value(*assigned)?),
+                CycleWord::M(_) => continue,
+            });
+        }
+        Ok(words)
+    }
+}

@@ -1,0 +1,132 @@
+//! Cycles: definition, call, and what each does.
+//!
+//! Definitions are collected block by block. Cycles 7-11, 13 and 14 act when they are defined, the
+//! others when they are called [003:4849-4857].
+
+mod contour_pocket;
+mod definition;
+mod drilling;
+mod machining;
+mod pockets;
+mod transformation;
+
+use bahn_parameters::MessageId;
+use bahn_program::{CycleBlock, CycleWord, Value};
+
+pub(crate) use self::contour_pocket::{ContourJob, contour_plane};
+pub(crate) use self::definition::{CycleData, Definition, Resolved};
+use crate::error::Fault;
+use crate::flow::Flow;
+use crate::run::Run;
+use crate::settings::Settings;
+
+impl Run {
+    /// One block of a cycle definition.
+    pub(crate) fn define_cycle(&mut self, block: &CycleBlock, settings: &Settings) -> Result<(), Fault> {
+        if block.sub == 0 && !is_known(block.number, settings) {
+            let detail = format!("this control has no cycle {}", block.number);
+            return Err(Fault::new(MessageId::BlockNotKnown, detail));
+        }
+        let words = self.resolve(block)?;
+        if is_effective_at_definition(block.number) {
+            return self.define_effective(block, words, settings);
+        }
+        // A new definition ends M89 [003:4875-4881].
+        if block.sub == 0 {
+            self.modal.cycle_after_each_block = false;
+        }
+        self.modal
+            .cycle
+            .machining
+            .take(block.number, block.sub, words, self.unit_mm);
+        Ok(())
+    }
+
+    fn define_effective(
+        &mut self,
+        block: &CycleBlock,
+        words: Vec<Resolved>,
+        settings: &Settings,
+    ) -> Result<(), Fault> {
+        self.modal
+            .cycle
+            .effective
+            .take(block.number, block.sub, words, self.unit_mm);
+        if block.sub == 0 {
+            return Ok(());
+        }
+        let Some(definition) = self.modal.cycle.effective.ready() else {
+            return Err(Fault::new(
+                MessageId::CyclIncomplete,
+                "blocks of the cycle are missing or out of order",
+            ));
+        };
+        let words = definition.block(block.sub).to_vec();
+        match block.number {
+            7 => self.datum_shift(&words, settings),
+            8 => self.mirror_image(&words),
+            9 => self.dwell(&words, settings),
+            10 => self.rotation(&words, has_q_parameter(block), settings),
+            11 => self.scaling(&words, settings),
+            13 => self.spindle_orientation(&words),
+            _ => self.contour_geometry(&words, settings),
+        }
+    }
+
+    /// CYCL CALL, M99 or M89: runs the last defined machining cycle [003:4857-4881].
+    pub(crate) fn call_cycle(&mut self, settings: &Settings) -> Result<Flow, Fault> {
+        let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
+            return Err(Fault::new(
+                MessageId::CyclIncomplete,
+                "no complete cycle is defined",
+            ));
+        };
+        if definition.number == 12 {
+            return self.called_program(&definition);
+        }
+        self.finish_contour()?;
+        match definition.number {
+            1 => self.pecking(&definition, settings)?,
+            2 => self.tapping(&definition, settings)?,
+            3 => self.slot_milling(&definition, settings)?,
+            4 => self.pocket_milling(&definition, settings)?,
+            5 => self.circular_pocket(&definition, settings)?,
+            6 | 15 | 16 => return Ok(Flow::ContourCycle),
+            17 => self.rigid_tapping(&definition, settings)?,
+            number => {
+                let detail = format!("cycle {number} is read but not executed by this control");
+                return Err(Fault::new(MessageId::BlockNotKnown, detail));
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    /// Cycle 12: the called program is what the cycle call runs [003:6476-6490].
+    fn called_program(&self, definition: &Definition) -> Result<Flow, Fault> {
+        let name: Vec<String> = definition.block(1).iter().filter_map(Resolved::as_name).collect();
+        // `PGM 50` and `50` name the same program.
+        let name = match &name[..] {
+            [word, rest @ ..] if !rest.is_empty() && word.eq_ignore_ascii_case("PGM") => rest.join(" "),
+            words => words.join(" "),
+        };
+        if name.is_empty() {
+            return Err(Fault::new(MessageId::CyclIncomplete, "cycle 12 names no program"));
+        }
+        Ok(Flow::CallProgram(name.into()))
+    }
+}
+
+fn has_q_parameter(block: &CycleBlock) -> bool {
+    block
+        .words
+        .iter()
+        .any(|word| matches!(word, CycleWord::Number(Value::Q { .. })))
+}
+
+fn is_known(number: u16, settings: &Settings) -> bool {
+    settings.model.limits().has_cycle(u32::from(number))
+}
+
+fn is_effective_at_definition(number: u16) -> bool {
+    matches!(number, 7..=11 | 13 | 14)
+}

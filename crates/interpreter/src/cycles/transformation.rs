@@ -1,0 +1,212 @@
+//! Cycles that act when they are defined: transformations, dwell, spindle orientation, contour labels.
+
+use bahn_parameters::MessageId;
+use bahn_path::{At, Axis, Curve, FeedRate, Function, Synchronisation, TechnologyFunction};
+
+use super::Resolved;
+use crate::error::Fault;
+use crate::run::Run;
+use crate::settings::Settings;
+
+impl Run {
+    /// Cycle 7 DATUM SHIFT: absolute to the set datum, incremental to the last valid one [003:6222].
+    pub(super) fn datum_shift(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
+        let max = settings.model.limits().coordinate_max;
+        for word in words {
+            let Resolved::Coordinate {
+                axis,
+                value,
+                incremental,
+            } = word
+            else {
+                continue;
+            };
+            let value = value * self.axis_unit(*axis);
+            let shift = if *incremental {
+                self.modal.frame.shift[*axis] + value
+            } else {
+                value
+            };
+            if shift.abs() > max {
+                return Err(Fault::new(
+                    MessageId::EntryValueIncorrect,
+                    format!("{axis} is beyond {max}"),
+                ));
+            }
+            self.modal.frame.shift[*axis] = shift;
+        }
+        self.transformed();
+        Ok(())
+    }
+
+    /// Cycle 8 MIRROR IMAGE: the named axes; none cancels. Neither the tool axis nor a rotary axis can be
+    /// mirrored [003:6290-6307].
+    pub(super) fn mirror_image(&mut self, words: &[Resolved]) -> Result<(), Fault> {
+        let mut mirrored = Vec::new();
+        for word in words {
+            match word {
+                Resolved::Axis(axis)
+                | Resolved::Coordinate { axis, .. }
+                | Resolved::AxisDirection(axis, _) => {
+                    mirrored.push(*axis);
+                }
+                _ => {}
+            }
+        }
+        for axis in &mirrored {
+            if axis.is_rotary() || *axis == self.modal.plane.normal {
+                let detail = format!("{axis} cannot be mirrored");
+                return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
+            }
+        }
+        for axis in Axis::ALL {
+            let size = self.modal.frame.factor[axis].abs();
+            self.modal.frame.factor[axis] = if mirrored.contains(&axis) { -size } else { size };
+        }
+        self.transformed();
+        Ok(())
+    }
+
+    /// Cycle 10 ROTATION about the active datum in the working plane [003:6313-6333]. The input limit of 360
+    /// degrees is one of typed numbers: a calculated angle may go on counting, as the hemisphere of the manual
+    /// does in its last pass [003:4785-4789].
+    pub(super) fn rotation(
+        &mut self,
+        words: &[Resolved],
+        calculated: bool,
+        settings: &Settings,
+    ) -> Result<(), Fault> {
+        // `IROT`: the word before the number says that it is incremental (spelling inferred).
+        let incremental = words.iter().any(|word| {
+            matches!(word, Resolved::Text(text) if text.len() > 1 && text.to_ascii_uppercase().starts_with('I'))
+        });
+        let Some(angle) = first_number(words) else {
+            return Err(Fault::new(
+                MessageId::CyclIncomplete,
+                "the angle of rotation is missing",
+            ));
+        };
+        let max = settings.model.limits().rotation_max_deg;
+        if angle.abs() > max && !calculated {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("ROT takes -{max} to +{max} degrees"),
+            ));
+        }
+        let frame = &mut self.modal.frame;
+        frame.rotation_deg = if incremental {
+            frame.rotation_deg + angle
+        } else {
+            angle
+        } % 360.0;
+        frame.plane = self.modal.plane;
+        self.transformed();
+        Ok(())
+    }
+
+    /// Cycle 11 SCALING FACTOR, in the working plane or on all axes by MP7410 [003:6385-6412].
+    pub(super) fn scaling(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
+        let Some(factor) = first_number(words) else {
+            return Err(Fault::new(
+                MessageId::CyclIncomplete,
+                "the scaling factor is missing",
+            ));
+        };
+        let [min, max] = settings.model.limits().scaling_range;
+        if !(min..=max).contains(&factor) {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("SCL takes {min} to {max}"),
+            ));
+        }
+        for axis in Axis::ALL.into_iter().filter(|axis| !axis.is_rotary()) {
+            let in_plane = axis.main() != self.modal.plane.normal.main();
+            let scaled = in_plane || !settings.rules.scaling_in_plane_only;
+            let sign = self.modal.frame.factor[axis].signum();
+            self.modal.frame.factor[axis] = if scaled { sign * factor } else { sign };
+        }
+        self.transformed();
+        Ok(())
+    }
+
+    /// The frame has changed: the tangent of the last movement is no longer known in it.
+    fn transformed(&mut self) {
+        self.modal.last_move = None;
+    }
+
+    /// Cycle 9 DWELL TIME in seconds [003:6462-6474].
+    pub(super) fn dwell(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
+        let Some(seconds) = first_number(words) else {
+            return Err(Fault::new(MessageId::CyclIncomplete, "the dwell time is missing"));
+        };
+        let max = settings.model.limits().dwell_max_s;
+        if !(0.0..=max).contains(&seconds) {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("dwell takes 0 to {max} s"),
+            ));
+        }
+        self.finish_contour()?;
+        let centre = self.tool_centre();
+        let mut element = self.element(Curve::Hold, centre, centre, FeedRate::Rapid);
+        element.dwell_s = seconds;
+        self.out.push(element, None);
+        Ok(())
+    }
+
+    /// Cycle 13: angle of the oriented spindle stop, used by M19 [003:6500-6528].
+    pub(super) fn spindle_orientation(&mut self, words: &[Resolved]) -> Result<(), Fault> {
+        let Some(angle) = first_number(words) else {
+            return Err(Fault::new(MessageId::CyclIncomplete, "the angle is missing"));
+        };
+        if !(0.0..=360.0).contains(&angle) {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "the angle is 0 to 360 degrees",
+            ));
+        }
+        self.modal.orientation_deg = Some(angle);
+        Ok(())
+    }
+
+    /// Cycle 14 CONTOUR GEOMETRY: the labels of the subcontours [003:5460-5470].
+    pub(super) fn contour_geometry(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
+        let mut labels = Vec::new();
+        for word in words {
+            match word {
+                Resolved::Labels(list) => labels.extend_from_slice(list),
+                Resolved::Number(number) if *number >= 1.0 && *number <= f64::from(u16::MAX) => {
+                    labels.push(*number as u16);
+                }
+                _ => {}
+            }
+        }
+        let max = settings.model.limits().contour_labels_max;
+        if labels.is_empty() || labels.len() > usize::from(max) {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("cycle 14 takes 1 to {max} labels"),
+            ));
+        }
+        self.modal.contour_labels = labels;
+        Ok(())
+    }
+
+    /// A function in the course of a cycle, where the tool stands.
+    pub(super) fn cycle_function(&mut self, function: Function, at: bahn_path::Position) {
+        let mut element = self.element(Curve::Hold, at, at, FeedRate::Rapid);
+        element.functions = Some(Box::new([TechnologyFunction {
+            function,
+            at: At::Start,
+            synchronisation: Synchronisation::MvsSvs,
+        }]));
+        self.out.push(element, None);
+    }
+}
+
+fn first_number(words: &[Resolved]) -> Option<f64> {
+    words.iter().find_map(|word| match word {
+        Resolved::Number(number) => Some(*number),
+        _ => None,
+    })
+}

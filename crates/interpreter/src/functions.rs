@@ -1,0 +1,228 @@
+//! Miscellaneous functions: when they act and what they do in the control.
+
+use bahn_parameters::MessageId;
+use bahn_path::{At, Axis, Function, Synchronisation, TechnologyFunction};
+use bahn_program::MFunctions;
+
+use crate::contour::{Corner, FeedLaw};
+use crate::error::{Fault, WarningKind};
+use crate::modal::Spindle;
+use crate::q_parameters::preassigned;
+use crate::run::Run;
+use crate::settings::Settings;
+
+/// What the M functions of a block do to the block itself.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BlockFunctions {
+    /// M90: constant speed at the corner [003:3439-3457].
+    pub constant_speed: bool,
+    /// M91, M92, M93: what the coordinates refer to [003:3533-3553].
+    pub reference: Reference,
+    /// M97, M98.
+    pub corner: Corner,
+    /// M99, or M89 in force: call the cycle after the movement.
+    pub cycle_call: bool,
+    /// Stop after the block.
+    pub stop: bool,
+    /// Program end after the block.
+    pub end: bool,
+    /// What goes out, with its place.
+    pub output: Vec<TechnologyFunction>,
+}
+
+/// What the coordinates of a block refer to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Reference {
+    #[default]
+    Datum,
+    /// M91: machine zero.
+    MachineZero,
+    /// M92: machine datum of MP950.
+    MachineDatum,
+    /// M93: current position.
+    Position,
+}
+
+/// Highest M function that goes to the PLC [000:7206].
+const M_PLC_MAX: u16 = 99;
+
+/// Whether an M function takes effect at the end of its block [003:7459-7577] [000:7076-7171].
+pub(crate) fn acts_at_end(m: u16) -> bool {
+    matches!(m, 0..=2 | 5 | 6 | 9 | 10 | 12 | 19 | 30 | 32..=35 | 52..=54 | 60 | 63..=70 | 95..=99)
+}
+
+/// M functions that act inside the control and are not output [000:7080-7186].
+fn is_internal(m: u16) -> bool {
+    matches!(m, 90..=99) || m > M_PLC_MAX
+}
+
+impl Run {
+    /// Takes the M functions of a block.
+    pub(crate) fn take_m_functions(
+        &mut self,
+        m: &MFunctions,
+        settings: &Settings,
+    ) -> Result<BlockFunctions, Fault> {
+        let mut block = BlockFunctions {
+            cycle_call: self.modal.cycle_after_each_block,
+            ..Default::default()
+        };
+        for &code in m.codes() {
+            self.take_m_function(code, m, settings, &mut block)?;
+        }
+        Ok(block)
+    }
+
+    fn take_m_function(
+        &mut self,
+        code: u16,
+        m: &MFunctions,
+        settings: &Settings,
+        block: &mut BlockFunctions,
+    ) -> Result<(), Fault> {
+        if code > settings.model.limits().m_max {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("this control has no M{code}"),
+            ));
+        }
+        let rules = &settings.rules.m_functions;
+        match code {
+            0 => {
+                block.stop = true;
+                self.stop_spindle();
+                self.set_coolant(false);
+            }
+            // Optional stop: free on these controls; nothing but the stop itself is agreed on.
+            1 => block.stop = true,
+            2 | 30 => {
+                block.end = true;
+                self.stop_spindle();
+                self.set_coolant(false);
+                if self.at.in_called_program() {
+                    self.warn(WarningKind::EndInCalledProgram);
+                }
+            }
+            3 | 13 => self.set_spindle(Spindle::Clockwise),
+            4 | 14 => self.set_spindle(Spindle::CounterClockwise),
+            5 => self.stop_spindle(),
+            6 => {
+                block.stop = rules.m6_stops;
+                self.stop_spindle();
+            }
+            8 => self.set_coolant(true),
+            9 => self.set_coolant(false),
+            19 => {
+                let angle = self
+                    .modal
+                    .orientation_deg
+                    .unwrap_or(settings.rules.spindle_orientation_deg);
+                block
+                    .output
+                    .push(output(Function::SpindleOrientation(angle), code, rules.axes_wait));
+            }
+            89 if rules.m89_calls_cycle => {
+                self.modal.cycle_after_each_block = true;
+                block.cycle_call = true;
+                return Ok(());
+            }
+            90 => block.constant_speed = true,
+            91 => block.reference = Reference::MachineZero,
+            92 => block.reference = Reference::MachineDatum,
+            93 => block.reference = Reference::Position,
+            94 => self.reduce_rotary_axes(),
+            97 => block.corner = Corner::Intersection,
+            98 => block.corner = Corner::Open,
+            99 => {
+                self.modal.cycle_after_each_block = false;
+                block.cycle_call = true;
+            }
+            103 if rules.m103_enabled => {
+                let percent = m
+                    .argument(103, 'F')
+                    .map(|value| self.q.value(value))
+                    .transpose()?;
+                self.modal.plunge_factor = percent.map(|percent| percent / 100.0);
+            }
+            109 => self.modal.feed_law = FeedLaw::Edge,
+            110 => self.modal.feed_law = FeedLaw::EdgeReduced,
+            111 => self.modal.feed_law = FeedLaw::Centre,
+            112 => self.warn(WarningKind::NotSimulated { m: code }),
+            _ => {}
+        }
+        if matches!(code, 13 | 14) {
+            self.set_coolant(true);
+        }
+        if !is_internal(code) {
+            block
+                .output
+                .push(output(Function::M(code), code, rules.axes_wait));
+        }
+        Ok(())
+    }
+
+    fn set_spindle(&mut self, spindle: Spindle) {
+        self.modal.spindle = spindle;
+        self.q.preassign(preassigned::SPINDLE, spindle.q110());
+    }
+
+    fn stop_spindle(&mut self) {
+        let stopped = self.modal.spindle.stopped();
+        self.set_spindle(stopped);
+    }
+
+    fn set_coolant(&mut self, on: bool) {
+        self.q.preassign(preassigned::COOLANT, if on { 1.0 } else { 0.0 });
+    }
+
+    /// M94: the position of rotary axes is reduced below 360 degrees without a movement [003:7482].
+    fn reduce_rotary_axes(&mut self) {
+        for axis in Axis::ALL.into_iter().filter(|axis| axis.is_rotary()) {
+            for position in [&mut self.modal.nominal, &mut self.modal.actual] {
+                position[axis] = position[axis].rem_euclid(360.0);
+            }
+        }
+    }
+}
+
+/// An output with its place in the block.
+fn output(function: Function, code: u16, axes_wait: bool) -> TechnologyFunction {
+    let at = if acts_at_end(code) { At::End } else { At::Start };
+    // Functions with a programmed stop always stop the axes [001:1651-1652].
+    let stops = matches!(code, 0 | 1 | 2 | 6 | 30);
+    let synchronisation = match (axes_wait || stops, at) {
+        (false, _) => Synchronisation::Mos,
+        (true, At::End) => Synchronisation::MnsSns,
+        (true, _) => Synchronisation::MvsSvs,
+    };
+    TechnologyFunction {
+        function,
+        at,
+        synchronisation,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The whole table of the manuals: effective at the end of the block [003:7463-7577].
+    #[test]
+    fn the_table_of_m_functions_is_complete() {
+        let predefined_end = [0, 2, 5, 6, 9, 30, 95, 96, 97, 98, 99];
+        let free_end = [
+            1, 10, 12, 19, 32, 33, 34, 35, 52, 53, 54, 60, 63, 64, 65, 66, 67, 68, 69, 70,
+        ];
+        let at_end: Vec<u16> = (0..=99).filter(|m| acts_at_end(*m)).collect();
+        let mut expected: Vec<u16> = predefined_end.into_iter().chain(free_end).collect();
+        expected.sort_unstable();
+        assert_eq!(at_end, expected);
+    }
+
+    #[test]
+    fn functions_of_the_control_do_not_reach_the_plc() {
+        // M91 to M99 act in the control; M100 and above are never sent [000:7206].
+        let sent: Vec<u16> = (85..=105).filter(|m| !is_internal(*m)).collect();
+        assert_eq!(sent, [85, 86, 87, 88, 89]);
+    }
+}

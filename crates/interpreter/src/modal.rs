@@ -1,0 +1,142 @@
+//! Modal data: what stays in force from block to block.
+
+use bahn_path::{Axis, Curve, Frame, Plane, Point2, Position, ToolShape};
+use bahn_program::{Compensation, Unit};
+
+use crate::contour::FeedLaw;
+use crate::cycles::CycleData;
+use crate::probe::ReferencePlane;
+
+/// The modal data of a run [003:2164-2188] [003:6199-6205].
+#[derive(Clone, Debug)]
+pub(crate) struct Modal {
+    /// Last programmed nominal position, workpiece coordinates.
+    pub nominal: Position,
+    /// Where the uncompensated path ended; differs from `nominal` after R+ and R-.
+    pub actual: Position,
+    /// Coordinate transformations.
+    pub frame: Frame,
+    /// Working plane of the tool axis.
+    pub plane: Plane,
+    /// Pole and circle centre, programmed coordinates, and the plane it was given in.
+    pub pole: Option<(Plane, Point2)>,
+    /// Last PR, mm.
+    pub polar_radius: Option<f64>,
+    /// Last numeric feed, mm/min.
+    pub feed_mm_min: Option<f64>,
+    /// Radius compensation of contour blocks: off, left, right.
+    pub compensation: Compensation,
+    /// Radius compensation of paraxial blocks: off, R+, R-.
+    pub paraxial: Compensation,
+    /// Tool in the spindle.
+    pub tool: Option<Tool>,
+    /// Spindle speed, rpm.
+    pub speed_rpm: f64,
+    pub spindle: Spindle,
+    pub feed_law: FeedLaw,
+    /// M103: factor of the feed into the material.
+    pub plunge_factor: Option<f64>,
+    /// Last movement in programmed coordinates, for tangential arcs.
+    pub last_move: Option<LastMove>,
+    /// Cycle definition being read or ready for the call.
+    pub cycle: CycleData,
+    /// M89: call the cycle after every positioning block.
+    pub cycle_after_each_block: bool,
+    /// Cycle 13: angle of the oriented spindle stop, degrees.
+    pub orientation_deg: Option<f64>,
+    /// Cycle 14: labels of the subcontours.
+    pub contour_labels: Vec<u16>,
+    /// Least corner of BLK FORM 0.1 waiting for 0.2.
+    pub blank_min: Option<(Plane, [f64; 3])>,
+    /// Probe block 0.0 waiting for 0.1.
+    pub probe: Option<ReferencePlane>,
+}
+
+/// A tool in the spindle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tool {
+    pub number: u32,
+    pub axis: Axis,
+    pub shape: ToolShape,
+    /// Radius with the oversize of TOOL CALL, mm.
+    pub radius: f64,
+}
+
+/// Spindle state as Q110 counts it [003:7616-7619].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Spindle {
+    Undefined,
+    Clockwise,
+    CounterClockwise,
+    StoppedAfterClockwise,
+    StoppedAfterCounterClockwise,
+}
+
+impl Spindle {
+    pub fn q110(self) -> f64 {
+        match self {
+            Spindle::Undefined => -1.0,
+            Spindle::Clockwise => 0.0,
+            Spindle::CounterClockwise => 1.0,
+            Spindle::StoppedAfterClockwise => 2.0,
+            Spindle::StoppedAfterCounterClockwise => 3.0,
+        }
+    }
+
+    pub fn stopped(self) -> Spindle {
+        match self {
+            Spindle::Clockwise => Spindle::StoppedAfterClockwise,
+            Spindle::CounterClockwise => Spindle::StoppedAfterCounterClockwise,
+            other => other,
+        }
+    }
+}
+
+/// The last movement in programmed coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LastMove {
+    pub curve: Curve,
+    pub start: Position,
+    pub end: Position,
+}
+
+impl Modal {
+    pub fn new(start: Position) -> Modal {
+        Modal {
+            nominal: start,
+            actual: start,
+            frame: Frame::identity(Plane::XY),
+            plane: Plane::XY,
+            pole: None,
+            polar_radius: None,
+            feed_mm_min: None,
+            compensation: Compensation::Off,
+            paraxial: Compensation::Off,
+            tool: None,
+            speed_rpm: 0.0,
+            spindle: Spindle::Undefined,
+            feed_law: FeedLaw::Centre,
+            plunge_factor: None,
+            last_move: None,
+            cycle: CycleData::default(),
+            cycle_after_each_block: false,
+            orientation_deg: None,
+            contour_labels: Vec::new(),
+            blank_min: None,
+            probe: None,
+        }
+    }
+
+    /// Radius of the tool in use, mm; 0 without a tool.
+    pub fn tool_radius(&self) -> f64 {
+        self.tool.map_or(0.0, |tool| tool.radius)
+    }
+}
+
+/// Millimetres of a length unit.
+pub(crate) fn unit_mm(unit: Unit) -> f64 {
+    match unit {
+        Unit::Inch => 25.4,
+        Unit::Mm => 1.0,
+    }
+}

@@ -1,0 +1,668 @@
+//! Positioning blocks: from words to a movement in workpiece coordinates.
+
+use bahn_parameters::MessageId;
+use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2, Position};
+use bahn_program::{Compensation, Coordinates, Direction, Feed, Motion, MotionKind, Word};
+
+use crate::arc;
+use crate::error::Fault;
+use crate::flow::Flow;
+use crate::functions::{BlockFunctions, Reference};
+use crate::modal::LastMove;
+use crate::q_parameters::{cos_deg, preassigned, sin_deg};
+use crate::run::Run;
+use crate::settings::Settings;
+
+/// A movement in programmed coordinates.
+struct Programmed {
+    from: Position,
+    to: Position,
+    /// Axes that the block moves.
+    axes: AxisSet,
+    curve: Curve,
+}
+
+impl Run {
+    /// L, C, CR, CT, LP, CP, CTP and paraxial blocks.
+    #[inline]
+    pub(crate) fn positioning(&mut self, motion: &Motion, settings: &Settings) -> Result<Flow, Fault> {
+        if self.is_short_way(motion) {
+            return self.short_line(motion, settings);
+        }
+        self.any_positioning(motion, settings)
+    }
+
+    fn any_positioning(&mut self, motion: &Motion, settings: &Settings) -> Result<Flow, Fault> {
+        self.take_compensation(motion)?;
+        if self.recording.is_some() {
+            return self.record(motion, settings);
+        }
+        let functions = if motion.m.is_empty() && !self.modal.cycle_after_each_block {
+            BlockFunctions::default()
+        } else {
+            self.take_m_functions(&motion.m, settings)?
+        };
+        let feed = self.take_feed(motion.feed, settings)?;
+        let cycle_call = functions.cycle_call;
+        let flow = self.movement(motion, functions, feed, settings)?;
+        if cycle_call && flow == Flow::Next {
+            self.call_cycle(settings)
+        } else {
+            Ok(flow)
+        }
+    }
+
+    /// Whether a block is a straight line in absolute numbers that nothing in force changes and nothing
+    /// that follows refers to: the most frequent block by far, and worth a way of its own.
+    #[inline]
+    fn is_short_way(&self, motion: &Motion) -> bool {
+        let coordinates = &motion.coordinates;
+        motion.kind == MotionKind::Line
+            && self.line_follows
+            && motion.m.is_empty()
+            && matches!(motion.compensation, None | Some(Compensation::Off))
+            && self.modal.compensation == Compensation::Off
+            && self.modal.paraxial == Compensation::Off
+            && coordinates.incremental().is_empty()
+            && coordinates.parameters().is_empty()
+            && !coordinates.is_empty()
+            && !self.modal.cycle_after_each_block
+            && self.modal.plunge_factor.is_none()
+            && self.recording.is_none()
+            && self.modal.frame.is_identity()
+            && self.contour.is_idle()
+    }
+
+    /// The short way of [`Run::is_short_way`]: same result as the long one.
+    #[inline]
+    fn short_line(&mut self, motion: &Motion, settings: &Settings) -> Result<Flow, Fault> {
+        let Some(feed) = self.take_feed(motion.feed, settings)? else {
+            return Err(MessageId::FeedRateIsMissing.into());
+        };
+        let start = self.modal.actual;
+        let numbers = motion.coordinates.numbers();
+        let axes = motion.coordinates.axes();
+        for axis in axes.iter() {
+            let value = numbers[axis.index()] * self.axis_unit(axis);
+            self.modal.nominal[axis] = value;
+            self.modal.actual[axis] = value;
+        }
+        self.check_range(&self.modal.actual, axes, settings)?;
+        self.modal.last_move = None;
+        self.since_motion = 0;
+        self.contour.release(&mut self.out);
+        let element = self.element(Curve::Line, start, self.modal.actual, feed);
+        self.out.push(element, None);
+        Ok(Flow::Next)
+    }
+
+    /// A block of a contour subprogram: only its geometry counts.
+    fn record(&mut self, motion: &Motion, settings: &Settings) -> Result<Flow, Fault> {
+        /// Stands for the feed that is ignored.
+        const ANY_FEED: FeedRate = FeedRate::Programmed(1.0);
+        if let Some(axes) = &mut self.recording
+            && axes.is_empty()
+        {
+            *axes = motion.coordinates.axes();
+        }
+        self.movement(motion, BlockFunctions::default(), Some(ANY_FEED), settings)
+    }
+
+    fn movement(
+        &mut self,
+        motion: &Motion,
+        functions: BlockFunctions,
+        feed: Option<FeedRate>,
+        settings: &Settings,
+    ) -> Result<Flow, Fault> {
+        let plain = motion.kind == MotionKind::Line
+            && functions.reference == Reference::Datum
+            && motion.coordinates.parameters().is_empty()
+            && self.modal.frame.is_identity();
+        let programmed = if plain {
+            self.plain_line(&motion.coordinates)
+        } else if functions.reference != Reference::Datum {
+            return self.referenced_line(motion, functions, feed, settings);
+        } else {
+            self.programmed(motion, settings)?
+        };
+        if programmed.axes.is_empty() {
+            return self.hold(functions);
+        }
+        let Some(feed) = feed else {
+            return Err(MessageId::FeedRateIsMissing.into());
+        };
+        self.check_range(&programmed.to, programmed.axes, settings)?;
+        self.modal.last_move = Some(LastMove {
+            curve: programmed.curve,
+            start: programmed.from,
+            end: programmed.to,
+        });
+        let (axes, nominal, curve) = if plain {
+            (programmed.axes, programmed.to, programmed.curve)
+        } else {
+            self.to_workpiece(&programmed)?
+        };
+        let paraxial = if motion.kind == MotionKind::Paraxial {
+            self.modal.paraxial
+        } else {
+            Compensation::Off
+        };
+        self.emit_movement(curve, nominal, axes, paraxial, feed, functions)
+    }
+
+    /// The fast way of most blocks: a straight line in plain numbers without transformations.
+    #[inline]
+    fn plain_line(&self, coordinates: &Coordinates) -> Programmed {
+        let from = self.modal.nominal;
+        let mut to = from;
+        let axes = coordinates.axes();
+        let numbers = coordinates.numbers();
+        for axis in axes.iter() {
+            let value = numbers[axis.index()] * self.axis_unit(axis);
+            to[axis] = if coordinates.incremental().contains(axis) {
+                known(from[axis]) + value
+            } else {
+                value
+            };
+        }
+        Programmed {
+            from,
+            to,
+            axes,
+            curve: Curve::Line,
+        }
+    }
+
+    fn programmed(&mut self, motion: &Motion, settings: &Settings) -> Result<Programmed, Fault> {
+        let from = self.modal.frame.to_programmed(&self.modal.nominal);
+        let mut p = Programmed {
+            from,
+            to: from,
+            axes: AxisSet::EMPTY,
+            curve: Curve::Line,
+        };
+        self.coordinates(&motion.coordinates, &mut p)?;
+        match motion.kind {
+            MotionKind::Line | MotionKind::Paraxial => {}
+            MotionKind::LinePolar => self.line_polar(motion, &mut p, settings)?,
+            MotionKind::Circle => self.circle(motion, &mut p, settings)?,
+            MotionKind::CircleRadius => self.circle_radius(motion, &mut p, settings)?,
+            MotionKind::CircleTangential => {
+                let plane = self.plane_of(&motion.coordinates)?;
+                p.curve = self.tangential(plane, &p)?;
+            }
+            MotionKind::CirclePolar => self.circle_polar(motion, &mut p, settings)?,
+            MotionKind::CircleTangentialPolar => {
+                let plane = self.polar_point(motion, &mut p, settings)?;
+                p.curve = self.tangential(plane, &p)?;
+            }
+        }
+        Ok(p)
+    }
+
+    /// Cartesian words into the end point.
+    fn coordinates(&self, coordinates: &Coordinates, p: &mut Programmed) -> Result<(), Fault> {
+        for (axis, word) in coordinates.iter() {
+            let value = self.q.value(word.value)? * self.axis_unit(axis);
+            p.to[axis] = if word.incremental {
+                known(p.from[axis]) + value
+            } else {
+                value
+            };
+            p.axes.insert(axis);
+        }
+        Ok(())
+    }
+
+    /// M91, M92, M93: the coordinates refer to machine zero, machine datum or current position, whatever
+    /// transformations are active [003:3533-3553] [003:7479-7481].
+    fn referenced_line(
+        &mut self,
+        motion: &Motion,
+        functions: BlockFunctions,
+        feed: Option<FeedRate>,
+        settings: &Settings,
+    ) -> Result<Flow, Fault> {
+        if !matches!(motion.kind, MotionKind::Line | MotionKind::Paraxial) {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "M91 to M93 act on straight lines",
+            ));
+        }
+        let mut nominal = self.modal.nominal;
+        for (axis, word) in motion.coordinates.iter() {
+            let value = self.q.value(word.value)? * self.axis_unit(axis);
+            let zero = settings.rules.machine_zero[axis];
+            nominal[axis] = match functions.reference {
+                _ if word.incremental => known(nominal[axis]) + value,
+                Reference::MachineZero => zero + value,
+                Reference::MachineDatum => zero + settings.rules.machine_datum[axis] + value,
+                Reference::Position | Reference::Datum => known(self.modal.actual[axis]) + value,
+            };
+        }
+        let axes = motion.coordinates.axes();
+        if axes.is_empty() {
+            return self.hold(functions);
+        }
+        let Some(feed) = feed else {
+            return Err(MessageId::FeedRateIsMissing.into());
+        };
+        self.check_range(&nominal, axes, settings)?;
+        self.modal.last_move = None;
+        self.emit_movement(Curve::Line, nominal, axes, Compensation::Off, feed, functions)
+    }
+
+    /// Transforms a movement into workpiece coordinates. Axes that are neither programmed nor turned by
+    /// the rotation keep their number to the last bit.
+    fn to_workpiece(&self, p: &Programmed) -> Result<(AxisSet, Position, Curve), Fault> {
+        let frame = &self.modal.frame;
+        let mut axes = p.axes;
+        let mut to = p.to;
+        let turned = AxisSet::EMPTY.with(frame.plane.first).with(frame.plane.second);
+        if frame.rotation_deg != 0.0 && !axes.intersection(turned).is_empty() {
+            axes = axes.union(turned);
+            for axis in turned.iter() {
+                to[axis] = known(to[axis]);
+            }
+        }
+        let outer = frame.to_outer(&to);
+        let mut nominal = self.modal.nominal;
+        for axis in axes.iter() {
+            nominal[axis] = outer[axis];
+        }
+        let curve = match p.curve {
+            Curve::Arc(arc) => Curve::Arc(self.arc_to_workpiece(&arc)?),
+            other => other,
+        };
+        Ok((axes, nominal, curve))
+    }
+
+    fn arc_to_workpiece(&self, arc: &Arc) -> Result<Arc, Fault> {
+        let frame = &self.modal.frame;
+        let plane = arc.plane;
+        let same_plane = frame.plane.contains(plane.first) && frame.plane.contains(plane.second);
+        if frame.rotation_deg != 0.0 && !same_plane {
+            let detail = "an arc outside the working plane cannot be rotated";
+            return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
+        }
+        if frame.factor[plane.first].abs() != frame.factor[plane.second].abs() {
+            return Err(Fault::new(
+                MessageId::PlaneWronglyDefined,
+                "scaling would make an ellipse of the arc",
+            ));
+        }
+        let mut centre = Position::ZERO;
+        plane.set(&mut centre, arc.centre);
+        let sign = if frame.reverses(plane) { -1.0 } else { 1.0 };
+        Ok(Arc {
+            plane,
+            centre: plane.point(&frame.to_outer(&centre)),
+            sweep_deg: sign * arc.sweep_deg,
+        })
+    }
+
+    /// Makes the element, with R+ and R- applied, and hands it on.
+    fn emit_movement(
+        &mut self,
+        curve: Curve,
+        nominal: Position,
+        axes: AxisSet,
+        paraxial: Compensation,
+        feed: FeedRate,
+        functions: BlockFunctions,
+    ) -> Result<Flow, Fault> {
+        let start = self.modal.actual;
+        let mut end = start;
+        for axis in axes.iter() {
+            end[axis] = nominal[axis];
+        }
+        if paraxial != Compensation::Off {
+            self.lengthen(paraxial, axes, &start, &mut end);
+        }
+        let plane = self.modal.plane;
+        let in_plane = axes.contains(plane.first) || axes.contains(plane.second);
+        let feed = self.plunge_feed(feed, &curve, &start, &end);
+        self.modal.nominal = nominal;
+        self.modal.actual = end;
+        let element = self.element(curve, start, end, feed);
+        self.push(element, functions, in_plane)
+    }
+
+    /// R+ lengthens and R- shortens a paraxial path in the working plane by the tool radius
+    /// [003:2046-2057]: target' = target ± R · sign(target - start) (inferred).
+    fn lengthen(&self, compensation: Compensation, axes: AxisSet, start: &Position, end: &mut Position) {
+        let amount = match compensation {
+            Compensation::Lengthen => self.modal.tool_radius(),
+            _ => -self.modal.tool_radius(),
+        };
+        for axis in axes.iter().filter(|axis| self.modal.plane.contains(*axis)) {
+            let path = end[axis] - known(start[axis]);
+            if path != 0.0 {
+                end[axis] += amount * path.signum();
+            }
+        }
+    }
+
+    /// M103: the feed component of the tool axis in negative direction is limited to the factor of the
+    /// programmed feed [000:7278-7292].
+    fn plunge_feed(&self, feed: FeedRate, curve: &Curve, start: &Position, end: &Position) -> FeedRate {
+        let (Some(factor), FeedRate::Programmed(programmed)) = (self.modal.plunge_factor, feed) else {
+            return feed;
+        };
+        let down = start[self.modal.plane.normal] - end[self.modal.plane.normal];
+        let length = curve.length(start, end);
+        if down > 0.0 && length > 0.0 {
+            return FeedRate::Programmed(programmed.min(programmed * factor * length / down));
+        }
+        feed
+    }
+
+    fn take_compensation(&mut self, motion: &Motion) -> Result<(), Fault> {
+        let Some(word) = motion.compensation else {
+            return Ok(());
+        };
+        let paraxial = matches!(word, Compensation::Lengthen | Compensation::Shorten);
+        let contour = matches!(word, Compensation::Left | Compensation::Right);
+        if paraxial && motion.kind != MotionKind::Paraxial {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "R+ and R- belong to paraxial blocks",
+            ));
+        }
+        // R+/R- and RL/RR must not follow each other [000:7016-7030].
+        if (paraxial && self.modal.compensation != Compensation::Off)
+            || (contour && self.modal.paraxial != Compensation::Off)
+        {
+            return Err(MessageId::PathOffsetWronglyStarted.into());
+        }
+        if contour && self.modal.tool.is_none() {
+            // Without a tool in the spindle there is no radius to compensate [003:7984-7986] (inferred).
+            return Err(Fault::new(
+                MessageId::ProgramStartUndefined,
+                "no tool is called before",
+            ));
+        }
+        self.modal.compensation = if contour { word } else { Compensation::Off };
+        self.modal.paraxial = if paraxial { word } else { Compensation::Off };
+        let q123 = match word {
+            Compensation::Off => 0.0,
+            Compensation::Left => 1.0,
+            Compensation::Right => 2.0,
+            Compensation::Lengthen => 3.0,
+            Compensation::Shorten => 4.0,
+        };
+        self.q.preassign(preassigned::COMPENSATION, q123);
+        Ok(())
+    }
+
+    /// The feed of the block: FMAX for this block only, else the last numeric feed [003:2160-2166].
+    fn take_feed(&mut self, feed: Option<Feed>, settings: &Settings) -> Result<Option<FeedRate>, Fault> {
+        match feed {
+            Some(Feed::Max) => return Ok(Some(FeedRate::Rapid)),
+            Some(Feed::Value(value)) => {
+                let feed = self.feed(value, settings)?;
+                self.modal.feed_mm_min = Some(feed);
+            }
+            None => {}
+        }
+        let rapid = settings.model.limits().rapid_feed_mm_min;
+        Ok(self.modal.feed_mm_min.filter(|feed| *feed > 0.0).map(|feed| {
+            // On the TNC 151/155 the highest feed is rapid traverse [001:471].
+            if rapid.is_some_and(|rapid| feed >= rapid) {
+                FeedRate::Rapid
+            } else {
+                FeedRate::Programmed(feed)
+            }
+        }))
+    }
+
+    fn check_range(&self, to: &Position, axes: AxisSet, settings: &Settings) -> Result<(), Fault> {
+        let max = settings.model.limits().coordinate_max;
+        // Written so that a value that is no number is refused too.
+        match axes.iter().find(|axis| !(-max..=max).contains(&to[*axis])) {
+            Some(axis) => {
+                let detail = format!("{axis} is beyond {max}");
+                Err(Fault::new(MessageId::EntryValueIncorrect, detail))
+            }
+            None => Ok(()),
+        }
+    }
+
+    // Poles and arcs.
+
+    /// CC: pole and circle centre; without coordinates the last programmed position [003:2748-2775].
+    pub(crate) fn circle_centre(&mut self, coordinates: &Coordinates) -> Result<(), Fault> {
+        let here = self.modal.frame.to_programmed(&self.modal.nominal);
+        let axes: Vec<Axis> = coordinates.axes().iter().collect();
+        let plane = match axes[..] {
+            [] => self.modal.plane,
+            [a, b] => Plane::of_axes(a, b).ok_or(Fault::from(MessageId::PlaneWronglyDefined))?,
+            _ => {
+                return Err(Fault::new(
+                    MessageId::PlaneWronglyDefined,
+                    "CC needs both axes of a plane",
+                ));
+            }
+        };
+        let mut p = Programmed {
+            from: here,
+            to: here,
+            axes: AxisSet::EMPTY,
+            curve: Curve::Hold,
+        };
+        self.coordinates(coordinates, &mut p)?;
+        let point = plane.point(&p.to).map(known);
+        self.modal.pole = Some((plane, point));
+        Ok(())
+    }
+
+    fn pole(&self) -> Result<(Plane, Point2), Fault> {
+        self.modal
+            .pole
+            .ok_or_else(|| Fault::new(MessageId::PlaneWronglyDefined, "no CC is programmed before"))
+    }
+
+    /// The plane of an arc from its words: two axes name it, otherwise the working plane.
+    fn plane_of(&self, coordinates: &Coordinates) -> Result<Plane, Fault> {
+        let axes: Vec<Axis> = coordinates.axes().iter().collect();
+        match axes[..] {
+            [a, b] => Plane::of_axes(a, b).ok_or(Fault::from(MessageId::PlaneWronglyDefined)),
+            [a] if self.modal.plane.contains(a) => Ok(self.modal.plane),
+            [] => Ok(self.modal.plane),
+            _ => Err(Fault::new(
+                MessageId::PlaneWronglyDefined,
+                "the end point of an arc lies in a plane",
+            )),
+        }
+    }
+
+    /// C: arc about CC [003:2801-2824].
+    fn circle(&self, motion: &Motion, p: &mut Programmed, settings: &Settings) -> Result<(), Fault> {
+        let (plane, centre) = self.pole()?;
+        if p.axes.iter().any(|axis| !plane.contains(axis)) {
+            return Err(Fault::new(
+                MessageId::PlaneWronglyDefined,
+                "the end point lies outside the plane of CC",
+            ));
+        }
+        let counter_clockwise = direction(motion)?;
+        p.axes = p.axes.with(plane.first).with(plane.second);
+        let (start, end) = (plane.point(&p.from), plane.point(&p.to));
+        arc::check_radii(centre, start, end, settings.rules.arc_tolerance_mm)?;
+        let sweep_deg = bahn_path::sweep_deg(centre, start, end, counter_clockwise);
+        p.curve = Curve::Arc(Arc {
+            plane,
+            centre,
+            sweep_deg,
+        });
+        Ok(())
+    }
+
+    /// CR: arc with radius [003:2853-2879].
+    fn circle_radius(&self, motion: &Motion, p: &mut Programmed, settings: &Settings) -> Result<(), Fault> {
+        let plane = self.plane_of(&motion.coordinates)?;
+        let counter_clockwise = direction(motion)?;
+        let Some(radius) = motion.radius else {
+            return Err(MessageId::AngleReferenceMissing.into());
+        };
+        let radius = self.length(radius)?;
+        if radius.abs() > settings.model.limits().circle_radius_max_mm {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "the radius is beyond the input range",
+            ));
+        }
+        p.axes = p.axes.with(plane.first).with(plane.second);
+        let (start, end) = (plane.point(&p.from), plane.point(&p.to));
+        p.curve = Curve::Arc(arc::with_radius(plane, start, end, radius, counter_clockwise)?);
+        Ok(())
+    }
+
+    /// CT, CTP: arc that starts in the direction of the movement before [003:2957-2995].
+    fn tangential(&self, plane: Plane, p: &Programmed) -> Result<Curve, Fault> {
+        let no_tangent = || {
+            Fault::new(
+                MessageId::RoundingOffNotDefined,
+                "no movement before gives a tangent",
+            )
+        };
+        let last = self.modal.last_move.as_ref().ok_or_else(no_tangent)?;
+        let direction = last.curve.tangent(&last.start, &last.end, 1.0);
+        let tangent = [direction[plane.first.index()], direction[plane.second.index()]];
+        if tangent == [0.0, 0.0] {
+            return Err(no_tangent());
+        }
+        arc::tangential(plane, plane.point(&p.from), tangent, plane.point(&p.to))
+    }
+
+    /// End point from PR and PA [003:3090-3092].
+    fn polar_point(
+        &mut self,
+        motion: &Motion,
+        p: &mut Programmed,
+        settings: &Settings,
+    ) -> Result<Plane, Fault> {
+        let (plane, pole) = self.pole()?;
+        let from = plane.point(&p.from);
+        let (dx, dy) = (from[0] - pole[0], from[1] - pole[1]);
+        let radius = match motion.polar_radius {
+            Some(Word {
+                value,
+                incremental: false,
+            }) => self.length(value)?,
+            Some(Word {
+                value,
+                incremental: true,
+            }) => dx.hypot(dy) + self.length(value)?,
+            None => self.modal.polar_radius.unwrap_or(dx.hypot(dy)),
+        };
+        if motion.polar_radius.is_some() {
+            self.modal.polar_radius = Some(radius);
+        }
+        let Some(word) = motion.polar_angle else {
+            return Err(MessageId::AngleReferenceMissing.into());
+        };
+        let angle = self.q.value(word.value)?;
+        if angle.abs() > settings.model.limits().circle_angle_max_deg {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "PA is beyond the input range",
+            ));
+        }
+        let angle = if word.incremental {
+            bahn_path::angle_deg([dx, dy]) + angle
+        } else {
+            angle
+        };
+        plane.set(
+            &mut p.to,
+            [
+                pole[0] + radius * cos_deg(angle),
+                pole[1] + radius * sin_deg(angle),
+            ],
+        );
+        p.axes = p.axes.with(plane.first).with(plane.second);
+        Ok(plane)
+    }
+
+    fn line_polar(&mut self, motion: &Motion, p: &mut Programmed, settings: &Settings) -> Result<(), Fault> {
+        self.polar_point(motion, p, settings)?;
+        Ok(())
+    }
+
+    /// CP, with a tool-axis word a helix [003:3173-3183] [003:3243-3324].
+    fn circle_polar(&self, motion: &Motion, p: &mut Programmed, settings: &Settings) -> Result<(), Fault> {
+        let (plane, pole) = self.pole()?;
+        if p.axes.iter().any(|axis| plane.contains(axis)) {
+            return Err(Fault::new(
+                MessageId::PlaneWronglyDefined,
+                "CP takes its end point from PA",
+            ));
+        }
+        let counter_clockwise = direction(motion)?;
+        let Some(word) = motion.polar_angle else {
+            return Err(MessageId::AngleReferenceMissing.into());
+        };
+        let angle = self.q.value(word.value)?;
+        if angle.abs() > settings.model.limits().circle_angle_max_deg {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "PA is beyond the input range",
+            ));
+        }
+        let start = plane.point(&p.from);
+        let offset = [start[0] - pole[0], start[1] - pole[1]];
+        let radius = offset[0].hypot(offset[1]);
+        if radius.is_nan() {
+            return Err(MessageId::CircleEndPosIncorrect.into());
+        }
+        let start_angle = bahn_path::angle_deg(offset);
+        let sweep_deg = if word.incremental {
+            if angle != 0.0 && (angle > 0.0) != counter_clockwise {
+                // Incremental PA and DR must have the same sign [003:3173-3183].
+                return Err(Fault::new(
+                    MessageId::AngleReferenceMissing,
+                    "IPA and DR have different signs",
+                ));
+            }
+            angle
+        } else {
+            arc::sweep_to_angle(start_angle, angle, counter_clockwise)
+        };
+        let end_angle = if word.incremental {
+            start_angle + sweep_deg
+        } else {
+            angle
+        };
+        plane.set(
+            &mut p.to,
+            [
+                pole[0] + radius * cos_deg(end_angle),
+                pole[1] + radius * sin_deg(end_angle),
+            ],
+        );
+        p.axes = p.axes.with(plane.first).with(plane.second);
+        p.curve = Curve::Arc(Arc {
+            plane,
+            centre: pole,
+            sweep_deg,
+        });
+        Ok(())
+    }
+}
+
+fn direction(motion: &Motion) -> Result<bool, Fault> {
+    match motion.direction {
+        Some(direction) => Ok(direction == Direction::CounterClockwise),
+        None => Err(Fault::new(
+            MessageId::AngleReferenceMissing,
+            "the arc has no DR+ or DR-",
+        )),
+    }
+}
+
+/// The number, zero for an axis without a position: increments then count from zero (inferred).
+pub(crate) fn known(value: f64) -> f64 {
+    if value.is_nan() { 0.0 } else { value }
+}

@@ -1,0 +1,449 @@
+//! The state of a run and the execution of one block.
+
+use std::collections::BTreeMap;
+
+use bahn_parameters::MessageId;
+use bahn_path::{
+    At, Axis, AxisSet, Barrier, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Position,
+    Synchronisation, TechnologyFunction, ToolShape,
+};
+use bahn_program::{Block, Compensation, Operation, Unit, Value};
+
+use crate::contour::rounding::{Join, JoinKind};
+use crate::contour::{Contour, ContourMove, Side};
+use crate::error::{Fault, Message, Warning, WarningKind};
+use crate::flow::{self, Flow};
+use crate::functions::BlockFunctions;
+use crate::modal::{Modal, unit_mm};
+use crate::output::Output;
+use crate::probe::Probing;
+use crate::q_parameters::{QTable, preassigned};
+use crate::settings::Settings;
+
+/// Everything that changes while a program runs. A copy of it is a checkpoint.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    pub modal: Modal,
+    pub q: QTable,
+    pub at: flow::Position,
+    pub contour: Contour,
+    pub out: Output,
+    /// Tools defined by TOOL DEF.
+    pub tools: BTreeMap<u32, ToolShape>,
+    /// Millimetres of the length unit of the running program.
+    pub unit_mm: f64,
+    /// Unit of the main program.
+    pub main_unit: Unit,
+    /// Executed blocks.
+    pub sequence: u64,
+    pub since_motion: u64,
+    /// Block being executed: the call block while a cycle runs.
+    pub block: BlockRef,
+    pub warnings: Vec<Warning>,
+    /// A BLK FORM was given in the main program.
+    pub blank_given: bool,
+    /// The next block is a straight line with coordinates: neither a rounding nor a tangential arc can refer
+    /// to the movement of this block, so nothing needs to be held back for it.
+    pub line_follows: bool,
+    /// Probing that waits for its touch.
+    pub probing: Option<Probing>,
+    /// A contour subprogram is being recorded for an SL cycle: M functions, feeds and cycle calls in it
+    /// are ignored [003:5389-5454]. Holds the axes of the first coordinate block.
+    pub recording: Option<AxisSet>,
+}
+
+impl Run {
+    pub fn new(settings: &Settings, unit: Unit) -> Run {
+        let mut q = QTable::new(usize::from(settings.model.limits().q_max) + 1);
+        let modal = Modal::new(settings.start);
+        q.preassign(preassigned::TOOL_AXIS, -1.0);
+        q.preassign(preassigned::SPINDLE, modal.spindle.q110());
+        q.preassign(preassigned::OVERLAP, settings.rules.overlap);
+        q.preassign(preassigned::UNIT, if unit == Unit::Inch { 1.0 } else { 0.0 });
+        for &(number, value) in &settings.q_values {
+            q.preassign(number, value);
+        }
+        Run {
+            modal,
+            q,
+            at: flow::Position::at(0, 0),
+            contour: Contour::default(),
+            out: Output::default(),
+            tools: BTreeMap::new(),
+            unit_mm: unit_mm(unit),
+            main_unit: unit,
+            sequence: 0,
+            since_motion: 0,
+            block: BlockRef::default(),
+            warnings: Vec::new(),
+            blank_given: false,
+            line_follows: false,
+            probing: None,
+            recording: None,
+        }
+    }
+
+    pub fn warn(&mut self, kind: WarningKind) {
+        self.warnings.push(Warning {
+            block: self.block,
+            kind,
+        });
+    }
+
+    /// Executes a block. The caller has already passed over skipped blocks.
+    #[inline]
+    pub fn execute(&mut self, block: &Block, settings: &Settings) -> Result<Flow, Fault> {
+        match &block.operation {
+            Operation::Motion(motion) => self.positioning(motion, settings),
+            Operation::Calculate {
+                function,
+                target,
+                a,
+                b,
+            } => {
+                let value = self.q.calculate(*function, *a, *b)?;
+                self.q.set(*target, value)?;
+                Ok(Flow::Next)
+            }
+            Operation::Jump {
+                condition,
+                a,
+                b,
+                label,
+            } => Ok(if self.q.holds(*condition, *a, *b)? {
+                Flow::Jump(*label)
+            } else {
+                Flow::Next
+            }),
+            Operation::Label(0) => Ok(Flow::Return),
+            Operation::Label(label) if u32::from(*label) > settings.model.limits().label_max => {
+                let detail = format!("labels are 1 to {}", settings.model.limits().label_max);
+                Err(Fault::new(MessageId::EntryValueIncorrect, detail))
+            }
+            Operation::Label(_) | Operation::Comment(_) | Operation::Begin(_) => Ok(Flow::Next),
+            other => self.execute_rare(other, settings),
+        }
+    }
+
+    fn execute_rare(&mut self, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
+        match operation {
+            Operation::End(_) => return Ok(Flow::EndOfProgram),
+            Operation::Formula { target, expression } => {
+                if !settings.model.limits().formulas {
+                    return Err(Fault::new(
+                        MessageId::BlockNotKnown,
+                        "this control has no formulas",
+                    ));
+                }
+                let value = self.q.evaluate(expression)?;
+                self.q.set(*target, value)?;
+            }
+            Operation::CallLabel { label, repeats } => return self.call_label(*label, *repeats, settings),
+            Operation::CallProgram(name) => return Ok(Flow::CallProgram(name.clone())),
+            Operation::CircleCentre(coordinates) => self.circle_centre(coordinates)?,
+            Operation::Rounding { radius, feed } => {
+                let radius = self.length(*radius)? * self.plane_scale();
+                if radius < 0.0 {
+                    return Err(Fault::new(
+                        MessageId::EntryValueIncorrect,
+                        "a rounding radius is positive",
+                    ));
+                }
+                if radius > 0.0 {
+                    self.join(JoinKind::Rounding(radius), *feed, settings)?;
+                }
+            }
+            Operation::Chamfer { length, feed } => {
+                let length = self.length(*length)? * self.plane_scale();
+                if length <= 0.0 {
+                    let detail = "the length of a chamfer must be positive";
+                    return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
+                }
+                self.join(JoinKind::Chamfer(length), *feed, settings)?;
+            }
+            Operation::BlankMin(coordinates, axis) => self.blank_min(coordinates, *axis)?,
+            Operation::BlankMax(coordinates) => self.blank_max(coordinates, settings)?,
+            Operation::ToolDefinition { tool, length, radius } => {
+                self.tool_definition(*tool, *length, *radius, settings)?;
+            }
+            Operation::ToolCall {
+                tool,
+                axis,
+                speed,
+                delta_length,
+                delta_radius,
+            } => {
+                self.tool_call(*tool, *axis, *speed, [*delta_length, *delta_radius], settings)?;
+            }
+            Operation::Stop(m) => {
+                let mut functions = self.take_m_functions(m, settings)?;
+                functions.stop = true;
+                functions.cycle_call = false;
+                return self.hold(functions);
+            }
+            Operation::Miscellaneous(m) => {
+                let functions = self.take_m_functions(m, settings)?;
+                let call = m.contains(99);
+                let flow = self.hold(functions)?;
+                return if call { self.call_cycle(settings) } else { Ok(flow) };
+            }
+            Operation::ErrorNumber(number) => return Err(self.numbered_error(*number, settings)),
+            Operation::Print(items) => self.print(items, settings)?,
+            Operation::Plc { a, b } => self.plc(*a, *b, settings)?,
+            Operation::Cycle(block) => self.define_cycle(block, settings)?,
+            Operation::CycleCall(m) => {
+                // CYCL CALL ends M89 [003:4875-4881].
+                self.modal.cycle_after_each_block = false;
+                let functions = self.take_m_functions(m, settings)?;
+                self.hold(functions)?;
+                return self.call_cycle(settings);
+            }
+            Operation::Probe(block) => self.probe(block, settings)?,
+            Operation::Dialog(_) => {}
+            Operation::Invalid(invalid) => {
+                return Err(Fault::new(
+                    invalid.error.message,
+                    invalid.error.detail.to_string(),
+                ));
+            }
+            Operation::Motion(_)
+            | Operation::Calculate { .. }
+            | Operation::Jump { .. }
+            | Operation::Label(_)
+            | Operation::Comment(_)
+            | Operation::Begin(_) => {}
+        }
+        Ok(Flow::Next)
+    }
+
+    fn call_label(&mut self, label: u16, repeats: Option<Value>, settings: &Settings) -> Result<Flow, Fault> {
+        if label == 0 {
+            return Err(MessageId::JumpToLabelZeroNotPermitted.into());
+        }
+        let Some(repeats) = repeats else {
+            return Ok(Flow::Call(label));
+        };
+        let count = self.q.value(repeats)?;
+        let max = f64::from(settings.model.limits().repeat_max);
+        if !(0.0..=max).contains(&count) {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("REP takes 1 to {max}"),
+            ));
+        }
+        Ok(Flow::Repeat(label, count as u32))
+    }
+
+    fn join(&mut self, kind: JoinKind, feed: Option<Value>, settings: &Settings) -> Result<(), Fault> {
+        let feed_mm_min = feed.map(|feed| self.feed(feed, settings)).transpose()?;
+        self.contour.join(Join {
+            kind,
+            feed_mm_min,
+            block: self.block,
+            sequence: self.sequence,
+        })
+    }
+
+    /// FN14: the run ends with the text of the number [003:4352-4367].
+    fn numbered_error(&mut self, number: Value, settings: &Settings) -> Fault {
+        let number = match self.q.value(number) {
+            Ok(number) => number,
+            Err(fault) => return fault,
+        };
+        let max = settings.model.limits().fn14_max;
+        if !(0.0..=f64::from(max)).contains(&number) {
+            return Fault::new(MessageId::EntryValueIncorrect, format!("FN14 takes 0 to {max}"));
+        }
+        match bahn_parameters::error_text(number as u16, settings.model) {
+            Some(text) => Fault {
+                message: Message::Numbered(text),
+                detail: String::new(),
+                block: None,
+            },
+            None => Fault::from(MessageId::EntryValueIncorrect),
+        }
+    }
+
+    /// FN15: PRINT. A number up to 200 prints the FN14 text of that number, a Q parameter its value
+    /// [003:4371-4385].
+    fn print(&mut self, items: &[Value], settings: &Settings) -> Result<(), Fault> {
+        const TEXT_NUMBER_MAX: f64 = 200.0;
+        if !settings.model.limits().has_fn(15) {
+            return Err(Fault::new(MessageId::BlockNotKnown, "this control has no FN15"));
+        }
+        if items.len() > usize::from(settings.model.limits().print_items_max) {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "too many items for PRINT",
+            ));
+        }
+        let mut line = Vec::new();
+        for item in items {
+            line.push(match item {
+                Value::Number(number) if (0.0..=TEXT_NUMBER_MAX).contains(number) => {
+                    bahn_parameters::error_text(*number as u16, settings.model).unwrap_or_default()
+                }
+                Value::Number(_) => {
+                    return Err(Fault::new(
+                        MessageId::EntryValueIncorrect,
+                        "PRINT takes texts 0 to 200",
+                    ));
+                }
+                Value::Q { .. } => format!("{:+}", self.q.value(*item)?),
+            });
+        }
+        self.output_function(Function::Print(line.join(" ")), true)
+    }
+
+    /// FN19: two values to the PLC in the unit of the control model [003:4387-4395] [000:11597-11655].
+    fn plc(&mut self, a: Value, b: Option<Value>, settings: &Settings) -> Result<(), Fault> {
+        let Some(per_mm) = settings.model.limits().fn19_per_mm else {
+            return Err(Fault::new(MessageId::BlockNotKnown, "this control has no FN19"));
+        };
+        // TNC 360: the programmed number already counts in micrometres [003:4391-4395].
+        let scale = if per_mm < 1e4 { 1.0 } else { per_mm };
+        let a = self.q.value(a)? * scale;
+        let b = b.map(|b| self.q.value(b)).transpose()?.map(|b| b * scale);
+        self.output_function(Function::Plc([Some(a), b]), true)
+    }
+
+    /// A function with a block of its own.
+    pub fn output_function(&mut self, function: Function, waits: bool) -> Result<(), Fault> {
+        let synchronisation = if waits {
+            Synchronisation::MvsSvs
+        } else {
+            Synchronisation::Mos
+        };
+        let functions = BlockFunctions {
+            output: vec![TechnologyFunction {
+                function,
+                at: At::Start,
+                synchronisation,
+            }],
+            ..Default::default()
+        };
+        self.hold(functions)?;
+        Ok(())
+    }
+
+    /// A block of functions without movement.
+    pub fn hold(&mut self, functions: BlockFunctions) -> Result<Flow, Fault> {
+        if functions.output.is_empty() && !functions.stop && !functions.end {
+            return Ok(Flow::Next);
+        }
+        let element = self.element(Curve::Hold, self.modal.actual, self.modal.actual, FeedRate::Rapid);
+        self.push(element, functions, false)
+    }
+
+    /// Hands a movement or hold with the functions of its block to the contour stages.
+    pub fn push(
+        &mut self,
+        mut element: PathElement,
+        mut functions: BlockFunctions,
+        in_plane: bool,
+    ) -> Result<Flow, Fault> {
+        let mut barrier = None;
+        if functions.stop {
+            functions.output.push(TechnologyFunction {
+                function: Function::Stop,
+                at: At::End,
+                synchronisation: Synchronisation::MnsSns,
+            });
+            barrier = Some(Barrier::Stop { block: self.block });
+        }
+        if !functions.output.is_empty() {
+            element.functions = Some(functions.output.into_boxed_slice());
+        }
+        element.constant_speed = functions.constant_speed;
+        if element.curve != Curve::Hold {
+            self.since_motion = 0;
+        }
+        let item = ContourMove {
+            element,
+            plane: self.modal.plane,
+            side: self.side(),
+            radius: self.modal.tool_radius(),
+            corner: functions.corner,
+            feed_law: self.modal.feed_law,
+            in_plane,
+            smooth: None,
+            barrier,
+        };
+        self.contour.push(item, &mut self.out)?;
+        Ok(if functions.end { Flow::EndOfRun } else { Flow::Next })
+    }
+
+    /// An element of the current block.
+    #[inline]
+    pub fn element(&self, curve: Curve, start: Position, end: Position, feed: FeedRate) -> PathElement {
+        PathElement {
+            block: self.block,
+            sequence: self.sequence,
+            curve,
+            start,
+            end,
+            feed,
+            override_law: OverrideLaw::Free,
+            constant_speed: false,
+            tangential_end: false,
+            dwell_s: 0.0,
+            functions: None,
+        }
+    }
+
+    /// Hands out what the contour stages hold back and takes over where the tool centre really stands.
+    pub fn finish_contour(&mut self) -> Result<(), Fault> {
+        self.contour.flush(&mut self.out)
+    }
+
+    /// Where the tool centre stands after [`Run::finish_contour`].
+    pub fn tool_centre(&self) -> Position {
+        let mut position = self.modal.actual;
+        if let Some((plane, point)) = self.contour.displaced() {
+            plane.set(&mut position, point);
+        }
+        position
+    }
+
+    /// Side of the tool in workpiece coordinates: a mirrored contour has it on the other side.
+    fn side(&self) -> Side {
+        let side = match self.modal.compensation {
+            Compensation::Left => Side::Left,
+            Compensation::Right => Side::Right,
+            _ => return Side::Off,
+        };
+        if self.modal.frame.reverses(self.modal.plane) {
+            side.mirrored()
+        } else {
+            side
+        }
+    }
+
+    /// Scaling factor in the working plane.
+    pub fn plane_scale(&self) -> f64 {
+        self.modal.frame.factor[self.modal.plane.first].abs()
+    }
+
+    /// A length in mm.
+    pub fn length(&self, value: Value) -> Result<f64, Fault> {
+        Ok(self.q.value(value)? * self.unit_mm)
+    }
+
+    /// A feed in mm/min, checked against the range of the control [003:2142-2144].
+    pub fn feed(&self, value: Value, settings: &Settings) -> Result<f64, Fault> {
+        let feed = self.q.value(value)? * self.unit_mm;
+        let max = settings.model.limits().feed_max_mm_min;
+        if !(0.0..=max).contains(&feed) {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("F takes 0 to {max} mm/min"),
+            ));
+        }
+        Ok(feed)
+    }
+
+    /// Millimetres or degrees of a value for an axis.
+    pub fn axis_unit(&self, axis: Axis) -> f64 {
+        if axis.is_rotary() { 1.0 } else { self.unit_mm }
+    }
+}

@@ -1,0 +1,190 @@
+//! What a run is set up with: control model, machine parameters, tools, options.
+
+use std::collections::BTreeMap;
+
+use bahn_parameters::ControlModel;
+use bahn_path::{Position, ToolShape};
+
+/// Everything a run depends on beside the program.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Control model whose limits, texts and rules apply.
+    pub model: ControlModel,
+    /// Rules set by machine parameters.
+    pub rules: Rules,
+    /// Tool table; `None` when tools are defined in the programs [003:1803-1806].
+    pub tools: Option<ToolTable>,
+    /// Q parameters set before the start: number, value.
+    pub q_values: Vec<(u16, f64)>,
+    /// Where the axes stand before the start, mm and degrees; axes without a position stay unknown.
+    pub start: Position,
+    /// Pass over blocks with `/`.
+    pub skip_blocks: bool,
+    /// Refuse what is otherwise accepted with a warning (sign of cycle parameters, tools without data).
+    pub strict: bool,
+    /// Blocks that may be executed without a movement before the run is taken for an endless loop.
+    pub max_blocks_without_motion: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            model: ControlModel::default(),
+            rules: Rules::default(),
+            tools: None,
+            q_values: Vec::new(),
+            start: Position::UNKNOWN,
+            skip_blocks: false,
+            strict: false,
+            max_blocks_without_motion: 10_000_000,
+        }
+    }
+}
+
+/// Tools by number.
+pub type ToolTable = BTreeMap<u32, ToolShape>;
+
+/// The machine parameters that change how a program runs.
+#[derive(Clone, Debug)]
+pub struct Rules {
+    /// MP7431: tolerance between start and end radius of an arc, mm [000:7012-7014].
+    pub arc_tolerance_mm: f64,
+    /// MP7410: scaling acts in the working plane only [003:7357-7363].
+    pub scaling_in_plane_only: bool,
+    /// MP7411: the probe block keeps the tool data instead of taking the probe's [003:7365-7369].
+    pub probe_keeps_tool: bool,
+    /// MP7420: bits of the contour-pocket cycles [000:6739-6753].
+    pub contour_pocket: ContourPocketRules,
+    /// MP7430: stepover of pocket milling is this times the tool radius [003:7385-7394].
+    pub overlap: f64,
+    /// MP7440: bits of the M functions [000:7298-7305].
+    pub m_functions: MFunctionRules,
+    /// MP7110.0/.1: feed override band while tapping, % [000:6094-6098].
+    pub tapping_override_percent: (f64, f64),
+    /// MP7160: cycle 17 orients the spindle before tapping [000:6141].
+    pub orient_before_rigid_tapping: bool,
+    /// Angle of M19 without cycle 13, degrees [000:5867].
+    pub spindle_orientation_deg: f64,
+    /// MP950: machine datum of M92 from machine zero, mm or degrees [000:6248-6258].
+    pub machine_datum: Position,
+    /// MP960: machine zero of M91 from the workpiece datum of the run, mm or degrees [000:6244].
+    pub machine_zero: Position,
+    /// Touch probe.
+    pub probe: ProbeRules,
+    /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
+    pub speed_max_rpm: f64,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Rules {
+            arc_tolerance_mm: 0.016,
+            scaling_in_plane_only: false,
+            probe_keeps_tool: true,
+            contour_pocket: ContourPocketRules::default(),
+            overlap: 1.0,
+            m_functions: MFunctionRules::default(),
+            tapping_override_percent: (100.0, 100.0),
+            orient_before_rigid_tapping: true,
+            spindle_orientation_deg: 0.0,
+            machine_datum: Position::ZERO,
+            machine_zero: Position::ZERO,
+            probe: ProbeRules::default(),
+            speed_max_rpm: 99_999.0,
+        }
+    }
+}
+
+/// MP7420: how contour pockets are machined [000:6739-6753].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ContourPocketRules {
+    /// Bit 0: channel clockwise for pockets and counter-clockwise for islands.
+    pub channel_clockwise: bool,
+    /// Bit 1: clear out first, then mill the channel.
+    pub clear_first: bool,
+    /// Bit 2: merge programmed contours; otherwise merge the compensated paths.
+    pub merge_programmed: bool,
+    /// Bit 3: channel and clearing for each infeed; otherwise each to full depth.
+    pub per_infeed: bool,
+    /// Bit 4: stay at the clearance height instead of returning to the position before the call.
+    pub stay_at_clearance: bool,
+}
+
+impl ContourPocketRules {
+    /// From the value of MP7420.
+    pub fn from_bits(bits: u32) -> Self {
+        ContourPocketRules {
+            channel_clockwise: bits & 1 != 0,
+            clear_first: bits & 2 != 0,
+            merge_programmed: bits & 4 != 0,
+            per_infeed: bits & 8 != 0,
+            stay_at_clearance: bits & 16 != 0,
+        }
+    }
+}
+
+/// MP7440: what M functions do [000:7298-7305].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MFunctionRules {
+    /// Bit 0 clear: M6 stops the program.
+    pub m6_stops: bool,
+    /// Bit 1: M89 is the modal cycle call.
+    pub m89_calls_cycle: bool,
+    /// Bit 2 clear: axes wait for the acknowledgement of M functions.
+    pub axes_wait: bool,
+    /// Bit 4: M103 reduces the plunging feed.
+    pub m103_enabled: bool,
+}
+
+impl Default for MFunctionRules {
+    fn default() -> Self {
+        MFunctionRules {
+            m6_stops: true,
+            m89_calls_cycle: true,
+            axes_wait: true,
+            m103_enabled: true,
+        }
+    }
+}
+
+impl MFunctionRules {
+    /// From the value of MP7440.
+    pub fn from_bits(bits: u32) -> Self {
+        MFunctionRules {
+            m6_stops: bits & 1 == 0,
+            m89_calls_cycle: bits & 2 != 0,
+            axes_wait: bits & 4 == 0,
+            m103_enabled: bits & 16 != 0,
+        }
+    }
+}
+
+/// Touch probe parameters [003:7246-7252].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProbeRules {
+    /// MP6120: probing feed, mm/min.
+    pub feed_mm_min: f64,
+    /// MP6130: farthest travel to the first contact, mm.
+    pub range_mm: f64,
+    /// MP6140: clearance before the nominal point, mm.
+    pub clearance_mm: f64,
+    /// MP6150: rapid traverse in the probe cycle, mm/min.
+    pub rapid_mm_min: f64,
+    /// Calibrated effective radius of the stylus ball, mm.
+    pub radius_mm: f64,
+    /// Calibrated effective length of the probe, mm.
+    pub length_mm: f64,
+}
+
+impl Default for ProbeRules {
+    fn default() -> Self {
+        ProbeRules {
+            feed_mm_min: 100.0,
+            range_mm: 20.0,
+            clearance_mm: 2.0,
+            rapid_mm_min: 2000.0,
+            radius_mm: 2.0,
+            length_mm: 0.0,
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! Tools and the blank.
+
+use bahn_parameters::MessageId;
+use bahn_path::{At, Axis, Blank, Function, Plane, Synchronisation, TechnologyFunction, ToolCall, ToolShape};
+use bahn_program::{Coordinates, Value};
+
+use crate::error::{Fault, WarningKind};
+use crate::functions::BlockFunctions;
+use crate::modal::Tool;
+use crate::positioning::known;
+use crate::q_parameters::preassigned;
+use crate::run::Run;
+use crate::settings::Settings;
+
+impl Run {
+    /// TOOL DEF: tool data, or with a tool table and without data the pre-selection of the next tool
+    /// [003:1803-1840] [003:1931-1933].
+    pub(crate) fn tool_definition(
+        &mut self,
+        tool: Value,
+        length: Option<Value>,
+        radius: Option<Value>,
+        settings: &Settings,
+    ) -> Result<(), Fault> {
+        let number = self.tool_number(tool, settings)?;
+        if length.is_none() && radius.is_none() {
+            return self.output_function(Function::NextTool(number), false);
+        }
+        let length = length
+            .map(|length| self.length(length))
+            .transpose()?
+            .unwrap_or(0.0);
+        let radius = radius
+            .map(|radius| self.length(radius))
+            .transpose()?
+            .unwrap_or(0.0);
+        let max = settings.model.limits().coordinate_max;
+        if !(0.0..=max).contains(&radius) || length.abs() > max {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("R takes 0 to {max}, L up to {max} mm"),
+            ));
+        }
+        if number == 0 && (length != 0.0 || radius != 0.0) {
+            // Tool 0 has length and radius 0 [003:1814-1816].
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "tool 0 has length and radius 0",
+            ));
+        }
+        self.tools.insert(
+            number,
+            ToolShape {
+                length,
+                radius,
+                corner_radius: 0.0,
+            },
+        );
+        Ok(())
+    }
+
+    /// TOOL CALL: selects compensation data, tool axis and speed; a call may change only the speed
+    /// [003:1917-1952] [003:2188].
+    pub(crate) fn tool_call(
+        &mut self,
+        tool: Option<Value>,
+        axis: Option<Axis>,
+        speed: Option<Value>,
+        oversize: [Option<Value>; 2],
+        settings: &Settings,
+    ) -> Result<(), Fault> {
+        if let Some(speed) = speed {
+            self.modal.speed_rpm = self.speed(speed, settings)?;
+        }
+        let Some(tool) = tool else {
+            if let Some(axis) = axis {
+                self.finish_contour()?;
+                self.set_tool_axis(axis)?;
+            }
+            return self.output_function(Function::SpindleSpeed(self.modal.speed_rpm), true);
+        };
+        self.finish_contour()?;
+        let number = self.tool_number(tool, settings)?;
+        let mut shape = self.tool_shape(number, settings)?;
+        let [delta_length, delta_radius] = oversize;
+        shape.length += delta_length
+            .map(|value| self.length(value))
+            .transpose()?
+            .unwrap_or(0.0);
+        let delta_radius = delta_radius
+            .map(|value| self.length(value))
+            .transpose()?
+            .unwrap_or(0.0);
+        let axis = axis.or(self.modal.tool.map(|tool| tool.axis)).unwrap_or(Axis::Z);
+        self.set_tool_axis(axis)?;
+        self.modal.tool = Some(Tool {
+            number,
+            axis,
+            shape,
+            radius: (shape.radius + delta_radius).max(0.0),
+        });
+        self.q.preassign(
+            preassigned::TOOL_RADIUS,
+            (shape.radius + delta_radius) / self.main_unit_mm(),
+        );
+        self.q
+            .preassign(preassigned::TOOL_LENGTH, shape.length / self.main_unit_mm());
+        let call = ToolCall {
+            tool: number,
+            axis,
+            speed_rpm: self.modal.speed_rpm,
+            shape,
+        };
+        let functions = BlockFunctions {
+            output: vec![TechnologyFunction {
+                function: Function::Tool(call),
+                at: At::Start,
+                synchronisation: Synchronisation::MvsSvs,
+            }],
+            ..Default::default()
+        };
+        self.hold(functions)?;
+        Ok(())
+    }
+
+    fn tool_number(&self, tool: Value, settings: &Settings) -> Result<u32, Fault> {
+        let number = self.q.value(tool)?;
+        let max = settings.model.limits().tool_max;
+        if !(0.0..=f64::from(max)).contains(&number) || number.fract() != 0.0 {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                format!("tool numbers are 0 to {max}"),
+            ));
+        }
+        Ok(number as u32)
+    }
+
+    /// Tool data: from the program, from the table, zero for tool 0. With a table a missing tool is an
+    /// error; without one old programs rely on a table that is not at hand, so zero is taken with a
+    /// warning, unless checking is strict.
+    fn tool_shape(&mut self, number: u32, settings: &Settings) -> Result<ToolShape, Fault> {
+        let in_table = || settings.tools.as_ref().and_then(|table| table.get(&number));
+        if let Some(shape) = self.tools.get(&number).or_else(in_table) {
+            return Ok(*shape);
+        }
+        if number == 0 {
+            return Ok(ToolShape::default());
+        }
+        if settings.strict || settings.tools.is_some() {
+            return Err(Fault::new(MessageId::ToolNotDefined, format!("tool {number}")));
+        }
+        self.warn(WarningKind::ToolNotDefined { tool: number });
+        Ok(ToolShape::default())
+    }
+
+    fn speed(&self, speed: Value, settings: &Settings) -> Result<f64, Fault> {
+        let speed = self.q.value(speed)?;
+        let max = settings
+            .rules
+            .speed_max_rpm
+            .min(settings.model.limits().spindle_speed_max_rpm);
+        if !(0.0..=max).contains(&speed) {
+            return Err(Fault::new(MessageId::WrongRpm, format!("S takes 0 to {max} rpm")));
+        }
+        Ok(speed)
+    }
+
+    /// The tool axis decides the working plane [003:2733-2738]. It must not change while a rotation is
+    /// active [003:7973-7975].
+    fn set_tool_axis(&mut self, axis: Axis) -> Result<(), Fault> {
+        let Some(plane) = Plane::of_tool_axis(axis) else {
+            return Err(Fault::new(
+                MessageId::WrongAxisProgrammed,
+                "a rotary axis cannot be the tool axis",
+            ));
+        };
+        if plane != self.modal.plane && self.modal.frame.rotation_deg != 0.0 {
+            return Err(Fault::new(MessageId::PlaneWronglyDefined, "a rotation is active"));
+        }
+        self.modal.plane = plane;
+        self.modal.frame.plane = plane;
+        let number = match axis {
+            Axis::X => 0.0,
+            Axis::Y => 1.0,
+            Axis::Z => 2.0,
+            Axis::U => 6.0,
+            Axis::V => 7.0,
+            Axis::W => 8.0,
+            Axis::A | Axis::B | Axis::C => -1.0,
+        };
+        self.q.preassign(preassigned::TOOL_AXIS, number);
+        Ok(())
+    }
+
+    /// Millimetres of the unit of the main program, in which the control shows lengths.
+    pub(crate) fn main_unit_mm(&self) -> f64 {
+        crate::modal::unit_mm(self.main_unit)
+    }
+
+    // Blank.
+
+    /// BLK FORM 0.1: tool axis and least corner, absolute only [003:2113-2114].
+    pub(crate) fn blank_min(&mut self, coordinates: &Coordinates, axis: Option<Axis>) -> Result<(), Fault> {
+        if !coordinates.incremental().is_empty() {
+            return Err(Fault::new(
+                MessageId::BlkFormDefinitionIncorrect,
+                "the MIN corner is absolute",
+            ));
+        }
+        let Some(plane) = Plane::of_tool_axis(axis.unwrap_or(Axis::Z)) else {
+            return Err(MessageId::BlkFormDefinitionIncorrect.into());
+        };
+        self.modal.blank_min = Some((plane, self.corner(coordinates, [0.0; 3])?));
+        Ok(())
+    }
+
+    /// BLK FORM 0.2: greatest corner, absolute or incremental from the least one [003:2113-2121].
+    pub(crate) fn blank_max(&mut self, coordinates: &Coordinates, settings: &Settings) -> Result<(), Fault> {
+        let wrong = |detail: String| Fault::new(MessageId::BlkFormDefinitionIncorrect, detail);
+        let Some((plane, min)) = self.modal.blank_min.take() else {
+            return Err(wrong("BLK FORM 0.1 is missing".into()));
+        };
+        let max = self.corner(coordinates, min)?;
+        let limits = settings.model.limits();
+        let sides = [max[0] - min[0], max[1] - min[1], max[2] - min[2]];
+        let longest = sides.iter().copied().fold(0.0, f64::max);
+        let shortest = sides.iter().copied().fold(f64::INFINITY, f64::min);
+        if shortest <= 0.0 {
+            return Err(wrong(
+                "the MAX corner must be greater than the MIN corner on every axis".into(),
+            ));
+        }
+        if longest > limits.blank_side_max_mm {
+            return Err(wrong(format!(
+                "a side is longer than {} mm",
+                limits.blank_side_max_mm
+            )));
+        }
+        if longest / shortest >= limits.blank_ratio_limit {
+            return Err(wrong(format!(
+                "the ratio of the sides must stay below {}:1",
+                limits.blank_ratio_limit
+            )));
+        }
+        if self.at.in_called_program() {
+            if !self.blank_given {
+                self.warn(WarningKind::BlankInCalledProgram);
+            }
+            return Ok(());
+        }
+        self.blank_given = true;
+        self.output_function(Function::Blank(Blank { plane, min, max }), false)
+    }
+
+    fn corner(&self, coordinates: &Coordinates, base: [f64; 3]) -> Result<[f64; 3], Fault> {
+        let mut corner = base;
+        for (slot, axis) in corner.iter_mut().zip([Axis::X, Axis::Y, Axis::Z]) {
+            let Some(word) = coordinates.get(axis) else {
+                return Err(Fault::new(
+                    MessageId::BlkFormDefinitionIncorrect,
+                    format!("{axis} is missing"),
+                ));
+            };
+            let value = known(self.length(word.value)?);
+            *slot = if word.incremental { *slot + value } else { value };
+        }
+        Ok(corner)
+    }
+}
