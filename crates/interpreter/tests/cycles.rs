@@ -1,0 +1,314 @@
+//! Fixed cycles: drilling, tapping, slots and pockets.
+
+mod support;
+
+use std::f64::consts::PI;
+
+use bahn_path::{Axis, Curve, FeedRate, Function, OverrideLaw, PathElement};
+use support::*;
+
+/// Feed and end height of movements in the tool axis.
+fn heights(elements: &[&PathElement]) -> Vec<(FeedRate, f64)> {
+    elements.iter().map(|e| (e.feed, e.end[Axis::Z])).collect()
+}
+
+const RAPID: FeedRate = FeedRate::Rapid;
+
+fn feed(mm_min: f64) -> FeedRate {
+    FeedRate::Programmed(mm_min)
+}
+
+/// P23: pecking. Advanced stop distance 0.6 mm up to a depth of 30 mm [003:4943-4986].
+#[test]
+fn p23_pecking() {
+    let run = run_manual("P23");
+    for (block, x, y) in [(13, 20.0, 30.0), (14, 80.0, 50.0)] {
+        let moves = run.of_block(block);
+        let hole = &moves[1..];
+        let expected = [
+            (feed(80.0), -10.0),
+            (RAPID, 2.0),
+            (RAPID, -10.0 + 0.6),
+            (feed(80.0), -15.0),
+            (RAPID, 2.0),
+        ];
+        assert_eq!(heights(hole), expected);
+        assert!(hole.iter().all(|e| e.end[Axis::X] == x && e.end[Axis::Y] == y));
+        // Dwell at the bottom.
+        let dwell: f64 = run
+            .elements
+            .iter()
+            .filter(|e| e.block.block == block)
+            .map(|e| e.dwell_s)
+            .sum();
+        assert_eq!(dwell, 1.0);
+    }
+}
+
+/// The advanced stop distance grows with the depth: depth/50 above 30 mm, 7 mm at most [003:4943-4948].
+#[test]
+fn advanced_stop_distance() {
+    for (depth, stop) in [
+        (30.0, 0.6),
+        (31.0, 0.62),
+        (200.0, 4.0),
+        (350.0, 7.0),
+        (500.0, 7.0),
+    ] {
+        let run = run(&format!(
+            "TOOL DEF 1 L+0 R+3\nTOOL CALL 1 Z S1000\nCYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -{depth}
+             CYCL DEF 1.3 PECKG -20\nCYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F80\nL X+0 Y+0 Z+2 FMAX M99"
+        ));
+        let hole = run.of_block(9);
+        // Movement, first infeed, back, down to before the first depth.
+        close(hole[3].end[Axis::Z], -20.0 + stop, 1e-9);
+        close(hole[hole.len() - 2].end[Axis::Z], -depth, 1e-9);
+    }
+}
+
+/// P24: tapping with a floating holder: F = S · p, the spindle reverses at the bottom and above
+/// [003:4994-5067].
+#[test]
+fn p24_tapping() {
+    let run = run_manual("P24");
+    let moves = run.of_block(12);
+    assert_eq!(
+        heights(&moves),
+        [(RAPID, 3.0), (feed(100.0), -20.0), (feed(100.0), 3.0)]
+    );
+    assert!(
+        moves[1..]
+            .iter()
+            .all(|e| matches!(e.override_law, OverrideLaw::Limited { .. }))
+    );
+    let in_block = run.functions().into_iter().filter(|(block, _)| *block == 12);
+    let functions: Vec<_> = in_block.map(|(_, f)| f.clone()).collect();
+    assert_eq!(functions, [Function::M(4), Function::M(3)]);
+    let dwell: f64 = run.elements.iter().map(|e| e.dwell_s).sum();
+    assert_eq!(dwell, 0.4);
+}
+
+/// Cycle 17: the feed follows from speed and pitch, feed override has no effect [003:4845] [003:5071-5106].
+#[test]
+fn rigid_tapping() {
+    let run = run("TOOL DEF 1 L+0 R+3
+         TOOL CALL 1 Z S400
+         CYCL DEF 17.0 RIGID TAPPING
+         CYCL DEF 17.1 SET UP -2
+         CYCL DEF 17.2 DEPTH -30
+         CYCL DEF 17.3 PITCH +0.75
+         L X+0 Y+0 Z+2 FMAX M3
+         CYCL CALL");
+    let moves = run.of_block(8);
+    assert_eq!(heights(&moves), [(feed(400.0 * 0.75), -30.0), (feed(300.0), 2.0)]);
+    assert!(moves.iter().all(|e| e.override_law == OverrideLaw::Disabled));
+    assert!(run.functions().contains(&(8, &Function::SpindleOrientation(0.0))));
+}
+
+/// P25: two slots [003:5190-5215].
+#[test]
+fn p25_slots() {
+    let run = run_manual("P25");
+    // Slot 1: X 30..80, Y 10..20, first cut in -X; slot 2: X 15..25, Y 10..90, first cut in +Y.
+    let slot = |elements: &[&PathElement]| {
+        let cuts: Vec<_> = elements
+            .iter()
+            .filter(|e| e.end[Axis::Z] < 0.0 && !is_rapid(e))
+            .copied()
+            .collect();
+        let reach = |axis: Axis, sign: f64| {
+            cuts.iter().map(|e| sign * e.end[axis]).fold(f64::MIN, f64::max) * sign + sign * 4.0
+        };
+        let first = cuts.iter().find(|e| e.start[Axis::Z] == e.end[Axis::Z]).unwrap();
+        let direction = [
+            first.end[Axis::X] - first.start[Axis::X],
+            first.end[Axis::Y] - first.start[Axis::Y],
+        ];
+        (
+            [
+                reach(Axis::X, -1.0),
+                reach(Axis::X, 1.0),
+                reach(Axis::Y, -1.0),
+                reach(Axis::Y, 1.0),
+            ],
+            direction.map(|d| if d == 0.0 { 0.0 } else { d.signum() }),
+        )
+    };
+    let (first, second) = (run.of_block(14), run.of_block(23));
+    assert_eq!(slot(&first), ([30.0, 80.0, 10.0, 20.0], [-1.0, 0.0]));
+    assert_eq!(slot(&second), ([15.0, 25.0, 10.0, 90.0], [0.0, 1.0]));
+    for (elements, mm_min) in [(&first, 120.0), (&second, 110.0)] {
+        let depths: Vec<f64> = elements
+            .iter()
+            .filter(|e| e.end[Axis::Z] < e.start[Axis::Z] && !is_rapid(e))
+            .map(|e| e.end[Axis::Z])
+            .filter(|z| *z < 0.0)
+            .collect();
+        assert_eq!(depths, [-5.0, -10.0, -15.0]);
+        let milling = elements
+            .iter()
+            .filter(|e| e.start[Axis::Z] == e.end[Axis::Z] && e.end[Axis::Z] < 0.0);
+        assert!(milling.into_iter().all(|e| e.feed == feed(mm_min)));
+    }
+    // Odd number of infeeds: back to the start position at setup clearance [003:5124].
+    close_points(&[xyz(&first.last().unwrap().end)], &[[76.0, 15.0, 2.0]], 1e-9);
+}
+
+/// P25: the removed volume: both rectangles with corners of the tool's radius R4.
+#[test]
+fn p25_volume() {
+    let corners = (4.0 - PI) * 4.0 * 4.0;
+    let expected = (50.0 * 10.0 - corners + 80.0 * 10.0 - corners) * 15.0;
+    close(run_manual("P25").removed_mm3(0.1), expected, 0.002 * expected);
+}
+
+/// P26: rectangular pocket X 20..100, Y 15..55 with infeeds to 4, 8 and 10 mm [003:5292-5309].
+#[test]
+fn p26_pocket() {
+    let run = run_manual("P26");
+    let moves = run.of_block(15);
+    let plunges: Vec<f64> = moves
+        .iter()
+        .filter(|e| e.feed == feed(80.0))
+        .map(|e| e.end[Axis::Z])
+        .collect();
+    assert_eq!(plunges, [-4.0, -8.0, -10.0]);
+    let cuts: Vec<_> = moves.iter().filter(|e| e.feed == feed(100.0)).collect();
+    let reach = |axis: Axis| {
+        let values = cuts.iter().map(|e| e.end[axis]);
+        [
+            values.clone().fold(f64::MAX, f64::min),
+            values.fold(f64::MIN, f64::max),
+        ]
+    };
+    assert_eq!((reach(Axis::X), reach(Axis::Y)), ([25.0, 95.0], [20.0, 50.0]));
+    // The first cut runs in the positive direction of the longer side [003:5223-5228].
+    assert!(cuts[0].end[Axis::X] > cuts[0].start[Axis::X] && cuts[0].end[Axis::Y] == cuts[0].start[Axis::Y]);
+    close_points(&[xyz(&moves.last().unwrap().end)], &[[60.0, 35.0, 2.0]], 1e-9);
+    let expected = (80.0 * 40.0 - (4.0 - PI) * 25.0) * 10.0;
+    close(run.removed_mm3(0.1), expected, 0.002 * expected);
+}
+
+/// P26: DR+ climbs with M3, so the outermost rectangle runs counter-clockwise; DR- runs the other way
+/// [003:5256-5258].
+#[test]
+fn p26_direction() {
+    for (dr, sign) in [("DR+", 1.0), ("DR-", -1.0)] {
+        let run = Job::new(manual("P26").replace("DR+", dr)).run();
+        let area: f64 = run
+            .of_block(15)
+            .iter()
+            .filter(|e| e.end[Axis::Z] == -4.0)
+            .map(|e| 0.5 * (e.start[Axis::X] * e.end[Axis::Y] - e.end[Axis::X] * e.start[Axis::Y]))
+            .sum();
+        assert!(area * sign > 0.0, "{dr}");
+    }
+}
+
+/// P27: circular pocket R35 with DR- [003:5370-5387].
+#[test]
+fn p27_circular_pocket() {
+    let run = run_manual("P27");
+    let moves = run.of_block(13);
+    let plunges: Vec<f64> = moves
+        .iter()
+        .filter(|e| e.feed == feed(80.0))
+        .map(|e| e.end[Axis::Z])
+        .collect();
+    assert_eq!(plunges, [-6.0, -12.0]);
+    let circles: Vec<_> = moves
+        .iter()
+        .filter(|e| matches!(e.curve, Curve::Arc(arc) if arc.sweep_deg.abs() == 360.0))
+        .collect();
+    assert_eq!(circles.len(), 2);
+    for circle in circles {
+        close_points(&[arc_of(circle).0], &[[60.0, 50.0]], 1e-9);
+        close(arc_radius(circle), 35.0 - 10.0, 1e-9);
+    }
+    assert!(
+        moves
+            .iter()
+            .filter(|e| matches!(e.curve, Curve::Arc(_)))
+            .all(|e| arc_of(e).1 < 0.0)
+    );
+    close_points(&[xyz(&moves.last().unwrap().end)], &[[60.0, 50.0, 2.0]], 1e-9);
+    let expected = PI * 35.0 * 35.0 * 12.0;
+    close(run.removed_mm3(0.1), expected, 0.002 * expected);
+}
+
+const DRILL: &str = "TOOL DEF 1 L+0 R+3
+    TOOL CALL 1 Z S1000
+    CYCL DEF 1.0 PECKING
+    CYCL DEF 1.1 SET UP -2
+    CYCL DEF 1.2 DEPTH -10
+    CYCL DEF 1.3 PECKG -10
+    CYCL DEF 1.4 DWELL 0
+    CYCL DEF 1.5 F80";
+
+/// X positions of the holes.
+fn drilled(blocks: &str) -> Vec<f64> {
+    let run = run(&format!("{DRILL}\nL X+0 Y+0 Z+2 FMAX\n{blocks}"));
+    run.moves()
+        .filter(|e| e.feed == feed(80.0))
+        .map(|e| e.end[Axis::X])
+        .collect()
+}
+
+/// M99 calls once, M89 after every positioning block until M99, CYCL CALL or another definition
+/// [003:4857-4881].
+#[test]
+fn cycle_calls() {
+    assert_eq!(drilled("L X+1 FMAX M99\nL X+2 FMAX"), [1.0]);
+    assert_eq!(
+        drilled("L X+1 FMAX M89\nL X+2 FMAX\nL X+3 FMAX M99\nL X+4 FMAX"),
+        [1.0, 2.0, 3.0]
+    );
+    assert_eq!(drilled("L X+1 FMAX M89\nCYCL CALL\nL X+4 FMAX"), [1.0, 1.0]);
+    assert_eq!(
+        drilled(&format!(
+            "L X+1 FMAX M89\n{}\nL X+4 FMAX",
+            &DRILL[DRILL.find("CYCL").unwrap()..]
+        )),
+        [1.0]
+    );
+    // M89 is a free function when MP7440 says so.
+    let text = program(&format!("{DRILL}\nL X+0 Y+0 Z+2 FMAX\nL X+1 FMAX M89"));
+    let run = Job::new(text)
+        .with(|s| s.rules.m_functions.m89_calls_cycle = false)
+        .run();
+    run.assert_completed();
+    assert!(run.functions().contains(&(10, &Function::M(89))));
+    assert_eq!(run.of_block(10).len(), 1);
+}
+
+/// Cycle 9 dwells where it is defined; the spindle goes on [003:6462-6474].
+#[test]
+fn dwell_time() {
+    let run = run("L X+0 FMAX\nCYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 2.5\nL X+1 FMAX");
+    let dwells: Vec<_> = run
+        .elements
+        .iter()
+        .filter(|e| e.dwell_s > 0.0)
+        .map(|e| e.dwell_s)
+        .collect();
+    assert_eq!(dwells, [2.5]);
+}
+
+/// Cycle 13 gives the angle of M19 [003:6500-6528].
+#[test]
+fn oriented_spindle_stop() {
+    let run = run("CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 45\nL X+0 FMAX M19");
+    assert!(
+        run.functions()
+            .contains(&(3, &Function::SpindleOrientation(45.0)))
+    );
+}
+
+/// Another tool axis: holes run along it [003:2733-2738].
+#[test]
+fn drilling_along_x() {
+    let text = DRILL.replace("TOOL CALL 1 Z", "TOOL CALL 1 X");
+    let run = run(&format!("{text}\nL Y+10 Z+20 X+2 FMAX M99"));
+    let bottom = run.moves().find(|e| e.feed == feed(80.0)).unwrap();
+    close_points(&[xyz(&bottom.end)], &[[-10.0, 10.0, 20.0]], 1e-9);
+}

@@ -1,0 +1,360 @@
+//! Runs programs for the tests and answers questions about what came out.
+#![allow(dead_code, reason = "every test file uses its own part of the support")]
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use bahn_interpreter::{Interpreter, Library, MFunctionRules, Message, ProgramError, Settings, Warning};
+use bahn_parameters::MessageId;
+use bahn_path::{
+    Axis, Barrier, Blank, Curve, ElementSource, FeedRate, Function, LiveData, PathElement, Position, Step,
+    ToolCall, Touch,
+};
+use bahn_program::Program;
+use bahn_workpiece::{Event, Resolution, Workpiece};
+
+/// The text of a program of the manual, from the folder `tests/programs`.
+pub fn manual(name: &str) -> String {
+    let path = format!("{}/tests/programs/{name}.H", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// A program from its blocks: begin, end and block numbers are added, so that the first line is block 1.
+pub fn program(blocks: &str) -> String {
+    let lines = blocks.lines().map(str::trim).filter(|line| !line.is_empty());
+    let mut text = "0 BEGIN PGM TEST MM\n".to_owned();
+    let mut number = 0;
+    for line in lines {
+        number += 1;
+        text.push_str(&format!("{number} {line}\n"));
+    }
+    text.push_str(&format!("{} END PGM TEST MM\n", number + 1));
+    text
+}
+
+/// A program and what it runs with.
+pub struct Job {
+    text: Vec<u8>,
+    pub settings: Settings,
+    library: BTreeMap<String, String>,
+    surfaces: Vec<f64>,
+}
+
+impl Job {
+    pub fn new(text: impl Into<Vec<u8>>) -> Job {
+        Job {
+            text: text.into(),
+            settings: Settings::default(),
+            library: BTreeMap::new(),
+            surfaces: Vec::new(),
+        }
+    }
+
+    /// Changes the settings.
+    pub fn with(mut self, change: impl FnOnce(&mut Settings)) -> Job {
+        change(&mut self.settings);
+        self
+    }
+
+    /// A program that can be called.
+    pub fn library(mut self, name: &str, text: impl Into<String>) -> Job {
+        self.library.insert(name.to_owned(), text.into());
+        self
+    }
+
+    /// The probe touches at this coordinate of the probing axis, one after the other; afterwards nothing.
+    pub fn surfaces(mut self, surfaces: &[f64]) -> Job {
+        self.surfaces = surfaces.to_vec();
+        self
+    }
+
+    pub fn run(self) -> Run {
+        let main = Arc::new(Program::from_bytes("TEST", self.text));
+        let library = Shelf(
+            self.library
+                .into_iter()
+                .map(|(name, text)| {
+                    let program = Program::from_bytes(name.as_str(), text.into_bytes());
+                    (name, Arc::new(program))
+                })
+                .collect(),
+        );
+        let mut interpreter = Interpreter::new(main, self.settings, Box::new(library));
+        let mut run = Run::new();
+        let mut surfaces = self.surfaces.into_iter();
+        loop {
+            match interpreter.next() {
+                Step::Element(element) => run.elements.push(element),
+                Step::Barrier(barrier) => {
+                    run.barriers.push(barrier);
+                    interpreter.resume(LiveData {
+                        touch: touch(&barrier, &mut surfaces),
+                        ..LiveData::default()
+                    });
+                    run.touched_q.push(interpreter.q_values().to_vec());
+                }
+                Step::Error(error) => {
+                    run.error = Some(*error);
+                    break;
+                }
+                Step::End | Step::Starved => break,
+            }
+        }
+        run.q = interpreter.q_values().to_vec();
+        run.blocks_executed = interpreter.blocks_executed();
+        run.position = interpreter.position();
+        run.warnings = interpreter.take_warnings();
+        run
+    }
+}
+
+/// Runs a program of the manual that must come to its end.
+pub fn run_manual(name: &str) -> Run {
+    let run = Job::new(manual(name)).run();
+    run.assert_completed();
+    run
+}
+
+/// Runs blocks that must come to their end.
+pub fn run(blocks: &str) -> Run {
+    let run = Job::new(program(blocks)).run();
+    run.assert_completed();
+    run
+}
+
+struct Shelf(BTreeMap<String, Arc<Program>>);
+
+impl Library for Shelf {
+    fn find(&mut self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+        Ok(self.0.get(name).cloned())
+    }
+}
+
+fn touch(barrier: &Barrier, surfaces: &mut impl Iterator<Item = f64>) -> Option<Touch> {
+    let Barrier::Probe { from, to, .. } = barrier else {
+        return None;
+    };
+    let axis = Axis::ALL
+        .into_iter()
+        .find(|axis| from[*axis] != to[*axis] && !from[*axis].is_nan())?;
+    let surface = surfaces.next()?;
+    let mut position = *from;
+    position[axis] = surface;
+    let reachable = (surface - from[axis]) * (surface - to[axis]) <= 0.0;
+    reachable.then_some(Touch { position })
+}
+
+/// What a run brought out.
+pub struct Run {
+    pub elements: Vec<PathElement>,
+    pub barriers: Vec<Barrier>,
+    /// The Q parameters after each barrier.
+    pub touched_q: Vec<Vec<f64>>,
+    pub error: Option<ProgramError>,
+    pub q: Vec<f64>,
+    pub blocks_executed: u64,
+    pub position: Position,
+    pub warnings: Vec<Warning>,
+}
+
+impl Run {
+    fn new() -> Run {
+        Run {
+            elements: Vec::new(),
+            barriers: Vec::new(),
+            touched_q: Vec::new(),
+            error: None,
+            q: Vec::new(),
+            blocks_executed: 0,
+            position: Position::UNKNOWN,
+            warnings: Vec::new(),
+        }
+    }
+
+    pub fn assert_completed(&self) {
+        assert_eq!(self.error, None);
+    }
+
+    /// Message and block of the error.
+    pub fn message(&self) -> Option<(MessageId, u32)> {
+        let error = self.error.as_ref()?;
+        match error.message {
+            Message::Control(id) => Some((id, error.block.block)),
+            Message::Numbered(_) => None,
+        }
+    }
+
+    /// The elements that move something.
+    pub fn moves(&self) -> impl Iterator<Item = &PathElement> {
+        self.elements.iter().filter(|e| e.curve != Curve::Hold)
+    }
+
+    /// The movements of a block.
+    pub fn of_block(&self, block: u32) -> Vec<&PathElement> {
+        self.moves()
+            .filter(|e| e.block.program == 0 && e.block.block == block)
+            .collect()
+    }
+
+    /// The movements of a range of blocks.
+    pub fn of_blocks(&self, blocks: std::ops::RangeInclusive<u32>) -> Vec<&PathElement> {
+        self.moves()
+            .filter(|e| e.block.program == 0 && blocks.contains(&e.block.block))
+            .collect()
+    }
+
+    /// The order in which blocks moved, each run of elements of one block once.
+    pub fn order(&self) -> Vec<u32> {
+        let mut order: Vec<u32> = self.moves().map(|e| e.block.block).collect();
+        order.dedup();
+        order
+    }
+
+    /// Functions with the block of their element.
+    pub fn functions(&self) -> Vec<(u32, &Function)> {
+        let all = self.elements.iter();
+        all.flat_map(|e| e.functions().iter().map(move |f| (e.block.block, &f.function)))
+            .collect()
+    }
+
+    pub fn tool_calls(&self) -> Vec<ToolCall> {
+        let calls = self.functions().into_iter();
+        calls
+            .filter_map(|(_, f)| {
+                if let Function::Tool(call) = f {
+                    Some(*call)
+                } else {
+                    None
+                }
+            })
+            .collect()
+    }
+
+    pub fn blank(&self) -> Blank {
+        let found = self.functions().into_iter().find_map(|(_, f)| match f {
+            Function::Blank(blank) => Some(*blank),
+            _ => None,
+        });
+        found.expect("the program has a blank")
+    }
+
+    /// The workpiece after the run at this resolution.
+    pub fn workpiece(&self, resolution_mm: f64) -> Workpiece {
+        let mut workpiece = Workpiece::new(&self.blank(), Resolution::Millimetres(resolution_mm)).unwrap();
+        self.cut(&mut workpiece, &self.elements);
+        workpiece
+    }
+
+    /// Removes what the elements sweep with the tools that they call.
+    pub fn cut(&self, workpiece: &mut Workpiece, elements: &[PathElement]) {
+        let mut tool: Option<ToolCall> = None;
+        for element in elements {
+            for function in element.functions() {
+                if let Function::Tool(call) = &function.function {
+                    tool = Some(*call);
+                }
+            }
+            if let Some(tool) = tool {
+                workpiece.cut(element, &tool.shape, tool.axis);
+            }
+        }
+    }
+
+    /// Removed volume at this resolution, mm³.
+    pub fn removed_mm3(&self, resolution_mm: f64) -> f64 {
+        self.workpiece(resolution_mm).finished().removed_mm3()
+    }
+
+    pub fn events(&self, resolution_mm: f64) -> Vec<Event> {
+        self.workpiece(resolution_mm).take_events()
+    }
+}
+
+/// X and Y of the end points.
+pub fn ends(elements: &[&PathElement]) -> Vec<[f64; 2]> {
+    elements
+        .iter()
+        .map(|e| [e.end[Axis::X], e.end[Axis::Y]])
+        .collect()
+}
+
+/// X, Y and Z of a position.
+pub fn xyz(p: &Position) -> [f64; 3] {
+    [p[Axis::X], p[Axis::Y], p[Axis::Z]]
+}
+
+/// Path length of elements, mm.
+pub fn length(elements: &[&PathElement]) -> f64 {
+    elements.iter().map(|e| e.length()).sum()
+}
+
+/// Whether an element runs in rapid traverse.
+pub fn is_rapid(element: &PathElement) -> bool {
+    element.feed == FeedRate::Rapid
+}
+
+/// Radius of an arc at its start, mm; 0 for other curves.
+pub fn arc_radius(element: &PathElement) -> f64 {
+    match element.curve {
+        Curve::Arc(arc) => arc.radii(&element.start, &element.end).0,
+        _ => 0.0,
+    }
+}
+
+/// Centre and sweep of an arc.
+pub fn arc_of(element: &PathElement) -> ([f64; 2], f64) {
+    match element.curve {
+        Curve::Arc(arc) => (arc.centre, arc.sweep_deg),
+        other => panic!("{other:?} is no arc"),
+    }
+}
+
+/// The number agrees with the expected one within a tolerance.
+#[track_caller]
+pub fn close(actual: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (actual - expected).abs() <= tolerance,
+        "{actual} is not {expected} ± {tolerance}"
+    );
+}
+
+/// Points agree with the expected ones within a tolerance.
+#[track_caller]
+pub fn close_points<const N: usize>(actual: &[[f64; N]], expected: &[[f64; N]], tolerance: f64) {
+    let agree = actual.len() == expected.len()
+        && actual
+            .iter()
+            .flatten()
+            .zip(expected.iter().flatten())
+            .all(|(a, b)| (a - b).abs() <= tolerance);
+    assert!(agree, "\n  actual {actual:.4?}\nexpected {expected:.4?}");
+}
+
+/// What a path consists of, for comparing runs: curve, start, end and feed without block numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    pub curve: Curve,
+    pub start: Position,
+    pub end: Position,
+    pub feed: FeedRate,
+}
+
+/// The movements of a run as shapes.
+pub fn shapes(run: &Run) -> Vec<Shape> {
+    run.moves()
+        .map(|e| Shape {
+            curve: e.curve,
+            start: e.start,
+            end: e.end,
+            feed: e.feed,
+        })
+        .collect()
+}
+
+/// Rules in which M6 does not stop.
+pub fn m6_goes_on() -> MFunctionRules {
+    MFunctionRules {
+        m6_stops: false,
+        ..MFunctionRules::default()
+    }
+}

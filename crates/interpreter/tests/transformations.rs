@@ -1,0 +1,249 @@
+//! Datum shift, mirror image, rotation and scaling: the same contour at another place.
+
+mod support;
+
+use bahn_path::{Axis, Curve, Position};
+use support::*;
+
+/// The contour of P33 to P36, from corner to corner, and its first and last point once more.
+const CONTOUR: [[f64; 2]; 6] = [
+    [0.0, 0.0],
+    [0.0, 20.0],
+    [25.0, 20.0],
+    [30.0, 15.0],
+    [30.0, 0.0],
+    [0.0, 0.0],
+];
+
+/// Where the tool of radius R runs beside [`CONTOUR`] with RL: outside. Ends of lines and of the arcs about
+/// the corners.
+fn outside(radius: f64) -> Vec<[f64; 2]> {
+    let s = radius / 2f64.sqrt();
+    vec![
+        [-radius, 0.0],
+        [-radius, 20.0],
+        [0.0, 20.0 + radius],
+        [25.0, 20.0 + radius],
+        [25.0 + s, 20.0 + s],
+        [30.0 + s, 15.0 + s],
+        [30.0 + radius, 15.0],
+        [30.0 + radius, 0.0],
+        [30.0, -radius],
+        [0.0, -radius],
+    ]
+}
+
+/// Ends of the contour's movements, first at the original place, then at the other one.
+fn both(name: &str) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
+    let run = run_manual(name);
+    let cutting: Vec<_> = run
+        .moves()
+        .filter(|e| e.end[Axis::Z] < 0.0 && e.start[Axis::Z] == e.end[Axis::Z])
+        .collect();
+    let half = cutting.len() / 2;
+    // The last movement of each pass leads away from the contour.
+    let ends = |part: &[&bahn_path::PathElement]| {
+        part[..part.len() - 1]
+            .iter()
+            .map(|e| [e.end[Axis::X], e.end[Axis::Y]])
+            .collect()
+    };
+    (ends(&cutting[..half]), ends(&cutting[half..]))
+}
+
+fn mapped(points: &[[f64; 2]], f: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[f64; 2]> {
+    points.iter().map(|p| f(*p)).collect()
+}
+
+/// P33: datum shift by (40,60) [003:6244-6259].
+#[test]
+fn p33_datum_shift() {
+    let (first, second) = both("P33");
+    close_points(&first, &outside(5.0), 1e-9);
+    close_points(
+        &second,
+        &mapped(&outside(5.0), |[x, y]| [40.0 + x, 60.0 + y]),
+        1e-9,
+    );
+}
+
+/// P34: mirrored in X about the datum (70,60): the tool's side is mirrored with the contour [003:6307].
+#[test]
+fn p34_mirror_image() {
+    let (first, second) = both("P34");
+    close_points(&first, &outside(4.0), 1e-9);
+    close_points(
+        &second,
+        &mapped(&outside(4.0), |[x, y]| [70.0 - x, 60.0 + y]),
+        1e-9,
+    );
+    // The corners of the manual's drawing.
+    let corners = mapped(&CONTOUR, |[x, y]| [70.0 - x, 60.0 + y]);
+    close_points(
+        &corners[..5],
+        &[
+            [70.0, 60.0],
+            [70.0, 80.0],
+            [45.0, 80.0],
+            [40.0, 75.0],
+            [40.0, 60.0],
+        ],
+        1e-9,
+    );
+}
+
+/// P35: rotated by 35° about the datum (70,60) [003:6345-6379].
+#[test]
+fn p35_rotation() {
+    let (sin, cos) = 35f64.to_radians().sin_cos();
+    let turned = |[x, y]: [f64; 2]| [70.0 + x * cos - y * sin, 60.0 + x * sin + y * cos];
+    let (first, second) = both("P35");
+    close_points(&first, &outside(5.0), 1e-9);
+    close_points(&second, &mapped(&outside(5.0), turned), 1e-9);
+    close_points(
+        &mapped(&CONTOUR[1..3], turned),
+        &[[58.528, 76.383], [79.007, 90.722]],
+        5e-4,
+    );
+}
+
+/// P36: scaled by 0.8 about the datum (60,70); the tool keeps its radius [003:6422-6454].
+#[test]
+fn p36_scaling() {
+    let (first, second) = both("P36");
+    close_points(&first, &outside(5.0), 1e-9);
+    // A tool of R 5/0.8 beside the original contour, then everything scaled.
+    let scaled = mapped(&outside(5.0 / 0.8), |[x, y]| [60.0 + 0.8 * x, 70.0 + 0.8 * y]);
+    close_points(&second, &scaled, 1e-9);
+    // All axes are scaled: the depth too.
+    let depths: Vec<f64> = run_manual("P36")
+        .of_block(22)
+        .iter()
+        .map(|e| e.end[Axis::Z])
+        .collect();
+    assert_eq!(depths, [-5.0, -4.0]);
+}
+
+/// All four together: scaled and mirrored first, then rotated about the shifted datum.
+#[test]
+fn all_together() {
+    let text = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nCYCL DEF 7.2 Y-5\nCYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT +90
+        CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X\nCYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 2\nL X+3 Y+4 R0 FMAX\nL X+0 Y+0 FMAX";
+    let run = run(text);
+    // (3,4) -> scaled (6,8) -> mirrored (-6,8) -> rotated (-8,-6) -> shifted (2,-11).
+    close_points(
+        &ends(&run.moves().collect::<Vec<_>>()),
+        &[[2.0, -11.0], [10.0, -5.0]],
+        1e-12,
+    );
+}
+
+/// Incremental shifts add up, incremental rotation too [003:6222] [003:6313-6333].
+#[test]
+fn incremental_transformations() {
+    let moved = |text: &str| {
+        let run = run(&format!("{text}\nL X+1 Y+0 FMAX"));
+        [run.position[Axis::X], run.position[Axis::Y]]
+    };
+    let shift = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 IX+10";
+    close_points(&[moved(&format!("{shift}\n{shift}"))], &[[21.0, 0.0]], 1e-12);
+    let rotation = "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 IROT +45";
+    close_points(&[moved(&format!("{rotation}\n{rotation}"))], &[[0.0, 1.0]], 1e-12);
+}
+
+/// Cycles work in the transformed system: a pocket turns with it, and is scaled with it [003:6393-6395].
+#[test]
+fn cycles_are_transformed() {
+    let pocket = "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1000\nCYCL DEF 4.0 POCKET\nCYCL DEF 4.1 SET UP -2\nCYCL DEF 4.2 DEPTH -10\nCYCL DEF 4.3 PECKG -10 F80
+        CYCL DEF 4.4 X+80\nCYCL DEF 4.5 Y+40\nCYCL DEF 4.6 F100 DR+ RADIUS 0";
+    let reach = |transformation: &str| {
+        let run = run(&format!(
+            "{pocket}\n{transformation}\nL X+0 Y+0 R0 FMAX M3\nL Z+2 FMAX M99"
+        ));
+        let bottom = run.moves().map(|e| e.end[Axis::Z]).fold(f64::MAX, f64::min);
+        let span = |axis: Axis| {
+            let below: Vec<f64> = run
+                .moves()
+                .filter(|e| e.end[Axis::Z] < 0.0)
+                .map(|e| e.end[axis])
+                .collect();
+            below.iter().copied().fold(f64::MIN, f64::max) - below.iter().copied().fold(f64::MAX, f64::min)
+        };
+        [span(Axis::X), span(Axis::Y), bottom]
+    };
+    close_points(&[reach("")], &[[70.0, 30.0, -10.0]], 1e-9);
+    close_points(
+        &[reach("CYCL DEF 10.0 ROT\nCYCL DEF 10.1 ROT +90")],
+        &[[30.0, 70.0, -10.0]],
+        1e-9,
+    );
+    // The tool stands at Z = 2·2 = 4, setup clearance 2·2, depth 2·10; the tool's radius stays.
+    close_points(
+        &[reach("CYCL DEF 11.0 SCL\nCYCL DEF 11.1 SCL 2")],
+        &[[150.0, 70.0, -20.0]],
+        1e-9,
+    );
+}
+
+/// MP7410 = 1: scaling in the working plane only [003:7357-7363].
+#[test]
+fn scaling_of_the_plane_only() {
+    let text = program("TOOL CALL 0 Z\nCYCL DEF 11.0 SCL\nCYCL DEF 11.1 SCL 2\nL X+1 Y+1 Z+1 FMAX");
+    let run = Job::new(text)
+        .with(|s| s.rules.scaling_in_plane_only = true)
+        .run();
+    close_points(&[xyz(&run.position)], &[[2.0, 2.0, 1.0]], 1e-12);
+}
+
+/// A mirrored arc turns the other way; both axes mirrored it turns as before [003:6276-6284].
+#[test]
+fn mirrored_arcs() {
+    let sweep = |axes: &str| {
+        let run = run(&format!(
+            "CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 {axes}\nL X+10 Y+0 R0 FMAX\nCC X+0 Y+0\nC X+0 Y+10 DR+ F100"
+        ));
+        let arc = run.moves().last().unwrap();
+        (arc_of(arc).1, arc.end[Axis::X] + 0.0, arc.end[Axis::Y])
+    };
+    let near = |(s, x, y): (f64, f64, f64), (s2, x2, y2): (f64, f64, f64)| {
+        close_points(&[[s, x, y]], &[[s2, x2, y2]], 1e-9);
+    };
+    near(sweep("X"), (-90.0, 0.0, 10.0));
+    near(sweep("Y"), (-90.0, 0.0, -10.0));
+    near(sweep("X Y"), (90.0, 0.0, -10.0));
+}
+
+/// A shift without a movement moves nothing; the next incremental word counts from where the tool stands
+/// (inferred).
+#[test]
+fn a_shift_alone_moves_nothing() {
+    let run =
+        run("L X+10 Y+20 FMAX\nCYCL DEF 7.0 DATUM\nCYCL DEF 7.1 X+100\nL IX+1 FMAX\nL Y+0 FMAX\nL X+0 FMAX");
+    close_points(
+        &ends(&run.moves().collect::<Vec<_>>()),
+        &[[10.0, 20.0], [11.0, 20.0], [11.0, 0.0], [100.0, 0.0]],
+        1e-12,
+    );
+}
+
+/// M91 refers to machine zero, M92 to the machine datum, whatever is transformed [003:3533-3553].
+#[test]
+fn machine_coordinates() {
+    let text = program(
+        "CYCL DEF 7.0 DATUM\nCYCL DEF 7.1 X+100\nL X+1 FMAX\nL X+1 FMAX M91\nL X+1 FMAX M92\nL X+1 FMAX",
+    );
+    let mut at = Position::ZERO;
+    at[Axis::X] = -200.0;
+    let mut datum = Position::ZERO;
+    datum[Axis::X] = 30.0;
+    let run = Job::new(text)
+        .with(|s| {
+            s.rules.machine_zero = at;
+            s.rules.machine_datum = datum;
+        })
+        .run();
+    run.assert_completed();
+    let x: Vec<f64> = run.moves().map(|e| e.end[Axis::X]).collect();
+    assert_eq!(x, [101.0, -199.0, -169.0, 101.0]);
+    assert!(run.moves().all(|e| e.curve == Curve::Line));
+}
