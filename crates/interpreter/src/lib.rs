@@ -28,6 +28,7 @@ mod settings;
 mod tools;
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_parameters::MessageId;
 use bahn_path::{AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
@@ -69,9 +70,13 @@ pub struct Interpreter {
     run: Run,
     ended: Option<Ended>,
     waiting: Option<Barrier>,
+    interrupt: Option<Arc<AtomicBool>>,
     /// End of the last element that was handed out.
     position: Position,
 }
+
+/// Blocks without a step between two looks at the interrupt flag.
+const INTERRUPT_PERIOD: u64 = 1 << 14;
 
 #[derive(Clone, Debug)]
 enum Ended {
@@ -97,8 +102,15 @@ impl Interpreter {
             run,
             ended: None,
             waiting: None,
+            interrupt: None,
             position,
         }
+    }
+
+    /// Lets a flag end the search for the next step: while it is set, blocks that lead to no step, such as
+    /// an endless loop, end with [`Step::Starved`]. The run can go on when it is cleared.
+    pub fn set_interrupt(&mut self, flag: Arc<AtomicBool>) {
+        self.interrupt = Some(flag);
     }
 
     /// Executed blocks; BEGIN, END, comments and skipped blocks do not count.
@@ -148,7 +160,16 @@ impl Interpreter {
             if let Err(fault) = self.step() {
                 self.fail(fault, at);
             }
+            if self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD) && self.is_interrupted() {
+                return;
+            }
         }
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupt
+            .as_ref()
+            .is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// Executes the next block.
@@ -377,7 +398,8 @@ impl ElementSource for Interpreter {
             }
             None => match &self.ended {
                 Some(Ended::Failed(error)) => Step::Error(error.clone()),
-                _ => Step::End,
+                Some(Ended::Finished) => Step::End,
+                None => Step::Starved,
             },
         }
     }
