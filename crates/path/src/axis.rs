@@ -32,8 +32,17 @@ impl Axis {
     /// Number of axes.
     pub const COUNT: usize = 9;
     /// All axes in the order of lists and reports: X Y Z A B C U V W.
-    pub const ALL: [Axis; Axis::COUNT] =
-        [Axis::X, Axis::Y, Axis::Z, Axis::A, Axis::B, Axis::C, Axis::U, Axis::V, Axis::W];
+    pub const ALL: [Axis; Axis::COUNT] = [
+        Axis::X,
+        Axis::Y,
+        Axis::Z,
+        Axis::A,
+        Axis::B,
+        Axis::C,
+        Axis::U,
+        Axis::V,
+        Axis::W,
+    ];
 
     /// The axis letter.
     pub const fn letter(self) -> char {
@@ -184,7 +193,10 @@ impl Position {
 
     /// The axes that have a position.
     pub fn known(&self) -> AxisSet {
-        Axis::ALL.into_iter().filter(|axis| self.get(*axis).is_some()).collect()
+        Axis::ALL
+            .into_iter()
+            .filter(|axis| self.get(*axis).is_some())
+            .collect()
     }
 
     /// The values in the order of [`Axis::ALL`]; NaN where the axis has no position.
@@ -217,6 +229,9 @@ impl IndexMut<Axis> for Position {
 /// Positions are equal when the same axes have a position and the values are equal.
 impl PartialEq for Position {
     fn eq(&self, other: &Self) -> bool {
-        self.0.iter().zip(&other.0).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+        self.0
+            .iter()
+            .zip(&other.0)
+            .all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
     }
 }

@@ -44,7 +44,10 @@ impl Arc {
         let (r0, r1) = self.radii(start, end);
         let radius = r0 + (r1 - r0) * t;
         let angle = (s[1] - self.centre[1]).atan2(s[0] - self.centre[0]) + (self.sweep_deg * t).to_radians();
-        [self.centre[0] + radius * angle.cos(), self.centre[1] + radius * angle.sin()]
+        [
+            self.centre[0] + radius * angle.cos(),
+            self.centre[1] + radius * angle.sin(),
+        ]
     }
 }
 
@@ -54,7 +57,11 @@ impl Curve {
     /// Axes without a position at the start add nothing.
     pub fn length(&self, start: &Position, end: &Position) -> f64 {
         let linear = self.linear_length(start, end);
-        if linear > 0.0 { linear } else { self.rotary_length(start, end) }
+        if linear > 0.0 {
+            linear
+        } else {
+            self.rotary_length(start, end)
+        }
     }
 
     /// Length over the linear axes, mm.
@@ -63,7 +70,11 @@ impl Curve {
             Curve::Hold => 0.0,
             Curve::Line => {
                 const LINEAR: [Axis; 6] = [Axis::X, Axis::Y, Axis::Z, Axis::U, Axis::V, Axis::W];
-                LINEAR.iter().map(|a| square_or_zero(end[*a] - start[*a])).sum::<f64>().sqrt()
+                LINEAR
+                    .iter()
+                    .map(|a| square_or_zero(end[*a] - start[*a]))
+                    .sum::<f64>()
+                    .sqrt()
             }
             Curve::Arc(arc) => {
                 let (r0, r1) = arc.radii(start, end);
@@ -81,7 +92,11 @@ impl Curve {
     /// Length over the rotary axes, degrees.
     pub fn rotary_length(&self, start: &Position, end: &Position) -> f64 {
         const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
-        ROTARY.iter().map(|a| square_or_zero(end[*a] - start[*a])).sum::<f64>().sqrt()
+        ROTARY
+            .iter()
+            .map(|a| square_or_zero(end[*a] - start[*a]))
+            .sum::<f64>()
+            .sqrt()
     }
 
     /// The position at the fraction `t` (0 start, 1 end) of the curve.
@@ -132,10 +147,17 @@ impl Curve {
     /// Curves can be split at any length, for block scan and stops inside an element.
     pub fn part(&self, start: &Position, end: &Position, from: f64, to: f64) -> (Curve, Position, Position) {
         let curve = match self {
-            Curve::Arc(arc) => Curve::Arc(Arc { sweep_deg: arc.sweep_deg * (to - from), ..*arc }),
+            Curve::Arc(arc) => Curve::Arc(Arc {
+                sweep_deg: arc.sweep_deg * (to - from),
+                ..*arc
+            }),
             other => *other,
         };
-        (curve, self.position(start, end, from), self.position(start, end, to))
+        (
+            curve,
+            self.position(start, end, from),
+            self.position(start, end, to),
+        )
     }
 }
 

@@ -22,11 +22,23 @@ pub struct Plane {
 
 impl Plane {
     /// The main plane of tool axis Z.
-    pub const XY: Plane = Plane { first: Axis::X, second: Axis::Y, normal: Axis::Z };
+    pub const XY: Plane = Plane {
+        first: Axis::X,
+        second: Axis::Y,
+        normal: Axis::Z,
+    };
     /// The main plane of tool axis X.
-    pub const YZ: Plane = Plane { first: Axis::Y, second: Axis::Z, normal: Axis::X };
+    pub const YZ: Plane = Plane {
+        first: Axis::Y,
+        second: Axis::Z,
+        normal: Axis::X,
+    };
     /// The main plane of tool axis Y.
-    pub const ZX: Plane = Plane { first: Axis::Z, second: Axis::X, normal: Axis::Y };
+    pub const ZX: Plane = Plane {
+        first: Axis::Z,
+        second: Axis::X,
+        normal: Axis::Y,
+    };
 
     /// The main plane of a tool axis; `None` for a rotary axis. A parallel tool axis (W) keeps its
     /// own letter as the normal [003:5397-5432].
@@ -36,7 +48,10 @@ impl Plane {
             Axis::Y => Plane::ZX,
             _ => Plane::XY,
         };
-        Some(Plane { normal: tool_axis, ..main })
+        Some(Plane {
+            normal: tool_axis,
+            ..main
+        })
     }
 
     /// The plane that two axes span, in either order; `None` when they are parallel or rotary. The
@@ -51,7 +66,11 @@ impl Plane {
             (Axis::X, Axis::Z) => (b, a, Axis::Y),
             _ => return None,
         };
-        Some(Plane { first, second, normal })
+        Some(Plane {
+            first,
+            second,
+            normal,
+        })
     }
 
     /// Whether the axis is one of the two axes of the plane.

@@ -284,7 +284,9 @@ fn chains_are_closed_to_the_last_bit() {
         .arc_to([4.0, 0.0], [4.0, 2.0], true)
         .line_to([3.0, 2.0])
         .arc_to([3.0, 0.0], [3.0, -2.0], true);
-    let area = Region::from_contour(&slot).union(&disc(0.0, 3.0, 3.0)).offset(-0.5);
+    let area = Region::from_contour(&slot)
+        .union(&disc(0.0, 3.0, 3.0))
+        .offset(-0.5);
     for contour in area.contours() {
         let next = contour.segments().iter().cycle().skip(1);
         for (segment, next) in contour.segments().iter().zip(next) {
