@@ -12,7 +12,17 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("interpreter", &["path", "parameters", "program"]),
     ("motion", &["path"]),
     ("workpiece", &["path"]),
-    ("bahn", &["path", "parameters", "program", "interpreter", "motion", "workpiece"]),
+    (
+        "bahn",
+        &[
+            "path",
+            "parameters",
+            "program",
+            "interpreter",
+            "motion",
+            "workpiece",
+        ],
+    ),
 ];
 
 /// Longer files hold more than one idea.
@@ -36,7 +46,9 @@ fn arrows_point_down() {
         let dependencies = manifest.split("[dependencies]").nth(1).unwrap_or_default();
         let dependencies = dependencies.split("\n[").next().unwrap_or_default();
         for line in dependencies.lines() {
-            let Some(used) = line.strip_prefix("bahn-") else { continue };
+            let Some(used) = line.strip_prefix("bahn-") else {
+                continue;
+            };
             let used = used.split(['.', ' ', '=']).next().unwrap_or_default();
             assert!(allowed.contains(&used), "{room} must not use {used}");
         }

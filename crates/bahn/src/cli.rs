@@ -1,0 +1,396 @@
+//! Options and help texts.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use bahn_parameters::ControlModel;
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
+
+use crate::{Outcome, UsageError, console};
+
+/// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
+/// shows every tool movement, the machining time and the finished part.
+#[derive(Debug, Parser)]
+#[command(
+    name = "bahn",
+    version,
+    after_help = "Exit codes: 0 fine, 1 the program has an error, 2 wrong use."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run a program without a machine: report, tool path, picture of the part.
+    #[command(after_help = TEST_EXAMPLES)]
+    Test(Box<TestOptions>),
+    /// Show all errors of programs that can be found without running them.
+    #[command(after_help = CHECK_EXAMPLES)]
+    Check(CheckOptions),
+    /// Write programs as normalised listing: block numbers, signs and spacing as the control prints them.
+    #[command(after_help = FMT_EXAMPLES)]
+    Fmt(FmtOptions),
+    /// Say what a message of the control means and what to do about it.
+    #[command(after_help = EXPLAIN_EXAMPLES)]
+    Explain(ExplainOptions),
+    /// Print the completions of a shell.
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions(CompletionsOptions),
+}
+
+const TEST_EXAMPLES: &str = "\
+Examples:
+  bahn test part.h
+      Run part.h; report machining time, path, tools, removed material, warnings.
+  bahn test part.h --image part.png --view 3d
+      Show the finished part.
+  bahn test part.h --path part.csv --path part.svg
+      Every tool movement as a table and as a drawing.
+  bahn test part.h --model tnc360 --mp 7420=4 --set Q1=5,Q2=-3.5
+      On a TNC 360 with another machine parameter and Q parameters set.
+  bahn test part.h --tools tool.t --start X0,Y0,Z100 --format json
+      With a tool table, from a start position; the report as JSON.
+
+Tool table (--tools): a text file with a line of column names and one line for each tool:
+  T  L     R    R2  NAME
+  1  80.5  10   0   END MILL D20
+  2  62    4    4   BALL D8
+T is the number, L the length, R the radius, R2 the corner radius (0 flat end, as great as R ball
+end), in mm; DL, DR, DR2 are added to them; other columns are ignored. Columns are separated by
+blanks, tabs, commas or semicolons. TOOL.T files of later controls (first line BEGIN TOOL .T MM or
+INCH, fixed columns) load too.
+
+Machine parameters (--parameters): a text file with lines like `MP7430 : 1.2 ;overlap`. They replace
+values of the reference list of the model; --mp replaces single ones after that.
+
+JSON report (--format json), lengths in mm: program, unit, completed, error (message, program, block,
+line, detail, or null), machining_time_s (null when the feed is 0), path_mm (feed, rapid),
+blocks_executed, tool_calls (block, tool, speed_rpm), final_position, q, removed_mm3 (null without a
+blank), warnings (message, program, block, line, count), stops (block, function, program, line).
+
+Ctrl-C ends the run with the report so far and exit code 130.";
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  bahn check *.h
+  bahn check --model tnc360 --format json part.h";
+
+const FMT_EXAMPLES: &str = "\
+Examples:
+  bahn fmt part.h            the listing on standard output
+  bahn fmt --write *.h       replace the files
+  bahn fmt --check *.h       name the files that are written differently; exit code 1 if there are any";
+
+const EXPLAIN_EXAMPLES: &str = "\
+Examples:
+  bahn explain TOOL RADIUS TOO LARGE
+  bahn explain CyclIncomplete
+  bahn explain               list all messages";
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  bahn completions bash > ~/.local/share/bash-completion/completions/bahn
+  bahn completions zsh > ~/.zfunc/_bahn
+  bahn completions fish > ~/.config/fish/completions/bahn.fish";
+
+/// Options of the test run.
+#[derive(Args, Debug)]
+pub(crate) struct TestOptions {
+    /// The part program, up to 1 GiB.
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+
+    /// Control model.
+    #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
+    pub model: ControlModel,
+
+    /// How the report is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+
+    #[command(flatten)]
+    pub machine: MachineOptions,
+    #[command(flatten)]
+    pub run: RunOptions,
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+/// What the program runs on.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Machine")]
+pub(crate) struct MachineOptions {
+    /// Tool table; without one tools are those that the program defines.
+    #[arg(long, value_name = "TABLE", value_hint = ValueHint::FilePath)]
+    pub tools: Option<PathBuf>,
+    /// List of machine parameters that replaces values of the model's reference list.
+    #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
+    pub parameters: Option<PathBuf>,
+    /// One machine parameter, as 7420=4 or 1010.0=5000 (repeatable, or several with commas).
+    #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
+    pub mp: Vec<String>,
+    /// Feed and rapid-traverse override, 0 to 150 %.
+    #[arg(long = "override", value_name = "PERCENT", default_value = "100", value_parser = override_percent)]
+    pub override_percent: f64,
+    /// Time for the change to another tool, s.
+    #[arg(long, value_name = "S", default_value = "6", value_parser = seconds)]
+    pub tool_change_time: f64,
+    /// Time for starting or stopping the spindle, s; a change of speed takes half of it.
+    #[arg(long, value_name = "S", default_value = "1", value_parser = seconds)]
+    pub spindle_time: f64,
+    /// Time for every M function, s.
+    #[arg(long, value_name = "S", default_value = "0", value_parser = seconds)]
+    pub m_time: f64,
+}
+
+/// How the program runs.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Run")]
+pub(crate) struct RunOptions {
+    /// Set a Q parameter before the start, as Q1=5 (repeatable, or several with commas).
+    #[arg(long, value_name = "Qn=V", value_delimiter = ',')]
+    pub set: Vec<String>,
+    /// Where the axes stand before the start, as X10,Y0,Z50 in mm and degrees; other axes have no position
+    /// until they are programmed.
+    #[arg(
+        long,
+        value_name = "X..,Y..,Z..",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    pub start: Vec<String>,
+    /// Pass over optional blocks (/).
+    #[arg(long)]
+    pub skip_blocks: bool,
+    /// End at the first programmed stop (STOP, M0, M1) instead of passing over it.
+    #[arg(long)]
+    pub stop: bool,
+    /// Refuse what is otherwise accepted with a warning, such as signs of cycle parameters that disagree.
+    #[arg(long)]
+    pub strict: bool,
+    /// Blocks that may be executed without a movement; more are taken for an endless loop.
+    #[arg(long, value_name = "N", default_value_t = 10_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub max_blocks: u64,
+}
+
+/// What is written.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct OutputOptions {
+    /// Write the tool path as table (.csv) or drawing (.svg) (repeatable).
+    #[arg(long, value_name = "OUT.csv|OUT.svg", value_parser = path_file, value_hint = ValueHint::FilePath)]
+    pub path: Vec<PathFile>,
+    /// Write a picture of the finished part (PNG).
+    #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
+    pub image: Option<PathBuf>,
+    /// View of the picture.
+    #[arg(long, value_enum, default_value_t, requires = "image")]
+    pub view: View,
+    /// 3D view: where the eye stands about the tool axis, degrees; 0 in front, 90 on the right.
+    #[arg(long, value_name = "DEGREES", default_value = "30", requires = "image", allow_hyphen_values = true, value_parser = finite)]
+    pub angle: f64,
+    /// 3D view: how high the eye stands, degrees; 90 from above, negative from below.
+    #[arg(long, value_name = "DEGREES", default_value = "38", requires = "image", allow_hyphen_values = true, value_parser = finite)]
+    pub elevation: f64,
+    /// Three planes: where the sections lie, as X30,Y20; the middle of the blank otherwise.
+    #[arg(
+        long,
+        value_name = "X..,Y..",
+        value_delimiter = ',',
+        requires = "image",
+        allow_hyphen_values = true
+    )]
+    pub section: Vec<String>,
+    /// Size of the picture in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1000x800", requires = "image", value_parser = image_size)]
+    pub size: (u32, u32),
+    /// Write the finished part as mesh (binary STL).
+    #[arg(long, value_name = "OUT.stl", value_hint = ValueHint::FilePath)]
+    pub mesh: Option<PathBuf>,
+    /// Side of the columns that the part is made of, mm; by default about a million columns.
+    #[arg(long, value_name = "MM", value_parser = positive)]
+    pub resolution: Option<f64>,
+    /// Test run without graphics: no material is removed, `removed_mm3` is not reported.
+    #[arg(long, conflicts_with_all = ["image", "mesh", "resolution"])]
+    pub no_graphics: bool,
+}
+
+/// Options of `bahn check`.
+#[derive(Args, Debug)]
+pub(crate) struct CheckOptions {
+    /// The part programs.
+    #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
+    pub files: Vec<PathBuf>,
+    /// Control model whose limits apply.
+    #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
+    pub model: ControlModel,
+    /// How errors are written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Options of `bahn fmt`.
+#[derive(Args, Debug)]
+pub(crate) struct FmtOptions {
+    /// The part programs.
+    #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
+    pub files: Vec<PathBuf>,
+    /// Replace the files by their listings.
+    #[arg(long, short, conflicts_with = "check")]
+    pub write: bool,
+    /// Write nothing but the names of files that differ from their listing.
+    #[arg(long)]
+    pub check: bool,
+    /// Write decimal commas instead of points.
+    #[arg(long)]
+    pub comma: bool,
+}
+
+/// Options of `bahn explain`.
+#[derive(Args, Debug)]
+pub(crate) struct ExplainOptions {
+    /// Text of the message, or its name; nothing lists all.
+    #[arg(value_name = "MESSAGE")]
+    pub message: Vec<String>,
+    /// Control model whose texts are listed.
+    #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
+    pub model: ControlModel,
+}
+
+/// Options of `bahn completions`.
+#[derive(Args, Debug)]
+pub(crate) struct CompletionsOptions {
+    /// The shell.
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+/// How a report is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people.
+    #[default]
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// Views of the part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum View {
+    /// From above, the deeper the darker.
+    Plan,
+    /// Plan view and two sections.
+    ThreePlanes,
+    /// In space.
+    #[default]
+    #[value(name = "3d")]
+    ThreeD,
+}
+
+/// A file for the tool path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum PathFile {
+    Csv(PathBuf),
+    Svg(PathBuf),
+}
+
+/// Reads the arguments; prints help and errors of use itself.
+pub(crate) fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Command, Outcome> {
+    match Cli::try_parse_from(arguments) {
+        Ok(cli) => Ok(cli.command),
+        Err(error) => {
+            // Nobody reads it when the output is closed.
+            let _ = error.print();
+            Err(if error.use_stderr() {
+                Outcome::WrongUse
+            } else {
+                Outcome::Fine
+            })
+        }
+    }
+}
+
+/// `bahn completions`.
+pub(crate) fn completions(options: &CompletionsOptions) -> Result<Outcome, UsageError> {
+    let mut script = Vec::new();
+    clap_complete::generate(options.shell, &mut Cli::command(), "bahn", &mut script);
+    console::print_bytes(&script)?;
+    Ok(Outcome::Fine)
+}
+
+fn model_parser() -> impl clap::builder::TypedValueParser<Value = ControlModel> {
+    use clap::builder::{PossibleValuesParser, TypedValueParser};
+    PossibleValuesParser::new(ControlModel::ALL.map(ControlModel::id))
+        .try_map(|id| id.parse::<ControlModel>())
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| "no number".to_owned())
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text)
+        .ok()
+        .filter(|value| *value > 0.0)
+        .ok_or_else(|| "it takes a length greater than 0 mm".to_owned())
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    finite(text)
+        .ok()
+        .filter(|value| *value >= 0.0)
+        .ok_or_else(|| "it takes a time of 0 s or more".to_owned())
+}
+
+fn override_percent(text: &str) -> Result<f64, String> {
+    finite(text.trim_end_matches('%'))
+        .ok()
+        .filter(|value| (0.0..=150.0).contains(value))
+        .ok_or_else(|| "it takes 0 to 150 %".to_owned())
+}
+
+fn path_file(text: &str) -> Result<PathFile, String> {
+    let path = PathBuf::from(text);
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
+    match extension.as_str() {
+        "csv" => Ok(PathFile::Csv(path)),
+        "svg" => Ok(PathFile::Svg(path)),
+        _ => Err("the name must end in .csv or .svg".to_owned()),
+    }
+}
+
+fn image_size(text: &str) -> Result<(u32, u32), String> {
+    let wrong = || {
+        let (least, most) = (bahn_workpiece::Page::MIN_SIDE, bahn_workpiece::Page::MAX_SIDE);
+        format!("it takes width x height, as 1000x800, from {least} to {most}")
+    };
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let size = (
+        width.parse().map_err(|_| wrong())?,
+        height.parse().map_err(|_| wrong())?,
+    );
+    bahn_workpiece::Page::new(size.0, size.1, "", "")
+        .map(|_| size)
+        .map_err(|_| wrong())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_consistent() {
+        Cli::command().debug_assert();
+    }
+}

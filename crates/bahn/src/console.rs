@@ -1,0 +1,31 @@
+//! Standard output that may close at any time (`bahn fmt part.h | head`).
+
+use std::io::{self, Write};
+
+use crate::UsageError;
+
+/// Prints text to standard output.
+pub(crate) fn print(text: &str) -> Result<(), UsageError> {
+    print_bytes(text.as_bytes())
+}
+
+/// Prints bytes to standard output. A reader that has gone away is no error; a full disk is one.
+pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), UsageError> {
+    let mut out = io::stdout().lock();
+    finish(out.write_all(bytes).and_then(|()| out.flush()))
+}
+
+/// Prints something that writes itself piece by piece.
+pub(crate) fn print_display(value: &impl std::fmt::Display) -> Result<(), UsageError> {
+    let mut out = io::BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    finish(write!(out, "{value}").and_then(|()| out.flush()))
+}
+
+fn finish(result: io::Result<()>) -> Result<(), UsageError> {
+    match result {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(UsageError::new(format!(
+            "cannot write to standard output: {error}"
+        ))),
+        _ => Ok(()),
+    }
+}

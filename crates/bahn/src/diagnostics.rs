@@ -1,0 +1,193 @@
+//! Errors as rustc prints them: message, place, the line with a mark, what to do.
+
+use std::io::{self, IsTerminal, Write};
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use bahn_program::{Operation, Program};
+
+/// Characters of a line that are shown; a line of a broken file may have millions.
+const MAX_COLUMNS: usize = 200;
+
+/// Something to be said about a place in a program.
+#[derive(Clone, Debug)]
+pub(crate) struct Diagnostic<'a> {
+    pub severity: Severity,
+    /// The control's message.
+    pub title: &'a str,
+    /// Path of the file as the user wrote it.
+    pub path: &'a str,
+    pub marked: Marked,
+    /// Block and what exactly is wrong.
+    pub label: String,
+    /// What to do about it.
+    pub help: Option<&'a str>,
+}
+
+/// A line of a file with the characters that are meant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Marked {
+    /// Line in the file, from 1.
+    pub line: u32,
+    /// Its text.
+    pub text: String,
+    /// First character, from 1, and number of characters; `None` for the whole line.
+    pub columns: Option<(u32, u32)>,
+}
+
+impl Marked {
+    /// The line of a block, and what of it cannot be read if that is so.
+    pub fn of_block(program: &Program, block: u32) -> Marked {
+        let chunk = program.decode(block / Program::CHUNK_SIZE);
+        let (line, columns) = match chunk
+            .blocks
+            .get((block % Program::CHUNK_SIZE) as usize)
+            .map(|b| &b.operation)
+        {
+            Some(Operation::Invalid(invalid)) => (
+                invalid.error.line,
+                Some((invalid.error.column, invalid.error.length)),
+            ),
+            _ => (0, None),
+        };
+        let line = program.line_of(block) + line;
+        Marked {
+            line,
+            text: program.text_of_line(line),
+            columns,
+        }
+    }
+
+    /// The text as it is shown, and the bytes of it that are marked.
+    fn shown(&self) -> (String, std::ops::Range<usize>) {
+        let text = printable(&self.text.chars().take(MAX_COLUMNS).collect::<String>());
+        let text = text.trim_end();
+        let byte_of = |character: usize| {
+            text.char_indices()
+                .nth(character)
+                .map_or(text.len(), |(byte, _)| byte)
+        };
+        let range = match self.columns {
+            Some((column, length)) => {
+                let start = column.saturating_sub(1) as usize;
+                byte_of(start)..byte_of(start.saturating_add(length.max(1) as usize))
+            }
+            None => text.len() - text.trim_start().len()..text.len(),
+        };
+        (text.to_owned(), range)
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Severity {
+    Error,
+    Warning,
+}
+
+impl Diagnostic<'_> {
+    /// The text for people.
+    pub fn render(&self, styled: bool) -> String {
+        let level = match self.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let (source, range) = self.marked.shown();
+        let snippet = Snippet::source(source)
+            .line_start(self.marked.line as usize)
+            .path(self.path)
+            .annotation(AnnotationKind::Primary.span(range).label(printable(&self.label)));
+        let mut group = level.primary_title(printable(self.title)).element(snippet);
+        if let Some(help) = self.help {
+            group = group.element(Level::HELP.message(help));
+        }
+        let renderer = if styled {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
+        };
+        renderer.render(&[group])
+    }
+}
+
+/// Text without characters that would steer the terminal, one for one.
+pub(crate) fn printable(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect()
+}
+
+/// Prints to standard error, in colours on a terminal.
+pub(crate) fn print(diagnostic: &Diagnostic) {
+    print_line(&diagnostic.render(is_styled()));
+}
+
+/// Prints what is wrong with the use of the command.
+pub(crate) fn print_usage_error(text: &str) {
+    let level = if is_styled() {
+        "\x1b[1m\x1b[91merror\x1b[0m"
+    } else {
+        "error"
+    };
+    let text: Vec<String> = text.lines().map(printable).collect();
+    print_line(&format!("{level}: {}", text.join("\n  ")));
+}
+
+/// Prints a line to standard error; nobody can be told when that fails.
+pub(crate) fn print_line(text: &str) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Whether standard error shows colours.
+pub(crate) fn is_styled() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn marked(text: &str, columns: Option<(u32, u32)>) -> (String, String) {
+        let (shown, range) = Marked {
+            line: 1,
+            text: text.into(),
+            columns,
+        }
+        .shown();
+        let mark = shown[range].to_owned();
+        (shown, mark)
+    }
+
+    #[test]
+    fn marks_count_characters() {
+        assert_eq!(marked("  L X+5 ; Höhe  ", None).1, "L X+5 ; Höhe");
+        assert_eq!(marked("; Höhe oops", Some((8, 4))).1, "oops");
+        assert_eq!(marked("L X", Some((9, 4))).1, "");
+        assert_eq!(marked("", None), (String::new(), String::new()));
+    }
+
+    #[test]
+    fn lines_are_short_and_do_not_steer_the_terminal() {
+        assert_eq!(marked("L\x1b[31m\tX", None).0, "L [31m X");
+        assert_eq!(marked(&"\0".repeat(1_000_000), None).0, "");
+        assert_eq!(marked(&"X".repeat(1_000_000), None).0.len(), MAX_COLUMNS);
+    }
+
+    #[test]
+    fn errors_look_like_those_of_rustc() {
+        let program = Program::from_bytes("1.H", b"BEGIN PGM 1 MM\nL X+1 ~\n  Ynan".to_vec());
+        let diagnostic = Diagnostic {
+            severity: Severity::Error,
+            title: "ENTRY VALUE INCORRECT",
+            path: "1.H",
+            marked: Marked::of_block(&program, 1),
+            label: "block 1: no number".into(),
+            help: None,
+        };
+        let expected = "\
+error: ENTRY VALUE INCORRECT
+ --> 1.H:3:3
+  |
+3 |   Ynan
+  |   ^^^^ block 1: no number";
+        assert_eq!(diagnostic.render(false), expected);
+    }
+}

@@ -1,0 +1,291 @@
+//! Files: reading programs, finding called ones, writing without leaving half-written files.
+
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use bahn_interpreter::Library;
+use bahn_program::Program;
+
+use crate::UsageError;
+
+/// Largest program file, 1 GiB. A larger one is FURTHER PROGRAM ENTRY IMPOSSIBLE: the run holds the file in
+/// memory.
+pub(crate) const MAX_PROGRAM_BYTES: u64 = 1 << 30;
+
+/// Largest tool table or list of machine parameters, 16 MiB: many times what any control holds.
+const MAX_TABLE_BYTES: u64 = 16 << 20;
+
+/// What became of reading a program.
+pub(crate) enum Loaded {
+    /// The program.
+    Program(Arc<Program>),
+    /// The file holds no block at all: nothing, or blanks and NULs only.
+    Empty(Arc<Program>),
+    /// The file is larger than [`MAX_PROGRAM_BYTES`].
+    TooLarge,
+}
+
+/// Why an empty file is an error, and one that is too large.
+pub(crate) const EMPTY: &str = "the file holds no program";
+pub(crate) const TOO_LARGE: &str = "the file is larger than 1 GiB";
+
+impl Loaded {
+    /// The program, unless it is empty or too large.
+    pub fn program(&self) -> Option<&Arc<Program>> {
+        match self {
+            Loaded::Program(program) => Some(program),
+            Loaded::Empty(_) | Loaded::TooLarge => None,
+        }
+    }
+}
+
+/// Reads a program file.
+pub(crate) fn load_program(path: &Path) -> Result<Loaded, UsageError> {
+    let bytes = match read(path, MAX_PROGRAM_BYTES) {
+        Ok(Some(bytes)) => bytes,
+        Ok(None) => return Ok(Loaded::TooLarge),
+        Err(error) => return Err(cannot("read", path, &error)),
+    };
+    let program = Arc::new(Program::from_bytes(program_name(path), bytes));
+    Ok(if is_empty(&program) {
+        Loaded::Empty(program)
+    } else {
+        Loaded::Program(program)
+    })
+}
+
+fn is_empty(program: &Program) -> bool {
+    // Two blocks are the implied BEGIN and END.
+    program.begin().is_none() && program.end().is_none() && program.block_count() <= 2
+}
+
+/// The bytes of a program file, empty when it is larger than [`MAX_PROGRAM_BYTES`].
+pub(crate) fn read_program(path: &Path) -> Result<Vec<u8>, UsageError> {
+    read(path, MAX_PROGRAM_BYTES)
+        .map(Option::unwrap_or_default)
+        .map_err(|error| cannot("read", path, &error))
+}
+
+/// Reads a tool table or parameter list.
+pub(crate) fn read_table(path: &Path) -> Result<Vec<u8>, UsageError> {
+    match read(path, MAX_TABLE_BYTES) {
+        Ok(Some(bytes)) => Ok(bytes),
+        Ok(None) => Err(UsageError::new(format!("{} is too large", path.display()))),
+        Err(error) => Err(cannot("read", path, &error)),
+    }
+}
+
+/// Wrong use: a file that cannot be read or written.
+pub(crate) fn cannot(verb: &str, path: &Path, error: &io::Error) -> UsageError {
+    UsageError::new(format!("cannot {verb} {}: {error}", path.display()))
+}
+
+/// The name that a program of this path is opened by: its absolute path, so that no two programs share one
+/// and called programs are found beside it.
+fn program_name(path: &Path) -> String {
+    std::path::absolute(path)
+        .unwrap_or_else(|_| path.to_owned())
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// The name of a program in reports: that of its file, without folders.
+pub(crate) fn short_name(program: &Program) -> &str {
+    let name = program.name();
+    name.rsplit(std::path::MAIN_SEPARATOR).next().unwrap_or(name)
+}
+
+/// All bytes of a file, or `None` when there are more than `limit`.
+fn read(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    if length > limit {
+        return Ok(None);
+    }
+    let mut bytes = Vec::new();
+    // One more byte shows the end, so that reading needs no second buffer.
+    bytes.try_reserve_exact(usize::try_from(length).unwrap_or(usize::MAX).saturating_add(1))?;
+    // Devices have no length but may have no end.
+    file.take(limit + 1).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= limit).then_some(bytes))
+}
+
+/// Called programs, beside the calling one.
+#[derive(Debug, Default)]
+pub(crate) struct FileLibrary {
+    /// By path, so that one file is one program whatever its name was written like.
+    programs: HashMap<PathBuf, Arc<Program>>,
+    /// What a name beside a caller led to.
+    found: HashMap<(String, String), Arc<Program>>,
+}
+
+impl FileLibrary {
+    /// A library that knows the main program.
+    pub fn with_main(main: &Arc<Program>) -> FileLibrary {
+        let mut library = FileLibrary::default();
+        library.programs.insert(PathBuf::from(main.name()), main.clone());
+        library
+    }
+
+    fn open(&mut self, path: PathBuf) -> Result<Arc<Program>, String> {
+        if let Some(program) = self.programs.get(&path) {
+            return Ok(program.clone());
+        }
+        match load_program(&path) {
+            Ok(Loaded::Program(program)) => {
+                self.programs.insert(path, program.clone());
+                Ok(program)
+            }
+            Ok(Loaded::Empty(_)) => Err(EMPTY.to_owned()),
+            Ok(Loaded::TooLarge) => Err(TOO_LARGE.to_owned()),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+}
+
+impl Library for FileLibrary {
+    /// Looks for the name as written, then with .H, .h, .I, beside the calling program.
+    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        let key = (name.to_owned(), caller.to_owned());
+        if let Some(program) = self.found.get(&key) {
+            return Ok(Some(program.clone()));
+        }
+        let folder = Path::new(caller).parent().unwrap_or(Path::new(""));
+        let Some(path) = candidates(name)
+            .map(|name| folder.join(name))
+            .find(|path| path.is_file())
+        else {
+            return Ok(None);
+        };
+        let program = self.open(path)?;
+        self.found.insert(key, program.clone());
+        Ok(Some(program))
+    }
+}
+
+/// File names of a called program. Later controls write folders (`TNC:\PARTS\7.H`): only the name counts,
+/// everything lies in one folder here.
+fn candidates(name: &str) -> impl Iterator<Item = String> {
+    let name = name
+        .trim()
+        .rsplit(['\\', '/', ':'])
+        .next()
+        .unwrap_or_default()
+        .to_owned();
+    let endings: &[&str] = if name.is_empty() || name == "." || name == ".." {
+        &[]
+    } else {
+        &["", ".H", ".h", ".I"]
+    };
+    endings.iter().map(move |ending| format!("{name}{ending}"))
+}
+
+/// A file being written: it appears under its name when it is complete, in one step. Until then, and for
+/// good when it is dropped before, whatever was there stays there.
+#[derive(Debug)]
+pub(crate) struct NewFile {
+    path: PathBuf,
+    /// Beside the path; `None` when the path is no regular file (`/dev/stdout`) and is written to directly.
+    temporary: Option<PathBuf>,
+    writer: BufWriter<File>,
+}
+
+impl NewFile {
+    pub fn create(path: &Path) -> Result<NewFile, UsageError> {
+        NewFile::try_create(path).map_err(|error| cannot("write", path, &error))
+    }
+
+    fn try_create(path: &Path) -> io::Result<NewFile> {
+        // Through symbolic links, so that the link stays and what it names is replaced.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let old = fs::metadata(&path).ok();
+        if old.as_ref().is_some_and(|old| !old.is_file()) {
+            let file = OpenOptions::new().write(true).open(&path)?;
+            return Ok(NewFile {
+                path,
+                temporary: None,
+                writer: BufWriter::with_capacity(1 << 16, file),
+            });
+        }
+        let name = path
+            .file_name()
+            .ok_or(io::ErrorKind::InvalidInput)?
+            .to_string_lossy()
+            .into_owned();
+        let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+        let file = File::create(&temporary)?;
+        if let Some(old) = old {
+            file.set_permissions(old.permissions())?;
+        }
+        Ok(NewFile {
+            path,
+            temporary: Some(temporary),
+            writer: BufWriter::with_capacity(1 << 16, file),
+        })
+    }
+
+    /// Puts the complete file in its place.
+    pub fn finish(mut self) -> Result<(), UsageError> {
+        let path = self.path.clone();
+        self.try_finish().map_err(|error| cannot("write", &path, &error))
+    }
+
+    fn try_finish(&mut self) -> io::Result<()> {
+        self.writer.flush()?;
+        let Some(temporary) = &self.temporary else {
+            return Ok(());
+        };
+        self.writer.get_ref().sync_all()?;
+        fs::rename(temporary, &self.path)?;
+        self.temporary = None;
+        sync_folder(&self.path);
+        Ok(())
+    }
+}
+
+impl Write for NewFile {
+    #[inline]
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+impl Drop for NewFile {
+    fn drop(&mut self) {
+        if let Some(temporary) = &self.temporary {
+            // It is of no use to anybody.
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}
+
+/// The new name is safe when its folder is; where a folder cannot be synchronised nothing can be done.
+fn sync_folder(path: &Path) {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn called_names_get_endings_and_lose_folders() {
+        let all = |name| candidates(name).collect::<Vec<_>>();
+        assert_eq!(all("7"), ["7", "7.H", "7.h", "7.I"]);
+        assert_eq!(all(r"TNC:\PARTS\7.H"), ["7.H", "7.H.H", "7.H.h", "7.H.I"]);
+        assert!(all("..").is_empty() && all("/").is_empty());
+    }
+}

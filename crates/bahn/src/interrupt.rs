@@ -1,0 +1,36 @@
+//! Ctrl-C: the first one ends a run with the report so far, the second one ends the process.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::Outcome;
+
+/// Whether somebody wants the run to end.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Interrupt(Arc<AtomicBool>);
+
+impl Interrupt {
+    /// Takes over Ctrl-C (SIGINT), and SIGTERM likewise.
+    pub fn on_ctrl_c() -> Interrupt {
+        let interrupt = Interrupt::default();
+        let flag = interrupt.0.clone();
+        // Without a handler Ctrl-C ends the process at once, which is no worse than before.
+        let _ = ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::Relaxed) {
+                std::process::exit(i32::from(Outcome::Interrupted.code()));
+            }
+        });
+        interrupt
+    }
+
+    /// Whether Ctrl-C came.
+    #[inline]
+    pub fn is_requested(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// The flag, for rooms that watch it themselves.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        self.0.clone()
+    }
+}

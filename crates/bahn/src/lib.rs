@@ -1,0 +1,109 @@
+//! The command line of Bahn: thin, it wires the rooms together.
+//!
+//! The face of this room is [`run`]: it takes the arguments of the command `bahn` and returns its exit
+//! code. `bahn --help` shows the subcommands, `bahn help test` the options of the test run with examples.
+//!
+//! Where things are:
+//! - `cli`: options and help texts; `settings` and `tool_table` turn them into the settings of the
+//!   other rooms;
+//! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
+//!   `path_csv`, `path_svg` and `cutting` take the path elements;
+//! - `check`, `format`, `explain`: the other subcommands;
+//! - `files`: reading programs, finding called ones, writing without half-written files;
+//! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
+//!
+//! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
+
+mod check;
+mod cli;
+mod console;
+mod cutting;
+mod diagnostics;
+mod explain;
+mod files;
+mod format;
+mod interrupt;
+mod path_csv;
+mod path_svg;
+mod progress;
+mod report;
+mod report_text;
+mod settings;
+mod test_run;
+mod tool_table;
+
+use std::ffi::OsString;
+use std::fmt;
+use std::process::ExitCode;
+
+/// Executes the command line and prints what it has to say.
+///
+/// The first argument is the name of the command, as in [`std::env::args_os`].
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let command = match cli::parse(arguments) {
+        Ok(command) => command,
+        Err(code) => return code.into(),
+    };
+    let result = match &command {
+        cli::Command::Test(options) => test_run::command(options),
+        cli::Command::Check(options) => check::command(options),
+        cli::Command::Fmt(options) => format::command(options),
+        cli::Command::Explain(options) => explain::command(options),
+        cli::Command::Completions(options) => cli::completions(options),
+    };
+    match result {
+        Ok(outcome) => outcome.into(),
+        Err(error) => {
+            diagnostics::print_usage_error(&error.to_string());
+            Outcome::WrongUse.into()
+        }
+    }
+}
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    /// No error.
+    Fine,
+    /// A program has an error.
+    ProgramError,
+    /// An option or a file is wrong.
+    WrongUse,
+    /// Ctrl-C.
+    Interrupted,
+}
+
+impl Outcome {
+    /// The exit code.
+    fn code(self) -> u8 {
+        match self {
+            Outcome::Fine => 0,
+            Outcome::ProgramError => 1,
+            Outcome::WrongUse => 2,
+            // As shells count a process ended by SIGINT: 128 + 2.
+            Outcome::Interrupted => 130,
+        }
+    }
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> ExitCode {
+        ExitCode::from(outcome.code())
+    }
+}
+
+/// Wrong use: what is wrong with an option or a file, in words for the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct UsageError(String);
+
+impl UsageError {
+    fn new(text: impl Into<String>) -> UsageError {
+        UsageError(text.into())
+    }
+}
+
+impl fmt::Display for UsageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}

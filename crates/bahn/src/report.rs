@@ -1,0 +1,452 @@
+//! The report of a test run: what is collected while it runs, and what of it is handed out as JSON.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use bahn_interpreter::{Interpreter, WarningKind};
+use bahn_motion::Planned;
+use bahn_parameters::{ControlModel, MessageId};
+use bahn_path::{Axis, BlockRef, Curve, FeedRate, Function, PathElement, Position};
+use bahn_program::Unit;
+use bahn_workpiece::EventKind;
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::files::short_name;
+
+/// Distinct warnings that are kept; a program with more has the same few in many blocks.
+const MAX_WARNINGS: usize = 1000;
+/// Tool calls and stops that are listed, each.
+const MAX_LISTED: usize = 10_000;
+
+/// What is known of a run while it runs. Its size is bounded however long the run is.
+pub(crate) struct Record {
+    /// Time of machining so far, s; infinite when the path does not move.
+    pub machining_time_s: f64,
+    feed_mm: f64,
+    rapid_mm: f64,
+    position: Position,
+    /// Count of executed blocks up to and with the one of the last element.
+    blocks: u64,
+    tool: Option<u32>,
+    tool_calls: Vec<(BlockRef, Option<u32>, f64)>,
+    stops: Vec<(BlockRef, Option<u16>)>,
+    /// Tool calls and stops beyond [`MAX_LISTED`].
+    not_listed: u64,
+    warnings: Vec<(BlockRef, Notice, u64)>,
+    warning_index: HashMap<(BlockRef, Notice), usize>,
+    /// Occurrences of warnings beyond [`MAX_WARNINGS`].
+    more_warnings: u64,
+}
+
+/// What a warning is about.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Notice {
+    /// Found by the interpreter.
+    Program(WarningKind),
+    /// Found while removing material.
+    Cut(EventKind),
+    /// A second, different BLK FORM after the first movement.
+    BlankRedefined,
+    /// TCH PROBE without a part.
+    NothingToProbe,
+    /// The drawing of the path has too many elements.
+    DrawingIncomplete,
+}
+
+impl Record {
+    pub fn new(start: Position) -> Record {
+        Record {
+            machining_time_s: 0.0,
+            feed_mm: 0.0,
+            rapid_mm: 0.0,
+            position: start,
+            blocks: 0,
+            tool: None,
+            tool_calls: Vec::new(),
+            stops: Vec::new(),
+            not_listed: 0,
+            warnings: Vec::new(),
+            warning_index: HashMap::new(),
+            more_warnings: 0,
+        }
+    }
+
+    /// Takes an element that was executed.
+    #[inline]
+    pub fn element(&mut self, planned: &Planned) {
+        self.machining_time_s += planned.duration_s();
+        let element = &planned.element;
+        self.blocks = element.sequence;
+        if element.curve != Curve::Hold {
+            let length = element.curve.linear_length(&element.start, &element.end);
+            match element.feed {
+                FeedRate::Rapid => self.rapid_mm += length,
+                FeedRate::Programmed(_) => self.feed_mm += length,
+            }
+            self.position = element.end;
+        }
+        if element.functions.is_some() {
+            self.functions(element);
+        }
+    }
+
+    fn functions(&mut self, element: &PathElement) {
+        let mut m = None;
+        for function in element.functions() {
+            match &function.function {
+                Function::M(number @ (0 | 1 | 6)) => m = Some(*number),
+                Function::Tool(call) => {
+                    self.tool = Some(call.tool);
+                    self.tool_call(element.block, call.speed_rpm);
+                }
+                Function::SpindleSpeed(speed_rpm) => self.tool_call(element.block, *speed_rpm),
+                Function::Stop => {
+                    if self.stops.len() < MAX_LISTED {
+                        self.stops.push((element.block, m));
+                    } else {
+                        self.not_listed += 1;
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn tool_call(&mut self, block: BlockRef, speed_rpm: f64) {
+        if self.tool_calls.len() < MAX_LISTED {
+            self.tool_calls.push((block, self.tool, speed_rpm));
+        } else {
+            self.not_listed += 1;
+        }
+    }
+
+    /// Counts a warning.
+    pub fn warn(&mut self, block: BlockRef, notice: Notice, count: u64) {
+        let key = (block, notice);
+        if let Some(at) = self.warning_index.get(&key) {
+            if let Some((_, _, total)) = self.warnings.get_mut(*at) {
+                *total += count;
+            }
+        } else if self.warnings.len() < MAX_WARNINGS {
+            self.warning_index.insert(key.clone(), self.warnings.len());
+            self.warnings.push((key.0, key.1, count));
+        } else {
+            self.more_warnings += count;
+        }
+    }
+
+    /// The report.
+    pub fn report(
+        mut self,
+        run: &Interpreter,
+        end: End,
+        removed_mm3: Option<f64>,
+        model: ControlModel,
+    ) -> Report {
+        let place = |block: BlockRef| Place::of(run, block);
+        self.warnings.sort_by_key(|(block, ..)| *block);
+        let warnings = self.warnings.into_iter().map(|(block, notice, count)| {
+            let Place { program, block, line } = place(block);
+            WarningReport {
+                message: notice.text(model),
+                program,
+                block,
+                line,
+                count,
+            }
+        });
+        let tool_calls = self.tool_calls.into_iter().map(|(block, tool, speed_rpm)| {
+            let Place { program, block, line } = place(block);
+            ToolCallReport {
+                program,
+                block,
+                line,
+                tool,
+                speed_rpm: tidy(speed_rpm),
+            }
+        });
+        let stops = self.stops.into_iter().map(|(block, m)| {
+            let Place { program, block, line } = place(block);
+            StopReport {
+                program,
+                block,
+                line,
+                function: m.map_or("STOP".to_owned(), |m| format!("M{m}")),
+            }
+        });
+        let completed = end == End::Completed;
+        let stopped = end == End::Stopped;
+        let unit = run.program(0).map_or(Unit::Mm, |program| program.unit());
+        Report {
+            program: run
+                .program(0)
+                .map(|program| short_name(program).to_owned())
+                .unwrap_or_default(),
+            unit: unit_name(unit),
+            completed,
+            error: if let End::Failed(error) = end {
+                Some(*error)
+            } else {
+                None
+            },
+            machining_time_s: self
+                .machining_time_s
+                .is_finite()
+                .then(|| tidy(self.machining_time_s)),
+            path_mm: PathReport {
+                feed: tidy(self.feed_mm),
+                rapid: tidy(self.rapid_mm),
+            },
+            // The blocks behind a stop may have been read already.
+            blocks_executed: if stopped {
+                self.blocks
+            } else {
+                run.blocks_executed()
+            },
+            tool_calls: tool_calls.collect(),
+            final_position: Axes(if completed { run.position() } else { self.position }),
+            q: QParameters(run.q_values().to_vec()),
+            removed_mm3: removed_mm3.map(tidy),
+            warnings: warnings.chain(further("warnings", self.more_warnings)).collect(),
+            stops: stops.collect(),
+            not_listed: self.not_listed,
+        }
+    }
+}
+
+/// Says that there is more than is listed.
+fn further(what: &str, count: u64) -> Option<WarningReport> {
+    (count > 0).then(|| WarningReport {
+        message: format!("further {what} are not listed"),
+        program: String::new(),
+        block: 0,
+        line: 0,
+        count,
+    })
+}
+
+impl Notice {
+    /// What is shown.
+    fn text(&self, model: ControlModel) -> String {
+        match self {
+            Notice::Program(kind) => kind.to_string(),
+            Notice::Cut(EventKind::RapidCut) => "material is removed in rapid traverse".into(),
+            Notice::Cut(EventKind::BelowBlank) => "the tool is below the blank".into(),
+            Notice::Cut(EventKind::ToolAxisNotShown) => {
+                format!(
+                    "{}: the tool axis is not that of BLK FORM",
+                    MessageId::PgmSectionCannotBeShown.text(model)
+                )
+            }
+            Notice::Cut(EventKind::RotaryAxisNotShown) => {
+                format!(
+                    "{}: a rotary axis moves",
+                    MessageId::PgmSectionCannotBeShown.text(model)
+                )
+            }
+            Notice::BlankRedefined => "another BLK FORM after the first movement: the first one stays".into(),
+            Notice::NothingToProbe => {
+                "there is no part to touch: the program needs a BLK FORM, and graphics".into()
+            }
+            Notice::DrawingIncomplete => "the drawing of the path ends here, it has too many elements".into(),
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum End {
+    /// At the end of the program.
+    Completed,
+    /// At a programmed stop, as wanted.
+    Stopped,
+    /// By Ctrl-C.
+    Interrupted,
+    /// By an error of the program.
+    Failed(Box<ErrorReport>),
+}
+
+/// The report as JSON has it; the fields are documented in the help and the README.
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct Report {
+    pub program: String,
+    pub unit: &'static str,
+    pub completed: bool,
+    pub error: Option<ErrorReport>,
+    pub machining_time_s: Option<f64>,
+    pub path_mm: PathReport,
+    pub blocks_executed: u64,
+    pub tool_calls: Vec<ToolCallReport>,
+    pub final_position: Axes,
+    pub q: QParameters,
+    pub removed_mm3: Option<f64>,
+    pub warnings: Vec<WarningReport>,
+    pub stops: Vec<StopReport>,
+    /// Tool calls and stops that are not listed, there were too many.
+    #[serde(skip)]
+    pub not_listed: u64,
+}
+
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub(crate) struct ErrorReport {
+    pub message: String,
+    pub program: String,
+    pub block: u32,
+    pub line: u32,
+    pub detail: String,
+    /// Where it stands, for people.
+    #[serde(skip)]
+    pub at: BlockRef,
+    /// What to do about it.
+    #[serde(skip)]
+    pub remedy: Option<&'static str>,
+}
+
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct PathReport {
+    pub feed: f64,
+    pub rapid: f64,
+}
+
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct ToolCallReport {
+    pub block: u32,
+    pub tool: Option<u32>,
+    pub speed_rpm: f64,
+    pub program: String,
+    pub line: u32,
+}
+
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct WarningReport {
+    pub message: String,
+    pub program: String,
+    pub block: u32,
+    pub line: u32,
+    pub count: u64,
+}
+
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct StopReport {
+    pub block: u32,
+    pub function: String,
+    pub program: String,
+    pub line: u32,
+}
+
+/// Where a block stands.
+pub(crate) struct Place {
+    pub program: String,
+    pub block: u32,
+    pub line: u32,
+}
+
+impl Place {
+    pub fn of(run: &Interpreter, block: BlockRef) -> Place {
+        let program = run.program(block.program);
+        Place {
+            program: program
+                .map(|program| short_name(program).to_owned())
+                .unwrap_or_default(),
+            block: block.block,
+            line: program.map_or(0, |program| program.line_of(block.block)),
+        }
+    }
+}
+
+/// The axes that have a position, in the order of the control.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axes(pub Position);
+
+impl Serialize for Axes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for axis in Axis::ALL {
+            if let Some(value) = self.0.get(axis) {
+                map.serialize_entry(&axis.letter(), &tidy(value))?;
+            }
+        }
+        map.end()
+    }
+}
+
+/// The Q parameters of the control by number.
+#[derive(Clone, Debug)]
+pub(crate) struct QParameters(pub Vec<f64>);
+
+impl Serialize for QParameters {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(
+            self.0
+                .iter()
+                .enumerate()
+                .map(|(number, value)| (number, value + 0.0)),
+        )
+    }
+}
+
+impl fmt::Display for Axes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut blank = "";
+        for axis in Axis::ALL {
+            if let Some(value) = self.0.get(axis) {
+                write!(f, "{blank}{axis}{:+.3}", tidy(value))?;
+                blank = "  ";
+            }
+        }
+        if blank.is_empty() {
+            f.write_str("-")
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// `mm` or `inch`.
+pub(crate) fn unit_name(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Mm => "mm",
+        Unit::Inch => "inch",
+    }
+}
+
+/// Rounds to nine decimals, far below any resolution, so that 30.000000000000004 is 30; never -0.
+pub(crate) fn tidy(value: f64) -> f64 {
+    const DECIMALS: f64 = 1e9;
+    let rounded = (value * DECIMALS).round() / DECIMALS;
+    if rounded.is_finite() { rounded + 0.0 } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_tidy() {
+        assert_eq!(tidy(0.1 + 0.2), 0.3);
+        assert!(tidy(-1e-12).is_sign_positive());
+        assert_eq!(tidy(f64::MAX), f64::MAX);
+    }
+
+    #[test]
+    fn repeated_and_too_many_warnings_are_counted() {
+        let mut record = Record::new(Position::UNKNOWN);
+        let block = |block| BlockRef { program: 0, block };
+        for _ in 0..3 {
+            record.warn(block(1), Notice::NothingToProbe, 2);
+        }
+        for number in 0..2000 {
+            record.warn(
+                block(number),
+                Notice::Program(WarningKind::BlankInCalledProgram),
+                1,
+            );
+        }
+        assert_eq!(
+            record.warnings.first(),
+            Some(&(block(1), Notice::NothingToProbe, 6))
+        );
+        assert_eq!(record.warnings.len(), MAX_WARNINGS);
+        assert_eq!(record.more_warnings, 1001);
+    }
+}

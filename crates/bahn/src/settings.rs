@@ -1,0 +1,257 @@
+//! From options to the settings of the other rooms.
+
+use std::path::Path;
+
+use bahn_interpreter::{ContourPocketRules, MFunctionRules, ProbeRules, Rules};
+use bahn_motion::{AuxiliaryTimes, Limits};
+use bahn_parameters::{ControlModel, ParameterList, ScaledAxes};
+use bahn_path::{Axis, Position};
+
+use crate::UsageError;
+use crate::cli::{MachineOptions, RunOptions};
+use crate::{files, tool_table};
+
+/// The machine parameters of the run: reference list of the model, then the list, then single ones.
+pub(crate) fn parameters(model: ControlModel, options: &MachineOptions) -> Result<ParameterList, UsageError> {
+    let mut list = ParameterList::reference(model);
+    if let Some(path) = &options.parameters {
+        let errors = list.read(&files::read_table(path)?);
+        if !errors.is_empty() {
+            return Err(UsageError::new(list_errors(path, &errors)));
+        }
+    }
+    for assignment in &options.mp {
+        list.assign(assignment)
+            .map_err(|error| UsageError::new(format!("--mp {assignment}: {error} ({model})")))?;
+    }
+    Ok(list)
+}
+
+fn list_errors(path: &Path, errors: &[impl std::fmt::Display]) -> String {
+    const SHOWN: usize = 20;
+    let mut lines: Vec<String> = errors
+        .iter()
+        .take(SHOWN)
+        .map(|error| format!("{}: {error}", path.display()))
+        .collect();
+    if errors.len() > SHOWN {
+        lines.push(format!("and {} more", errors.len() - SHOWN));
+    }
+    lines.join("\n")
+}
+
+/// The settings of the interpreter.
+pub(crate) fn interpreter(
+    list: &ParameterList,
+    machine: &MachineOptions,
+    run: &RunOptions,
+) -> Result<bahn_interpreter::Settings, UsageError> {
+    let model = list.model();
+    Ok(bahn_interpreter::Settings {
+        model,
+        rules: rules(list),
+        tools: machine.tools.as_deref().map(tool_table::load).transpose()?,
+        q_values: q_values(&run.set, model)?,
+        start: position("--start", &run.start, model)?,
+        skip_blocks: run.skip_blocks,
+        strict: run.strict,
+        max_blocks_without_motion: run.max_blocks,
+    })
+}
+
+/// What the machine parameters say about how programs run. The datum of a test run is machine zero.
+fn rules(list: &ParameterList) -> Rules {
+    let pocket = list.contour_pocket();
+    let m = list.m_functions();
+    let tapping = list.tapping();
+    let probe = list.probe();
+    let [least, greatest] = tapping.override_percent;
+    Rules {
+        arc_tolerance_mm: list.arc_tolerance_mm(),
+        scaling_in_plane_only: list.scaled_axes() == ScaledAxes::WorkingPlane,
+        probe_keeps_tool: probe.keeps_tool_data,
+        contour_pocket: ContourPocketRules {
+            channel_clockwise: pocket.pocket_clockwise,
+            clear_first: pocket.clear_out_first,
+            merge_programmed: pocket.merge_programmed,
+            per_infeed: pocket.each_infeed,
+            stay_at_clearance: pocket.end_at_clearance,
+        },
+        overlap: list.pocket_overlap(),
+        m_functions: MFunctionRules {
+            m6_stops: m.m6_stops,
+            m89_calls_cycle: m.m89_calls_cycle,
+            axes_wait: m.axes_wait,
+            m103_enabled: m.m103_works,
+        },
+        tapping_override_percent: (least, greatest),
+        orient_before_rigid_tapping: tapping.orientation,
+        machine_datum: all_axes(|axis| list.m92_datum(axis)).into(),
+        probe: ProbeRules {
+            feed_mm_min: probe.feed_mm_min,
+            range_mm: probe.range_mm,
+            clearance_mm: probe.clearance_mm,
+            rapid_mm_min: probe.rapid_mm_min,
+            ..ProbeRules::default()
+        },
+        speed_max_rpm: list.spindle_speed_max_rpm(),
+        ..Rules::default()
+    }
+}
+
+/// The limits of motion.
+pub(crate) fn limits(list: &ParameterList, machine: &MachineOptions) -> Limits {
+    Limits {
+        max_feed_mm_min: all_axes(|axis| list.rapid_traverse_mm_min(axis)),
+        acceleration_m_s2: all_axes(|axis| list.acceleration_m_s2(axis)),
+        radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
+        corner_angle_deg: list.corner_angle_deg(),
+        servo_lag: !list.feed_precontrol(),
+        cycle_s: f64::from(list.model().limits().contour_cycle_us) * 1e-6,
+        feed_override_percent: machine.override_percent,
+        rapid_override_percent: machine.override_percent,
+    }
+}
+
+/// Times of what is no movement.
+pub(crate) fn times(machine: &MachineOptions) -> AuxiliaryTimes {
+    AuxiliaryTimes {
+        tool_change_s: machine.tool_change_time,
+        spindle_start_s: machine.spindle_time,
+        spindle_stop_s: machine.spindle_time,
+        spindle_speed_change_s: 0.5 * machine.spindle_time,
+        spindle_orientation_s: machine.spindle_time,
+        m_function_s: machine.m_time,
+    }
+}
+
+/// Reads `X10`, `Y-3.5`: axes with their positions, mm or degrees.
+pub(crate) fn position(option: &str, words: &[String], model: ControlModel) -> Result<Position, UsageError> {
+    let mut position = Position::UNKNOWN;
+    for word in words {
+        let wrong = |what: String| UsageError::new(format!("{option} {word}: {what}"));
+        let mut characters = word.trim().chars();
+        let axis = characters
+            .next()
+            .filter(char::is_ascii)
+            .and_then(|letter| Axis::from_letter(letter as u8));
+        let Some(axis) = axis else {
+            return Err(wrong("it takes axes with positions, as X10,Y-5.5".into()));
+        };
+        let text = characters.as_str().trim().trim_start_matches('=');
+        let value = text
+            .parse::<f64>()
+            .map_err(|_| wrong(format!("`{text}` is no number")))?;
+        let max = model.limits().coordinate_max;
+        if !(-max..=max).contains(&value) {
+            return Err(wrong(format!(
+                "positions reach from -{max} to {max} on this control"
+            )));
+        }
+        if position.get(axis).is_some() {
+            return Err(wrong(format!("{axis} is given twice")));
+        }
+        position[axis] = value;
+    }
+    Ok(position)
+}
+
+/// Reads `Q1=5`.
+fn q_values(assignments: &[String], model: ControlModel) -> Result<Vec<(u16, f64)>, UsageError> {
+    assignments.iter().map(|text| q_value(text, model)).collect()
+}
+
+fn q_value(text: &str, model: ControlModel) -> Result<(u16, f64), UsageError> {
+    let wrong = |what: String| UsageError::new(format!("--set {text}: {what}"));
+    let parts = text
+        .trim()
+        .strip_prefix(['Q', 'q'])
+        .and_then(|rest| rest.split_once('='));
+    let Some((number, value)) = parts else {
+        return Err(wrong(
+            "it takes assignments with a decimal point, as Q1=5.5".into(),
+        ));
+    };
+    let max = model.limits().q_max;
+    let number = number.trim().parse::<u16>().ok().filter(|number| *number <= max);
+    let Some(number) = number else {
+        return Err(wrong(format!("Q parameters are Q0 to Q{max} on this control")));
+    };
+    let value = value.trim();
+    match value.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok((number, value)),
+        _ => Err(wrong(format!("`{value}` is no number"))),
+    }
+}
+
+fn all_axes(value: impl Fn(Axis) -> f64) -> [f64; Axis::COUNT] {
+    Axis::ALL.map(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MODEL: ControlModel = ControlModel::Tnc360;
+
+    #[test]
+    fn q_parameters_are_assigned() {
+        assert_eq!(q_value("Q1=-5.25", MODEL), Ok((1, -5.25)));
+        assert_eq!(q_value(" q99 = +3", MODEL), Ok((99, 3.0)));
+        for wrong in [
+            "1=5", "Q1", "Q1=", "Q1=x", "Q1=inf", "Q-1=5", "Q99999=1", "Q124=1",
+        ] {
+            assert!(q_value(wrong, MODEL).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn positions_are_read() {
+        let read = |words: &[&str]| {
+            position(
+                "--start",
+                &words.iter().map(|w| w.to_string()).collect::<Vec<_>>(),
+                MODEL,
+            )
+        };
+        let p = read(&["X10", "y-2.5", " Z +50"]).unwrap();
+        assert_eq!(
+            (p.get(Axis::X), p.get(Axis::Y), p.get(Axis::Z)),
+            (Some(10.0), Some(-2.5), Some(50.0))
+        );
+        assert_eq!(p.get(Axis::C), None);
+        for wrong in [
+            &["Q1"][..],
+            &["X"],
+            &["X1", "X2"],
+            &["X1e9"],
+            &["Xnan"],
+            &[""],
+            &["é1"],
+        ] {
+            assert!(read(wrong).is_err(), "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn rules_follow_the_list() {
+        let mut list = ParameterList::reference(ControlModel::Tnc415b);
+        for assignment in [
+            "7420=%01101",
+            "7430=0.9",
+            "7410=1",
+            "7440=%00001",
+            "7110.0=80",
+            "950.2=-7",
+        ] {
+            list.assign(assignment).unwrap();
+        }
+        let rules = rules(&list);
+        assert_eq!(rules.contour_pocket, ContourPocketRules::from_bits(0b01101));
+        assert_eq!(rules.m_functions, MFunctionRules::from_bits(0b00001));
+        assert_eq!(rules.overlap, 0.9);
+        assert!(rules.scaling_in_plane_only);
+        assert_eq!(rules.tapping_override_percent.0, 80.0);
+        assert_eq!(rules.machine_datum[Axis::Z], -7.0);
+    }
+}

@@ -1,0 +1,237 @@
+//! Tool tables: text with a line of column names and one line for each tool.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use bahn_interpreter::ToolTable;
+use bahn_path::ToolShape;
+
+use crate::{UsageError, files};
+
+/// Reads the tool table of a file.
+pub(crate) fn load(path: &Path) -> Result<ToolTable, UsageError> {
+    let bytes = files::read_table(path)?;
+    parse(&String::from_utf8_lossy(&bytes))
+        .map_err(|error| UsageError::new(format!("{}: {error}", path.display())))
+}
+
+/// Reads a tool table: see the help of `bahn test`.
+fn parse(text: &str) -> Result<ToolTable, String> {
+    let text = text.trim_start_matches('\u{feff}');
+    let mut lines = (1..)
+        .zip(text.lines())
+        .filter(|(_, line)| !is_comment(line))
+        .peekable();
+    let frame = lines.next_if(|(_, line)| first_word(line).eq_ignore_ascii_case("BEGIN"));
+    let unit_mm = match frame {
+        Some((_, line)) if line.to_ascii_uppercase().contains("INCH") => 25.4,
+        _ => 1.0,
+    };
+    let Some((_, header)) = lines.next() else {
+        return Err("the table is empty".into());
+    };
+    let columns = Columns::new(header, frame.is_some())?;
+    let mut table = BTreeMap::new();
+    for (number, line) in lines {
+        if matches!(first_word(line).to_ascii_uppercase().as_str(), "[END]" | "END") {
+            break;
+        }
+        let (tool, shape) = columns
+            .tool(line, unit_mm)
+            .map_err(|error| format!("line {number}: {error}"))?;
+        if table.insert(tool, shape).is_some() {
+            return Err(format!("line {number}: tool {tool} is there twice"));
+        }
+    }
+    Ok(table)
+}
+
+fn is_comment(line: &str) -> bool {
+    let line = line.trim();
+    line.is_empty() || line.starts_with([';', '#', '*'])
+}
+
+fn first_word(line: &str) -> &str {
+    line.split_whitespace().next().unwrap_or_default()
+}
+
+/// Where the columns are.
+struct Columns {
+    names: Vec<String>,
+    layout: Layout,
+}
+
+enum Layout {
+    /// A character stands between the columns.
+    Separated(char),
+    /// Blanks stand between the columns; the last one may contain blanks.
+    Blanks,
+    /// Columns begin under their names, counted in characters: a file of a control.
+    Fixed(Vec<usize>),
+}
+
+impl Columns {
+    fn new(header: &str, fixed: bool) -> Result<Columns, String> {
+        let separator = ['\t', ';', ',']
+            .into_iter()
+            .find(|separator| header.contains(*separator));
+        let (names, layout): (Vec<&str>, Layout) = match separator {
+            Some(separator) => (header.split(separator).collect(), Layout::Separated(separator)),
+            None if fixed => (
+                header.split_whitespace().collect(),
+                Layout::Fixed(column_starts(header)),
+            ),
+            None => (header.split_whitespace().collect(), Layout::Blanks),
+        };
+        let names: Vec<String> = names
+            .into_iter()
+            .map(|name| name.trim().to_ascii_uppercase())
+            .collect();
+        for needed in ["T", "R"] {
+            if !names.iter().any(|name| name == needed) {
+                return Err(format!(
+                    "the first line must name the columns T L R R2; there is no column {needed}"
+                ));
+            }
+        }
+        Ok(Columns { names, layout })
+    }
+
+    fn tool(&self, line: &str, unit_mm: f64) -> Result<(u32, ToolShape), String> {
+        let fields = self.fields(line)?;
+        let length = |name: &str| self.length(&fields, name).map(|value| value * unit_mm);
+        let shape = ToolShape {
+            length: length("L")? + length("DL")?,
+            radius: length("R")? + length("DR")?,
+            corner_radius: length("R2")? + length("DR2")?,
+        };
+        if shape.radius < 0.0 || shape.corner_radius < 0.0 {
+            return Err("a radius is negative".into());
+        }
+        let tool = self.field(&fields, "T");
+        let tool = tool
+            .parse::<u32>()
+            .map_err(|_| format!("T: `{tool}` is no tool number"))?;
+        Ok((tool, shape))
+    }
+
+    fn fields(&self, line: &str) -> Result<Vec<String>, String> {
+        Ok(match &self.layout {
+            Layout::Separated(separator) => line
+                .split(*separator)
+                .map(|field| field.trim().to_owned())
+                .collect(),
+            Layout::Blanks => {
+                let mut words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+                if words.len() > self.names.len() {
+                    let rest = words.split_off(self.names.len().saturating_sub(1));
+                    words.push(rest.join(" "));
+                }
+                words
+            }
+            Layout::Fixed(starts) => {
+                let characters: Vec<char> = line.chars().collect();
+                let ends = starts.iter().skip(1).copied().chain([usize::MAX]);
+                let cut = |(start, end): (&usize, usize)| {
+                    let end = end.min(characters.len());
+                    characters
+                        .get(*start..end)
+                        .unwrap_or_default()
+                        .iter()
+                        .collect::<String>()
+                        .trim()
+                        .to_owned()
+                };
+                starts.iter().zip(ends).map(cut).collect()
+            }
+        })
+    }
+
+    fn field<'a>(&self, fields: &'a [String], name: &str) -> &'a str {
+        let at = self.names.iter().position(|column| column == name);
+        at.and_then(|at| fields.get(at)).map_or("", String::as_str)
+    }
+
+    /// A length; a column that is missing, empty or `-` is 0. A decimal comma is a point.
+    fn length(&self, fields: &[String], name: &str) -> Result<f64, String> {
+        const GREATEST_MM: f64 = 100_000.0;
+        let text = self.field(fields, name);
+        if text.is_empty() || text == "-" {
+            return Ok(0.0);
+        }
+        let value = text
+            .replace(',', ".")
+            .parse::<f64>()
+            .map_err(|_| format!("{name}: `{text}` is no number"))?;
+        if !(-GREATEST_MM..=GREATEST_MM).contains(&value) {
+            return Err(format!("{name}: {text} is too large"));
+        }
+        Ok(value)
+    }
+}
+
+/// Character positions where the words of a line begin.
+fn column_starts(line: &str) -> Vec<usize> {
+    let mut before = ' ';
+    let mut starts = Vec::new();
+    for (at, character) in line.chars().enumerate() {
+        if before.is_whitespace() && !character.is_whitespace() {
+            starts.push(at);
+        }
+        before = character;
+    }
+    starts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shape(length: f64, radius: f64, corner_radius: f64) -> ToolShape {
+        ToolShape {
+            length,
+            radius,
+            corner_radius,
+        }
+    }
+
+    #[test]
+    fn blanks_tabs_commas_and_semicolons_separate() {
+        let expected = BTreeMap::from([(1, shape(80.5, 10.0, 0.0)), (2, shape(62.0, 4.0, 4.0))]);
+        for text in [
+            "T L R R2 NAME\n1 80.5 10 0 END MILL D20\n\n; a comment\n2 62 4 4\n",
+            "T\tL\tR\tR2\tNAME\n1\t80.5\t10\t\tEND MILL\n2\t62\t4\t4\tBALL\n",
+            "\u{feff}t,name,l,r,r2\r\n1,END MILL,80.5,10,\r\n2,BALL,62,4,4\r\n",
+            "T;L;R;R2\n1;80,5;10;0\n2;62;4;4\n",
+            "T L R R2 DL DR\n1 80 9.5 0 +0.5 0.5\n2 62 4 4",
+        ] {
+            assert_eq!(parse(text).as_ref(), Ok(&expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn tables_of_controls_have_fixed_columns() {
+        let text = "BEGIN TOOL  .T INCH\n\
+                    T     NAME            L         R         R2   DL\n\
+                    0                     +0        +0        +0\n\
+                    5     MILL 1 IN       +4        +0.5      +0   +1\n\
+                    6                               +0.25     +0.25\n\
+                    [END]\n";
+        let table = parse(text).unwrap();
+        assert_eq!(table.get(&0), Some(&shape(0.0, 0.0, 0.0)));
+        assert_eq!(table.get(&5), Some(&shape(127.0, 12.7, 0.0)));
+        assert_eq!(table.get(&6), Some(&shape(0.0, 6.35, 6.35)));
+        assert_eq!(table.len(), 3);
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        let error = |text| parse(text).unwrap_err();
+        assert_eq!(error("T R\n1 5\n2 x"), "line 3: R: `x` is no number");
+        assert_eq!(error("T R\n1 5\n1 6"), "line 3: tool 1 is there twice");
+        assert_eq!(error("T R\n-1 5"), "line 2: T: `-1` is no tool number");
+        assert_eq!(error("T R\n1 -5"), "line 2: a radius is negative");
+        assert_eq!(error("\n"), "the table is empty");
+        assert!(error("1 5 7").contains("no column T"));
+    }
+}
