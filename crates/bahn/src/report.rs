@@ -29,7 +29,7 @@ pub(crate) struct Record {
     blocks: u64,
     tool: Option<u32>,
     tool_calls: Vec<(BlockRef, Option<u32>, f64)>,
-    stops: Vec<(BlockRef, Option<u16>)>,
+    stops: Vec<(BlockRef, &'static str)>,
     /// Tool calls and stops beyond [`MAX_LISTED`].
     not_listed: u64,
     warnings: Vec<(BlockRef, Notice, u64)>,
@@ -91,24 +91,24 @@ impl Record {
     }
 
     fn functions(&mut self, element: &PathElement) {
-        let mut m = None;
         for function in element.functions() {
             match &function.function {
-                Function::M(number @ (0 | 1 | 6)) => m = Some(*number),
                 Function::Tool(call) => {
                     self.tool = Some(call.tool);
                     self.tool_call(element.block, call.speed_rpm);
                 }
                 Function::SpindleSpeed(speed_rpm) => self.tool_call(element.block, *speed_rpm),
-                Function::Stop => {
-                    if self.stops.len() < MAX_LISTED {
-                        self.stops.push((element.block, m));
-                    } else {
-                        self.not_listed += 1;
-                    }
-                }
                 _ => {}
             }
+        }
+    }
+
+    /// Lists a programmed stop.
+    pub fn stop(&mut self, block: BlockRef, function: &'static str) {
+        if self.stops.len() < MAX_LISTED {
+            self.stops.push((block, function));
+        } else {
+            self.not_listed += 1;
         }
     }
 
@@ -165,13 +165,13 @@ impl Record {
                 speed_rpm: tidy(speed_rpm),
             }
         });
-        let stops = self.stops.into_iter().map(|(block, m)| {
+        let stops = self.stops.into_iter().map(|(block, function)| {
             let Place { program, block, line } = place(block);
             StopReport {
-                program,
                 block,
+                function,
+                program,
                 line,
-                function: m.map_or("STOP".to_owned(), |m| format!("M{m}")),
             }
         });
         let completed = end == End::Completed;
@@ -329,7 +329,7 @@ pub(crate) struct WarningReport {
 #[derive(Clone, Debug, serde::Serialize)]
 pub(crate) struct StopReport {
     pub block: u32,
-    pub function: String,
+    pub function: &'static str,
     pub program: String,
     pub line: u32,
 }

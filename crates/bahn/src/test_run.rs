@@ -6,8 +6,8 @@ use std::sync::Arc;
 use bahn_interpreter::{Interpreter, Message, ProgramError};
 use bahn_motion::{PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-use bahn_path::{Barrier, LiveData, PathElement};
-use bahn_program::Program;
+use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
+use bahn_program::{Operation, Program};
 use bahn_workpiece::Projection;
 
 use crate::cli::{Format, PathFile, TestOptions};
@@ -52,6 +52,7 @@ pub(crate) fn command(options: &TestOptions) -> Result<Outcome, UsageError> {
         progress,
         interrupt,
         ends_at_stop: options.run.stop,
+        last_stop: None,
         model: options.model,
     };
     let end = match fault {
@@ -71,6 +72,8 @@ struct TestRun {
     progress: Progress,
     interrupt: Interrupt,
     ends_at_stop: bool,
+    /// The block of the last stop and its function: in a loop it is the same again and again.
+    last_stop: Option<(BlockRef, Option<&'static str>)>,
     model: ControlModel,
 }
 
@@ -82,8 +85,10 @@ impl TestRun {
                     self.record.element(&planned);
                     self.element(&planned.element)?;
                 }
-                PlannedStep::Barrier(Barrier::Stop { .. }) if self.ends_at_stop => return Ok(End::Stopped),
                 PlannedStep::Barrier(barrier) => {
+                    if self.is_stop(&barrier) && self.ends_at_stop {
+                        return Ok(End::Stopped);
+                    }
                     let live = self.live_data(&barrier);
                     self.planner.resume(live);
                 }
@@ -125,6 +130,23 @@ impl TestRun {
         for warning in self.planner.source_mut().take_warnings() {
             self.record.warn(warning.block, Notice::Program(warning.kind), 1);
         }
+    }
+
+    /// Whether a barrier is a programmed stop, which is then listed. The stop for a tool change by M6
+    /// (MP7440 bit 0) is none: nobody changes tools here.
+    fn is_stop(&mut self, barrier: &Barrier) -> bool {
+        let Barrier::Stop { block } = barrier else {
+            return false;
+        };
+        let function = match self.last_stop {
+            Some((last, function)) if last == *block => function,
+            _ => stop_function(self.planner.source(), *block),
+        };
+        self.last_stop = Some((*block, function));
+        if let Some(function) = function {
+            self.record.stop(*block, function);
+        }
+        function.is_some()
     }
 
     /// What is found at a barrier. Everything before it has been executed and cut.
@@ -223,6 +245,23 @@ impl TestRun {
         )?;
         Ok(outcome)
     }
+}
+
+/// What stops in a block: STOP, M0 or M1; `None` for M6.
+fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'static str> {
+    let chunk = run
+        .program(block.program)?
+        .decode(block.block / Program::CHUNK_SIZE);
+    let offset = (block.block % Program::CHUNK_SIZE) as usize;
+    let m = match &chunk.blocks.get(offset)?.operation {
+        Operation::Stop(_) => return Some("STOP"),
+        Operation::Motion(motion) => &motion.m,
+        Operation::Miscellaneous(m) | Operation::CycleCall(m) => m,
+        _ => return None,
+    };
+    [(0, "M0"), (1, "M1")]
+        .into_iter()
+        .find_map(|(code, name)| m.contains(code).then_some(name))
 }
 
 fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
