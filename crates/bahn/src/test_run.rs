@@ -128,7 +128,8 @@ impl TestRun {
     #[inline]
     fn take_warnings(&mut self) {
         for warning in self.planner.source_mut().take_warnings() {
-            self.record.warn(warning.block, Notice::Program(warning.kind), 1);
+            self.record
+                .warn(warning.block, Notice::Program(warning.kind), warning.count);
         }
     }
 

@@ -73,6 +73,8 @@ pub struct Warning {
     pub block: BlockRef,
     /// What.
     pub kind: WarningKind,
+    /// How often it came up since it was last taken.
+    pub count: u64,
 }
 
 /// Kinds of warnings of the interpreter.

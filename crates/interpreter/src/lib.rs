@@ -7,8 +7,9 @@
 //! - [`Library`]: where called programs come from;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
-//! A block is executed by [`run`], positioning blocks by [`positioning`], cycles in [`cycles`]. Movements
-//! then pass the stages of [`contour`] (rounding, radius compensation) into the queue of finished steps.
+//! A block is executed by `run`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
+//! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished
+//! steps.
 //! Nothing here knows of time or of the machine's axes.
 
 mod arc;
@@ -20,6 +21,7 @@ mod flow;
 mod functions;
 mod modal;
 mod output;
+mod path_functions;
 mod positioning;
 mod probe;
 mod q_parameters;

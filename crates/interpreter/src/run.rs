@@ -83,11 +83,19 @@ impl Run {
         }
     }
 
+    /// Notes a warning; the same one at the same block is counted, so that loops do not pile them up.
     pub fn warn(&mut self, kind: WarningKind) {
-        self.warnings.push(Warning {
-            block: self.block,
-            kind,
-        });
+        const LOOKED_BACK: usize = 64;
+        let block = self.block;
+        let mut recent = self.warnings.iter_mut().rev().take(LOOKED_BACK);
+        match recent.find(|warning| warning.block == block && warning.kind == kind) {
+            Some(warning) => warning.count += 1,
+            None => self.warnings.push(Warning {
+                block,
+                kind,
+                count: 1,
+            }),
+        }
     }
 
     /// Executes a block. The caller has already passed over skipped blocks.
@@ -369,7 +377,13 @@ impl Run {
             smooth: None,
             barrier,
         };
+        let waits = item.barrier.is_some() && item.side == Side::Off;
         self.contour.push(item, &mut self.out)?;
+        if waits {
+            // The run stands still here: no block behind it is read before it goes on. Inside a compensated
+            // contour the corner needs the next element all the same.
+            self.contour.flush(&mut self.out)?;
+        }
         Ok(if functions.end { Flow::EndOfRun } else { Flow::Next })
     }
 

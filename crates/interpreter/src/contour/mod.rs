@@ -2,9 +2,10 @@
 //!
 //! Positioning blocks arrive as [`ContourMove`]s in workpiece coordinates. Two stages follow, each
 //! holding back one element because it needs to see the next one:
-//! [`rounding`] inserts roundings and chamfers, [`compensation`] offsets by the tool radius.
+//! `rounding` inserts roundings and chamfers, `compensation` offsets by the tool radius.
 
 pub(crate) mod compensation;
+mod corner;
 pub(crate) mod flat;
 pub(crate) mod rounding;
 
