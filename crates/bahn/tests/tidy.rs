@@ -23,6 +23,9 @@ const ROOMS: &[(&str, &[&str])] = &[
             "workpiece",
         ],
     ),
+    ("exchange", &[]),
+    ("plc", &["exchange", "parameters"]),
+    ("bahn", &["path", "parameters", "program", "interpreter", "motion", "workpiece"]),
 ];
 
 /// Longer files hold more than one idea.
