@@ -69,6 +69,17 @@ impl BitArea {
         }
     }
 
+    /// The highest number that the directory lists.
+    pub const fn last(self) -> u16 {
+        match self {
+            BitArea::M => MARKERS - 1,
+            BitArea::I => 254,
+            BitArea::O => 111,
+            BitArea::T => 95,
+            BitArea::C => 127,
+        }
+    }
+
     /// The cell of number 0.
     pub const fn first_cell(self) -> u16 {
         AREAS[self as usize].1
@@ -337,6 +348,9 @@ mod tests {
             next += area.count();
         }
         assert_eq!(next, BYTES_AT);
+        for area in BitArea::ALL {
+            assert_eq!(area.ranges().last().map(|range| range.1), Some(area.last()));
+        }
     }
 
     #[test]
