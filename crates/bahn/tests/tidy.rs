@@ -12,6 +12,8 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("interpreter", &["path", "parameters", "program"]),
     ("motion", &["path"]),
     ("workpiece", &["path"]),
+    ("exchange", &[]),
+    ("plc", &["exchange", "parameters"]),
     (
         "bahn",
         &[
@@ -23,9 +25,6 @@ const ROOMS: &[(&str, &[&str])] = &[
             "workpiece",
         ],
     ),
-    ("exchange", &[]),
-    ("plc", &["exchange", "parameters"]),
-    ("bahn", &["path", "parameters", "program", "interpreter", "motion", "workpiece"]),
 ];
 
 /// Longer files hold more than one idea.
