@@ -97,9 +97,17 @@ impl Exchange {
             let (Some(nc), Some(plc), Some(start), Some(queued)) = slices else {
                 continue;
             };
-            for (((nc, plc), start), queued) in nc.iter_mut().zip(plc).zip(start).zip(queued) {
-                let changed = if plc == start { 0 } else { !queued };
-                *nc = (*nc & !changed) | (plc & changed);
+            let chunks = nc
+                .chunks_mut(CHUNK)
+                .zip(plc.chunks(CHUNK))
+                .zip(start.chunks(CHUNK))
+                .zip(queued.chunks(CHUNK));
+            // Most of the memory does not change in a scan.
+            for (((nc, plc), start), queued) in chunks.filter(|(((_, plc), start), _)| plc != start) {
+                for (((nc, plc), start), queued) in nc.iter_mut().zip(plc).zip(start).zip(queued) {
+                    let changed = if plc == start { 0 } else { !queued };
+                    *nc = (*nc & !changed) | (plc & changed);
+                }
             }
         }
     }
@@ -124,6 +132,9 @@ impl Exchange {
         }
     }
 }
+
+/// Cells that are compared at once.
+const CHUNK: usize = 64;
 
 #[derive(Clone)]
 struct Queue {
