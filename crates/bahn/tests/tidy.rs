@@ -12,6 +12,8 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("interpreter", &["path", "parameters", "program"]),
     ("motion", &["path"]),
     ("workpiece", &["path"]),
+    ("exchange", &[]),
+    ("plc", &["exchange", "parameters"]),
     (
         "bahn",
         &[

@@ -1,0 +1,222 @@
+//! The files of a program: found, translated, joined [000:14592-14731].
+
+use std::collections::{HashMap, VecDeque};
+
+use super::file::{FileCode, Slot, translate};
+use super::labels::Definition;
+use super::{Compilation, Options, Place, Reports, time};
+use crate::PlcError;
+use crate::program::{Label, Op, PlcProgram, SourceText, Target};
+use crate::source::{SourceFiles, decode, find};
+
+/// Files of a program at most [000:14604].
+const FILES_MAX: usize = 64;
+/// Global labels of a program at most [000:12010].
+const GLOBALS_MAX: usize = 1000;
+
+/// A file with its code.
+struct Linked {
+    text: SourceText,
+    code: FileCode,
+}
+
+pub(super) fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> Compilation {
+    let mut reports = Reports::default();
+    let linked = read_all(files, main, options, &mut reports);
+    let size_bytes = linked
+        .iter()
+        .fold(0_u32, |sum, file| sum.saturating_add(file.code.bytes));
+    if size_bytes > options.code_bytes_max() {
+        let detail = format!(
+            "{size_bytes} bytes of code, {} are allowed",
+            options.code_bytes_max()
+        );
+        reports.error((0, main), START, PlcError::ProgramTooLong, &detail);
+    }
+    let globals = globals(&linked, &mut reports);
+    check_externs(&linked, &globals, &mut reports);
+    let program = reports.errors.is_empty().then(|| join(linked, &globals));
+    Compilation {
+        nominal_time: program.as_ref().map_or(0, time::nominal_time),
+        program,
+        errors: Reports::sorted(reports.errors),
+        warnings: Reports::sorted(reports.warnings),
+        size_bytes,
+    }
+}
+
+const START: Place = Place { line: 1, column: 1 };
+
+/// Reads the main file and everything that USES names, each file once.
+fn read_all(files: &dyn SourceFiles, main: &str, options: Options, reports: &mut Reports) -> Vec<Linked> {
+    let mut linked: Vec<Linked> = Vec::new();
+    let mut known: Vec<String> = Vec::new();
+    let mut wanted = VecDeque::from([(main.to_owned(), 0, main.to_owned(), START)]);
+    let mut too_many = false;
+    while let Some((name, by, by_name, place)) = wanted.pop_front() {
+        let key = key(&name);
+        if known.contains(&key) {
+            continue;
+        }
+        let Some((found, bytes)) = find(files, &name) else {
+            reports.error((by, &by_name), place, PlcError::FileNotFound, &name);
+            known.push(key);
+            continue;
+        };
+        if linked.len() >= FILES_MAX {
+            if !too_many {
+                reports.error(
+                    (by, &by_name),
+                    place,
+                    PlcError::TooManyFiles,
+                    "a program may have 64 files",
+                );
+            }
+            too_many = true;
+            continue;
+        }
+        known.push(key);
+        let index = linked.len();
+        let lines: Vec<String> = decode(&bytes).lines().map(str::to_owned).collect();
+        let code = translate(index, &found, &lines, options, reports);
+        for (used, place) in &code.uses {
+            wanted.push_back((used.clone(), index, found.clone(), *place));
+        }
+        linked.push(Linked {
+            text: SourceText { name: found, lines },
+            code,
+        });
+    }
+    linked
+}
+
+/// The same for all spellings of a file's name.
+fn key(name: &str) -> String {
+    let upper = name.to_ascii_uppercase();
+    upper.strip_suffix(".PLC").unwrap_or(&upper).to_owned()
+}
+
+/// Names that all files may call, with the file and its instruction.
+type Globals = HashMap<String, (usize, usize)>;
+
+fn globals(linked: &[Linked], reports: &mut Reports) -> Globals {
+    let mut globals = Globals::new();
+    for (file, Linked { text, code }) in linked.iter().enumerate() {
+        for (name, place) in &code.globals {
+            let Some(Definition::Code(at)) = code.labels.definition(*name) else {
+                continue;
+            };
+            let Some(label) = code.labels.names.get(*name) else {
+                continue;
+            };
+            if globals.insert(label.text.clone(), (file, at)).is_some() {
+                reports.error((file, &text.name), *place, PlcError::GlobalTwice, &label.text);
+            }
+        }
+    }
+    if let (true, Some(main)) = (globals.len() > GLOBALS_MAX, linked.first()) {
+        let detail = format!("{} global labels, {GLOBALS_MAX} are allowed", globals.len());
+        reports.error((0, &main.text.name), START, PlcError::TooManyGlobals, &detail);
+    }
+    globals
+}
+
+fn check_externs(linked: &[Linked], globals: &Globals, reports: &mut Reports) {
+    for (file, Linked { text, code }) in linked.iter().enumerate() {
+        for (name, place) in &code.externs {
+            let Some(label) = code.labels.names.get(*name) else {
+                continue;
+            };
+            if !globals.contains_key(&label.text) {
+                reports.error(
+                    (file, &text.name),
+                    *place,
+                    PlcError::ExternNotDefined,
+                    &label.text,
+                );
+            }
+        }
+    }
+}
+
+/// Puts the files behind each other and replaces names by places. Without errors every name has one.
+fn join(linked: Vec<Linked>, globals: &Globals) -> PlcProgram {
+    let mut program = PlcProgram::default();
+    let starts: Vec<usize> = linked
+        .iter()
+        .scan(0, |next, file| {
+            Some(std::mem::replace(next, *next + file.code.code.len()))
+        })
+        .collect();
+    for (
+        file,
+        Linked {
+            text,
+            code: mut file_code,
+        },
+    ) in linked.into_iter().enumerate()
+    {
+        let start = starts.get(file).copied().unwrap_or(0);
+        let (first_field, first_case) = (program.fields.len(), program.cases.len());
+        for instruction in &mut file_code.code {
+            match &mut instruction.op {
+                Op::Jump { target, .. } => *target += start,
+                Op::Case { table, .. } => *table += first_case,
+                _ => {}
+            }
+        }
+        for fixup in &file_code.fixups {
+            let Some(label) = file_code.labels.names.get(fixup.name) else {
+                continue;
+            };
+            let at = match file_code.labels.definition(fixup.name) {
+                Some(Definition::Code(at)) => start + at,
+                Some(Definition::Field(field)) => first_field + field,
+                Some(Definition::Extern) => globals
+                    .get(&label.text)
+                    .map_or(0, |(file, at)| starts.get(*file).copied().unwrap_or(0) + at),
+                None => continue,
+            };
+            match fixup.slot {
+                Slot::Instruction(index) => {
+                    if let Some(instruction) = file_code.code.get_mut(index) {
+                        resolve(&mut instruction.op, at);
+                    }
+                }
+                Slot::CaseEntry { table, entry } => {
+                    if let Some(entry) = file_code
+                        .cases
+                        .get_mut(table)
+                        .and_then(|table| table.get_mut(entry))
+                    {
+                        *entry = Target::Code(at);
+                    }
+                }
+            }
+        }
+        for name in &file_code.labels.names {
+            if let Some((Definition::Code(at), place)) = name.definition {
+                program.labels.push(Label {
+                    name: name.text.clone(),
+                    file,
+                    line: place.line,
+                    at: start + at,
+                });
+            }
+        }
+        program.code.extend(file_code.code);
+        program.fields.extend(file_code.fields);
+        program.cases.extend(file_code.cases);
+        program.files.push(text);
+    }
+    program
+}
+
+fn resolve(op: &mut Op, at: usize) {
+    match op {
+        Op::Jump { target, .. } => *target = at,
+        Op::Call { target, .. } | Op::Submit { target } => *target = Target::Code(at),
+        Op::LoadField { field } => *field = at,
+        _ => {}
+    }
+}

@@ -1,0 +1,143 @@
+//! From source files to a program.
+
+mod chain;
+mod emit;
+mod file;
+mod labels;
+mod link;
+mod structure;
+mod time;
+
+use bahn_parameters::ControlModel;
+
+use crate::program::PlcProgram;
+use crate::source::SourceFiles;
+use crate::{Diagnostic, PlcError};
+
+/// How a program is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Options {
+    /// The control: it limits the length of the code.
+    pub model: ControlModel,
+    /// Whether lines that only the manual's own listings spell like that are errors.
+    pub strict: bool,
+}
+
+impl Default for Options {
+    /// A TNC 415B, tolerant.
+    fn default() -> Options {
+        Options {
+            model: ControlModel::Tnc415b,
+            strict: false,
+        }
+    }
+}
+
+impl Options {
+    /// For a control model, tolerant.
+    pub fn for_model(model: ControlModel) -> Options {
+        Options {
+            model,
+            ..Options::default()
+        }
+    }
+
+    /// Refuses loose spelling.
+    pub fn strict(self) -> Options {
+        Options { strict: true, ..self }
+    }
+
+    /// Bytes of code of all files together: 128 KB, 64 KB on the TNC 407 [000:14606].
+    fn code_bytes_max(self) -> u32 {
+        match self.model {
+            ControlModel::Tnc407 => 64 * 1024,
+            _ => 128 * 1024,
+        }
+    }
+}
+
+/// What the compiler makes of a program.
+///
+/// ```
+/// use bahn_plc::{Compilation, MemoryFiles, Options};
+/// let files = MemoryFiles::from([("MAIN.PLC", "L I4\nA I5\n= W8\nEM\n")]);
+/// let compilation = Compilation::compile(&files, "MAIN.PLC", Options::default());
+/// assert!(compilation.program.is_none());
+/// let error = &compilation.errors[0];
+/// assert_eq!((error.error.number(), error.line), (21, 3), "the word accumulator is not loaded");
+/// ```
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct Compilation {
+    /// The program, when there is no error.
+    pub program: Option<PlcProgram>,
+    /// All errors of all files, by file in the order of linking, then by line.
+    pub errors: Vec<Diagnostic>,
+    /// What is accepted although the printed rules refuse it, in the same order.
+    pub warnings: Vec<Diagnostic>,
+    /// Length of the code in bytes, as far as it was read.
+    pub size_bytes: u32,
+    /// Nominal time of the longest way through the main program in ns: no jump backward, every module call
+    /// that lies on the way counted. Zero when there are errors.
+    pub nominal_time: u64,
+}
+
+impl Compilation {
+    /// Compiles a main file and all that it links. Never fails: errors are in the result.
+    pub fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> Compilation {
+        link::compile(files, main, options)
+    }
+
+    /// The nominal time in percent, as the PLC menu shows it: 100 % are 5 ms [000:12038].
+    pub fn nominal_percent(&self) -> f64 {
+        crate::run::percent(self.nominal_time)
+    }
+}
+
+/// Errors and warnings while they are collected.
+#[derive(Debug, Default)]
+struct Reports {
+    errors: Vec<(usize, Diagnostic)>,
+    warnings: Vec<(usize, Diagnostic)>,
+}
+
+/// Where a report belongs.
+#[derive(Clone, Copy, Debug, Default)]
+struct Place {
+    line: u32,
+    column: u32,
+}
+
+impl Reports {
+    fn error(&mut self, file: (usize, &str), place: Place, error: PlcError, detail: &str) {
+        self.errors
+            .push((file.0, diagnostic(file.1, place, error, detail)));
+    }
+
+    fn warning(&mut self, file: (usize, &str), place: Place, error: PlcError, detail: &str) {
+        self.warnings
+            .push((file.0, diagnostic(file.1, place, error, detail)));
+    }
+
+    /// By file in the order of linking, then by line and column.
+    fn sorted(mut reports: Vec<(usize, Diagnostic)>) -> Vec<Diagnostic> {
+        reports.sort_by_key(|(file, report)| (*file, report.line, report.column));
+        reports.into_iter().map(|(_, report)| report).collect()
+    }
+}
+
+fn diagnostic(file: &str, place: Place, error: PlcError, detail: &str) -> Diagnostic {
+    let message = if detail.is_empty() {
+        error.text().to_owned()
+    } else {
+        format!("{}: {detail}", error.text())
+    };
+    Diagnostic {
+        error,
+        file: file.to_owned(),
+        line: place.line,
+        column: place.column,
+        message,
+    }
+}

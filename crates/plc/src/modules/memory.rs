@@ -1,0 +1,107 @@
+//! Modules 9000 to 9022: copying and addressing memory [000:14741-14849].
+
+use bahn_exchange::{Bit, BitArea, Number, Size};
+
+use super::{Call, Outcome};
+use crate::PlcError;
+
+/// 9000: copies markers one after the other, upward.
+pub(super) fn copy_markers(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    let [source, destination, length] = call.arguments()?;
+    let end = i32::from(BitArea::M.count());
+    if !fits(source, length, end) || !fits(destination, length, end) {
+        return Ok(Outcome::Failed);
+    }
+    let marker = |number: i32| {
+        u16::try_from(number)
+            .ok()
+            .and_then(|number| Bit::new(BitArea::M, number))
+    };
+    for offset in 0..length {
+        if let (Some(from), Some(to)) = (marker(source + offset), marker(destination + offset)) {
+            let value = call.image.bit(from);
+            call.image.set_bit(to, value);
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// 9001: copies bytes one after the other, upward.
+pub(super) fn copy_bytes(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    let [source, destination, length] = call.arguments()?;
+    if !fits(source, length, BYTES) || !fits(destination, length, BYTES) {
+        return Ok(Outcome::Failed);
+    }
+    for offset in 0..length {
+        let from = operand(Size::Byte, source + offset);
+        let to = operand(Size::Byte, destination + offset);
+        if let (Some(from), Some(to)) = (from, to) {
+            let value = call.image.number(from);
+            call.image.set_number(to, value);
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// 9010.
+pub(super) fn read_byte(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    read(call, Size::Byte)
+}
+
+/// 9011.
+pub(super) fn read_word(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    read(call, Size::Word)
+}
+
+/// 9012.
+pub(super) fn read_double(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    read(call, Size::Double)
+}
+
+/// 9020.
+pub(super) fn write_byte(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    write(call, Size::Byte)
+}
+
+/// 9021.
+pub(super) fn write_word(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    write(call, Size::Word)
+}
+
+/// 9022.
+pub(super) fn write_double(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
+    write(call, Size::Double)
+}
+
+/// The word memory in bytes.
+const BYTES: i32 = 1024;
+
+/// An address that does not exist is an error; the result is pushed all the same (inferred).
+fn read(call: &mut Call<'_>, size: Size) -> Result<Outcome, PlcError> {
+    let [address] = call.arguments()?;
+    let number = operand(size, address);
+    call.result(number.map_or(0, |number| call.image.number(number)))?;
+    Ok(if number.is_some() {
+        Outcome::Done
+    } else {
+        Outcome::Failed
+    })
+}
+
+fn write(call: &mut Call<'_>, size: Size) -> Result<Outcome, PlcError> {
+    let [address, value] = call.arguments()?;
+    let Some(number) = operand(size, address) else {
+        return Ok(Outcome::Failed);
+    };
+    call.image.set_number(number, value);
+    Ok(Outcome::Done)
+}
+
+fn operand(size: Size, address: i32) -> Option<Number> {
+    Number::new(size, u16::try_from(address).ok()?)
+}
+
+/// Whether a block lies inside an area that ends before `end`.
+fn fits(first: i32, length: i32, end: i32) -> bool {
+    first >= 0 && length >= 0 && i64::from(first) + i64::from(length) <= i64::from(end)
+}

@@ -1,0 +1,95 @@
+//! What a trace sees of an executed instruction [000:11414-11435].
+
+use bahn_exchange::Image;
+
+use super::memory::{read, read_bit, read_bits, read_number};
+use super::registers::Registers;
+use crate::operand::TextOperand;
+use crate::program::{Instruction, Op, PlcProgram};
+
+/// Sees every executed instruction.
+pub trait Tracer {
+    /// An instruction was executed.
+    fn executed(&mut self, step: &TraceStep<'_>);
+}
+
+/// An executed instruction with what it left behind.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct TraceStep<'a> {
+    /// The program.
+    pub program: &'a PlcProgram,
+    /// Index of the instruction.
+    pub at: usize,
+    /// The instruction.
+    pub instruction: &'a Instruction,
+    /// Accumulators and stacks after it.
+    pub registers: &'a Registers,
+    /// The memory after it.
+    pub image: &'a Image,
+    /// The identifier of the submit job that executed it; `None` for the cyclic program.
+    pub job: Option<u8>,
+}
+
+/// The content of an operand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum OperandContent {
+    /// M, I, O, T, C.
+    Bit(bool),
+    /// B, W, D, K and consecutive bits.
+    Number(i32),
+    /// S, in the control's characters.
+    Text(Vec<u8>),
+}
+
+impl TraceStep<'_> {
+    /// The content of the operand after the instruction; `None` for instructions without one.
+    pub fn operand(&self) -> Option<OperandContent> {
+        let index = self.registers.index;
+        Some(match &self.instruction.op {
+            Op::LoadBit { bit, .. }
+            | Op::GateBit { bit, .. }
+            | Op::AssignBit { bit, .. }
+            | Op::SetBit { bit, .. }
+            | Op::PushBit { bit }
+            | Op::PullBit { bit } => OperandContent::Bit(read_bit(self.image, *bit, index)),
+            Op::LoadBits { first, count } | Op::AssignBits { first, count } => {
+                OperandContent::Number(read_bits(self.image, *first, *count, index))
+            }
+            Op::Load { value, .. }
+            | Op::GateWord { value, .. }
+            | Op::Arithmetic { value, .. }
+            | Op::BitOperation { value, .. }
+            | Op::TestBit { value }
+            | Op::Compare { value, .. }
+            | Op::Push { value } => OperandContent::Number(read(self.image, *value, index)),
+            Op::Assign { number, .. }
+            | Op::StepNumber { number, .. }
+            | Op::Pull { number }
+            | Op::Case { number, .. }
+            | Op::Reply { number }
+            | Op::Cancel { number } => OperandContent::Number(read_number(self.image, *number, index)),
+            Op::LoadText { text } | Op::AppendText { text } | Op::CompareText { text, .. } => {
+                OperandContent::Text(super::text::read(self.image, text, index).unwrap_or_default())
+            }
+            Op::AssignText { string, indexed } | Op::OverwriteText { string, indexed } => {
+                let text = TextOperand::Memory {
+                    string: *string,
+                    indexed: *indexed,
+                };
+                OperandContent::Text(super::text::read(self.image, &text, index).unwrap_or_default())
+            }
+            _ => return None,
+        })
+    }
+
+    /// The line of source text.
+    pub fn text(&self) -> &str {
+        self.program.line_text(self.instruction)
+    }
+
+    /// The name of the file.
+    pub fn file(&self) -> &str {
+        self.program.file_name(self.instruction.file)
+    }
+}

@@ -1,0 +1,335 @@
+//! Operands in memory, constants and strings.
+
+use bahn_exchange::{Bit, BitArea, Number, STRINGS, Size};
+
+use super::form::{Class, Mnemonic};
+use super::line::{LineError, Operand, label};
+use crate::PlcError;
+use crate::operand::{BitOperand, NumberOperand, TextOperand};
+
+/// Longest immediate string [000:14084].
+const LITERAL_LENGTH_MAX: usize = 37;
+/// Last line of the message file and of the dialogue file [000:14081-14082].
+const MESSAGE_LINE_MAX: u16 = 999;
+const DIALOGUE_LINE_MAX: u16 = 4095;
+
+/// Walks over the characters of a line.
+pub(super) struct Scanner<'a> {
+    characters: &'a [char],
+    at: usize,
+}
+
+impl<'a> Scanner<'a> {
+    pub(super) fn new(characters: &'a [char], at: usize) -> Scanner<'a> {
+        Scanner { characters, at }
+    }
+
+    pub(super) fn at(&self) -> usize {
+        self.at
+    }
+
+    pub(super) fn peek(&self) -> Option<char> {
+        self.characters.get(self.at).copied()
+    }
+
+    pub(super) fn skip_blanks(&mut self) {
+        while self.peek().is_some_and(char::is_whitespace) {
+            self.at += 1;
+        }
+    }
+
+    pub(super) fn take_while(&mut self, wanted: impl Fn(char) -> bool) -> String {
+        let mut taken = String::new();
+        while let Some(character) = self.peek().filter(|c| wanted(*c)) {
+            taken.push(character);
+            self.at += 1;
+        }
+        taken
+    }
+
+    /// Takes a character when it comes next, after blanks.
+    fn take(&mut self, wanted: char) -> bool {
+        let mut ahead = self.at;
+        while self.characters.get(ahead).is_some_and(|c| c.is_whitespace()) {
+            ahead += 1;
+        }
+        let found = self
+            .characters
+            .get(ahead)
+            .is_some_and(|c| c.eq_ignore_ascii_case(&wanted));
+        if found {
+            self.at = ahead + 1;
+        }
+        found
+    }
+
+    /// Takes all of some characters, or none.
+    fn take_all(&mut self, wanted: &str) -> bool {
+        let start = self.at;
+        let found = wanted.chars().all(|character| self.take(character));
+        if !found {
+            self.at = start;
+        }
+        found
+    }
+
+    /// A decimal number behind blanks; `None` when it is larger than any address.
+    fn digits(&mut self, expected: &str) -> Result<Option<u16>, LineError> {
+        self.skip_blanks();
+        let at = self.at;
+        let digits = self.take_while(|c| c.is_ascii_digit());
+        if digits.is_empty() {
+            return Err(LineError::new(PlcError::OperandNotFound, at, expected));
+        }
+        Ok(digits.parse().ok())
+    }
+
+    /// The value behind `K`: `+54`, `-1`, `$FF`. All 32 bits may be given; `$` is two's complement.
+    pub(super) fn constant(&mut self) -> Result<i32, LineError> {
+        self.skip_blanks();
+        let at = self.at;
+        let out_of_range = || LineError::new(PlcError::OperandOutOfRange, at, "constants have 32 bits");
+        let missing = || LineError::new(PlcError::OperandNotFound, at, "value expected");
+        let negative = self.take('-');
+        if !negative {
+            self.take('+');
+        }
+        if self.take('$') {
+            let digits = self.take_while(|c| c.is_ascii_hexdigit());
+            if digits.is_empty() {
+                return Err(missing());
+            }
+            let value = u32::from_str_radix(&digits, 16).map_err(|_| out_of_range())? as i32;
+            return Ok(if negative { value.wrapping_neg() } else { value });
+        }
+        self.skip_blanks();
+        let digits = self.take_while(|c| c.is_ascii_digit());
+        if digits.is_empty() {
+            return Err(missing());
+        }
+        let value: i64 = digits.parse().map_err(|_| out_of_range())?;
+        i32::try_from(if negative { -value } else { value }).map_err(|_| out_of_range())
+    }
+}
+
+/// Reads an operand that is a memory cell, constant, string or field. Also tells whether its letter is one
+/// of the TNC 355: E for I, A for O, Z for C [000:16189-16202].
+pub(super) fn memory_operand(
+    mnemonic: Mnemonic,
+    scanner: &mut Scanner,
+) -> Result<(Operand, bool), LineError> {
+    let at = scanner.at();
+    let letter = scanner
+        .peek()
+        .ok_or_else(|| LineError::new(PlcError::OperandNotFound, at, "operand expected"))?
+        .to_ascii_uppercase();
+    let wrong_type = |class: Class| {
+        (!mnemonic.takes(class)).then(|| {
+            let detail = format!("{} does not take {letter}", mnemonic.spelling());
+            LineError::new(PlcError::InvalidOperandType, at, detail)
+        })
+    };
+    scanner.take(letter);
+    let old_letter = matches!(letter, 'E' | 'A' | 'Z');
+    let operand = match letter {
+        'M' | 'I' | 'O' | 'T' | 'C' | 'E' | 'A' | 'Z' => {
+            if let Some(error) = wrong_type(Class::Bit) {
+                return Err(error);
+            }
+            bit_operand(mnemonic, area(letter), scanner, at)?
+        }
+        'B' | 'W' | 'D' => {
+            let (size, class) = match letter {
+                'B' => (Size::Byte, Class::Byte),
+                'W' => (Size::Word, Class::Word),
+                _ => (Size::Double, Class::Double),
+            };
+            if let Some(error) = wrong_type(class) {
+                return Err(error);
+            }
+            number_operand(size, scanner, at)?
+        }
+        'K' if scanner.peek().is_some_and(|c| c.eq_ignore_ascii_case(&'F')) => {
+            if let Some(error) = wrong_type(Class::Field) {
+                return Err(error);
+            }
+            scanner.take('F');
+            scanner.skip_blanks();
+            let name = label(scanner)?;
+            scanner.take_all("[X]");
+            Operand::Field(name)
+        }
+        'K' => {
+            if let Some(error) = wrong_type(Class::Constant) {
+                return Err(error);
+            }
+            Operand::Constant(scanner.constant()?)
+        }
+        'S' => {
+            let (text, class) = text_operand(scanner, at)?;
+            if let Some(error) = wrong_type(class) {
+                return Err(error);
+            }
+            if matches!(text, TextOperand::Part { .. }) && stores_text(mnemonic) {
+                let detail = "a part of a string cannot be stored to";
+                return Err(LineError::new(PlcError::InvalidOperandType, at, detail));
+            }
+            Operand::Text(text)
+        }
+        _ => {
+            let detail = format!("`{letter}` is no operand");
+            return Err(LineError::new(PlcError::InvalidOperandType, at, detail));
+        }
+    };
+    Ok((operand, old_letter))
+}
+
+fn stores_text(mnemonic: Mnemonic) -> bool {
+    matches!(mnemonic, Mnemonic::Assign | Mnemonic::Overwrite)
+}
+
+fn area(letter: char) -> BitArea {
+    match letter {
+        'I' | 'E' => BitArea::I,
+        'O' | 'A' => BitArea::O,
+        'T' => BitArea::T,
+        'C' | 'Z' => BitArea::C,
+        _ => BitArea::M,
+    }
+}
+
+/// Consecutive bits that a command moves.
+fn width(mnemonic: Mnemonic) -> u16 {
+    match mnemonic {
+        Mnemonic::LoadByte | Mnemonic::AssignByte => 8,
+        Mnemonic::LoadWord | Mnemonic::AssignWord => 16,
+        Mnemonic::LoadDouble | Mnemonic::AssignDouble => 32,
+        _ => 1,
+    }
+}
+
+/// A bit, whose number the directory must list. Commands that move several bits cross the gaps between the
+/// boards by number, but may not leave the area (inferred).
+fn bit_operand(
+    mnemonic: Mnemonic,
+    area: BitArea,
+    scanner: &mut Scanner,
+    at: usize,
+) -> Result<Operand, LineError> {
+    let number = scanner.digits("number expected")?;
+    let last = number.and_then(|number| number.checked_add(width(mnemonic) - 1));
+    let bit = number
+        .and_then(|number| Bit::new(area, number))
+        .filter(|bit| bit.is_listed());
+    match (bit, last.filter(|last| *last <= area.last())) {
+        (Some(bit), Some(_)) => Ok(Operand::Bit(BitOperand {
+            bit,
+            indexed: scanner.take_all("[X]"),
+        })),
+        _ => Err(LineError::new(
+            PlcError::OperandOutOfRange,
+            at,
+            bit_range(area, number),
+        )),
+    }
+}
+
+fn bit_range(area: BitArea, number: Option<u16>) -> String {
+    if let (BitArea::M, Some(macro_number @ 3264..=3267)) = (area, number) {
+        let module = 200 + (macro_number - 3264) * 10;
+        return format!(
+            "the TNC 355 macro M{macro_number} is replaced by a module, as module {module} of the manual"
+        );
+    }
+    let ranges: Vec<String> = area
+        .ranges()
+        .iter()
+        .map(|(first, last)| format!("{0}{first}-{0}{last}", area.letter()))
+        .collect();
+    format!("the range is {}", ranges.join(", "))
+}
+
+fn number_operand(size: Size, scanner: &mut Scanner, at: usize) -> Result<Operand, LineError> {
+    let address = scanner.digits("address expected")?;
+    match address.and_then(|address| Number::new(size, address)) {
+        Some(number) => Ok(Operand::Number(NumberOperand {
+            number,
+            indexed: scanner.take_all("[X]"),
+        })),
+        None => {
+            let detail = format!(
+                "{} addresses are 0 to {} in steps of {}",
+                size.letter(),
+                1024 - size.bytes(),
+                size.bytes()
+            );
+            Err(LineError::new(PlcError::OperandOutOfRange, at, detail))
+        }
+    }
+}
+
+fn text_operand(scanner: &mut Scanner, at: usize) -> Result<(TextOperand, Class), LineError> {
+    if scanner.take('"') {
+        let text = scanner.take_while(|c| c != '"');
+        if !scanner.take('"') {
+            let detail = "closing quotation mark expected";
+            return Err(LineError::new(PlcError::NoLimiter, scanner.at(), detail));
+        }
+        // Characters outside the control's alphabet cannot be shown [pub p.614].
+        let bytes: Vec<u8> = text.chars().map(|c| u8::try_from(c).unwrap_or(b'^')).collect();
+        if bytes.len() > LITERAL_LENGTH_MAX {
+            let detail = "immediate strings have at most 37 characters";
+            return Err(LineError::new(PlcError::OperandOutOfRange, at, detail));
+        }
+        return Ok((TextOperand::Literal(bytes), Class::TextLiteral));
+    }
+    if scanner.take('#') {
+        let message = scanner.take('E');
+        if !message && !scanner.take('D') {
+            return Err(LineError::new(
+                PlcError::OperandNotFound,
+                at,
+                "S#E or S#D expected",
+            ));
+        }
+        let last = if message {
+            MESSAGE_LINE_MAX
+        } else {
+            DIALOGUE_LINE_MAX
+        };
+        let Some(line) = scanner
+            .digits("line number expected")?
+            .filter(|line| *line <= last)
+        else {
+            let detail = format!("lines are 0 to {last}");
+            return Err(LineError::new(PlcError::OperandOutOfRange, at, detail));
+        };
+        let indexed = scanner.take_all("[X]");
+        let operand = if message {
+            TextOperand::Message { line, indexed }
+        } else {
+            TextOperand::Dialogue { line, indexed }
+        };
+        return Ok((operand, Class::TextReference));
+    }
+    let string = scanner.digits("string number expected")?;
+    let string = string
+        .and_then(|string| u8::try_from(string).ok())
+        .filter(|string| usize::from(*string) < STRINGS);
+    let Some(string) = string else {
+        return Err(LineError::new(
+            PlcError::OperandOutOfRange,
+            at,
+            "strings are S0 to S3",
+        ));
+    };
+    let operand = if scanner.take_all("^X") {
+        TextOperand::Part { string }
+    } else {
+        TextOperand::Memory {
+            string,
+            indexed: scanner.take_all("[X]"),
+        }
+    };
+    Ok((operand, Class::TextMemory))
+}
