@@ -7,9 +7,9 @@ OUT := out
 # The main job on a shipped example: report on the screen, picture and mesh beside it.
 run:
 	@mkdir -p $(OUT)
-	$(CARGO) run --quiet --release -p bahn -- test examples/flange.H \
-		--view 3d --image $(OUT)/flange.png --path $(OUT)/flange.svg --mesh $(OUT)/flange.stl
-	@echo "Picture: $(OUT)/flange.png   tool path: $(OUT)/flange.svg   part: $(OUT)/flange.stl"
+	$(CARGO) run --quiet --release -p bahn -- test examples/housing.H \
+		--view 3d --image $(OUT)/housing.png --path $(OUT)/housing.svg --mesh $(OUT)/housing.stl
+	@echo "Picture: $(OUT)/housing.png   tool path: $(OUT)/housing.svg   part: $(OUT)/housing.stl"
 
 # Everything that must hold: format, lints, documentation, tests.
 test: tools

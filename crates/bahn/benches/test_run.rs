@@ -1,4 +1,5 @@
 //! How fast a test run without graphics is: reading, interpreting and look-ahead planning together.
+#![allow(clippy::panic, reason = "a wrong program would measure nothing")]
 
 use std::fmt::Write;
 use std::sync::Arc;

@@ -90,6 +90,9 @@ enum Ended {
 #[derive(Clone)]
 pub struct Checkpoint {
     run: Box<Run>,
+    ended: Option<Ended>,
+    waiting: Option<Barrier>,
+    position: Position,
 }
 
 impl Interpreter {
@@ -145,14 +148,18 @@ impl Interpreter {
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             run: Box::new(self.run.clone()),
+            ended: self.ended.clone(),
+            waiting: self.waiting,
+            position: self.position,
         }
     }
 
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
         self.run = (*checkpoint.run).clone();
-        self.ended = None;
-        self.waiting = None;
+        self.ended = checkpoint.ended.clone();
+        self.waiting = checkpoint.waiting;
+        self.position = checkpoint.position;
     }
 
     /// Executes blocks until a step is finished or the run ends.

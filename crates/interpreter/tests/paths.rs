@@ -332,3 +332,82 @@ fn p39_loader() {
     // Q110: spindle clockwise [003:7616-7619].
     assert_eq!(run.q[110], 0.0);
 }
+
+/// Incremental polar words count from the last position [003:786]: the same rectangle in the Y/Z plane.
+#[test]
+fn incremental_polar_points() {
+    let run = run("L Y+10 Z+0 R0 FMAX\nCC Y+0 Z+0\nLP IPR+10 PA+90 F100\nLP IPA+90\nLP IPR-5 IPA+90");
+    let points: Vec<_> = run.moves().map(|e| [e.end[Axis::Y], e.end[Axis::Z]]).collect();
+    close_points(
+        &points,
+        &[[10.0, 0.0], [0.0, 20.0], [-20.0, 0.0], [0.0, -15.0]],
+        EXACT,
+    );
+}
+
+/// CTP ends at polar coordinates and starts tangentially; the pole is not its centre [003:3216-3231].
+#[test]
+fn tangential_arc_to_a_polar_point() {
+    let run = run("L X-10 Y+0 R0 FMAX\nCC X+0 Y+10\nL X+0 F100\nCTP PR+10 PA+0");
+    // From (0,0) along +X to (10,10): a quarter of a circle about (0,10).
+    let arc = run.of_block(4);
+    close_points(&ends(&arc), &[[10.0, 10.0]], EXACT);
+    close_points(&[arc_of(arc[0]).0], &[[0.0, 10.0]], EXACT);
+    close(arc_of(arc[0]).1, 90.0, EXACT);
+}
+
+/// CR takes the smaller arc for R > 0 and the larger for R < 0, in the sense of DR [003:2861-2879].
+#[test]
+fn the_four_arcs_of_a_radius() {
+    let arc = |words: &str| {
+        let run = run(&format!("L X+0 Y+0 R0 FMAX\nCR X+10 Y+0 {words} F100"));
+        arc_of(run.of_block(2)[0])
+    };
+    // Centres lie at (5, ±12) for R13: the smaller arc spans 2·asin(5/13).
+    let small = 2.0 * (5.0f64 / 13.0).asin().to_degrees();
+    for (words, y, sweep) in [
+        ("R+13 DR+", 12.0, small),
+        ("R+13 DR-", -12.0, -small),
+        ("R-13 DR+", -12.0, 360.0 - small),
+        ("R-13 DR-", 12.0, small - 360.0),
+    ] {
+        let (centre, actual) = arc(words);
+        close_points(&[centre], &[[5.0, y]], EXACT);
+        close(actual, sweep, EXACT);
+    }
+}
+
+/// A helix by an absolute angle and height: DR decides the way round [003:3210] [003:3243-3324].
+#[test]
+fn helix_to_an_absolute_height() {
+    let run = run("L X+10 Y+0 Z+0 R0 FMAX\nCC X+0 Y+0\nCP PA+90 Z-6 DR+ F100\nCP PA+0 Z+0 DR+");
+    let helix = run.of_block(3);
+    close_points(&[xyz(&helix[0].end)], &[[0.0, 10.0, -6.0]], EXACT);
+    close(helix[0].length(), (5.0 * PI).hypot(6.0), EXACT);
+    close(arc_of(run.of_block(4)[0]).1, 270.0, EXACT);
+}
+
+/// A parallel axis stands for its main axis: a circle in U/Y [003:5397-5432].
+#[test]
+fn parallel_axes() {
+    let run = run("L U+10 Y+0 R0 FMAX\nCC U+0 Y+0\nC U-10 Y+0 DR+ F100");
+    let arc = run.of_block(3);
+    close(arc[0].end[Axis::U], -10.0, EXACT);
+    close(arc[0].length(), 10.0 * PI, EXACT);
+    assert_eq!(run.position.get(Axis::X), None);
+}
+
+/// Compensated contours may move the tool axis at the same time: a ramp along the contour.
+#[test]
+fn a_ramp_along_the_contour() {
+    let run = run(
+        "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1\nL X-20 Y-20 Z+0 R0 FMAX\nL X+0 Y+0 RL F100\nL Y+50 Z-4\nL X+50 Z-8\nL Y+80 R0",
+    );
+    let path: Vec<_> = run.of_blocks(5..=6).iter().map(|e| xyz(&e.end)).collect();
+    // The transition arc stays at the height of the corner.
+    close_points(
+        &path,
+        &[[-5.0, 50.0, -4.0], [0.0, 55.0, -4.0], [50.0, 55.0, -8.0]],
+        EXACT,
+    );
+}

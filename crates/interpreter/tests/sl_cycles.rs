@@ -274,3 +274,134 @@ fn p32_finishes_up_cut() {
 fn p32_volume() {
     removes("P32", (union(RADIUS) - islands_grown(0.0)) * 10.0);
 }
+
+/// A pocket of 60 x 40 mm around a round island, with two infeeds, under MP7420 = `bits`.
+fn with_mp7420(bits: u32) -> Run {
+    let text = program(
+        "BLK FORM 0.1 Z X+0 Y+0 Z-20
+         BLK FORM 0.2 X+100 Y+100 Z+0
+         TOOL DEF 1 L+0 R+3
+         TOOL CALL 1 Z S1000
+         CYCL DEF 14.0 GEOM
+         CYCL DEF 14.1 CONTOUR LABEL 1/2
+         CYCL DEF 6.0 ROUGH
+         CYCL DEF 6.1 SET UP -2 DEPTH -10
+         CYCL DEF 6.2 PECKG -5 F100 ALLOW +0
+         CYCL DEF 6.3 ANGLE +0 F500
+         L X+5 Y+5 R0 FMAX M3
+         L Z+2 FMAX
+         CYCL CALL
+         L IZ+20 FMAX M2
+         LBL 1
+         L X+20 Y+30 RL
+         L X+80
+         L Y+70
+         L X+20
+         L Y+30
+         LBL 0
+         LBL 2
+         CC X+50 Y+50
+         L X+40 Y+50 RR
+         C X+40 Y+50 DR+
+         LBL 0",
+    );
+    let run = Job::new(text)
+        .with(|s| s.rules.contour_pocket = bahn_interpreter::ContourPocketRules::from_bits(bits))
+        .run();
+    run.assert_completed();
+    run
+}
+
+/// What the milling movements of a run are, in their order, with their depth: `o` round the island, `x` along
+/// a clearing pass; repeated ones once. Sides of the pocket are left out, as a pass may run along them.
+fn milling(run: &Run) -> Vec<(char, f64)> {
+    let mut order: Vec<(char, f64)> = Vec::new();
+    for e in run
+        .of_block(13)
+        .into_iter()
+        .filter(|e| e.feed == FeedRate::Programmed(500.0))
+    {
+        let kind = match e.curve {
+            Curve::Arc(arc) if (arc_radius(e) - 13.0).abs() < 1e-6 && arc.sweep_deg.abs() > 300.0 => 'o',
+            Curve::Line
+                if e.end[Axis::Y] == e.start[Axis::Y]
+                    && (e.end[Axis::Y] - 33.0).abs() > 1.0
+                    && (e.end[Axis::Y] - 67.0).abs() > 1.0 =>
+            {
+                'x'
+            }
+            _ => continue,
+        };
+        if order.last() != Some(&(kind, e.end[Axis::Z])) {
+            order.push((kind, e.end[Axis::Z]));
+        }
+    }
+    order
+}
+
+/// Bit 1: clear out first; bit 3: both for each infeed [000:6739-6753].
+#[test]
+fn mp7420_order() {
+    assert_eq!(
+        milling(&with_mp7420(0)),
+        [('o', -5.0), ('o', -10.0), ('x', -5.0), ('x', -10.0)]
+    );
+    assert_eq!(
+        milling(&with_mp7420(2)),
+        [('x', -5.0), ('x', -10.0), ('o', -5.0), ('o', -10.0)]
+    );
+    assert_eq!(
+        milling(&with_mp7420(8)),
+        [('o', -5.0), ('x', -5.0), ('o', -10.0), ('x', -10.0)]
+    );
+    assert_eq!(
+        milling(&with_mp7420(10)),
+        [('x', -5.0), ('o', -5.0), ('x', -10.0), ('o', -10.0)]
+    );
+}
+
+/// Bit 0: the channel runs counter-clockwise in pockets and clockwise round islands, or the other way.
+#[test]
+fn mp7420_direction() {
+    for (bits, counter_clockwise) in [(0, false), (1, true)] {
+        let run = with_mp7420(bits);
+        let round_island = run
+            .of_block(13)
+            .into_iter()
+            .find(|e| (arc_radius(e) - 13.0).abs() < 1e-6)
+            .unwrap();
+        assert_eq!(arc_of(round_island).1 > 0.0, counter_clockwise);
+        let right_side = run
+            .of_block(13)
+            .into_iter()
+            .find(|e| e.start[Axis::X] == 77.0 && e.end[Axis::X] == 77.0 && (e.length() - 34.0).abs() < 1e-6)
+            .unwrap();
+        assert_eq!(
+            right_side.end[Axis::Y] > right_side.start[Axis::Y],
+            !counter_clockwise
+        );
+    }
+}
+
+/// Bit 4: the tool stays where the cycle ends, at the clearance height, or returns to where it was called.
+#[test]
+fn mp7420_end() {
+    let end = |bits| xyz(&with_mp7420(bits).of_block(13).last().unwrap().end);
+    assert_eq!(end(0), [5.0, 5.0, 2.0]);
+    let stays = end(16);
+    assert_eq!(stays[2], 2.0);
+    assert!(stays[0] >= 23.0 && stays[1] >= 33.0, "{stays:?}");
+}
+
+/// Whatever the order, the same is removed.
+#[test]
+fn mp7420_volume() {
+    let area = 60.0 * 40.0 - (4.0 - PI) * 9.0 - PI * 100.0;
+    for bits in 0..32 {
+        close(
+            with_mp7420(bits).removed_mm3(0.2),
+            area * 10.0,
+            0.003 * area * 10.0,
+        );
+    }
+}

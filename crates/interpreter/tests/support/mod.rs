@@ -1,5 +1,11 @@
 //! Runs programs for the tests and answers questions about what came out.
 #![allow(dead_code, reason = "every test file uses its own part of the support")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a helper that panics fails its test"
+)]
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

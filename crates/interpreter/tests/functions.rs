@@ -1,0 +1,160 @@
+//! M functions, stops, tool calls and what goes to the PLC: where on the path they are output.
+
+mod support;
+
+use bahn_parameters::ControlModel;
+use bahn_path::{At, Axis, Barrier, Function, Position, Synchronisation};
+use support::*;
+
+/// The output of M functions with their place on the element of a block.
+fn places(blocks: &str, block: u32) -> Vec<(Function, At, Synchronisation)> {
+    let run = run(blocks);
+    let elements = run.elements.iter().filter(|e| e.block.block == block);
+    elements
+        .flat_map(|e| {
+            e.functions()
+                .iter()
+                .map(|f| (f.function.clone(), f.at, f.synchronisation))
+        })
+        .collect()
+}
+
+/// M3, M8, M13 go out before the movement of their block, M5, M9, M30 behind it [003:7463-7487].
+#[test]
+fn start_and_end_of_block() {
+    for m in [3, 4, 8, 13, 14] {
+        let expected = (Function::M(m), At::Start, Synchronisation::MvsSvs);
+        assert_eq!(places(&format!("L X+1 FMAX M{m}"), 1), [expected]);
+    }
+    for m in [5, 9, 2, 30] {
+        let expected = (Function::M(m), At::End, Synchronisation::MnsSns);
+        assert_eq!(places(&format!("L X+1 FMAX M{m}"), 1)[0], expected);
+    }
+}
+
+/// M functions that act inside the control are not output [003:7476-7487].
+#[test]
+fn inner_functions() {
+    for m in [90, 91, 97, 98] {
+        assert_eq!(places(&format!("L X+1 FMAX M{m}"), 1), [], "M{m}");
+    }
+}
+
+/// MP7440 bit 2: the axes do not wait, except where the run stops [000:7298-7305] [001:1651-1652].
+#[test]
+fn without_waiting() {
+    let run = Job::new(program("L X+1 FMAX M3\nL X+2 FMAX M0"))
+        .with(|s| s.rules.m_functions.axes_wait = false)
+        .run();
+    let all = run
+        .elements
+        .iter()
+        .flat_map(|e| e.functions())
+        .map(|f| (f.function.clone(), f.synchronisation));
+    let m: Vec<_> = all.filter(|(f, _)| matches!(f, Function::M(_))).collect();
+    assert_eq!(
+        m,
+        [
+            (Function::M(3), Synchronisation::Mos),
+            (Function::M(0), Synchronisation::MnsSns)
+        ]
+    );
+}
+
+/// STOP, M0 and M6 wait for the operator behind their block; M6 by MP7440 bit 0 [003:2226-2236].
+#[test]
+fn stops() {
+    let stops = |run: &Run| {
+        let blocks = run.barriers.iter().filter_map(|b| {
+            if let Barrier::Stop { block } = b {
+                Some(block.block)
+            } else {
+                None
+            }
+        });
+        blocks.collect::<Vec<_>>()
+    };
+    let text = program("L X+1 FMAX\nSTOP M5\nL X+2 FMAX M0\nL X+3 FMAX M6\nL X+4 FMAX M1\nL X+5 FMAX");
+    let run = Job::new(text.clone()).run();
+    assert_eq!(stops(&run), [2, 3, 4, 5]);
+    assert!(run.functions().contains(&(2, &Function::M(5))));
+    let run = Job::new(text).with(|s| s.rules.m_functions = m6_goes_on()).run();
+    assert_eq!(stops(&run), [2, 3, 5]);
+}
+
+/// TOOL CALL hands out tool, axis and speed; a call with S alone only the speed [003:1917-1952] [003:2188].
+#[test]
+fn tool_calls() {
+    let run = run("TOOL DEF 5 L+10 R+5\nTOOL CALL 5 Z S500\nTOOL CALL S1000\nTOOL DEF 7\nTOOL CALL 0 Z");
+    let calls = run.tool_calls();
+    assert_eq!(
+        calls
+            .iter()
+            .map(|c| (c.tool, c.axis, c.speed_rpm))
+            .collect::<Vec<_>>(),
+        [(5, Axis::Z, 500.0), (0, Axis::Z, 1000.0)]
+    );
+    assert!(run.functions().contains(&(3, &Function::SpindleSpeed(1000.0))));
+    // Without data TOOL DEF announces the next tool [003:1931-1933].
+    assert!(run.functions().contains(&(4, &Function::NextTool(7))));
+    assert_eq!(calls[1].shape.radius, 0.0);
+}
+
+/// The path is that of the tool's tip, whatever the length of the tool [003:1979].
+#[test]
+fn tool_length_does_not_change_the_path() {
+    let path = |length: &str| {
+        shapes(&run(&format!(
+            "TOOL DEF 1 L{length} R+0\nTOOL CALL 1 Z S1\nL X+1 Y+2 Z+3 FMAX\nL Z-1 F50"
+        )))
+    };
+    assert_eq!(path("+0"), path("+120.5"));
+}
+
+/// FN 15 prints texts and values, FN 19 hands values to the PLC: the TNC 360 counts in micrometres, later
+/// controls take millimetres in 1/10 000 [003:4371-4395] [000:11597-11655].
+#[test]
+fn output_to_printer_and_plc() {
+    let text = "FN 0: Q1 = +20.25\nFN 15: PRINT 1/Q1\nFN 19: PLC = +10/+Q1";
+    let on = |model| {
+        let run = Job::new(program(text)).with(|s| s.model = model).run();
+        run.assert_completed();
+        run.functions()
+            .into_iter()
+            .map(|(_, f)| f.clone())
+            .collect::<Vec<_>>()
+    };
+    let print = Function::Print("ERROR 1 +20.25".to_owned());
+    assert_eq!(
+        on(ControlModel::Tnc360),
+        [print.clone(), Function::Plc([Some(10.0), Some(20.25)])]
+    );
+    assert_eq!(
+        on(ControlModel::Tnc415b),
+        [print, Function::Plc([Some(100_000.0), Some(202_500.0)])]
+    );
+}
+
+/// Axes have no position, and add no path, until they are programmed or given.
+#[test]
+fn unknown_positions() {
+    let run = run("L Z+100 R0 FMAX\nL X+10 Y+20 FMAX\nL X+20 F100");
+    let lengths: Vec<f64> = run.moves().map(|e| e.length()).collect();
+    assert_eq!(lengths, [0.0, 0.0, 10.0]);
+    assert_eq!(run.position.get(Axis::C), None);
+    let mut start = Position::UNKNOWN;
+    start[Axis::Z] = 70.0;
+    let run = Job::new(program("L Z+100 R0 FMAX"))
+        .with(|s| s.start = start)
+        .run();
+    assert_eq!(run.moves().map(|e| e.length()).collect::<Vec<_>>(), [30.0]);
+}
+
+/// Rotary axes turn with degrees per minute when they move alone [003:7424-7430].
+#[test]
+fn rotary_axes() {
+    let run = run("L X+0 C+0 FMAX\nL C+90 F360\nL IC+45 X+30");
+    let lengths: Vec<f64> = run.moves().map(|e| e.length()).collect();
+    assert_eq!(lengths[1..], [90.0, 30.0]);
+    assert_eq!(run.position[Axis::C], 135.0);
+}

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Makes the pictures of README.md and examples/README.md anew.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+bahn=${BAHN:-target/release/bahn}
+out=docs/pictures
+mkdir -p "$out"
+for program in examples/*.H; do
+    name=$(basename "$program" .H)
+    # A program that others call has no blank of its own.
+    [ "$name" = NUT ] && continue
+    "$bahn" test "$program" --tools examples/tools.tsv --view 3d --image "$out/$name.png" >/dev/null
+    echo "$out/$name.png"
+done
+"$bahn" test examples/housing.H --view plan --image "$out/housing-plan.png" >/dev/null
+"$bahn" test examples/pockets.H --view three-planes --image "$out/pockets-planes.png" >/dev/null
+"$bahn" test examples/dial.H --path "$out/dial.svg" >/dev/null
