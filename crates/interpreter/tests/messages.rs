@@ -343,6 +343,26 @@ fn blocks_of_other_controls() {
     let run = Job::new(program("L X+1 FMAX\nFUNCTION TCPM F TCP AXIS POS\nL X+2 FMAX")).run();
     assert_eq!(run.message().map(|(_, block)| block), Some(2));
     assert_eq!(run.moves().count(), 1);
+    check(&[
+        (
+            "stored by a control",
+            MessageId::ErrorBlock,
+            2,
+            "L X+1 FMAX\nERROR = L X+5 FMAX",
+        ),
+        (
+            "not a number",
+            MessageId::EntryValueIncorrect,
+            2,
+            "L X+1 FMAX\nL Xnan FMAX",
+        ),
+        (
+            "a number out of this world",
+            MessageId::EntryValueIncorrect,
+            1,
+            "L X+99999999999999999999999 FMAX",
+        ),
+    ]);
     // Jumped over it does no harm.
     let jumped = Job::new(program(
         "FN 9: IF +1 EQU +1 GOTO LBL 1\nAPPR LCT X+1 Y+1 R2 RL F100\nLBL 1\nL X+2 FMAX",

@@ -191,3 +191,33 @@ fn with_skipped_blocks() {
     run.assert_completed();
     assert_eq!(shapes(&run), path(NORMAL));
 }
+
+/// Blocks that go on in the next line.
+#[test]
+fn with_continuation_lines() {
+    same(
+        NORMAL
+            .replace("L X+10 Y-7.25 R0", "L X+10 ~\n  Y-7.25 ~\n  R0")
+            .replace("DEPTH -10", "DEPTH ~\n-10"),
+    );
+}
+
+/// END PGM is missing: the run ends with the file.
+#[test]
+fn without_end() {
+    same(NORMAL.replace("27 END PGM 77 MM\n", ""));
+}
+
+/// All of it at once.
+#[test]
+fn in_every_way_at_once() {
+    let text = without_numbers()
+        .replace("CYCL DEF 1.", "CYCLE DEF 1.")
+        .replace("FMAX", "F MAX")
+        .replace("LBL 2", "LBL2")
+        .replace('+', "")
+        .replace("L Y40", "  L Y40 R F M   ; up")
+        .to_lowercase()
+        .replace('\n', "\r\n\r\n");
+    same(format!("\u{feff}{text}"));
+}
