@@ -174,3 +174,18 @@ fn roundings_inside() {
         close(arc_radius(arc), 5.0, 1e-9);
     }
 }
+
+/// A chamfer may use up a whole side, and an inside arc may have exactly the tool's radius.
+#[test]
+fn limits_that_just_fit() {
+    let chamfer = run("L X+0 Y+0 R0 F100\nL X+10\nL 10\nL Y+10\nL X+30");
+    let points = ends(&chamfer.moves().skip(1).collect::<Vec<_>>());
+    assert_eq!(points.last(), Some(&[30.0, 10.0]));
+    assert!(points.contains(&[10.0, 10.0]));
+    let arc = run(&format!(
+        "{TOOL}\nL X+0 Y+0 RR F100\nL Y+20\nCR X+20 Y+20 R+10 DR-\nL Y-40\nL Y-60 R0"
+    ));
+    // The tool stands still in the arc's centre.
+    close_points(&ends(&arc.of_block(6)), &[[10.0, 20.0]], 1e-9);
+    close(length(&arc.of_block(6)), 0.0, 1e-9);
+}

@@ -312,3 +312,59 @@ fn drilling_along_x() {
     let bottom = run.moves().find(|e| e.feed == feed(80.0)).unwrap();
     close_points(&[xyz(&bottom.end)], &[[-10.0, 10.0, 20.0]], 1e-9);
 }
+
+/// P26 with RADIUS 12: the corners of the pocket get that radius instead of the tool's (inferred).
+#[test]
+fn pocket_with_corner_radius() {
+    let run = Job::new(manual("P26").replace("RADIUS 0", "RADIUS 12")).run();
+    run.assert_completed();
+    let expected = (80.0 * 40.0 - (4.0 - PI) * 144.0) * 10.0;
+    close(run.removed_mm3(0.1), expected, 0.002 * expected);
+    let corners = run
+        .of_block(15)
+        .into_iter()
+        .filter(|e| matches!(e.curve, Curve::Arc(_)));
+    let radii: Vec<f64> = corners.map(arc_radius).collect();
+    assert_eq!(radii.len(), 3 * 4);
+    assert!(radii.iter().all(|radius| (radius - (12.0 - 5.0)).abs() < 1e-9));
+}
+
+/// Stepover by MP7430: whatever the overlap factor, a square pocket is cleared completely [003:5270-5278].
+#[test]
+fn overlap_factor() {
+    for overlap in [0.3, 1.0, 1.4] {
+        for (x, y) in [("+80", "+40"), ("+40", "+40"), ("+20", "+60")] {
+            let text = manual("P26").replace("CYCL DEF 4.4 X+80", &format!("CYCL DEF 4.4 X{x}"));
+            let text = text.replace("CYCL DEF 4.5 Y+40", &format!("CYCL DEF 4.5 Y{y}"));
+            let run = Job::new(text).with(|s| s.rules.overlap = overlap).run();
+            run.assert_completed();
+            let sides: [f64; 2] = [x.parse().unwrap(), y.parse().unwrap()];
+            let expected = (sides[0] * sides[1] - (4.0 - PI) * 25.0) * 10.0;
+            close(run.removed_mm3(0.2), expected, 0.006 * expected);
+        }
+    }
+}
+
+/// M103 F limits the feed into the material to a share of the programmed one [000:7278-7292].
+#[test]
+fn plunging_feed() {
+    let run =
+        run("L X+0 Y+0 Z+0 R0 FMAX\nL X+1 F400 M103 F25\nL Z-10\nL X+31 Z-50\nL Z+0\nL X+0 M103\nL Z-10");
+    let feeds: Vec<f64> = run
+        .moves()
+        .skip(1)
+        .map(|e| {
+            if let FeedRate::Programmed(f) = e.feed {
+                f
+            } else {
+                0.0
+            }
+        })
+        .collect();
+    // Straight down: 25 %. Down 40 mm on a way of 50 mm: the part along the axis is 25 %.
+    let expected = [400.0, 100.0, 100.0 * 50.0 / 40.0, 400.0, 400.0, 400.0];
+    assert!(
+        feeds.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9),
+        "{feeds:?}"
+    );
+}

@@ -69,3 +69,65 @@ fn probing_a_side() {
     run.assert_completed();
     close(run.q[5], 4.0 + 2.0, 1e-9);
 }
+
+/// The stylus is deflected before it moves: the surface is where it starts, MP6140 before the nominal point.
+#[test]
+fn already_in_contact() {
+    let clearance = bahn_interpreter::ProbeRules::default().clearance_mm;
+    let run = Job::new(manual("P17")).surfaces(&[10.0 + clearance]).run();
+    assert_eq!(run.message(), Some((MessageId::StylusAlreadyInContact, 10)));
+}
+
+/// The measured coordinate is one of the active system: shifted by cycle 7, it counts from the new datum.
+#[test]
+fn probing_in_a_shifted_system() {
+    let text = program(
+        "TOOL CALL 0 Z
+         CYCL DEF 7.0 DATUM
+         CYCL DEF 7.1 Z-30
+         CYCL DEF 7.2 X+100
+         L Z+50 R0 FMAX
+         TCH PROBE 0.0 REF. PLANE Q5 Z-
+         TCH PROBE 0.1 X+5 Y+0 Z+0",
+    );
+    let run = Job::new(text).surfaces(&[-29.5]).run();
+    run.assert_completed();
+    close(run.q[5], 0.5, 1e-9);
+    close(run.q[115], 5.0, 1e-9);
+}
+
+/// MP7411: the probe's calibrated data replace those of the tool, or do not [003:7365-7369].
+#[test]
+fn tool_data_while_probing() {
+    let text = program(
+        "TOOL DEF 1 L+20 R+9
+         TOOL CALL 1 Z
+         L Z+50 R0 FMAX
+         TCH PROBE 0.0 REF. PLANE Q5 Z-
+         TCH PROBE 0.1 X+5 Y+0 Z+0",
+    );
+    let with = |keeps: bool| {
+        let run = Job::new(text.clone())
+            .with(|s| {
+                s.rules.probe_keeps_tool = keeps;
+                s.rules.probe.radius_mm = 1.5;
+                s.rules.probe.length_mm = 77.0;
+            })
+            .surfaces(&[0.0])
+            .run();
+        run.assert_completed();
+        (run.q[108], run.q[114])
+    };
+    assert_eq!(with(true), (9.0, 20.0));
+    assert_eq!(with(false), (1.5, 77.0));
+}
+
+/// Digitizing needs a probe on a machine: the test run refuses it at its block.
+#[test]
+fn digitizing() {
+    let run = Job::new(program(
+        "L X+1 FMAX\nTCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: 5007",
+    ))
+    .run();
+    assert_eq!(run.message(), Some((MessageId::BlockNotKnown, 2)));
+}

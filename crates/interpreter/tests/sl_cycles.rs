@@ -405,3 +405,45 @@ fn mp7420_volume() {
         );
     }
 }
+
+/// The first coordinate block gives the plane of the contours: with U for X the parallel axis mills
+/// [003:5397-5432].
+#[test]
+fn contour_with_a_parallel_axis() {
+    let run = run("TOOL DEF 1 L+0 R+3
+         TOOL CALL 1 Z S1000
+         CYCL DEF 14.0 GEOM
+         CYCL DEF 14.1 CONTOUR LABEL 1
+         CYCL DEF 6.0 ROUGH
+         CYCL DEF 6.1 SET UP -2 DEPTH -10
+         CYCL DEF 6.2 PECKG -10 F100 ALLOW +0
+         CYCL DEF 6.3 ANGLE +0 F500
+         L X+0 Y+5 U+5 R0 FMAX M3
+         L Z+2 FMAX
+         CYCL CALL
+         L Z+50 FMAX M2
+         LBL 1
+         L U+20 Y+30 RL
+         L U+80
+         L Y+70
+         L U+20
+         L Y+30
+         LBL 0");
+    let milling: Vec<_> = run
+        .of_block(11)
+        .into_iter()
+        .filter(|e| e.end[Axis::Z] < 0.0)
+        .collect();
+    let reach = |axis: Axis| {
+        let ends = milling.iter().map(|e| e.end[axis]);
+        [
+            ends.clone().fold(f64::MAX, f64::min),
+            ends.fold(f64::MIN, f64::max),
+        ]
+    };
+    close_points(
+        &[reach(Axis::U), reach(Axis::Y), reach(Axis::X)],
+        &[[23.0, 77.0], [33.0, 67.0], [0.0, 0.0]],
+        1e-9,
+    );
+}

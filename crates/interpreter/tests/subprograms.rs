@@ -261,3 +261,32 @@ fn a_called_inch_program() {
     let feeds: Vec<_> = run.moves().map(|e| e.feed).collect();
     assert_eq!(feeds[1], bahn_path::FeedRate::Programmed(254.0));
 }
+
+/// Called programs share Q parameters, transformations, tool, pole and cycle definition with their callers
+/// (inferred).
+#[test]
+fn what_a_called_program_leaves() {
+    let called = "0 BEGIN PGM 9 MM\n1 FN 0: Q1 = +5\n2 CYCL DEF 7.0 DATUM\n3 CYCL DEF 7.1 X+100\n4 CC X+1 Y+2\n5 END PGM 9 MM\n";
+    let run = Job::new(program("CALL PGM 9\nL X+Q1 Y+0 FMAX\nLP PR+10 PA+0 FMAX"))
+        .library("9", called)
+        .run();
+    run.assert_completed();
+    let ends: Vec<_> = run.moves().map(|e| [e.end[Axis::X], e.end[Axis::Y]]).collect();
+    close_points(&ends, &[[105.0, 0.0], [111.0, 2.0]], 1e-9);
+}
+
+/// M2 in a called program ends the whole run, with a warning [003:3870-3902].
+#[test]
+fn m2_in_a_called_program() {
+    let called = "0 BEGIN PGM 9 MM\n1 L X+1 FMAX M2\n2 END PGM 9 MM\n";
+    let run = Job::new(program("CALL PGM 9\nL X+2 FMAX"))
+        .library("9", called)
+        .run();
+    run.assert_completed();
+    assert_eq!(run.moves().count(), 1);
+    assert!(
+        run.warnings
+            .iter()
+            .any(|w| w.kind == bahn_interpreter::WarningKind::EndInCalledProgram)
+    );
+}
