@@ -43,6 +43,8 @@ pub(crate) struct Fault {
     /// The block that causes it, when that is not the one being executed: errors found by looking
     /// ahead name the block of the contour element that causes them.
     pub block: Option<BlockRef>,
+    /// Found by the contour stages: what they hold back can no longer be finished.
+    pub ahead: bool,
 }
 
 impl Fault {
@@ -51,7 +53,12 @@ impl Fault {
             message: Message::Control(message),
             detail: detail.into(),
             block: None,
+            ahead: false,
         }
+    }
+
+    pub fn found_ahead(self) -> Fault {
+        Fault { ahead: true, ..self }
     }
 
     pub fn at(mut self, block: BlockRef) -> Fault {
@@ -90,6 +97,8 @@ pub enum WarningKind {
         /// Tool number.
         tool: u32,
     },
+    /// BLK FORM 0.1 stands without 0.2: there is no blank.
+    BlankIncomplete,
     /// A blank was given in a called program only [003:7908-7912].
     BlankInCalledProgram,
     /// An M function whose effect on the path is not simulated.
@@ -113,6 +122,7 @@ impl std::fmt::Display for WarningKind {
             WarningKind::ToolNotDefined { tool } => {
                 write!(f, "tool {tool} is not defined: length 0 and radius 0 are taken")
             }
+            WarningKind::BlankIncomplete => write!(f, "BLK FORM 0.2 is missing: there is no blank"),
             WarningKind::BlankInCalledProgram => {
                 write!(
                     f,

@@ -208,7 +208,15 @@ impl Interpreter {
                 ));
             }
         }
+        let label = if let Operation::Label(label) = block.operation {
+            label
+        } else {
+            0
+        };
         let flow = self.run.execute(block, &self.settings)?;
+        if label != 0 {
+            self.check_label(label, at)?;
+        }
         if flow == Flow::Next {
             self.run.at.block += 1;
             return Ok(());
@@ -238,6 +246,21 @@ impl Interpreter {
                 self.run.contour_cycle(&job, &self.settings)?;
                 self.run.at.block += 1;
             }
+        }
+        Ok(())
+    }
+
+    /// A label may be set once in a program [003:7881-7883].
+    fn check_label(&self, label: u16, at: BlockRef) -> Result<(), Fault> {
+        let repeated = self
+            .code
+            .program(at.program)
+            .map_or(&[][..], |program| program.repeated_labels());
+        if repeated.contains(&(label, at.block)) {
+            return Err(Fault::new(
+                MessageId::LabelNumberAllocated,
+                format!("LBL {label} is set twice"),
+            ));
         }
         Ok(())
     }
@@ -300,6 +323,9 @@ impl Interpreter {
     }
 
     fn end_of_run(&mut self) -> Result<(), Fault> {
+        if self.run.modal.blank_min.is_some() {
+            self.run.warn(WarningKind::BlankIncomplete);
+        }
         self.run.finish_contour()?;
         self.ended = Some(Ended::Finished);
         Ok(())
@@ -307,12 +333,12 @@ impl Interpreter {
 
     fn fail(&mut self, fault: Fault, at: BlockRef) {
         let block = fault.block.unwrap_or(at);
-        if block == at {
-            // What was complete before the block still counts; a second fault on the way changes nothing.
-            let _ = self.run.finish_contour();
-        } else {
+        if fault.ahead && block != at {
             // Found by looking ahead: the path ends before the element that causes it.
             self.run.contour = Contour::default();
+        } else {
+            // What was complete before the block still counts; a second fault on the way changes nothing.
+            let _ = self.run.finish_contour();
         }
         let program = self
             .code

@@ -1,6 +1,6 @@
 //! Modal data: what stays in force from block to block.
 
-use bahn_path::{Axis, Curve, Frame, Plane, Point2, Position, ToolShape};
+use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position, ToolShape};
 use bahn_program::{Compensation, Unit};
 
 use crate::contour::FeedLaw;
@@ -18,6 +18,9 @@ pub(crate) struct Modal {
     pub frame: Frame,
     /// Working plane of the tool axis.
     pub plane: Plane,
+    /// The working plane with the parallel axes that were programmed last in place of their main axes
+    /// [003:5397-5432]: the plane of radius compensation.
+    pub contour_plane: Plane,
     /// Pole and circle centre, programmed coordinates, and the plane it was given in.
     pub pole: Option<(Plane, Point2)>,
     /// Last PR, mm.
@@ -107,6 +110,7 @@ impl Modal {
             actual: start,
             frame: Frame::identity(Plane::XY),
             plane: Plane::XY,
+            contour_plane: Plane::XY,
             pole: None,
             polar_radius: None,
             feed_mm_min: None,
@@ -125,6 +129,16 @@ impl Modal {
             blank_min: None,
             probe: None,
         }
+    }
+
+    /// Takes the axes of a block into the plane of compensation: U stands for X until X is programmed again.
+    pub fn take_contour_axes(&mut self, axes: AxisSet) {
+        let chosen = |current: Axis| {
+            let same = |axis: &Axis| axis.main() == current.main() && !axis.is_rotary();
+            axes.iter().find(same).unwrap_or(current)
+        };
+        self.contour_plane.first = chosen(self.contour_plane.first);
+        self.contour_plane.second = chosen(self.contour_plane.second);
     }
 
     /// Radius of the tool in use, mm; 0 without a tool.

@@ -2,7 +2,7 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{Arc, Axis, AxisSet, Curve, Plane, Point2};
-use bahn_program::{Coordinates, Direction, Motion, Word};
+use bahn_program::{Coordinates, Direction, Motion, Value, Word};
 
 use crate::arc;
 use crate::error::Fault;
@@ -155,7 +155,9 @@ impl Run {
             return Err(MessageId::AngleReferenceMissing.into());
         };
         let angle = self.q.value(word.value)?;
-        if angle.abs() > settings.model.limits().circle_angle_max_deg {
+        // The limit is one of typed numbers [003:3089]: hole circles by Q parameters count on beyond a turn.
+        let typed = matches!(word.value, Value::Number(_));
+        if typed && angle.abs() > settings.model.limits().polar_angle_max_deg {
             return Err(Fault::new(
                 MessageId::EntryValueIncorrect,
                 "PA is beyond the input range",

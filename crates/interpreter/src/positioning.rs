@@ -1,7 +1,7 @@
 //! Positioning blocks: from words to a movement in workpiece coordinates.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Arc, AxisSet, Curve, FeedRate, Position};
+use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Position};
 use bahn_program::{Compensation, Coordinates, Feed, Motion, MotionKind};
 
 use crate::error::Fault;
@@ -87,6 +87,9 @@ impl Run {
             self.modal.actual[axis] = value;
         }
         self.check_range(&self.modal.actual, axes, settings)?;
+        if self.modal.contour_plane != self.modal.plane || !axes.intersection(PARALLEL_AXES).is_empty() {
+            self.modal.take_contour_axes(axes);
+        }
         self.modal.last_move = None;
         self.since_motion = 0;
         self.contour.release(&mut self.out);
@@ -319,7 +322,8 @@ impl Run {
         if paraxial != Compensation::Off {
             self.lengthen(paraxial, axes, &start, &mut end);
         }
-        let plane = self.modal.plane;
+        self.modal.take_contour_axes(axes);
+        let plane = self.modal.contour_plane;
         let in_plane = axes.contains(plane.first) || axes.contains(plane.second);
         let feed = self.plunge_feed(feed, &curve, &start, &end);
         self.modal.nominal = nominal;
@@ -335,7 +339,10 @@ impl Run {
             Compensation::Lengthen => self.modal.tool_radius(),
             _ => -self.modal.tool_radius(),
         };
-        for axis in axes.iter().filter(|axis| self.modal.plane.contains(*axis)) {
+        for axis in axes
+            .iter()
+            .filter(|axis| self.modal.contour_plane.contains(*axis))
+        {
             let path = end[axis] - known(start[axis]);
             if path != 0.0 {
                 end[axis] += amount * path.signum();
@@ -428,6 +435,9 @@ impl Run {
         }
     }
 }
+
+/// Axes that may stand for their main axis in the working plane [003:5397-5432].
+const PARALLEL_AXES: AxisSet = AxisSet::EMPTY.with(Axis::U).with(Axis::V).with(Axis::W);
 
 /// The number, zero for an axis without a position: increments then count from zero (inferred).
 pub(crate) fn known(value: f64) -> f64 {

@@ -267,6 +267,7 @@ impl Run {
                 message: Message::Numbered(text),
                 detail: String::new(),
                 block: None,
+                ahead: false,
             },
             None => Fault::from(MessageId::EntryValueIncorrect),
         }
@@ -368,7 +369,7 @@ impl Run {
         }
         let item = ContourMove {
             element,
-            plane: self.modal.plane,
+            plane: self.modal.contour_plane,
             side: self.side(),
             radius: self.modal.tool_radius(),
             corner: functions.corner,
@@ -378,11 +379,13 @@ impl Run {
             barrier,
         };
         let waits = item.barrier.is_some() && item.side == Side::Off;
-        self.contour.push(item, &mut self.out)?;
+        self.contour
+            .push(item, &mut self.out)
+            .map_err(Fault::found_ahead)?;
         if waits {
             // The run stands still here: no block behind it is read before it goes on. Inside a compensated
             // contour the corner needs the next element all the same.
-            self.contour.flush(&mut self.out)?;
+            self.contour.flush(&mut self.out).map_err(Fault::found_ahead)?;
         }
         Ok(if functions.end { Flow::EndOfRun } else { Flow::Next })
     }
@@ -407,7 +410,7 @@ impl Run {
 
     /// Hands out what the contour stages hold back and takes over where the tool centre really stands.
     pub fn finish_contour(&mut self) -> Result<(), Fault> {
-        self.contour.flush(&mut self.out)
+        self.contour.flush(&mut self.out).map_err(Fault::found_ahead)
     }
 
     /// Where the tool centre stands after [`Run::finish_contour`].
@@ -426,7 +429,7 @@ impl Run {
             Compensation::Right => Side::Right,
             _ => return Side::Off,
         };
-        if self.modal.frame.reverses(self.modal.plane) {
+        if self.modal.frame.reverses(self.modal.contour_plane) {
             side.mirrored()
         } else {
             side

@@ -178,6 +178,7 @@ impl Run {
             return Err(Fault::new(MessageId::PlaneWronglyDefined, "a rotation is active"));
         }
         self.modal.plane = plane;
+        self.modal.contour_plane = plane;
         self.modal.frame.plane = plane;
         let number = match axis {
             Axis::X => 0.0,

@@ -4,6 +4,7 @@ mod support;
 
 use std::f64::consts::PI;
 
+use bahn_parameters::MessageId;
 use bahn_path::{Axis, Curve, FeedRate};
 use support::*;
 
@@ -188,4 +189,38 @@ fn limits_that_just_fit() {
     // The tool stands still in the arc's centre.
     close_points(&ends(&arc.of_block(6)), &[[10.0, 20.0]], 1e-9);
     close(length(&arc.of_block(6)), 0.0, 1e-9);
+}
+
+/// Parallel axes stand for their main axes in the plane of compensation [003:5397-5432]: tool R10 left of
+/// U20 .. U60, then of Y0 .. Y50. First point (20, 10) beside the start, inside corner (50, 10), last point
+/// (50, 50); X does not move.
+#[test]
+fn parallel_axes_are_compensated() {
+    let run = run(
+        "TOOL DEF 1 L+0 R+10\nTOOL CALL 1 Z S1000\nL X+3 Y-20 U+0 R0 FMAX\n\
+                   L U+20 Y+0 RL F100\nL U+60\nL Y+50\nL U+0 R0",
+    );
+    run.assert_completed();
+    let points: Vec<[f64; 3]> = run
+        .moves()
+        .skip(1)
+        .map(|e| [e.end[Axis::X], e.end[Axis::U], e.end[Axis::Y]])
+        .collect();
+    let expected = [
+        [3.0, 20.0, 10.0],
+        [3.0, 50.0, 10.0],
+        [3.0, 50.0, 50.0],
+        [3.0, 0.0, 50.0],
+    ];
+    close_points(&points, &expected, 1e-9);
+}
+
+/// An axis and its parallel axis cannot share a compensated contour.
+#[test]
+fn main_and_parallel_axis_do_not_mix() {
+    let run = Job::new(program(&format!(
+        "{TOOL}\nL X+0 Y+0 RL F100\nL X+50\nL U+20\nL Y+50 R0"
+    )))
+    .run();
+    assert_eq!(run.message(), Some((MessageId::PlaneWronglyDefined, 6)));
 }

@@ -368,3 +368,21 @@ fn plunging_feed() {
         "{feeds:?}"
     );
 }
+
+/// A slot along a parallel axis: 40 long in U, 10 wide, tool R5: the tool centre runs 40 - 2 · 5 = 30 along U
+/// and X stays [003:5130-5132].
+#[test]
+fn slot_along_a_parallel_axis() {
+    let run = run(
+        "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1000\nL X+1 Y+2 Z+2 U-20 R0 FMAX M3\n\
+                   CYCL DEF 3.0 SLOT\nCYCL DEF 3.1 SET UP -2\nCYCL DEF 3.2 DEPTH -4\nCYCL DEF 3.3 PECKG -4 F80\n\
+                   CYCL DEF 3.4 U+40\nCYCL DEF 3.5 Y+10\nCYCL DEF 3.6 F100\nCYCL CALL",
+    );
+    run.assert_completed();
+    let far = run
+        .moves()
+        .map(|e| e.end[Axis::U])
+        .fold(f64::NEG_INFINITY, f64::max);
+    close(far, 10.0, 1e-9);
+    assert!(run.moves().all(|e| e.end[Axis::X] == 1.0));
+}

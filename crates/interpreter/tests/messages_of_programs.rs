@@ -371,3 +371,22 @@ fn endless_loop() {
         Some(MessageId::ExcessiveSubprogramming)
     );
 }
+
+/// A label that is set twice is found when it is run over, too, and what ran before it counts [003:7881-7883].
+#[test]
+fn label_set_twice_is_found_in_passing() {
+    let run = Job::new(program("L X+5 R0 FMAX\nLBL 7\nLBL 0\nLBL 7\nLBL 0")).run();
+    assert_eq!(run.message(), Some((MessageId::LabelNumberAllocated, 4)));
+    let run = Job::new(program("L X+5 R0 FMAX\nCALL LBL 7\nLBL 7\nLBL 0\nLBL 7\nLBL 0")).run();
+    assert_eq!(run.message(), Some((MessageId::LabelNumberAllocated, 5)));
+    assert_eq!(run.moves().count(), 1);
+}
+
+/// PA of LP takes -360 to +360 degrees as a typed number [003:3089]; a calculated angle may count on, as
+/// the hole circle of the manual does.
+#[test]
+fn polar_angle_limit() {
+    let typed = Job::new(program("CC X+0 Y+0\nLP PR+10 PA+400 R0 F100")).run();
+    assert_eq!(typed.message(), Some((MessageId::EntryValueIncorrect, 2)));
+    run("FN 0: Q1 = +400\nCC X+0 Y+0\nLP PR+10 PA+Q1 R0 F100").assert_completed();
+}

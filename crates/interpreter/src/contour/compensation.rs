@@ -107,6 +107,11 @@ impl CompensationStage {
         }
         let flat = Flat::of(&item.element, item.plane);
         let is_line = item.element.curve == Curve::Line;
+        let held_plane = self.held.as_ref().map(|held| held.item.plane);
+        if item.side != Side::Off && held_plane.is_some_and(|plane| plane != item.plane) {
+            // A main axis and its parallel axis in one compensated contour.
+            return Err(Fault::from(MessageId::PlaneWronglyDefined).at(item.element.block));
+        }
         match (self.side, item.side, flat) {
             (_, Side::Off, _) => self.leave(item, is_line, out),
             (Side::Off, _, _) => self.start(item, is_line, out),

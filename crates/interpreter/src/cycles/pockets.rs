@@ -4,7 +4,7 @@
 //! contour with the stepover that the manual gives (inferred).
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Point2};
+use bahn_path::{Axis, Plane, Point2};
 
 use super::Definition;
 use super::machining::{Heights, Tracer, infeeds};
@@ -57,7 +57,9 @@ impl Run {
             1.0
         };
         let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
+        let plane = self.plane_with([length_axis, width_axis]);
         let mut trace = self.tracer();
+        trace.set_plane(plane);
         let mut far = false;
         for depth in &pecks {
             trace.feed_height(heights.at_depth(*depth), plunge_feed);
@@ -114,9 +116,9 @@ impl Run {
             counter_clockwise,
         };
         let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
-        self.mill_layers(&heights, &pecks, plunge_feed, feed, |trace| {
-            rings.mill(trace, feed)
-        })
+        let plane = self.plane_with([first_axis, second_axis]);
+        let feeds = [plunge_feed, feed];
+        self.mill_layers(plane, &heights, &pecks, feeds, |trace| rings.mill(trace, feed))
     }
 
     /// Cycle 5 CIRCULAR POCKET: a spiral from the centre, then the full circle [003:5313-5336].
@@ -143,21 +145,34 @@ impl Run {
         let counter_clockwise =
             definition.counter_clockwise(5) != (self.modal.spindle == Spindle::CounterClockwise);
         let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
-        self.mill_layers(&heights, &pecks, plunge_feed, feed, |trace| {
+        let feeds = [plunge_feed, feed];
+        self.mill_layers(self.modal.contour_plane, &heights, &pecks, feeds, |trace| {
             spiral(trace, radius.max(0.0), step, counter_clockwise, feed);
         })
+    }
+
+    /// The working plane with parallel axes in place of their main axes where a cycle names them.
+    fn plane_with(&self, axes: [Axis; 2]) -> Plane {
+        let named = |axis: Axis| axes.into_iter().find(|a| a.main() == axis.main()).unwrap_or(axis);
+        let plane = self.modal.plane;
+        Plane {
+            first: named(plane.first),
+            second: named(plane.second),
+            normal: plane.normal,
+        }
     }
 
     /// Mills the same pattern at each infeed from the centre and ends at the start position.
     fn mill_layers(
         &mut self,
+        plane: Plane,
         heights: &Heights,
         pecks: &[f64],
-        plunge_feed: f64,
-        feed: f64,
+        [plunge_feed, feed]: [f64; 2],
         mut layer: impl FnMut(&mut Tracer<'_>),
     ) -> Result<(), Fault> {
         let mut trace = self.tracer();
+        trace.set_plane(plane);
         for depth in pecks {
             if trace.is_full() {
                 break;
