@@ -242,17 +242,18 @@ impl Call<'_> {
         resolved
     }
 
-    /// Bytes of the word memory; `None` when they do not lie inside it.
+    /// Bytes of the word memory; `None` when they do not lie inside it, or the first address does not.
     fn bytes(&self, first: i32, length: i32) -> Option<Vec<u8>> {
-        memory::fits(first, length, memory::BYTES).then_some(())?;
+        let inside = first < memory::BYTES && memory::fits(first, length, memory::BYTES);
+        inside.then_some(())?;
         let byte = |address| Some(self.image.number(memory::operand(Size::Byte, address)?) as u8);
         (first..first + length).map(byte).collect()
     }
 
-    /// Writes bytes into the word memory; false when there is no room.
+    /// Writes bytes into the word memory; false when there is no room, or the first address is outside.
     fn set_bytes(&mut self, first: i32, bytes: &[u8]) -> bool {
         let length = i32::try_from(bytes.len()).unwrap_or(i32::MAX);
-        if !memory::fits(first, length, memory::BYTES) {
+        if first >= memory::BYTES || !memory::fits(first, length, memory::BYTES) {
             return false;
         }
         for (address, byte) in (first..).zip(bytes) {

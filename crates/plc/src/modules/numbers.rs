@@ -41,9 +41,8 @@ pub(super) fn to_hexadecimal(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
 pub(super) fn from_hexadecimal(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [string, address] = call.arguments()?;
     let bytes = call.text(string).and_then(|text| binary(&text));
-    let valid = (0..super::memory::BYTES).contains(&address);
     Ok(Outcome::of(
-        valid && bytes.is_some_and(|bytes| call.set_bytes(address, &bytes)),
+        bytes.is_some_and(|bytes| call.set_bytes(address, &bytes)),
     ))
 }
 
