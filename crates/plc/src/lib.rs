@@ -5,7 +5,8 @@
 //!   files in one pass ([`Diagnostic`], [`PlcError`]);
 //! - [`Machine`] runs a program scan by scan on a [`bahn_exchange::Exchange`]: timers, counters, edges, submit
 //!   jobs, nominal processing time; [`Tracer`] sees every executed line;
-//! - [`Nc`] is what PLC modules need from the control; [`TestNc`] stands in for it on a desk;
+//! - [`modules`] lists the modules 9000 to 9171; [`Nc`] is what they need from the control, with the types
+//!   that it speaks in; [`TestNc`] stands in for it on a desk;
 //! - [`mirror_parameters`] puts the machine parameters of the PLC into its words and markers;
 //! - [`Instruction`] and [`Op`] are the compiled form, for tools that list, cross-reference or translate it.
 //!
@@ -30,7 +31,13 @@ mod syntax;
 pub use compile::{Compilation, Options};
 pub use error::{Detection, Diagnostic, PlcError};
 pub use modules::{Module, modules};
-pub use nc::{Nc, TestNc, mirror_parameters};
+pub use nc::{
+    Bar, Cell, Column, ControlledSpindle, CoordinateKind, DataInterface, HostLink, HostMessage,
+    InterfaceUser, JogLimit, LineFault, MemoryTable, Nc, NotSaved, OrientationDirection, PalletLine,
+    ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
+    SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TestAxis, TestNc, TextFile,
+    ToolCallBlock, WindowView, mirror_parameters,
+};
 pub use operand::{BitOperand, NumberOperand, TextOperand, Value};
 pub use program::{
     Arithmetic, BitOperation, Comparison, Condition, Field, Gate, Instruction, Label, Op, PlcProgram,

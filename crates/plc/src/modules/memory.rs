@@ -74,18 +74,13 @@ pub(super) fn write_double(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
 }
 
 /// The word memory in bytes.
-const BYTES: i32 = 1024;
+pub(super) const BYTES: i32 = 1024;
 
-/// An address that does not exist is an error; the result is pushed all the same (inferred).
 fn read(call: &mut Call<'_>, size: Size) -> Result<Outcome, PlcError> {
     let [address] = call.arguments()?;
     let number = operand(size, address);
-    call.result(number.map_or(0, |number| call.image.number(number)))?;
-    Ok(if number.is_some() {
-        Outcome::Done
-    } else {
-        Outcome::Failed
-    })
+    let value = number.map(|number| call.image.number(number));
+    call.result_or_failed(value)
 }
 
 fn write(call: &mut Call<'_>, size: Size) -> Result<Outcome, PlcError> {
@@ -97,11 +92,12 @@ fn write(call: &mut Call<'_>, size: Size) -> Result<Outcome, PlcError> {
     Ok(Outcome::Done)
 }
 
-fn operand(size: Size, address: i32) -> Option<Number> {
+/// The operand at an address; `None` outside the memory and where no operand of the size begins.
+pub(super) fn operand(size: Size, address: i32) -> Option<Number> {
     Number::new(size, u16::try_from(address).ok()?)
 }
 
 /// Whether a block lies inside an area that ends before `end`.
-fn fits(first: i32, length: i32, end: i32) -> bool {
+pub(super) fn fits(first: i32, length: i32, end: i32) -> bool {
     first >= 0 && length >= 0 && i64::from(first) + i64::from(length) <= i64::from(end)
 }

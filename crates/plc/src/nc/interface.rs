@@ -1,0 +1,102 @@
+//! Data interfaces and the connection to a host, as buffers between modules and the world.
+
+use std::collections::VecDeque;
+
+/// Who has an interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InterfaceUser {
+    /// Input and output of programs by the operator.
+    Nc,
+    /// The PLC.
+    Plc,
+}
+
+/// One of the two serial interfaces. The control moves characters between its buffers and the line.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DataInterface {
+    /// Who has it.
+    pub user: Option<InterfaceUser>,
+    /// The other side is ready. The control keeps it up to date while somebody has the interface.
+    pub ready: bool,
+    /// Baud rate in force; 0 before it was ever used.
+    pub baud: u32,
+    /// Baud rate of the operating mode that the operator chose.
+    pub mode_baud: u32,
+    /// Characters to be sent; the control takes them from the front.
+    pub transmit: Vec<u8>,
+    /// An error occurred while sending.
+    pub transmit_error: bool,
+    /// Received characters, without end character.
+    pub receive: Vec<u8>,
+    /// The end character of what was received has come.
+    pub received: bool,
+    /// An error occurred while receiving.
+    pub receive_error: bool,
+    /// ETX was received: the other side does not want more.
+    pub end_of_text: bool,
+    /// Characters are received.
+    pub receiving: bool,
+}
+
+impl DataInterface {
+    /// Gives it to the PLC, initialised and receiving [000:15611].
+    pub(crate) fn assign_to_plc(&mut self, baud: u32) {
+        *self = DataInterface {
+            user: Some(InterfaceUser::Plc),
+            ready: self.ready,
+            baud,
+            mode_baud: self.mode_baud,
+            receiving: true,
+            ..DataInterface::default()
+        };
+    }
+
+    /// Takes it from the PLC and stops receiving [000:15640]. The control does so, too, when the PLC
+    /// program is compiled anew [000:15616].
+    pub fn release(&mut self) {
+        self.user = None;
+        self.receiving = false;
+    }
+
+    /// Begins to send; false when the last text is not sent yet, or the other side is not ready (inferred).
+    pub(crate) fn start_transmission(&mut self, text: &[u8]) -> bool {
+        if !self.transmit.is_empty() {
+            return false;
+        }
+        if !self.ready {
+            self.transmit_error = true;
+            return false;
+        }
+        self.transmit.extend_from_slice(text);
+        true
+    }
+
+    /// Empties the receive buffer.
+    pub(crate) fn clear_received(&mut self) {
+        self.receive.clear();
+        self.received = false;
+    }
+}
+
+/// A connection by LSV/2.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HostLink {
+    /// Messages to the host; the control takes them from the front and sends `M PC<msg.l>`.
+    pub outgoing: VecDeque<HostMessage>,
+    /// Messages from the host, the oldest first.
+    pub incoming: VecDeque<HostMessage>,
+}
+
+impl HostLink {
+    /// Messages that wait to be sent at most (inferred).
+    pub const CAPACITY: usize = 16;
+}
+
+/// A message between PLC and host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HostMessage {
+    /// A doubleword.
+    Double(i32),
+    /// A string.
+    Text(Vec<u8>),
+}

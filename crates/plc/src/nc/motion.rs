@@ -1,0 +1,76 @@
+//! Commands of modules to PLC axes and spindle.
+
+/// A command to a PLC axis. Feed rates are in mm/min or degrees/min.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlcAxisCommand {
+    /// Positioning (9120).
+    Start {
+        /// Target or distance in mm or degrees.
+        target: f64,
+        /// The target is a distance.
+        incremental: bool,
+        /// Feed rate; it is not checked and may be negative.
+        feed: f64,
+    },
+    /// Stop (9121).
+    Stop,
+    /// Until the reference mark is found; no limit switches, no override. Clears a positioning error (9123).
+    TraverseReferenceMarks {
+        /// Feed rate; it is not checked and may be negative.
+        feed: f64,
+        /// In negative direction.
+        negative: bool,
+    },
+}
+
+/// What a PLC axis does [000:15951-15958].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PlcAxisStatus {
+    /// It is over its reference point; cleared at power-on.
+    pub referenced: bool,
+    /// It is positioning.
+    pub positioning: bool,
+    /// It moves in negative direction.
+    pub negative: bool,
+    /// A positioning error occurred.
+    pub error: bool,
+}
+
+/// A TOOL CALL that the PLC inserts [000:16100-16113].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolCallBlock {
+    /// Tool number, not checked; `None` keeps the active one.
+    pub tool: Option<i32>,
+    /// Tool axis, 0 to 4 meant but not checked; `None` keeps the active one.
+    pub axis: Option<i32>,
+    /// Spindle speed in rpm, not checked; `None` keeps the active one.
+    pub speed: Option<f64>,
+    /// DL in mm.
+    pub length_oversize: f64,
+    /// DR in mm.
+    pub radius_oversize: f64,
+}
+
+/// An orientation of the spindle [000:16139-16152].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpindleOrientation {
+    /// Angle in degrees.
+    pub angle: f64,
+    /// The angle is added to that of CYCL DEF 13.
+    pub added_to_cycle: bool,
+    /// Speed in rpm, not negative.
+    pub speed: f64,
+    /// Direction when the spindle stands.
+    pub direction: OrientationDirection,
+}
+
+/// In which direction a standing spindle is oriented.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OrientationDirection {
+    /// As with M04.
+    Negative,
+    /// The shortest way.
+    Shortest,
+    /// As with M03.
+    Positive,
+}

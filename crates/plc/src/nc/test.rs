@@ -1,0 +1,373 @@
+//! A control on a desk.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use bahn_parameters::ParameterList;
+
+use super::{
+    CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, Nc, NotSaved, PalletLine,
+    ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
+    SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
+};
+
+/// A stand-in for the control on a desk: what modules read is set in its fields, what they do is found
+/// there. Nothing moves by itself; [`TestNc::end_scan`] passes the commands of a scan on to the axes.
+#[derive(Clone, Debug)]
+pub struct TestNc {
+    /// The machine parameter list, as it is edited.
+    pub parameters: ParameterList,
+    /// The list with what 9031 changed.
+    changed_parameters: Option<ParameterList>,
+    /// Lines of the list that are faulty, for 9032.
+    pub parameter_faults: BTreeMap<(u16, u8), ParameterFault>,
+    /// 9031 fails to save.
+    pub saving_fails: bool,
+    /// Machine parameter lists in the RAM; `None` for a faulty one.
+    pub parameter_files: BTreeMap<String, Option<ParameterList>>,
+    /// The selected machine parameter list.
+    pub parameter_file: String,
+    /// How often the control was restarted by 9033.
+    pub restarts: u32,
+    /// An NC program was started.
+    pub program_running: bool,
+    /// PLC error messages.
+    pub messages: Vec<String>,
+    /// PLC dialogues.
+    pub dialogues: Vec<String>,
+    /// Status; 0 where nothing is set.
+    pub status: BTreeMap<StatusItem, i32>,
+    /// What 9036 changed, in this order.
+    pub status_changes: Vec<StatusChange>,
+    /// Coordinates in mm or degrees; 0 where nothing is set.
+    pub coordinates: BTreeMap<CoordinateKind, [f64; 5]>,
+    /// Angles of the spindle.
+    pub spindle: SpindlePosition,
+    /// The PLC window.
+    pub window: PlcWindow,
+    /// Whether the PLC window is to be seen.
+    pub window_view: WindowView,
+    /// Files of the NC memory.
+    pub files: BTreeSet<String>,
+    /// Lines of the pallet file with M status.
+    pub pallet: Option<Vec<PalletLine>>,
+    /// The selected NC program.
+    pub program: Option<String>,
+    /// The selected datum table.
+    pub datum_table: Option<String>,
+    /// Lines of the compensation assignment: names of tables.
+    pub compensation: Option<Vec<Vec<String>>>,
+    /// Points of the compensation tables.
+    pub compensation_tables: BTreeMap<String, usize>,
+    /// The active line of the compensation assignment.
+    pub compensation_line: i32,
+    /// Tables with M status.
+    pub tables: BTreeMap<TableKind, MemoryTable>,
+    /// How often the geometry was initialised.
+    pub geometry_initialised: u32,
+    /// RS-232-C/V.24 and RS-422/V.11.
+    pub interfaces: [DataInterface; 2],
+    /// The connection to a host.
+    pub host: Option<HostLink>,
+    /// The axes X, Y, Z, 4, 5.
+    pub axes: [TestAxis; 5],
+    /// Output at the spindle's analogue output in V.
+    pub spindle_voltage: f64,
+    /// The TOOL CALL that was inserted last.
+    pub tool_call: Option<ToolCallBlock>,
+    /// The spindle is being oriented from an earlier scan.
+    pub orienting: bool,
+    /// The orientation that was asked for last.
+    pub orientation: Option<SpindleOrientation>,
+}
+
+/// An axis of [`TestNc`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestAxis {
+    /// Where it is in mm or degrees.
+    pub position: f64,
+    /// What it does.
+    pub status: PlcAxisStatus,
+    /// Override in percent.
+    pub override_percent: f64,
+    /// The command that is executed.
+    pub command: Option<PlcAxisCommand>,
+    /// The last command of this scan.
+    pub next_command: Option<PlcAxisCommand>,
+}
+
+impl Default for TestAxis {
+    fn default() -> TestAxis {
+        TestAxis {
+            position: 0.0,
+            status: PlcAxisStatus::default(),
+            override_percent: 100.0,
+            command: None,
+            next_command: None,
+        }
+    }
+}
+
+impl TestAxis {
+    /// Executes the last command of a scan.
+    fn end_scan(&mut self) {
+        let Some(command) = self.next_command.take() else {
+            return;
+        };
+        self.command = Some(command);
+        match command {
+            PlcAxisCommand::Start {
+                target, incremental, ..
+            } => {
+                let distance = if incremental {
+                    target
+                } else {
+                    target - self.position
+                };
+                self.status.positioning = true;
+                self.status.negative = distance < 0.0;
+            }
+            PlcAxisCommand::Stop => self.stop(),
+            PlcAxisCommand::TraverseReferenceMarks { negative, .. } => {
+                self.status = PlcAxisStatus {
+                    positioning: true,
+                    negative,
+                    ..PlcAxisStatus::default()
+                };
+            }
+        }
+    }
+
+    /// Ends the movement where it leads to: at the target, or at the reference mark.
+    pub fn arrive(&mut self) {
+        match self.command {
+            Some(PlcAxisCommand::Start {
+                target, incremental, ..
+            }) => {
+                self.position = if incremental {
+                    self.position + target
+                } else {
+                    target
+                };
+            }
+            Some(PlcAxisCommand::TraverseReferenceMarks { .. }) => self.status.referenced = true,
+            Some(PlcAxisCommand::Stop) | None => {}
+        }
+        self.stop();
+    }
+
+    fn stop(&mut self) {
+        self.command = None;
+        self.status.positioning = false;
+        self.status.negative = false;
+    }
+}
+
+impl TestNc {
+    /// With the machine parameters of a list, and nothing else.
+    pub fn new(parameters: ParameterList) -> TestNc {
+        TestNc {
+            parameters,
+            changed_parameters: None,
+            parameter_faults: BTreeMap::new(),
+            saving_fails: false,
+            parameter_files: BTreeMap::new(),
+            parameter_file: String::new(),
+            restarts: 0,
+            program_running: false,
+            messages: Vec::new(),
+            dialogues: Vec::new(),
+            status: BTreeMap::new(),
+            status_changes: Vec::new(),
+            coordinates: BTreeMap::new(),
+            spindle: SpindlePosition::default(),
+            window: PlcWindow::default(),
+            window_view: WindowView::default(),
+            files: BTreeSet::new(),
+            pallet: None,
+            program: None,
+            datum_table: None,
+            compensation: None,
+            compensation_tables: BTreeMap::new(),
+            compensation_line: 0,
+            tables: BTreeMap::new(),
+            geometry_initialised: 0,
+            interfaces: Default::default(),
+            host: None,
+            axes: [TestAxis::default(); 5],
+            spindle_voltage: 0.0,
+            tool_call: None,
+            orienting: false,
+            orientation: None,
+        }
+    }
+
+    /// What the control does between two scans: passes the commands of modules on to the axes.
+    pub fn end_scan(&mut self) {
+        for axis in &mut self.axes {
+            axis.end_scan();
+        }
+    }
+
+    /// Leaves the editor of machine parameters: what 9031 changed is restored.
+    pub fn leave_parameter_editor(&mut self) {
+        self.changed_parameters = None;
+    }
+}
+
+impl Nc for TestNc {
+    fn parameters(&self) -> &ParameterList {
+        self.changed_parameters.as_ref().unwrap_or(&self.parameters)
+    }
+
+    fn editable_parameter(&self, number: u16, index: u8) -> Result<f64, ParameterFault> {
+        match self.parameter_faults.get(&(number, index)) {
+            Some(fault) => Err(*fault),
+            None => self
+                .parameters
+                .get(number, index)
+                .ok_or(ParameterFault::NoSuchNumber),
+        }
+    }
+
+    fn change_parameter(&mut self, number: u16, index: u8, value: f64) -> Result<(), NotSaved> {
+        if self.saving_fails {
+            return Err(NotSaved);
+        }
+        self.changed_parameters
+            .get_or_insert_with(|| self.parameters.clone())
+            .set(number, index, value)
+            .map_err(|_| NotSaved)
+    }
+
+    fn select_parameter_file(&mut self, name: &str) -> Result<(), ParameterFileFault> {
+        let list = self
+            .parameter_files
+            .get(name)
+            .ok_or(ParameterFileFault::NotFound)?;
+        let list = list.clone().ok_or(ParameterFileFault::Faulty)?;
+        if self.parameter_file != name {
+            name.clone_into(&mut self.parameter_file);
+            self.parameters = list;
+            self.changed_parameters = None;
+            self.restarts = self.restarts.saturating_add(1);
+        }
+        Ok(())
+    }
+
+    fn program_running(&self) -> bool {
+        self.program_running
+    }
+
+    fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>> {
+        let lines = match file {
+            TextFile::Messages => &self.messages,
+            TextFile::Dialogues => &self.dialogues,
+        };
+        Some(lines.get(usize::from(line))?.clone().into_bytes())
+    }
+
+    fn status(&self, item: StatusItem) -> i32 {
+        self.status.get(&item).copied().unwrap_or(0)
+    }
+
+    fn change_status(&mut self, change: StatusChange) {
+        self.status_changes.push(change);
+    }
+
+    fn coordinates(&self, kind: CoordinateKind) -> [f64; 5] {
+        self.coordinates.get(&kind).copied().unwrap_or_default()
+    }
+
+    fn spindle_position(&self) -> SpindlePosition {
+        self.spindle
+    }
+
+    fn window(&mut self) -> &mut PlcWindow {
+        &mut self.window
+    }
+
+    fn window_view(&self) -> WindowView {
+        self.window_view
+    }
+
+    fn pallet_line(&self, line: i32) -> Result<PalletLine, LineFault> {
+        let lines = self.pallet.as_ref().ok_or(LineFault::NoFile)?;
+        nth(lines, line).cloned().ok_or(LineFault::NoLine)
+    }
+
+    fn has_file(&self, name: &str) -> bool {
+        self.files.contains(name)
+    }
+
+    fn select_program(&mut self, program: &str, datum_table: Option<&str>) {
+        self.program = Some(program.to_owned());
+        if let Some(name) = datum_table {
+            self.datum_table = Some(name.to_owned());
+        }
+    }
+
+    fn compensation_line(&self, line: i32) -> Result<Vec<Option<usize>>, LineFault> {
+        let lines = self.compensation.as_ref().ok_or(LineFault::NoFile)?;
+        let tables = nth(lines, line).ok_or(LineFault::NoLine)?;
+        let points = |name| self.compensation_tables.get(name).copied();
+        Ok(tables.iter().map(points).collect())
+    }
+
+    fn activate_compensation(&mut self, line: i32) {
+        self.compensation_line = line;
+    }
+
+    fn table(&mut self, kind: TableKind) -> Option<&mut dyn TableFile> {
+        let table = self.tables.get_mut(&kind)?;
+        Some(table)
+    }
+
+    fn initialise_geometry(&mut self) {
+        self.geometry_initialised = self.geometry_initialised.saturating_add(1);
+    }
+
+    fn data_interface(&mut self, number: usize) -> &mut DataInterface {
+        let [rs232, rs422] = &mut self.interfaces;
+        if number == 0 { rs232 } else { rs422 }
+    }
+
+    fn host(&mut self) -> Option<&mut HostLink> {
+        self.host.as_mut()
+    }
+
+    fn plc_axis_status(&self, axis: usize) -> PlcAxisStatus {
+        self.axes.get(axis).map(|axis| axis.status).unwrap_or_default()
+    }
+
+    fn command_plc_axis(&mut self, axis: usize, command: PlcAxisCommand) {
+        if let Some(axis) = self.axes.get_mut(axis) {
+            axis.next_command = Some(command);
+        }
+    }
+
+    fn override_plc_axis(&mut self, axis: usize, percent: f64) {
+        if let Some(axis) = self.axes.get_mut(axis) {
+            axis.override_percent = percent;
+        }
+    }
+
+    fn output_spindle_voltage(&mut self, volts: f64) {
+        self.spindle_voltage = volts;
+    }
+
+    fn insert_tool_call(&mut self, block: ToolCallBlock) {
+        self.tool_call = Some(block);
+    }
+
+    fn spindle_orienting(&self) -> bool {
+        self.orienting
+    }
+
+    fn orient_spindle(&mut self, orientation: SpindleOrientation) {
+        self.orientation = Some(orientation);
+    }
+}
+
+fn nth<T>(lines: &[T], line: i32) -> Option<&T> {
+    lines.get(usize::try_from(line).ok()?)
+}
