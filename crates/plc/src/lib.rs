@@ -19,6 +19,7 @@
 
 mod compile;
 mod error;
+mod fast;
 mod modules;
 mod nc;
 mod operand;
