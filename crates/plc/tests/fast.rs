@@ -3,11 +3,14 @@
 #![expect(clippy::unwrap_used, reason = "the programs of these tests are valid")]
 
 mod common;
+#[path = "../benches/programs/mod.rs"]
+mod programs;
 
 use std::fmt::Write;
+use std::sync::Arc;
 
 use bahn_exchange::{Bit, BitArea, Exchange, Number, Size};
-use bahn_plc::{Machine, PlcError, RuntimeError, TraceStep, Tracer};
+use bahn_plc::{Compilation, Machine, Options, PlcError, RuntimeError, Start, TraceStep, Tracer};
 use common::Bench;
 use proptest::prelude::*;
 
@@ -58,11 +61,28 @@ fn a_run_that_ends_too_late_is_an_error_in_both_forms() {
     assert_eq!(compare(&program(60), &[1]), None);
 }
 
+#[test]
+fn both_forms_agree_on_a_large_program() {
+    let compilation = Compilation::compile(&programs::mill(), "MILL.PLC", Options::default());
+    assert_eq!(compilation.errors, []);
+    let program = Arc::new(compilation.program.unwrap());
+    assert!(program.code.len() > 8000);
+    let bench = || Bench {
+        machine: Machine::new(Arc::clone(&program), Start::PowerOn),
+        ..Bench::new("EM\n")
+    };
+    let inputs: Vec<u32> = (0..50).collect();
+    assert_eq!(compare_benches([bench(), bench()], "MILL.PLC", &inputs), None);
+}
+
 /// Runs a program in both forms and compares everything after every cycle; gives the error that
 /// stopped them.
 fn compare(program: &str, inputs: &[u32]) -> Option<RuntimeError> {
-    let mut fast = Bench::new(program);
-    let mut reference = Bench::new(program);
+    compare_benches([Bench::new(program), Bench::new(program)], program, inputs)
+}
+
+fn compare_benches(benches: [Bench; 2], program: &str, inputs: &[u32]) -> Option<RuntimeError> {
+    let [mut fast, mut reference] = benches;
     for (cycle, seed) in inputs.iter().enumerate() {
         for exchange in [&mut fast.exchange, &mut reference.exchange] {
             stimulate(exchange, *seed);
