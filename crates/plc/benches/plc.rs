@@ -105,6 +105,7 @@ fn figures() {
     let mut desk = Desk::new(Arc::clone(&program));
     let mut count = Count::default();
     desk.scan_traced(&mut count);
+    let memory = memory();
     let nominal = desk.machine.time().current as f64;
     let time = desk.scan_time(true);
     println!(
@@ -116,6 +117,16 @@ fn figures() {
         nominal / 1e3,
         nominal / time
     );
+    if let Some(memory) = memory {
+        println!("memory of the whole process, with sources, both forms and images: {memory}");
+    }
+}
+
+/// The largest memory that the process has had, as Linux tells it.
+fn memory() -> Option<String> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
+    Some(line.trim_start_matches("VmHWM:").trim().to_owned())
 }
 
 /// Copies of an instruction kind in a program: few enough that the slowest stay within 10 ms of nominal time.

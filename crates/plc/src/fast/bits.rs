@@ -73,6 +73,31 @@ pub(super) fn run(steps: &[BitStep], cells: &mut [u8; CELLS], logic: bool) -> bo
     logic != 0
 }
 
+/// The cell of the first of consecutive bits; `None` with index, or when the last is behind its area.
+pub(super) fn consecutive(first: &BitOperand, count: u8) -> Option<u16> {
+    let last = first.bit.number() + u16::from(count.checked_sub(1)?);
+    let inside = !first.indexed && count <= 32 && last <= first.bit.area().last();
+    u16::try_from(first.bit.cell()).ok().filter(|_| inside)
+}
+
+/// Reads consecutive bits, the first one lowest, sign-filled from the last one [000:12186-12223].
+#[inline(always)]
+pub(super) fn read(cells: &[u8; CELLS], cell: u16, count: u8) -> i32 {
+    let bits = cells.iter().skip(cell.into()).take(count.into());
+    let value = bits.rev().fold(0_u32, |value, bit| value << 1 | u32::from(*bit));
+    let unused = 32 - u32::from(count);
+    (value << unused) as i32 >> unused
+}
+
+/// Writes consecutive bits, the lowest to the first one.
+#[inline(always)]
+pub(super) fn write(cells: &mut [u8; CELLS], cell: u16, count: u8, value: i32) {
+    let bits = cells.iter_mut().skip(cell.into()).take(count.into());
+    for (place, bit) in bits.enumerate() {
+        *bit = (value >> place) as u8 & 1;
+    }
+}
+
 /// Leaves the cells that no operand has as they were.
 pub(super) fn clear_brackets(cells: &mut [u8; CELLS]) {
     for cell in cells.iter_mut().skip(BRACKETS_AT) {
@@ -117,6 +142,23 @@ mod tests {
                 "a gate leaves its operand"
             );
         }
+    }
+
+    #[test]
+    fn consecutive_bits_end_with_their_area() {
+        let inputs = |name: &str, indexed| BitOperand {
+            bit: name.parse().unwrap(),
+            indexed,
+        };
+        let first = bahn_exchange::BitArea::I.first_cell();
+        assert_eq!(consecutive(&inputs("I0", false), 32), Some(first));
+        assert_eq!(consecutive(&inputs("I247", false), 8), Some(first + 247));
+        assert_eq!(
+            consecutive(&inputs("I248", false), 8),
+            None,
+            "I255 is none of a program"
+        );
+        assert_eq!(consecutive(&inputs("I0", true), 8), None);
     }
 
     #[test]

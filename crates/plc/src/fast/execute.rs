@@ -125,6 +125,8 @@ impl State<'_, '_, '_, '_> {
                 FastOp::Step { from, to, by } => {
                     to.write(cells, from.read(cells).wrapping_add(by.into()));
                 }
+                FastOp::LoadBits { cell, count } => word = bits::read(cells, cell, count),
+                FastOp::AssignBits { cell, count } => bits::write(cells, cell, count, word),
                 FastOp::LoadIndex => word = index,
                 FastOp::StoreIndex => index = word,
                 FastOp::StepIndex { by } => index = index.wrapping_add(by.into()),

@@ -96,6 +96,10 @@ enum FastOp {
     Assign { to: Destination, transform: Transform },
     /// Destination := destination + `by`.
     Step { from: Source, to: Destination, by: i8 },
+    /// WA := consecutive bits.
+    LoadBits { cell: u16, count: u8 },
+    /// Consecutive bits := WA.
+    AssignBits { cell: u16, count: u8 },
     /// WA := X.
     LoadIndex,
     /// X := WA.

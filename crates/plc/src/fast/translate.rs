@@ -1,6 +1,6 @@
 //! From instructions to operations of the fast form.
 
-use super::bits::BitStep;
+use super::bits::{BitStep, consecutive};
 use super::words::{Destination, Function, Order, Source};
 use super::{CaseEntry, FastOp, FastProgram, Leap};
 use crate::operand::Value;
@@ -234,6 +234,14 @@ fn single(op: &Op) -> Option<FastOp> {
             from: Source::of(&Value::Number(*number))?,
             to: Destination::of(number)?,
             by: *by,
+        },
+        Op::LoadBits { first, count } => FastOp::LoadBits {
+            cell: consecutive(first, *count)?,
+            count: *count,
+        },
+        Op::AssignBits { first, count } => FastOp::AssignBits {
+            cell: consecutive(first, *count)?,
+            count: *count,
         },
         Op::LoadIndex => FastOp::LoadIndex,
         Op::StoreIndex => FastOp::StoreIndex,
