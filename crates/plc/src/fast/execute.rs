@@ -4,10 +4,10 @@ use bahn_exchange::{CELLS, signal};
 
 use super::{CaseEntry, FastOp, FastProgram, Run, bits};
 use crate::PlcError;
-use crate::program::{Arithmetic, Condition};
+use crate::program::{Arithmetic, bit};
 use crate::run::{CALLS_MAX, Processor, read_number};
 
-/// The registers that the loop keeps in the processor's own.
+/// What the loop works on, and its registers while something else needs them.
 struct State<'f, 'r, 'p, 'a> {
     fast: &'f FastProgram,
     processor: &'r mut Processor<'p, 'a>,
@@ -116,7 +116,7 @@ impl State<'_, '_, '_, '_> {
                     logic = order.holds(operand.truncate(word), operand.read(cells));
                 }
                 FastOp::TestBit { operand } => {
-                    logic = word & crate::program::bit(operand.read(cells)) != 0;
+                    logic = word & bit(operand.read(cells)) != 0;
                 }
                 FastOp::Arithmetic { operation, operand } => {
                     word = arithmetic(cells, operation, word, operand.read(cells));
@@ -143,7 +143,7 @@ impl State<'_, '_, '_, '_> {
                 }
                 FastOp::Reference { at } => outside!(self.reference(at)),
                 FastOp::Jump { condition, leap } => {
-                    if holds(condition, logic)
+                    if condition.holds(logic)
                         && let Some(leap) = fast.leaps.get(leap as usize)
                     {
                         next = leap.to as usize;
@@ -155,25 +155,12 @@ impl State<'_, '_, '_, '_> {
                     }
                 }
                 FastOp::Call { condition, leap } => {
-                    if holds(condition, logic)
-                        && let Some(target) = fast.leaps.get(leap as usize)
-                    {
-                        let Some(place) = self.calls.get_mut(self.depth) else {
-                            outside!(Err(PlcError::NestingTooDeep));
-                            continue;
-                        };
-                        *place = leap;
-                        self.depth += 1;
-                        next = target.to as usize;
-                        self.last_jump = target.at;
-                        self.shift += target.shift;
-                        if self.shift + target.before > self.budget {
-                            outside!(self.time_out(target.target));
-                        }
+                    if condition.holds(logic) {
+                        outside!(self.call(leap));
                     }
                 }
                 FastOp::Return { condition, time } => {
-                    if holds(condition, logic) {
+                    if condition.holds(logic) {
                         let Some(leap) = self.pop().and_then(|leap| fast.leaps.get(leap as usize)) else {
                             (self.logic, self.word, self.index, self.next) = (logic, word, index, next);
                             return End::Returned(self.shift + time);
@@ -187,7 +174,7 @@ impl State<'_, '_, '_, '_> {
                     }
                 }
                 FastOp::Module { condition, at, extra } => {
-                    if holds(condition, logic) {
+                    if condition.holds(logic) {
                         outside!(self.module(at, extra));
                     }
                 }
@@ -230,6 +217,8 @@ impl State<'_, '_, '_, '_> {
         Ok(())
     }
 
+    /// Calls the entry of a table.
+    #[inline(never)]
     fn case(&mut self, table: u32, entry: i32) -> Result<(), PlcError> {
         let table = self.fast.cases.get(table as usize);
         let entry = usize::try_from(entry).ok().and_then(|entry| table?.get(entry));
@@ -243,6 +232,8 @@ impl State<'_, '_, '_, '_> {
         }
     }
 
+    /// Calls code.
+    #[inline(always)]
     fn call(&mut self, leap: u32) -> Result<(), PlcError> {
         let Some(target) = self.fast.leaps.get(leap as usize) else {
             return Ok(());
@@ -331,11 +322,6 @@ impl State<'_, '_, '_, '_> {
             end,
         }
     }
-}
-
-#[inline(always)]
-fn holds(condition: Condition, logic: bool) -> bool {
-    condition.holds(logic)
 }
 
 /// Calculates, and sets or resets the error marker of the operation [000:12888][000:12926].
