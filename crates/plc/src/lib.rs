@@ -20,6 +20,7 @@
 
 mod compile;
 mod error;
+mod fast;
 mod modules;
 mod nc;
 mod operand;

@@ -9,6 +9,7 @@ use super::processor::{Jobs, Processor, Step};
 use super::registers::Registers;
 use super::submit::{Queue, swap_markers};
 use super::trace::{TraceStep, Tracer};
+use crate::fast::FastProgram;
 use crate::program::{Instruction, PlcProgram};
 use crate::{Nc, PlcError};
 
@@ -107,6 +108,7 @@ pub struct ScanReport {
 #[derive(Clone, Debug)]
 pub struct Machine {
     program: Arc<PlcProgram>,
+    fast: Arc<FastProgram>,
     registers: Registers,
     queue: Queue,
     clock: Clock,
@@ -124,6 +126,7 @@ impl Machine {
     /// A machine that will run a program from its start.
     pub fn new(program: Arc<PlcProgram>, start: Start) -> Machine {
         Machine {
+            fast: Arc::new(FastProgram::new(&program)),
             program,
             registers: Registers::default(),
             queue: Queue::default(),
@@ -137,16 +140,30 @@ impl Machine {
         }
     }
 
-    /// Runs one scan.
+    /// Runs one scan, in the fast form of the program.
     ///
     /// # Errors
     /// When an error of the program stops the PLC. It stays stopped: every further scan returns the same
     /// error and does nothing.
     pub fn scan(&mut self, exchange: &mut Exchange, nc: &mut dyn Nc) -> Result<ScanReport, RuntimeError> {
-        self.scan_with(exchange, nc, None)
+        self.begin(exchange, nc)?;
+        let program = Arc::clone(&self.program);
+        let mut processor = Processor {
+            program: &program,
+            image: exchange.plc_mut(),
+            registers: &mut self.registers,
+            queue: Jobs::Cyclic(&mut self.queue),
+            nc,
+        };
+        let run = self.fast.run(&mut processor, RUN_TIME_MAX);
+        (self.elapsed, self.last_jump) = (run.elapsed, run.last_jump);
+        if let Err((error, at)) = run.end {
+            return Err(self.stop(&program, error, at, None));
+        }
+        self.finish(&program, exchange, nc, None)
     }
 
-    /// Runs one scan and shows every executed instruction.
+    /// Runs one scan in the reference interpreter and shows every executed instruction.
     ///
     /// # Errors
     /// As [`Machine::scan`].
@@ -156,7 +173,10 @@ impl Machine {
         nc: &mut dyn Nc,
         tracer: &mut dyn Tracer,
     ) -> Result<ScanReport, RuntimeError> {
-        self.scan_with(exchange, nc, Some(tracer))
+        self.begin(exchange, nc)?;
+        let program = Arc::clone(&self.program);
+        while !self.cyclic_step(&program, exchange, nc, Some(&mut *tracer))? {}
+        self.finish(&program, exchange, nc, Some(tracer))
     }
 
     /// Starts a scan that is then executed by [`Machine::step`]: for stepping line by line.
@@ -224,18 +244,6 @@ impl Machine {
     /// The error that stopped the PLC.
     pub fn stopped(&self) -> Option<&RuntimeError> {
         self.stopped.as_ref()
-    }
-
-    fn scan_with(
-        &mut self,
-        exchange: &mut Exchange,
-        nc: &mut dyn Nc,
-        mut tracer: Option<&mut (dyn Tracer + '_)>,
-    ) -> Result<ScanReport, RuntimeError> {
-        self.begin(exchange, nc)?;
-        let program = Arc::clone(&self.program);
-        while !self.cyclic_step(&program, exchange, nc, reborrow(&mut tracer))? {}
-        self.finish(&program, exchange, nc, tracer)
     }
 
     /// One instruction of the cyclic program; tells whether the run is over.

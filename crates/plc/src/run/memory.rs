@@ -32,7 +32,7 @@ pub(super) fn read_bit(image: &Image, operand: BitOperand, index: i32) -> bool {
 }
 
 /// Reads a number, sign-extended.
-pub(super) fn read_number(image: &Image, operand: NumberOperand, index: i32) -> i32 {
+pub(crate) fn read_number(image: &Image, operand: NumberOperand, index: i32) -> i32 {
     number_at(operand, index).map_or(0, |number| image.number(number))
 }
 

@@ -11,6 +11,8 @@ mod trace;
 
 pub(crate) use machine::percent;
 pub use machine::{Machine, ProcessingTime, RuntimeError, ScanReport, Start};
-pub(crate) use registers::DataStack;
+pub(crate) use memory::read_number;
+pub(crate) use processor::Processor;
 pub use registers::Registers;
+pub(crate) use registers::{CALLS_MAX, DataStack};
 pub use trace::{OperandContent, TraceStep, Tracer};

@@ -12,16 +12,16 @@ use crate::program::{Arithmetic, Instruction, Op, PlcProgram, Target, bit};
 use crate::{Nc, PlcError};
 
 /// What an instruction works on.
-pub(super) struct Processor<'p, 'a> {
-    pub(super) program: &'p PlcProgram,
-    pub(super) image: &'a mut Image,
-    pub(super) registers: &'a mut Registers,
-    pub(super) queue: Jobs<'a>,
-    pub(super) nc: &'a mut dyn Nc,
+pub(crate) struct Processor<'p, 'a> {
+    pub(crate) program: &'p PlcProgram,
+    pub(crate) image: &'a mut Image,
+    pub(crate) registers: &'a mut Registers,
+    pub(crate) queue: Jobs<'a>,
+    pub(crate) nc: &'a mut dyn Nc,
 }
 
 /// The queue as the running program may use it.
-pub(super) enum Jobs<'a> {
+pub(crate) enum Jobs<'a> {
     /// The cyclic program may submit.
     Cyclic(&'a mut Queue),
     /// A job may ask and cancel, but not submit [000:14327]. What it cancels is noted.
@@ -30,7 +30,7 @@ pub(super) enum Jobs<'a> {
 
 /// How an instruction ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
+pub(crate) enum Step {
     /// The next instruction follows.
     Next,
     /// A jump, call, or end of a module: control is elsewhere now.
@@ -53,7 +53,8 @@ impl<'p> Processor<'p, '_> {
         Ok((step, Some(instruction)))
     }
 
-    fn execute(&mut self, op: &Op) -> Result<Step, PlcError> {
+    /// Executes one instruction.
+    pub(crate) fn execute(&mut self, op: &Op) -> Result<Step, PlcError> {
         let index = self.registers.index;
         match op {
             Op::Nop => {}
@@ -213,14 +214,19 @@ impl<'p> Processor<'p, '_> {
     fn call(&mut self, target: Target) -> Result<(), PlcError> {
         match target {
             Target::Code(at) => self.registers.call(at),
-            Target::Module(number) => Call {
-                image: self.image,
-                stack: &mut self.registers.stack,
-                nc: self.nc,
-                from_submit: matches!(self.queue, Jobs::Job(..)),
-            }
-            .run(number),
+            Target::Module(number) => self.call_module(number),
         }
+    }
+
+    /// Runs an internal module.
+    pub(crate) fn call_module(&mut self, number: u16) -> Result<(), PlcError> {
+        Call {
+            image: self.image,
+            stack: &mut self.registers.stack,
+            nc: self.nc,
+            from_submit: matches!(self.queue, Jobs::Job(..)),
+        }
+        .run(number)
     }
 
     fn submit(&mut self, target: Target) -> i32 {

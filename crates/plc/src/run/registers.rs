@@ -7,7 +7,7 @@ const BRACKETS: usize = 16;
 /// Bytes of the data stack [000:12035].
 const STACK_BYTES: usize = 128;
 /// Nested calls at most [000:12030].
-const CALLS_MAX: usize = 32;
+pub(crate) const CALLS_MAX: usize = 32;
 
 /// Accumulators, index register, stacks and program counter of the cyclic program or of a submit job.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -29,7 +29,7 @@ pub(super) struct Job {
 
 /// The queue of jobs.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Queue {
+pub(crate) struct Queue {
     jobs: VecDeque<Job>,
     last_identifier: u8,
 }

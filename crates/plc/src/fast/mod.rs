@@ -1,0 +1,164 @@
+//! The fast form: a compiled program translated once more, for scans that nobody traces.
+//!
+//! What makes it fast:
+//! - neighbouring bit instructions become one [`bits::BitStep`] strip that runs without a branch per instruction;
+//! - a load, what is calculated with it and where it goes become one operation;
+//! - nominal time is not added up per instruction: [`translate`] knows the sum before every place, and only
+//!   transfers of control look at it.
+//!
+//! Rare instructions go to the reference interpreter one by one, so that their rules are written once. The
+//! reference interpreter is also what this form is tested against: memory, times and errors are the same.
+
+mod bits;
+mod execute;
+mod translate;
+mod words;
+
+use crate::operand::NumberOperand;
+use crate::program::{Arithmetic, Condition, PlcProgram, Transform};
+use crate::{PlcError, run::Processor};
+use bits::BitStep;
+use words::{Destination, Function, Order, Source};
+
+/// A program in its fast form.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FastProgram {
+    code: Vec<FastOp>,
+    /// For each operation the index of its first instruction.
+    origin: Vec<u32>,
+    /// The strips of bit instructions, one behind the other.
+    steps: Vec<BitStep>,
+    leaps: Vec<Leap>,
+    cases: Vec<Vec<CaseEntry>>,
+    /// Nominal time of all instructions before an index when no jump is taken, in ns.
+    time_before: Vec<i64>,
+}
+
+/// How the run of the cyclic program ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    /// Nominal time in ns.
+    pub(crate) elapsed: u64,
+    /// Index of the last jump or call that was executed.
+    pub(crate) last_jump: usize,
+    /// The error that stopped it, and the index of the instruction.
+    pub(crate) end: Result<(), (PlcError, usize)>,
+}
+
+impl FastProgram {
+    /// Translates a program. It must be run with the same program.
+    pub(crate) fn new(program: &PlcProgram) -> FastProgram {
+        translate::translate(program)
+    }
+
+    /// Runs the cyclic program from its start to its end. An error is [`PlcError::TimeOut`] when the run
+    /// takes longer than `budget` ns.
+    pub(crate) fn run(&self, processor: &mut Processor<'_, '_>, budget: u64) -> Run {
+        execute::run(self, processor, budget)
+    }
+}
+
+/// One operation: one instruction or several fused.
+#[derive(Clone, Copy, Debug)]
+enum FastOp {
+    /// Bit instructions, one behind the other.
+    Bits { first: u32, count: u32 },
+    /// WA := function of WA and operand.
+    Word { function: Function, operand: Source },
+    /// WA := operand; destination := WA.
+    Move { from: Source, to: Destination },
+    /// WA := function of `load` and operand; destination := WA.
+    Compute {
+        load: Source,
+        function: Function,
+        operand: Source,
+        to: Destination,
+    },
+    /// WA := function of `load` and operand.
+    LoadWord {
+        load: Source,
+        function: Function,
+        operand: Source,
+    },
+    /// LA := WA comparison operand.
+    Compare { order: Order, operand: Source },
+    /// WA := `load`; LA := WA comparison operand.
+    LoadCompare {
+        load: Source,
+        order: Order,
+        operand: Source,
+    },
+    /// LA := bit of WA.
+    TestBit { operand: Source },
+    /// Multiplication, division, remainder: with error marker.
+    Arithmetic { operation: Arithmetic, operand: Source },
+    /// Destination := WA.
+    Assign { to: Destination, transform: Transform },
+    /// Destination := destination + `by`.
+    Step { from: Source, to: Destination, by: i8 },
+    /// WA := consecutive bits.
+    LoadBits { cell: u16, count: u8 },
+    /// Consecutive bits := WA.
+    AssignBits { cell: u16, count: u8 },
+    /// WA := X.
+    LoadIndex,
+    /// X := WA.
+    StoreIndex,
+    /// X := X + `by`.
+    StepIndex { by: i8 },
+    /// Opens a bracket on WA.
+    OpenWord { level: u8 },
+    /// WA := function of WA before the bracket and WA.
+    CloseWord { level: u8, function: Function },
+    /// As [`FastOp::Arithmetic`], with WA before the bracket.
+    CloseArithmetic { level: u8, operation: Arithmetic },
+    /// LA := WA before the bracket, comparison WA.
+    CloseCompare { level: u8, order: Order },
+    /// An instruction for the reference interpreter.
+    Reference { at: u32 },
+    /// A jump of [`FastProgram::leaps`].
+    Jump { condition: Condition, leap: u32 },
+    /// A call of code.
+    Call { condition: Condition, leap: u32 },
+    /// A call of an internal module, by the reference interpreter; `extra` is what it costs more than not
+    /// being called.
+    Module {
+        condition: Condition,
+        at: u32,
+        extra: i32,
+    },
+    /// The end of a module or of the run; `time` is that of all instructions up to and with this one.
+    Return { condition: Condition, time: i64 },
+    /// Calls the entry of a table of [`FastProgram::cases`].
+    Case { number: NumberOperand, table: u32 },
+}
+
+/// A transfer of control from one instruction to another.
+///
+/// While control does not move, the time of the run is the sum before the instruction plus a constant. A
+/// leap adds `shift` to the constant: the sum behind its start minus the sum before its target.
+#[derive(Clone, Copy, Debug)]
+struct Leap {
+    /// Index of the instruction that is the target.
+    target: u32,
+    /// Index of its operation.
+    to: u32,
+    /// Index of the jump or call.
+    at: u32,
+    shift: i64,
+    /// Time before the target.
+    before: i64,
+    /// Index of the operation behind a call.
+    back: u32,
+    /// Time before the instruction behind a call.
+    before_back: i64,
+}
+
+/// An entry of a CASE table.
+#[derive(Clone, Copy, Debug)]
+enum CaseEntry {
+    /// Index of a leap.
+    Code(u32),
+    /// An internal module.
+    Module(u16),
+}
