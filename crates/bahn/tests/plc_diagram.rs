@@ -57,3 +57,10 @@ fn drawings_are_written() {
     let run = folder.bahn(&format!("plc diagram MAIN.PLC --show {}", many.join(",")));
     assert_eq!(run.code(), 2);
 }
+
+#[test]
+fn the_full_screen_view_needs_a_terminal() {
+    let run = folder().bahn("plc watch MAIN.PLC --show O2");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("terminal"), "{}", run.err());
+}

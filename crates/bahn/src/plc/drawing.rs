@@ -19,18 +19,22 @@ pub(super) fn text(diagram: &Diagram) -> String {
         let end = (start + COLUMNS).min(count);
         let from = diagram.first + start as u64;
         text += &format!("cycles {from} to {}\n", from + (end - start) as u64 - 1);
-        if let Some(at) = diagram.trigger.and_then(|cycle| cycle.checked_sub(from)) {
-            if at < (end - start) as u64 {
-                let at = usize::try_from(at).unwrap_or(0);
-                text += &format!("{:>8} {:at$}v trigger\n", "", "");
-            }
+        if let Some(at) = diagram.trigger.and_then(|cycle| cycle.checked_sub(from))
+            && at < (end - start) as u64
+        {
+            let at = usize::try_from(at).unwrap_or(0);
+            text += &format!("{:>8} {:at$}v trigger\n", "", "");
         }
         for (index, operand) in diagram.operands.iter().enumerate() {
             let mut row = vec![' '; end - start];
             for (first, length, content) in diagram.stretches(index) {
                 draw(&mut row, first, length, start, *operand, content);
             }
-            text += &format!("{operand:>8} {}\n", row.iter().collect::<String>().trim_end());
+            text += &format!(
+                "{:>8} {}\n",
+                operand.to_string(),
+                row.iter().collect::<String>().trim_end()
+            );
         }
     }
     text

@@ -20,6 +20,7 @@ mod script;
 mod signals;
 mod source;
 mod trace;
+mod watch;
 mod xref;
 
 pub(crate) use options::PlcOptions;
@@ -34,6 +35,7 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
         PlcCommand::Run(options) => run::command(options),
         PlcCommand::Trace(options) => trace::command(options),
         PlcCommand::Diagram(options) => diagram::command(options),
+        PlcCommand::Watch(options) => watch::command(options),
         PlcCommand::List(options) => list::command(options),
         PlcCommand::Xref(options) => xref::command(options),
         PlcCommand::Signals(options) => signals::command(options),

@@ -30,6 +30,9 @@ pub(crate) enum PlcCommand {
     /// Draw up to 16 operands over up to 1024 cycles.
     #[command(after_help = DIAGRAM_EXAMPLES)]
     Diagram(DiagramOptions),
+    /// Watch and set operands while the program runs or is stepped (full screen).
+    #[command(after_help = WATCH_KEYS)]
+    Watch(WatchOptions),
     /// Print the program as formatted listing.
     List(ListOptions),
     /// Show where operands and labels are used; which are not, and which are written twice.
@@ -78,6 +81,10 @@ const DIAGRAM_EXAMPLES: &str = "\
 Examples:
   bahn plc diagram MAIN.PLC --script door.txt --show I4,T48,O2 --cycles 60
   bahn plc diagram MAIN.PLC --show M100,O2 --trigger O2=1 --cycles 40 --before 10 --svg door.svg";
+
+const WATCH_KEYS: &str = "\
+Keys: r run, s stop, c one cycle, l one line, up and down choose an operand, enter set it, space turn a
+bit over, a add an operand, d remove it, q end. Numbers are shown decimal, hexadecimal and binary.";
 
 const XREF_EXAMPLES: &str = "\
 Examples:
@@ -193,6 +200,18 @@ pub(crate) struct DiagramOptions {
     /// Write the diagram as drawing instead.
     #[arg(long, value_name = "OUT.svg", value_hint = ValueHint::FilePath)]
     pub svg: Option<PathBuf>,
+}
+
+/// Options of `bahn plc watch`.
+#[derive(Args, Debug)]
+pub(crate) struct WatchOptions {
+    #[command(flatten)]
+    pub program: ProgramOptions,
+    #[command(flatten)]
+    pub bench: BenchOptions,
+    /// The operands of the table; without it those of --set and of the script.
+    #[arg(long, value_name = "OPERAND,..", value_delimiter = ',')]
+    pub show: Vec<Operand>,
 }
 
 /// Options of `bahn plc list`.
