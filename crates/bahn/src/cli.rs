@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use bahn_parameters::ControlModel;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
+use crate::plc::PlcOptions;
 use crate::{Outcome, UsageError, console};
 
 /// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
@@ -33,6 +34,8 @@ pub(crate) enum Command {
     /// Write programs as normalised listing: block numbers, signs and spacing as the control prints them.
     #[command(after_help = FMT_EXAMPLES)]
     Fmt(FmtOptions),
+    /// Compile, run and debug PLC programs.
+    Plc(Box<PlcOptions>),
     /// Say what a message of the control means and what to do about it.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainOptions),
@@ -322,7 +325,7 @@ pub(crate) fn completions(options: &CompletionsOptions) -> Result<Outcome, Usage
     Ok(Outcome::Fine)
 }
 
-fn model_parser() -> impl clap::builder::TypedValueParser<Value = ControlModel> {
+pub(crate) fn model_parser() -> impl clap::builder::TypedValueParser<Value = ControlModel> {
     use clap::builder::{PossibleValuesParser, TypedValueParser};
     PossibleValuesParser::new(ControlModel::ALL.map(ControlModel::id))
         .try_map(|id| id.parse::<ControlModel>())

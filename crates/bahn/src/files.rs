@@ -267,7 +267,7 @@ impl Drop for NewFile {
 }
 
 /// The new name is safe when its folder is; where a folder cannot be synchronised nothing can be done.
-fn sync_folder(path: &Path) {
+pub(crate) fn sync_folder(path: &Path) {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())

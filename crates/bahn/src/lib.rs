@@ -8,7 +8,7 @@
 //!   other rooms;
 //! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
 //!   `path_csv`, `path_svg` and `cutting` take the path elements;
-//! - `check`, `format`, `explain`: the other subcommands;
+//! - `check`, `format`, `explain`: the other subcommands; `plc`: the group `bahn plc`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
@@ -25,6 +25,7 @@ mod format;
 mod interrupt;
 mod path_csv;
 mod path_svg;
+mod plc;
 mod progress;
 mod report;
 mod report_text;
@@ -48,6 +49,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Test(options) => test_run::command(options),
         cli::Command::Check(options) => check::command(options),
         cli::Command::Fmt(options) => format::command(options),
+        cli::Command::Plc(options) => plc::command(options),
         cli::Command::Explain(options) => explain::command(options),
         cli::Command::Completions(options) => cli::completions(options),
     };

@@ -13,16 +13,22 @@ use crate::{files, tool_table};
 
 /// The machine parameters of the run: reference list of the model, then the list, then single ones.
 pub(crate) fn parameters(model: ControlModel, options: &MachineOptions) -> Result<ParameterList, UsageError> {
+    let mut list = parameter_list(model, options.parameters.as_deref())?;
+    for assignment in &options.mp {
+        list.assign(assignment)
+            .map_err(|error| UsageError::new(format!("--mp {assignment}: {error} ({model})")))?;
+    }
+    Ok(list)
+}
+
+/// The reference list of the model, with values of a list file in place of its own.
+pub(crate) fn parameter_list(model: ControlModel, path: Option<&Path>) -> Result<ParameterList, UsageError> {
     let mut list = ParameterList::reference(model);
-    if let Some(path) = &options.parameters {
+    if let Some(path) = path {
         let errors = list.read(&files::read_table(path)?);
         if !errors.is_empty() {
             return Err(UsageError::new(list_errors(path, &errors)));
         }
-    }
-    for assignment in &options.mp {
-        list.assign(assignment)
-            .map_err(|error| UsageError::new(format!("--mp {assignment}: {error} ({model})")))?;
     }
     Ok(list)
 }

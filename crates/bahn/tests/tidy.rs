@@ -24,6 +24,8 @@ const ROOMS: &[(&str, &[&str])] = &[
             "interpreter",
             "motion",
             "workpiece",
+            "exchange",
+            "plc",
         ],
     ),
 ];

@@ -1,0 +1,142 @@
+//! A program on the test bench: memory, stand-in for the control, stimuli.
+
+use std::sync::Arc;
+
+use bahn_exchange::Exchange;
+use bahn_parameters::{ControlModel, ParameterList};
+use bahn_plc::{Machine, PlcProgram, RuntimeError, Start, TestNc, Tracer, mirror_parameters};
+
+use super::operand::{Assignment, Content, Operand};
+use super::options::BenchOptions;
+use super::script::Script;
+use crate::{UsageError, settings};
+
+/// A program with all it needs to run.
+pub(super) struct Bench {
+    pub machine: Machine,
+    pub exchange: Exchange,
+    pub nc: TestNc,
+    pub script: Script,
+    /// Cycles that were started.
+    pub cycle: u64,
+}
+
+/// An expectation that does not hold.
+#[derive(Clone, Debug, serde::Serialize)]
+pub(super) struct Failure {
+    pub cycle: u64,
+    pub operand: String,
+    pub expected: Content,
+    pub found: Content,
+}
+
+impl Bench {
+    /// With the operands of `--set`; `exchange` holds what was retained.
+    pub fn new(
+        program: Arc<PlcProgram>,
+        model: ControlModel,
+        options: &BenchOptions,
+        exchange: Exchange,
+    ) -> Result<Bench, UsageError> {
+        let script = options.script.as_deref().map(Script::load).transpose()?;
+        let mut bench = Bench {
+            machine: Machine::new(program, Start::PowerOn),
+            exchange,
+            nc: TestNc::new(settings::parameter_list(model, options.parameters.as_deref())?),
+            script: script.unwrap_or_default(),
+            cycle: 0,
+        };
+        mirror_parameters(&bench.nc.parameters, &mut bench.exchange);
+        for assignment in set_operands(options)? {
+            bench
+                .set(&assignment)
+                .map_err(|error| UsageError::new(format!("--set {error}")))?;
+        }
+        bench.check_script()?;
+        Ok(bench)
+    }
+
+    /// Sets an operand or a machine parameter from outside.
+    pub fn set(&mut self, assignment: &Assignment) -> Result<(), String> {
+        match assignment {
+            Assignment::Operand(operand, content) => operand.write(&mut self.exchange, content),
+            Assignment::Parameter(text) => {
+                assign(&mut self.nc.parameters, text)?;
+                mirror_parameters(&self.nc.parameters, &mut self.exchange);
+            }
+        }
+        Ok(())
+    }
+
+    /// Applies the stimuli of the next cycle and counts it.
+    pub fn stimulate(&mut self) {
+        self.cycle += 1;
+        let stimuli = self.script.cycle(self.cycle).map(|cycle| cycle.set.clone());
+        for assignment in stimuli.unwrap_or_default() {
+            // Every one was tried before the run.
+            let _ = self.set(&assignment);
+        }
+    }
+
+    /// Runs the next cycle; the stimuli come first.
+    pub fn scan(&mut self, tracer: Option<&mut dyn Tracer>) -> Result<(), RuntimeError> {
+        self.stimulate();
+        match tracer {
+            Some(tracer) => self.machine.scan_traced(&mut self.exchange, &mut self.nc, tracer),
+            None => self.machine.scan(&mut self.exchange, &mut self.nc),
+        }
+        .map(|_| ())
+    }
+
+    /// The expectations of the last cycle that do not hold.
+    pub fn failures(&self) -> Vec<Failure> {
+        let expected = self
+            .script
+            .cycle(self.cycle)
+            .map_or(&[][..], |cycle| &cycle.expect);
+        expected
+            .iter()
+            .filter_map(|(operand, expected)| {
+                let found = self.read(*operand);
+                (found != *expected).then(|| Failure {
+                    cycle: self.cycle,
+                    operand: operand.to_string(),
+                    expected: expected.clone(),
+                    found,
+                })
+            })
+            .collect()
+    }
+
+    pub fn read(&self, operand: Operand) -> Content {
+        operand.read(self.exchange.plc())
+    }
+
+    /// Tries the machine parameters of the script, so that a wrong one is said before the run.
+    fn check_script(&self) -> Result<(), UsageError> {
+        let mut list = self.nc.parameters.clone();
+        for assignment in self.script.cycles().flat_map(|cycle| &cycle.set) {
+            if let Assignment::Parameter(text) = assignment {
+                assign(&mut list, text).map_err(|error| UsageError::new(format!("script: {error}")))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The assignments of `--set`.
+pub(super) fn set_operands(options: &BenchOptions) -> Result<Vec<Assignment>, UsageError> {
+    let mut all = Vec::new();
+    for text in &options.set {
+        all.extend(
+            Assignment::parse_all(text).map_err(|error| UsageError::new(format!("--set {text}: {error}")))?,
+        );
+    }
+    // Machine parameters first: they go to words that may be set, too.
+    all.sort_by_key(|assignment| matches!(assignment, Assignment::Operand(..)));
+    Ok(all)
+}
+
+fn assign(list: &mut ParameterList, text: &str) -> Result<(), String> {
+    list.assign(text).map_err(|error| format!("MP{text}: {error}"))
+}

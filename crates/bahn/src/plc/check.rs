@@ -1,0 +1,75 @@
+//! `bahn plc check`: compile and say what is wrong.
+
+use bahn_plc::Diagnostic as Fault;
+
+use super::options::CheckOptions;
+use super::print_json;
+use super::source::Source;
+use crate::cli::Format;
+use crate::{Outcome, UsageError, diagnostics};
+
+/// Compiles a program and prints what is wrong.
+pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
+    let source = Source::compile(&options.program)?;
+    let compilation = &source.compilation;
+    let report = Report {
+        ok: compilation.program.is_some(),
+        errors: compilation.errors.iter().map(Entry::new).collect(),
+        warnings: compilation.warnings.iter().map(Entry::new).collect(),
+        size_bytes: compilation.size_bytes,
+        nominal_percent: compilation.nominal_percent(),
+    };
+    match options.format {
+        Format::Json => print_json(&report)?,
+        Format::Text => {
+            source.print_faults();
+            let count = |number: usize, what: &str| match number {
+                1 => format!("1 {what}"),
+                _ => format!("{number} {what}s"),
+            };
+            diagnostics::print_line(&format!(
+                "{}: {}, {}, {} bytes, nominal cycle time {:.2} %",
+                options.program.file.display(),
+                count(report.errors.len(), "error"),
+                count(report.warnings.len(), "warning"),
+                report.size_bytes,
+                report.nominal_percent,
+            ));
+        }
+    }
+    Ok(if report.ok {
+        Outcome::Fine
+    } else {
+        Outcome::ProgramError
+    })
+}
+
+#[derive(Debug, serde::Serialize)]
+struct Report {
+    ok: bool,
+    errors: Vec<Entry>,
+    warnings: Vec<Entry>,
+    size_bytes: u32,
+    nominal_percent: f64,
+}
+
+#[derive(Debug, serde::Serialize)]
+struct Entry {
+    number: u8,
+    file: String,
+    line: u32,
+    column: u32,
+    message: String,
+}
+
+impl Entry {
+    fn new(fault: &Fault) -> Entry {
+        Entry {
+            number: fault.error.number(),
+            file: fault.file.clone(),
+            line: fault.line,
+            column: fault.column,
+            message: fault.message.clone(),
+        }
+    }
+}

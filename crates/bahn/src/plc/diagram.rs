@@ -1,0 +1,127 @@
+//! `bahn plc diagram`: operands over cycles, with trigger [000:11461-11480].
+
+use std::collections::VecDeque;
+use std::io::Write;
+
+use bahn_exchange::Exchange;
+
+use super::bench::Bench;
+use super::drawing;
+use super::operand::{Assignment, Content, Operand};
+use super::options::DiagramOptions;
+use super::run;
+use super::source::Source;
+use crate::files::{self, NewFile};
+use crate::{Outcome, UsageError, console, diagnostics};
+
+/// Operands of a diagram [000:11461].
+const OPERANDS_MAX: usize = 16;
+
+/// Runs a program and draws operands.
+pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
+    if options.show.len() > OPERANDS_MAX {
+        return Err(UsageError::new(format!(
+            "a diagram has up to {OPERANDS_MAX} operands"
+        )));
+    }
+    let trigger = options.trigger.as_deref().map(trigger).transpose()?;
+    let source = Source::compile(&options.program)?;
+    let Some(program) = source.program() else {
+        return Ok(Outcome::ProgramError);
+    };
+    let mut bench = Bench::new(
+        program,
+        options.program.model,
+        &options.bench,
+        Exchange::default(),
+    )?;
+    let mut samples = VecDeque::new();
+    // The cycle that triggers; without trigger the first.
+    let mut triggered = trigger.is_none().then_some(1);
+    let before = options.before.min(options.cycles.saturating_sub(1));
+    let mut outcome = Outcome::Fine;
+    loop {
+        let end = triggered.map_or(options.limit, |cycle: u64| {
+            // Fewer cycles lie before an early trigger.
+            cycle
+                .saturating_sub(before)
+                .max(1)
+                .saturating_add(options.cycles - 1)
+        });
+        if bench.cycle >= end {
+            break;
+        }
+        if let Err(error) = bench.scan(None) {
+            run::print_error(bench.machine.program(), &error);
+            outcome = Outcome::ProgramError;
+            break;
+        }
+        samples.push_back(options.show.iter().map(|operand| bench.read(*operand)).collect());
+        if triggered.is_none() {
+            if trigger
+                .as_ref()
+                .is_some_and(|(operand, wanted)| bench.read(*operand) == *wanted)
+            {
+                triggered = Some(bench.cycle);
+            } else if samples.len() as u64 > before {
+                samples.pop_front();
+            }
+        }
+    }
+    if triggered.is_none() && outcome == Outcome::Fine {
+        diagnostics::print_line(&format!("the trigger did not come within {} cycles", bench.cycle));
+        return Ok(Outcome::ProgramError);
+    }
+    let diagram = Diagram {
+        operands: options.show.clone(),
+        first: bench.cycle.saturating_sub(samples.len() as u64) + 1,
+        trigger: trigger.and(triggered),
+        samples: samples.into(),
+    };
+    match &options.svg {
+        Some(path) => {
+            let mut file = NewFile::create(path)?;
+            file.write_all(drawing::svg(&diagram).as_bytes())
+                .map_err(|error| files::cannot("write", path, &error))?;
+            file.finish()?;
+        }
+        None => console::print(&drawing::text(&diagram))?,
+    }
+    Ok(outcome)
+}
+
+fn trigger(text: &str) -> Result<(Operand, Content), UsageError> {
+    match Assignment::parse(text) {
+        Ok(Assignment::Operand(operand, content)) => Ok((operand, content)),
+        Ok(Assignment::Parameter(_)) => Err(UsageError::new("--trigger takes an operand")),
+        Err(error) => Err(UsageError::new(format!("--trigger {text}: {error}"))),
+    }
+}
+
+/// What is drawn.
+pub(super) struct Diagram {
+    pub operands: Vec<Operand>,
+    /// The first cycle.
+    pub first: u64,
+    /// The cycle that triggered.
+    pub trigger: Option<u64>,
+    /// The operands after each cycle.
+    pub samples: Vec<Vec<Content>>,
+}
+
+impl Diagram {
+    /// Stretches of cycles over which an operand keeps its content: first sample, number of samples.
+    pub fn stretches(&self, operand: usize) -> Vec<(usize, usize, &Content)> {
+        let mut stretches: Vec<(usize, usize, &Content)> = Vec::new();
+        for (at, sample) in self.samples.iter().enumerate() {
+            let Some(content) = sample.get(operand) else {
+                continue;
+            };
+            match stretches.last_mut() {
+                Some((_, count, last)) if *last == content => *count += 1,
+                _ => stretches.push((at, 1, content)),
+            }
+        }
+        stretches
+    }
+}

@@ -1,0 +1,50 @@
+//! `bahn plc`: the PLC on a desk.
+//!
+//! - `options`: options and help texts;
+//! - `source`: source files beside the main file, compile errors as rustc prints them;
+//! - `operand`, `script`: operands as the user writes them, stimuli and expectations;
+//! - `bench`: program, memory and stand-in for the control together;
+//! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
+
+mod bench;
+mod check;
+mod diagram;
+mod drawing;
+mod list;
+mod operand;
+mod options;
+mod record;
+mod retain;
+mod run;
+mod script;
+mod signals;
+mod source;
+mod trace;
+mod watch;
+mod xref;
+
+pub(crate) use options::PlcOptions;
+
+use crate::{Outcome, UsageError, console};
+use options::PlcCommand;
+
+/// Executes a subcommand of `bahn plc`.
+pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
+    match &options.command {
+        PlcCommand::Check(options) => check::command(options),
+        PlcCommand::Run(options) => run::command(options),
+        PlcCommand::Trace(options) => trace::command(options),
+        PlcCommand::Diagram(options) => diagram::command(options),
+        PlcCommand::Watch(options) => watch::command(options),
+        PlcCommand::List(options) => list::command(options),
+        PlcCommand::Xref(options) => xref::command(options),
+        PlcCommand::Signals(options) => signals::command(options),
+    }
+}
+
+/// Prints a report as JSON.
+fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
+    let json = serde_json::to_string_pretty(report)
+        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
+    console::print(&(json + "\n"))
+}

@@ -1,0 +1,288 @@
+//! Options and help texts of `bahn plc`.
+
+use std::path::PathBuf;
+
+use bahn_parameters::ControlModel;
+use clap::{Args, Subcommand, ValueHint};
+
+use super::operand::Operand;
+use crate::cli::{Format, model_parser};
+
+/// Options of `bahn plc`.
+#[derive(Args, Debug)]
+pub(crate) struct PlcOptions {
+    #[command(subcommand)]
+    pub command: PlcCommand,
+}
+
+/// What to do with a PLC program.
+#[derive(Debug, Subcommand)]
+pub(crate) enum PlcCommand {
+    /// Compile: all errors of all files in one pass, length of the code, nominal time of a cycle.
+    #[command(after_help = CHECK_EXAMPLES)]
+    Check(CheckOptions),
+    /// Run cycle by cycle against inputs from the command line or a script, and check what comes out.
+    #[command(after_help = RUN_EXAMPLES)]
+    Run(RunOptions),
+    /// Show every executed line of one cycle with operand, logic and word accumulator.
+    #[command(after_help = TRACE_EXAMPLES)]
+    Trace(TraceOptions),
+    /// Draw up to 16 operands over up to 1024 cycles.
+    #[command(after_help = DIAGRAM_EXAMPLES)]
+    Diagram(DiagramOptions),
+    /// Watch and set operands while the program runs or is stepped (full screen).
+    #[command(after_help = WATCH_KEYS)]
+    Watch(WatchOptions),
+    /// Print the program as formatted listing.
+    List(ListOptions),
+    /// Show where operands and labels are used; which are not, and which are written twice.
+    #[command(after_help = XREF_EXAMPLES)]
+    Xref(XrefOptions),
+    /// List the fixed markers and words with who sets and resets them.
+    #[command(after_help = SIGNALS_EXAMPLES)]
+    Signals(SignalsOptions),
+}
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  bahn plc check MAIN.PLC
+  bahn plc check MAIN.PLC --model tnc407 --format json
+
+JSON: ok, errors and warnings (number, file, line, column, message), size_bytes, nominal_percent
+(100 % are 5 ms). Files that the program links with USES lie beside the main file.
+Exit codes: 0 no error, 1 errors, 2 wrong use.";
+
+const RUN_EXAMPLES: &str = "\
+Examples:
+  bahn plc run MAIN.PLC --set I4=1,W6=100 --show O2,D120
+      One cycle with input 4 set.
+  bahn plc run MAIN.PLC --cycles 50 --set I4=1,MP4110.2=4 --show O2 --trace 1..2
+      Fifty cycles; every executed line of the first two.
+  bahn plc run MAIN.PLC --script door.txt --record door.csv --show I4,O2
+      Stimuli and expectations from a file; operands after every cycle as a table.
+
+Script (--script): lines that are applied before or checked after a cycle; the first cycle is 1:
+  1: I4=1, W6=100          ; set before cycle 1
+  3: expect O2=1, B8=-3    ; checked after cycle 3
+  4: S0=\"OIL\", MP4110.2=4
+Values are decimal, $2A hexadecimal or \"text\". Text behind ; or # is a comment.
+Without --cycles the run ends with the last cycle of the script.
+
+JSON: cycles, values, processing_percent (current, maximum), error (number, file, line, or null); with
+--trace also trace, with failed expectations also failed_expectations.
+Exit codes: 0 fine, 1 compile error, run-time error or failed expectation, 2 wrong use.";
+
+const TRACE_EXAMPLES: &str = "\
+Examples:
+  bahn plc trace MAIN.PLC --set I4=1
+  bahn plc trace MAIN.PLC --script door.txt --cycle 3";
+
+const DIAGRAM_EXAMPLES: &str = "\
+Examples:
+  bahn plc diagram MAIN.PLC --script door.txt --show I4,T48,O2 --cycles 60
+  bahn plc diagram MAIN.PLC --show M100,O2 --trigger O2=1 --cycles 40 --before 10 --svg door.svg";
+
+const WATCH_KEYS: &str = "\
+Keys: r run, s stop, c one cycle, l one line, up and down choose an operand, enter set it, space turn a
+bit over, a add an operand, d remove it, q end. Numbers are shown decimal, hexadecimal and binary.";
+
+const XREF_EXAMPLES: &str = "\
+Examples:
+  bahn plc xref MAIN.PLC
+  bahn plc xref MAIN.PLC --only O,M2045
+  bahn plc xref MAIN.PLC --format json";
+
+const SIGNALS_EXAMPLES: &str = "\
+Examples:
+  bahn plc signals
+  bahn plc signals strobe
+  bahn plc signals M2045 --format json";
+
+/// The program.
+#[derive(Args, Debug)]
+pub(crate) struct ProgramOptions {
+    /// The main file; linked files lie beside it.
+    #[arg(value_name = "MAIN.PLC", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// Control model.
+    #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
+    pub model: ControlModel,
+}
+
+/// What the program runs against.
+#[derive(Args, Debug)]
+pub(crate) struct BenchOptions {
+    /// Operands and machine parameters before the first cycle, as I4=1,W6=100,MP4110.2=4 (repeatable).
+    #[arg(long, value_name = "OPERAND=V,..")]
+    pub set: Vec<String>,
+    /// List of machine parameters that replaces values of the model's reference list.
+    #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
+    pub parameters: Option<PathBuf>,
+    /// Stimuli and expectations.
+    #[arg(long, value_name = "STIMULI", value_hint = ValueHint::FilePath)]
+    pub script: Option<PathBuf>,
+}
+
+/// Options of `bahn plc check`.
+#[derive(Args, Debug)]
+pub(crate) struct CheckOptions {
+    #[command(flatten)]
+    pub program: ProgramOptions,
+    /// How the result is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Options of `bahn plc run`.
+#[derive(Args, Debug)]
+pub(crate) struct RunOptions {
+    #[command(flatten)]
+    pub program: ProgramOptions,
+    #[command(flatten)]
+    pub bench: BenchOptions,
+    /// Cycles; without it those of the script, or one.
+    #[arg(long, value_name = "N")]
+    pub cycles: Option<u64>,
+    /// File of the non-volatile markers and bytes: read before, written after the run.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub retain: Option<PathBuf>,
+    /// Operands whose values are shown after the run.
+    #[arg(long, value_name = "OPERAND,..", value_delimiter = ',')]
+    pub show: Vec<Operand>,
+    /// Show every executed line of these cycles, all without a range.
+    #[arg(long, value_name = "FROM..TO", num_args = 0..=1, default_missing_value = "..")]
+    pub trace: Option<CycleRange>,
+    /// Write the operands of --show, or else those of the script, after every cycle.
+    #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
+    pub record: Option<PathBuf>,
+    /// How the result is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Options of `bahn plc trace`.
+#[derive(Args, Debug)]
+pub(crate) struct TraceOptions {
+    #[command(flatten)]
+    pub program: ProgramOptions,
+    #[command(flatten)]
+    pub bench: BenchOptions,
+    /// The cycle that is shown.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    pub cycle: u64,
+    /// How the result is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Options of `bahn plc diagram`.
+#[derive(Args, Debug)]
+pub(crate) struct DiagramOptions {
+    #[command(flatten)]
+    pub program: ProgramOptions,
+    #[command(flatten)]
+    pub bench: BenchOptions,
+    /// The operands, up to 16.
+    #[arg(long, value_name = "OPERAND,..", value_delimiter = ',', required = true)]
+    pub show: Vec<Operand>,
+    /// Cycles that are drawn, up to 1024.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..=1024))]
+    pub cycles: u64,
+    /// Draw from the first cycle after which an operand has a value.
+    #[arg(long, value_name = "OPERAND=V")]
+    pub trigger: Option<String>,
+    /// Cycles that are drawn before the one that triggers.
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "trigger")]
+    pub before: u64,
+    /// Cycles after which the trigger is given up.
+    #[arg(long, value_name = "N", default_value_t = 100_000, requires = "trigger")]
+    pub limit: u64,
+    /// Write the diagram as drawing instead.
+    #[arg(long, value_name = "OUT.svg", value_hint = ValueHint::FilePath)]
+    pub svg: Option<PathBuf>,
+}
+
+/// Options of `bahn plc watch`.
+#[derive(Args, Debug)]
+pub(crate) struct WatchOptions {
+    #[command(flatten)]
+    pub program: ProgramOptions,
+    #[command(flatten)]
+    pub bench: BenchOptions,
+    /// The operands of the table; without it those of --set and of the script.
+    #[arg(long, value_name = "OPERAND,..", value_delimiter = ',')]
+    pub show: Vec<Operand>,
+}
+
+/// Options of `bahn plc list`.
+#[derive(Args, Debug)]
+pub(crate) struct ListOptions {
+    #[command(flatten)]
+    pub program: ProgramOptions,
+}
+
+/// Options of `bahn plc xref`.
+#[derive(Args, Debug)]
+pub(crate) struct XrefOptions {
+    #[command(flatten)]
+    pub program: ProgramOptions,
+    /// Only operands (M2045) or kinds of operands (O).
+    #[arg(long, value_name = "OPERAND,..", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// How the result is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Options of `bahn plc signals`.
+#[derive(Args, Debug)]
+pub(crate) struct SignalsOptions {
+    /// Only signals with all these words in operand, name or meaning.
+    #[arg(value_name = "WORD")]
+    pub filter: Vec<String>,
+    /// How the list is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Cycles from one to another, both included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CycleRange {
+    pub from: u64,
+    pub to: u64,
+}
+
+impl CycleRange {
+    pub fn contains(self, cycle: u64) -> bool {
+        (self.from..=self.to).contains(&cycle)
+    }
+}
+
+impl std::str::FromStr for CycleRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<CycleRange, String> {
+        let wrong = || "it takes cycles as 2..5, 2.., ..5 or 2".to_owned();
+        let bound = |text: &str, open: u64| match text.trim() {
+            "" => Ok(open),
+            text => text.parse().map_err(|_| wrong()),
+        };
+        let range = match text.split_once("..") {
+            Some((from, to)) => CycleRange {
+                from: bound(from, 1)?,
+                to: bound(to.trim_start_matches('='), u64::MAX)?,
+            },
+            None => {
+                let cycle = text.trim().parse().map_err(|_| wrong())?;
+                CycleRange {
+                    from: cycle,
+                    to: cycle,
+                }
+            }
+        };
+        if range.from == 0 || range.from > range.to {
+            return Err(wrong());
+        }
+        Ok(range)
+    }
+}

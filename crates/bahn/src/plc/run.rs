@@ -1,0 +1,225 @@
+//! `bahn plc run`: cycle by cycle, with stimuli and expectations.
+
+use bahn_exchange::Exchange;
+use bahn_plc::{PlcProgram, ProcessingTime, RuntimeError};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::bench::{Bench, Failure};
+use super::operand::{Content, Operand};
+use super::options::RunOptions;
+use super::print_json;
+use super::record::Record;
+use super::retain::Retained;
+use super::source::Source;
+use super::trace::{Line, Trace};
+use crate::cli::Format;
+use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::{Outcome, UsageError, console};
+
+/// Runs a program and shows what came out.
+pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
+    let source = Source::compile(&options.program)?;
+    let first_error = source.compilation.errors.first().map(|fault| Stop {
+        number: fault.error.number(),
+        file: fault.file.clone(),
+        line: fault.line,
+    });
+    let Some(program) = source.program() else {
+        if options.format == Format::Json {
+            print_json(&Report::not_run(first_error))?;
+        }
+        return Ok(Outcome::ProgramError);
+    };
+    let mut retained = options.retain.as_deref().map(Retained::open).transpose()?;
+    let exchange = retained
+        .as_ref()
+        .map_or_else(Exchange::default, Retained::restore);
+    let mut bench = Bench::new(program, options.program.model, &options.bench, exchange)?;
+    let mut record = options
+        .record
+        .as_deref()
+        .map(|path| Record::create(path, recorded(options, &bench)))
+        .transpose()?;
+
+    let last = bench.script.last();
+    let cycles = options.cycles.unwrap_or(last.max(1));
+    if cycles < last {
+        diagnostics::print_line(&format!(
+            "warning: the script goes on to cycle {last}, the run ends with cycle {cycles}"
+        ));
+    }
+    let mut report = Report::not_run(None);
+    let mut trace = Trace::default();
+    while bench.cycle < cycles && report.error.is_none() {
+        trace.cycle = bench.cycle + 1;
+        let traced = options.trace.is_some_and(|range| range.contains(trace.cycle));
+        let result = bench.scan(traced.then_some(&mut trace));
+        if let Err(error) = result {
+            print_error(bench.machine.program(), &error);
+            report.error = Some(Stop {
+                number: error.error.number(),
+                file: error.file,
+                line: error.line,
+            });
+            break;
+        }
+        report.cycles += 1;
+        report.failed_expectations.extend(bench.failures());
+        if let Some(record) = &mut record {
+            record.cycle(&bench)?;
+        }
+        if let Some(retained) = &mut retained {
+            retained.tick(bench.exchange.plc())?;
+        }
+    }
+    if let Some(retained) = &mut retained {
+        retained.flush(bench.exchange.plc())?;
+    }
+    record.map_or(Ok(()), Record::finish)?;
+
+    for failure in &report.failed_expectations {
+        diagnostics::print_line(&format!(
+            "cycle {}: {} expected {}, found {}",
+            failure.cycle, failure.operand, failure.expected, failure.found
+        ));
+    }
+    report.values = Values(
+        options
+            .show
+            .iter()
+            .map(|operand| (*operand, bench.read(*operand)))
+            .collect(),
+    );
+    report.processing_percent = bench.machine.time().into();
+    let fine = report.error.is_none() && report.failed_expectations.is_empty();
+    match options.format {
+        Format::Json => {
+            report.trace = options.trace.map(|_| trace.lines);
+            print_json(&report)?;
+        }
+        Format::Text => console::print(&(trace.text() + &report.text()))?,
+    }
+    Ok(if fine {
+        Outcome::Fine
+    } else {
+        Outcome::ProgramError
+    })
+}
+
+/// Prints a run-time error with its line.
+pub(super) fn print_error(program: &PlcProgram, error: &RuntimeError) {
+    let file = program.files.iter().find(|file| file.name == error.file);
+    let index = (error.line as usize).saturating_sub(1);
+    let text = file
+        .and_then(|file| file.lines.get(index))
+        .cloned()
+        .unwrap_or_default();
+    let code = super::list::split_comment(&text).0;
+    let start = code.chars().take_while(|c| c.is_whitespace()).count();
+    let length = code.trim().chars().count();
+    diagnostics::print(&Diagnostic {
+        severity: Severity::Error,
+        title: &format!("{} {}", error.error.number(), error.error.text()),
+        path: &error.file,
+        marked: Marked {
+            line: error.line,
+            columns: Some((
+                u32::try_from(start + 1).unwrap_or(1),
+                u32::try_from(length).unwrap_or(1),
+            )),
+            text,
+        },
+        label: match error.job {
+            Some(job) => format!("submit job {job} stopped the PLC here"),
+            None => "the PLC stopped here".to_owned(),
+        },
+        help: None,
+    });
+    diagnostics::print_line("");
+}
+
+/// The columns of `--record`.
+fn recorded(options: &RunOptions, bench: &Bench) -> Vec<Operand> {
+    if options.show.is_empty() {
+        bench.script.operands()
+    } else {
+        options.show.clone()
+    }
+}
+
+#[derive(Debug, serde::Serialize)]
+struct Report {
+    /// Cycles that ran to their end.
+    cycles: u64,
+    values: Values,
+    processing_percent: Percent,
+    error: Option<Stop>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    failed_expectations: Vec<Failure>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    trace: Option<Vec<Line>>,
+}
+
+#[derive(Debug, serde::Serialize)]
+struct Stop {
+    number: u8,
+    file: String,
+    line: u32,
+}
+
+#[derive(Debug, Default, serde::Serialize)]
+struct Percent {
+    current: f64,
+    maximum: f64,
+}
+
+impl From<ProcessingTime> for Percent {
+    fn from(time: ProcessingTime) -> Percent {
+        Percent {
+            current: time.current_percent(),
+            maximum: time.maximum_percent(),
+        }
+    }
+}
+
+/// Operands in the order of `--show`.
+#[derive(Debug, Default)]
+struct Values(Vec<(Operand, Content)>);
+
+impl Serialize for Values {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (operand, content) in &self.0 {
+            map.serialize_entry(&operand.to_string(), content)?;
+        }
+        map.end()
+    }
+}
+
+impl Report {
+    fn not_run(error: Option<Stop>) -> Report {
+        Report {
+            cycles: 0,
+            values: Values::default(),
+            processing_percent: Percent::default(),
+            error,
+            failed_expectations: Vec::new(),
+            trace: None,
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut text: String = self
+            .values
+            .0
+            .iter()
+            .map(|(operand, content)| format!("{operand} = {content}\n"))
+            .collect();
+        let plural = if self.cycles == 1 { "" } else { "s" };
+        text += &format!(
+            "{} cycle{plural}, processing time {:.2} %, maximum {:.2} %\n",
+            self.cycles, self.processing_percent.current, self.processing_percent.maximum
+        );
+        text
+    }
+}

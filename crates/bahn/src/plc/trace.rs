@@ -1,0 +1,126 @@
+//! `bahn plc trace`: line, instruction, operand and accumulators per executed line [000:11414-11435].
+
+use bahn_exchange::Exchange;
+use bahn_plc::{OperandContent, TraceStep, Tracer};
+
+use super::bench::Bench;
+use super::options::TraceOptions;
+use super::print_json;
+use super::run;
+use super::source::Source;
+use crate::cli::Format;
+use crate::{Outcome, UsageError, console};
+
+/// Runs up to a cycle and shows its executed lines.
+pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
+    let source = Source::compile(&options.program)?;
+    let Some(program) = source.program() else {
+        return Ok(Outcome::ProgramError);
+    };
+    let mut bench = Bench::new(
+        program,
+        options.program.model,
+        &options.bench,
+        Exchange::default(),
+    )?;
+    let mut trace = Trace::default();
+    let mut result = Ok(());
+    while result.is_ok() && bench.cycle < options.cycle {
+        let shown = bench.cycle + 1 == options.cycle;
+        trace.cycle = bench.cycle + 1;
+        result = bench.scan(shown.then_some(&mut trace));
+    }
+    match options.format {
+        Format::Text => console::print(&trace.text())?,
+        Format::Json => print_json(&trace.lines)?,
+    }
+    match result {
+        Ok(()) => Ok(Outcome::Fine),
+        Err(error) => {
+            run::print_error(bench.machine.program(), &error);
+            Ok(Outcome::ProgramError)
+        }
+    }
+}
+
+/// The executed lines.
+#[derive(Debug, Default)]
+pub(super) struct Trace {
+    /// The cycle that is being executed.
+    pub cycle: u64,
+    pub lines: Vec<Line>,
+}
+
+/// An executed line with what it left behind.
+#[derive(Debug, serde::Serialize)]
+pub(super) struct Line {
+    cycle: u64,
+    file: String,
+    line: u32,
+    instruction: String,
+    operand: Option<serde_json::Value>,
+    logic: u8,
+    word: i32,
+    index: i32,
+    job: Option<u8>,
+}
+
+impl Tracer for Trace {
+    fn executed(&mut self, step: &TraceStep<'_>) {
+        let operand = step.operand().map(|content| match content {
+            OperandContent::Bit(bit) => u8::from(bit).into(),
+            OperandContent::Number(value) => value.into(),
+            OperandContent::Text(text) => text
+                .iter()
+                .map(|byte| char::from(*byte))
+                .collect::<String>()
+                .into(),
+        });
+        self.lines.push(Line {
+            cycle: self.cycle,
+            file: step.file().to_owned(),
+            line: step.instruction.line,
+            instruction: instruction(step.text()),
+            operand,
+            logic: step.registers.logic.into(),
+            word: step.registers.word,
+            index: step.registers.index,
+            job: step.job,
+        });
+    }
+}
+
+impl Trace {
+    /// The table for people.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        let mut shown = (0, "", None);
+        for line in &self.lines {
+            let place = (line.cycle, line.file.as_str(), line.job);
+            if place != shown {
+                let job = line
+                    .job
+                    .map(|job| format!(", submit job {job}"))
+                    .unwrap_or_default();
+                text += &format!("cycle {}, {}{job}\n", line.cycle, line.file);
+                text += " LINE  INSTRUCTION               OPERAND  LOGIC         WORD\n";
+                shown = place;
+            }
+            let operand = line.operand.as_ref().map(ToString::to_string).unwrap_or_default();
+            text += &format!(
+                "{:>5}  {:<20} {operand:>12}  {:>5}  {:>11}\n",
+                line.line, line.instruction, line.logic, line.word
+            );
+        }
+        text
+    }
+}
+
+/// A line without comment, blanks drawn together.
+pub(super) fn instruction(text: &str) -> String {
+    let text = super::list::split_comment(text).0;
+    match text.contains('"') {
+        true => text.trim().to_owned(),
+        false => text.split_whitespace().collect::<Vec<_>>().join(" "),
+    }
+}

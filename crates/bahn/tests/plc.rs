@@ -1,0 +1,259 @@
+//! `bahn plc`: check, run, trace, list, xref, signals.
+
+mod support;
+
+use serde_json::json;
+use support::Folder;
+
+/// O2 follows I4 AND I5; W8 counts cycles.
+const DOOR: &str = "L I4\nA I5 ; door\n= O2\nINC W8\nEM\n";
+
+fn folder(program: &str) -> Folder {
+    let folder = Folder::new();
+    folder.write("MAIN.PLC", program);
+    folder
+}
+
+#[test]
+fn check_reports_all_errors_in_one_pass() {
+    let folder = folder("L I4\nLOAD M5\n= W7\nEM\n");
+    let run = folder.bahn("plc check MAIN.PLC --format json");
+    assert_eq!(run.code(), 1);
+    let report = run.json();
+    assert_eq!(report["ok"], false);
+    let errors = report["errors"].as_array().unwrap();
+    let places: Vec<_> = errors
+        .iter()
+        .map(|e| (e["number"].clone(), e["line"].clone()))
+        .collect();
+    // No command LOAD; words lie at even addresses.
+    assert_eq!(places, [(json!(0), json!(2)), (json!(4), json!(3))]);
+    assert_eq!(errors[0]["file"], "MAIN.PLC");
+    assert_eq!(errors[0]["column"], 1);
+    let run = folder.bahn("plc check MAIN.PLC");
+    assert_eq!(run.code(), 1);
+    assert!(
+        run.err().contains("MAIN.PLC:2:1") && run.err().contains("2 | LOAD M5"),
+        "{}",
+        run.err()
+    );
+    assert!(run.err().contains("2 errors"), "{}", run.err());
+}
+
+#[test]
+fn check_knows_length_and_time() {
+    let folder = folder("L I4\n= O2\nEM\n");
+    let run = folder.bahn("plc check MAIN.PLC --model tnc407 --format json");
+    assert_eq!(run.code(), 0);
+    let report = run.json();
+    // L 4 bytes, = 4 bytes, EM 4 bytes; 0.7 + 0.5 + 3.8 us of 5 ms.
+    assert_eq!((&report["ok"], &report["size_bytes"]), (&json!(true), &json!(12)));
+    support::assert_near(report["nominal_percent"].as_f64().unwrap(), 0.1);
+    assert_eq!((&report["errors"], &report["warnings"]), (&json!([]), &json!([])));
+    assert_eq!(folder.bahn("plc check NOTHING.PLC").code(), 2);
+}
+
+#[test]
+fn linked_files_lie_beside_the_main_file() {
+    let folder = folder("USES GEAR.PLC\nEXTERN 10\nCM 10\nEM\n");
+    folder.write("GEAR.PLC", "GLOBAL 10\nLBL 10\nL K+7\n= B0\nEM\n");
+    let run = folder.bahn("plc run MAIN.PLC --show B0 --format json");
+    assert_eq!(
+        (run.code(), &run.json()["values"]["B0"]),
+        (0, &json!(7)),
+        "{}",
+        run.err()
+    );
+}
+
+#[test]
+fn run_shows_operands() {
+    let folder = folder(DOOR);
+    let run =
+        folder.bahn("plc run MAIN.PLC --cycles 3 --set I4=1,I5=1,W8=-5 --show O2,w8,B9,S0 --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let report = run.json();
+    assert_eq!(report["cycles"], 3);
+    // -5 and three increments: -2 = FFFEh.
+    assert_eq!(report["values"], json!({"O2": 1, "W8": -2, "B9": -2, "S0": ""}));
+    assert_eq!(report["error"], json!(null));
+    // 0.7 + 0.5 (A: no time printed) + 0.5 + 0.5 (INC) + 3.8 us of 5 ms.
+    support::assert_near(report["processing_percent"]["current"].as_f64().unwrap(), 0.12);
+    assert_eq!(report.as_object().unwrap().len(), 4);
+    let run = folder.bahn("plc run MAIN.PLC --set I4=1 --show O2");
+    assert!(run.out().starts_with("O2 = 0\n1 cycle,"), "{}", run.out());
+}
+
+#[test]
+fn machine_parameters_reach_timers() {
+    // T4 runs MP4110.4 cycles: T52 is its running output.
+    let folder = folder("L I0\n= T4\nL T52\n= O0\nEM\n");
+    let run = folder.bahn("plc run MAIN.PLC --cycles 3 --set I0=1,MP4110.4=100 --show O0 --format json");
+    assert_eq!(run.json()["values"]["O0"], 1, "{}", run.err());
+    assert_eq!(folder.bahn("plc run MAIN.PLC --set MP9999=1").code(), 2);
+}
+
+#[test]
+fn scripts_set_and_expect() {
+    let folder = folder(DOOR);
+    folder.write(
+        "good.txt",
+        "; door\n1: I4=1\n1: expect O2=0\n2: I5=1 # closed\n2: expect O2=1, W8=2\n5: expect W8=5\n",
+    );
+    let run = folder.bahn("plc run MAIN.PLC --script good.txt --record out.csv");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert_eq!(
+        folder.read("out.csv"),
+        "cycle,I4,O2,I5,W8\n1,1,0,0,1\n2,1,1,1,2\n3,1,1,1,3\n4,1,1,1,4\n5,1,1,1,5\n"
+    );
+    folder.write("bad.txt", "2: I4=1, I5=1\n2: expect O2=0\n3: expect W8=7\n");
+    let run = folder.bahn("plc run MAIN.PLC --script bad.txt --format json");
+    assert_eq!(run.code(), 1);
+    assert_eq!(
+        run.err(),
+        "cycle 2: O2 expected 0, found 1\ncycle 3: W8 expected 7, found 3\n"
+    );
+    let failed = &run.json()["failed_expectations"][1];
+    assert_eq!(
+        failed,
+        &json!({"cycle": 3, "operand": "W8", "expected": 7, "found": 3})
+    );
+    folder.write("wrong.txt", "1: I4=1\n2: W7=1\n");
+    let run = folder.bahn("plc run MAIN.PLC --script wrong.txt");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("wrong.txt:2:"), "{}", run.err());
+}
+
+#[test]
+fn run_time_errors_name_the_line() {
+    let folder = folder("L M0\n= M1\nLBL 1\nJP 1\nEM\n");
+    let run = folder.bahn("plc run MAIN.PLC --cycles 4 --format json");
+    assert_eq!(run.code(), 1);
+    assert_eq!(
+        run.json()["error"],
+        json!({"number": 53, "file": "MAIN.PLC", "line": 4})
+    );
+    assert_eq!(run.json()["cycles"], 0);
+    assert!(
+        run.err().contains("53 time out") && run.err().contains("MAIN.PLC:4:1"),
+        "{}",
+        run.err()
+    );
+    folder.write("MAIN.PLC", "L\nEM\n");
+    let run = folder.bahn("plc run MAIN.PLC --format json");
+    assert_eq!((run.code(), &run.json()["error"]["number"]), (1, &json!(3)));
+}
+
+#[test]
+fn retained_memory_survives() {
+    // M1000 and B0 are kept, M100 and B128 are not.
+    let folder = folder("INC B0\nINC B128\nLN M1000\n= M100\nS M1000\nEM\n");
+    let run = |cycles: u32| {
+        let run = folder.bahn(&format!(
+            "plc run MAIN.PLC --retain memory --cycles {cycles} --show B0,B128,M100 --format json"
+        ));
+        assert_eq!(run.code(), 0, "{}", run.err());
+        run.json()["values"].clone()
+    };
+    assert_eq!(run(1), json!({"B0": 1, "B128": 1, "M100": 1}));
+    assert_eq!(run(2), json!({"B0": 3, "B128": 2, "M100": 0}));
+    // Power-off in the middle of a record loses that record only.
+    let journal = std::fs::read(folder.path("memory")).unwrap();
+    std::fs::write(folder.path("memory"), &journal[..journal.len() - 1]).unwrap();
+    assert_eq!(run(1), json!({"B0": 2, "B128": 1, "M100": 0}));
+    folder.write("memory", "a letter");
+    assert_eq!(folder.bahn("plc run MAIN.PLC --retain memory").code(), 2);
+    assert_eq!(
+        folder.read("memory"),
+        "a letter",
+        "files of others are left alone"
+    );
+}
+
+#[test]
+fn traces_show_executed_lines() {
+    let folder = folder("L I4\nJPT 1\nL K+9\n= W8\nLBL 1\nEM\n");
+    let run = folder.bahn("plc trace MAIN.PLC --format json");
+    let lines = run.json();
+    let row = |index: usize| (lines[index]["line"].clone(), lines[index]["operand"].clone());
+    assert_eq!(row(0), (json!(1), json!(0)));
+    assert_eq!(row(3), (json!(4), json!(9)));
+    assert_eq!((&lines[3]["word"], &lines[3]["logic"]), (&json!(9), &json!(0)));
+    assert_eq!(lines[3]["instruction"], "= W8");
+    let run = folder.bahn("plc run MAIN.PLC --cycles 3 --set I4=1 --trace 2..3 --format json");
+    let lines = run.json()["trace"].clone();
+    let executed: Vec<_> = lines
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|l| (l["cycle"].as_u64().unwrap(), l["line"].as_u64().unwrap()))
+        .collect();
+    assert_eq!(executed, [(2, 1), (2, 2), (2, 6), (3, 1), (3, 2), (3, 6)]);
+    assert!(
+        folder
+            .bahn("plc trace MAIN.PLC")
+            .out()
+            .contains("cycle 1, MAIN.PLC")
+    );
+    assert_eq!(folder.bahn("plc run MAIN.PLC --trace 3..2").code(), 2);
+}
+
+#[test]
+fn listings_have_columns() {
+    let folder = folder("l i4;on\nIFT\nL K1\n= B0\nENDI\nEM\nLBL 5\nEM\n");
+    let run = folder.bahn("plc list MAIN.PLC");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let lines: Vec<String> = run.out().lines().map(str::to_owned).collect();
+    assert_eq!(lines[0], "MAIN.PLC");
+    assert_eq!(lines[1], format!("    1  {:<30} ;on", "  l     i4"));
+    assert_eq!(lines[3], "    3      L     K1");
+    assert_eq!(lines[5], "    5    ENDI");
+    assert_eq!(lines[7], "    7  LBL   5");
+}
+
+#[test]
+fn cross_references_name_every_place() {
+    let folder = folder("L I4\n= O2\nL I5\n= O2\nS M7\nCM 5\nEM\nLBL 5\nL W8\n= W10\nEM\nLBL 6\nEM\n");
+    let run = folder.bahn("plc xref MAIN.PLC --format json");
+    let report = run.json();
+    let operand = |name: &str| {
+        let all = report["operands"].as_array().unwrap();
+        all.iter().find(|o| o["operand"] == name).unwrap().clone()
+    };
+    assert_eq!(operand("I4")["read"], json!([{"file": "MAIN.PLC", "line": 1}]));
+    assert_eq!(operand("O2")["written_twice"], true);
+    assert_eq!(operand("O2")["unused"], false);
+    assert_eq!(operand("M7")["unused"], true);
+    assert_eq!(operand("W10")["written"][0]["line"], 10);
+    let label = |name: &str| {
+        let all = report["labels"].as_array().unwrap();
+        all.iter().find(|l| l["label"] == name).unwrap().clone()
+    };
+    assert_eq!(label("5")["used"], json!([{"file": "MAIN.PLC", "line": 6}]));
+    assert_eq!(
+        (&label("6")["unused"], &label("6")["defined"]["line"]),
+        (&json!(true), &json!(12))
+    );
+    let text = folder.bahn("plc xref MAIN.PLC --only O").out();
+    assert_eq!(text, "O2  (assigned twice)\n    written  MAIN.PLC:2 MAIN.PLC:4\n");
+}
+
+#[test]
+fn signals_are_listed() {
+    let folder = Folder::new();
+    let run = folder.bahn("plc signals M2045 --format json");
+    let list = run.json();
+    assert_eq!(list.as_array().map(Vec::len), Some(1));
+    assert_eq!(
+        (&list[0]["name"], &list[0]["operand"]),
+        (&json!("M_FUNCTION_STROBE"), &json!("M2045"))
+    );
+    assert_eq!(list[0]["set_by"], "NC");
+    assert!(folder.bahn("plc signals").out().lines().count() > 500);
+    let run = folder.bahn("plc signals fn19 strobe");
+    assert!(
+        run.out().contains("FN19_STROBE") && !run.out().contains("M2045"),
+        "{}",
+        run.out()
+    );
+}
