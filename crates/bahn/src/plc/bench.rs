@@ -81,11 +81,12 @@ impl Bench {
     /// Runs the next cycle; the stimuli come first.
     pub fn scan(&mut self, tracer: Option<&mut dyn Tracer>) -> Result<(), RuntimeError> {
         self.stimulate();
-        match tracer {
+        let report = match tracer {
             Some(tracer) => self.machine.scan_traced(&mut self.exchange, &mut self.nc, tracer),
             None => self.machine.scan(&mut self.exchange, &mut self.nc),
-        }
-        .map(|_| ())
+        };
+        self.nc.end_scan();
+        report.map(|_| ())
     }
 
     /// The expectations of the last cycle that do not hold.
