@@ -98,9 +98,9 @@ impl Motion {
         let (to, r1) = polar(arc.plane.point(&element.end), arc.centre);
         let sweep = arc.sweep_deg.to_radians();
         let mut delta = known_delta(&element.start, &element.end);
-        // Put the length in the plane in the place of the chord.
+        // Put the length in the plane, around and outwards, in the place of the chord.
         delta[plane[0]] = 0.5 * (r0 + r1) * sweep.abs();
-        delta[plane[1]] = 0.0;
+        delta[plane[1]] = r1 - r0;
         let (length, rotary) = path_length(&delta)?;
         let per_length = 1.0 / length;
 
@@ -131,7 +131,7 @@ impl Motion {
         }
         // Radial acceleration of a point that turns and moves outward: r·w² and 2·r'·w. On a circle
         // this is v = sqrt(r · MP1070) [000:5080-5086].
-        let per_square = turn * turn * greatest.hypot(2.0 * outward / turn);
+        let per_square = (greatest * turn * turn).hypot(2.0 * outward * turn);
         let radial_speed = if per_square > 0.0 {
             (dynamics.radial / per_square).sqrt()
         } else {

@@ -105,11 +105,7 @@ fn block() -> impl Strategy<Value = Block> {
         8 => (turn(), decades(0.001, 20.0), share.clone(), rotary)
             .prop_map(|(turn_deg, length, z, c)| Block::Line { turn_deg, length, z, c }),
         4 => (turn(), decades(0.01, 20.0), growth, -400.0..400.0f64, share)
-            .prop_map(|(turn_deg, radius, growth, sweep_deg, z)| {
-                // Without a sweep a growing radius is a jump, not an arc; no program can make one.
-                let growth = if sweep_deg.abs() < 1.0 { 1.0 } else { growth };
-                Block::Arc { turn_deg, radius, growth, sweep_deg, z }
-            }),
+            .prop_map(|(turn_deg, radius, growth, sweep_deg, z)| Block::Arc { turn_deg, radius, growth, sweep_deg, z }),
         1 => (-90.0..90.0f64).prop_map(|c| Block::Rotary { c }),
         1 => Just(Block::Nothing),
     ]

@@ -78,7 +78,10 @@ impl Curve {
             }
             Curve::Arc(arc) => {
                 let (r0, r1) = arc.radii(start, end);
-                let in_plane = 0.5 * (r0 + r1) * arc.sweep_deg.abs().to_radians();
+                // Where the radius changes within MP7431 the way outwards counts too: it is all there is
+                // when start and end lie in the same direction from the centre.
+                let around = 0.5 * (r0 + r1) * arc.sweep_deg.abs().to_radians();
+                let in_plane = around.hypot(r1 - r0);
                 let outside: f64 = Axis::ALL
                     .iter()
                     .filter(|a| !a.is_rotary() && !arc.plane.contains(**a))
@@ -184,9 +187,41 @@ pub fn sweep_deg(centre: Point2, start: Point2, end: Point2, counter_clockwise: 
     if (end[0] - start[0]).hypot(end[1] - start[1]) < SAME_POINT_MM {
         return if counter_clockwise { 360.0 } else { -360.0 };
     }
-    match (counter_clockwise, signed > 0.0) {
-        (true, true) | (false, false) => signed,
-        (true, false) => signed + 360.0,
-        (false, true) => signed - 360.0,
+    // An end in the very direction of the start is a full turn in either sense.
+    if counter_clockwise {
+        if signed > 0.0 { signed } else { signed + 360.0 }
+    } else if signed < 0.0 {
+        signed
+    } else {
+        signed - 360.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn end_in_the_direction_of_the_start_is_a_full_turn_both_ways() {
+        // The end lies 0.01 mm farther out, as rounded coordinates give it (MP7431).
+        let (centre, start, end) = ([50.0, 50.0], [60.0, 50.0], [60.01, 50.0]);
+        assert_eq!(sweep_deg(centre, start, end, true), 360.0);
+        assert_eq!(sweep_deg(centre, start, end, false), -360.0);
+        assert_eq!(sweep_deg(centre, start, [50.0, 60.0], true), 90.0);
+        assert_eq!(sweep_deg(centre, start, [50.0, 60.0], false), -270.0);
+    }
+
+    #[test]
+    fn the_way_outwards_counts() {
+        let mut start = Position::UNKNOWN;
+        Plane::XY.set(&mut start, [10.0, 0.0]);
+        let mut end = start;
+        Plane::XY.set(&mut end, [10.016, 0.0]);
+        let arc = Curve::Arc(Arc {
+            plane: Plane::XY,
+            centre: [0.0, 0.0],
+            sweep_deg: 0.0,
+        });
+        assert!((arc.length(&start, &end) - 0.016).abs() < 1e-12);
     }
 }
