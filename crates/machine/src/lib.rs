@@ -1,0 +1,1 @@
+//! The simulated machine: what the control drives when no real one is there.
