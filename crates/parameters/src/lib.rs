@@ -35,6 +35,10 @@ pub use list::ParameterList;
 pub use message::MessageId;
 pub use model::{ControlModel, UnknownModel};
 pub use settings::{
-    ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
-    Tapping,
+    AxisParameters, CompensationParameters, ContourPocket, Decimal, DigitalSpeedParameters,
+    EncoderParameters, FreeOutput, Gear, GearSignal, GraphicsSettings, LagParameters, MFunctions,
+    MonitoringParameters, MotionParameters, OrientationParameters, OutputParameters, PrecontrolParameters,
+    ProbeSettings, ProgramEndClearing, ReferenceParameters, ReferenceType, ScaledAxes, SpeedCodes,
+    SpindleOutput, SpindleParameters, SpindlePolarity, SpindleRamps, Synchronization, Tapping,
+    TappingParameters, TravelParameters,
 };
