@@ -1,1 +1,4 @@
 //! The kernel of the control.
+mod handshake;
+mod markers;
+mod panel;
