@@ -59,6 +59,7 @@ pub(crate) fn interpreter(
         tools: machine.tools.as_deref().map(tool_table::load).transpose()?,
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
+        tool_length_mm: None,
         skip_blocks: run.skip_blocks,
         strict: run.strict,
         max_blocks_without_motion: run.max_blocks,

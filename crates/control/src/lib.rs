@@ -1,4 +1,7 @@
 //! The kernel of the control.
+mod emergency;
 mod handshake;
 mod markers;
+mod message;
 mod panel;
+mod plc_link;

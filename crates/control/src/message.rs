@@ -85,7 +85,11 @@ impl Message {
                 None => with_axis(*id, *axis),
             },
             Message::Limit { axis, plus } => {
-                format!("{}{}", with_axis(MessageId::LimitSwitch, *axis), if *plus { '+' } else { '-' })
+                format!(
+                    "{}{}",
+                    with_axis(MessageId::LimitSwitch, *axis),
+                    if *plus { '+' } else { '-' }
+                )
             }
             Message::PlcMarkers(code) => format!(
                 "{} {}",
@@ -197,9 +201,15 @@ impl Messages {
 
     /// CE: clears the first message that does not flash and that `may` be cleared.
     pub fn clear(&mut self, exchange: &mut Exchange, may: impl Fn(&Message) -> bool) -> Option<Message> {
-        let at = self.shown.iter().position(|shown| !shown.flashing && may(&shown.message))?;
+        let at = self
+            .shown
+            .iter()
+            .position(|shown| !shown.flashing && may(&shown.message))?;
         let message = self.shown.remove(at).message;
-        if let Some(marker) = message.plc_number().and_then(|n| signal::PLC_MESSAGES.get(n.into())) {
+        if let Some(marker) = message
+            .plc_number()
+            .and_then(|n| signal::PLC_MESSAGES.get(n.into()))
+        {
             exchange.nc_set(marker, false);
         }
         Some(message)
@@ -223,7 +233,10 @@ impl Messages {
             }
         }
         self.shown.retain(|shown| {
-            let marker = shown.message.plc_number().and_then(|n| signal::PLC_MESSAGES.get(n.into()));
+            let marker = shown
+                .message
+                .plc_number()
+                .and_then(|n| signal::PLC_MESSAGES.get(n.into()));
             shown.flashing || marker.is_none_or(|marker| nc.bit(marker))
         });
         if flashes && !any {
@@ -266,7 +279,11 @@ mod tests {
         assert_eq!(text(&encoder), "MEASURING SYSTEM Z DEFECTIVE B");
         assert_eq!(text(&Message::PlcMarkers(*b"1Q")), "ERROR IN PLC-PROGRAM 1Q");
         assert_eq!(text(&Message::Plc(0)), "TOOL CLAMP OPEN");
-        assert_eq!(text(&Message::Plc(1)), "PLC: ERROR 1", "an empty line has the default text");
+        assert_eq!(
+            text(&Message::Plc(1)),
+            "PLC: ERROR 1",
+            "an empty line has the default text"
+        );
         assert_eq!(text(&Message::Plc(99)), "PLC: ERROR 99");
     }
 
@@ -290,7 +307,11 @@ mod tests {
         assert_eq!(messages.shown().len(), 2);
         assert_eq!(messages.clear(&mut exchange, |_| true), Some(Message::Plc(5)));
         exchange.begin_scan();
-        assert_eq!(marker(5).map(|m| exchange.plc().bit(m)), Some(false), "NC resets M2929");
+        assert_eq!(
+            marker(5).map(|m| exchange.plc().bit(m)),
+            Some(false),
+            "NC resets M2929"
+        );
         exchange.end_scan();
         plc_sets(&mut exchange, marker(7).unwrap_or(signal::NC_START), false);
         messages.follow_plc(&exchange, 0);
@@ -303,8 +324,15 @@ mod tests {
         let mut messages = Messages::default();
         plc_sets(&mut exchange, signal::PLC_MESSAGE_FLASHES, true);
         messages.follow_plc(&exchange, 0);
-        assert_eq!(messages.shown().first().map(|s| text(&s.message)).as_deref(), Some("EMERGENCY STOP PLC"));
+        assert_eq!(
+            messages.shown().first().map(|s| text(&s.message)).as_deref(),
+            Some("EMERGENCY STOP PLC")
+        );
         assert!(messages.is_fatal());
-        assert_eq!(messages.clear(&mut exchange, |_| true), None, "CE does not clear it");
+        assert_eq!(
+            messages.clear(&mut exchange, |_| true),
+            None,
+            "CE does not clear it"
+        );
     }
 }

@@ -18,6 +18,9 @@ pub struct Settings {
     pub q_values: Vec<(u16, f64)>,
     /// Where the axes stand before the start, mm and degrees; axes without a position stay unknown.
     pub start: Position,
+    /// Length of the tool that is in the spindle before the start, mm. `None` when nobody knows: the first
+    /// TOOL CALL then leaves the position as it is.
+    pub tool_length_mm: Option<f64>,
     /// Pass over blocks with `/`.
     pub skip_blocks: bool,
     /// Refuse what is otherwise accepted with a warning (sign of cycle parameters, tools without data).
@@ -34,6 +37,7 @@ impl Default for Settings {
             tools: None,
             q_values: Vec::new(),
             start: Position::UNKNOWN,
+            tool_length_mm: None,
             skip_blocks: false,
             strict: false,
             max_blocks_without_motion: 10_000_000,
