@@ -1,6 +1,8 @@
 //! The kernel of the control.
+mod command;
 mod emergency;
 mod handshake;
+pub use command::{Command, CommandError, Mode};
 mod markers;
 mod message;
 mod panel;
