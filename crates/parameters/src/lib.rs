@@ -35,10 +35,12 @@ pub use list::ParameterList;
 pub use message::MessageId;
 pub use model::{ControlModel, UnknownModel};
 pub use settings::{
-    AxisParameters, CompensationParameters, ContourPocket, Decimal, DigitalSpeedParameters,
-    EncoderParameters, FreeOutput, Gear, GearSignal, GraphicsSettings, LagParameters, MFunctions,
-    MonitoringParameters, MotionParameters, OrientationParameters, OutputParameters, PrecontrolParameters,
-    ProbeSettings, ProgramEndClearing, ReferenceParameters, ReferenceType, ScaledAxes, SpeedCodes,
-    SpindleOutput, SpindleParameters, SpindlePolarity, SpindleRamps, Synchronization, Tapping,
-    TappingParameters, TravelParameters,
+    AxisParameters, CompensationParameters, ContourPocket, DatumParameters, Decimal, DigitalSpeedParameters,
+    EncoderParameters, FreeOutput, Gear, GearSignal, GraphicsSettings, Handwheel, HandwheelParameters,
+    LagParameters, MFunctions, MonitoringInput, MonitoringParameters, MotionParameters, OperationParameters,
+    OrientationParameters, OutputParameters, OverrideParameters, OverrideSteps, PlcParameters,
+    PrecontrolParameters, ProbeSettings, ProgramEndClearing, ReferenceParameters, ReferenceType,
+    RestartParameters, ScaledAxes, SpeedCodes, SpindleOutput, SpindleParameters, SpindlePolarity,
+    SpindleRamps, Station, StrobeTimes, Synchronization, Tapping, TappingParameters, ToolOutput,
+    ToolOutputKind, ToolParameters, TravelParameters, UserParameter,
 };
