@@ -59,14 +59,19 @@
 
 mod corner;
 mod gate;
+mod interpolator;
 mod limits;
 mod motion;
 mod planner;
 mod profile;
+mod ramp;
+mod ring;
 mod sampler;
 mod times;
 mod window;
 
+pub use gate::Gate;
+pub use interpolator::{Cut, Cycle, Drive, FunctionOutput, Interpolator, Place, Prepared, State, Stop};
 pub use limits::Limits;
 pub use planner::{Planned, PlannedStep, Planner};
 pub use profile::Profile;

@@ -88,6 +88,11 @@ impl Dynamics {
         }
     }
 
+    /// Other overrides, %.
+    pub(crate) fn set_overrides(&mut self, feed_percent: f64, rapid_percent: f64) {
+        (self.feed_override, self.rapid_override) = (feed_percent, rapid_percent);
+    }
+
     /// Greatest path speed, mm/s, of a movement: the programmed feed with its override, and no axis
     /// faster than it can be. `slowest` is the time that a mm of path takes the axis that needs longest
     /// for its part of it.

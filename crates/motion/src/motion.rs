@@ -32,6 +32,10 @@ pub(crate) struct Motion {
     pub(crate) length: f64,
     /// Greatest path speed, mm/s; 0 when it cannot move.
     pub(crate) speed: f64,
+    /// The time, s, that a mm of path takes the axis that needs longest for its share of it.
+    pub(crate) slowest: f64,
+    /// Path speed that the radial acceleration allows, mm/s; infinite on lines.
+    pub(crate) radial_speed: f64,
     /// Path acceleration, mm/s².
     pub(crate) acceleration: f64,
     /// Whether the length counts degrees of the rotary axes.
@@ -81,9 +85,12 @@ impl Motion {
         let share = direction.map(f64::abs);
         let main_axes = delta[MAIN.len()..].iter().all(|d| *d == 0.0);
         let share = if main_axes { &share[MAIN] } else { &share[..] };
+        let slowest = slowest(share, dynamics);
         Some(Motion {
             length: length.min(LONGEST),
-            speed: dynamics.speed(element.feed, element.override_law, slowest(share, dynamics)),
+            speed: dynamics.speed(element.feed, element.override_law, slowest),
+            slowest,
+            radial_speed: f64::INFINITY,
             acceleration: acceleration(share, dynamics),
             rotary,
             main_axes,
@@ -137,10 +144,13 @@ impl Motion {
         } else {
             f64::INFINITY
         };
-        let speed = dynamics.speed(element.feed, element.override_law, slowest(&share, dynamics));
+        let slowest = slowest(&share, dynamics);
+        let speed = dynamics.speed(element.feed, element.override_law, slowest);
         Some(Motion {
             length: length.min(LONGEST),
             speed: speed.min(radial_speed),
+            slowest,
+            radial_speed,
             acceleration: acceleration(&share, dynamics),
             rotary,
             main_axes: false,
