@@ -1,6 +1,7 @@
 //! The kernel of the control.
 mod command;
 mod emergency;
+mod feeder;
 mod handshake;
 pub use command::{Command, CommandError, Mode};
 mod markers;
