@@ -467,7 +467,8 @@ impl<E> Interpolator<E> {
                 .and_then(|item| item.element.functions().get(index))
                 .filter(|function| place(function).is_none())
                 .and_then(|function| match function.at {
-                    At::Length(length) => Some(length.max(0.0).min(f64::MAX)),
+                    At::Length(length) if length > 0.0 => Some(length.min(f64::MAX)),
+                    At::Length(_) => Some(0.0),
                     At::Start | At::End => None,
                 });
             if length.is_some_and(|length| passed.contains(&length)) {

@@ -126,6 +126,6 @@ fn effective(percent: f64, law: OverrideLaw) -> f64 {
     percent.clamp(0.0, GREATEST_OVERRIDE_PERCENT) / 100.0
 }
 
-fn mm_s2(m_s2: f64) -> f64 {
+pub(crate) fn mm_s2(m_s2: f64) -> f64 {
     1000.0 * m_s2.max(LEAST_ACCELERATION_M_S2).min(f64::from(u16::MAX))
 }
