@@ -3,11 +3,22 @@
 use bahn_parameters::AxisParameters;
 
 use crate::characteristic::Characteristic;
-use crate::fault::{Fault, GrossFault};
+use crate::fault::Fault;
 use crate::interpolation::{FineInterpolation, Transient};
 use crate::measuring::{Mark, MeasuringSystem};
+use crate::monitor::{Monitor, Sample};
+use crate::offset::Offset;
 use crate::plant::Encoder;
+use crate::reversal::ReversalPeak;
 use crate::timing::Timing;
+
+/// Time constants of the loop after which an axis whose nominal position stands is at rest (inferred).
+const REST_TIME_CONSTANTS: f64 = 5.0;
+/// Counting steps of a grating period in which MP1512 counts [000:3957].
+const STICTION_STEPS: f64 = 256.0;
+
+/// No machine is larger, mm: farther commands are not taken.
+const POSITION_MAX_MM: f64 = 1e9;
 
 /// How an axis is positioned [000:4714-4733].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +37,8 @@ pub enum Method {
 /// one. Positions are mm (degrees for rotary axes) in machine coordinates, once [`Axis::set_datum`] has
 /// told them; until then they count from where the axis stood at power-on. Nothing here allocates.
 ///
-/// The loop is open after power-on: [`Axis::close`] closes it.
+/// The loop is open after power-on: [`Axis::close`] closes it. A fault other than POSITIONING ERROR opens it
+/// for good.
 #[derive(Clone, Debug)]
 pub struct Axis {
     parameters: AxisParameters,
@@ -34,16 +46,42 @@ pub struct Axis {
     measuring: MeasuringSystem,
     interpolation: FineInterpolation,
     transient: Transient,
+    reversal: ReversalPeak,
     characteristic: Characteristic,
+    offset: Offset,
+    monitor: Monitor,
     method: Method,
     second_set: bool,
+    circular: bool,
     closed: bool,
     enabled: bool,
+    monitored: bool,
+    window_mm: Option<f64>,
+    /// Nominal position of the contour cycle without the reversal peak.
+    commanded_mm: f64,
     nominal_mm: f64,
     actual_mm: f64,
+    /// A contour cycle has begun and its first step is not done.
+    cycle_begins: bool,
+    cycle_actual_mm: f64,
+    actual_mm_min: f64,
+    cycle_lag_mm: f64,
+    stiction_mm_min: f64,
+    /// Velocity of the nominal position with pre-control.
+    profile_mm_min: f64,
+    /// Velocity of the nominal value.
     velocity_mm_min: f64,
+    /// What keeps the velocity steady after a change of method or kv; it runs down with the lag.
+    bias_mm_min: f64,
+    changed: bool,
+    /// The last step put a voltage out.
+    drove: bool,
     volts: f64,
+    standing_steps: u32,
+    in_position: bool,
     fault: Option<Fault>,
+    /// Steps until the residual voltage is switched off after POSITIONING ERROR.
+    residual_steps: u32,
 }
 
 impl Axis {
@@ -55,19 +93,52 @@ impl Axis {
             measuring: MeasuringSystem::new(&parameters),
             interpolation: FineInterpolation::new(timing.steps()),
             transient: Transient::new(timing.steps(), parameters.precontrol.transient_m_min),
+            reversal: ReversalPeak::default(),
             characteristic: Characteristic::straight(1.0),
+            offset: Offset::default(),
+            monitor: Monitor::new(&timing),
             method: Method::Lag,
             second_set: false,
+            circular: false,
             closed: false,
             enabled: true,
+            monitored: true,
+            window_mm: None,
+            commanded_mm: 0.0,
             nominal_mm: 0.0,
             actual_mm: 0.0,
+            cycle_begins: false,
+            cycle_actual_mm: 0.0,
+            actual_mm_min: 0.0,
+            cycle_lag_mm: 0.0,
+            stiction_mm_min: 0.0,
+            profile_mm_min: 0.0,
             velocity_mm_min: 0.0,
+            bias_mm_min: 0.0,
+            changed: false,
+            drove: false,
             volts: 0.0,
+            standing_steps: 0,
+            in_position: false,
             fault: None,
+            residual_steps: 0,
         };
         axis.choose_characteristic();
         axis
+    }
+
+    /// Takes changed parameters over (those that the PLC may change); state and positions stay.
+    pub fn set_parameters(&mut self, parameters: AxisParameters) {
+        self.parameters = parameters;
+        self.measuring.set_parameters(&parameters);
+        self.transient
+            .set_entry(self.timing.steps(), parameters.precontrol.transient_m_min);
+        self.choose_characteristic();
+    }
+
+    /// The parameters of the axis.
+    pub fn parameters(&self) -> &AxisParameters {
+        &self.parameters
     }
 
     /// Takes an encoder reading; once in each servo step, before [`Axis::step`].
@@ -78,21 +149,31 @@ impl Axis {
         self.actual_mm = self.measuring.actual_mm();
     }
 
-    /// The position for the end of the contour cycle that begins, mm. A value that is no number leaves the
-    /// axis where it is.
+    /// The position for the end of the contour cycle that begins, mm; once in each contour cycle, before its
+    /// first servo step. What is no position of any machine leaves the axis where it is.
     pub fn command(&mut self, nominal_mm: f64) {
-        if !nominal_mm.is_finite() {
+        self.cycle_begins = true;
+        if nominal_mm.is_nan() || nominal_mm.abs() > POSITION_MAX_MM {
             return;
         }
-        let way = nominal_mm - self.interpolation.now();
+        let way = nominal_mm - self.commanded_mm;
+        self.commanded_mm = nominal_mm;
         if way != 0.0 {
             self.measuring.set_direction(way > 0.0);
+            self.in_position = false;
         }
-        self.interpolation.command(nominal_mm);
+        let set = usize::from(self.second_set);
+        let compensation = &self.parameters.compensation;
+        let (height, part) = (compensation.reversal_mm[set], compensation.reversal_step_mm[set]);
+        let peak = self.reversal.advance(way, self.circular, height, part);
+        self.interpolation.command(nominal_mm + peak);
     }
 
     /// One servo step: the voltage for the nominal value output, V.
     pub fn step(&mut self) -> f64 {
+        if self.is_released() {
+            self.transfer();
+        }
         let rough_now = self.interpolation.now();
         let smooth_now = self.transient.now();
         let rough_next = self.interpolation.advance();
@@ -102,37 +183,161 @@ impl Axis {
             Method::Precontrol => (smooth_now, smooth_next),
         };
         self.nominal_mm = now;
-        let control = self.characteristic.velocity_mm_min(now - self.actual_mm);
-        self.velocity_mm_min = match self.method {
-            Method::Lag => control,
-            Method::Precontrol => control + (next - now) / self.timing.step_min(),
+        if std::mem::take(&mut self.cycle_begins) {
+            self.begin_cycle();
+        }
+
+        let standing = now == next && next == self.interpolation.end();
+        self.standing_steps = if standing {
+            self.standing_steps.saturating_add(1)
+        } else {
+            0
         };
-        self.volts = if self.closed && self.enabled {
-            let output = &self.parameters.output;
-            let polarity = if output.polarity_negative { -1.0 } else { 1.0 };
-            let full = output.rapid_volts / self.parameters.motion.rapid_mm_min;
-            self.timing.convert(polarity * self.velocity_mm_min * full)
+        self.update_velocity(next - now);
+        let full = self.parameters.output.rapid_volts / self.parameters.motion.rapid_mm_min;
+        let wanted = self.velocity_mm_min * full + self.offset.volts();
+        if standing && self.is_in_window() {
+            self.in_position = true;
+        }
+        if self.closed {
+            self.watch(standing, next - now, wanted);
+        }
+        self.drove = self.drives();
+        self.volts = if self.drove {
+            let polarity = if self.parameters.output.polarity_negative {
+                -1.0
+            } else {
+                1.0
+            };
+            polarity * self.timing.convert(wanted)
         } else {
             0.0
         };
         self.volts
     }
 
+    /// What is done once in a contour cycle, with the lag at its beginning.
+    fn begin_cycle(&mut self) {
+        let lag = self.lag_mm();
+        self.actual_mm_min = (self.actual_mm - self.cycle_actual_mm) / self.timing.contour_min();
+        self.cycle_actual_mm = self.actual_mm;
+        self.stiction_mm_min = self.stiction(lag - self.cycle_lag_mm);
+        self.cycle_lag_mm = lag;
+        let time_constant = 1.0 / (self.characteristic.slope() * self.timing.step_min());
+        let rest = f64::from(self.standing_steps) >= REST_TIME_CONSTANTS * time_constant;
+        if rest && self.drives() {
+            let output = &self.parameters.output;
+            let full = output.rapid_volts / self.parameters.motion.rapid_mm_min;
+            self.offset
+                .rest(self.velocity_mm_min * full, output.integral_factor);
+        }
+    }
+
+    /// Additional velocity against stiction, mm/min: change of the lag in a cycle / cycle · kv · MP1511
+    /// [000:3935-3965]. "Feed" is read as the nominal velocity of the axis (inferred).
+    fn stiction(&self, change_mm: f64) -> f64 {
+        let compensation = &self.parameters.compensation;
+        if self.method != Method::Precontrol
+            || compensation.stiction_us == 0.0
+            || self.profile_mm_min.abs() >= compensation.stiction_feed_mm_min
+        {
+            return 0.0;
+        }
+        let encoder = &self.parameters.encoder;
+        let grating_mm = encoder.signal_period_um * f64::from(encoder.interpolation.max(1)) * 1e-3;
+        let limit = compensation.stiction_limit_steps * grating_mm / STICTION_STEPS;
+        let factor = compensation.stiction_us / f64::from(self.timing.contour_us());
+        change_mm.clamp(-limit, limit) * self.characteristic.slope() * factor
+    }
+
+    /// Velocity of the nominal value for a nominal way in this step.
+    fn update_velocity(&mut self, way_mm: f64) {
+        let slope = self.characteristic.slope();
+        self.profile_mm_min = way_mm / self.timing.step_min();
+        let control = self.characteristic.velocity_mm_min(self.lag_mm());
+        let velocity = match self.method {
+            Method::Lag => control,
+            Method::Precontrol => control + self.profile_mm_min + self.stiction_mm_min,
+        };
+        let decay = (1.0 - slope * self.timing.step_min()).max(0.0);
+        self.bias_mm_min *= decay;
+        if std::mem::take(&mut self.changed) {
+            self.bias_mm_min = if self.drove {
+                self.velocity_mm_min - velocity
+            } else {
+                0.0
+            };
+        }
+        self.velocity_mm_min = velocity + self.bias_mm_min;
+    }
+
+    fn watch(&mut self, standing: bool, way_mm: f64, volts: f64) {
+        if let Some(fault) = self.offset.fault() {
+            self.raise(Fault::Gross(fault));
+        }
+        self.residual_steps = self.residual_steps.saturating_sub(1);
+        if !self.monitored {
+            self.monitor.reset();
+            return;
+        }
+        let sample = Sample {
+            actual_mm: self.actual_mm,
+            lag_mm: self.lag_mm(),
+            way_mm,
+            standing,
+            in_position: self.in_position,
+            velocity_mm_min: self.velocity_mm_min,
+            volts,
+            enabled: self.drives(),
+        };
+        let found = self
+            .monitor
+            .check(&sample, self.method, &self.parameters, &self.timing);
+        if let Some(fault) = found {
+            self.raise(fault);
+        }
+    }
+
+    /// Whether the actual position is within the window; with pre-control only below the velocity MP1525
+    /// [000:5304-5318].
+    fn is_in_window(&self) -> bool {
+        let slow = self.profile_mm_min.abs() < self.parameters.precontrol.window_mm_min;
+        let window = self.window_mm.unwrap_or(self.parameters.monitoring.window_mm);
+        (slow || self.method == Method::Lag) && self.lag_mm().abs() <= window
+    }
+
+    /// Whether a voltage is put out at all.
+    fn drives(&self) -> bool {
+        let sound = self.fault.is_none_or(Fault::cancellable);
+        self.closed && self.enabled && sound && !self.is_released()
+    }
+
+    /// Whether the residual voltage after POSITIONING ERROR is switched off.
+    fn is_released(&self) -> bool {
+        self.fault == Some(Fault::Positioning) && self.residual_steps == 0
+    }
+
     /// Closes the loop. The nominal position stays what it was: see [`Axis::transfer`].
     pub fn close(&mut self) {
         self.closed = true;
+        self.in_position = self.is_in_window();
+        self.monitor.reset();
     }
 
     /// Opens the loop: 0 V [000:5403-5421].
     pub fn open(&mut self) {
         self.closed = false;
+        self.volts = 0.0;
     }
 
     /// Makes the actual position the nominal one [000:5423-5434].
     pub fn transfer(&mut self) {
         self.interpolation.set(self.actual_mm);
         self.transient.set(self.actual_mm);
+        self.reversal.clear();
+        self.commanded_mm = self.actual_mm;
         self.nominal_mm = self.actual_mm;
+        self.bias_mm_min = 0.0;
     }
 
     /// Gives or withdraws the feed enable; without it the output is 0 V at once [000:5352].
@@ -140,16 +345,26 @@ impl Axis {
         self.enabled = enabled;
     }
 
-    /// Chooses the method of positioning.
-    pub fn set_method(&mut self, method: Method) {
-        self.method = method;
-        self.choose_characteristic();
+    /// Switches the monitoring of lag, voltage, movement and standstill on or off: M2688 to M2692, MP4130
+    /// [000:5162-5188].
+    pub fn set_monitored(&mut self, monitored: bool) {
+        self.monitored = monitored;
     }
 
-    /// Chooses the second set of kv, M105, or the first, M106 [000:4975].
+    /// Chooses the method of positioning. In motion the velocity goes on without a jump.
+    pub fn set_method(&mut self, method: Method) {
+        if method != self.method {
+            self.method = method;
+            self.choose_characteristic();
+        }
+    }
+
+    /// Chooses the second set of kv and reversal peaks, M105, or the first, M106 [000:4975].
     pub fn set_second_set(&mut self, second: bool) {
-        self.second_set = second;
-        self.choose_characteristic();
+        if second != self.second_set {
+            self.second_set = second;
+            self.choose_characteristic();
+        }
     }
 
     fn choose_characteristic(&mut self) {
@@ -163,11 +378,27 @@ impl Axis {
             ),
             Method::Precontrol => Characteristic::straight(choose(precontrol.kv, precontrol.kv_m105)),
         };
+        self.changed = true;
+    }
+
+    /// Says whether the axis moves on a circle, where reversal peaks are compensated [000:3663-3709].
+    pub fn set_circular(&mut self, circular: bool) {
+        self.circular = circular;
+    }
+
+    /// Replaces the positioning window, mm: MP7150 in cycle 17 [000:6128]; `None` is MP1030 again.
+    pub fn set_window(&mut self, window_mm: Option<f64>) {
+        self.window_mm = window_mm;
     }
 
     /// Takes the last reference mark that was crossed.
     pub fn take_mark(&mut self) -> Option<Mark> {
         self.measuring.take_mark()
+    }
+
+    /// Forgets the marks that were crossed, at the start of a reference run.
+    pub fn forget_marks(&mut self) {
+        self.measuring.forget_marks();
     }
 
     /// Says at which position a count is, mm: the reference mark's, or for a display axis that of
@@ -176,15 +407,13 @@ impl Axis {
         self.measuring.set_datum(count, position_mm);
         let shift = self.measuring.actual_mm() - self.actual_mm;
         self.actual_mm += shift;
+        self.cycle_actual_mm += shift;
         self.nominal_mm += shift;
+        self.commanded_mm += shift;
         self.interpolation.shift(shift);
         self.transient.shift(shift);
+        self.monitor.shift(shift);
         shift
-    }
-
-    /// Forgets the marks that were crossed, at the start of a reference run.
-    pub fn forget_marks(&mut self) {
-        self.measuring.forget_marks();
     }
 
     /// The error of the axis at the present position after the error tables, mm: positive where the table
@@ -197,6 +426,62 @@ impl Axis {
     /// without a change of the actual position; once in each PLC cycle [000:3902-3912].
     pub fn track(&mut self, offset_mm: f64, step_mm: f64) {
         self.measuring.track(offset_mm, step_mm);
+    }
+
+    /// The offset that the drive shows at rest, in units of 0.15 mV, as code number 75 368 shows it
+    /// [000:5014-5016].
+    pub fn offset_units(&self) -> i32 {
+        self.offset.units()
+    }
+
+    /// Compensates the offset that is shown: ENT after code number 75 368; on a TNC 407 from 0.6 mV on
+    /// [000:5018].
+    pub fn compensate_offset(&mut self) {
+        self.offset.compensate(&self.timing);
+    }
+
+    /// One cyclic adjustment: 1 mV, below that one step of the converter [000:5032-5034]. See
+    /// [`OffsetInterval`](crate::OffsetInterval).
+    pub fn adjust_offset(&mut self) {
+        self.offset.adjust(&self.timing);
+    }
+
+    /// The compensation by code number and cycle, V: what must survive power-off [000:5020].
+    pub fn offset_compensation_volts(&self) -> f64 {
+        self.offset.compensation_volts()
+    }
+
+    /// Sets the compensation, V; 0 switches it off (NO ENT) [000:5018].
+    pub fn set_offset_compensation(&mut self, volts: f64) {
+        self.offset.set_compensation(volts);
+    }
+
+    /// Enters a fault: what monitoring found, or a slave too far from its master.
+    pub(crate) fn raise(&mut self, fault: Fault) {
+        match self.fault {
+            None => {
+                self.fault = Some(fault);
+                self.residual_steps = self
+                    .timing
+                    .steps_of(self.parameters.monitoring.residual_voltage_s);
+            }
+            Some(known) if known.cancellable() && !fault.cancellable() => self.fault = Some(fault),
+            Some(_) => {}
+        }
+    }
+
+    /// The key CE: clears a fault that can be cleared, switches the residual voltage off and makes the
+    /// actual position the nominal one [000:5240-5242].
+    pub fn acknowledge(&mut self) {
+        if self.fault.is_some_and(Fault::cancellable) {
+            self.fault = None;
+            self.transfer();
+        }
+    }
+
+    /// The fault that monitoring has found and that was not cleared.
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
     }
 
     /// The count of the last reading.
@@ -214,9 +499,9 @@ impl Axis {
         self.nominal_mm
     }
 
-    /// Where the axis will be at the end of the contour cycle, mm.
+    /// The position that was commanded last, mm.
     pub fn target_mm(&self) -> f64 {
-        self.interpolation.end()
+        self.commanded_mm
     }
 
     /// Nominal less actual position, mm.
@@ -224,9 +509,24 @@ impl Axis {
         self.nominal_mm - self.actual_mm
     }
 
-    /// Velocity that the loop asks for, mm/min.
+    /// Velocity of the nominal value, mm/min.
     pub fn velocity_mm_min(&self) -> f64 {
         self.velocity_mm_min
+    }
+
+    /// Velocity of the nominal position, mm/min; its sign is the direction of travel (M2160).
+    pub fn profile_mm_min(&self) -> f64 {
+        self.profile_mm_min
+    }
+
+    /// Velocity of the actual position over the last contour cycle, mm/min.
+    pub fn actual_velocity_mm_min(&self) -> f64 {
+        self.actual_mm_min
+    }
+
+    /// Velocity that stiction compensation adds, mm/min.
+    pub fn stiction_mm_min(&self) -> f64 {
+        self.stiction_mm_min
     }
 
     /// Voltage of the output, V.
@@ -239,31 +539,13 @@ impl Axis {
         self.closed
     }
 
-    /// Whether the axis stands in its positioning window MP1030 [000:5302-5318].
+    /// Method of positioning.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// Whether the axis has reached its positioning window MP1030 after the last movement [000:5302-5318].
     pub fn in_position(&self) -> bool {
-        self.interpolation.now() == self.interpolation.end()
-            && (self.interpolation.end() - self.actual_mm).abs() <= self.parameters.monitoring.window_mm
-    }
-
-    /// The fault that monitoring has found and that was not cleared.
-    pub fn fault(&self) -> Option<Fault> {
-        self.fault
-    }
-
-    fn raise(&mut self, fault: Fault) {
-        if self.fault.is_none_or(Fault::cancellable) {
-            self.fault = Some(fault);
-        }
-        if matches!(fault, Fault::Gross(GrossFault::Movement)) {
-            self.open();
-        }
-    }
-
-    /// The key CE: clears a fault that can be cleared.
-    pub fn acknowledge(&mut self) {
-        if self.fault.is_some_and(Fault::cancellable) {
-            self.fault = None;
-            self.transfer();
-        }
+        self.in_position
     }
 }

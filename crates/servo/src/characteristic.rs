@@ -49,6 +49,11 @@ impl Characteristic {
         let steep = straight.clamp(-self.kink_mm, self.kink_mm);
         steep + (straight - steep) / self.factor
     }
+
+    /// The slope at standstill, 1/min.
+    pub(crate) fn slope(&self) -> f64 {
+        self.slope
+    }
 }
 
 #[cfg(test)]

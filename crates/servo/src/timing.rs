@@ -49,14 +49,26 @@ impl Timing {
     }
 
     /// The voltage that the converter makes of a nominal value, V: a multiple of the resolution, at most
-    /// 10 V of either sign.
+    /// 10 V of either sign; 0 V for what is no number.
     pub fn convert(&self, volts: f64) -> f64 {
+        if volts.is_nan() {
+            return 0.0;
+        }
         let resolution = self.resolution_volts();
         (volts.clamp(-OUTPUT_VOLTS, OUTPUT_VOLTS) / resolution).round() * resolution
     }
 
     pub(crate) fn step_min(&self) -> f64 {
         f64::from(self.step_us()) / MINUTE_US
+    }
+
+    pub(crate) fn contour_min(&self) -> f64 {
+        f64::from(self.contour_us) / MINUTE_US
+    }
+
+    /// Servo steps of a time in s.
+    pub(crate) fn steps_of(&self, seconds: f64) -> u32 {
+        (seconds * 1e6 / f64::from(self.step_us())).round() as u32
     }
 }
 

@@ -1,5 +1,6 @@
 //! An ideal machine under an axis: the drive follows its voltage at once.
 #![allow(dead_code, reason = "not every test uses every helper")]
+#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
 use bahn_parameters::{AxisParameters, ControlModel, ParameterList};
 use bahn_servo::{Axis, Encoder, Method, Timing};
