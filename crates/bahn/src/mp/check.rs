@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_parameters::{Definition, ListError, ListText, ParameterError};
+use bahn_parameters::{
+    Definition, Inconsistency, ListError, ListText, ParameterError, ParameterId, ParameterList,
+};
 use serde::Serialize;
 
 use super::options::CheckOptions;
@@ -31,7 +33,11 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
         print_json(&reports)?;
     }
     let has_errors = reports.iter().any(|report| !report.errors.is_empty());
-    Ok(if outcome == Outcome::Fine && has_errors { Outcome::ProgramError } else { outcome })
+    Ok(if outcome == Outcome::Fine && has_errors {
+        Outcome::ProgramError
+    } else {
+        outcome
+    })
 }
 
 /// The list, or those of a folder in the order of their names.
@@ -43,14 +49,19 @@ fn lists(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(path).map_err(cannot)? {
         let file = entry.map_err(cannot)?.path();
-        let is_list = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mp"));
+        let is_list = file
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("mp"));
         if is_list && file.is_file() {
             found.push(file);
         }
     }
     found.sort();
     if found.is_empty() {
-        return Err(UsageError::new(format!("{} holds no list of machine parameters (*.mp)", path.display())));
+        return Err(UsageError::new(format!(
+            "{} holds no list of machine parameters (*.mp)",
+            path.display()
+        )));
     }
     Ok(found)
 }
@@ -79,7 +90,11 @@ struct Item {
 
 fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
     let text = source::read(path, options.model)?;
-    let faults = if options.partial { text.faults().to_vec() } else { text.all_faults() };
+    let faults = if options.partial {
+        text.faults().to_vec()
+    } else {
+        text.all_faults()
+    };
     let report = Report {
         file: path.display().to_string(),
         model: text.model().id(),
@@ -131,10 +146,15 @@ fn warnings(text: &ListText, is_part: bool) -> Vec<Item> {
     if is_part || text.entries().is_empty() {
         return Vec::new();
     }
-    let mut list = bahn_parameters::ParameterList::smallest(text.model());
+    let mut list = ParameterList::smallest(text.model());
     list.take(text);
-    let line_of = |id| text.entries().iter().find(|entry| entry.id == id).map_or(1, |entry| entry.line);
-    let item = |found: bahn_parameters::Inconsistency| Item {
+    let line_of = |id| {
+        text.entries()
+            .iter()
+            .find(|entry| entry.id == id)
+            .map_or(1, |entry| entry.line)
+    };
+    let item = |found: Inconsistency| Item {
         number: None,
         text: found.rule.to_owned(),
         parameter: Some(found.id.to_string()),
@@ -167,8 +187,14 @@ fn help(fault: &ListError, text: &ListText) -> Option<String> {
     let id = fault.error.id()?;
     let definition = Definition::named(text.model(), id).ok()?;
     let choices: Vec<&str> = definition.choices().take(6).collect();
-    let unit = if definition.unit.is_empty() { String::new() } else { format!(" {}", definition.unit) };
-    let range = definition.range_text().map(|[min, max]| format!(", {min} to {max}{unit}"));
+    let unit = if definition.unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", definition.unit)
+    };
+    let range = definition
+        .range_text()
+        .map(|[min, max]| format!(", {min} to {max}{unit}"));
     let mut help = format!("{id} is {}{}", definition.name, range.unwrap_or_default());
     if !choices.is_empty() {
         help += &format!(" ({})", choices.join("; "));
@@ -180,16 +206,13 @@ fn help(fault: &ListError, text: &ListText) -> Option<String> {
 const COLUMNS: usize = 100;
 
 fn print_missing(missing: &[&ListError], first: &ListError) {
+    let ids: Vec<ParameterId> = missing.iter().filter_map(|fault| fault.error.id()).collect();
     let mut lines = vec![String::new()];
-    for fault in missing {
-        let name = fault.error.id().map(|id| id.to_string()).unwrap_or_default();
-        if let Some(line) = lines.last_mut() {
-            if line.len() + name.len() + 1 < COLUMNS {
-                *line += &format!(" {name}");
-                continue;
-            }
+    for name in ids.chunk_by(follows).filter_map(run_name) {
+        match lines.last_mut() {
+            Some(line) if line.len() + name.len() + 1 < COLUMNS => *line += &format!(" {name}"),
+            _ => lines.push(format!(" {name}")),
         }
-        lines.push(format!(" {name}"));
     }
     diagnostics::print_usage_error(&format!(
         "{} {}: {}\n{}\n`bahn mp new --from` completes a list; --partial checks one that holds changes only",
@@ -201,12 +224,30 @@ fn print_missing(missing: &[&ListError], first: &ListError) {
     diagnostics::print_line("");
 }
 
+/// Whether the second is the next index of the same number.
+fn follows(a: &ParameterId, b: &ParameterId) -> bool {
+    a.number == b.number && a.index.zip(b.index).is_some_and(|(a, b)| b == a + 1)
+}
+
+/// `MP1060.0-4` for all indices in a row.
+fn run_name(run: &[ParameterId]) -> Option<String> {
+    let (first, last) = (run.first()?, run.last()?);
+    Some(match last.index {
+        Some(last) if run.len() > 1 => format!("{first}-{last}"),
+        _ => first.to_string(),
+    })
+}
+
 fn print_warning(warning: &Item, text: &ListText, path: &str) {
     diagnostics::print(&Diagnostic {
         severity: Severity::Warning,
         title: &warning.text,
         path,
-        marked: Marked { line: warning.line as u32, text: text.line(warning.line), columns: None },
+        marked: Marked {
+            line: warning.line as u32,
+            text: text.line(warning.line),
+            columns: None,
+        },
         label: warning.detail.clone(),
         help: None,
     });

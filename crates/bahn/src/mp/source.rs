@@ -72,9 +72,18 @@ mod tests {
 
     #[test]
     fn the_comments_at_the_beginning_name_the_control() {
-        assert_eq!(named_model(b"; my mill, TNC 415 B\nMP10 : 1\n"), Some(ControlModel::Tnc415b));
-        assert_eq!(named_model(b"\xEF\xBB\xBF\n* tnc-360\n"), Some(ControlModel::Tnc360));
-        assert_eq!(named_model(b"; TNC 155, before that a TNC 151\n"), Some(ControlModel::Tnc155));
+        assert_eq!(
+            named_model(b"; my mill, TNC 415 B\nMP10 : 1\n"),
+            Some(ControlModel::Tnc415b)
+        );
+        assert_eq!(
+            named_model(b"\xEF\xBB\xBF\n* tnc-360\n"),
+            Some(ControlModel::Tnc360)
+        );
+        assert_eq!(
+            named_model(b"; TNC 155, before that a TNC 151\n"),
+            Some(ControlModel::Tnc155)
+        );
         assert_eq!(named_model(b"MP10 : 1 ;TNC 360\n"), None);
         assert_eq!(named_model(b""), None);
     }

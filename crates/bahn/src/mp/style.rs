@@ -24,12 +24,12 @@ impl Style {
     }
 
     /// What is gone.
-    pub fn old(self, text: &str) -> String {
+    pub fn removed(self, text: &str) -> String {
         self.wrap("31", text)
     }
 
-    /// What is there instead.
-    pub fn new(self, text: &str) -> String {
+    /// What is there, or there instead.
+    pub fn added(self, text: &str) -> String {
         self.wrap("32", text)
     }
 
@@ -39,6 +39,10 @@ impl Style {
     }
 
     fn wrap(self, code: &str, text: &str) -> String {
-        if self.0 { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
+        if self.0 {
+            format!("\x1b[{code}m{text}\x1b[0m")
+        } else {
+            text.to_owned()
+        }
     }
 }
