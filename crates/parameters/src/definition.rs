@@ -217,7 +217,9 @@ impl Definition {
     pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
         let scale = 10f64.powi(self.decimals.into());
         let rounded = (value * scale).round() / scale;
-        if !rounded.is_finite() || !(self.min..=self.max).contains(&rounded) {
+        // Binary and hexadecimal numbers have no sign.
+        let unsigned = self.format != Format::Decimal && rounded < 0.0;
+        if !rounded.is_finite() || unsigned || !(self.min..=self.max).contains(&rounded) {
             return Err(ParameterError::OutOfRange {
                 id: self.id,
                 value,

@@ -19,6 +19,7 @@
     reason = "citations as [003:7868] look like links"
 )]
 
+mod consistency;
 mod definition;
 mod error;
 mod fn14;
@@ -30,6 +31,7 @@ mod model;
 mod settings;
 mod text;
 
+pub use consistency::Inconsistency;
 pub use definition::{Change, Definition, Format, ParameterId, Reaction};
 pub use error::{ListError, ParameterError};
 pub use fn14::error_text;

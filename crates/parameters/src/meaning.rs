@@ -78,11 +78,16 @@ impl Definition {
 
 /// What a bit means: its name with `0=..` and `1=..` of its own or of the whole parameter.
 fn bit_meaning<'a>(text: &'a str, set: bool, of_value: &impl Fn(f64) -> Option<&'a str>) -> String {
-    let own = text.split_once(" 0=").and_then(|(name, rest)| {
+    let states = text
+        .strip_prefix("0=")
+        .map(|rest| ("", rest))
+        .or_else(|| text.split_once(" 0="));
+    let own = states.and_then(|(name, rest)| {
         let (zero, one) = rest.split_once(" 1=")?;
         Some((name, if set { one } else { zero }))
     });
     match own {
+        Some(("", state)) => state.to_owned(),
         Some((name, state)) => format!("{name}: {state}"),
         None => {
             let plain = if set { "1" } else { "0" };
@@ -148,6 +153,7 @@ mod tests {
             ["no program stop with M06", "no axis stop with M functions"]
         );
         assert_eq!(meaning(Tnc155, 92, 3.0), ["point", "English dialogue"]);
+        assert_eq!(meaning(Tnc415b, 7420, 2.0)[1], "clear first then channel");
         assert_eq!(meaning(Tnc415b, 1010, 5000.0), [""; 0], "a quantity");
     }
 

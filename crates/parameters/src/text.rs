@@ -86,16 +86,17 @@ impl ListText {
             return faults;
         }
         let line = self.text().lines().count().max(1);
-        faults.extend(
-            self.missing()
-                .filter(|definition| !definition.is_optional())
-                .map(|definition| ListError {
-                    line,
-                    column: 1,
-                    length: 0,
-                    error: ParameterError::NotDefined(definition.id),
-                }),
-        );
+        // What has a line that cannot be read is not missing.
+        let named: Vec<ParameterId> = faults.iter().filter_map(|fault| fault.error.id()).collect();
+        let missing = self
+            .missing()
+            .filter(|definition| !definition.is_optional() && !named.contains(&definition.id));
+        faults.extend(missing.map(|definition| ListError {
+            line,
+            column: 1,
+            length: 0,
+            error: ParameterError::NotDefined(definition.id),
+        }));
         faults
     }
 

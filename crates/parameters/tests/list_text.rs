@@ -229,6 +229,36 @@ proptest! {
     }
 
     #[test]
+    fn typed_values_answer_whatever_the_list_holds(
+        model in any_model(),
+        places in prop::collection::vec((any::<prop::sample::Index>(), 0.0..=1.0f64), 1..300),
+    ) {
+        let mut list = ParameterList::reference(model);
+        for (place, part) in places {
+            let definition = place.get(Definition::all(model));
+            if definition.min.is_finite() {
+                let value = definition.min + part * (definition.max - definition.min);
+                let value = if definition.decimals == 0 { value.round() } else { value };
+                list.set(definition.id.number, definition.id.index.unwrap_or(0), value).unwrap();
+            }
+        }
+        for index in 0..=u8::MAX {
+            let axis = list.axis_parameters(index);
+            prop_assert!(axis.lag.kv > 0.0 && axis.lag.kink_factor > 0.0 && axis.motion.rapid_mm_min > 0.0);
+            prop_assert!(axis.precontrol.kv.is_finite() && axis.encoder.interpolation > 0);
+            prop_assert!(!axis.active || index < model.limits().axes_max);
+        }
+        let spindle = list.spindle_parameters();
+        prop_assert!(spindle.gears.iter().all(|gear| gear.max_rpm.is_finite()));
+        list.plc_parameters();
+        list.operation_parameters();
+        list.laser_characteristics();
+        list.user_parameters();
+        list.inconsistencies();
+        prop_assert!(list.spindle_run_up_s(1000.0).is_finite());
+    }
+
+    #[test]
     fn almost_valid_lines_give_faults_inside_the_line(
         model in any_model(),
         line in "[\t ]?(MP|mp|é)? ?[0-9]{0,7}[. ]?[0-9]{0,4} ?[:= ]? ?[-+%$]?[0-9A-Fa-f.,eEé ]{0,25}(;.*)?",
