@@ -251,6 +251,7 @@ impl<E> Interpolator<E> {
             self.seek_stop = true;
             self.after = After::Stop(stop);
         };
+        self.ring.settle();
         // Room for whatever the elements can output, so that no cycle allocates.
         self.outputs
             .reserve(self.ring.ahead().map(Item::outputs).sum::<usize>());

@@ -67,6 +67,8 @@ pub(crate) struct Ring {
     first: u64,
     /// Index of the item that is executed; those before it are only kept until `discard`.
     current: usize,
+    /// Items from this index on have changed since the envelopes were made.
+    changed: usize,
     /// Where the path ends.
     end: Position,
     /// Joint at which single block stops: number of the item before it.
@@ -92,6 +94,7 @@ impl Ring {
             capacity,
             first: 0,
             current: 0,
+            changed: usize::MAX,
             end: Position::UNKNOWN,
             stop_at: None,
             last: None,
@@ -215,7 +218,15 @@ impl Ring {
             self.corner = None;
             self.run = 0.0;
         }
-        self.envelopes(changed);
+        self.changed = self.changed.min(changed);
+    }
+
+    /// Makes the envelopes again after elements were put in: once for all of them.
+    pub(crate) fn settle(&mut self) {
+        let changed = std::mem::replace(&mut self.changed, usize::MAX);
+        if changed != usize::MAX {
+            self.envelopes(changed);
+        }
     }
 
     /// Finds the joint between the last element and the next one; the index of the item whose cap it is.
