@@ -1,6 +1,7 @@
 //! A program on the test bench: memory, stand-in for the control, stimuli.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use bahn_exchange::Exchange;
 use bahn_parameters::{ControlModel, ParameterList};
@@ -19,6 +20,7 @@ pub(super) struct Bench {
     pub script: Script,
     /// Cycles that were started.
     pub cycle: u64,
+    cycle_time: Duration,
 }
 
 /// An expectation that does not hold.
@@ -45,6 +47,7 @@ impl Bench {
             nc: TestNc::new(settings::parameter_list(model, options.parameters.as_deref())?),
             script: script.unwrap_or_default(),
             cycle: 0,
+            cycle_time: cycle_time(model),
         };
         mirror_parameters(&bench.nc.parameters, &mut bench.exchange);
         for assignment in set_operands(options)? {
@@ -85,8 +88,19 @@ impl Bench {
             Some(tracer) => self.machine.scan_traced(&mut self.exchange, &mut self.nc, tracer),
             None => self.machine.scan(&mut self.exchange, &mut self.nc),
         };
-        self.nc.end_scan();
+        self.end_cycle();
         report.map(|_| ())
+    }
+
+    /// What the control does until the next cycle.
+    pub fn end_cycle(&mut self) {
+        self.nc.end_scan();
+        self.nc.travel(self.cycle_time.as_secs_f64());
+    }
+
+    /// From the start of a cycle to the start of the next one.
+    pub fn cycle_time(&self) -> Duration {
+        self.cycle_time
     }
 
     /// The expectations of the last cycle that do not hold.
@@ -136,6 +150,14 @@ pub(super) fn set_operands(options: &BenchOptions) -> Result<Vec<Assignment>, Us
     // Machine parameters first: they go to words that may be set, too.
     all.sort_by_key(|assignment| matches!(assignment, Assignment::Operand(..)));
     Ok(all)
+}
+
+/// The PLC cycle time [000:11185].
+fn cycle_time(model: ControlModel) -> Duration {
+    Duration::from_millis(match model {
+        ControlModel::Tnc407 => 24,
+        _ => 20,
+    })
 }
 
 fn assign(list: &mut ParameterList, text: &str) -> Result<(), String> {

@@ -16,9 +16,6 @@ use super::options::WatchOptions;
 use super::source::Source;
 use crate::{Outcome, UsageError};
 
-/// A PLC cycle [000:11512].
-const CYCLE: Duration = Duration::from_millis(20);
-
 /// Shows the table until the user ends it.
 pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
     let source = Source::compile(&options.program)?;
@@ -104,7 +101,7 @@ impl Watch {
         loop {
             terminal.draw(|frame| table::draw(frame, &self))?;
             if self.running && Instant::now() >= next {
-                next = Instant::now() + CYCLE;
+                next = Instant::now() + self.bench.cycle_time();
                 self.cycle();
             }
             let wait = if self.running {
