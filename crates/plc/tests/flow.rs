@@ -165,44 +165,6 @@ fn while_endw() {
 }
 
 #[test]
-fn the_tool_changer_macros() {
-    // Actual and nominal pocket compared [000:16370-16428], in a form of its own.
-    let program = "CM 230\nEM
-        LBL 230\nLB M3032\n= B250\nLB M3024\n= B252\nLW M3200\n= W254\nL B250\n== B252\n= M3040\nJPT 231
-        L B250\n- B252\n= B248\n> K+0\nJPT 232\nL- B248\n= B248\nLBL 232
-        L B255\n- B254\n<= B248\nO[\nL B248\n<= B254\n]\n= M3041
-        L B255\n>> K+1\n= B255
-        L B252\n> B250\nA[\nL B248\n<= B255\n]\nO[\nL B252\n< B250\nA[\nL B248\n>= B255\n]\n]\n= M3042
-        LBL 231\nEM\n";
-    // Actual, nominal, reduction, pockets; equal, reduction reached, direction.
-    for (actual, nominal, reduction, pockets, equal, reached, direction) in [
-        (7, 7, 2, 12, 1, None, None),
-        (11, 2, 2, 12, 0, Some(0), Some(1)),
-        (2, 11, 2, 12, 0, Some(0), Some(0)),
-        (3, 5, 2, 12, 0, Some(1), Some(1)),
-        (5, 3, 1, 12, 0, Some(0), Some(0)),
-        (1, 12, 2, 12, 0, Some(1), Some(0)),
-    ] {
-        let mut bench = Bench::new(program);
-        let bits = |first: u32, value: u32| -> String {
-            (0..16)
-                .map(|bit| format!("M{}={} ", first + bit, value >> bit & 1))
-                .collect()
-        };
-        bench.set(&bits(3032, actual));
-        bench.set(&bits(3024, nominal));
-        bench.set(&bits(3200, reduction << 8 | pockets));
-        // The words overlap at M3032; the nominal value has eight bits only.
-        bench.set(&bits(3032, actual));
-        bench.scan().unwrap();
-        bench.expect(&format!("M3040={equal}"));
-        if let (Some(reached), Some(direction)) = (reached, direction) {
-            bench.expect(&format!("M3041={reached} M3042={direction}"));
-        }
-    }
-}
-
-#[test]
 fn memory_modules() {
     let program = "PS K100\nPS K200\nPS K3\nCM 9000\nPS K4\nCM 9010\nPL W20\nPS K8\nPS K-2\nCM 9022\nPS K6\nCM 9012\nPL D12
         EM\n";
