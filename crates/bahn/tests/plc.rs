@@ -212,6 +212,40 @@ fn listings_have_columns() {
 }
 
 #[test]
+fn listings_mark_errors_and_warnings() {
+    let folder = folder("LM 4\nL M5\n= M6\nEM\n");
+    let run = folder.bahn("plc list MAIN.PLC");
+    assert_eq!(run.code(), 1);
+    let lines: Vec<String> = run.out().lines().map(str::to_owned).collect();
+    assert!(lines[2].starts_with("       ^^^ warning 5 "), "{}", run.out());
+    assert!(lines[4].starts_with("       ^^^ error 20 "), "{}", run.out());
+    assert_eq!(lines[5], "    3    =     M6");
+    let run = folder.bahn("plc list MAIN.PLC --format json");
+    assert_eq!(run.code(), 1);
+    let files = run.json();
+    assert_eq!(files[0]["file"], "MAIN.PLC");
+    let line = &files[0]["lines"][1];
+    assert_eq!(
+        (&line["line"], &line["command"], &line["operand"]),
+        (&json!(2), &json!("L"), &json!("M5"))
+    );
+    assert_eq!(
+        (&line["errors"][0]["number"], &line["warnings"]),
+        (&json!(20), &json!([]))
+    );
+}
+
+#[test]
+fn warnings_are_said_by_all_that_compile() {
+    let folder = folder("LM 4\n= M6\nEM\n");
+    for command in ["run", "trace", "diagram --show M6", "xref"] {
+        let run = folder.bahn(&format!("plc {command} MAIN.PLC"));
+        assert_eq!(run.code(), 0);
+        assert!(run.err().contains("warning: 5 "), "{command}: {}", run.err());
+    }
+}
+
+#[test]
 fn cross_references_name_every_place() {
     let folder = folder("L I4\n= O2\nL I5\n= O2\nS M7\nCM 5\nEM\nLBL 5\nL W8\n= W10\nEM\nLBL 6\nEM\n");
     let run = folder.bahn("plc xref MAIN.PLC --format json");

@@ -33,7 +33,7 @@ pub(crate) enum PlcCommand {
     /// Watch and set operands while the program runs or is stepped (full screen).
     #[command(after_help = WATCH_KEYS)]
     Watch(WatchOptions),
-    /// Print the program as formatted listing.
+    /// Print the program as formatted listing, with errors below their lines.
     List(ListOptions),
     /// Show where operands and labels are used; which are not, and which are written twice.
     #[command(after_help = XREF_EXAMPLES)]
@@ -200,6 +200,15 @@ pub(crate) struct DiagramOptions {
     /// Write the diagram as drawing instead.
     #[arg(long, value_name = "OUT.svg", value_hint = ValueHint::FilePath)]
     pub svg: Option<PathBuf>,
+    /// How the diagram is written.
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        value_enum,
+        default_value_t,
+        conflicts_with = "svg"
+    )]
+    pub format: Format,
 }
 
 /// Options of `bahn plc watch`.
@@ -219,6 +228,9 @@ pub(crate) struct WatchOptions {
 pub(crate) struct ListOptions {
     #[command(flatten)]
     pub program: ProgramOptions,
+    /// How the listing is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
 }
 
 /// Options of `bahn plc xref`.

@@ -33,15 +33,10 @@ impl Source {
         with(Severity::Warning, &self.compilation.warnings);
     }
 
-    /// The program; prints what is wrong and gives `None` when there are errors.
+    /// The program; prints errors and warnings, and gives `None` when there are errors.
     pub fn program(mut self) -> Option<Arc<PlcProgram>> {
-        match self.compilation.program.take() {
-            Some(program) => Some(program.into()),
-            None => {
-                self.print_faults();
-                None
-            }
-        }
+        self.print_faults();
+        self.compilation.program.take().map(Arc::new)
     }
 
     fn print(&self, severity: Severity, fault: &Fault) {

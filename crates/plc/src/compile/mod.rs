@@ -10,7 +10,7 @@ mod time;
 
 use bahn_parameters::ControlModel;
 
-use crate::program::PlcProgram;
+use crate::program::{PlcProgram, SourceText};
 use crate::source::SourceFiles;
 use crate::{Diagnostic, PlcError};
 
@@ -76,6 +76,8 @@ pub struct Compilation {
     pub errors: Vec<Diagnostic>,
     /// What is accepted although the printed rules refuse it, in the same order.
     pub warnings: Vec<Diagnostic>,
+    /// The files that were read, main file first, also when there are errors.
+    pub files: Vec<SourceText>,
     /// Length of the code in bytes, as far as it was read.
     pub size_bytes: u32,
     /// Nominal time of the longest way through the main program in ns: no jump backward, every module call

@@ -1,6 +1,7 @@
 //! What instructions do with operands.
 
-use bahn_exchange::{Bit, BitArea, Number};
+use bahn_exchange::signal::{self, SignalOperand};
+use bahn_exchange::{Bit, BitArea, BitRange, Number};
 use bahn_plc::{BitOperand, NumberOperand, Op, TextOperand, Value};
 
 /// What an instruction does with an operand.
@@ -185,7 +186,6 @@ fn bits(first: BitOperand, count: u8, access: Access) -> Vec<(Subject, Access)> 
 /// Whether control or machine read what a program writes to an operand: outputs, starts of timers and
 /// counters, markers with a fixed meaning, the bytes from PLC to NC [000:11556-11584][000:10534-10968].
 pub(super) fn is_read_outside(subject: Subject) -> bool {
-    use bahn_exchange::signal::{self, SignalOperand};
     const PLC_TO_NC: std::ops::Range<u16> = 512..768;
     match subject {
         Subject::Bit { indexed: true, .. } | Subject::Number { indexed: true, .. } => true,
@@ -194,9 +194,7 @@ pub(super) fn is_read_outside(subject: Subject) -> bool {
             BitArea::I => false,
             BitArea::M => signal::all().iter().any(|signal| match signal.operand {
                 SignalOperand::Bit(fixed) => fixed == bit,
-                SignalOperand::Bits(range) => {
-                    range != signal::RETAINED_MARKERS && range.iter().any(|fixed| fixed == bit)
-                }
+                SignalOperand::Bits(range) => is_in(range, bit),
                 SignalOperand::Number(_) | SignalOperand::Bytes(_) => false,
             }),
         },
@@ -205,18 +203,28 @@ pub(super) fn is_read_outside(subject: Subject) -> bool {
     }
 }
 
-/// The name of an operand with a fixed meaning.
+/// The name of an operand with a fixed meaning, or of the markers it belongs to.
 pub(super) fn fixed_name(subject: Subject) -> Option<&'static str> {
-    use bahn_exchange::signal::{SignalOperand, named};
-    let operand = match subject {
-        Subject::Bit { bit, indexed: false } => SignalOperand::Bit(bit),
-        Subject::Number {
-            number,
-            indexed: false,
-        } => SignalOperand::Number(number),
-        _ => return None,
-    };
-    named(operand).map(|signal| signal.name)
+    let named = signal::all()
+        .iter()
+        .find(|signal| match (subject, signal.operand) {
+            (Subject::Bit { bit, indexed: false }, SignalOperand::Bit(fixed)) => bit == fixed,
+            (Subject::Bit { bit, indexed: false }, SignalOperand::Bits(range)) => is_in(range, bit),
+            (
+                Subject::Number {
+                    number,
+                    indexed: false,
+                },
+                SignalOperand::Number(fixed),
+            ) => number == fixed,
+            _ => false,
+        });
+    named.map(|signal| signal.name)
+}
+
+/// Whether a marker belongs to a range with a meaning; that of the retained markers has none.
+fn is_in(range: BitRange, bit: Bit) -> bool {
+    range != signal::RETAINED_MARKERS && range.iter().any(|fixed| fixed == bit)
 }
 
 #[cfg(test)]
