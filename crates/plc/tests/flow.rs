@@ -3,7 +3,7 @@
 
 mod common;
 
-use bahn_plc::PlcError;
+use bahn_plc::{InterfaceUser, PlcError, Start};
 use common::{Bench, compile, example};
 
 /// Runs one scan that must fail; number and line of the error.
@@ -386,4 +386,48 @@ fn index_and_stack_start_anew_in_every_cycle() {
     let mut bench = Bench::new("PS K1\nINCX\nLX\n= W0\nEM\n");
     bench.scans(200);
     bench.expect("W0=1");
+}
+
+#[test]
+fn a_restart_gives_back_what_the_program_had() {
+    let program = "L M2180\n= M1\nL M2185\n= M2\nLN M3\nS T1\nL T49\n= M4\nSUBM 1\n= B200\nEM\n
+        LBL 1\nPS K+0\nPS K+0\nCM 9100\nREPEAT\nL M5\nUNTILT\nEM\n";
+    let mut bench = Bench::new(program);
+    bench.set("MP4110.1=50 MP10=%11111 MP60=%10000");
+    bench.nc.axes[4].override_percent = 25.0;
+    bench.scans(1);
+    bench.set("M3=1");
+    bench.scans(2);
+    bench.expect("M1=0 M2=0 M4=1");
+    assert_eq!(bench.nc.interfaces[0].user, Some(InterfaceUser::Plc));
+    bench.nc.interfaces[1].user = Some(InterfaceUser::Nc);
+    bench.machine.restart(Start::Interruption, &mut bench.nc);
+    assert_eq!(
+        (bench.nc.interfaces[0].user, bench.nc.interfaces[1].user),
+        (None, Some(InterfaceUser::Nc))
+    );
+    assert_eq!(bench.nc.axes[4].override_percent, 100.0);
+    assert_eq!(bench.machine.time().maximum, 0);
+    let report = bench.scan().unwrap();
+    assert_eq!(report.scans, 1);
+    // The jobs of before are gone: the first identifier is given again.
+    bench.expect("M1=0 M2=1 B200=1");
+    bench.machine.load(
+        compile("L K1\n/ K0\nINC W0\nEM\n").program.unwrap().into(),
+        &mut bench.nc,
+    );
+    bench.scans(2);
+    bench.expect("W0=2 M2185=0");
+}
+
+#[test]
+fn a_stopped_plc_goes_on_after_a_restart() {
+    let mut bench = Bench::new("INC W0\nCASE B0\nCM 1\nENDC\nEM\nLBL 1\nEM\n");
+    bench.set("B0=1");
+    assert_eq!(bench.scan().unwrap_err().error, PlcError::CaseOutOfRange);
+    bench.set("B0=0");
+    assert!(bench.scan().is_err());
+    bench.machine.restart(Start::Interruption, &mut bench.nc);
+    bench.scans(1);
+    bench.expect("W0=2");
 }

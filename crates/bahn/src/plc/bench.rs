@@ -21,6 +21,7 @@ pub(super) struct Bench {
     /// Cycles that were started.
     pub cycle: u64,
     cycle_time: Duration,
+    inside: bool,
 }
 
 /// An expectation that does not hold.
@@ -30,6 +31,16 @@ pub(super) struct Failure {
     pub operand: String,
     pub expected: Content,
     pub found: Content,
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "cycle {}: {} expected {}, found {}",
+            self.cycle, self.operand, self.expected, self.found
+        )
+    }
 }
 
 impl Bench {
@@ -48,6 +59,7 @@ impl Bench {
             script: script.unwrap_or_default(),
             cycle: 0,
             cycle_time: cycle_time(model),
+            inside: false,
         };
         mirror_parameters(&bench.nc.parameters, &mut bench.exchange);
         for assignment in set_operands(options)? {
@@ -71,8 +83,13 @@ impl Bench {
         Ok(())
     }
 
+    /// No cycle begins while an error has stopped the PLC.
+    fn running(&self) -> Result<(), RuntimeError> {
+        self.machine.stopped().map_or(Ok(()), |error| Err(error.clone()))
+    }
+
     /// Applies the stimuli of the next cycle and counts it.
-    pub fn stimulate(&mut self) {
+    fn stimulate(&mut self) {
         self.cycle += 1;
         let stimuli = self.script.cycle(self.cycle).map(|cycle| cycle.set.clone());
         for assignment in stimuli.unwrap_or_default() {
@@ -83,6 +100,7 @@ impl Bench {
 
     /// Runs the next cycle; the stimuli come first.
     pub fn scan(&mut self, tracer: Option<&mut dyn Tracer>) -> Result<(), RuntimeError> {
+        self.running()?;
         self.stimulate();
         let report = match tracer {
             Some(tracer) => self.machine.scan_traced(&mut self.exchange, &mut self.nc, tracer),
@@ -92,8 +110,39 @@ impl Bench {
         report.map(|_| ())
     }
 
+    /// Executes the next line of a cycle, and begins one if none was begun; tells whether it is over.
+    pub fn step(&mut self, tracer: &mut dyn Tracer) -> Result<bool, RuntimeError> {
+        self.running()?;
+        if !self.inside {
+            self.stimulate();
+            self.machine.begin(&mut self.exchange, &mut self.nc)?;
+            self.inside = true;
+        }
+        let report = self
+            .machine
+            .step(&mut self.exchange, &mut self.nc, Some(tracer))
+            .inspect_err(|_| self.inside = false)?;
+        if report.is_some() {
+            self.inside = false;
+            self.end_cycle();
+        }
+        Ok(report.is_some())
+    }
+
+    /// Whether a cycle was begun line by line and is not over.
+    pub fn is_inside(&self) -> bool {
+        self.inside
+    }
+
+    /// Starts program and script anew; operands keep their values.
+    pub fn restart(&mut self) {
+        self.machine.restart(Start::Interruption, &mut self.nc);
+        self.cycle = 0;
+        self.inside = false;
+    }
+
     /// What the control does until the next cycle.
-    pub fn end_cycle(&mut self) {
+    fn end_cycle(&mut self) {
         self.nc.end_scan();
         self.nc.travel(self.cycle_time.as_secs_f64());
     }

@@ -83,8 +83,13 @@ Examples:
   bahn plc diagram MAIN.PLC --show M100,O2 --trigger O2=1 --cycles 40 --before 10 --svg door.svg";
 
 const WATCH_KEYS: &str = "\
-Keys: r run, s stop, c one cycle, l one line, up and down choose an operand, enter set it, space turn a
-bit over, a add an operand, d remove it, q end. Numbers are shown decimal, hexadecimal and binary.";
+Keys: r run, s stop, c one cycle, l one line, n start the program and the script anew, up and down choose
+an operand, enter set it, space turn a bit over, a add operands, d remove one, q end. Numbers are shown
+decimal, hexadecimal and binary.
+
+Examples:
+  bahn plc watch MAIN.PLC --show I4,O2,W8
+  bahn plc watch MAIN.PLC --script door.txt --retain door.mem";
 
 const XREF_EXAMPLES: &str = "\
 Examples:
@@ -218,6 +223,9 @@ pub(crate) struct WatchOptions {
     pub program: ProgramOptions,
     #[command(flatten)]
     pub bench: BenchOptions,
+    /// File of the non-volatile markers and bytes: read before, kept while the program runs.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub retain: Option<PathBuf>,
     /// The operands of the table; without it those of --set and of the script.
     #[arg(long, value_name = "OPERAND,..", value_delimiter = ',')]
     pub show: Vec<Operand>,

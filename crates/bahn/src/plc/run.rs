@@ -78,10 +78,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     record.map_or(Ok(()), Record::finish)?;
 
     for failure in &report.failed_expectations {
-        diagnostics::print_line(&format!(
-            "cycle {}: {} expected {}, found {}",
-            failure.cycle, failure.operand, failure.expected, failure.found
-        ));
+        diagnostics::print_line(&failure.to_string());
     }
     report.values = Values(
         options
