@@ -67,6 +67,40 @@ fn linked_files_lie_beside_the_main_file() {
 }
 
 #[test]
+fn machines_with_an_eprom_link_its_files() {
+    let folder = folder("USES GEAR.PLC\nEXTERN 10\nCM 10\nEM\n");
+    let gear = |value: u8| format!("GLOBAL 10\nLBL 10\nL K+{value}\n= B0\nEM\n");
+    folder.write("GEAR.PLC", gear(7));
+    folder
+        .write("ram.MP", "MP4010 : 1\n")
+        .write("eprom.MP", "MP4010 : 0\n");
+    let errors = |list: &str| {
+        let run = folder.bahn(&format!("plc check MAIN.PLC --parameters {list} --format json"));
+        let errors = run.json()["errors"].clone();
+        errors
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|e| e["number"].as_u64().unwrap())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(errors("ram.MP"), [0_u64; 0]);
+    assert_eq!(errors("eprom.MP"), [35_u64, 39]);
+    std::fs::create_dir(folder.path("EPROM")).unwrap();
+    folder.write("EPROM/GEAR.PLC", gear(8));
+    let value = |list: &str| {
+        let run = folder.bahn(&format!(
+            "plc run MAIN.PLC --parameters {list} --show B0 --format json"
+        ));
+        run.json()["values"]["B0"].clone()
+    };
+    assert_eq!((value("ram.MP"), value("eprom.MP")), (json!(7), json!(8)));
+    folder.write("EPROM/GEAR.PLC", "GLOBAL 10\nLBL 10\n= B0\nEM\n");
+    let run = folder.bahn("plc check MAIN.PLC --parameters eprom.MP");
+    assert!(run.err().contains("EPROM/GEAR.PLC:3:1"), "{}", run.err());
+}
+
+#[test]
 fn run_shows_operands() {
     let folder = folder(DOOR);
     let run =

@@ -47,4 +47,4 @@ pub use program::{
 pub use run::{
     Machine, OperandContent, ProcessingTime, Registers, RuntimeError, ScanReport, Start, TraceStep, Tracer,
 };
-pub use source::{MemoryFiles, SourceFiles};
+pub use source::{MemoryFiles, ProgramMemory, SourceFiles};

@@ -10,7 +10,7 @@ use bahn_plc::{Machine, PlcProgram, RuntimeError, Start, TestNc, Tracer, mirror_
 use super::operand::{Assignment, Content, Operand};
 use super::options::BenchOptions;
 use super::script::Script;
-use crate::{UsageError, settings};
+use crate::UsageError;
 
 /// A program with all it needs to run.
 pub(super) struct Bench {
@@ -47,7 +47,7 @@ impl Bench {
     /// With the operands of `--set`; `exchange` holds what was retained.
     pub fn new(
         program: Arc<PlcProgram>,
-        model: ControlModel,
+        parameters: ParameterList,
         options: &BenchOptions,
         exchange: Exchange,
     ) -> Result<Bench, UsageError> {
@@ -55,10 +55,10 @@ impl Bench {
         let mut bench = Bench {
             machine: Machine::new(program, Start::PowerOn),
             exchange,
-            nc: TestNc::new(settings::parameter_list(model, options.parameters.as_deref())?),
+            cycle_time: cycle_time(parameters.model()),
+            nc: TestNc::new(parameters),
             script: script.unwrap_or_default(),
             cycle: 0,
-            cycle_time: cycle_time(model),
             inside: false,
         };
         mirror_parameters(&bench.nc.parameters, &mut bench.exchange);

@@ -28,15 +28,11 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
     }
     let trigger = options.trigger.as_deref().map(trigger).transpose()?;
     let source = Source::compile(&options.program)?;
+    let parameters = source.parameters.clone();
     let Some(program) = source.program() else {
         return Ok(Outcome::ProgramError);
     };
-    let mut bench = Bench::new(
-        program,
-        options.program.model,
-        &options.bench,
-        Exchange::default(),
-    )?;
+    let mut bench = Bench::new(program, parameters, &options.bench, Exchange::default())?;
     let mut samples = VecDeque::new();
     // The cycle that triggers; without trigger the first.
     let mut triggered = trigger.is_none().then_some(1);

@@ -47,9 +47,11 @@ const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn plc check MAIN.PLC
   bahn plc check MAIN.PLC --model tnc407 --format json
+  bahn plc check MAIN.PLC --parameters machine.MP
 
 JSON: ok, errors and warnings (number, file, line, column, message), size_bytes, nominal_percent
-(100 % are 5 ms). Files that the program links with USES lie beside the main file.
+(100 % are 5 ms). Files that the program links with USES lie beside the main file, or in a folder EPROM
+beside it.
 Exit codes: 0 no error, 1 errors, 2 wrong use.";
 
 const RUN_EXAMPLES: &str = "\
@@ -112,6 +114,10 @@ pub(crate) struct ProgramOptions {
     /// Control model.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
+    /// List of machine parameters that replaces values of the model's reference list. With MP4010 = 0 in
+    /// it files are linked from the folder EPROM beside the main file only.
+    #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
+    pub parameters: Option<PathBuf>,
 }
 
 /// What the program runs against.
@@ -120,9 +126,6 @@ pub(crate) struct BenchOptions {
     /// Operands and machine parameters before the first cycle, as I4=1,W6=100,MP4110.2=4 (repeatable).
     #[arg(long, value_name = "OPERAND=V,..")]
     pub set: Vec<String>,
-    /// List of machine parameters that replaces values of the model's reference list.
-    #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
-    pub parameters: Option<PathBuf>,
     /// Stimuli and expectations.
     #[arg(long, value_name = "STIMULI", value_hint = ValueHint::FilePath)]
     pub script: Option<PathBuf>,

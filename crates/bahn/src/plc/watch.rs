@@ -24,6 +24,7 @@ use entry::Entry;
 /// Shows the table until the user ends it.
 pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
     let source = Source::compile(&options.program)?;
+    let parameters = source.parameters.clone();
     let Some(program) = source.program() else {
         return Ok(Outcome::ProgramError);
     };
@@ -34,7 +35,7 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
     let exchange = retained
         .as_ref()
         .map_or_else(Exchange::default, Retained::restore);
-    let bench = Bench::new(program, options.program.model, &options.bench, exchange)?;
+    let bench = Bench::new(program, parameters, &options.bench, exchange)?;
     let mut operands = options.show.clone();
     if operands.is_empty() {
         let set = set_operands(&options.bench)?;

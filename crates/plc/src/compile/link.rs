@@ -7,7 +7,7 @@ use super::labels::Definition;
 use super::{Compilation, Options, Place, Reports, time};
 use crate::PlcError;
 use crate::program::{Label, LabelPlace, Op, PlcProgram, SourceLine, SourceText, Target};
-use crate::source::{SourceFiles, decode, find};
+use crate::source::{Found, Missing, SourceFiles, decode, find};
 
 /// Files of a program at most [000:14604].
 const FILES_MAX: usize = 64;
@@ -60,10 +60,17 @@ fn read_all(files: &dyn SourceFiles, main: &str, options: Options, reports: &mut
         if known.contains(&key) {
             continue;
         }
-        let Some((found, bytes)) = find(files, &name) else {
-            reports.error((by, &by_name), place, PlcError::FileNotFound, &name);
-            known.push(key);
-            continue;
+        let (found, bytes) = match find(files, options.memory, &name) {
+            Ok(Found { name, bytes }) => (name, bytes),
+            Err(missing) => {
+                let detail = match missing {
+                    Missing::NoFile => name,
+                    Missing::InRamOnly => format!("{name} lies in the RAM, MP4010 = 0 takes the EPROM only"),
+                };
+                reports.error((by, &by_name), place, PlcError::FileNotFound, &detail);
+                known.push(key);
+                continue;
+            }
         };
         if linked.len() >= FILES_MAX {
             if !too_many {

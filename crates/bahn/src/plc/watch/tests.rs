@@ -1,6 +1,6 @@
 //! Keys in, screen out.
 
-use bahn_parameters::ControlModel;
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{Compilation, MemoryFiles, Options};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -15,12 +15,11 @@ fn watch(program: &str, operands: &str) -> Watch {
         .unwrap();
     let options = BenchOptions {
         set: Vec::new(),
-        parameters: None,
         script: None,
     };
     let bench = Bench::new(
         program.into(),
-        ControlModel::Tnc415b,
+        ParameterList::reference(ControlModel::Tnc415b),
         &options,
         Exchange::default(),
     )
