@@ -35,6 +35,9 @@ mod settings;
 mod test_run;
 mod tool_table;
 
+#[doc(hidden)]
+pub use plc::check_script;
+
 use std::ffi::OsString;
 use std::fmt;
 use std::process::ExitCode;
