@@ -85,8 +85,6 @@ pub struct Control {
     output_bits: Vec<(usize, Bit)>,
     input_bits: Vec<(usize, Bit)>,
     pub(crate) letters: [char; AXES],
-    /// The error in the shape of the path, mm: largest distance of actual from nominal path position.
-    pub(crate) contour_deviation: f64,
 }
 
 /// The PLC and its clock.
@@ -191,7 +189,6 @@ impl Control {
             output_bits: bits(BitArea::O, OUTPUTS),
             input_bits: bits(BitArea::I, INPUTS),
             letters,
-            contour_deviation: 0.0,
             axes,
         };
         if let Some(name) = remembered.program {
@@ -350,6 +347,10 @@ impl Control {
         }
         let percent = self.spindle_override.percent();
         self.spindle.cycle(&mut self.exchange, percent);
+        if self.spindle.take_wrong_speed() {
+            self.show(Message::Plain(MessageId::WrongRpm), false);
+            self.stop_run();
+        }
         for unit in &mut self.axes {
             unit.count();
         }
@@ -358,13 +359,16 @@ impl Control {
 
     /// What was acknowledged has its effect now.
     fn acknowledged(&mut self, transfer: Transfer) {
-        if let Transfer::ToolCall { more: false, .. } = transfer {
-            self.tools.inserted();
+        match transfer {
+            Transfer::ToolCall { more: false, .. } => self.tools.inserted(),
+            Transfer::Gear { .. } => self.spindle.gear_changed(),
+            _ => {}
         }
     }
 
     /// Interprets and plans ahead; may allocate. To be called after every cycle.
     pub fn prepare(&mut self) {
+        self.prepare_restore();
         self.prepare_run();
     }
 

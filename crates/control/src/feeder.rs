@@ -95,6 +95,8 @@ pub(crate) struct Feeder {
     /// State before the blocks that are on their way, with the count of blocks executed before.
     checkpoints: VecDeque<(u64, Checkpoint)>,
     fault: Option<RunFault>,
+    /// An element that a block scan has found: it comes next.
+    found: Option<PathElement>,
     /// Executed elements for whoever wants to see the path.
     tap: Option<Vec<PathElement>>,
 }
@@ -113,6 +115,7 @@ impl Feeder {
             limits,
             checkpoints: VecDeque::new(),
             fault: None,
+            found: None,
             tap: None,
         }
     }
@@ -123,6 +126,22 @@ impl Feeder {
 
     pub fn interpreter_mut(&mut self) -> &mut Interpreter {
         &mut self.interpreter
+    }
+
+    /// The program that is executed is in inches.
+    pub fn inch(&self) -> bool {
+        let program = self.interpreter.program(self.interpreter.at().program);
+        program.is_some_and(|program| program.unit() == bahn_program::Unit::Inch)
+    }
+
+    /// The datum changed: limits count from it.
+    pub fn set_datum(&mut self, datum: Position) {
+        self.offsets.datum = datum;
+    }
+
+    /// Gives an element back, to come again.
+    pub fn put_back(&mut self, element: PathElement) {
+        self.found = Some(element);
     }
 
     /// Keeps a copy of every element that is handed out.
@@ -159,6 +178,7 @@ impl Feeder {
             self.interpreter.restore(checkpoint);
         }
         self.checkpoints.clear();
+        self.found = None;
         self.fault = None;
         self.offsets = offsets;
         self.limits = limits;
@@ -199,6 +219,9 @@ impl ElementSource for Feeder {
     fn next(&mut self) -> Step<RunFault> {
         if let Some(fault) = &self.fault {
             return Step::Error(fault.clone());
+        }
+        if let Some(found) = self.found.take() {
+            return Step::Element(found);
         }
         let executed = self.interpreter.blocks_executed();
         if self

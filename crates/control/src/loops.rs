@@ -113,7 +113,7 @@ impl Control {
             unit.enabled = enabled;
             unit.servo.set_enabled(enabled || unit.stands());
             unit.servo
-                .set_monitoring(MONITORING_OFF.get(unit.index).is_none_or(|marker| !nc.bit(*marker)));
+                .set_monitored(MONITORING_OFF.get(unit.index).is_none_or(|marker| !nc.bit(*marker)));
         }
         if all_open {
             self.spindle.open();

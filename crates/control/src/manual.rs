@@ -38,6 +38,12 @@ pub(crate) struct Manual {
     wheel: Option<f64>,
     /// Axis key pressed last.
     pub last_key: usize,
+    /// M function that was entered and waits for NC start.
+    pub m: Option<u16>,
+    /// Spindle speed that was entered and waits for NC start, rpm.
+    pub s: Option<f64>,
+    /// Code number 75 368 shows the offsets.
+    pub offsets_shown: bool,
 }
 
 impl Default for Manual {
@@ -52,6 +58,9 @@ impl Default for Manual {
             count: None,
             wheel: None,
             last_key: 0,
+            m: None,
+            s: None,
+            offsets_shown: false,
         }
     }
 }

@@ -94,6 +94,11 @@ impl ProgramRun {
         self.state == RunState::Running || self.begin_wanted
     }
 
+    /// The next start begins anew, not with the block of an interruption.
+    pub fn forget_interruption(&mut self) {
+        self.resume_from = None;
+    }
+
     pub fn restoring(&self) -> Option<&crate::restore::Restore> {
         self.restore.as_ref()
     }
@@ -326,7 +331,7 @@ impl Control {
         self.output_functions(settled);
         match cycle.state {
             State::Gate(_) => {
-                if self.run.waiting.is_empty() && self.handshakes.is_idle() && !self.spindle.is_busy() {
+                if self.run.waiting.is_empty() && self.handshakes.is_idle() {
                     self.path.release();
                 }
             }
