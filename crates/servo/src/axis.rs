@@ -9,7 +9,7 @@ use crate::measuring::{Mark, MeasuringSystem};
 use crate::monitor::{Monitor, Sample};
 use crate::offset::Offset;
 use crate::plant::Encoder;
-use crate::reversal::ReversalPeak;
+use crate::reversal::{ReversalPeak, Travel};
 use crate::timing::Timing;
 
 /// Time constants of the loop after which an axis whose nominal position stands is at rest (inferred).
@@ -19,6 +19,11 @@ const STICTION_STEPS: f64 = 256.0;
 
 /// No machine is larger, mm: farther commands are not taken.
 const POSITION_MAX_MM: f64 = 1e9;
+
+/// A nominal way of a servo step that is rounding and not movement, mm.
+const STANDING_MM: f64 = 1e-9;
+/// So far may the nominal position of an axis in position go without being a movement, mm.
+const REST_MM: f64 = 1e-6;
 
 /// How an axis is positioned [000:4714-4733].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +51,7 @@ pub struct Axis {
     measuring: MeasuringSystem,
     interpolation: FineInterpolation,
     transient: Transient,
+    travel: Travel,
     reversal: ReversalPeak,
     characteristic: Characteristic,
     offset: Offset,
@@ -59,6 +65,8 @@ pub struct Axis {
     window_mm: Option<f64>,
     /// Nominal position of the contour cycle without the reversal peak.
     commanded_mm: f64,
+    /// The commanded position at which the window was reached last.
+    rest_mm: f64,
     nominal_mm: f64,
     actual_mm: f64,
     /// A contour cycle has begun and its first step is not done.
@@ -93,6 +101,7 @@ impl Axis {
             measuring: MeasuringSystem::new(&parameters),
             interpolation: FineInterpolation::new(timing.steps()),
             transient: Transient::new(timing.steps(), parameters.precontrol.transient_m_min),
+            travel: Travel::default(),
             reversal: ReversalPeak::default(),
             characteristic: Characteristic::straight(1.0),
             offset: Offset::default(),
@@ -105,6 +114,7 @@ impl Axis {
             monitored: true,
             window_mm: None,
             commanded_mm: 0.0,
+            rest_mm: 0.0,
             nominal_mm: 0.0,
             actual_mm: 0.0,
             cycle_begins: false,
@@ -156,16 +166,21 @@ impl Axis {
         if nominal_mm.is_nan() || nominal_mm.abs() > POSITION_MAX_MM {
             return;
         }
-        let way = nominal_mm - self.commanded_mm;
         self.commanded_mm = nominal_mm;
-        if way != 0.0 {
-            self.measuring.set_direction(way > 0.0);
+        if (nominal_mm - self.rest_mm).abs() > REST_MM {
             self.in_position = false;
         }
         let set = usize::from(self.second_set);
         let compensation = &self.parameters.compensation;
         let (height, part) = (compensation.reversal_mm[set], compensation.reversal_step_mm[set]);
-        let peak = self.reversal.advance(way, self.circular, height, part);
+        let before = self.travel.direction();
+        if let Some(direction) = self.travel.advance(nominal_mm) {
+            self.measuring.set_direction(direction > 0.0);
+            if self.circular && before != 0.0 && part > 0.0 {
+                self.reversal.begin(direction, height);
+            }
+        }
+        let peak = self.reversal.advance(part);
         self.interpolation.command(nominal_mm + peak);
     }
 
@@ -187,7 +202,8 @@ impl Axis {
             self.begin_cycle();
         }
 
-        let standing = now == next && next == self.interpolation.end();
+        let left = (next - now).abs().max((self.interpolation.end() - next).abs());
+        let standing = left <= STANDING_MM;
         self.standing_steps = if standing {
             self.standing_steps.saturating_add(1)
         } else {
@@ -198,6 +214,7 @@ impl Axis {
         let wanted = self.velocity_mm_min * full + self.offset.volts();
         if standing && self.is_in_window() {
             self.in_position = true;
+            self.rest_mm = self.commanded_mm;
         }
         if self.closed {
             self.watch(standing, next - now, wanted);
@@ -223,9 +240,11 @@ impl Axis {
         self.cycle_actual_mm = self.actual_mm;
         self.stiction_mm_min = self.stiction(lag - self.cycle_lag_mm);
         self.cycle_lag_mm = lag;
-        let time_constant = 1.0 / (self.characteristic.slope() * self.timing.step_min());
-        let rest = f64::from(self.standing_steps) >= REST_TIME_CONSTANTS * time_constant;
-        if rest && self.drives() {
+        let time_constants =
+            f64::from(self.standing_steps) * self.characteristic.slope() * self.timing.step_min();
+        let rest = time_constants >= REST_TIME_CONSTANTS;
+        // A digital speed loop has no offset [000:18147].
+        if rest && self.drives() && self.parameters.digital.is_none() {
             let output = &self.parameters.output;
             let full = output.rapid_volts / self.parameters.motion.rapid_mm_min;
             self.offset
@@ -308,8 +327,11 @@ impl Axis {
 
     /// Whether a voltage is put out at all.
     fn drives(&self) -> bool {
-        let sound = self.fault.is_none_or(Fault::cancellable);
-        self.closed && self.enabled && sound && !self.is_released()
+        self.closed() && self.enabled && !self.is_released()
+    }
+
+    fn is_sound(&self) -> bool {
+        self.fault.is_none_or(Fault::cancellable)
     }
 
     /// Whether the residual voltage after POSITIONING ERROR is switched off.
@@ -335,12 +357,15 @@ impl Axis {
         self.interpolation.set(self.actual_mm);
         self.transient.set(self.actual_mm);
         self.reversal.clear();
+        self.travel.set(self.actual_mm);
         self.commanded_mm = self.actual_mm;
+        self.rest_mm = self.actual_mm;
         self.nominal_mm = self.actual_mm;
         self.bias_mm_min = 0.0;
     }
 
-    /// Gives or withdraws the feed enable; without it the output is 0 V at once [000:5352].
+    /// Gives or withdraws the feed enable; without it the output is 0 V at once [000:5352]. The nominal
+    /// position stays: what lag is left then is driven out when the enable comes back.
     pub fn set_enabled(&mut self, enabled: bool) {
         self.enabled = enabled;
     }
@@ -410,6 +435,8 @@ impl Axis {
         self.cycle_actual_mm += shift;
         self.nominal_mm += shift;
         self.commanded_mm += shift;
+        self.rest_mm += shift;
+        self.travel.shift(shift);
         self.interpolation.shift(shift);
         self.transient.shift(shift);
         self.monitor.shift(shift);
@@ -534,9 +561,9 @@ impl Axis {
         self.volts
     }
 
-    /// Whether the loop is closed.
+    /// Whether the loop is closed; not with a fault that cannot be cleared.
     pub fn closed(&self) -> bool {
-        self.closed
+        self.closed && self.is_sound()
     }
 
     /// Method of positioning.

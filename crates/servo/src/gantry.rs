@@ -39,6 +39,16 @@ impl Gantry {
         }
     }
 
+    /// The parameters that the slave works with: feeds and acceleration, limits and datums are the master's
+    /// [000:4535].
+    pub fn slave_parameters(slave: &AxisParameters, master: &AxisParameters) -> AxisParameters {
+        let mut parameters = *slave;
+        parameters.motion = master.motion;
+        parameters.travel.ranges_mm = master.travel.ranges_mm;
+        parameters.reference.feed_mm_min = master.reference.feed_mm_min;
+        parameters
+    }
+
     /// Takes the present relation of the two as it is, at switch-on. With MP860 = 0 they are synchronous from
     /// here on [000:4492-4496].
     pub fn switch_on(&mut self, master: &Axis, slave: &Axis) {

@@ -129,3 +129,16 @@ fn both_methods_know_their_kv_and_that_after_m105() {
         );
     }
 }
+
+#[test]
+fn rounding_of_a_position_that_stands_is_no_movement() {
+    let mut bench = Bench::new(Tnc415b, &[MANUAL, &["710.0=0.05"]].concat());
+    bench.run(1000.0, 0.3);
+    bench.stand(1.0);
+    let (target, table) = (bench.axis.target_mm(), bench.table_mm);
+    for cycle in 0..100 {
+        let jitter = if cycle % 2 == 0 { 2e-12 } else { -2e-12 };
+        bench.cycle_with(target + jitter, |axis, _| assert!(axis.in_position()));
+    }
+    assert!((bench.table_mm - table).abs() < 1e-4, "no play was compensated");
+}

@@ -78,6 +78,48 @@ fn rapid_traverse_fits_the_recommended_limits() {
 }
 
 #[test]
+fn a_drive_with_a_time_constant_fits_the_recommended_limits() {
+    let recommended = &[
+        "1710.0=12",
+        "1720.0=14",
+        "1140.0=0.5",
+        "1110.0=0.2",
+        "1410.0=2",
+        "1420.0=10",
+    ];
+    for method in [Method::Lag, Method::Precontrol] {
+        for drive_s in [0.005, 0.010, 0.020] {
+            let mut bench = bench(method, recommended);
+            bench.drive_s = drive_s;
+            for (way, feed) in [
+                (300.0, 8000.0),
+                (-200.0, 8000.0),
+                (0.01, 500.0),
+                (-5.0, 2000.0),
+                (40.0, 300.0),
+            ] {
+                bench.position(way, feed, 1.0);
+                bench.stand(1.0);
+                assert_eq!(
+                    bench.axis.fault(),
+                    None,
+                    "{method:?} {drive_s} s, {way} mm F{feed}"
+                );
+                assert!(
+                    bench.axis.in_position(),
+                    "{method:?} {drive_s} s, {way} mm F{feed}"
+                );
+            }
+            assert!(
+                (bench.table_mm - 135.01).abs() < 2e-4,
+                "{method:?}: {}",
+                bench.table_mm
+            );
+        }
+    }
+}
+
+#[test]
 fn more_than_10_volts_is_a_fault_with_precontrol_only() {
     // 10 V are 11 111 mm/min; in 3 ms 0.5555 mm.
     for (feed, fault) in [

@@ -27,6 +27,10 @@ pub struct Bench {
     pub table_mm: f64,
     /// Offset of the drive, V.
     pub offset_volts: f64,
+    /// Time constant of the drive, s; 0 is the ideal one.
+    pub drive_s: f64,
+    /// Velocity of the table, mm/min.
+    pub velocity_mm_min: f64,
     /// The table does not move.
     pub blocked: bool,
     /// mm/min for 1 V.
@@ -58,6 +62,8 @@ impl Bench {
             encoder: Encoder::default(),
             table_mm: 0.0,
             offset_volts: 0.0,
+            drive_s: 0.0,
+            velocity_mm_min: 0.0,
             blocked: false,
             mm_min_per_volt: polarity * parameters.motion.rapid_mm_min / parameters.output.rapid_volts,
             steps_per_mm: direction * Encoder::STEPS as f64 / (parameters.encoder.signal_period_um * 1e-3),
@@ -79,8 +85,15 @@ impl Bench {
             let volts = self.axis.step();
             each(&self.axis, self.table_mm);
             if !self.blocked {
-                let velocity = (volts + self.offset_volts) * self.mm_min_per_volt;
-                self.table_mm += velocity * f64::from(self.timing.step_us()) / 60e6;
+                let nominal = (volts + self.offset_volts) * self.mm_min_per_volt;
+                let step_s = f64::from(self.timing.step_us()) * 1e-6;
+                let follows = if self.drive_s > 0.0 {
+                    1.0 - (-step_s / self.drive_s).exp()
+                } else {
+                    1.0
+                };
+                self.velocity_mm_min += (nominal - self.velocity_mm_min) * follows;
+                self.table_mm += self.velocity_mm_min * step_s / 60.0;
             }
         }
     }
@@ -96,6 +109,27 @@ impl Bench {
         for cycle in 1..=self.cycles(seconds) {
             self.cycle(start + feed_mm_min * cycle_min * f64::from(cycle));
         }
+    }
+
+    /// Positions over a way with a trapezoidal velocity profile, as the path planning would.
+    pub fn position(&mut self, way_mm: f64, feed_mm_min: f64, acceleration_m_s2: f64) {
+        let start = self.axis.target_mm();
+        let acceleration = acceleration_m_s2 * 1e3;
+        let speed = (feed_mm_min / 60.0).min((acceleration * way_mm.abs()).sqrt());
+        let (ramp_s, whole_s) = (speed / acceleration, way_mm.abs() / speed + speed / acceleration);
+        for cycle in 1..=self.cycles(whole_s) + 1 {
+            let time = (f64::from(cycle) * f64::from(self.timing.contour_us()) * 1e-6).min(whole_s);
+            let left = whole_s - time;
+            let way = if time < ramp_s {
+                acceleration * time * time / 2.0
+            } else if left < ramp_s {
+                way_mm.abs() - acceleration * left * left / 2.0
+            } else {
+                speed * (time - ramp_s / 2.0)
+            };
+            self.cycle(start + way.copysign(way_mm));
+        }
+        self.cycle(start + way_mm);
     }
 
     /// Stands for a time, s.
