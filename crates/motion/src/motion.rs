@@ -163,6 +163,13 @@ impl Motion {
         })
     }
 
+    /// Greatest curvature of an axis at the start and at the end, 1/mm; `None` for lines.
+    #[inline]
+    pub(crate) fn bends(&self) -> Option<[f64; 2]> {
+        let greatest = |curvature: Point2| curvature[0].abs().max(curvature[1].abs());
+        self.bend.as_ref().map(|bend| bend.curvature.map(greatest))
+    }
+
     #[inline]
     pub(crate) fn start(&self) -> MotionEnd<'_> {
         let curvature = self.bend.as_ref().map(|bend| bend.curvature(0));

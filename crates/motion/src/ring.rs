@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 
 use bahn_path::{Curve, FeedRate, OverrideLaw, PathElement, Position};
 
-use crate::corner::{Corner, Joint};
+use crate::corner::{Corner, Joint, Run};
 use crate::gate::{Gate, Gates, place, wait};
 use crate::limits::Dynamics;
 use crate::motion::Motion;
@@ -77,8 +77,8 @@ pub(crate) struct Ring {
     last: Option<Motion>,
     /// The joint after `last` is passed whatever its angle.
     any_angle: bool,
-    /// Way since the last corner or stop, mm.
-    run: f64,
+    /// The path since the last corner or stop.
+    run: Run,
     /// The last corner while the way after it is too short to say how fast it may be passed, and the
     /// number of the item before it.
     corner: Option<(u64, Corner)>,
@@ -99,7 +99,7 @@ impl Ring {
             stop_at: None,
             last: None,
             any_angle: false,
-            run: 0.0,
+            run: Run::default(),
             corner: None,
         }
     }
@@ -158,15 +158,14 @@ impl Ring {
         self.current = 0;
         self.end = position;
         self.stop_at = None;
+        self.corner = None;
+        self.changed = usize::MAX;
         self.stop();
     }
 
     /// What is known ends in a stop for good.
     pub(crate) fn stop(&mut self) {
-        self.last = None;
-        self.corner = None;
-        self.run = 0.0;
-        self.any_angle = false;
+        self.join_stop();
         if let Some(last) = self.items.back_mut() {
             last.block_end = true;
         }
@@ -189,13 +188,13 @@ impl Ring {
         if let Some(motion) = &mut motion {
             motion.speed = item.greatest(&self.dynamics);
         }
-        let mut changed = self.items.len();
+        self.changed = self.changed.min(self.items.len());
         if let Some(last) = self.items.back_mut() {
             last.block_end = last.element.sequence != item.element.sequence;
-            changed = self.join(motion.as_ref(), gates.start);
+            self.join(motion.as_ref(), gates.start);
         }
         if let Some(motion) = motion {
-            self.run += motion.length;
+            self.run.add(&motion);
             self.any_angle = false;
             self.last = Some(motion);
         }
@@ -205,20 +204,16 @@ impl Ring {
         item.set_feed(&self.dynamics);
         self.end = item.element.end;
         self.items.push_back(item);
-        if let Some((number, corner)) = &self.corner {
-            let cap = corner.pass_speed(self.run).powi(2);
-            let enough = self.run >= corner.enough();
-            changed = changed.min(self.set_cap(*number, cap));
-            if enough {
-                self.corner = None;
-            }
+        let enough = self
+            .corner
+            .as_ref()
+            .is_some_and(|(_, corner)| self.run.is_enough_for(corner));
+        if enough || gates.end {
+            self.decide();
         }
         if gates.end {
             self.last = None;
-            self.corner = None;
-            self.run = 0.0;
         }
-        self.changed = self.changed.min(changed);
     }
 
     /// Makes the envelopes again after elements were put in: once for all of them.
@@ -229,50 +224,59 @@ impl Ring {
         }
     }
 
-    /// Finds the joint between the last element and the next one; the index of the item whose cap it is.
-    fn join(&mut self, next: Option<&Motion>, gate: bool) -> usize {
-        let index = self.items.len() - 1;
-        let number = self.first + index as u64;
+    /// Finds the joint between the last element and the next one.
+    fn join(&mut self, next: Option<&Motion>, gate: bool) {
+        let number = self.first + self.items.len() as u64 - 1;
         let Some(last) = self.last.as_ref().filter(|_| !gate) else {
-            return self.join_stop(number);
+            return self.join_stop();
         };
         let Some(next) = next else {
             // Without a length there is no direction: the corner is where the path goes on.
             let cap = last.speed * last.speed;
             return self.set_cap(number, cap);
         };
-        match Joint::between(last, next, self.run, self.any_angle, &self.dynamics) {
-            Joint::Stop => self.join_stop(number),
+        let joint = Joint::between(last, next, &self.run, self.any_angle, &self.dynamics);
+        if let Some((_, corner)) = &mut self.corner
+            && !matches!(joint, Joint::Stop)
+        {
+            corner.meet(next, &self.run);
+        }
+        match joint {
+            Joint::Stop => self.join_stop(),
             Joint::Smooth(speed) => self.set_cap(number, speed * speed),
             Joint::Corner(corner) => {
+                self.decide();
                 self.corner = Some((number, corner));
-                self.run = 0.0;
-                index
+                self.run.turn();
             }
         }
     }
 
-    fn join_stop(&mut self, number: u64) -> usize {
-        self.corner = None;
+    /// The path stops at the end of the last element.
+    fn join_stop(&mut self) {
+        self.decide();
         self.last = None;
-        self.run = 0.0;
-        self.set_cap(number, 0.0)
+        self.run.reset();
     }
 
-    /// Sets the cap of an item and gives its index.
-    fn set_cap(&mut self, number: u64, cap: f64) -> usize {
-        // The item can be executed and gone.
+    /// Decides the corner that waits for the way after it. Until then it is a stop, for what comes
+    /// after it may raise its speed, and lower it too.
+    fn decide(&mut self) {
+        if let Some((number, corner)) = self.corner.take() {
+            self.set_cap(number, corner.pass_speed(&self.run).powi(2));
+        }
+    }
+
+    /// Sets the cap of an item that is still kept.
+    fn set_cap(&mut self, number: u64, cap: f64) {
         let index = number
             .checked_sub(self.first)
             .and_then(|index| usize::try_from(index).ok());
-        match index {
-            Some(index) => {
-                if let Some(item) = self.items.get_mut(index) {
-                    item.cap = cap;
-                }
-                index
-            }
-            None => 0,
+        if let Some(index) = index
+            && let Some(item) = self.items.get_mut(index)
+        {
+            item.cap = cap;
+            self.changed = self.changed.min(index);
         }
     }
 
