@@ -21,6 +21,9 @@ use crate::motion::Motion;
 /// An element whose arc starts farther than this from where the path is gets a line to its start, mm.
 const GAP: f64 = 1e-6;
 
+/// The element that is executed, the next one and a line to its start.
+const LEAST_CAPACITY: usize = 3;
+
 /// An element with what driving it needs.
 #[derive(Debug)]
 pub(crate) struct Item {
@@ -85,9 +88,9 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    /// Room for `capacity` elements, two at least.
+    /// Room for `capacity` elements, or the least that it works with.
     pub(crate) fn new(dynamics: Dynamics, capacity: usize) -> Ring {
-        let capacity = capacity.max(2);
+        let capacity = capacity.max(LEAST_CAPACITY);
         Ring {
             dynamics,
             items: VecDeque::with_capacity(capacity),
