@@ -359,8 +359,8 @@ impl<E> Interpolator<E> {
                         Driven::Arrived { speed, left } => {
                             let dwell = item.element.dwell_s;
                             // Rounding must not carry the path over what was found to be possible.
-                            let exit = if speed * speed > item.exit {
-                                item.exit.sqrt()
+                            let exit = if speed * speed > item.cap {
+                                item.cap.sqrt()
                             } else {
                                 speed
                             };
@@ -613,11 +613,7 @@ impl<E> Interpolator<E> {
 /// Drives along an item for a time.
 #[inline]
 fn drive_along(item: &Item, speed: f64, rest: f64, hold: bool, time: f64) -> Driven {
-    let (limit, exit_squared) = if hold {
-        (0.0, 0.0)
-    } else {
-        (item.feed, item.feed_exit)
-    };
+    let (limit, exit_squared) = if hold { (0.0, 0.0) } else { (item.feed, item.exit) };
     Ramp {
         speed,
         rest,

@@ -1,13 +1,13 @@
 //! The look-ahead of the interpolator: the elements to come and how fast their ends may be passed.
 //!
-//! Two envelopes of squared speed lie over the ends of the elements, both made by a pass from the last
-//! element backwards, so that braking is always in time:
-//! - the *geometric* one, of what machine and path allow: rapid traverse of the axes, radial
-//!   acceleration, corners, stops. It is never exceeded, so overrides must not lower it;
-//! - the *feed* one below it, with programmed feed, overrides and the stop of single block. It may be
-//!   lowered at any time, even below the speed of the path, which then brakes as fast as it can.
+//! Over the ends of the elements lies an envelope of squared speed, made by a pass from the last element
+//! backwards, so that braking is always in time. It holds what machine and path allow (rapid traverse of
+//! the axes, radial acceleration, corners, stops) and below that what is wanted (programmed feed, overrides,
+//! the stop of single block). What is wanted may be lowered at any time, even below the speed of the path.
+//! The path then brakes with all that it has, and so stays below the envelope of what is *allowed*: it
+//! was below it before, and no path within the acceleration can fall faster.
 //!
-//! The end of what is known is a stop. Elements that are put behind it only raise both envelopes.
+//! The end of what is known is a stop. Elements that are put behind it only raise the envelope.
 
 use std::collections::VecDeque;
 
@@ -34,9 +34,10 @@ pub(crate) struct Item {
     pub(crate) acceleration: f64,
     /// Greatest path speed with the overrides as they are, mm/s.
     pub(crate) feed: f64,
-    /// Greatest squared speeds at the end: geometric, and with feed and overrides.
+    /// Greatest squared speed at the end.
     pub(crate) exit: f64,
-    pub(crate) feed_exit: f64,
+    /// Squared speed at the end that machine and path allow, whatever comes after it.
+    pub(crate) cap: f64,
     /// Where functions are output, and whether the path waits for them.
     pub(crate) start: Output,
     pub(crate) end: Output,
@@ -44,8 +45,6 @@ pub(crate) struct Item {
     pub(crate) along: bool,
     /// The last element of its block, as far as is known.
     pub(crate) block_end: bool,
-    /// Squared speed at the end that the joint alone allows geometrically.
-    cap: f64,
     slowest: f64,
     radial_speed: f64,
 }
@@ -70,7 +69,7 @@ pub(crate) struct Ring {
     first: u64,
     /// Index of the item that is executed; those before it are only kept until `discard`.
     current: usize,
-    /// Items from this index on have changed since the envelopes were made.
+    /// Items from this index on have changed since the envelope was made.
     changed: usize,
     /// Where the path ends.
     end: Position,
@@ -219,11 +218,11 @@ impl Ring {
         }
     }
 
-    /// Makes the envelopes again after elements were put in: once for all of them.
+    /// Makes the envelope again after elements were put in: once for all of them.
     pub(crate) fn settle(&mut self) {
         let changed = std::mem::replace(&mut self.changed, usize::MAX);
         if changed != usize::MAX {
-            self.envelopes(changed);
+            self.envelope(changed);
         }
     }
 
@@ -291,14 +290,14 @@ impl Ring {
         self.items
             .range_mut(current..)
             .for_each(|item| item.set_feed(dynamics));
-        self.envelopes(0);
+        self.envelope(0);
     }
 
-    /// The feed envelope ends in a stop at the end of an item.
+    /// The envelope ends in a stop at the end of an item.
     pub(crate) fn set_stop(&mut self, number: Option<u64>) {
         if self.stop_at != number {
             self.stop_at = number;
-            self.envelopes(0);
+            self.envelope(0);
         }
     }
 
@@ -307,29 +306,25 @@ impl Ring {
         self.stop_at.is_none_or(|stop| stop < self.number())
     }
 
-    /// Makes both envelopes again from the end of the path backwards: down to the item whose cap has
+    /// Makes the envelope again from the end of the path backwards: down to the item whose cap has
     /// changed and from there until nothing changes any more.
-    fn envelopes(&mut self, changed: usize) {
+    fn envelope(&mut self, changed: usize) {
         let stop = self.stop_at.and_then(|number| number.checked_sub(self.first));
-        // What the item after allows at its start, and its feed.
-        let (mut entry, mut feed_entry, mut feed) = (0.0f64, 0.0f64, 0.0f64);
+        // What the item after allows at its start, squared, and its feed.
+        let (mut entry, mut feed) = (0.0f64, 0.0f64);
         let current = self.current.min(self.items.len());
         for (index, item) in self.items.iter_mut().enumerate().skip(current).rev() {
-            let exit = item.cap.min(entry);
             let slowest = item.feed.min(feed);
-            let feed_exit = if stop == Some(index as u64) {
+            let exit = if stop == Some(index as u64) {
                 0.0
             } else {
-                exit.min(slowest * slowest).min(feed_entry)
+                item.cap.min(slowest * slowest).min(entry)
             };
-            if index < changed && exit == item.exit && feed_exit == item.feed_exit {
+            if index < changed && exit == item.exit {
                 return;
             }
             item.exit = exit;
-            item.feed_exit = feed_exit;
-            let change = 2.0 * item.acceleration * item.length;
-            entry = exit + change;
-            feed_entry = feed_exit + change;
+            entry = exit + 2.0 * item.acceleration * item.length;
             feed = item.feed;
         }
     }
@@ -366,7 +361,6 @@ impl Item {
             radial_speed: motion.map_or(f64::INFINITY, |motion| motion.radial_speed),
             feed: f64::INFINITY,
             exit: 0.0,
-            feed_exit: 0.0,
             block_end: false,
             cap: 0.0,
             element,
