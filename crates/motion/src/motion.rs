@@ -120,7 +120,14 @@ impl Motion {
                 radial[0] * turn * r + radial[1] * outward,
             ]
         };
-        let curvature = |radial: Point2, r: f64| radial.map(|x| -x * r * turn * turn);
+        // Towards the centre, and around when the radius changes, as on a turning table.
+        let curvature = |radial: Point2, r: f64| {
+            let (centre, around) = (r * turn * turn, 2.0 * outward * turn);
+            [
+                -radial[0] * centre - radial[1] * around,
+                -radial[1] * centre + radial[0] * around,
+            ]
+        };
         let (start_direction, end_direction) = (tangent(from, r0), tangent(to, r1));
         let greatest = r0.max(r1);
         let fastest = (greatest * turn).hypot(outward);
