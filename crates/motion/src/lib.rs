@@ -61,6 +61,7 @@
 //! ```
 
 mod corner;
+mod drive;
 mod gate;
 mod interpolator;
 mod limits;
@@ -74,8 +75,9 @@ mod sampler;
 mod times;
 mod window;
 
+pub use drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
 pub use gate::Gate;
-pub use interpolator::{Cut, Cycle, Drive, FunctionOutput, Interpolator, Place, Prepared, State, Stop};
+pub use interpolator::Interpolator;
 pub use limits::Limits;
 pub use planner::{Planned, PlannedStep, Planner};
 pub use point_to_point::{Aim, PointToPoint};

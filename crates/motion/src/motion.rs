@@ -120,7 +120,14 @@ impl Motion {
                 radial[0] * turn * r + radial[1] * outward,
             ]
         };
-        let curvature = |radial: Point2, r: f64| radial.map(|x| -x * r * turn * turn);
+        // Towards the centre, and around when the radius changes, as on a turning table.
+        let curvature = |radial: Point2, r: f64| {
+            let (centre, around) = (r * turn * turn, 2.0 * outward * turn);
+            [
+                -radial[0] * centre - radial[1] * around,
+                -radial[1] * centre + radial[0] * around,
+            ]
+        };
         let (start_direction, end_direction) = (tangent(from, r0), tangent(to, r1));
         let greatest = r0.max(r1);
         let fastest = (greatest * turn).hypot(outward);
@@ -161,6 +168,13 @@ impl Motion {
                 curvature: [curvature(from, r0), curvature(to, r1)],
             }),
         })
+    }
+
+    /// Greatest curvature of an axis at the start and at the end, 1/mm; `None` for lines.
+    #[inline]
+    pub(crate) fn bends(&self) -> Option<[f64; 2]> {
+        let greatest = |curvature: Point2| curvature[0].abs().max(curvature[1].abs());
+        self.bend.as_ref().map(|bend| bend.curvature.map(greatest))
     }
 
     #[inline]

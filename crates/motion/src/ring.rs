@@ -1,25 +1,28 @@
 //! The look-ahead of the interpolator: the elements to come and how fast their ends may be passed.
 //!
-//! Two envelopes of squared speed lie over the ends of the elements, both made by a pass from the last
-//! element backwards, so that braking is always in time:
-//! - the *geometric* one, of what machine and path allow: rapid traverse of the axes, radial
-//!   acceleration, corners, stops. It is never exceeded, so overrides must not lower it;
-//! - the *feed* one below it, with programmed feed, overrides and the stop of single block. It may be
-//!   lowered at any time, even below the speed of the path, which then brakes as fast as it can.
+//! Over the ends of the elements lies an envelope of squared speed, made by a pass from the last element
+//! backwards, so that braking is always in time. It holds what machine and path allow (rapid traverse of
+//! the axes, radial acceleration, corners, stops) and below that what is wanted (programmed feed, overrides,
+//! the stop of single block). What is wanted may be lowered at any time, even below the speed of the path.
+//! The path then brakes with all that it has, and so stays below the envelope of what is *allowed*: it
+//! was below it before, and no path within the acceleration can fall faster.
 //!
-//! The end of what is known is a stop. Elements that are put behind it only raise both envelopes.
+//! The end of what is known is a stop. Elements that are put behind it only raise the envelope.
 
 use std::collections::VecDeque;
 
 use bahn_path::{Curve, FeedRate, OverrideLaw, PathElement, Position};
 
-use crate::corner::{Corner, Joint};
+use crate::corner::{Corner, Joint, Run};
 use crate::gate::{Gate, Gates, place, wait};
 use crate::limits::Dynamics;
 use crate::motion::Motion;
 
 /// An element whose arc starts farther than this from where the path is gets a line to its start, mm.
 const GAP: f64 = 1e-6;
+
+/// The element that is executed, the next one and a line to its start.
+const LEAST_CAPACITY: usize = 3;
 
 /// An element with what driving it needs.
 #[derive(Debug)]
@@ -31,9 +34,10 @@ pub(crate) struct Item {
     pub(crate) acceleration: f64,
     /// Greatest path speed with the overrides as they are, mm/s.
     pub(crate) feed: f64,
-    /// Greatest squared speeds at the end: geometric, and with feed and overrides.
+    /// Greatest squared speed at the end.
     pub(crate) exit: f64,
-    pub(crate) feed_exit: f64,
+    /// Squared speed at the end that machine and path allow, whatever comes after it.
+    pub(crate) cap: f64,
     /// Where functions are output, and whether the path waits for them.
     pub(crate) start: Output,
     pub(crate) end: Output,
@@ -41,8 +45,6 @@ pub(crate) struct Item {
     pub(crate) along: bool,
     /// The last element of its block, as far as is known.
     pub(crate) block_end: bool,
-    /// Squared speed at the end that the joint alone allows geometrically.
-    cap: f64,
     slowest: f64,
     radial_speed: f64,
 }
@@ -67,7 +69,7 @@ pub(crate) struct Ring {
     first: u64,
     /// Index of the item that is executed; those before it are only kept until `discard`.
     current: usize,
-    /// Items from this index on have changed since the envelopes were made.
+    /// Items from this index on have changed since the envelope was made.
     changed: usize,
     /// Where the path ends.
     end: Position,
@@ -77,17 +79,17 @@ pub(crate) struct Ring {
     last: Option<Motion>,
     /// The joint after `last` is passed whatever its angle.
     any_angle: bool,
-    /// Way since the last corner or stop, mm.
-    run: f64,
+    /// The path since the last corner or stop.
+    run: Run,
     /// The last corner while the way after it is too short to say how fast it may be passed, and the
     /// number of the item before it.
     corner: Option<(u64, Corner)>,
 }
 
 impl Ring {
-    /// Room for `capacity` elements, two at least.
+    /// Room for `capacity` elements, or the least that it works with.
     pub(crate) fn new(dynamics: Dynamics, capacity: usize) -> Ring {
-        let capacity = capacity.max(2);
+        let capacity = capacity.max(LEAST_CAPACITY);
         Ring {
             dynamics,
             items: VecDeque::with_capacity(capacity),
@@ -99,7 +101,7 @@ impl Ring {
             stop_at: None,
             last: None,
             any_angle: false,
-            run: 0.0,
+            run: Run::default(),
             corner: None,
         }
     }
@@ -158,15 +160,14 @@ impl Ring {
         self.current = 0;
         self.end = position;
         self.stop_at = None;
+        self.corner = None;
+        self.changed = usize::MAX;
         self.stop();
     }
 
     /// What is known ends in a stop for good.
     pub(crate) fn stop(&mut self) {
-        self.last = None;
-        self.corner = None;
-        self.run = 0.0;
-        self.any_angle = false;
+        self.join_stop();
         if let Some(last) = self.items.back_mut() {
             last.block_end = true;
         }
@@ -189,13 +190,13 @@ impl Ring {
         if let Some(motion) = &mut motion {
             motion.speed = item.greatest(&self.dynamics);
         }
-        let mut changed = self.items.len();
+        self.changed = self.changed.min(self.items.len());
         if let Some(last) = self.items.back_mut() {
             last.block_end = last.element.sequence != item.element.sequence;
-            changed = self.join(motion.as_ref(), gates.start);
+            self.join(motion.as_ref(), gates.start);
         }
         if let Some(motion) = motion {
-            self.run += motion.length;
+            self.run.add(&motion);
             self.any_angle = false;
             self.last = Some(motion);
         }
@@ -205,74 +206,79 @@ impl Ring {
         item.set_feed(&self.dynamics);
         self.end = item.element.end;
         self.items.push_back(item);
-        if let Some((number, corner)) = &self.corner {
-            let cap = corner.pass_speed(self.run).powi(2);
-            let enough = self.run >= corner.enough();
-            changed = changed.min(self.set_cap(*number, cap));
-            if enough {
-                self.corner = None;
-            }
+        let enough = self
+            .corner
+            .as_ref()
+            .is_some_and(|(_, corner)| self.run.is_enough_for(corner));
+        if enough || gates.end {
+            self.decide();
         }
         if gates.end {
             self.last = None;
-            self.corner = None;
-            self.run = 0.0;
         }
-        self.changed = self.changed.min(changed);
     }
 
-    /// Makes the envelopes again after elements were put in: once for all of them.
+    /// Makes the envelope again after elements were put in: once for all of them.
     pub(crate) fn settle(&mut self) {
         let changed = std::mem::replace(&mut self.changed, usize::MAX);
         if changed != usize::MAX {
-            self.envelopes(changed);
+            self.envelope(changed);
         }
     }
 
-    /// Finds the joint between the last element and the next one; the index of the item whose cap it is.
-    fn join(&mut self, next: Option<&Motion>, gate: bool) -> usize {
-        let index = self.items.len() - 1;
-        let number = self.first + index as u64;
+    /// Finds the joint between the last element and the next one.
+    fn join(&mut self, next: Option<&Motion>, gate: bool) {
+        let number = self.first + self.items.len() as u64 - 1;
         let Some(last) = self.last.as_ref().filter(|_| !gate) else {
-            return self.join_stop(number);
+            return self.join_stop();
         };
         let Some(next) = next else {
             // Without a length there is no direction: the corner is where the path goes on.
             let cap = last.speed * last.speed;
             return self.set_cap(number, cap);
         };
-        match Joint::between(last, next, self.run, self.any_angle, &self.dynamics) {
-            Joint::Stop => self.join_stop(number),
+        let joint = Joint::between(last, next, &self.run, self.any_angle, &self.dynamics);
+        if let Some((_, corner)) = &mut self.corner
+            && !matches!(joint, Joint::Stop)
+        {
+            corner.meet(next, &self.run);
+        }
+        match joint {
+            Joint::Stop => self.join_stop(),
             Joint::Smooth(speed) => self.set_cap(number, speed * speed),
             Joint::Corner(corner) => {
+                self.decide();
                 self.corner = Some((number, corner));
-                self.run = 0.0;
-                index
+                self.run.turn();
             }
         }
     }
 
-    fn join_stop(&mut self, number: u64) -> usize {
-        self.corner = None;
+    /// The path stops at the end of the last element.
+    fn join_stop(&mut self) {
+        self.decide();
         self.last = None;
-        self.run = 0.0;
-        self.set_cap(number, 0.0)
+        self.run.reset();
     }
 
-    /// Sets the cap of an item and gives its index.
-    fn set_cap(&mut self, number: u64, cap: f64) -> usize {
-        // The item can be executed and gone.
+    /// Decides the corner that waits for the way after it. Until then it is a stop, for what comes
+    /// after it may raise its speed, and lower it too.
+    fn decide(&mut self) {
+        if let Some((number, corner)) = self.corner.take() {
+            self.set_cap(number, corner.pass_speed(&self.run).powi(2));
+        }
+    }
+
+    /// Sets the cap of an item that is still kept.
+    fn set_cap(&mut self, number: u64, cap: f64) {
         let index = number
             .checked_sub(self.first)
             .and_then(|index| usize::try_from(index).ok());
-        match index {
-            Some(index) => {
-                if let Some(item) = self.items.get_mut(index) {
-                    item.cap = cap;
-                }
-                index
-            }
-            None => 0,
+        if let Some(index) = index
+            && let Some(item) = self.items.get_mut(index)
+        {
+            item.cap = cap;
+            self.changed = self.changed.min(index);
         }
     }
 
@@ -284,14 +290,14 @@ impl Ring {
         self.items
             .range_mut(current..)
             .for_each(|item| item.set_feed(dynamics));
-        self.envelopes(0);
+        self.envelope(0);
     }
 
-    /// The feed envelope ends in a stop at the end of an item.
+    /// The envelope ends in a stop at the end of an item.
     pub(crate) fn set_stop(&mut self, number: Option<u64>) {
         if self.stop_at != number {
             self.stop_at = number;
-            self.envelopes(0);
+            self.envelope(0);
         }
     }
 
@@ -300,29 +306,25 @@ impl Ring {
         self.stop_at.is_none_or(|stop| stop < self.number())
     }
 
-    /// Makes both envelopes again from the end of the path backwards: down to the item whose cap has
+    /// Makes the envelope again from the end of the path backwards: down to the item whose cap has
     /// changed and from there until nothing changes any more.
-    fn envelopes(&mut self, changed: usize) {
+    fn envelope(&mut self, changed: usize) {
         let stop = self.stop_at.and_then(|number| number.checked_sub(self.first));
-        // What the item after allows at its start, and its feed.
-        let (mut entry, mut feed_entry, mut feed) = (0.0f64, 0.0f64, 0.0f64);
+        // What the item after allows at its start, squared, and its feed.
+        let (mut entry, mut feed) = (0.0f64, 0.0f64);
         let current = self.current.min(self.items.len());
         for (index, item) in self.items.iter_mut().enumerate().skip(current).rev() {
-            let exit = item.cap.min(entry);
             let slowest = item.feed.min(feed);
-            let feed_exit = if stop == Some(index as u64) {
+            let exit = if stop == Some(index as u64) {
                 0.0
             } else {
-                exit.min(slowest * slowest).min(feed_entry)
+                item.cap.min(slowest * slowest).min(entry)
             };
-            if index < changed && exit == item.exit && feed_exit == item.feed_exit {
+            if index < changed && exit == item.exit {
                 return;
             }
             item.exit = exit;
-            item.feed_exit = feed_exit;
-            let change = 2.0 * item.acceleration * item.length;
-            entry = exit + change;
-            feed_entry = feed_exit + change;
+            entry = exit + 2.0 * item.acceleration * item.length;
             feed = item.feed;
         }
     }
@@ -359,7 +361,6 @@ impl Item {
             radial_speed: motion.map_or(f64::INFINITY, |motion| motion.radial_speed),
             feed: f64::INFINITY,
             exit: 0.0,
-            feed_exit: 0.0,
             block_end: false,
             cap: 0.0,
             element,

@@ -1,4 +1,5 @@
 //! Laws that hold for every path.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
 
@@ -81,6 +82,47 @@ fn check_continuity(planned: &[Planned], limits: &Limits) -> Result<(), TestCase
     }
     prop_assert_eq!(speed, 0.0);
     Ok(())
+}
+
+/// An arc at its radial acceleration, then a corner of 5.8 degrees; a line of 1 µm between them.
+#[test]
+fn an_arc_and_a_corner_within_one_cycle() {
+    let line = |turn_deg, length| Block::Line {
+        turn_deg,
+        length,
+        z: 0.0,
+        c: 0.0,
+    };
+    let arc = Block::Arc {
+        turn_deg: 0.0,
+        radius: 0.048,
+        growth: 1.0,
+        sweep_deg: -194.0,
+        z: 0.0,
+    };
+    let mut acceleration_m_s2 = [1.0; Axis::COUNT];
+    acceleration_m_s2[Axis::Y.index()] = 0.0875;
+    let random = Random {
+        blocks: vec![
+            (arc, None, false),
+            (line(0.0, 0.001), None, false),
+            (line(-5.8, 1.0), None, false),
+        ],
+        limits: Limits {
+            max_feed_mm_min: [500.0; Axis::COUNT],
+            acceleration_m_s2,
+            radial_acceleration_m_s2: 0.304,
+            ..common::limits()
+        },
+    };
+    // Wherever the samples fall: each line before the arc shifts them by some of a cycle.
+    for shift in 0..50 {
+        let mut random = random.clone();
+        random
+            .blocks
+            .insert(0, (line(0.0, 0.002 * f64::from(shift)), None, false));
+        check_samples(&random).unwrap();
+    }
 }
 
 proptest! {

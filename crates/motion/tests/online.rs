@@ -304,3 +304,102 @@ fn an_internal_stop_says_where() {
     assert_eq!(bench.run(State::Moving).1, State::Stopped);
     assert_eq!(bench.x(), 10.0);
 }
+
+/// Axes without a position at the start of an element move from where they are.
+#[test]
+fn unknown_starts_are_where_the_axes_are() {
+    let mut path = Path::new(6000.0);
+    path.line(&[(Axis::X, 10.0)]);
+    path.last().start = Position::UNKNOWN;
+    path.last().end[Axis::Z] = f64::NAN;
+    let mut bench = Bench::new(&path.elements, &limits());
+    let mut actual = Position::ZERO;
+    (actual[Axis::X], actual[Axis::Y], actual[Axis::Z]) = (4.0, 8.0, 5.0);
+    bench.path.set_position(actual);
+    bench.cycle();
+    // 6 mm in X and -8 mm in Y: 10 mm, of which the first cycle goes 4.5 µm.
+    close(bench.x(), 4.0 + 0.6 * 0.0045);
+    close(bench.path.position()[Axis::Y], 8.0 - 0.8 * 0.0045);
+    assert_eq!(bench.path.position()[Axis::Z], 5.0);
+    assert_eq!(bench.run(State::Moving).1, State::Stopped);
+    assert_eq!((bench.x(), bench.path.position()[Axis::Y]), (10.0, 0.0));
+}
+
+/// An arc keeps its place: from elsewhere the path goes straight to its start first.
+#[test]
+fn an_arc_is_approached() {
+    let mut path = Path::new(6000.0);
+    path.arc([10.0, 0.0], [20.0, 0.0], true);
+    let mut bench = Bench::new(&path.elements, &limits());
+    let mut actual = Position::ZERO;
+    actual[Axis::Y] = 5.0;
+    bench.path.set_position(actual);
+    bench.cycle();
+    let mut last = actual;
+    let mut state = State::Moving;
+    while state == State::Moving {
+        let at = bench.path.position();
+        // Half a mm is more than any cycle goes at 100 mm/s.
+        let step = (at[Axis::X] - last[Axis::X]).hypot(at[Axis::Y] - last[Axis::Y]);
+        assert!(step < 0.5, "{last:?} to {at:?}");
+        let on_the_way = at[Axis::X] == 0.0 && at[Axis::Y] > 0.0;
+        let radius = (at[Axis::X] - 10.0).hypot(at[Axis::Y]);
+        assert!(on_the_way || (radius - 10.0).abs() < 1e-9, "{at:?}");
+        last = at;
+        state = bench.cycle();
+    }
+    assert_eq!(bench.path.position()[Axis::X], 20.0);
+}
+
+/// M8 at the start and M9 at the end do not stop the path; they come in the order of the path.
+#[test]
+fn functions_that_do_not_wait_are_passed() {
+    let mut path = Path::new(6000.0);
+    path.line(&[(Axis::X, 10.0)]).line(&[(Axis::X, 20.0)]);
+    path.last().functions = Some(Box::new([
+        m(9, At::End, Synchronisation::Mos),
+        m(8, At::Start, Synchronisation::Mos),
+    ]));
+    path.line(&[(Axis::X, 30.1)]);
+    let whole = time_s(&plan(&path.elements, &limits()));
+    let mut bench = Bench::new(&path.elements, &limits());
+    let mut seen = Vec::new();
+    let mut count = 0;
+    while bench.cycle() == State::Moving {
+        count += 1;
+        while let Some(output) = bench.path.next_output() {
+            assert!(!output.waits);
+            let functions: Vec<_> = bench
+                .path
+                .functions(&output)
+                .map(|f| f.function.clone())
+                .collect();
+            seen.push((output.place, functions, (bench.x() / 10.0) as u32));
+        }
+    }
+    assert_eq!(count, (whole / T) as usize);
+    let expected = [
+        (Place::Start, vec![Function::M(8)], 1),
+        (Place::End, vec![Function::M(9)], 2),
+    ];
+    assert_eq!(seen, expected);
+}
+
+/// What is asked for in advance is forgotten with the path that it was meant for.
+#[test]
+fn an_internal_stop_at_a_gate_forgets_it() {
+    let mut path = Path::new(6000.0);
+    path.line(&[(Axis::X, 10.0)]);
+    path.last().functions = Some(Box::new([m(3, At::Start, Synchronisation::MvsSvs)]));
+    let mut bench = Bench::new(&path.elements, &limits());
+    assert_eq!(bench.cycle(), State::Gate(Gate::Start));
+    let cut = bench.path.clear().unwrap();
+    assert_eq!((cut.sequence, cut.covered_mm, cut.rest_mm), (1, 0.0, 10.0));
+    assert_eq!(bench.path.next_output(), None);
+    bench.path.release();
+    bench.path.clear();
+    bench.source = list(path.elements.iter().cloned().map(Step::Element).collect());
+    assert_eq!(bench.cycle(), State::Gate(Gate::Start));
+    bench.path.release();
+    assert_eq!(bench.run(State::Moving).1, State::Stopped);
+}
