@@ -1,7 +1,6 @@
 //! The text of a list: its lines with comments and order, and what can be read of them.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 use std::ops::Range;
 
 use crate::definition::{parse_id, parse_number};
@@ -140,10 +139,9 @@ impl ListText {
         match self.entries.iter().find(|entry| entry.id == definition.id) {
             Some(entry) => self.replace(entry.value_at.clone(), &written),
             None => {
-                if self.bytes.last().is_some_and(|byte| *byte != b'\n') {
-                    self.bytes.extend_from_slice(self.line_end().as_bytes());
-                }
-                self.append(definition, &written);
+                let end = self.line_end();
+                self.end_last_line(end);
+                self.append(definition, &written, end);
             }
         }
         self.read();
@@ -158,22 +156,25 @@ impl ListText {
             return;
         }
         let end = self.line_end();
-        if self.bytes.last().is_some_and(|byte| *byte != b'\n') {
-            self.bytes.extend_from_slice(end.as_bytes());
-        }
+        self.end_last_line(end);
         let heading = format!("{end}; Values of the list that the control makes by itself{end}");
         self.bytes.extend_from_slice(heading.as_bytes());
         for definition in missing {
-            self.append(definition, &definition.format_value(definition.standard()));
+            let value = definition.format_value(definition.standard());
+            self.append(definition, &value, end);
         }
         self.read();
     }
 
-    fn append(&mut self, definition: &Definition, value: &str) {
-        let mut line = String::new();
-        // Writing to a string cannot fail.
-        let _ = write!(line, "{}{}", definition.line(value), self.line_end());
-        self.bytes.extend_from_slice(line.as_bytes());
+    fn end_last_line(&mut self, end: &str) {
+        if self.bytes.last().is_some_and(|byte| *byte != b'\n') {
+            self.bytes.extend_from_slice(end.as_bytes());
+        }
+    }
+
+    fn append(&mut self, definition: &Definition, value: &str, end: &str) {
+        self.bytes.extend_from_slice(definition.line(value).as_bytes());
+        self.bytes.extend_from_slice(end.as_bytes());
     }
 
     /// Replaces a value; the blanks behind it give or take, so that the comment keeps its column.
