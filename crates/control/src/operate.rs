@@ -3,6 +3,7 @@
 use bahn_exchange::signal;
 use bahn_path::Axis;
 
+use crate::axes::Mover;
 use crate::command::{Command, Mode};
 use crate::control::Control;
 use crate::message::Message;
@@ -81,6 +82,10 @@ impl Control {
         self.manual.stop();
         for unit in &mut self.axes {
             unit.choose_method(mode.is_automatic());
+            // What still moves goes down to a standstill.
+            if matches!(unit.mover, Mover::Manual | Mover::Reference) {
+                unit.mover = Mover::None;
+            }
         }
     }
 
@@ -112,9 +117,7 @@ impl Control {
                 let unit = self.axes.iter_mut().find(|unit| unit.index == usize::from(axis));
                 if let Some(unit) = unit {
                     unit.servo.acknowledge();
-                    if !self.run.is_active() {
-                        unit.transfer();
-                    }
+                    unit.transfer();
                 }
             }
             _ => {}

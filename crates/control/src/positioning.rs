@@ -41,6 +41,18 @@ impl Default for PlcAxis {
     }
 }
 
+impl Positioning {
+    /// Ends what PLC axes do and the free rotation: EMERGENCY STOP.
+    pub fn stop(&mut self) {
+        for axis in &mut self.plc_axes {
+            if axis.command.is_some() {
+                axis.command = Some(PlcAxisCommand::Stop);
+            }
+        }
+        self.rotation = [None; AXES];
+    }
+}
+
 impl Control {
     /// PLC positioning: M2704 ff. with target and feed, relative to the machine datum, without software
     /// limits. It starts only on referenced axes, without a program or during a strobe of it, in Manual
