@@ -68,6 +68,8 @@ pub(crate) struct AxisUnit {
     pub halted: bool,
     /// Where an interrupted path has left it, when the actual position became the nominal one meanwhile.
     pub left_at: Option<f64>,
+    /// The kind of operation, automatic or not, whose method is to be chosen.
+    pub method_due: Option<bool>,
     /// A synchronized slave is led by its master.
     pub coupling: Option<Coupling>,
 }
@@ -95,6 +97,7 @@ impl AxisUnit {
             at_limit: None,
             halted: false,
             left_at: None,
+            method_due: Some(false),
             coupling: None,
             parameters,
         })
@@ -168,8 +171,13 @@ impl AxisUnit {
         self.speed == 0.0
     }
 
-    /// Chooses lag or feed pre-control for a kind of operation [000:4721-4733].
-    pub fn choose_method(&mut self, automatic: bool) {
+    /// Chooses lag or feed pre-control for a kind of operation [000:4721-4733], as soon as the axis is at
+    /// rest: in motion its lag would be a fault of the other method.
+    pub fn choose_method(&mut self) {
+        let resting = self.stands() && (self.servo.in_position() || !self.servo.closed());
+        let Some(automatic) = self.method_due.take_if(|_| resting) else {
+            return;
+        };
         let precontrol = &self.parameters.precontrol;
         let wanted = if automatic {
             precontrol.in_automatic

@@ -43,6 +43,7 @@ impl Control {
                     rapid,
                 );
             }
+            unit.choose_method();
             if unit.coupling.is_none() {
                 unit.servo.command(unit.nominal);
             }

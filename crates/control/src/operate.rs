@@ -81,7 +81,7 @@ impl Control {
         self.mode = mode;
         self.manual.stop();
         for unit in &mut self.axes {
-            unit.choose_method(mode.is_automatic());
+            unit.method_due = Some(mode.is_automatic());
             // What still moves goes down to a standstill.
             if matches!(unit.mover, Mover::Manual | Mover::Reference) {
                 unit.mover = Mover::None;
