@@ -149,6 +149,13 @@ impl AxisUnit {
         self.ptp = PointToPoint::moving(position, speed_mm_s);
     }
 
+    /// A clamped axis is wanted: its marker M2008 ff. falls, and the PLC is to close its loop [000:5407].
+    pub fn ask_to_unclamp(&mut self) {
+        if !self.servo.closed() {
+            self.in_position = false;
+        }
+    }
+
     /// Stands at once where it is: the loop was opened, or the feed enable withdrawn.
     pub fn stand(&mut self, position: f64) {
         self.nominal = position;

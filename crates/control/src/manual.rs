@@ -150,6 +150,9 @@ impl Control {
             return;
         }
         if !(unit.servo.closed() && unit.enabled) {
+            if !stop && (key.is_some() || jog.is_some() || wheel.is_some()) {
+                unit.ask_to_unclamp();
+            }
             if unit.mover == Mover::Manual && unit.stands() {
                 unit.mover = Mover::None;
             }

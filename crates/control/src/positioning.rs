@@ -111,6 +111,7 @@ impl Control {
                 }
                 continue;
             };
+            unit.ask_to_unclamp();
             if !(unit.servo.closed() && unit.enabled) {
                 continue;
             }

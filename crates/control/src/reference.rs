@@ -100,10 +100,14 @@ impl Control {
         } else {
             (0..self.axes.len()).find(|place| self.key_of(*place) && self.axes.get(*place).is_some_and(waits))
         };
-        let able = |unit: &AxisUnit| unit.servo.closed() && unit.enabled && unit.stands();
-        let Some(place) = next.filter(|place| self.axes.get(*place).is_some_and(able)) else {
+        let Some(place) = next else { return };
+        let Some(unit) = self.axes.get_mut(place) else {
             return;
         };
+        unit.ask_to_unclamp();
+        if !(unit.servo.closed() && unit.enabled && unit.stands()) {
+            return;
+        }
         let cam = self.cam(place);
         for unit in &mut self.axes {
             let slave = unit.coupling.as_ref().is_some_and(|of| of.master == place);
