@@ -67,6 +67,40 @@ fn linked_files_lie_beside_the_main_file() {
 }
 
 #[test]
+fn machines_with_an_eprom_link_its_files() {
+    let folder = folder("USES GEAR.PLC\nEXTERN 10\nCM 10\nEM\n");
+    let gear = |value: u8| format!("GLOBAL 10\nLBL 10\nL K+{value}\n= B0\nEM\n");
+    folder.write("GEAR.PLC", gear(7));
+    folder
+        .write("ram.MP", "MP4010 : 1\n")
+        .write("eprom.MP", "MP4010 : 0\n");
+    let errors = |list: &str| {
+        let run = folder.bahn(&format!("plc check MAIN.PLC --parameters {list} --format json"));
+        let errors = run.json()["errors"].clone();
+        errors
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|e| e["number"].as_u64().unwrap())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(errors("ram.MP"), [0_u64; 0]);
+    assert_eq!(errors("eprom.MP"), [35_u64, 39]);
+    std::fs::create_dir(folder.path("EPROM")).unwrap();
+    folder.write("EPROM/GEAR.PLC", gear(8));
+    let value = |list: &str| {
+        let run = folder.bahn(&format!(
+            "plc run MAIN.PLC --parameters {list} --show B0 --format json"
+        ));
+        run.json()["values"]["B0"].clone()
+    };
+    assert_eq!((value("ram.MP"), value("eprom.MP")), (json!(7), json!(8)));
+    folder.write("EPROM/GEAR.PLC", "GLOBAL 10\nLBL 10\n= B0\nEM\n");
+    let run = folder.bahn("plc check MAIN.PLC --parameters eprom.MP");
+    assert!(run.err().contains("EPROM/GEAR.PLC:3:1"), "{}", run.err());
+}
+
+#[test]
 fn run_shows_operands() {
     let folder = folder(DOOR);
     let run =
@@ -212,6 +246,40 @@ fn listings_have_columns() {
 }
 
 #[test]
+fn listings_mark_errors_and_warnings() {
+    let folder = folder("LM 4\nL M5\n= M6\nEM\n");
+    let run = folder.bahn("plc list MAIN.PLC");
+    assert_eq!(run.code(), 1);
+    let lines: Vec<String> = run.out().lines().map(str::to_owned).collect();
+    assert!(lines[2].starts_with("       ^^^ warning 5 "), "{}", run.out());
+    assert!(lines[4].starts_with("       ^^^ error 20 "), "{}", run.out());
+    assert_eq!(lines[5], "    3    =     M6");
+    let run = folder.bahn("plc list MAIN.PLC --format json");
+    assert_eq!(run.code(), 1);
+    let files = run.json();
+    assert_eq!(files[0]["file"], "MAIN.PLC");
+    let line = &files[0]["lines"][1];
+    assert_eq!(
+        (&line["line"], &line["command"], &line["operand"]),
+        (&json!(2), &json!("L"), &json!("M5"))
+    );
+    assert_eq!(
+        (&line["errors"][0]["number"], &line["warnings"]),
+        (&json!(20), &json!([]))
+    );
+}
+
+#[test]
+fn warnings_are_said_by_all_that_compile() {
+    let folder = folder("LM 4\n= M6\nEM\n");
+    for command in ["run", "trace", "diagram --show M6", "xref"] {
+        let run = folder.bahn(&format!("plc {command} MAIN.PLC"));
+        assert_eq!(run.code(), 0);
+        assert!(run.err().contains("warning: 5 "), "{command}: {}", run.err());
+    }
+}
+
+#[test]
 fn cross_references_name_every_place() {
     let folder = folder("L I4\n= O2\nL I5\n= O2\nS M7\nCM 5\nEM\nLBL 5\nL W8\n= W10\nEM\nLBL 6\nEM\n");
     let run = folder.bahn("plc xref MAIN.PLC --format json");
@@ -236,6 +304,93 @@ fn cross_references_name_every_place() {
     );
     let text = folder.bahn("plc xref MAIN.PLC --only O").out();
     assert_eq!(text, "O2  (assigned twice)\n    written  MAIN.PLC:2 MAIN.PLC:4\n");
+}
+
+#[test]
+fn cross_references_see_overlaps_and_indices() {
+    // W2 lies in D0; B100[X] may be any byte; M2482 is read by the NC, T4 starts a timer.
+    let folder =
+        folder("L K+1\n= D0\nL K+2\n= W2\n= W40\nL W0\n= B8\nLX\n= B100[X]\nL M1\n= M2482\n= T4\n= M9\nEM\n");
+    let report = folder.bahn("plc xref MAIN.PLC --format json").json();
+    let operand = |name: &str| {
+        let all = report["operands"].as_array().unwrap();
+        all.iter().find(|o| o["operand"] == name).unwrap().clone()
+    };
+    assert_eq!(operand("D0")["overlaps"], json!(["W0", "W2"]));
+    assert_eq!(operand("W2")["overlaps"], json!(["D0"]));
+    assert_eq!(operand("W40")["overlaps"], json!([]));
+    let flags = |name: &str| {
+        (
+            operand(name)["unused"] == true,
+            operand(name)["written_twice"] == true,
+        )
+    };
+    assert_eq!(flags("D0"), (false, true), "read through W0, written through W2");
+    assert_eq!(flags("W2"), (true, true), "nobody reads bytes 2 and 3");
+    assert_eq!(flags("W40"), (true, false));
+    assert_eq!(
+        (flags("M2482"), flags("T4"), flags("M9")),
+        ((false, false), (false, false), (true, false))
+    );
+    assert_eq!(operand("M2482")["name"], "M_FUNCTION_ACK");
+    let indexed = operand("B100[X]");
+    assert_eq!(
+        (&indexed["range"], &indexed["unused"]),
+        (&json!("B0-B1023"), &json!(false))
+    );
+    assert_eq!(operand("B8")["range"], json!(null));
+    let text = folder.bahn("plc xref MAIN.PLC --only B").out();
+    assert_eq!(
+        text,
+        "B8  (never read)\n    written  MAIN.PLC:7\nB100[X]  (B0-B1023)\n    written  MAIN.PLC:9\n"
+    );
+    // A load with an index may read everything.
+    let folder = self::folder("L K+1\n= W40\nL B100[X]\n= B2\nEM\n");
+    let report = folder.bahn("plc xref MAIN.PLC --format json").json();
+    let unused = |index: usize| report["operands"][index]["unused"].clone();
+    assert_eq!(
+        (unused(0), unused(1), unused(2)),
+        (json!(false), json!(false), json!(false))
+    );
+}
+
+#[test]
+fn labels_at_one_place_have_their_own_uses() {
+    let folder = folder(
+        "USES PART\nEXTERN FAR\nCM 1\nCM FAR\nL M1\nJPT 3\nLBL 3\nCASE B0\nCM 1\nCM 2\nENDC\nL KF F\n= D0\nEM\n\
+         LBL 1\nLBL 2\nLBL 4\nEM\nKFIELD F\nK1\nENDK\n",
+    );
+    folder.write("PART.PLC", "GLOBAL FAR\nLBL 1\nLBL FAR\nEM\n");
+    let run = folder.bahn("plc xref MAIN.PLC --format json");
+    let report = run.json();
+    let lines = |places: &serde_json::Value| -> Vec<String> {
+        let places = places.as_array().unwrap().iter();
+        places
+            .map(|place| format!("{}:{}", place["file"].as_str().unwrap(), place["line"]))
+            .collect()
+    };
+    let labels: Vec<String> = report["labels"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|label| {
+            let name = label["label"].as_str().unwrap();
+            let kind = label["kind"].as_str().unwrap();
+            format!("{kind} {name}: {}", lines(&label["used"]).join(" "))
+        })
+        .collect();
+    assert_eq!(
+        labels,
+        [
+            "LBL 3: MAIN.PLC:6",
+            "LBL 1: MAIN.PLC:3 MAIN.PLC:9",
+            "LBL 2: MAIN.PLC:10",
+            "LBL 4: ",
+            "KFIELD F: MAIN.PLC:12",
+            "LBL 1: ",
+            "LBL FAR: MAIN.PLC:4",
+        ]
+    );
 }
 
 #[test]

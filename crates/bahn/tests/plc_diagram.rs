@@ -2,6 +2,7 @@
 
 mod support;
 
+use serde_json::json;
 use support::Folder;
 
 fn folder() -> Folder {
@@ -21,7 +22,39 @@ fn diagrams_show_levels_and_numbers() {
     // Numbers are drawn where they change; a cycle leaves room for the bar only.
     assert_eq!(
         run.out(),
-        "cycles 1 to 8\n      O2 ___\u{2580}\u{2580}\u{2580}__\n      W8 ||||||||\n"
+        "cycles 1 to 8\n      O2 ___\u{2580}\u{2580}\u{2580}__\n      W8 ||||||||| 1..8, last 8\n"
+    );
+    let folder = folder();
+    folder.write("W.txt", "1: D40=-3, S0=\"OIL\"\n6: D40=1000, S0=\"A\"\n");
+    let run = folder.bahn("plc diagram MAIN.PLC --show D40,S0 --cycles 12 --script W.txt");
+    assert_eq!(
+        run.out(),
+        "cycles 1 to 12\n     D40 |-3  |1000\n      S0 |~~~~|\"A\"   | last \"A\"\n"
+    );
+    // The second row begins with cycle 65.
+    let run = folder.bahn("plc diagram MAIN.PLC --show W8 --cycles 70");
+    assert!(run.out().contains("|| 1..64, last 64\n"), "{}", run.out());
+    assert!(run.out().ends_with("||||||| 65..70, last 70\n"), "{}", run.out());
+}
+
+#[test]
+fn diagrams_are_data_too() {
+    let folder = folder();
+    let run =
+        folder.bahn("plc diagram MAIN.PLC --show O2,W8 --trigger O2=1 --before 1 --cycles 5 --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert_eq!(
+        run.json(),
+        json!({"first_cycle": 3, "trigger_cycle": 4, "operands": [
+            {"operand": "O2", "values": [0, 1, 1, 1, 0]},
+            {"operand": "W8", "values": [3, 4, 5, 6, 7]},
+        ]})
+    );
+    assert_eq!(
+        folder
+            .bahn("plc diagram MAIN.PLC --show O2 --svg o.svg --format json")
+            .code(),
+        2
     );
 }
 
@@ -53,6 +86,23 @@ fn drawings_are_written() {
         "{svg}"
     );
     assert_eq!(svg.matches("<rect x=").count(), 8);
+    // A number of one digit fits into a cycle, one of two does not: it is shown by the pointer.
+    assert_eq!(
+        (
+            svg.matches(">8</text>").count(),
+            svg.matches("<title>8</title>").count()
+        ),
+        (1, 1)
+    );
+    folder.bahn("plc diagram MAIN.PLC --show W8 --cycles 10 --svg out.svg");
+    let svg = folder.read("out.svg");
+    assert_eq!(
+        (
+            svg.matches(">10</text>").count(),
+            svg.matches("<title>10</title>").count()
+        ),
+        (0, 1)
+    );
     let many: Vec<String> = (0..17).map(|n| format!("M{n}")).collect();
     let run = folder.bahn(&format!("plc diagram MAIN.PLC --show {}", many.join(",")));
     assert_eq!(run.code(), 2);

@@ -9,6 +9,8 @@ mod axes;
 mod axis_parameters;
 mod axis_reader;
 mod machining;
+mod operation;
+mod plc_parameters;
 mod spindle;
 mod spindle_parameters;
 
@@ -20,6 +22,11 @@ pub use axis_parameters::{
 pub use machining::{
     ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
 };
+pub use operation::{
+    DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters, OverrideSteps,
+    RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
+};
+pub use plc_parameters::{MonitoringInput, PlcParameters, StrobeTimes};
 pub use spindle::Tapping;
 pub use spindle_parameters::{
     FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,

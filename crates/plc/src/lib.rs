@@ -41,10 +41,10 @@ pub use nc::{
 };
 pub use operand::{BitOperand, NumberOperand, TextOperand, Value};
 pub use program::{
-    Arithmetic, BitOperation, Comparison, Condition, Field, Gate, Instruction, Label, Op, PlcProgram,
-    SourceText, Target, Transform,
+    Arithmetic, BitOperation, Comparison, Condition, Field, Gate, Instruction, Label, LabelPlace, Op,
+    PlcProgram, SourceLine, SourceText, Target, Transform,
 };
 pub use run::{
     Machine, OperandContent, ProcessingTime, Registers, RuntimeError, ScanReport, Start, TraceStep, Tracer,
 };
-pub use source::{MemoryFiles, SourceFiles};
+pub use source::{MemoryFiles, ProgramMemory, SourceFiles};

@@ -13,7 +13,7 @@ pub struct PlcProgram {
     pub fields: Vec<Field>,
     /// Jump tables of CASE.
     pub cases: Vec<Vec<Target>>,
-    /// Labels that the source names, in the order of their definition.
+    /// Labels and constants fields that the source names, file by file in the order of their first mention.
     pub labels: Vec<Label>,
 }
 
@@ -35,17 +35,35 @@ pub struct Field {
     pub values: Vec<i32>,
 }
 
-/// A jump label.
+/// A name of the source: LBL or KFIELD.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
     /// Its name, at most 16 characters, or its number.
     pub name: String,
-    /// Index of its file.
+    /// Where it is defined.
+    pub defined: SourceLine,
+    /// What it names.
+    pub place: LabelPlace,
+    /// The lines that jump to it, call it, submit it or read from it.
+    pub used: Vec<SourceLine>,
+}
+
+/// What a label names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LabelPlace {
+    /// The instruction behind an LBL, by its index.
+    Code(usize),
+    /// A constants field, by its index.
+    Field(usize),
+}
+
+/// A line of the source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SourceLine {
+    /// Index of the file.
     pub file: usize,
-    /// The line that defines it, counted from 1.
+    /// The line, counted from 1.
     pub line: u32,
-    /// Index of the instruction behind it.
-    pub at: usize,
 }
 
 /// One command.

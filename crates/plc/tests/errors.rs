@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_parameters::ControlModel;
-use bahn_plc::{Compilation, MemoryFiles, Options};
+use bahn_plc::{Compilation, MemoryFiles, Options, ProgramMemory, SourceFiles};
 use common::compile;
 use proptest::prelude::*;
 
@@ -179,6 +179,72 @@ fn linked_files() {
         ("PART.PLC", "GLOBAL F\nEM\nKFIELD F\nK1\nENDK\n"),
     ];
     assert_eq!(linked(files), [at(7, "PART.PLC", 1)]);
+}
+
+/// What lies in RAM and EPROM.
+struct Memories(MemoryFiles, MemoryFiles);
+
+impl SourceFiles for Memories {
+    fn read(&self, name: &str) -> Option<Vec<u8>> {
+        self.0.read(name)
+    }
+
+    fn read_eprom(&self, name: &str) -> Option<Vec<u8>> {
+        self.1.read(name)
+    }
+}
+
+#[test]
+fn a_program_of_the_eprom_links_no_file_of_the_ram() {
+    // MP4010 [000:14616-14618]: from the RAM both are searched, RAM first.
+    let main = "USES PART\nUSES OTHER\nEXTERN P\nCM P\nEM\n";
+    let ram = MemoryFiles::from([("MAIN.PLC", main), ("PART.PLC", "GLOBAL P\nLBL P\nINC B0\nEM\n")]);
+    let eprom = MemoryFiles::from([
+        ("MAIN.PLC", main),
+        ("OTHER.PLC", "LBL 1\nEM\n"),
+        ("PART.PLC", "GLOBAL P\nLBL P\nINC B0\nINC B0\nEM\n"),
+    ]);
+    let compile = |files: &Memories, memory| {
+        Compilation::compile(files, "MAIN.PLC", Options::default().stored_in(memory))
+    };
+    let both = Memories(ram.clone(), eprom);
+    let size = |memory| {
+        let compilation = compile(&both, memory);
+        assert_eq!(compilation.errors, []);
+        compilation.size_bytes
+    };
+    assert!(
+        size(ProgramMemory::Ram) < size(ProgramMemory::Eprom),
+        "another PART.PLC"
+    );
+    let eprom = MemoryFiles::from([("MAIN.PLC", main), ("OTHER.PLC", "LBL 1\nEM\n")]);
+    let compilation = compile(&Memories(ram, eprom), ProgramMemory::Eprom);
+    assert_eq!(numbers(&compilation), [(35, 1), (39, 3)]);
+    assert!(
+        compilation.errors[0].message.contains("RAM"),
+        "{}",
+        compilation.errors[0].message
+    );
+}
+
+#[test]
+fn a_thousand_labels_are_global_and_not_more() {
+    // 600 in one file, 400 or 401 in another.
+    let part = |letter: char, count: usize| -> String {
+        let globals: String = (0..count).map(|n| format!("GLOBAL {letter}{n}\n")).collect();
+        let labels: String = (0..count).map(|n| format!("LBL {letter}{n}\n")).collect();
+        globals + &labels + "EM\n"
+    };
+    let compile = |count: usize| {
+        let (a, b) = (part('A', 600), part('B', count));
+        linked([
+            ("MAIN.PLC", "USES A\nUSES B\nEM\n"),
+            ("A.PLC", a.as_str()),
+            ("B.PLC", b.as_str()),
+        ])
+    };
+    assert_eq!(compile(400), []);
+    assert_eq!(compile(401), [(38, "MAIN.PLC".to_owned(), 1)]);
 }
 
 #[test]

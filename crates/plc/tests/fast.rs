@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 use bahn_exchange::{Bit, BitArea, Exchange, Number, Size};
-use bahn_plc::{Compilation, Machine, Options, PlcError, RuntimeError, Start, TraceStep, Tracer};
+use bahn_plc::{Compilation, Machine, Op, Options, PlcError, RuntimeError, Start, Target, TraceStep, Tracer};
 use common::Bench;
 use proptest::prelude::*;
 
@@ -50,6 +50,28 @@ fn errors_stop_both_forms_at_the_same_line() {
         let stopped = compare(program, &[1, 2, 3]).map(|error| error.error.number());
         assert_eq!(stopped, Some(number), "{program}");
     }
+}
+
+#[test]
+fn a_module_that_does_not_exist_stops_both_forms() {
+    // The compiler refuses such a number; a program that was made otherwise may have it.
+    let source = "INC W10\nL M1\nCMT 9071\nCM 9071\nEM\n";
+    let mut program = common::compile(source).program.unwrap();
+    for instruction in &mut program.code {
+        if let Op::Call { target, .. } = &mut instruction.op {
+            *target = Target::Module(9199);
+        }
+    }
+    let program = Arc::new(program);
+    let bench = || Bench {
+        machine: Machine::new(Arc::clone(&program), Start::PowerOn),
+        ..Bench::new("EM\n")
+    };
+    let stopped = compare_benches([bench(), bench()], source, &[1]).unwrap();
+    assert_eq!(
+        (stopped.error, stopped.error.number(), stopped.line),
+        (PlcError::ModuleNotDefined, 55, 4)
+    );
 }
 
 #[test]

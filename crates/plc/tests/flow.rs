@@ -3,7 +3,7 @@
 
 mod common;
 
-use bahn_plc::PlcError;
+use bahn_plc::{InterfaceUser, PlcError, Start};
 use common::{Bench, compile, example};
 
 /// Runs one scan that must fail; number and line of the error.
@@ -162,44 +162,6 @@ fn while_endw() {
     bench.set("W0=7 M0=1 M1=0");
     bench.scan().unwrap();
     bench.expect("W0=7 M1=0");
-}
-
-#[test]
-fn the_tool_changer_macros() {
-    // Actual and nominal pocket compared [000:16370-16428], in a form of its own.
-    let program = "CM 230\nEM
-        LBL 230\nLB M3032\n= B250\nLB M3024\n= B252\nLW M3200\n= W254\nL B250\n== B252\n= M3040\nJPT 231
-        L B250\n- B252\n= B248\n> K+0\nJPT 232\nL- B248\n= B248\nLBL 232
-        L B255\n- B254\n<= B248\nO[\nL B248\n<= B254\n]\n= M3041
-        L B255\n>> K+1\n= B255
-        L B252\n> B250\nA[\nL B248\n<= B255\n]\nO[\nL B252\n< B250\nA[\nL B248\n>= B255\n]\n]\n= M3042
-        LBL 231\nEM\n";
-    // Actual, nominal, reduction, pockets; equal, reduction reached, direction.
-    for (actual, nominal, reduction, pockets, equal, reached, direction) in [
-        (7, 7, 2, 12, 1, None, None),
-        (11, 2, 2, 12, 0, Some(0), Some(1)),
-        (2, 11, 2, 12, 0, Some(0), Some(0)),
-        (3, 5, 2, 12, 0, Some(1), Some(1)),
-        (5, 3, 1, 12, 0, Some(0), Some(0)),
-        (1, 12, 2, 12, 0, Some(1), Some(0)),
-    ] {
-        let mut bench = Bench::new(program);
-        let bits = |first: u32, value: u32| -> String {
-            (0..16)
-                .map(|bit| format!("M{}={} ", first + bit, value >> bit & 1))
-                .collect()
-        };
-        bench.set(&bits(3032, actual));
-        bench.set(&bits(3024, nominal));
-        bench.set(&bits(3200, reduction << 8 | pockets));
-        // The words overlap at M3032; the nominal value has eight bits only.
-        bench.set(&bits(3032, actual));
-        bench.scan().unwrap();
-        bench.expect(&format!("M3040={equal}"));
-        if let (Some(reached), Some(direction)) = (reached, direction) {
-            bench.expect(&format!("M3041={reached} M3042={direction}"));
-        }
-    }
 }
 
 #[test]
@@ -424,4 +386,48 @@ fn index_and_stack_start_anew_in_every_cycle() {
     let mut bench = Bench::new("PS K1\nINCX\nLX\n= W0\nEM\n");
     bench.scans(200);
     bench.expect("W0=1");
+}
+
+#[test]
+fn a_restart_gives_back_what_the_program_had() {
+    let program = "L M2180\n= M1\nL M2185\n= M2\nLN M3\nS T1\nL T49\n= M4\nSUBM 1\n= B200\nEM\n
+        LBL 1\nPS K+0\nPS K+0\nCM 9100\nREPEAT\nL M5\nUNTILT\nEM\n";
+    let mut bench = Bench::new(program);
+    bench.set("MP4110.1=50 MP10=%11111 MP60=%10000");
+    bench.nc.axes[4].override_percent = 25.0;
+    bench.scans(1);
+    bench.set("M3=1");
+    bench.scans(2);
+    bench.expect("M1=0 M2=0 M4=1");
+    assert_eq!(bench.nc.interfaces[0].user, Some(InterfaceUser::Plc));
+    bench.nc.interfaces[1].user = Some(InterfaceUser::Nc);
+    bench.machine.restart(Start::Interruption, &mut bench.nc);
+    assert_eq!(
+        (bench.nc.interfaces[0].user, bench.nc.interfaces[1].user),
+        (None, Some(InterfaceUser::Nc))
+    );
+    assert_eq!(bench.nc.axes[4].override_percent, 100.0);
+    assert_eq!(bench.machine.time().maximum, 0);
+    let report = bench.scan().unwrap();
+    assert_eq!(report.scans, 1);
+    // The jobs of before are gone: the first identifier is given again.
+    bench.expect("M1=0 M2=1 B200=1");
+    bench.machine.load(
+        compile("L K1\n/ K0\nINC W0\nEM\n").program.unwrap().into(),
+        &mut bench.nc,
+    );
+    bench.scans(2);
+    bench.expect("W0=2 M2185=0");
+}
+
+#[test]
+fn a_stopped_plc_goes_on_after_a_restart() {
+    let mut bench = Bench::new("INC W0\nCASE B0\nCM 1\nENDC\nEM\nLBL 1\nEM\n");
+    bench.set("B0=1");
+    assert_eq!(bench.scan().unwrap_err().error, PlcError::CaseOutOfRange);
+    bench.set("B0=0");
+    assert!(bench.scan().is_err());
+    bench.machine.restart(Start::Interruption, &mut bench.nc);
+    bench.scans(1);
+    bench.expect("W0=2");
 }

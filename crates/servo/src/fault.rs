@@ -59,8 +59,12 @@ impl Fault {
         self == Fault::Positioning
     }
 
-    /// The message, where the table of messages has it.
-    pub fn message(self) -> Option<MessageId> {
-        matches!(self, Fault::Gross(_)).then_some(MessageId::GrossPositioningError)
+    /// The message; the axis and the letter belong to it.
+    pub fn message(self) -> MessageId {
+        match self {
+            Fault::Positioning => MessageId::PositioningError,
+            Fault::Gross(_) => MessageId::GrossPositioningError,
+            Fault::MeasuringSystem(_) => MessageId::MeasuringSystemDefective,
+        }
     }
 }

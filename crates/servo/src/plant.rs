@@ -42,9 +42,26 @@ pub trait Plant {
         false
     }
 
-    /// Analogue input 0 to 3 of a PLC input board, V, or the temperature of a Pt 100 in degrees Celsius
+    /// Whether the touch probe is there and ready (X12/3) [000:1694-1765].
+    fn probe_ready(&mut self) -> bool {
+        true
+    }
+
+    /// Whether the battery of the touch probe is low (X12/7).
+    fn probe_battery_low(&mut self) -> bool {
+        false
+    }
+
+    /// Analogue input of a PLC input board, V: 0 to 3 of the first, 4 to 7 of the second
     /// [000:8449-8484].
     fn analogue_input(&mut self, input: usize) -> f64 {
+        let _ = input;
+        0.0
+    }
+
+    /// Temperature at a Pt 100 input, degrees Celsius: 0 to 3 of the first board, 4 to 7 of the second
+    /// [000:8449-8484].
+    fn temperature_input(&mut self, input: usize) -> f64 {
         let _ = input;
         0.0
     }

@@ -281,7 +281,7 @@ fn a_gross_fault_cannot_be_cleared() {
     bench.stand(0.003);
     let fault = bench.axis.fault().unwrap();
     assert_eq!(fault.letter(), Some('A'));
-    assert_eq!(fault.message(), Some(MessageId::GrossPositioningError));
+    assert_eq!(fault.message(), MessageId::GrossPositioningError);
     bench.axis.acknowledge();
     bench.stand(0.003);
     assert_eq!((bench.axis.fault(), bench.axis.volts()), (Some(fault), 0.0));

@@ -1,6 +1,7 @@
 //! A program on the test bench: memory, stand-in for the control, stimuli.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use bahn_exchange::Exchange;
 use bahn_parameters::{ControlModel, ParameterList};
@@ -9,7 +10,7 @@ use bahn_plc::{Machine, PlcProgram, RuntimeError, Start, TestNc, Tracer, mirror_
 use super::operand::{Assignment, Content, Operand};
 use super::options::BenchOptions;
 use super::script::Script;
-use crate::{UsageError, settings};
+use crate::UsageError;
 
 /// A program with all it needs to run.
 pub(super) struct Bench {
@@ -19,6 +20,8 @@ pub(super) struct Bench {
     pub script: Script,
     /// Cycles that were started.
     pub cycle: u64,
+    cycle_time: Duration,
+    inside: bool,
 }
 
 /// An expectation that does not hold.
@@ -30,11 +33,21 @@ pub(super) struct Failure {
     pub found: Content,
 }
 
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "cycle {}: {} expected {}, found {}",
+            self.cycle, self.operand, self.expected, self.found
+        )
+    }
+}
+
 impl Bench {
     /// With the operands of `--set`; `exchange` holds what was retained.
     pub fn new(
         program: Arc<PlcProgram>,
-        model: ControlModel,
+        parameters: ParameterList,
         options: &BenchOptions,
         exchange: Exchange,
     ) -> Result<Bench, UsageError> {
@@ -42,9 +55,11 @@ impl Bench {
         let mut bench = Bench {
             machine: Machine::new(program, Start::PowerOn),
             exchange,
-            nc: TestNc::new(settings::parameter_list(model, options.parameters.as_deref())?),
+            cycle_time: cycle_time(parameters.model()),
+            nc: TestNc::new(parameters),
             script: script.unwrap_or_default(),
             cycle: 0,
+            inside: false,
         };
         mirror_parameters(&bench.nc.parameters, &mut bench.exchange);
         for assignment in set_operands(options)? {
@@ -68,8 +83,13 @@ impl Bench {
         Ok(())
     }
 
+    /// No cycle begins while an error has stopped the PLC.
+    fn running(&self) -> Result<(), RuntimeError> {
+        self.machine.stopped().map_or(Ok(()), |error| Err(error.clone()))
+    }
+
     /// Applies the stimuli of the next cycle and counts it.
-    pub fn stimulate(&mut self) {
+    fn stimulate(&mut self) {
         self.cycle += 1;
         let stimuli = self.script.cycle(self.cycle).map(|cycle| cycle.set.clone());
         for assignment in stimuli.unwrap_or_default() {
@@ -80,13 +100,56 @@ impl Bench {
 
     /// Runs the next cycle; the stimuli come first.
     pub fn scan(&mut self, tracer: Option<&mut dyn Tracer>) -> Result<(), RuntimeError> {
+        self.running()?;
         self.stimulate();
         let report = match tracer {
             Some(tracer) => self.machine.scan_traced(&mut self.exchange, &mut self.nc, tracer),
             None => self.machine.scan(&mut self.exchange, &mut self.nc),
         };
-        self.nc.end_scan();
+        self.end_cycle();
         report.map(|_| ())
+    }
+
+    /// Executes the next line of a cycle, and begins one if none was begun; tells whether it is over.
+    pub fn step(&mut self, tracer: &mut dyn Tracer) -> Result<bool, RuntimeError> {
+        self.running()?;
+        if !self.inside {
+            self.stimulate();
+            self.machine.begin(&mut self.exchange, &mut self.nc)?;
+            self.inside = true;
+        }
+        let report = self
+            .machine
+            .step(&mut self.exchange, &mut self.nc, Some(tracer))
+            .inspect_err(|_| self.inside = false)?;
+        if report.is_some() {
+            self.inside = false;
+            self.end_cycle();
+        }
+        Ok(report.is_some())
+    }
+
+    /// Whether a cycle was begun line by line and is not over.
+    pub fn is_inside(&self) -> bool {
+        self.inside
+    }
+
+    /// Starts program and script anew; operands keep their values.
+    pub fn restart(&mut self) {
+        self.machine.restart(Start::Interruption, &mut self.nc);
+        self.cycle = 0;
+        self.inside = false;
+    }
+
+    /// What the control does until the next cycle.
+    fn end_cycle(&mut self) {
+        self.nc.end_scan();
+        self.nc.travel(self.cycle_time.as_secs_f64());
+    }
+
+    /// From the start of a cycle to the start of the next one.
+    pub fn cycle_time(&self) -> Duration {
+        self.cycle_time
     }
 
     /// The expectations of the last cycle that do not hold.
@@ -136,6 +199,14 @@ pub(super) fn set_operands(options: &BenchOptions) -> Result<Vec<Assignment>, Us
     // Machine parameters first: they go to words that may be set, too.
     all.sort_by_key(|assignment| matches!(assignment, Assignment::Operand(..)));
     Ok(all)
+}
+
+/// The PLC cycle time [000:11185].
+fn cycle_time(model: ControlModel) -> Duration {
+    Duration::from_millis(match model {
+        ControlModel::Tnc407 => 24,
+        _ => 20,
+    })
 }
 
 fn assign(list: &mut ParameterList, text: &str) -> Result<(), String> {

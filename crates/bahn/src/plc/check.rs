@@ -53,17 +53,18 @@ struct Report {
     nominal_percent: f64,
 }
 
+/// An error or a warning.
 #[derive(Debug, serde::Serialize)]
-struct Entry {
-    number: u8,
+pub(super) struct Entry {
+    pub number: u8,
     file: String,
     line: u32,
     column: u32,
-    message: String,
+    pub message: String,
 }
 
 impl Entry {
-    fn new(fault: &Fault) -> Entry {
+    pub fn new(fault: &Fault) -> Entry {
         Entry {
             number: fault.error.number(),
             file: fault.file.clone(),

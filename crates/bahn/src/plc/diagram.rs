@@ -9,8 +9,10 @@ use super::bench::Bench;
 use super::drawing;
 use super::operand::{Assignment, Content, Operand};
 use super::options::DiagramOptions;
+use super::print_json;
 use super::run;
 use super::source::Source;
+use crate::cli::Format;
 use crate::files::{self, NewFile};
 use crate::{Outcome, UsageError, console, diagnostics};
 
@@ -26,15 +28,11 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
     }
     let trigger = options.trigger.as_deref().map(trigger).transpose()?;
     let source = Source::compile(&options.program)?;
+    let parameters = source.parameters.clone();
     let Some(program) = source.program() else {
         return Ok(Outcome::ProgramError);
     };
-    let mut bench = Bench::new(
-        program,
-        options.program.model,
-        &options.bench,
-        Exchange::default(),
-    )?;
+    let mut bench = Bench::new(program, parameters, &options.bench, Exchange::default())?;
     let mut samples = VecDeque::new();
     // The cycle that triggers; without trigger the first.
     let mut triggered = trigger.is_none().then_some(1);
@@ -78,14 +76,15 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
         trigger: trigger.and(triggered),
         samples: samples.into(),
     };
-    match &options.svg {
-        Some(path) => {
+    match (&options.svg, options.format) {
+        (Some(path), _) => {
             let mut file = NewFile::create(path)?;
             file.write_all(drawing::svg(&diagram).as_bytes())
                 .map_err(|error| files::cannot("write", path, &error))?;
             file.finish()?;
         }
-        None => console::print(&drawing::text(&diagram))?,
+        (None, Format::Text) => console::print(&drawing::text(&diagram))?,
+        (None, Format::Json) => print_json(&Report::new(&diagram))?,
     }
     Ok(outcome)
 }
@@ -95,6 +94,39 @@ fn trigger(text: &str) -> Result<(Operand, Content), UsageError> {
         Ok(Assignment::Operand(operand, content)) => Ok((operand, content)),
         Ok(Assignment::Parameter(_)) => Err(UsageError::new("--trigger takes an operand")),
         Err(error) => Err(UsageError::new(format!("--trigger {text}: {error}"))),
+    }
+}
+
+/// The diagram as data.
+#[derive(Debug, serde::Serialize)]
+struct Report<'a> {
+    first_cycle: u64,
+    trigger_cycle: Option<u64>,
+    operands: Vec<Course<'a>>,
+}
+
+/// An operand after every cycle.
+#[derive(Debug, serde::Serialize)]
+struct Course<'a> {
+    operand: String,
+    values: Vec<&'a Content>,
+}
+
+impl Report<'_> {
+    fn new(diagram: &Diagram) -> Report<'_> {
+        let course = |(index, operand): (usize, &Operand)| Course {
+            operand: operand.to_string(),
+            values: diagram
+                .samples
+                .iter()
+                .filter_map(|sample| sample.get(index))
+                .collect(),
+        };
+        Report {
+            first_cycle: diagram.first,
+            trigger_cycle: diagram.trigger,
+            operands: diagram.operands.iter().enumerate().map(course).collect(),
+        }
     }
 }
 

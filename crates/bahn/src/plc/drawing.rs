@@ -8,10 +8,13 @@ const COLUMNS: usize = 64;
 /// Width of a cycle and height of a row in the drawing, in pixels.
 const CYCLE: usize = 12;
 const ROW: usize = 28;
+/// Width of a character in the drawing.
+const CHARACTER: usize = 8;
 /// Width of the names in the drawing.
 const NAMES: usize = 70;
 
-/// For the terminal: a high line for 1, a low one for 0, numbers where they change.
+/// For the terminal: a high line for 1, a low one for 0. Numbers and texts stand where they change; where
+/// there is no room for one, least, greatest and last number are given at the end of the row.
 pub(super) fn text(diagram: &Diagram) -> String {
     let mut text = String::new();
     let count = diagram.samples.len();
@@ -26,38 +29,62 @@ pub(super) fn text(diagram: &Diagram) -> String {
             text += &format!("{:>8} {:at$}v trigger\n", "", "");
         }
         for (index, operand) in diagram.operands.iter().enumerate() {
-            let mut row = vec![' '; end - start];
-            for (first, length, content) in diagram.stretches(index) {
-                draw(&mut row, first, length, start, *operand, content);
-            }
-            text += &format!(
-                "{:>8} {}\n",
-                operand.to_string(),
-                row.iter().collect::<String>().trim_end()
-            );
+            let row = match operand {
+                Operand::Bit(_) => levels(diagram, index, start, end),
+                _ => contents(diagram, index, start, end),
+            };
+            text += &format!("{:>8} {}\n", operand.to_string(), row.trim_end());
         }
     }
     text
 }
 
-fn draw(row: &mut [char], first: usize, length: usize, start: usize, operand: Operand, content: &Content) {
-    let label: Vec<char> = match (operand, content) {
-        (Operand::Bit(_), _) => Vec::new(),
-        (_, content) => format!("|{content}").chars().collect(),
+/// The samples of an operand in a row.
+fn samples(diagram: &Diagram, index: usize, start: usize, end: usize) -> impl Iterator<Item = &Content> {
+    let samples = diagram.samples.iter().skip(start).take(end - start);
+    samples.filter_map(move |sample| sample.get(index))
+}
+
+fn levels(diagram: &Diagram, index: usize, start: usize, end: usize) -> String {
+    let level = |content: &Content| match content {
+        Content::Number(0) => '_',
+        _ => '\u{2580}',
     };
-    let filler = match (operand, content) {
-        (Operand::Bit(_), Content::Number(0)) => '_',
-        (Operand::Bit(_), _) => '\u{2580}',
-        _ => ' ',
-    };
-    // A stretch that began before this line shows its content again.
-    let begin = first.max(start);
-    for at in begin..first + length {
-        let character = label.get(at - begin).copied().unwrap_or(filler);
-        if let Some(cell) = at.checked_sub(start).and_then(|at| row.get_mut(at)) {
-            *cell = character;
+    samples(diagram, index, start, end).map(level).collect()
+}
+
+fn contents(diagram: &Diagram, index: usize, start: usize, end: usize) -> String {
+    let mut row = String::new();
+    let mut complete = true;
+    for (first, length, content) in diagram.stretches(index) {
+        // A stretch that began before this row shows its content again.
+        let cells = (first + length).min(end).saturating_sub(first.max(start));
+        if first >= end || cells == 0 {
+            continue;
+        }
+        let label = format!("|{content}");
+        if label.chars().count() <= cells {
+            row += &format!("{label:<cells$}");
+        } else {
+            complete = false;
+            row += &format!("{:~<cells$}", "|");
         }
     }
+    if complete {
+        return row;
+    }
+    let numbers = || {
+        samples(diagram, index, start, end).filter_map(|content| match content {
+            Content::Number(value) => Some(value),
+            Content::Text(_) => None,
+        })
+    };
+    let extremes = match (numbers().min(), numbers().max()) {
+        (Some(least), Some(greatest)) => format!("{least}..{greatest}, "),
+        _ => String::new(),
+    };
+    let last = samples(diagram, index, start, end).last();
+    row + &last.map_or(String::new(), |last| format!("| {extremes}last {last}"))
 }
 
 /// The drawing.
@@ -97,14 +124,22 @@ pub(super) fn svg(diagram: &Diagram) -> String {
                     points += &format!("{x},{y} {end},{y} ");
                 }
                 (_, content) => {
-                    let (top, height, text_x) = (bottom - 16, 16, x + 3);
+                    let (top, width) = (bottom - 16, end - x);
+                    let content = content.to_string();
                     svg += &format!(
-                        "<rect x=\"{x}\" y=\"{top}\" width=\"{}\" height=\"{height}\" fill=\"none\" stroke=\"#888\"/>\
-                         <text x=\"{text_x}\" y=\"{}\">{}</text>\n",
-                        end - x,
-                        bottom - 4,
-                        escaped(&content.to_string())
+                        "<rect x=\"{x}\" y=\"{top}\" width=\"{width}\" height=\"16\" fill=\"white\" stroke=\"#888\">\
+                         <title>{}</title></rect>",
+                        escaped(&content)
                     );
+                    if content.chars().count() * CHARACTER + 4 <= width {
+                        svg += &format!(
+                            "<text x=\"{}\" y=\"{}\">{}</text>",
+                            x + 3,
+                            bottom - 4,
+                            escaped(&content)
+                        );
+                    }
+                    svg.push('\n');
                 }
             }
         }

@@ -1,52 +1,126 @@
 //! `bahn plc list`: the program as formatted listing.
 
+use std::collections::BTreeMap;
+
+use bahn_plc::Compilation;
+
+use super::check::Entry;
 use super::options::ListOptions;
+use super::print_json;
 use super::source::Source;
+use crate::cli::Format;
 use crate::diagnostics::printable;
 use crate::{Outcome, UsageError, console};
 
-/// Prints all files of a program with line numbers, commands and comments in columns.
+/// Prints all files of a program with line numbers, commands and comments in columns. Errors and warnings
+/// stand below their lines.
 pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     let source = Source::compile(&options.program)?;
-    let Some(program) = source.program() else {
-        return Ok(Outcome::ProgramError);
-    };
-    let mut text = String::new();
-    for (index, file) in program.files.iter().enumerate() {
-        if index > 0 {
-            text.push('\n');
+    let compilation = &source.compilation;
+    let files: Vec<File<'_>> = compilation
+        .files
+        .iter()
+        .map(|file| File::new(&file.name, &file.lines, compilation))
+        .collect();
+    match options.format {
+        Format::Json => print_json(&files)?,
+        Format::Text => {
+            let files: Vec<String> = files.iter().map(File::text).collect();
+            console::print(&files.join("\n"))?;
         }
-        text += &format!("{}\n", file.name);
-        text += &listing(&file.lines);
     }
-    console::print(&text)?;
-    Ok(Outcome::Fine)
+    Ok(if compilation.errors.is_empty() {
+        Outcome::Fine
+    } else {
+        Outcome::ProgramError
+    })
 }
 
-/// Lines of a file; what stands inside structures and tables is indented.
-fn listing(lines: &[String]) -> String {
-    let mut depth = 0_usize;
-    let mut text = String::new();
-    for (index, line) in lines.iter().enumerate() {
-        let (code, comment) = split_comment(line);
-        let (command, operand) = split_command(code);
-        let outside = closes(&command) || command.eq_ignore_ascii_case("ELSE");
-        let indent = depth.saturating_sub(outside.into()) * 2;
+/// A file of a program.
+#[derive(Debug, serde::Serialize)]
+struct File<'a> {
+    file: &'a str,
+    lines: Vec<Line<'a>>,
+}
+
+#[derive(Debug, serde::Serialize)]
+struct Line<'a> {
+    line: usize,
+    command: &'a str,
+    operand: &'a str,
+    comment: &'a str,
+    /// How many structures and tables it stands in.
+    depth: usize,
+    errors: Vec<Entry>,
+    warnings: Vec<Entry>,
+}
+
+impl<'a> File<'a> {
+    fn new(name: &'a str, lines: &'a [String], compilation: &Compilation) -> File<'a> {
+        let of_file = |faults: &[bahn_plc::Diagnostic]| {
+            let mut by_line: BTreeMap<usize, Vec<Entry>> = BTreeMap::new();
+            for fault in faults.iter().filter(|fault| fault.file == name) {
+                by_line
+                    .entry(fault.line as usize)
+                    .or_default()
+                    .push(Entry::new(fault));
+            }
+            by_line
+        };
+        let mut errors = of_file(&compilation.errors);
+        let mut warnings = of_file(&compilation.warnings);
+        let mut depth = 0_usize;
+        let mut line = |(index, line): (usize, &'a String)| {
+            let (code, comment) = split_comment(line);
+            let (command, operand) = split_command(code);
+            let outside = closes(command) || command.eq_ignore_ascii_case("ELSE");
+            let own_depth = depth.saturating_sub(outside.into());
+            if closes(command) {
+                depth = depth.saturating_sub(1);
+            } else if opens(command) {
+                depth += 1;
+            }
+            let line = index + 1;
+            Line {
+                line,
+                command,
+                operand,
+                comment: comment.trim(),
+                depth: own_depth,
+                errors: errors.remove(&line).unwrap_or_default(),
+                warnings: warnings.remove(&line).unwrap_or_default(),
+            }
+        };
+        File {
+            file: name,
+            lines: lines.iter().enumerate().map(&mut line).collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let lines: String = self.lines.iter().map(Line::text).collect();
+        format!("{}\n{lines}", self.file)
+    }
+}
+
+impl Line<'_> {
+    fn text(&self) -> String {
+        let (command, operand) = (self.command, self.operand);
         let code = if command.eq_ignore_ascii_case("LBL") {
             format!("{command:<5} {operand}")
         } else {
-            format!("  {:indent$}{command:<5} {operand}", "")
+            format!("  {:indent$}{command:<5} {operand}", "", indent = 2 * self.depth)
         };
-        let row = format!("{:>5}  {:<30} {}", index + 1, code.trim_end(), comment.trim());
-        text += &printable(row.trim_end());
-        text.push('\n');
-        if closes(&command) {
-            depth = depth.saturating_sub(1);
-        } else if opens(&command) {
-            depth += 1;
+        let row = format!("{:>5}  {:<30} {}", self.line, code.trim_end(), self.comment);
+        let mut text = printable(row.trim_end()) + "\n";
+        for (what, entries) in [("error", &self.errors), ("warning", &self.warnings)] {
+            for entry in entries {
+                text += &printable(&format!("       ^^^ {what} {} {}", entry.number, entry.message));
+                text.push('\n');
+            }
         }
+        text
     }
-    text
 }
 
 fn opens(command: &str) -> bool {
@@ -60,10 +134,10 @@ fn closes(command: &str) -> bool {
 }
 
 /// The command and the operand of a line.
-fn split_command(code: &str) -> (String, String) {
+fn split_command(code: &str) -> (&str, &str) {
     let code = code.trim();
     let (command, operand) = code.split_once(char::is_whitespace).unwrap_or((code, ""));
-    (command.to_owned(), operand.trim().to_owned())
+    (command, operand.trim())
 }
 
 /// A line before its comment, and the comment with its sign.

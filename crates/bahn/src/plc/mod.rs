@@ -42,6 +42,12 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
     }
 }
 
+/// Reads stimuli and expectations as `bahn plc run --script` does, for fuzzing; the error names file and line.
+#[doc(hidden)]
+pub fn check_script(name: &str, bytes: &[u8]) -> Result<(), String> {
+    script::Script::read(name, bytes).map(|_| ())
+}
+
 /// Prints a report as JSON.
 fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
     let json = serde_json::to_string_pretty(report)

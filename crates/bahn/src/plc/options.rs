@@ -33,7 +33,7 @@ pub(crate) enum PlcCommand {
     /// Watch and set operands while the program runs or is stepped (full screen).
     #[command(after_help = WATCH_KEYS)]
     Watch(WatchOptions),
-    /// Print the program as formatted listing.
+    /// Print the program as formatted listing, with errors below their lines.
     List(ListOptions),
     /// Show where operands and labels are used; which are not, and which are written twice.
     #[command(after_help = XREF_EXAMPLES)]
@@ -47,9 +47,11 @@ const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn plc check MAIN.PLC
   bahn plc check MAIN.PLC --model tnc407 --format json
+  bahn plc check MAIN.PLC --parameters machine.MP
 
 JSON: ok, errors and warnings (number, file, line, column, message), size_bytes, nominal_percent
-(100 % are 5 ms). Files that the program links with USES lie beside the main file.
+(100 % are 5 ms). Files that the program links with USES lie beside the main file, or in a folder EPROM
+beside it.
 Exit codes: 0 no error, 1 errors, 2 wrong use.";
 
 const RUN_EXAMPLES: &str = "\
@@ -83,8 +85,13 @@ Examples:
   bahn plc diagram MAIN.PLC --show M100,O2 --trigger O2=1 --cycles 40 --before 10 --svg door.svg";
 
 const WATCH_KEYS: &str = "\
-Keys: r run, s stop, c one cycle, l one line, up and down choose an operand, enter set it, space turn a
-bit over, a add an operand, d remove it, q end. Numbers are shown decimal, hexadecimal and binary.";
+Keys: r run, s stop, c one cycle, l one line, n start the program and the script anew, up and down choose
+an operand, enter set it, space turn a bit over, a add operands, d remove one, q end. Numbers are shown
+decimal, hexadecimal and binary.
+
+Examples:
+  bahn plc watch MAIN.PLC --show I4,O2,W8
+  bahn plc watch MAIN.PLC --script door.txt --retain door.mem";
 
 const XREF_EXAMPLES: &str = "\
 Examples:
@@ -107,6 +114,10 @@ pub(crate) struct ProgramOptions {
     /// Control model.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
+    /// List of machine parameters that replaces values of the model's reference list. With MP4010 = 0 in
+    /// it files are linked from the folder EPROM beside the main file only.
+    #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
+    pub parameters: Option<PathBuf>,
 }
 
 /// What the program runs against.
@@ -115,9 +126,6 @@ pub(crate) struct BenchOptions {
     /// Operands and machine parameters before the first cycle, as I4=1,W6=100,MP4110.2=4 (repeatable).
     #[arg(long, value_name = "OPERAND=V,..")]
     pub set: Vec<String>,
-    /// List of machine parameters that replaces values of the model's reference list.
-    #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
-    pub parameters: Option<PathBuf>,
     /// Stimuli and expectations.
     #[arg(long, value_name = "STIMULI", value_hint = ValueHint::FilePath)]
     pub script: Option<PathBuf>,
@@ -200,6 +208,15 @@ pub(crate) struct DiagramOptions {
     /// Write the diagram as drawing instead.
     #[arg(long, value_name = "OUT.svg", value_hint = ValueHint::FilePath)]
     pub svg: Option<PathBuf>,
+    /// How the diagram is written.
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        value_enum,
+        default_value_t,
+        conflicts_with = "svg"
+    )]
+    pub format: Format,
 }
 
 /// Options of `bahn plc watch`.
@@ -209,6 +226,9 @@ pub(crate) struct WatchOptions {
     pub program: ProgramOptions,
     #[command(flatten)]
     pub bench: BenchOptions,
+    /// File of the non-volatile markers and bytes: read before, kept while the program runs.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub retain: Option<PathBuf>,
     /// The operands of the table; without it those of --set and of the script.
     #[arg(long, value_name = "OPERAND,..", value_delimiter = ',')]
     pub show: Vec<Operand>,
@@ -219,6 +239,9 @@ pub(crate) struct WatchOptions {
 pub(crate) struct ListOptions {
     #[command(flatten)]
     pub program: ProgramOptions,
+    /// How the listing is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
 }
 
 /// Options of `bahn plc xref`.

@@ -24,6 +24,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         file: fault.file.clone(),
         line: fault.line,
     });
+    let parameters = source.parameters.clone();
     let Some(program) = source.program() else {
         if options.format == Format::Json {
             print_json(&Report::not_run(first_error))?;
@@ -34,7 +35,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     let exchange = retained
         .as_ref()
         .map_or_else(Exchange::default, Retained::restore);
-    let mut bench = Bench::new(program, options.program.model, &options.bench, exchange)?;
+    let mut bench = Bench::new(program, parameters, &options.bench, exchange)?;
     let mut record = options
         .record
         .as_deref()
@@ -78,10 +79,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     record.map_or(Ok(()), Record::finish)?;
 
     for failure in &report.failed_expectations {
-        diagnostics::print_line(&format!(
-            "cycle {}: {} expected {}, found {}",
-            failure.cycle, failure.operand, failure.expected, failure.found
-        ));
+        diagnostics::print_line(&failure.to_string());
     }
     report.values = Values(
         options

@@ -6,6 +6,10 @@ use std::path::Path;
 use super::operand::{Assignment, Content, Operand};
 use crate::{UsageError, files};
 
+/// The last cycle that a script may speak of: more than two days of a machine. A slip of the keyboard is
+/// not to run for years.
+const CYCLES_MAX: u64 = 10_000_000;
+
 /// A script: what is set before and expected after its cycles.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Script(BTreeMap<u64, Cycle>);
@@ -20,8 +24,13 @@ pub(super) struct Cycle {
 impl Script {
     pub fn load(path: &Path) -> Result<Script, UsageError> {
         let bytes = files::read_table(path)?;
-        Script::parse(&String::from_utf8_lossy(&bytes))
-            .map_err(|(line, error)| UsageError::new(format!("{}:{line}: {error}", path.display())))
+        Script::read(&path.to_string_lossy(), &bytes).map_err(UsageError::new)
+    }
+
+    /// Reads a script from the bytes of a file; an error names file and line.
+    pub fn read(name: &str, bytes: &[u8]) -> Result<Script, String> {
+        Script::parse(&String::from_utf8_lossy(bytes))
+            .map_err(|(line, error)| format!("{name}:{line}: {error}"))
     }
 
     /// Reads a script; an error comes with its line.
@@ -44,8 +53,8 @@ impl Script {
             .trim()
             .parse()
             .ok()
-            .filter(|number| *number > 0)
-            .ok_or_else(|| format!("`{}` is no cycle; the first is 1", cycle.trim()))?;
+            .filter(|number| (1..=CYCLES_MAX).contains(number))
+            .ok_or_else(|| format!("`{}` is no cycle from 1 to {CYCLES_MAX}", cycle.trim()))?;
         let rest = rest.trim();
         let expected = rest.split_at_checked(6).filter(|(word, behind)| {
             word.eq_ignore_ascii_case("expect") && behind.starts_with(char::is_whitespace)
@@ -108,6 +117,8 @@ fn without_comment(line: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     #[test]
@@ -116,8 +127,91 @@ mod tests {
         assert_eq!(script.cycle(1).map(|cycle| cycle.set.len()), Some(2));
         assert_eq!(script.cycle(3).map(|cycle| cycle.expect.len()), Some(2));
         assert_eq!(script.last(), 3);
-        for wrong in ["I4=1", "0: I4=1", "1: I4", "2: expect MP10=1", "x: I4=1", "1:"] {
+        for wrong in [
+            "I4=1",
+            "0: I4=1",
+            "1: I4",
+            "2: expect MP10=1",
+            "x: I4=1",
+            "1:",
+            "10000001: I4=1",
+            "1: I4=1,",
+        ] {
             assert!(Script::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn errors_name_file_and_line() {
+        let error = Script::read("door.txt", b"1: I4=1\r\n; \xff\r\n2: W7=1").unwrap_err();
+        assert!(error.starts_with("door.txt:3: "), "{error}");
+    }
+
+    /// An assignment as text, and what it is.
+    fn assignment() -> impl Strategy<Value = (String, Operand, Content)> {
+        let bit = ("[MmIOTC]", 0_u16..32, 0..2_i32).prop_map(|(area, number, value)| {
+            (
+                format!("{area}{number}"),
+                value.to_string(),
+                Content::Number(value),
+            )
+        });
+        let number = (0_u16..64, any::<i32>(), any::<bool>()).prop_map(|(address, value, hex)| {
+            let text = if hex {
+                format!("${value:X}")
+            } else {
+                value.to_string()
+            };
+            (format!("D{}", 4 * address), text, Content::Number(value))
+        });
+        let text = (0..4_u8, "[A-Z ,;#=:]{0,9}")
+            .prop_map(|(string, text)| (format!("S{string}"), format!("\"{text}\""), Content::Text(text)));
+        prop_oneof![bit, number, text].prop_map(|(name, value, content)| {
+            (format!(" {name} = {value} "), name.parse().unwrap(), content)
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn what_is_written_is_read(
+            lines in prop::collection::vec(
+                (1..CYCLES_MAX, any::<bool>(), prop::collection::vec(assignment(), 1..4), "( *[;#].{0,5})?"),
+                0..12,
+            ),
+        ) {
+            let mut text = String::new();
+            let mut expected = Script::default();
+            for (cycle, is_expectation, assignments, comment) in lines {
+                let word = if is_expectation { " Expect" } else { "" };
+                let parts: Vec<&str> = assignments.iter().map(|(text, ..)| text.as_str()).collect();
+                text += &format!("{cycle}:{word}{}{}\n", parts.join(","), comment.replace(['\n', '\r'], ""));
+                let entry = expected.0.entry(cycle).or_default();
+                for (_, operand, content) in assignments {
+                    if is_expectation {
+                        entry.expect.push((operand, content));
+                    } else {
+                        entry.set.push(Assignment::Operand(operand, content));
+                    }
+                }
+            }
+            prop_assert_eq!(Script::parse(&text), Ok(expected), "{}", text);
+        }
+
+        #[test]
+        fn any_bytes_are_a_script_or_an_error_with_its_line(
+            bytes in prop_oneof![
+                prop::collection::vec(any::<u8>(), 0..200),
+                "([0-9]{1,2}: ?(expect )?[MWDSBI][0-9]{1,4}=[$\"0-9-]{1,5}[,\n;]){0,9}".prop_map(String::into_bytes),
+            ],
+        ) {
+            if let Err(error) = Script::read("F", &bytes) {
+                let line = error.strip_prefix("F:").and_then(|rest| rest.split(':').next());
+                let line: usize = line.unwrap().parse().unwrap();
+                let lines = String::from_utf8_lossy(&bytes).lines().count();
+                prop_assert!((1..=lines).contains(&line), "{}", error);
+            }
         }
     }
 }

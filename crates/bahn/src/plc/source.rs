@@ -3,15 +3,18 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_plc::{Compilation, Diagnostic as Fault, Options, PlcProgram, SourceFiles};
+use bahn_parameters::ParameterList;
+use bahn_plc::{Compilation, Diagnostic as Fault, Options, PlcProgram, ProgramMemory, SourceFiles};
 
 use super::options::ProgramOptions;
 use crate::diagnostics::{self, Diagnostic, Marked, Severity};
-use crate::{UsageError, files};
+use crate::{UsageError, files, settings};
 
 /// A compiled program with the folder it comes from.
 pub(super) struct Source {
     folder: Folder,
+    /// The machine parameters of the model or of the user's list.
+    pub parameters: ParameterList,
     pub compilation: Compilation,
 }
 
@@ -20,10 +23,26 @@ impl Source {
     pub fn compile(options: &ProgramOptions) -> Result<Source, UsageError> {
         // An unreadable main file is wrong use; a linked one is an error of the program.
         files::read_table(&options.file)?;
-        let folder = Folder(options.file.parent().map(Path::to_owned).unwrap_or_default());
+        let folder = options.file.parent().map(Path::to_owned).unwrap_or_default();
         let main = options.file.file_name().unwrap_or_default().to_string_lossy();
-        let compilation = Compilation::compile(&folder, &main, Options::for_model(options.model));
-        Ok(Source { folder, compilation })
+        let parameters = settings::parameter_list(options.model, options.parameters.as_deref())?;
+        // Only the list of a machine says that it has an EPROM.
+        let memory = match (&options.parameters, parameters.get(4010, 0)) {
+            (Some(_), Some(0.0)) => ProgramMemory::Eprom,
+            _ => ProgramMemory::Ram,
+        };
+        let compile_options = Options::for_model(options.model).stored_in(memory);
+        let folder = Folder {
+            folder,
+            main: main.to_string(),
+            memory,
+        };
+        let compilation = Compilation::compile(&folder, &main, compile_options);
+        Ok(Source {
+            folder,
+            parameters,
+            compilation,
+        })
     }
 
     /// Prints errors and warnings as rustc does.
@@ -33,22 +52,19 @@ impl Source {
         with(Severity::Warning, &self.compilation.warnings);
     }
 
-    /// The program; prints what is wrong and gives `None` when there are errors.
+    /// The program; prints errors and warnings, and gives `None` when there are errors.
     pub fn program(mut self) -> Option<Arc<PlcProgram>> {
-        match self.compilation.program.take() {
-            Some(program) => Some(program.into()),
-            None => {
-                self.print_faults();
-                None
-            }
-        }
+        self.print_faults();
+        self.compilation.program.take().map(Arc::new)
     }
 
     fn print(&self, severity: Severity, fault: &Fault) {
-        let bytes = self.folder.read(&fault.file).unwrap_or_default();
-        let text = String::from_utf8_lossy(&bytes);
+        let file = self.compilation.files.iter().find(|file| file.name == fault.file);
         let line = (fault.line as usize).saturating_sub(1);
-        let text = text.lines().nth(line).unwrap_or_default().to_owned();
+        let text = file
+            .and_then(|file| file.lines.get(line))
+            .cloned()
+            .unwrap_or_default();
         let start = fault.column.saturating_sub(1) as usize;
         let length = text
             .chars()
@@ -62,7 +78,7 @@ impl Source {
         diagnostics::print(&Diagnostic {
             severity,
             title: &format!("{} {}", fault.error.number(), fault.error.text()),
-            path: &self.folder.0.join(&fault.file).to_string_lossy(),
+            path: &self.folder.path(&fault.file).to_string_lossy(),
             marked: Marked {
                 line: fault.line,
                 text,
@@ -75,19 +91,47 @@ impl Source {
     }
 }
 
-/// The source files of one folder; names lose folders.
-struct Folder(PathBuf);
+/// The source files beside the main file, and those in its folder EPROM; names lose folders.
+struct Folder {
+    folder: PathBuf,
+    main: String,
+    memory: ProgramMemory,
+}
+
+impl Folder {
+    /// Where a file was found.
+    fn path(&self, name: &str) -> PathBuf {
+        let (ram, eprom) = (self.folder.join(name), self.folder.join(EPROM).join(name));
+        let is_ram = name == self.main || self.memory == ProgramMemory::Ram && ram.is_file();
+        if is_ram { ram } else { eprom }
+    }
+}
+
+/// The folder that stands for the EPROM.
+const EPROM: &str = "EPROM";
 
 impl SourceFiles for Folder {
     fn read(&self, name: &str) -> Option<Vec<u8>> {
-        let name = name.rsplit(['\\', '/', ':']).next().unwrap_or_default();
-        if name.is_empty() || name == "." || name == ".." {
-            return None;
-        }
-        [name.to_owned(), name.to_ascii_lowercase()]
-            .iter()
-            .map(|name| self.0.join(name))
-            .find(|path| path.is_file())
-            .and_then(|path| files::read_table(&path).ok())
+        read_in(&self.folder, name)
     }
+
+    /// The main file runs from wherever it is.
+    fn read_eprom(&self, name: &str) -> Option<Vec<u8>> {
+        if name == self.main {
+            return self.read(name);
+        }
+        read_in(&self.folder.join(EPROM), name)
+    }
+}
+
+fn read_in(folder: &Path, name: &str) -> Option<Vec<u8>> {
+    let name = name.rsplit(['\\', '/', ':']).next().unwrap_or_default();
+    if name.is_empty() || name == "." || name == ".." {
+        return None;
+    }
+    [name.to_owned(), name.to_ascii_lowercase()]
+        .iter()
+        .map(|name| folder.join(name))
+        .find(|path| path.is_file())
+        .and_then(|path| files::read_table(&path).ok())
 }

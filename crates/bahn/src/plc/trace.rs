@@ -14,15 +14,11 @@ use crate::{Outcome, UsageError, console};
 /// Runs up to a cycle and shows its executed lines.
 pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
     let source = Source::compile(&options.program)?;
+    let parameters = source.parameters.clone();
     let Some(program) = source.program() else {
         return Ok(Outcome::ProgramError);
     };
-    let mut bench = Bench::new(
-        program,
-        options.program.model,
-        &options.bench,
-        Exchange::default(),
-    )?;
+    let mut bench = Bench::new(program, parameters, &options.bench, Exchange::default())?;
     let mut trace = Trace::default();
     let mut result = Ok(());
     while result.is_ok() && bench.cycle < options.cycle {

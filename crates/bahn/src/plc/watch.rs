@@ -1,6 +1,9 @@
 //! `bahn plc watch`: the table of operands while the program runs or is stepped [000:11436-11460].
 
-mod table;
+mod entry;
+mod screen;
+#[cfg(test)]
+mod tests;
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -13,27 +16,26 @@ use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, Ke
 use super::bench::{Bench, set_operands};
 use super::operand::{Assignment, Content, Operand};
 use super::options::WatchOptions;
+use super::retain::Retained;
 use super::source::Source;
 use crate::{Outcome, UsageError};
-
-/// A PLC cycle [000:11512].
-const CYCLE: Duration = Duration::from_millis(20);
+use entry::Entry;
 
 /// Shows the table until the user ends it.
 pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
     let source = Source::compile(&options.program)?;
+    let parameters = source.parameters.clone();
     let Some(program) = source.program() else {
         return Ok(Outcome::ProgramError);
     };
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(UsageError::new("bahn plc watch needs a terminal"));
     }
-    let bench = Bench::new(
-        program,
-        options.program.model,
-        &options.bench,
-        Exchange::default(),
-    )?;
+    let retained = options.retain.as_deref().map(Retained::open).transpose()?;
+    let exchange = retained
+        .as_ref()
+        .map_or_else(Exchange::default, Retained::restore);
+    let bench = Bench::new(program, parameters, &options.bench, exchange)?;
     let mut operands = options.show.clone();
     if operands.is_empty() {
         let set = set_operands(&options.bench)?;
@@ -47,11 +49,15 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
             }
         }
     }
+    let mut watch = Watch::new(bench, operands, retained);
     let mut terminal =
         ratatui::try_init().map_err(|error| UsageError::new(format!("no full screen: {error}")))?;
-    let result = Watch::new(bench, operands).show(&mut terminal);
+    let result = watch.show(&mut terminal);
     ratatui::restore();
-    result.map_err(|error| UsageError::new(format!("terminal: {error}")))?;
+    result?;
+    if let Some(retained) = &mut watch.retained {
+        retained.flush(watch.bench.exchange.plc())?;
+    }
     Ok(Outcome::Fine)
 }
 
@@ -61,63 +67,65 @@ struct Watch {
     operands: Vec<Operand>,
     chosen: usize,
     running: bool,
-    /// Whether a cycle is being stepped line by line.
-    inside: bool,
     entry: Option<Entry>,
     message: String,
-    last_line: LastLine,
+    last: LastInstruction,
+    retained: Option<Retained>,
 }
 
-/// What is being typed.
-struct Entry {
-    text: String,
-    /// A value of the chosen operand, or else a new operand.
-    is_value: bool,
-}
-
-/// The line that was executed last.
+/// The instruction that was executed last, by its index.
 #[derive(Default)]
-struct LastLine(String);
+struct LastInstruction(Option<usize>);
 
-impl Tracer for LastLine {
+impl Tracer for LastInstruction {
     fn executed(&mut self, step: &TraceStep<'_>) {
-        self.0 = format!("{}:{} {}", step.file(), step.instruction.line, step.text().trim());
+        self.0 = Some(step.at);
     }
 }
 
 impl Watch {
-    fn new(bench: Bench, operands: Vec<Operand>) -> Watch {
+    fn new(bench: Bench, operands: Vec<Operand>, retained: Option<Retained>) -> Watch {
         Watch {
             bench,
             operands,
             chosen: 0,
             running: false,
-            inside: false,
             entry: None,
             message: String::new(),
-            last_line: LastLine::default(),
+            last: LastInstruction::default(),
+            retained,
         }
     }
 
-    fn show(mut self, terminal: &mut DefaultTerminal) -> std::io::Result<()> {
+    fn show(&mut self, terminal: &mut DefaultTerminal) -> Result<(), UsageError> {
+        let wrong = |error: std::io::Error| UsageError::new(format!("terminal: {error}"));
         let mut next = Instant::now();
         loop {
-            terminal.draw(|frame| table::draw(frame, &self))?;
             if self.running && Instant::now() >= next {
-                next = Instant::now() + CYCLE;
+                // A late cycle is not made up for.
+                next = (next + self.bench.cycle_time()).max(Instant::now());
                 self.cycle();
+                if let Some(retained) = &mut self.retained {
+                    retained.tick(self.bench.exchange.plc())?;
+                }
             }
+            terminal.draw(|frame| screen::draw(frame, self)).map_err(wrong)?;
             let wait = if self.running {
                 next.saturating_duration_since(Instant::now())
             } else {
                 Duration::from_millis(250)
             };
-            if event::poll(wait)?
-                && let Event::Key(key) = event::read()?
+            if event::poll(wait).map_err(wrong)?
+                && let Event::Key(key) = event::read().map_err(wrong)?
                 && key.kind != KeyEventKind::Release
-                && !self.key(key)
             {
-                return Ok(());
+                let was_running = self.running;
+                if !self.key(key) {
+                    return Ok(());
+                }
+                if self.running && !was_running {
+                    next = Instant::now();
+                }
             }
         }
     }
@@ -131,24 +139,39 @@ impl Watch {
             self.type_entry(key.code);
             return true;
         }
-        self.message.clear();
         match key.code {
             KeyCode::Char('q') | KeyCode::Esc => return false,
-            KeyCode::Char('r') => self.running = true,
+            KeyCode::Char('r') => {
+                self.message.clear();
+                self.running = true;
+            }
             KeyCode::Char('s') => self.running = false,
             KeyCode::Char('c') => {
+                self.message.clear();
                 self.running = false;
                 self.cycle();
             }
             KeyCode::Char('l') => {
+                self.message.clear();
                 self.running = false;
                 self.line();
             }
+            KeyCode::Char('n') => {
+                self.bench.restart();
+                self.last = LastInstruction::default();
+                self.message = "started anew; operands keep their values".to_owned();
+            }
             KeyCode::Up => self.chosen = self.chosen.saturating_sub(1),
             KeyCode::Down => self.chosen = (self.chosen + 1).min(self.operands.len().saturating_sub(1)),
+            KeyCode::Home => self.chosen = 0,
+            KeyCode::End => self.chosen = self.operands.len().saturating_sub(1),
             KeyCode::Char(' ') => self.turn_over(),
-            KeyCode::Enter if !self.operands.is_empty() => self.begin_entry(true),
-            KeyCode::Char('a') => self.begin_entry(false),
+            KeyCode::Enter => {
+                if let Some(operand) = self.operands.get(self.chosen) {
+                    self.entry = Some(Entry::value(*operand));
+                }
+            }
+            KeyCode::Char('a') => self.entry = Some(Entry::operands()),
             KeyCode::Char('d') if self.chosen < self.operands.len() => {
                 self.operands.remove(self.chosen);
                 self.chosen = self.chosen.min(self.operands.len().saturating_sub(1));
@@ -160,64 +183,38 @@ impl Watch {
 
     /// Runs a cycle, or the rest of one that was begun.
     fn cycle(&mut self) {
-        let result = if self.inside {
-            self.inside = false;
-            let mut result = Ok(None);
-            while let Ok(None) = result {
-                result = self.step();
+        let result = if self.bench.is_inside() {
+            let mut result = Ok(false);
+            while let Ok(false) = result {
+                result = self.bench.step(&mut self.last);
             }
             result.map(|_| ())
         } else {
-            self.bench.scan(Some(&mut self.last_line))
+            // While the program runs there is no time to look at lines.
+            self.last = LastInstruction::default();
+            self.bench.scan(None)
         };
-        self.finish_cycle(result);
+        self.cycle_ended(result);
     }
 
     /// Executes one line.
     fn line(&mut self) {
-        if !self.inside {
-            self.bench.stimulate();
-            if let Err(error) = self
-                .bench
-                .machine
-                .begin(&mut self.bench.exchange, &mut self.bench.nc)
-            {
-                return self.finish_cycle(Err(error));
-            }
-            self.inside = true;
-        }
-        match self.step() {
-            Ok(None) => {}
-            Ok(Some(())) => {
-                self.inside = false;
-                self.finish_cycle(Ok(()));
-            }
-            Err(error) => {
-                self.inside = false;
-                self.finish_cycle(Err(error));
-            }
+        match self.bench.step(&mut self.last) {
+            Ok(false) => {}
+            Ok(true) => self.cycle_ended(Ok(())),
+            Err(error) => self.cycle_ended(Err(error)),
         }
     }
 
-    fn step(&mut self) -> Result<Option<()>, RuntimeError> {
-        let bench = &mut self.bench;
-        let tracer = Some(&mut self.last_line as &mut dyn Tracer);
-        let report = bench.machine.step(&mut bench.exchange, &mut bench.nc, tracer)?;
-        Ok(report.map(|_| ()))
-    }
-
-    fn finish_cycle(&mut self, result: Result<(), RuntimeError>) {
+    fn cycle_ended(&mut self, result: Result<(), RuntimeError>) {
         match result {
             Err(error) => {
                 self.running = false;
-                self.message = error.to_string();
+                self.message = format!("{error}  (n starts anew)");
             }
             Ok(()) => {
                 if let Some(failure) = self.bench.failures().first() {
-                    self.message = format!(
-                        "cycle {}: {} expected {}, found {}",
-                        failure.cycle, failure.operand, failure.expected, failure.found
-                    );
+                    self.message = failure.to_string();
                 }
             }
         }
@@ -241,42 +238,25 @@ impl Watch {
         }
     }
 
-    fn begin_entry(&mut self, is_value: bool) {
-        self.entry = Some(Entry {
-            text: String::new(),
-            is_value,
-        });
-    }
-
     fn type_entry(&mut self, code: KeyCode) {
         let Some(mut entry) = self.entry.take() else {
             return;
         };
+        self.message.clear();
         match code {
             KeyCode::Esc => return,
-            KeyCode::Enter => return self.accept(&entry),
-            KeyCode::Backspace => {
-                entry.text.pop();
-            }
-            KeyCode::Char(character) => entry.text.push(character),
-            _ => {}
+            KeyCode::Enter => match entry.accept() {
+                Ok(entry::Accepted::Value(operand, content)) => return self.set(operand, &content),
+                Ok(entry::Accepted::Operands(operands)) => {
+                    self.operands.extend(operands);
+                    self.chosen = self.operands.len().saturating_sub(1);
+                    return;
+                }
+                // The text stays to be corrected.
+                Err(error) => self.message = error,
+            },
+            code => entry.type_key(code),
         }
         self.entry = Some(entry);
-    }
-
-    fn accept(&mut self, entry: &Entry) {
-        let result = if entry.is_value {
-            self.operands.get(self.chosen).copied().map_or(Ok(()), |operand| {
-                operand
-                    .content(&entry.text)
-                    .map(|content| self.set(operand, &content))
-            })
-        } else {
-            entry.text.parse().map(|operand| {
-                self.operands.push(operand);
-                self.chosen = self.operands.len() - 1;
-            })
-        };
-        self.message = result.err().unwrap_or_default();
     }
 }

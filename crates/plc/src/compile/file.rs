@@ -37,6 +37,7 @@ pub(super) struct FileCode {
 pub(super) struct Fixup {
     pub(super) slot: Slot,
     pub(super) name: usize,
+    pub(super) line: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -291,7 +292,8 @@ impl Translator<'_> {
 
     fn refer_from(&mut self, slot: Slot, name: &str, usage: Use) {
         let name = self.out.labels.refer(name, usage, self.place);
-        self.out.fixups.push(Fixup { slot, name });
+        let line = self.place.line;
+        self.out.fixups.push(Fixup { slot, name, line });
     }
 
     fn jump(&mut self, command: &Command, name: &str) {

@@ -6,8 +6,8 @@ use super::file::{FileCode, Slot, translate};
 use super::labels::Definition;
 use super::{Compilation, Options, Place, Reports, time};
 use crate::PlcError;
-use crate::program::{Label, Op, PlcProgram, SourceText, Target};
-use crate::source::{SourceFiles, decode, find};
+use crate::program::{Label, LabelPlace, Op, PlcProgram, SourceLine, SourceText, Target};
+use crate::source::{Found, Missing, SourceFiles, decode, find};
 
 /// Files of a program at most [000:14604].
 const FILES_MAX: usize = 64;
@@ -35,12 +35,14 @@ pub(super) fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> 
     }
     let globals = globals(&linked, &mut reports);
     check_externs(&linked, &globals, &mut reports);
+    let texts = linked.iter().map(|file| file.text.clone()).collect();
     let program = reports.errors.is_empty().then(|| join(linked, &globals));
     Compilation {
         nominal_time: program.as_ref().map_or(0, time::nominal_time),
         program,
         errors: Reports::sorted(reports.errors),
         warnings: Reports::sorted(reports.warnings),
+        files: texts,
         size_bytes,
     }
 }
@@ -58,10 +60,17 @@ fn read_all(files: &dyn SourceFiles, main: &str, options: Options, reports: &mut
         if known.contains(&key) {
             continue;
         }
-        let Some((found, bytes)) = find(files, &name) else {
-            reports.error((by, &by_name), place, PlcError::FileNotFound, &name);
-            known.push(key);
-            continue;
+        let (found, bytes) = match find(files, options.memory, &name) {
+            Ok(Found { name, bytes }) => (name, bytes),
+            Err(missing) => {
+                let detail = match missing {
+                    Missing::NoFile => name,
+                    Missing::InRamOnly => format!("{name} lies in the RAM, MP4010 = 0 takes the EPROM only"),
+                };
+                reports.error((by, &by_name), place, PlcError::FileNotFound, &detail);
+                known.push(key);
+                continue;
+            }
         };
         if linked.len() >= FILES_MAX {
             if !too_many {
@@ -141,75 +150,84 @@ fn check_externs(linked: &[Linked], globals: &Globals, reports: &mut Reports) {
 
 /// Puts the files behind each other and replaces names by places. Without errors every name has one.
 fn join(linked: Vec<Linked>, globals: &Globals) -> PlcProgram {
-    let mut program = PlcProgram::default();
-    let starts: Vec<usize> = linked
-        .iter()
-        .scan(0, |next, file| {
-            Some(std::mem::replace(next, *next + file.code.code.len()))
-        })
-        .collect();
-    for (
-        file,
-        Linked {
-            text,
-            code: mut file_code,
-        },
-    ) in linked.into_iter().enumerate()
-    {
-        let start = starts.get(file).copied().unwrap_or(0);
-        let (first_field, first_case) = (program.fields.len(), program.cases.len());
-        for instruction in &mut file_code.code {
+    let (labels, index) = named(&linked);
+    let mut program = PlcProgram {
+        labels,
+        ..PlcProgram::default()
+    };
+    for (file, linked) in linked.into_iter().enumerate() {
+        let Linked { text, mut code } = linked;
+        let (start, first_case) = (program.code.len(), program.cases.len());
+        for instruction in &mut code.code {
             match &mut instruction.op {
                 Op::Jump { target, .. } => *target += start,
                 Op::Case { table, .. } => *table += first_case,
                 _ => {}
             }
         }
-        for fixup in &file_code.fixups {
-            let Some(label) = file_code.labels.names.get(fixup.name) else {
+        for fixup in &code.fixups {
+            let Some(name) = code.labels.names.get(fixup.name) else {
                 continue;
             };
-            let at = match file_code.labels.definition(fixup.name) {
-                Some(Definition::Code(at)) => start + at,
-                Some(Definition::Field(field)) => first_field + field,
-                Some(Definition::Extern) => globals
-                    .get(&label.text)
-                    .map_or(0, |(file, at)| starts.get(*file).copied().unwrap_or(0) + at),
-                None => continue,
+            let home = match code.labels.definition(fixup.name) {
+                Some(Definition::Extern) => globals.get(&name.text).map_or(file, |(file, _)| *file),
+                _ => file,
             };
+            let label = index.get(&(home, name.text.clone()));
+            let Some(label) = label.and_then(|label| program.labels.get_mut(*label)) else {
+                continue;
+            };
+            let line = fixup.line;
+            label.used.push(SourceLine { file, line });
+            let (LabelPlace::Code(at) | LabelPlace::Field(at)) = label.place;
             match fixup.slot {
                 Slot::Instruction(index) => {
-                    if let Some(instruction) = file_code.code.get_mut(index) {
+                    if let Some(instruction) = code.code.get_mut(index) {
                         resolve(&mut instruction.op, at);
                     }
                 }
                 Slot::CaseEntry { table, entry } => {
-                    if let Some(entry) = file_code
-                        .cases
-                        .get_mut(table)
-                        .and_then(|table| table.get_mut(entry))
-                    {
+                    let entries = code.cases.get_mut(table);
+                    if let Some(entry) = entries.and_then(|entries| entries.get_mut(entry)) {
                         *entry = Target::Code(at);
                     }
                 }
             }
         }
-        for name in &file_code.labels.names {
-            if let Some((Definition::Code(at), place)) = name.definition {
-                program.labels.push(Label {
-                    name: name.text.clone(),
-                    file,
-                    line: place.line,
-                    at: start + at,
-                });
-            }
-        }
-        program.code.extend(file_code.code);
-        program.fields.extend(file_code.fields);
-        program.cases.extend(file_code.cases);
+        program.code.extend(code.code);
+        program.fields.extend(code.fields);
+        program.cases.extend(code.cases);
         program.files.push(text);
     }
     program
+}
+
+/// All labels and fields, and the index of each by file and name.
+fn named(linked: &[Linked]) -> (Vec<Label>, HashMap<(usize, String), usize>) {
+    let mut labels = Vec::new();
+    let mut index = HashMap::new();
+    let (mut start, mut first_field) = (0, 0);
+    for (file, Linked { code, .. }) in linked.iter().enumerate() {
+        for name in &code.labels.names {
+            let (place, line) = match name.definition {
+                Some((Definition::Code(at), place)) => (LabelPlace::Code(start + at), place.line),
+                Some((Definition::Field(field), place)) => {
+                    (LabelPlace::Field(first_field + field), place.line)
+                }
+                Some((Definition::Extern, _)) | None => continue,
+            };
+            index.insert((file, name.text.clone()), labels.len());
+            labels.push(Label {
+                name: name.text.clone(),
+                defined: SourceLine { file, line },
+                place,
+                used: Vec::new(),
+            });
+        }
+        start += code.code.len();
+        first_field += code.fields.len();
+    }
+    (labels, index)
 }
 
 fn resolve(op: &mut Op, at: usize) {

@@ -10,8 +10,8 @@ mod time;
 
 use bahn_parameters::ControlModel;
 
-use crate::program::PlcProgram;
-use crate::source::SourceFiles;
+use crate::program::{PlcProgram, SourceText};
+use crate::source::{ProgramMemory, SourceFiles};
 use crate::{Diagnostic, PlcError};
 
 /// How a program is compiled.
@@ -22,20 +22,23 @@ pub struct Options {
     pub model: ControlModel,
     /// Whether lines that only the manual's own listings spell like that are errors.
     pub strict: bool,
+    /// Where the files come from (MP4010).
+    pub memory: ProgramMemory,
 }
 
 impl Default for Options {
-    /// A TNC 415B, tolerant.
+    /// A TNC 415B, tolerant, from the RAM.
     fn default() -> Options {
         Options {
             model: ControlModel::Tnc415b,
             strict: false,
+            memory: ProgramMemory::Ram,
         }
     }
 }
 
 impl Options {
-    /// For a control model, tolerant.
+    /// For a control model, tolerant, from the RAM.
     pub fn for_model(model: ControlModel) -> Options {
         Options {
             model,
@@ -46,6 +49,11 @@ impl Options {
     /// Refuses loose spelling.
     pub fn strict(self) -> Options {
         Options { strict: true, ..self }
+    }
+
+    /// With files of a memory.
+    pub fn stored_in(self, memory: ProgramMemory) -> Options {
+        Options { memory, ..self }
     }
 
     /// Bytes of code of all files together: 128 KB, 64 KB on the TNC 407 [000:14606].
@@ -76,6 +84,8 @@ pub struct Compilation {
     pub errors: Vec<Diagnostic>,
     /// What is accepted although the printed rules refuse it, in the same order.
     pub warnings: Vec<Diagnostic>,
+    /// The files that were read, main file first, also when there are errors.
+    pub files: Vec<SourceText>,
     /// Length of the code in bytes, as far as it was read.
     pub size_bytes: u32,
     /// Nominal time of the longest way through the main program in ns: no jump backward, every module call

@@ -11,7 +11,7 @@ use super::{
 };
 
 /// A stand-in for the control on a desk: what modules read is set in its fields, what they do is found
-/// there. Nothing moves by itself; [`TestNc::end_scan`] passes the commands of a scan on to the axes.
+/// there. [`TestNc::end_scan`] passes the commands of a scan on to the axes, [`TestNc::travel`] moves them.
 #[derive(Clone, Debug)]
 pub struct TestNc {
     /// The machine parameter list, as it is edited.
@@ -38,7 +38,7 @@ pub struct TestNc {
     pub status: BTreeMap<StatusItem, i32>,
     /// What 9036 changed, in this order.
     pub status_changes: Vec<StatusChange>,
-    /// Coordinates in mm or degrees; 0 where nothing is set.
+    /// Coordinates in mm or degrees; those of [`TestNc::axes`] where nothing is set.
     pub coordinates: BTreeMap<CoordinateKind, [f64; 5]>,
     /// Angles of the spindle.
     pub spindle: SpindlePosition,
@@ -93,6 +93,8 @@ pub struct TestAxis {
     pub command: Option<PlcAxisCommand>,
     /// The last command of this scan.
     pub next_command: Option<PlcAxisCommand>,
+    /// Where the movement leads to in mm or degrees.
+    pub destination: f64,
 }
 
 impl Default for TestAxis {
@@ -103,11 +105,15 @@ impl Default for TestAxis {
             override_percent: 100.0,
             command: None,
             next_command: None,
+            destination: 0.0,
         }
     }
 }
 
 impl TestAxis {
+    /// How far away the next reference mark is, in mm or degrees.
+    const REFERENCE_MARK: f64 = 1.0;
+
     /// Executes the last command of a scan.
     fn end_scan(&mut self) {
         let Some(command) = self.next_command.take() else {
@@ -123,11 +129,14 @@ impl TestAxis {
                 } else {
                     target - self.position
                 };
+                self.destination = self.position + distance;
                 self.status.positioning = true;
                 self.status.negative = distance < 0.0;
             }
             PlcAxisCommand::Stop => self.stop(),
             PlcAxisCommand::TraverseReferenceMarks { negative, .. } => {
+                let direction = if negative { -1.0 } else { 1.0 };
+                self.destination = self.position + direction * TestAxis::REFERENCE_MARK;
                 self.status = PlcAxisStatus {
                     positioning: true,
                     negative,
@@ -139,20 +148,32 @@ impl TestAxis {
 
     /// Ends the movement where it leads to: at the target, or at the reference mark.
     pub fn arrive(&mut self) {
-        match self.command {
-            Some(PlcAxisCommand::Start {
-                target, incremental, ..
-            }) => {
-                self.position = if incremental {
-                    self.position + target
-                } else {
-                    target
-                };
-            }
-            Some(PlcAxisCommand::TraverseReferenceMarks { .. }) => self.status.referenced = true,
-            Some(PlcAxisCommand::Stop) | None => {}
+        if let Some(command) = self.command {
+            self.position = self.destination;
+            self.status.referenced |= matches!(command, PlcAxisCommand::TraverseReferenceMarks { .. });
         }
         self.stop();
+    }
+
+    /// Moves on for some time in s, with feed rate and override; a reference traverse knows no override
+    /// [000:15975].
+    fn travel(&mut self, seconds: f64) {
+        let feed = match self.command {
+            Some(PlcAxisCommand::Start { feed, .. }) => feed * self.override_percent / 100.0,
+            Some(PlcAxisCommand::TraverseReferenceMarks { feed, .. }) => feed,
+            Some(PlcAxisCommand::Stop) | None => return,
+        };
+        let way = feed.abs() / 60.0 * seconds;
+        let left = self.destination - self.position;
+        if way >= left.abs() {
+            self.arrive();
+        } else {
+            self.position += way.copysign(left);
+        }
+    }
+
+    fn distance_to_go(&self) -> f64 {
+        self.command.map_or(0.0, |_| self.destination - self.position)
     }
 
     fn stop(&mut self) {
@@ -205,6 +226,13 @@ impl TestNc {
     pub fn end_scan(&mut self) {
         for axis in &mut self.axes {
             axis.end_scan();
+        }
+    }
+
+    /// Lets the PLC axes move on for some time in s.
+    pub fn travel(&mut self, seconds: f64) {
+        for axis in &mut self.axes {
+            axis.travel(seconds);
         }
     }
 
@@ -275,7 +303,17 @@ impl Nc for TestNc {
     }
 
     fn coordinates(&self, kind: CoordinateKind) -> [f64; 5] {
-        self.coordinates.get(&kind).copied().unwrap_or_default()
+        self.coordinates
+            .get(&kind)
+            .copied()
+            .unwrap_or_else(|| match kind {
+                CoordinateKind::Actual
+                | CoordinateKind::Nominal
+                | CoordinateKind::Reference
+                | CoordinateKind::ShiftedDatum => self.axes.map(|axis| axis.position),
+                CoordinateKind::DistanceToGo => self.axes.map(|axis| axis.distance_to_go()),
+                CoordinateKind::TrailingError | CoordinateKind::Deflection => [0.0; 5],
+            })
     }
 
     fn spindle_position(&self) -> SpindlePosition {

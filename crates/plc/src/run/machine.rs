@@ -11,7 +11,7 @@ use super::submit::{Queue, swap_markers};
 use super::trace::{TraceStep, Tracer};
 use crate::fast::FastProgram;
 use crate::program::{Instruction, PlcProgram};
-use crate::{Nc, PlcError};
+use crate::{InterfaceUser, Nc, PlcError};
 
 /// Longest run in ns of nominal time [000:12038].
 const RUN_TIME_MAX: u64 = 10_000_000;
@@ -19,6 +19,11 @@ const RUN_TIME_MAX: u64 = 10_000_000;
 const FULL_LOAD: u64 = 5_000_000;
 /// Nominal time that submit jobs get in each scan, in ns: 5 % of a cycle of 20 ms (inferred) [000:14305].
 const JOBS_TIME: u64 = 1_000_000;
+
+/// RS-232-C/V.24 and RS-422/V.11.
+const DATA_INTERFACES: usize = 2;
+/// X, Y, Z, 4, 5.
+const AXES: usize = 5;
 
 /// A time in percent as the PLC menu shows it.
 pub(crate) fn percent(time: u64) -> f64 {
@@ -138,6 +143,43 @@ impl Machine {
             last_jump: 0,
             stopped: None,
         }
+    }
+
+    /// Starts the program anew: after RESET, a selected list of machine parameters (9033), or an error.
+    /// Accumulators, stacks, submit jobs, timers, counters and processing times begin anew; operands are
+    /// left to [`Exchange::reset`]. What the program had of the control is given back: data interfaces
+    /// are released, overrides of PLC axes are 100 % [000:16013].
+    pub fn restart(&mut self, start: Start, nc: &mut dyn Nc) {
+        for interface in 0..DATA_INTERFACES {
+            let interface = nc.data_interface(interface);
+            if interface.user == Some(InterfaceUser::Plc) {
+                interface.release();
+            }
+        }
+        for axis in 0..AXES {
+            nc.override_plc_axis(axis, 100.0);
+        }
+        *self = Machine {
+            program: Arc::clone(&self.program),
+            fast: Arc::clone(&self.fast),
+            registers: Registers::default(),
+            queue: Queue::default(),
+            clock: Clock::default(),
+            start,
+            scans: 0,
+            elapsed: 0,
+            time: ProcessingTime::default(),
+            last_jump: 0,
+            stopped: None,
+        };
+    }
+
+    /// Goes on with a program that was compiled anew; as [`Machine::restart`] after an interruption
+    /// [000:11263][000:15616].
+    pub fn load(&mut self, program: Arc<PlcProgram>, nc: &mut dyn Nc) {
+        self.fast = Arc::new(FastProgram::new(&program));
+        self.program = program;
+        self.restart(Start::Interruption, nc);
     }
 
     /// Runs one scan, in the fast form of the program.

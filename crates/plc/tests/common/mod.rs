@@ -10,7 +10,7 @@ use bahn_exchange::{Bit, Exchange, Image, Number};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{
     Compilation, Machine, MemoryFiles, OperandContent, Options, RuntimeError, ScanReport, Start, TestNc,
-    TraceStep, Tracer,
+    TraceStep, Tracer, mirror_parameters,
 };
 
 /// A PLC on a desk.
@@ -41,6 +41,7 @@ impl Bench {
                     .parameters
                     .assign(&format!("{parameter}={value}"))
                     .unwrap();
+                mirror_parameters(&self.nc.parameters, &mut self.exchange);
             } else if let Some(string) = operand.strip_prefix('S') {
                 let text = value.trim_matches('"');
                 self.exchange
@@ -78,6 +79,12 @@ impl Bench {
     pub fn get(&self, operand: &str) -> i64 {
         content(self.exchange.plc(), operand)
     }
+}
+
+/// Lines of a program from text with a chain in each line, its commands separated by `|`.
+pub fn lines(chains: &str) -> String {
+    let commands = chains.lines().flat_map(|chain| chain.split('|'));
+    commands.map(|command| format!("{}\n", command.trim())).collect()
 }
 
 /// Compiles one file.

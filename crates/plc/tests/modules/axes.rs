@@ -1,7 +1,8 @@
-use bahn_plc::PlcAxisCommand;
+use bahn_plc::{CoordinateKind, Nc, PlcAxisCommand};
 
 use crate::desk::{Desk, code, value};
 
+const REFERENCED: i32 = 1 << 1;
 const POSITIONING: i32 = 1 << 2;
 const NEGATIVE: i32 = 1 << 3;
 
@@ -111,4 +112,26 @@ fn m9124_sets_the_override() {
     for wrong in [10_001, -1] {
         assert_eq!(desk.cyclic(9124, &[4, wrong], 1), code(3));
     }
+}
+
+#[test]
+fn axes_travel_with_their_feed_rate() {
+    let mut desk = desk();
+    // 600 degrees/min are 10 degrees/s, 5 at half the override.
+    desk.cyclic(9124, &[4, 5000], 1);
+    desk.cyclic(9120, &[4, 100_000, 600, 0], 1);
+    desk.nc.end_scan();
+    desk.nc.travel(1.0);
+    assert_eq!(desk.nc.axes[4].position, 5.0);
+    assert_eq!(desk.nc.coordinates(CoordinateKind::DistanceToGo)[4], 5.0);
+    desk.nc.travel(1.5);
+    assert_eq!(desk.nc.coordinates(CoordinateKind::Actual)[4], 10.0);
+    assert_eq!(desk.cyclic(9122, &[4], 1), value(1));
+    // The reference traverse does not know the override.
+    desk.cyclic(9123, &[4, 30, 1], 1);
+    desk.nc.end_scan();
+    desk.nc.travel(1.0);
+    assert_eq!(desk.nc.axes[4].position, 9.5);
+    desk.nc.travel(1.0);
+    assert_eq!(desk.cyclic(9122, &[4], 1), value(1 | REFERENCED));
 }

@@ -1,0 +1,168 @@
+//! What the view looks like.
+
+use bahn_exchange::Size;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout};
+use ratatui::style::{Modifier, Style};
+use ratatui::text::Line;
+use ratatui::widgets::{Block, Cell, Paragraph, Row, Table, TableState, Wrap};
+
+use super::Watch;
+use crate::diagnostics::printable;
+use crate::plc::operand::{Content, Operand};
+
+const KEYS: &str =
+    "r run  s stop  c cycle  l line  n anew  enter set  space turn over  a add  d remove  q end";
+/// Lines of the program that are shown, frame included, where there is room.
+const PROGRAM_ROWS: u16 = 9;
+/// Rows of a screen on which the program is shown.
+const ROWS_WITH_PROGRAM: u16 = 20;
+
+pub(super) fn draw(frame: &mut Frame, watch: &Watch) {
+    let program_rows = if frame.area().height >= ROWS_WITH_PROGRAM {
+        PROGRAM_ROWS
+    } else {
+        0
+    };
+    let wraps = usize::from(frame.area().width) < KEYS.len();
+    let parts = Layout::vertical([
+        Constraint::Length(3),
+        Constraint::Min(3),
+        Constraint::Length(program_rows),
+        Constraint::Length(1),
+        Constraint::Length(1 + u16::from(wraps)),
+    ]);
+    let [head, body, program, message, keys] = parts.areas(frame.area());
+    frame.render_widget(
+        Paragraph::new(state(watch)).block(Block::bordered().title("PLC")),
+        head,
+    );
+
+    let rows = watch.operands.iter().map(|operand| {
+        let content = watch.bench.read(*operand);
+        Row::new(columns(*operand, &content).map(Cell::from))
+    });
+    let widths = [
+        Constraint::Length(8),
+        Constraint::Length(14),
+        Constraint::Length(10),
+        Constraint::Min(32),
+    ];
+    let table = Table::new(rows, widths)
+        .header(
+            Row::new(["OPERAND", "DECIMAL", "HEX", "BINARY"])
+                .style(Style::new().add_modifier(Modifier::BOLD)),
+        )
+        .row_highlight_style(Style::new().add_modifier(Modifier::REVERSED))
+        .block(Block::bordered().title("TABLE"));
+    let mut chosen = TableState::new().with_selected(watch.chosen);
+    frame.render_stateful_widget(table, body, &mut chosen);
+    if program_rows > 0 {
+        let rows = usize::from(program.height.saturating_sub(2));
+        let (title, lines) = program_lines(watch, rows);
+        frame.render_widget(
+            Paragraph::new(lines).block(Block::bordered().title(title)),
+            program,
+        );
+    }
+
+    let line = match &watch.entry {
+        Some(entry) if watch.message.is_empty() => entry.prompt(),
+        Some(entry) => format!("{}   {}", entry.prompt(), printable(&watch.message)),
+        None => printable(&watch.message),
+    };
+    frame.render_widget(Paragraph::new(line), message);
+    frame.render_widget(Paragraph::new(KEYS).wrap(Wrap { trim: true }), keys);
+}
+
+fn state(watch: &Watch) -> String {
+    let registers = watch.bench.machine.registers();
+    let how = match (watch.running, watch.bench.is_inside()) {
+        _ if watch.bench.machine.stopped().is_some() => "ERROR",
+        (true, _) => "RUN",
+        (false, true) => "LINE",
+        (false, false) => "STOP",
+    };
+    let time = watch.bench.machine.time();
+    format!(
+        "{how:<5}  cycle {}  {:.2} % (max {:.2} %)  LA {}  WA {} = {:X}h  X {}",
+        watch.bench.cycle,
+        time.current_percent(),
+        time.maximum_percent(),
+        u8::from(registers.logic),
+        registers.word,
+        registers.word,
+        registers.index,
+    )
+}
+
+/// The lines around the one that was executed last, which is marked with `*` as in TRACE [000:11426]; the
+/// next one of a begun cycle with `>`. Before and between cycles the program is shown from its start.
+fn program_lines(watch: &Watch, rows: usize) -> (String, Vec<Line<'static>>) {
+    let machine = &watch.bench.machine;
+    let program = machine.program();
+    let place = |at: usize| program.code.get(at).map(|i| (i.file, i.line as usize));
+    let stopped = machine.stopped().and_then(|error| {
+        let file = program.files.iter().position(|file| file.name == error.file)?;
+        Some((u16::try_from(file).ok()?, error.line as usize))
+    });
+    let last = stopped.or(watch.last.0.and_then(place));
+    let next = watch
+        .bench
+        .is_inside()
+        .then(|| place(machine.registers().next))
+        .flatten();
+    let (file, line) = next.or(last).unwrap_or((0, 1));
+    let first = line.saturating_sub(rows / 2).max(1);
+    let Some(text) = program.files.get(usize::from(file)) else {
+        return (String::new(), Vec::new());
+    };
+    let lines = text.lines.iter().enumerate().skip(first - 1).take(rows);
+    let lines = lines.map(|(index, source)| {
+        let here = Some((file, index + 1));
+        let (mark, style) = match (next == here, last == here) {
+            (true, _) => ('>', Style::new().add_modifier(Modifier::BOLD)),
+            (_, true) => ('*', Style::new()),
+            _ => (' ', Style::new()),
+        };
+        Line::styled(format!("{mark}{:>5}  {}", index + 1, printable(source)), style)
+    });
+    (text.name.clone(), lines.collect())
+}
+
+/// Operand, decimal, hexadecimal, binary.
+fn columns(operand: Operand, content: &Content) -> [String; 4] {
+    let name = operand.to_string();
+    match (operand, content) {
+        (Operand::Number(number), Content::Number(value)) => {
+            let (digits, mask) = match number.size() {
+                Size::Byte => (2, 0xff),
+                Size::Word => (4, 0xffff),
+                Size::Double => (8, u32::MAX),
+            };
+            let bits = *value as u32 & mask;
+            let width = digits * 4;
+            [
+                name,
+                value.to_string(),
+                format!("{bits:0digits$X}"),
+                format!("{bits:0width$b}"),
+            ]
+        }
+        (_, Content::Number(value)) => [name, value.to_string(), String::new(), value.to_string()],
+        (_, Content::Text(text)) => [name, printable(text), String::new(), String::new()],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_shown_in_their_width() {
+        let columns = |operand: &str, value| columns(operand.parse().unwrap(), &Content::Number(value));
+        assert_eq!(columns("B8", -2), ["B8", "-2", "FE", "11111110"]);
+        assert_eq!(columns("W8", 10), ["W8", "10", "000A", "0000000000001010"]);
+        assert_eq!(columns("O2", 1), ["O2", "1", "", "1"]);
+    }
+}

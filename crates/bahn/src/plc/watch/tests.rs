@@ -1,0 +1,125 @@
+//! Keys in, screen out.
+
+use bahn_parameters::{ControlModel, ParameterList};
+use bahn_plc::{Compilation, MemoryFiles, Options};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+use super::*;
+use crate::plc::options::BenchOptions;
+
+fn watch(program: &str, operands: &str) -> Watch {
+    let files = MemoryFiles::from([("MAIN.PLC", program)]);
+    let program = Compilation::compile(&files, "MAIN.PLC", Options::default())
+        .program
+        .unwrap();
+    let options = BenchOptions {
+        set: Vec::new(),
+        script: None,
+    };
+    let bench = Bench::new(
+        program.into(),
+        ParameterList::reference(ControlModel::Tnc415b),
+        &options,
+        Exchange::default(),
+    )
+    .unwrap();
+    let operands = operands
+        .split(',')
+        .map(|operand| operand.parse().unwrap())
+        .collect();
+    Watch::new(bench, operands, None)
+}
+
+/// Types characters, with `~` for Enter.
+fn press(watch: &mut Watch, keys: &str) {
+    for character in keys.chars() {
+        let code = match character {
+            '~' => KeyCode::Enter,
+            '\u{2193}' => KeyCode::Down,
+            character => KeyCode::Char(character),
+        };
+        assert!(watch.key(KeyEvent::new(code, KeyModifiers::NONE)));
+    }
+}
+
+/// The screen of 80 x 24 characters as lines.
+fn screen(watch: &Watch) -> Vec<String> {
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
+    terminal.draw(|frame| screen::draw(frame, watch)).unwrap();
+    let buffer = terminal.backend().buffer();
+    (0..24)
+        .map(|y| (0..80).map(|x| buffer[(x, y)].symbol()).collect())
+        .collect()
+}
+
+fn shows(watch: &Watch, text: &str) -> bool {
+    screen(watch).iter().any(|line| line.contains(text))
+}
+
+const DOOR: &str = "L I4\n= O2\nINC W8\nEM\n";
+
+#[test]
+fn cycles_are_stepped_and_inputs_turned_over() {
+    let mut watch = watch(DOOR, "I4,O2,W8");
+    press(&mut watch, "c ");
+    assert!(shows(&watch, "STOP   cycle 1 ") && shows(&watch, "I4       1"));
+    assert!(shows(&watch, "O2       0"), "the program has not run since");
+    press(&mut watch, "c");
+    assert!(shows(&watch, "O2       1"));
+    assert!(shows(
+        &watch,
+        "W8       2              0002       0000000000000010"
+    ));
+}
+
+#[test]
+fn lines_are_stepped() {
+    let mut watch = watch(DOOR, "I4,O2,W8");
+    press(&mut watch, " ll");
+    assert!(shows(&watch, "LINE   cycle 1 ") && shows(&watch, "O2       1") && shows(&watch, "LA 1"));
+    assert!(shows(&watch, "*    2  = O2") && shows(&watch, ">    3  INC W8"));
+    // The rest of the cycle, and the next line begins a new one.
+    press(&mut watch, "c");
+    assert!(shows(&watch, "STOP   cycle 1 ") && shows(&watch, "W8       1"));
+    press(&mut watch, "l");
+    assert!(shows(&watch, "LINE   cycle 2 ") && shows(&watch, ">    2  = O2"));
+    press(&mut watch, "lll");
+    assert!(shows(&watch, "STOP   cycle 2 "));
+}
+
+#[test]
+fn values_and_operands_are_typed() {
+    let mut watch = watch(DOOR, "I4,W8");
+    press(&mut watch, "\u{2193}~-3");
+    assert!(shows(&watch, "W8 = -3_"));
+    press(&mut watch, "~c");
+    assert!(shows(
+        &watch,
+        "W8       -2             FFFE       1111111111111110"
+    ));
+    press(&mut watch, "~70000~");
+    assert!(shows(&watch, "takes a number of 16 bits"));
+    watch.key(KeyEvent::new(KeyCode::Esc, KeyModifiers::NONE));
+    press(&mut watch, "aB8,S1~~OIL~");
+    assert!(shows(&watch, "B8       -1") && shows(&watch, "S1       OIL"));
+    press(&mut watch, "d");
+    assert!(!shows(&watch, "OIL"));
+    assert!(!watch.key(KeyEvent::new(KeyCode::Char('q'), KeyModifiers::NONE)));
+}
+
+#[test]
+fn errors_stop_until_the_program_starts_anew() {
+    let mut watch = watch("L M1\nCMT 1\nINC W8\nEM\nLBL 1\nCM 1\nEM\n", "M1,W8");
+    press(&mut watch, "r");
+    assert!(shows(&watch, "RUN "));
+    watch.cycle();
+    press(&mut watch, " ");
+    watch.cycle();
+    assert!(shows(&watch, "ERROR  cycle 2 ") && shows(&watch, "MAIN.PLC:6: error 50: nesting too deep"));
+    assert!(shows(&watch, "*    6  CM 1"));
+    press(&mut watch, "c");
+    assert!(shows(&watch, "ERROR  cycle 2 "), "a stopped PLC has no cycles");
+    press(&mut watch, "n c");
+    assert!(shows(&watch, "STOP   cycle 1 ") && shows(&watch, "W8       2"));
+}

@@ -1,0 +1,264 @@
+//! What instructions do with operands.
+
+use bahn_exchange::signal::{self, SignalOperand};
+use bahn_exchange::{Bit, BitArea, BitRange, Number};
+use bahn_plc::{BitOperand, NumberOperand, Op, TextOperand, Value};
+
+/// What an instruction does with an operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Access {
+    Read,
+    /// Sets it whatever the accumulator is.
+    Assign,
+    /// Sets, resets, counts or stores to it among others.
+    Change,
+}
+
+/// An operand as a line names it; with `[X]` it may be any one of its memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Subject {
+    Bit { bit: Bit, indexed: bool },
+    Number { number: Number, indexed: bool },
+    Text { string: u8, indexed: bool },
+}
+
+/// A kind of memory with addresses of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Memory {
+    Bits(BitArea),
+    Bytes,
+    Texts,
+}
+
+/// Strings S0 to S3.
+const STRINGS: u16 = bahn_exchange::STRINGS as u16;
+/// Bytes that B, W and D share [000:11571].
+const BYTES: u16 = 1024;
+
+impl Subject {
+    /// The memory and the addresses in it that it may occupy.
+    pub fn extent(self) -> (Memory, std::ops::Range<u16>) {
+        match self {
+            Subject::Bit { bit, indexed: false } => {
+                (Memory::Bits(bit.area()), bit.number()..bit.number() + 1)
+            }
+            Subject::Bit { bit, indexed: true } => (Memory::Bits(bit.area()), 0..bit.area().last() + 1),
+            Subject::Number {
+                number,
+                indexed: false,
+            } => (
+                Memory::Bytes,
+                number.address()..number.address() + number.size().bytes(),
+            ),
+            Subject::Number { indexed: true, .. } => (Memory::Bytes, 0..BYTES),
+            Subject::Text {
+                string,
+                indexed: false,
+            } => (Memory::Texts, string.into()..u16::from(string) + 1),
+            Subject::Text { indexed: true, .. } => (Memory::Texts, 0..STRINGS),
+        }
+    }
+
+    /// Whether both may occupy the same memory.
+    pub fn meets(self, other: Subject) -> bool {
+        let ((memory, own), (other_memory, others)) = (self.extent(), other.extent());
+        memory == other_memory && own.start < others.end && others.start < own.end
+    }
+
+    pub fn is_indexed(self) -> bool {
+        let (Subject::Bit { indexed, .. } | Subject::Number { indexed, .. } | Subject::Text { indexed, .. }) =
+            self;
+        indexed
+    }
+
+    /// The letter of the kind.
+    pub fn letter(self) -> char {
+        match self {
+            Subject::Bit { bit, .. } => bit.area().letter(),
+            Subject::Number { number, .. } => number.size().letter(),
+            Subject::Text { .. } => 'S',
+        }
+    }
+
+    /// First and last operand that an indexed one may be, as `B0-B1023` [000:14012-14034].
+    pub fn range(self) -> Option<String> {
+        let last = match self {
+            Subject::Bit { bit, .. } => bit.area().last(),
+            Subject::Number { number, .. } => BYTES - number.size().bytes(),
+            Subject::Text { .. } => STRINGS - 1,
+        };
+        let letter = self.letter();
+        self.is_indexed().then(|| format!("{letter}0-{letter}{last}"))
+    }
+}
+
+impl std::fmt::Display for Subject {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Subject::Bit { bit, .. } => bit.fmt(f)?,
+            Subject::Number { number, .. } => number.fmt(f)?,
+            Subject::Text { string, .. } => write!(f, "S{string}")?,
+        }
+        f.write_str(if self.is_indexed() { "[X]" } else { "" })
+    }
+}
+
+impl From<BitOperand> for Subject {
+    fn from(operand: BitOperand) -> Subject {
+        Subject::Bit {
+            bit: operand.bit,
+            indexed: operand.indexed,
+        }
+    }
+}
+
+impl From<NumberOperand> for Subject {
+    fn from(operand: NumberOperand) -> Subject {
+        Subject::Number {
+            number: operand.number,
+            indexed: operand.indexed,
+        }
+    }
+}
+
+/// The operands of an instruction.
+pub(super) fn accesses(op: &Op) -> Vec<(Subject, Access)> {
+    match op {
+        Op::LoadBit { bit, .. } | Op::GateBit { bit, .. } | Op::PushBit { bit } => {
+            vec![((*bit).into(), Access::Read)]
+        }
+        Op::AssignBit { bit, .. } => vec![((*bit).into(), assignment(bit.indexed))],
+        Op::SetBit { bit, .. } | Op::PullBit { bit } => vec![((*bit).into(), Access::Change)],
+        Op::Load { value, .. }
+        | Op::GateWord { value, .. }
+        | Op::Arithmetic { value, .. }
+        | Op::BitOperation { value, .. }
+        | Op::TestBit { value }
+        | Op::Compare { value, .. }
+        | Op::Push { value } => match value {
+            Value::Number(number) => vec![((*number).into(), Access::Read)],
+            Value::Constant(_) => Vec::new(),
+        },
+        Op::LoadBits { first, count } => bits(*first, *count, Access::Read),
+        Op::AssignBits { first, count } => bits(*first, *count, assignment(first.indexed)),
+        Op::Assign { number, .. } => vec![((*number).into(), assignment(number.indexed))],
+        Op::StepNumber { number, .. } => {
+            vec![
+                ((*number).into(), Access::Read),
+                ((*number).into(), Access::Change),
+            ]
+        }
+        Op::Pull { number } => vec![((*number).into(), Access::Change)],
+        Op::Case { number, .. } | Op::Reply { number } | Op::Cancel { number } => {
+            vec![((*number).into(), Access::Read)]
+        }
+        Op::LoadText { text } | Op::AppendText { text } | Op::CompareText { text, .. } => match text {
+            TextOperand::Memory { string, indexed } => vec![(self::text(*string, *indexed), Access::Read)],
+            TextOperand::Part { string } => vec![(self::text(*string, false), Access::Read)],
+            _ => Vec::new(),
+        },
+        Op::AssignText { string, indexed } => vec![(text(*string, *indexed), assignment(*indexed))],
+        Op::OverwriteText { string, indexed } => vec![(text(*string, *indexed), Access::Change)],
+        _ => Vec::new(),
+    }
+}
+
+fn text(string: u8, indexed: bool) -> Subject {
+    Subject::Text { string, indexed }
+}
+
+/// Which of many operands is assigned is not known.
+fn assignment(indexed: bool) -> Access {
+    if indexed { Access::Change } else { Access::Assign }
+}
+
+/// Consecutive bits; with an index they start anywhere.
+fn bits(first: BitOperand, count: u8, access: Access) -> Vec<(Subject, Access)> {
+    if first.indexed {
+        return vec![(first.into(), access)];
+    }
+    (0..u16::from(count))
+        .filter_map(|offset| Bit::new(first.bit.area(), first.bit.number().checked_add(offset)?))
+        .map(|bit| (Subject::Bit { bit, indexed: false }, access))
+        .collect()
+}
+
+/// Whether control or machine read what a program writes to an operand: outputs, starts of timers and
+/// counters, markers with a fixed meaning, the bytes from PLC to NC [000:11556-11584][000:10534-10968].
+pub(super) fn is_read_outside(subject: Subject) -> bool {
+    const PLC_TO_NC: std::ops::Range<u16> = 512..768;
+    match subject {
+        Subject::Bit { indexed: true, .. } | Subject::Number { indexed: true, .. } => true,
+        Subject::Bit { bit, .. } => match bit.area() {
+            BitArea::O | BitArea::T | BitArea::C => true,
+            BitArea::I => false,
+            BitArea::M => signal::all().iter().any(|signal| match signal.operand {
+                SignalOperand::Bit(fixed) => fixed == bit,
+                SignalOperand::Bits(range) => is_in(range, bit),
+                SignalOperand::Number(_) | SignalOperand::Bytes(_) => false,
+            }),
+        },
+        Subject::Number { number, .. } => PLC_TO_NC.contains(&number.address()),
+        Subject::Text { .. } => false,
+    }
+}
+
+/// The name of an operand with a fixed meaning, or of the markers it belongs to.
+pub(super) fn fixed_name(subject: Subject) -> Option<&'static str> {
+    let named = signal::all()
+        .iter()
+        .find(|signal| match (subject, signal.operand) {
+            (Subject::Bit { bit, indexed: false }, SignalOperand::Bit(fixed)) => bit == fixed,
+            (Subject::Bit { bit, indexed: false }, SignalOperand::Bits(range)) => is_in(range, bit),
+            (
+                Subject::Number {
+                    number,
+                    indexed: false,
+                },
+                SignalOperand::Number(fixed),
+            ) => number == fixed,
+            _ => false,
+        });
+    named.map(|signal| signal.name)
+}
+
+/// Whether a marker belongs to a range with a meaning; that of the retained markers has none.
+fn is_in(range: BitRange, bit: Bit) -> bool {
+    range != signal::RETAINED_MARKERS && range.iter().any(|fixed| fixed == bit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn operands_meet_where_they_share_memory() {
+        let number = |text: &str, indexed| Subject::Number {
+            number: text.parse().unwrap(),
+            indexed,
+        };
+        let plain = |text| number(text, false);
+        for (a, b, meet) in [
+            ("D0", "W2", true),
+            ("D0", "B3", true),
+            ("D0", "W4", false),
+            ("W2", "B1", false),
+        ] {
+            assert_eq!(plain(a).meets(plain(b)), meet, "{a} {b}");
+            assert_eq!(plain(b).meets(plain(a)), meet, "{b} {a}");
+        }
+        assert!(number("B1000", true).meets(plain("D4")));
+        assert_eq!(number("W8", true).range().as_deref(), Some("W0-W1022"));
+        assert_eq!(number("D8", true).range().as_deref(), Some("D0-D1020"));
+        let marker = Subject::Bit {
+            bit: "M5".parse().unwrap(),
+            indexed: true,
+        };
+        assert_eq!(
+            (marker.to_string(), marker.range()),
+            ("M5[X]".to_owned(), Some("M0-M3263".to_owned()))
+        );
+        assert!(!marker.meets(plain("B5")));
+        assert_eq!(plain("B5").range(), None);
+    }
+}
