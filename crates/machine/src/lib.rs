@@ -4,6 +4,8 @@
 //! offset, guideways have play, switches stick, encoders fail. It is described by one TOML file
 //! ([`Machine::from_toml`]); what an operator does to it comes as [`Event`]s, also as lines of text.
 //!
+//! [`MachineFolder`] says which file of a machine's folder is what.
+//!
 //! The control sees nothing but the trait. The true state ([`Machine::axis`], [`Machine::spindle`],
 //! [`Machine::device`]) is for tests and recordings.
 //!
@@ -16,6 +18,7 @@ mod chain;
 mod device;
 mod encoder;
 mod event;
+mod folder;
 mod machine;
 mod noise;
 mod panel;
@@ -28,6 +31,7 @@ pub use chain::RelayFault;
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
 pub use event::{Event, EventError, Fault, KeyAction};
+pub use folder::MachineFolder;
 pub use machine::Machine;
 pub use reader::PlantError;
 pub use spindle::SpindleState;
