@@ -209,9 +209,9 @@ impl Control {
                 self.exchange.nc_set(*marker, unit.parameters.controlled);
             }
         }
+        self.exchange.nc_set_number(signal::RAPID_TRAVERSE_LIMIT, 300_000);
         self.exchange
-            .nc_set_number(signal::RAPID_TRAVERSE_LIMIT, 300_000);
-        self.exchange.nc_set(signal::ENGLISH_SELECTED, self.operation.english);
+            .nc_set(signal::ENGLISH_SELECTED, self.operation.english);
         self.spindle.preset(&mut self.exchange);
     }
 
@@ -432,7 +432,11 @@ impl Control {
 /// The limits of the path: those of the axes by their letters.
 fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[AxisUnit]) -> PathLimits {
     let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
-        Axis::ALL.map(|axis| axes.iter().find(|unit| unit.axis == axis).map_or(otherwise, value))
+        Axis::ALL.map(|axis| {
+            axes.iter()
+                .find(|unit| unit.axis == axis)
+                .map_or(otherwise, value)
+        })
     };
     PathLimits {
         max_feed_mm_min: of(|unit| unit.parameters.motion.rapid_mm_min, 0.0),

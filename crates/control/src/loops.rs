@@ -68,7 +68,11 @@ impl Control {
             unit.transfer();
             unit.servo.close();
         }
-        if self.axes.iter().any(|unit| !unit.referenced && !unit.is_plc_axis()) {
+        if self
+            .axes
+            .iter()
+            .any(|unit| !unit.referenced && !unit.is_plc_axis())
+        {
             self.mode = Mode::Reference;
         }
     }
@@ -112,8 +116,11 @@ impl Control {
             }
             unit.enabled = enabled;
             unit.servo.set_enabled(enabled || unit.stands());
-            unit.servo
-                .set_monitored(MONITORING_OFF.get(unit.index).is_none_or(|marker| !nc.bit(*marker)));
+            unit.servo.set_monitored(
+                MONITORING_OFF
+                    .get(unit.index)
+                    .is_none_or(|marker| !nc.bit(*marker)),
+            );
         }
         if all_open {
             self.spindle.open();

@@ -78,7 +78,10 @@ impl Manual {
 pub(crate) fn factor_min(rapid_mm_min: f64) -> u8 {
     // Rapid traverse from which on factors 0 to 4 are possible.
     const FROM: [f64; 5] = [12_000.0, 6_000.0, 3_000.0, 1_500.0, 750.0];
-    let factor = FROM.iter().position(|from| rapid_mm_min >= *from).unwrap_or(FROM.len());
+    let factor = FROM
+        .iter()
+        .position(|from| rapid_mm_min >= *from)
+        .unwrap_or(FROM.len());
     u8::try_from(factor).unwrap_or(FACTOR_MAX)
 }
 
@@ -222,10 +225,7 @@ impl Control {
             Some(limit) => self.manual.increment.min(limit),
             None => self.manual.increment,
         };
-        let (nominal, stands) = self
-            .axes
-            .get(place)
-            .map(|unit| (unit.nominal, unit.stands()))?;
+        let (nominal, stands) = self.axes.get(place).map(|unit| (unit.nominal, unit.stands()))?;
         let target = self.manual.jogging.get_mut(index)?;
         if let Some(direction) = started
             && stands
@@ -272,7 +272,11 @@ impl Control {
                 .max(least)
                 .max(self.operation.handwheel.factor_min.first().copied().unwrap_or(0));
             let travel = TRAVEL_MM / f64::from(1u32 << factor.min(FACTOR_MAX));
-            let sign = if self.operation.handwheel.positive { 1.0 } else { -1.0 };
+            let sign = if self.operation.handwheel.positive {
+                1.0
+            } else {
+                -1.0
+            };
             let from = self.manual.wheel.unwrap_or(unit.nominal);
             let target = from + sign * steps as f64 / HANDWHEEL_STEPS * travel;
             self.manual.wheel = Some(within(unit, target));
@@ -297,7 +301,11 @@ fn along(unit: &AxisUnit, direction: Direction, feed: f64) -> Aim {
         Direction::Plus => (greatest, unit.nominal >= greatest),
         Direction::Minus => (least, unit.nominal <= least),
     };
-    if beyond { Aim::Feed(0.0) } else { Aim::Position(limit) }
+    if beyond {
+        Aim::Feed(0.0)
+    } else {
+        Aim::Position(limit)
+    }
 }
 
 /// A target inside the software limits; from outside only towards them.

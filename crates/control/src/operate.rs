@@ -53,12 +53,12 @@ impl Control {
             _ if mode == self.mode => true,
             RunState::Idle => !self.run.is_active(),
             // Single block ends a full sequence at the end of its block, and back.
-            _ => {
-                self.mode != Mode::Mdi
-                    && matches!(mode, Mode::SingleBlock | Mode::FullSequence)
-            }
+            _ => self.mode != Mode::Mdi && matches!(mode, Mode::SingleBlock | Mode::FullSequence),
         };
-        let missing = self.axes.iter().any(|unit| !unit.referenced && !unit.is_plc_axis());
+        let missing = self
+            .axes
+            .iter()
+            .any(|unit| !unit.referenced && !unit.is_plc_axis());
         if !possible || mode == Mode::Reference && !missing {
             return false;
         }
@@ -191,7 +191,12 @@ impl Control {
     }
 
     fn choose_handwheel(&mut self, axis: Axis, factor: u8) -> bool {
-        let Some(index) = self.axes.iter().find(|unit| unit.axis == axis).map(|unit| unit.index) else {
+        let Some(index) = self
+            .axes
+            .iter()
+            .find(|unit| unit.axis == axis)
+            .map(|unit| unit.index)
+        else {
             return false;
         };
         self.manual.handwheel_axis = index;

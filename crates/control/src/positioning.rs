@@ -64,7 +64,12 @@ impl Control {
                 *slot = None;
                 continue;
             }
-            let unit = self.places.get(index).copied().flatten().and_then(|place| self.axes.get(place));
+            let unit = self
+                .places
+                .get(index)
+                .copied()
+                .flatten()
+                .and_then(|place| self.axes.get(place));
             let ready = unit.is_some_and(|unit| unit.referenced && !unit.is_plc_axis());
             if slot.is_none() && ready && free && !keys {
                 let target = f64::from(nc.number(*target)) / PER_MM;
@@ -185,7 +190,11 @@ impl Control {
             if axis.command.is_none() {
                 axis.target = None;
             }
-            unit.mover = if axis.command.is_some() { Mover::Plc } else { Mover::None };
+            unit.mover = if axis.command.is_some() {
+                Mover::Plc
+            } else {
+                Mover::None
+            };
             status.positioning = axis.command.is_some();
             status.negative = unit.speed < 0.0;
             status.referenced = unit.referenced;

@@ -160,7 +160,11 @@ impl Control {
             _ => Aim::Feed(direction * feed),
         };
         let slowing = step == Step::Stop && matches!(aim, Aim::Feed(_));
-        let greatest = if slowing { unit.parameters.motion.rapid_mm_min } else { feed };
+        let greatest = if slowing {
+            unit.parameters.motion.rapid_mm_min
+        } else {
+            feed
+        };
         unit.drive(time, aim, greatest);
         if step == Step::Stop && unit.stands() && outside.is_none() {
             unit.mover = Mover::None;

@@ -80,8 +80,7 @@ impl Control {
 
     /// Whether the operator may move axes while a run is interrupted.
     pub(crate) fn manual_operation_is_on(&self) -> bool {
-        self.run.state == RunState::Interrupted
-            && self.exchange.nc().bit(signal::MANUAL_OPERATION_PRESSED)
+        self.run.state == RunState::Interrupted && self.exchange.nc().bit(signal::MANUAL_OPERATION_PRESSED)
     }
 
     /// RESTORE POSITION.
@@ -132,7 +131,10 @@ impl Control {
                 Step::Starved => return,
                 Step::End | Step::Error(_) => {
                     // The block does not come: the scan ends with the program.
-                    self.show(Message::Plain(bahn_parameters::MessageId::SelectedBlockNotAddressed), false);
+                    self.show(
+                        Message::Plain(bahn_parameters::MessageId::SelectedBlockNotAddressed),
+                        false,
+                    );
                     self.internal_stop();
                     return;
                 }
@@ -204,7 +206,11 @@ impl Control {
             if !(unit.servo.closed() && unit.enabled) {
                 continue;
             }
-            let turn = if unit.axis == tool_axis { raise || others_there } else { !raise || tool_there };
+            let turn = if unit.axis == tool_axis {
+                raise || others_there
+            } else {
+                !raise || tool_there
+            };
             unit.mover = Mover::Positioning;
             let feed = unit.parameters.motion.plc_mm_min * percent / 100.0;
             if stop || !turn {
@@ -214,7 +220,11 @@ impl Control {
             }
         }
         if others_there && tool_there && self.axes.iter().all(|unit| unit.stands()) {
-            for unit in self.axes.iter_mut().filter(|unit| unit.mover == Mover::Positioning) {
+            for unit in self
+                .axes
+                .iter_mut()
+                .filter(|unit| unit.mover == Mover::Positioning)
+            {
                 unit.mover = Mover::None;
             }
             self.run.restore = None;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bahn_interpreter::{Rules, Settings};
 use bahn_motion::{Drive, FunctionOutput, State, Stop};
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Barrier, LiveData, PathElement, Position};
+use bahn_path::{Axis, AxisSet, Barrier, LiveData, PathElement, Position};
 use bahn_program::Program;
 
 use crate::axes::Mover;
@@ -151,11 +151,11 @@ impl Control {
         if self.run.state == RunState::Idle && self.run.restore.is_none() {
             return false;
         }
-        self.run.resume_from = self
-            .path
-            .clear()
-            .map(|cut| cut.sequence)
-            .or(self.run.feeder.as_ref().map(|feeder| feeder.interpreter().blocks_executed()));
+        self.run.resume_from = self.path.clear().map(|cut| cut.sequence).or(self
+            .run
+            .feeder
+            .as_ref()
+            .map(|feeder| feeder.interpreter().blocks_executed()));
         self.break_off();
         true
     }
@@ -319,6 +319,8 @@ impl Control {
             hold: self.run.state != RunState::Running,
             single_block: self.mode == Mode::SingleBlock,
             in_position: settled,
+            clamped: self.clamped_axes(),
+            clamping: self.clamping_axes(),
         };
         let cycle = self.path.cycle(&drive);
         self.run.speed = cycle.speed_mm_s;
@@ -335,6 +337,7 @@ impl Control {
                     self.path.release();
                 }
             }
+            State::Clamped => self.ask_to_unclamp(drive.clamped),
             State::BlockEnd if settled && self.run.state == RunState::Running => {
                 self.run.state = RunState::BlockEnd;
             }
@@ -345,15 +348,48 @@ impl Control {
         }
     }
 
-    /// The axes that the current element moves are held in their loops and have feed enable.
+    /// The axes that the current element moves are held in their loops and have feed enable. An element
+    /// that waits for a clamped axis may do so.
     fn path_axes_able(&self) -> bool {
         let Some(element) = self.path.element() else {
             return true;
         };
+        let stands = self.path.speed_mm_s() == 0.0;
         self.axes
             .iter()
             .filter(|unit| moves(element, unit.axis))
-            .all(|unit| unit.servo.closed() && unit.enabled)
+            .all(|unit| unit.enabled && (unit.servo.closed() || stands))
+    }
+
+    /// Axes whose loop is open: no block may move them.
+    fn clamped_axes(&self) -> AxisSet {
+        let open = self
+            .axes
+            .iter()
+            .filter(|unit| unit.parameters.controlled && !unit.servo.closed());
+        open.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
+    }
+
+    /// Axes that the PLC wants to clamp after their block (M2492 ff.), and whose loop is still closed.
+    fn clamping_axes(&self) -> AxisSet {
+        let nc = self.exchange.nc();
+        let wanted = self.axes.iter().filter(|unit| {
+            let marker = crate::markers::WAIT_OPEN_LOOP.get(unit.index);
+            unit.servo.closed() && marker.is_some_and(|marker| nc.bit(*marker))
+        });
+        wanted.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
+    }
+
+    /// A block wants a clamped axis: its marker M2008 ff. falls, and the PLC unclamps it [000:5407].
+    fn ask_to_unclamp(&mut self, clamped: AxisSet) {
+        let Some(element) = self.path.element() else {
+            return;
+        };
+        for unit in &mut self.axes {
+            if clamped.contains(unit.axis) && moves(element, unit.axis) {
+                unit.in_position = false;
+            }
+        }
     }
 
     fn path_in_position(&self) -> bool {
@@ -430,7 +466,11 @@ impl Control {
         if element.sequence != self.run.blend.sequence {
             self.run.blend.sequence = element.sequence;
         }
-        let fraction = if length > 0.0 { (self.path.rest_mm() / length).clamp(0.0, 1.0) } else { 1.0 };
+        let fraction = if length > 0.0 {
+            (self.path.rest_mm() / length).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
         if fraction == 0.0 {
             for axis in Axis::ALL {
                 if moves(element, axis)
@@ -452,7 +492,14 @@ impl Control {
             }
             self.run.waiting.pop_front();
             let Control {
-                path, spindle, tools, offsets, handshakes, exchange, run, ..
+                path,
+                spindle,
+                tools,
+                offsets,
+                handshakes,
+                exchange,
+                run,
+                ..
             } = self;
             let mut target = crate::functions::Target {
                 spindle,
@@ -512,7 +559,11 @@ impl Control {
 
     /// A fault ends the run; the next start begins with the block that was not executed.
     fn abort_run(&mut self) {
-        let sequence = self.run.feeder.as_ref().map(|feeder| feeder.interpreter().blocks_executed());
+        let sequence = self
+            .run
+            .feeder
+            .as_ref()
+            .map(|feeder| feeder.interpreter().blocks_executed());
         self.path.clear();
         self.run.resume_from = sequence;
         self.break_off();

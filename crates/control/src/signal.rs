@@ -87,7 +87,10 @@ impl FromStr for Signal {
                 return Err(wrong());
             };
             let signal = AXIS_SIGNALS.iter().find(|(known, _)| *known == name);
-            let axis = letter.is_ascii().then(|| bahn_path::Axis::from_letter(letter as u8)).flatten();
+            let axis = letter
+                .is_ascii()
+                .then(|| bahn_path::Axis::from_letter(letter as u8))
+                .flatten();
             return match (axis, signal) {
                 (Some(axis), Some((_, signal))) => Ok(Signal::Axis(axis.letter(), *signal)),
                 _ => Err(wrong()),
@@ -104,7 +107,10 @@ impl fmt::Display for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Signal::Axis(letter, signal) => {
-                let name = AXIS_SIGNALS.iter().find(|(_, of)| of == signal).map_or("", |(name, _)| *name);
+                let name = AXIS_SIGNALS
+                    .iter()
+                    .find(|(_, of)| of == signal)
+                    .map_or("", |(name, _)| *name);
                 write!(f, "{letter}.{name}")
             }
             Signal::PathSpeed => write!(f, "path.speed"),
@@ -146,7 +152,10 @@ impl Control {
                 })
             }
             Signal::PathSpeed => self.run.speed * 60.0,
-            Signal::Block => self.path.element().map_or(0.0, |element| element.block.block.into()),
+            Signal::Block => self
+                .path
+                .element()
+                .map_or(0.0, |element| element.block.block.into()),
             Signal::SpindleRpm => self.spindle.state().actual_rpm,
             Signal::SpindleVolts => self.spindle.state().volts,
             Signal::Bit(bit) => f64::from(u8::from(self.exchange.plc().bit(*bit))),

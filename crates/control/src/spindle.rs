@@ -123,9 +123,10 @@ impl SpindleUnit {
                     (changed || always && tool_call).then_some(Transfer::SCode(code))
                 })
             }
-            SpindleOutput::Analogue { gear: when } => {
-                self.servo.gear_for(rpm).map(|gear| self.choose_gear(rpm, gear, when, tool_call, exchange))
-            }
+            SpindleOutput::Analogue { gear: when } => self
+                .servo
+                .gear_for(rpm)
+                .map(|gear| self.choose_gear(rpm, gear, when, tool_call, exchange)),
         };
         self.wrong = transfer.is_none();
         self.wrong_speed |= transfer.is_none();
@@ -180,13 +181,18 @@ impl SpindleUnit {
 
     /// Module 9171.
     pub fn orient(&mut self, orientation: SpindleOrientation, exchange: &mut Exchange) {
-        let added = if orientation.added_to_cycle { self.cycle_deg } else { 0.0 };
+        let added = if orientation.added_to_cycle {
+            self.cycle_deg
+        } else {
+            0.0
+        };
         let way = match orientation.direction {
             OrientationDirection::Negative => Way::In(Rotation::M4),
             OrientationDirection::Shortest => Way::Shortest,
             OrientationDirection::Positive => Way::In(Rotation::M3),
         };
-        self.servo.orient(orientation.angle + added, orientation.speed, way);
+        self.servo
+            .orient(orientation.angle + added, orientation.speed, way);
         self.orienting = true;
         exchange.nc_set(signal::ORIENT_SPINDLE, true);
     }
@@ -219,11 +225,18 @@ impl SpindleUnit {
         self.servo
             .set_enabled(closed && !nc.bit(signal::SPINDLE_DISPLAY_INVERSE));
         self.servo.set_opens(nc.bit(signal::OPEN_SPINDLE_LOOP));
-        self.take_jog(nc.bit(signal::SPINDLE_JOG_LEFT), nc.bit(signal::SPINDLE_JOG_RIGHT));
+        self.take_jog(
+            nc.bit(signal::SPINDLE_JOG_LEFT),
+            nc.bit(signal::SPINDLE_JOG_RIGHT),
+        );
         let turn = nc.bit(signal::RUN_SPINDLE_AT_MP3520);
         if turn != self.turning {
             self.turning = turn;
-            let direction = if nc.bit(signal::ORIENTATION_DIRECTION) { Rotation::M4 } else { Rotation::M3 };
+            let direction = if nc.bit(signal::ORIENTATION_DIRECTION) {
+                Rotation::M4
+            } else {
+                Rotation::M3
+            };
             self.servo.turn(if turn { direction } else { Rotation::M5 });
         }
         self.take_orientation(exchange);
@@ -264,7 +277,11 @@ impl SpindleUnit {
         } else {
             f64::from(target) / PER_DEGREE
         };
-        let direction = if nc.bit(signal::ORIENTATION_DIRECTION) { Rotation::M4 } else { Rotation::M3 };
+        let direction = if nc.bit(signal::ORIENTATION_DIRECTION) {
+            Rotation::M4
+        } else {
+            Rotation::M3
+        };
         self.servo.orient(angle, 0.0, Way::In(direction));
         self.orienting = true;
     }

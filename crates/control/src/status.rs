@@ -113,7 +113,10 @@ impl Control {
         );
         self.put(signal::PROGRAM_INTERRUPTED, state == RunState::Interrupted);
         let programmed = self.programmed_feed();
-        self.put(signal::RAPID_TRAVERSE_PROGRAMMED, programmed.is_none() && self.run.is_active());
+        self.put(
+            signal::RAPID_TRAVERSE_PROGRAMMED,
+            programmed.is_none() && self.run.is_active(),
+        );
         self.put_number(signal::PROGRAMMED_FEED, programmed.unwrap_or(0.0).round() as i32);
         self.put_number(signal::CURRENT_FEED, (self.run.speed * 60.0).round() as i32);
     }
@@ -134,7 +137,10 @@ impl Control {
             (StatusItem::MachineMode, self.mode.code()),
             (StatusItem::MachineAxis, last_key),
             (StatusItem::HandwheelAxis, handwheel),
-            (StatusItem::HandwheelAxes, 1i32.checked_shl(handwheel.max(0) as u32).unwrap_or(0)),
+            (
+                StatusItem::HandwheelAxes,
+                1i32.checked_shl(handwheel.max(0) as u32).unwrap_or(0),
+            ),
             (StatusItem::ExecutedFile, i32::from(self.run.selected.is_some())),
         ];
         for (item, value) in items {

@@ -7,8 +7,8 @@ use bahn_plc::{CoordinateKind, JogLimit, StatusChange};
 use crate::axes::Mover;
 use crate::command::{Command, Mode};
 use crate::control::Control;
-use crate::markers::{ACTUAL_TO_NOMINAL, AXES, LAG_TRACKING, LUBRICATED, PLC_POSITIONING, TRANSFER};
 use crate::markers::LUBRICATION_PULSE;
+use crate::markers::{ACTUAL_TO_NOMINAL, AXES, LAG_TRACKING, LUBRICATED, PLC_POSITIONING, TRANSFER};
 use crate::message::Message;
 use crate::positioning::PER_MM;
 
@@ -32,7 +32,8 @@ impl Control {
         self.take_key();
         self.take_lubrication();
         self.take_lag_tracking();
-        self.tools.take_geometry_strobe(&mut self.exchange, &mut self.offsets);
+        self.tools
+            .take_geometry_strobe(&mut self.exchange, &mut self.offsets);
         if let Some(code) = self.spindle.take_markers(&mut self.exchange) {
             self.show(Message::PlcMarkers(code), true);
         }
@@ -95,7 +96,11 @@ impl Control {
         } else {
             0
         };
-        let mut datum = self.datums.get(place).copied().unwrap_or(bahn_path::Position::ZERO);
+        let mut datum = self
+            .datums
+            .get(place)
+            .copied()
+            .unwrap_or(bahn_path::Position::ZERO);
         for unit in &self.axes {
             // The display rises by the correction: the datum moves the other way [000:8916-8922].
             datum[unit.axis] -= self.correction.get(unit.index).copied().unwrap_or(0.0);
@@ -250,7 +255,10 @@ impl Control {
     /// Module 9036.
     fn change_status(&mut self, change: StatusChange) {
         match change {
-            StatusChange::Subdivision { axis: Some(axis), factor } => {
+            StatusChange::Subdivision {
+                axis: Some(axis),
+                factor,
+            } => {
                 if let Some(slot) = self.manual.factors.get_mut(axis) {
                     *slot = factor;
                 }

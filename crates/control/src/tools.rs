@@ -98,10 +98,7 @@ impl Tools {
     pub fn define(&mut self, number: u32) -> Option<Transfer> {
         let output = self.parameters.definition;
         let changed = self.defined != Some(number);
-        let by_pocket = matches!(
-            output.what,
-            ToolOutputKind::Pocket | ToolOutputKind::FixedPocket
-        );
+        let by_pocket = matches!(output.what, ToolOutputKind::Pocket | ToolOutputKind::FixedPocket);
         self.defined = Some(number);
         if output.what == ToolOutputKind::None
             || !(changed || output.always)
@@ -194,7 +191,11 @@ mod tests {
             call: output,
             definition: output,
         };
-        Tools::new(Some(table.into_iter().collect()), parameters, &Remembered::default())
+        Tools::new(
+            Some(table.into_iter().collect()),
+            parameters,
+            &Remembered::default(),
+        )
     }
 
     /// The codes (W262, W264, M2093) of a row of calls.

@@ -1,6 +1,6 @@
 //! What the interpolator is told, and what it answers.
 
-use bahn_path::{Barrier, BlockRef, Position};
+use bahn_path::{AxisSet, Barrier, BlockRef, Position};
 
 use crate::gate::Gate;
 
@@ -15,6 +15,14 @@ pub struct Drive {
     pub hold: bool,
     /// The path stops at the end of each block and waits for [`Interpolator::go_on`](crate::Interpolator::go_on).
     pub single_block: bool,
+    /// The axes are in position (MP1030): where the path stops, the next element waits for it
+    /// [000:5302-5318].
+    pub in_position: bool,
+    /// Axes that are clamped: an element that moves one of them does not begin [000:5407].
+    pub clamped: AxisSet,
+    /// Axes that are to be clamped: the path waits at the end of a block that moved one of them
+    /// [000:5407].
+    pub clamping: AxisSet,
 }
 
 impl Default for Drive {
@@ -24,6 +32,9 @@ impl Default for Drive {
             rapid_override_percent: 100.0,
             hold: false,
             single_block: false,
+            in_position: true,
+            clamped: AxisSet::EMPTY,
+            clamping: AxisSet::EMPTY,
         }
     }
 }
@@ -52,6 +63,12 @@ pub enum State {
     Gate(Gate),
     /// It stands at the end of a block until [`Interpolator::go_on`](crate::Interpolator::go_on) (single block).
     BlockEnd,
+    /// It stands at the end of an element until the axes are in position.
+    Settling,
+    /// It stands before an element that moves one of [`Drive::clamped`].
+    Clamped,
+    /// It stands at the end of a block that moved one of [`Drive::clamping`].
+    Clamping,
     /// All elements are executed; [`Interpolator::prepare`](crate::Interpolator::prepare) may bring more.
     Empty,
     /// All elements are executed and the source has said why no more come: [`Interpolator::take_stop`](crate::Interpolator::take_stop).

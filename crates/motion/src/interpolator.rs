@@ -2,7 +2,9 @@
 
 use std::collections::VecDeque;
 
-use bahn_path::{At, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
+use bahn_path::{
+    At, Axis, AxisSet, Curve, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction,
+};
 
 use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
 use crate::gate::{Gate, place};
@@ -31,7 +33,9 @@ pub struct Interpolator<E> {
     rest: f64,
     position: Position,
     single_block: bool,
-    /// The stop of single block is to be looked for.
+    clamped: AxisSet,
+    clamping: AxisSet,
+    /// The stop of single block, or for axes that are clamped, is to be looked for.
     seek_stop: bool,
     /// The gate ahead is passed without waiting.
     released: bool,
@@ -85,6 +89,8 @@ impl<E> Interpolator<E> {
             rest: 0.0,
             position: Position::UNKNOWN,
             single_block: false,
+            clamped: AxisSet::EMPTY,
+            clamping: AxisSet::EMPTY,
             seek_stop: false,
             released: false,
             output_to: 0.0,
@@ -147,6 +153,11 @@ impl<E> Interpolator<E> {
         }
     }
 
+    /// Stops at once, without a ramp: the feed enable was withdrawn.
+    pub fn halt(&mut self) {
+        self.speed = 0.0;
+    }
+
     /// Spends one contour cycle.
     pub fn cycle(&mut self, drive: &Drive) -> Cycle {
         self.take(drive);
@@ -177,6 +188,10 @@ impl<E> Interpolator<E> {
             self.single_block = drive.single_block;
             self.seek_stop = true;
         }
+        if (drive.clamped, drive.clamping) != (self.clamped, self.clamping) {
+            (self.clamped, self.clamping) = (drive.clamped, drive.clamping);
+            self.seek_stop = true;
+        }
         if self.seek_stop {
             self.seek_stop = false;
             let stop = self.block_end();
@@ -184,10 +199,10 @@ impl<E> Interpolator<E> {
         }
     }
 
-    /// Number of the element at whose end single block stops: the end of a block at which the path can
-    /// still come to a standstill.
+    /// Number of the element at whose end the path stops for single block or for axes that are clamped,
+    /// where it can still come to a standstill.
     fn block_end(&self) -> Option<u64> {
-        if !self.single_block {
+        if !self.single_block && self.clamped.union(self.clamping).is_empty() {
             return None;
         }
         let squared = self.speed * self.speed * (1.0 - 1e-9);
@@ -195,10 +210,13 @@ impl<E> Interpolator<E> {
         let mut length = self.rest;
         for (number, item) in (self.ring.number()..).zip(self.ring.ahead()) {
             possible += 2.0 * item.acceleration * length;
-            if item.block_end && squared <= possible {
+            let next = self.ring.get(number + 1);
+            let stops = item.block_end && (self.single_block || moves(&item.element, self.clamping))
+                || next.is_some_and(|next| moves(&next.element, self.clamped));
+            if stops && squared <= possible {
                 return Some(number);
             }
-            length = self.ring.get(number + 1).map_or(0.0, |next| next.length);
+            length = next.map_or(0.0, |next| next.length);
         }
         None
     }
@@ -214,6 +232,9 @@ impl<E> Interpolator<E> {
             let held = drive.hold && self.speed <= 0.0;
             match self.phase {
                 Phase::Begin if held => return State::Held,
+                Phase::Begin if self.speed <= 0.0 && moves(&item.element, self.clamped) => {
+                    return State::Clamped;
+                }
                 Phase::Begin => {
                     let output = item.start;
                     self.phase = self.output(output, Gate::Start, Phase::Move);
@@ -273,7 +294,14 @@ impl<E> Interpolator<E> {
                 }
                 Phase::Done => {
                     // Whether the block has ended is known when the next element is, or that none comes.
-                    if self.single_block && item.block_end && self.speed <= 0.0 {
+                    let stands = self.speed <= 0.0;
+                    if stands && item.length > 0.0 && !drive.in_position {
+                        return State::Settling;
+                    }
+                    if stands && item.block_end && moves(&item.element, self.clamping) {
+                        return State::Clamping;
+                    }
+                    if self.single_block && item.block_end && stands {
                         self.phase = Phase::BlockEnd;
                     } else if self.ring.following().is_some() {
                         self.next();
@@ -299,7 +327,8 @@ impl<E> Interpolator<E> {
     fn next(&mut self) {
         self.ring.advance();
         self.enter();
-        if self.single_block && self.ring.stop_is_behind() {
+        let stops = self.single_block || !self.clamped.union(self.clamping).is_empty();
+        if stops && self.ring.stop_is_behind() {
             let stop = self.block_end();
             self.ring.set_stop(stop);
         }
@@ -515,4 +544,19 @@ fn position(item: &Item, rest: f64) -> Position {
         1.0
     };
     curve.position(start, end, fraction)
+}
+
+/// Whether an element moves one of the axes.
+fn moves(element: &PathElement, axes: AxisSet) -> bool {
+    if axes.is_empty() {
+        return false;
+    }
+    let turns = |axis: Axis| match &element.curve {
+        Curve::Hold => false,
+        Curve::Line => element.start[axis] != element.end[axis] && !element.end[axis].is_nan(),
+        Curve::Arc(arc) => {
+            axis == arc.plane.first || axis == arc.plane.second || element.start[axis] != element.end[axis]
+        }
+    };
+    axes.iter().any(turns)
 }

@@ -94,6 +94,7 @@ fn parts() -> impl Strategy<Value = Vec<Part>> {
                 rapid_override_percent,
                 hold,
                 single_block,
+                ..Drive::default()
             },
         );
     prop::collection::vec((drive, 1usize..60), 0..40)

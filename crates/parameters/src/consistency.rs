@@ -143,6 +143,15 @@ fn lag(axis: &AxisParameters, report: &mut Reporter) {
             precontrol.emergency_mm, precontrol.monitoring_mm
         )
     });
+    let rule = "pre-control needs a kv factor of 0.1 at least";
+    let name = (1510, index, 32 + u16::from(axis.index));
+    report.check(
+        !precontrol.in_automatic || precontrol.kv >= 0.1,
+        name,
+        rule,
+        "000:4984-4991",
+        || format!("kv {:.3} (m/min)/mm", precontrol.kv),
+    );
     let rule = "manual feed is above rapid traverse";
     let (manual, rapid) = (axis.motion.manual_mm_min, axis.motion.rapid_mm_min);
     report.check(

@@ -266,6 +266,8 @@ impl Definition {
                 !versions.starts_with("TNC 4")
                     && !versions.starts_with("not TNC 407")
                     && !self.axis.starts_with("5th")
+                    // The TNC 360 has MP7470 itself [003:7424-7430].
+                    && !self.notes.starts_with("replaces MP7470")
             }
             ControlModel::Tnc407 => {
                 !versions.starts_with("TNC 425 only")

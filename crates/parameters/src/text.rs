@@ -1,7 +1,6 @@
 //! The text of a list: its lines with comments and order, and what can be read of them.
 
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::definition::{parse_id, parse_number};
@@ -27,6 +26,8 @@ pub struct ListText {
     /// The bytes, without the mark of UTF-8.
     bytes: Vec<u8>,
     has_mark: bool,
+    /// Where each line begins.
+    lines: Vec<usize>,
     entries: Vec<Entry>,
     faults: Vec<ListError>,
 }
@@ -54,6 +55,7 @@ impl ListText {
             model,
             bytes: plain.unwrap_or(bytes).to_vec(),
             has_mark: plain.is_some(),
+            lines: Vec::new(),
             entries: Vec::new(),
             faults: Vec::new(),
         };
@@ -85,9 +87,9 @@ impl ListText {
         if self.entries.is_empty() && faults.is_empty() {
             return faults;
         }
-        let line = self.text().lines().count().max(1);
+        let line = self.lines.len().max(1);
         // What has a line that cannot be read is not missing.
-        let named: Vec<ParameterId> = faults.iter().filter_map(|fault| fault.error.id()).collect();
+        let named: BTreeSet<ParameterId> = faults.iter().filter_map(|fault| fault.error.id()).collect();
         let missing = self
             .missing()
             .filter(|definition| !definition.is_optional() && !named.contains(&definition.id));
@@ -117,8 +119,13 @@ impl ListText {
 
     /// The text of a line, from 1, without its end; empty for a line that does not exist.
     pub fn line(&self, number: usize) -> String {
-        let index = number.wrapping_sub(1);
-        self.text().lines().nth(index).unwrap_or_default().to_owned()
+        let bytes = || {
+            let start = *self.lines.get(number.checked_sub(1)?)?;
+            let end = self.lines.get(number).copied().unwrap_or(self.bytes.len());
+            self.bytes.get(start..end)
+        };
+        let text = String::from_utf8_lossy(bytes().unwrap_or_default());
+        text.trim_end_matches(['\r', '\n']).to_owned()
     }
 
     /// Sets a value in its place, or appends a line for it with its name.
@@ -132,10 +139,9 @@ impl ListText {
         match self.entries.iter().find(|entry| entry.id == definition.id) {
             Some(entry) => self.replace(entry.value_at.clone(), &written),
             None => {
-                if self.bytes.last().is_some_and(|byte| *byte != b'\n') {
-                    self.bytes.extend_from_slice(self.line_end().as_bytes());
-                }
-                self.append(definition, &written);
+                let end = self.line_end();
+                self.end_last_line(end);
+                self.append(definition, &written, end);
             }
         }
         self.read();
@@ -150,22 +156,25 @@ impl ListText {
             return;
         }
         let end = self.line_end();
-        if self.bytes.last().is_some_and(|byte| *byte != b'\n') {
-            self.bytes.extend_from_slice(end.as_bytes());
-        }
+        self.end_last_line(end);
         let heading = format!("{end}; Values of the list that the control makes by itself{end}");
         self.bytes.extend_from_slice(heading.as_bytes());
         for definition in missing {
-            self.append(definition, &definition.format_value(definition.standard()));
+            let value = definition.format_value(definition.standard());
+            self.append(definition, &value, end);
         }
         self.read();
     }
 
-    fn append(&mut self, definition: &Definition, value: &str) {
-        let mut line = String::new();
-        // Writing to a string cannot fail.
-        let _ = write!(line, "{}{}", definition.line(value), self.line_end());
-        self.bytes.extend_from_slice(line.as_bytes());
+    fn end_last_line(&mut self, end: &str) {
+        if self.bytes.last().is_some_and(|byte| *byte != b'\n') {
+            self.bytes.extend_from_slice(end.as_bytes());
+        }
+    }
+
+    fn append(&mut self, definition: &Definition, value: &str, end: &str) {
+        self.bytes.extend_from_slice(definition.line(value).as_bytes());
+        self.bytes.extend_from_slice(end.as_bytes());
     }
 
     /// Replaces a value; the blanks behind it give or take, so that the comment keeps its column.
@@ -195,15 +204,12 @@ impl ListText {
         }
     }
 
-    fn text(&self) -> std::borrow::Cow<'_, str> {
-        String::from_utf8_lossy(&self.bytes)
-    }
-
     fn read(&mut self) {
         let mut first_lines = BTreeMap::new();
-        let (mut entries, mut faults) = (Vec::new(), Vec::new());
+        let (mut lines, mut entries, mut faults) = (Vec::new(), Vec::new(), Vec::new());
         let mut start = 0;
         for (index, bytes) in self.bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
+            lines.push(start);
             let line = index + 1;
             let text = String::from_utf8_lossy(bytes);
             match read_line(self.model, &text) {
@@ -231,6 +237,7 @@ impl ListText {
             }
             start += bytes.len();
         }
+        self.lines = lines;
         self.entries = entries;
         self.faults = faults;
     }

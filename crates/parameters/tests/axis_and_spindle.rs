@@ -234,3 +234,35 @@ fn a_window_of_the_spindle_is_counted_in_increments() {
     let list = with(ControlModel::Tnc415b, &["3420=10"]);
     assert!((list.spindle_parameters().orientation.window_deg - 0.878_906_25).abs() < 1e-12);
 }
+
+#[test]
+fn rotary_axes_count_to_their_modulo_value() {
+    let modulo = |model, assignment: &str| {
+        let list = with(model, &[assignment]);
+        [0, 3].map(|index| list.axis_parameters(index).travel.modulo_deg)
+    };
+    assert_eq!(modulo(ControlModel::Tnc415b, "810.3=720"), [None, Some(720.0)]);
+    assert_eq!(modulo(ControlModel::Tnc415b, "810.3=0"), [None, None]);
+    // The axis counts to the modulo value as C, not as U.
+    assert_eq!(modulo(ControlModel::Tnc415b, "410.3=3"), [None, None]);
+    // 0 to 359.999 degrees, or to 30 000 [003:7424-7430].
+    assert_eq!(modulo(ControlModel::Tnc360, "7470=0"), [None, Some(360.0)]);
+    assert_eq!(modulo(ControlModel::Tnc360, "7470=1"), [None, None]);
+    assert_eq!(modulo(ControlModel::Tnc155, "90=2"), [None, None]);
+}
+
+#[test]
+fn display_steps_of_the_models() {
+    let step = |model, assignment: &str| {
+        with(model, &[assignment])
+            .axis_parameters(1)
+            .travel
+            .display_step_mm
+    };
+    // 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001 mm; the last two not on the TNC 407 [000:6436-6457].
+    assert_eq!(step(ControlModel::Tnc415b, "7290.1=6"), 0.0001);
+    assert_eq!(step(ControlModel::Tnc407, "7290.1=6"), 0.001);
+    assert_eq!(step(ControlModel::Tnc407, "7290.1=1"), 0.05);
+    assert_eq!(step(ControlModel::Tnc360, "7290=1"), 0.005);
+    assert_eq!(step(ControlModel::Tnc155, "65=0"), 0.001);
+}

@@ -109,6 +109,15 @@ fn the_old_list_is_named_by_its_numbers() {
         wrong(ControlModel::Tnc155, &["47=450"]),
         ["MP46 the axis cannot move between its software limits"]
     );
+    // Without a factor the square-root characteristic has no loop [001:1746-1762].
+    assert_eq!(
+        wrong(ControlModel::Tnc155, &["33=0"]),
+        ["MP33 pre-control needs a kv factor of 0.1 at least"]
+    );
+    assert!(
+        wrong(ControlModel::Tnc155, &["33=0", "60=1"]).is_empty(),
+        "lag operation"
+    );
     assert!(wrong(ControlModel::Tnc155, &["175=9"])[0].starts_with("MP175 rapid traverse"));
 }
 

@@ -41,6 +41,9 @@ fn errors_stop_both_forms_at_the_same_line() {
         (53, "LBL B\nCM A\nJP B\nEM\nLBL A\nL S0\n= S1\nEM\n"),
         (54, "L K+3\n= B20\nCASE B20\nCM A\nCM A\nENDC\nEM\nLBL A\nEM\n"),
         (56, "L M1\n= M7\nL K+9000\n=X\nL M1\n= M5[X]\nEM\n"),
+        (56, "LN M1\nL K-4\n=X\nL K+1\n= W6[X]\nEM\n"),
+        (56, "L K+9000\n=X\nLN M1\nSN M2\nS M5[X]\nEM\n"),
+        (51, "PS M1\nPL W10\nEM\n"),
         (
             56,
             "L KF F[X]\n= W10\nINCX\nINCX\nL KF F[X]\n= W12\nEM\nKFIELD F\nK+1\nK+2\nENDK\n",

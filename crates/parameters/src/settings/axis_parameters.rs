@@ -233,7 +233,7 @@ pub struct TravelParameters {
     /// 999.9999 to 99 999.9999; old: MP44-51, three times the same [000:3438-3497] [001:3188-3195].
     pub ranges_mm: [[f64; 2]; 3],
     /// Modulo value of the display, degrees; with one the software limits are off: MP810, rotary axes only
-    /// [000:6470-6478]. Old MP470 of the TNC 360: 360 for value 0; TNC 151/155: none.
+    /// [000:6470-6478]. The TNC 360 has MP7470 = 0 for 360 degrees; TNC 151/155: none.
     pub modulo_deg: Option<f64>,
     /// Distance from the scale datum to the machine datum, mm: MP960; 0 on the TNC 151/155/360, which have
     /// none [000:6264-6269].

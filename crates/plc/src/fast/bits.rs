@@ -6,6 +6,7 @@
 
 use bahn_exchange::CELLS;
 
+use crate::PlcError;
 use crate::operand::BitOperand;
 use crate::program::Op;
 
@@ -76,25 +77,81 @@ pub(super) fn run(steps: &[BitStep], cells: &mut [u8; CELLS], logic: bool) -> bo
 /// The cell of the first of consecutive bits; `None` with index, or when the last is behind its area.
 pub(super) fn consecutive(first: &BitOperand, count: u8) -> Option<u16> {
     let last = first.bit.number() + u16::from(count.checked_sub(1)?);
-    let inside = !first.indexed && count <= 32 && last <= first.bit.area().last();
+    let inside = !first.indexed && count <= 32 && count.is_multiple_of(8) && last <= first.bit.area().last();
     u16::try_from(first.bit.cell()).ok().filter(|_| inside)
 }
 
 /// Reads consecutive bits, the first one lowest, sign-filled from the last one [000:12186-12223].
+/// `count` is a multiple of 8.
 #[inline(always)]
 pub(super) fn read(cells: &[u8; CELLS], cell: u16, count: u8) -> i32 {
-    let bits = cells.iter().skip(cell.into()).take(count.into());
-    let value = bits.rev().fold(0_u32, |value, bit| value << 1 | u32::from(*bit));
+    // The product brings bit 0 of every byte into the highest byte, that of the first byte lowest.
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    let bits = cells.get(usize::from(cell)..).unwrap_or(&[]);
+    let (octets, _) = bits.as_chunks::<8>();
+    let mut value = 0_u32;
+    for (place, octet) in (0..count).step_by(8).zip(octets) {
+        let byte = u64::from_le_bytes(*octet).wrapping_mul(GATHER) >> 56;
+        value |= (byte as u32) << place;
+    }
     let unused = 32 - u32::from(count);
     (value << unused) as i32 >> unused
 }
 
-/// Writes consecutive bits, the lowest to the first one.
+/// Writes consecutive bits, the lowest to the first one. `count` is a multiple of 8.
 #[inline(always)]
 pub(super) fn write(cells: &mut [u8; CELLS], cell: u16, count: u8, value: i32) {
-    let bits = cells.iter_mut().skip(cell.into()).take(count.into());
-    for (place, bit) in bits.enumerate() {
-        *bit = (value >> place) as u8 & 1;
+    const EVERY_BYTE: u64 = 0x0101_0101_0101_0101;
+    const OWN_BIT: u64 = 0x8040_2010_0804_0201;
+    let bits = cells.get_mut(usize::from(cell)..).unwrap_or(&mut []);
+    let (octets, _) = bits.as_chunks_mut::<8>();
+    for (place, octet) in (0..count).step_by(8).zip(octets) {
+        // Every byte keeps its own bit, which a carry brings to bit 7 when it is set.
+        let own = (EVERY_BYTE * u64::from((value >> place) as u8)) & OWN_BIT;
+        *octet = ((own + 0x7f * EVERY_BYTE) >> 7 & EVERY_BYTE).to_le_bytes();
+    }
+}
+
+/// A bit operand with index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct IndexedBit {
+    /// The cell of number 0 of its area.
+    base: u16,
+    number: u16,
+    /// The highest number of its area.
+    last: u16,
+}
+
+impl IndexedBit {
+    /// `None` for operands without index.
+    pub(super) fn of(operand: &BitOperand) -> Option<IndexedBit> {
+        let area = operand.bit.area();
+        operand.indexed.then_some(IndexedBit {
+            base: area.first_cell(),
+            number: operand.bit.number(),
+            last: area.last(),
+        })
+    }
+
+    /// The cell that it means; `None` outside its area.
+    #[inline(always)]
+    fn cell(self, index: i32) -> Option<usize> {
+        let number = i32::from(self.number) + i32::from(index as i16);
+        let number = u16::try_from(number).ok()?;
+        (number <= self.last).then(|| (usize::from(self.base) + usize::from(number)) % CELLS)
+    }
+
+    /// Reads are not checked: outside is 0 (inferred) [000:14012-14016].
+    #[inline(always)]
+    pub(super) fn read(self, cells: &[u8; CELLS], index: i32) -> bool {
+        self.cell(index).is_some_and(|cell| cells[cell] != 0)
+    }
+
+    #[inline(always)]
+    pub(super) fn write(self, cells: &mut [u8; CELLS], index: i32, value: bool) -> Result<(), PlcError> {
+        let cell = self.cell(index).ok_or(PlcError::IndexOutOfRange)?;
+        cells[cell] = value.into();
+        Ok(())
     }
 }
 
@@ -159,6 +216,30 @@ mod tests {
             "I255 is none of a program"
         );
         assert_eq!(consecutive(&inputs("I0", true), 8), None);
+    }
+
+    #[test]
+    fn consecutive_bits_are_gathered_and_spread() {
+        for (count, value) in [
+            (8, 0x5a),
+            (8, -0x80),
+            (16, 0x1234),
+            (32, 0x7654_3210),
+            (32, -1),
+            (16, -2),
+        ] {
+            let mut cells = [0; CELLS];
+            write(&mut cells, 100, count, value);
+            for place in 0..count {
+                assert_eq!(
+                    cells[100 + usize::from(place)],
+                    (value >> place & 1) as u8,
+                    "{value:x} {place}"
+                );
+            }
+            assert_eq!((cells[99], cells[100 + usize::from(count)]), (0, 0));
+            assert_eq!(read(&cells, 100, count), value);
+        }
     }
 
     #[test]

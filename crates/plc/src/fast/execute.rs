@@ -76,6 +76,18 @@ impl State<'_, '_, '_, '_> {
                 }
             }};
         }
+        // What may fail, but needs no registers of the loop.
+        macro_rules! checked {
+            ($what:expr) => {
+                match $what {
+                    Ok(value) => value,
+                    Err(error) => {
+                        (self.logic, self.word, self.index, self.next) = (logic, word, index, next);
+                        return End::Error(error);
+                    }
+                }
+            };
+        }
         loop {
             let Some(op) = fast.code.get(next) else {
                 (self.logic, self.word, self.index, self.next) = (logic, word, index, next);
@@ -141,6 +153,38 @@ impl State<'_, '_, '_, '_> {
                 FastOp::CloseCompare { level, order } => {
                     logic = order.holds(self.processor.registers.bracket(level), word);
                 }
+                FastOp::GateIndexed { table, operand } => {
+                    let content = u32::from(operand.read(cells, index));
+                    logic = u32::from(table) >> (2 * content + u32::from(logic)) & 1 != 0;
+                }
+                FastOp::AssignIndexed { invert, to } => {
+                    checked!(to.write(cells, index, logic != invert));
+                }
+                FastOp::SetIndexed { value, when, to } => {
+                    if logic == when {
+                        checked!(to.write(cells, index, value));
+                    }
+                }
+                FastOp::WordIndexed { function, operand } => {
+                    word = function.apply(word, operand.read(self.processor.image, index));
+                }
+                FastOp::CompareIndexed { order, operand } => {
+                    let right = operand.read(self.processor.image, index);
+                    logic = order.holds(operand.truncate(word), right);
+                }
+                FastOp::AssignWordIndexed { to, transform } => {
+                    checked!(to.write(self.processor.image, index, transform.apply(word)));
+                }
+                FastOp::Push { operand } => {
+                    let value = operand.read(cells);
+                    checked!(self.processor.registers.stack.push(value));
+                }
+                FastOp::PushWord => checked!(self.processor.registers.stack.push(word)),
+                FastOp::Pull { to } => {
+                    let value = checked!(self.processor.registers.stack.pull());
+                    to.write(cells, value);
+                }
+                FastOp::PullWord => word = checked!(self.processor.registers.stack.pull()),
                 FastOp::Reference { at } => outside!(self.reference(at)),
                 FastOp::Jump { condition, leap } => {
                     if condition.holds(logic)

@@ -17,8 +17,8 @@ mod words;
 use crate::operand::NumberOperand;
 use crate::program::{Arithmetic, Condition, PlcProgram, Transform};
 use crate::{PlcError, run::Processor};
-use bits::BitStep;
-use words::{Destination, Function, Order, Source};
+use bits::{BitStep, IndexedBit};
+use words::{Destination, Function, IndexedNumber, Order, Source};
 
 /// A program in its fast form.
 #[derive(Clone, Debug, Default)]
@@ -114,6 +114,29 @@ enum FastOp {
     CloseArithmetic { level: u8, operation: Arithmetic },
     /// LA := WA before the bracket, comparison WA.
     CloseCompare { level: u8, order: Order },
+    /// LA := gate of LA and operand; a load is a gate that forgets LA.
+    GateIndexed { table: u8, operand: IndexedBit },
+    /// Operand := LA, inverted or not.
+    AssignIndexed { invert: bool, to: IndexedBit },
+    /// Operand := `value` when LA is `when`.
+    SetIndexed { value: bool, when: bool, to: IndexedBit },
+    /// WA := function of WA and operand.
+    WordIndexed {
+        function: Function,
+        operand: IndexedNumber,
+    },
+    /// LA := WA comparison operand.
+    CompareIndexed { order: Order, operand: IndexedNumber },
+    /// Destination := WA.
+    AssignWordIndexed { to: IndexedNumber, transform: Transform },
+    /// Data stack := operand.
+    Push { operand: Source },
+    /// Data stack := WA.
+    PushWord,
+    /// Destination := data stack.
+    Pull { to: Destination },
+    /// WA := data stack.
+    PullWord,
     /// An instruction for the reference interpreter.
     Reference { at: u32 },
     /// A jump of [`FastProgram::leaps`].

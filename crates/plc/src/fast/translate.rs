@@ -1,7 +1,7 @@
 //! From instructions to operations of the fast form.
 
-use super::bits::{BitStep, consecutive};
-use super::words::{Destination, Function, Order, Source};
+use super::bits::{BitStep, IndexedBit, consecutive};
+use super::words::{Destination, Function, IndexedNumber, Order, Source};
 use super::{CaseEntry, FastOp, FastProgram, Leap};
 use crate::operand::Value;
 use crate::program::{Instruction, Op, PlcProgram, Target, Transform};
@@ -58,6 +58,7 @@ impl<'p> Translator<'p> {
         let (op, count) = self
             .fused(at)
             .or_else(|| single(&instruction.op).map(|op| (op, 1)))
+            .or_else(|| indexed(&instruction.op).map(|op| (op, 1)))
             .unwrap_or_else(|| (self.transfer(at, instruction), 1));
         self.push(at, op);
         count
@@ -243,6 +244,14 @@ fn single(op: &Op) -> Option<FastOp> {
             cell: consecutive(first, *count)?,
             count: *count,
         },
+        Op::Push { value } => FastOp::Push {
+            operand: Source::of(value)?,
+        },
+        Op::PushWord => FastOp::PushWord,
+        Op::Pull { number } => FastOp::Pull {
+            to: Destination::of(number)?,
+        },
+        Op::PullWord => FastOp::PullWord,
         Op::LoadIndex => FastOp::LoadIndex,
         Op::StoreIndex => FastOp::StoreIndex,
         Op::StepIndex { by } => FastOp::StepIndex { by: *by },
@@ -264,6 +273,62 @@ fn single(op: &Op) -> Option<FastOp> {
         Op::CloseCompare { level, comparison } => FastOp::CloseCompare {
             level: *level,
             order: (*comparison).into(),
+        },
+        _ => return None,
+    })
+}
+
+/// The fast form of an instruction with index.
+fn indexed(op: &Op) -> Option<FastOp> {
+    // Bit `2 * content + LA` is the new LA.
+    let table = |rule: &dyn Fn(bool, bool) -> bool| {
+        let states = [(false, false), (true, false), (false, true), (true, true)];
+        let bits = states.into_iter().enumerate();
+        bits.fold(0, |table, (at, (logic, content))| {
+            table | u8::from(rule(logic, content)) << at
+        })
+    };
+    Some(match op {
+        Op::LoadBit { bit, invert } => FastOp::GateIndexed {
+            table: table(&|_, content| content != *invert),
+            operand: IndexedBit::of(bit)?,
+        },
+        Op::GateBit { gate, bit } => FastOp::GateIndexed {
+            table: table(&|logic, content| gate.bits(logic, content)),
+            operand: IndexedBit::of(bit)?,
+        },
+        Op::AssignBit { bit, invert } => FastOp::AssignIndexed {
+            invert: *invert,
+            to: IndexedBit::of(bit)?,
+        },
+        Op::SetBit { bit, value, when } => FastOp::SetIndexed {
+            value: *value,
+            when: *when,
+            to: IndexedBit::of(bit)?,
+        },
+        Op::Load { value, transform } => FastOp::WordIndexed {
+            function: (*transform).into(),
+            operand: IndexedNumber::of(value)?,
+        },
+        Op::GateWord { gate, value } => FastOp::WordIndexed {
+            function: (*gate).into(),
+            operand: IndexedNumber::of(value)?,
+        },
+        Op::BitOperation { operation, value } => FastOp::WordIndexed {
+            function: (*operation).into(),
+            operand: IndexedNumber::of(value)?,
+        },
+        Op::Arithmetic { operation, value } => FastOp::WordIndexed {
+            function: Function::of_arithmetic(*operation)?,
+            operand: IndexedNumber::of(value)?,
+        },
+        Op::Compare { comparison, value } => FastOp::CompareIndexed {
+            order: (*comparison).into(),
+            operand: IndexedNumber::of(value)?,
+        },
+        Op::Assign { number, transform } => FastOp::AssignWordIndexed {
+            to: IndexedNumber::of(&Value::Number(*number))?,
+            transform: *transform,
         },
         _ => return None,
     })

@@ -1,7 +1,8 @@
 //! Word operands with their cells, and what is calculated with them.
 
-use bahn_exchange::{CELLS, Number, Size};
+use bahn_exchange::{CELLS, Image, Number, Size};
 
+use crate::PlcError;
 use crate::operand::{NumberOperand, Value};
 use crate::program::{Arithmetic, BitOperation, Comparison, Gate, Transform, bit};
 
@@ -51,6 +52,47 @@ impl Source {
             Source::Word(_) => Size::Word.truncate(value),
             Source::Double(_) | Source::Constant(_) => value,
         }
+    }
+}
+
+/// A number operand with index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct IndexedNumber(NumberOperand);
+
+impl IndexedNumber {
+    /// `None` for constants and for operands without index.
+    pub(super) fn of(value: &Value) -> Option<IndexedNumber> {
+        match value {
+            Value::Number(operand) if operand.indexed => Some(IndexedNumber(*operand)),
+            Value::Number(_) | Value::Constant(_) => None,
+        }
+    }
+
+    /// The number without index that it means; `None` outside the memory.
+    #[inline(always)]
+    fn number(self, index: i32) -> Option<Number> {
+        let size = self.0.number.size();
+        let address = i32::from(self.0.number.address()) + i32::from(index as i16) * i32::from(size.bytes());
+        Number::new(size, u16::try_from(address).ok()?)
+    }
+
+    /// The value, sign-extended. Reads are not checked: outside is 0 (inferred) [000:14012-14016].
+    #[inline(always)]
+    pub(super) fn read(self, image: &Image, index: i32) -> i32 {
+        self.number(index).map_or(0, |number| image.number(number))
+    }
+
+    #[inline(always)]
+    pub(super) fn write(self, image: &mut Image, index: i32, value: i32) -> Result<(), PlcError> {
+        let number = self.number(index).ok_or(PlcError::IndexOutOfRange)?;
+        image.set_number(number, value);
+        Ok(())
+    }
+
+    /// The low bits of a value that a comparison with this operand sees [000:13064].
+    #[inline(always)]
+    pub(super) fn truncate(self, value: i32) -> i32 {
+        self.0.number.size().truncate(value)
     }
 }
 

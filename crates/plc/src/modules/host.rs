@@ -16,7 +16,10 @@ pub(super) fn transmit(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
             .double(address)
             .map(|double| HostMessage::Double(call.image.number(double)))
             .ok_or(WRONG_ADDRESS),
-        1 => call.text(address).map(HostMessage::Text).ok_or(WRONG_ADDRESS),
+        1 => call
+            .text(address)
+            .map(|text| HostMessage::Text(text.to_vec()))
+            .ok_or(WRONG_ADDRESS),
         _ => Err(WRONG_TYPE),
     };
     let code = match (message, call.nc.host()) {

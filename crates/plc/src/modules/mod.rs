@@ -17,7 +17,7 @@ mod window;
 
 use bahn_exchange::{Image, Number, Size, signal};
 
-use crate::run::DataStack;
+use crate::run::{DataStack, Text};
 use crate::{Nc, PlcError, TextFile};
 
 /// A module of the control.
@@ -206,10 +206,10 @@ impl Call<'_> {
     }
 
     /// A string with its end found; `None` for a wrong number and for a memory without end character.
-    fn text(&self, string: i32) -> Option<Vec<u8>> {
+    fn text(&self, string: i32) -> Option<Text> {
         let string = usize::try_from(string).ok()?;
         self.image.string(string).contains(&0).then_some(())?;
-        Some(self.image.text(string).to_vec())
+        self.image.text(string).try_into().ok()
     }
 
     /// Stores a string; false for a wrong number and for a text of more than 127 characters.

@@ -369,7 +369,7 @@ impl Machine {
             };
             let mut job = job;
             swap_markers(exchange.plc_mut(), &mut job.markers);
-            let mut cancelled = Vec::new();
+            let mut cancelled = None;
             let outcome = loop {
                 let at = job.registers.next;
                 let mut processor = Processor {
@@ -398,7 +398,7 @@ impl Machine {
                 if step == Step::Ended {
                     break Ok(true);
                 }
-                if elapsed >= JOBS_TIME || !cancelled.is_empty() {
+                if elapsed >= JOBS_TIME || cancelled.is_some() {
                     break Ok(false);
                 }
             };
@@ -407,7 +407,7 @@ impl Machine {
             if let Some(running) = self.queue.running() {
                 *running = job;
             }
-            for identifier in cancelled {
+            if let Some(identifier) = cancelled {
                 self.queue.cancel(identifier);
             }
             match outcome {

@@ -14,5 +14,5 @@ pub use machine::{Machine, ProcessingTime, RuntimeError, ScanReport, Start};
 pub(crate) use memory::read_number;
 pub(crate) use processor::Processor;
 pub use registers::Registers;
-pub(crate) use registers::{CALLS_MAX, DataStack};
+pub(crate) use registers::{CALLS_MAX, DataStack, Text};
 pub use trace::{OperandContent, TraceStep, Tracer};

@@ -25,7 +25,7 @@ pub(crate) enum Jobs<'a> {
     /// The cyclic program may submit.
     Cyclic(&'a mut Queue),
     /// A job may ask and cancel, but not submit [000:14327]. What it cancels is noted.
-    Job(&'a Queue, &'a mut Vec<i32>),
+    Job(&'a Queue, &'a mut Option<i32>),
 }
 
 /// How an instruction ended.
@@ -150,10 +150,15 @@ impl<'p> Processor<'p, '_> {
             Op::PullLogic => self.registers.logic = self.registers.stack.pull_logic()?,
             Op::PullWord => self.registers.word = self.registers.stack.pull()?,
             Op::PullIndex => self.registers.index = self.registers.stack.pull()?,
-            Op::LoadText { text } => self.registers.text = text::read(self.image, text, index)?,
+            Op::LoadText { text } => {
+                let mut reference = text::Reference::default();
+                let text = text::read(self.image, text, index, &mut reference)?;
+                text::replace(&mut self.registers.text, text);
+            }
             Op::AppendText { text } => {
-                let more = text::read(self.image, text, index)?;
-                text::append(&mut self.registers.text, &more);
+                let mut reference = text::Reference::default();
+                let more = text::read(self.image, text, index, &mut reference)?;
+                text::append(&mut self.registers.text, more);
             }
             Op::AssignText { string, indexed } => {
                 let string = text::string_number(*string, *indexed, index)?;
@@ -164,8 +169,9 @@ impl<'p> Processor<'p, '_> {
                 text::overwrite(self.image, string, &self.registers.text);
             }
             Op::CompareText { comparison, text } => {
-                let right = text::read(self.image, text, index)?;
-                let order = text::compare(&self.registers.text, &right);
+                let mut reference = text::Reference::default();
+                let right = text::read(self.image, text, index, &mut reference)?;
+                let order = text::compare(&self.registers.text, right);
                 self.registers.logic = comparison.holds(order);
             }
             Op::Submit { target } => self.registers.word = self.submit(*target),
@@ -180,7 +186,7 @@ impl<'p> Processor<'p, '_> {
                 let identifier = self.identifier(*number);
                 match &mut self.queue {
                     Jobs::Cyclic(queue) => queue.cancel(identifier),
-                    Jobs::Job(_, cancelled) => cancelled.push(identifier),
+                    Jobs::Job(_, cancelled) => **cancelled = Some(identifier),
                 }
             }
             Op::Jump { .. } | Op::Call { .. } | Op::Return { .. } | Op::Case { .. } => {

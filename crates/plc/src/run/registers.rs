@@ -1,5 +1,8 @@
 //! What the cyclic program and every submit job have of their own.
 
+use arrayvec::ArrayVec;
+use bahn_exchange::STRING_LENGTH;
+
 use crate::PlcError;
 
 /// Open brackets at most [000:13234].
@@ -21,13 +24,16 @@ pub struct Registers {
     /// Index of the next instruction.
     pub next: usize,
     /// String accumulator, without end character.
-    pub(crate) text: Vec<u8>,
+    pub(crate) text: Text,
     /// Buffered accumulators by bracket level.
     pub(crate) brackets: [i32; BRACKETS],
     pub(crate) stack: DataStack,
     /// Where calls return to.
-    pub(crate) calls: Vec<usize>,
+    pub(crate) calls: ArrayVec<usize, CALLS_MAX>,
 }
+
+/// Characters of a string. Nothing here allocates: scans run in the cycle of the control.
+pub(crate) type Text = ArrayVec<u8, STRING_LENGTH>;
 
 impl Registers {
     /// String accumulator.
@@ -56,10 +62,8 @@ impl Registers {
 
     /// Enters a module.
     pub(crate) fn call(&mut self, target: usize) -> Result<(), PlcError> {
-        if self.calls.len() >= CALLS_MAX {
-            return Err(PlcError::NestingTooDeep);
-        }
-        self.calls.push(self.next);
+        let result = self.calls.try_push(self.next);
+        result.map_err(|_| PlcError::NestingTooDeep)?;
         self.next = target;
         Ok(())
     }
@@ -78,7 +82,7 @@ impl Registers {
 /// The data stack: words of 16 bits, last in, first out [000:13658-13692].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct DataStack {
-    words: Vec<u16>,
+    words: ArrayVec<u16, { STACK_BYTES / 2 }>,
 }
 
 /// A logic operand lies in bit 7 of its word.
@@ -86,16 +90,15 @@ const LOGIC: u16 = 1 << 7;
 
 impl DataStack {
     /// Pushes 32 bits. The high word lies on top (inferred).
+    #[inline]
     pub(crate) fn push(&mut self, value: i32) -> Result<(), PlcError> {
-        if (self.words.len() + 2) * 2 > STACK_BYTES {
-            return Err(PlcError::StackOverflow);
-        }
-        self.words.push(value as u16);
-        self.words.push((value >> 16) as u16);
-        Ok(())
+        let words = [value as u16, (value >> 16) as u16];
+        let result = self.words.try_extend_from_slice(&words);
+        result.map_err(|_| PlcError::StackOverflow)
     }
 
     /// Pulls 32 bits.
+    #[inline]
     pub(crate) fn pull(&mut self) -> Result<i32, PlcError> {
         let (Some(high), Some(low)) = (self.words.pop(), self.words.pop()) else {
             return Err(PlcError::StackUnderflow);
@@ -105,11 +108,8 @@ impl DataStack {
 
     /// Pushes one bit.
     pub(crate) fn push_logic(&mut self, value: bool) -> Result<(), PlcError> {
-        if (self.words.len() + 1) * 2 > STACK_BYTES {
-            return Err(PlcError::StackOverflow);
-        }
-        self.words.push(if value { LOGIC } else { 0 });
-        Ok(())
+        let result = self.words.try_push(if value { LOGIC } else { 0 });
+        result.map_err(|_| PlcError::StackOverflow)
     }
 
     /// Pulls one bit.

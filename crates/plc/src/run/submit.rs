@@ -28,10 +28,19 @@ pub(super) struct Job {
 }
 
 /// The queue of jobs.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Queue {
     jobs: VecDeque<Job>,
     last_identifier: u8,
+}
+
+impl Default for Queue {
+    fn default() -> Queue {
+        Queue {
+            jobs: VecDeque::with_capacity(JOBS_MAX),
+            last_identifier: 0,
+        }
+    }
 }
 
 impl Queue {

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use bahn_exchange::{Image, STRING_LENGTH, STRINGS};
 
+use super::registers::Text;
 use crate::PlcError;
 use crate::operand::TextOperand;
 
@@ -15,12 +16,15 @@ const SUBSTITUTE: u8 = 0x1a;
 /// Highest line that an index may lead to [000:12047].
 const INDEXED_LINE_MAX: i32 = 999;
 
-/// The characters that an operand means.
-pub(super) fn read(image: &Image, operand: &TextOperand, index: i32) -> Result<Vec<u8>, PlcError> {
+/// The characters that an operand means. A reference to a text file is written into `reference`.
+pub(super) fn read<'a>(
+    image: &'a Image,
+    operand: &'a TextOperand,
+    index: i32,
+    reference: &'a mut Reference,
+) -> Result<&'a [u8], PlcError> {
     match operand {
-        TextOperand::Memory { string, indexed } => {
-            Ok(image.text(string_number(*string, *indexed, index)?).to_vec())
-        }
+        TextOperand::Memory { string, indexed } => Ok(image.text(string_number(*string, *indexed, index)?)),
         TextOperand::Part { string } => {
             let start = usize::try_from(index as i16).map_err(|_| PlcError::IndexOutOfRange)?;
             let rest = image
@@ -28,15 +32,16 @@ pub(super) fn read(image: &Image, operand: &TextOperand, index: i32) -> Result<V
                 .get(start..)
                 .filter(|rest| !rest.is_empty())
                 .ok_or(PlcError::IndexOutOfRange)?;
-            Ok(rest
-                .iter()
-                .copied()
-                .take_while(|character| *character != 0)
-                .collect())
+            let end = rest.iter().position(|character| *character == 0);
+            Ok(end.and_then(|end| rest.get(..end)).unwrap_or(rest))
         }
-        TextOperand::Literal(text) => Ok(text.clone()),
-        TextOperand::Message { line, indexed } => reference(b'E', line_number(*line, *indexed, index)?),
-        TextOperand::Dialogue { line, indexed } => reference(b'D', line_number(*line, *indexed, index)?),
+        TextOperand::Literal(text) => Ok(text),
+        TextOperand::Message { line, indexed } => {
+            Ok(reference.write(b'E', line_number(*line, *indexed, index)?))
+        }
+        TextOperand::Dialogue { line, indexed } => {
+            Ok(reference.write(b'D', line_number(*line, *indexed, index)?))
+        }
     }
 }
 
@@ -61,10 +66,22 @@ fn line_number(line: u16, indexed: bool, index: i32) -> Result<u16, PlcError> {
 
 /// `<SUB>E010`: replaced by the line of the file when the text is shown or sent. Lines from 1000 on have
 /// four digits (inferred) [000:14079-14084].
-fn reference(file: u8, line: u16) -> Result<Vec<u8>, PlcError> {
-    let mut text = vec![SUBSTITUTE, file];
-    text.extend(format!("{line:03}").bytes());
-    Ok(text)
+#[derive(Default)]
+pub(super) struct Reference([u8; 6]);
+
+impl Reference {
+    fn write(&mut self, file: u8, line: u16) -> &[u8] {
+        let digit = |divisor: u16| b'0' + (line / divisor % 10) as u8;
+        let [thousands, hundreds, tens, ones] = [1000, 100, 10, 1].map(digit);
+        let length = if line < 1000 {
+            self.0 = [SUBSTITUTE, file, hundreds, tens, ones, 0];
+            5
+        } else {
+            self.0 = [SUBSTITUTE, file, thousands, hundreds, tens, ones];
+            6
+        };
+        self.0.get(..length).unwrap_or(&self.0)
+    }
 }
 
 /// Compares two strings by character codes; of two references to one file the lines are compared, not the
@@ -85,9 +102,15 @@ fn referred_line(text: &[u8]) -> Option<(u8, u16)> {
 }
 
 /// Appends characters, as many as fit (inferred) [000:14105-14118].
-pub(super) fn append(text: &mut Vec<u8>, more: &[u8]) {
+pub(super) fn append(text: &mut Text, more: &[u8]) {
     let room = TEXT_LENGTH_MAX.saturating_sub(text.len());
-    text.extend(more.iter().take(room));
+    text.extend(more.iter().take(room).copied());
+}
+
+/// Replaces the characters.
+pub(super) fn replace(text: &mut Text, by: &[u8]) {
+    text.clear();
+    text.extend(by.iter().take(STRING_LENGTH).copied());
 }
 
 /// Overwrites the beginning of a string memory: the end character is not copied [000:14137-14154].

@@ -70,17 +70,23 @@ impl TraceStep<'_> {
             | Op::Reply { number }
             | Op::Cancel { number } => OperandContent::Number(read_number(self.image, *number, index)),
             Op::LoadText { text } | Op::AppendText { text } | Op::CompareText { text, .. } => {
-                OperandContent::Text(super::text::read(self.image, text, index).unwrap_or_default())
+                self.text_content(text, index)
             }
             Op::AssignText { string, indexed } | Op::OverwriteText { string, indexed } => {
                 let text = TextOperand::Memory {
                     string: *string,
                     indexed: *indexed,
                 };
-                OperandContent::Text(super::text::read(self.image, &text, index).unwrap_or_default())
+                self.text_content(&text, index)
             }
             _ => return None,
         })
+    }
+
+    fn text_content(&self, operand: &TextOperand, index: i32) -> OperandContent {
+        let mut reference = super::text::Reference::default();
+        let text = super::text::read(self.image, operand, index, &mut reference);
+        OperandContent::Text(text.unwrap_or_default().to_vec())
     }
 
     /// The line of source text.
