@@ -225,6 +225,9 @@ impl Rig {
 
     /// Control voltage, EMERGENCY STOP test, reference run.
     pub fn power_on(&mut self) {
+        if self.messages() == ["POWER INTERRUPTED"] {
+            self.command("ce");
+        }
         self.until(10.0, "the reference run is asked for", |rig| {
             rig.control.snapshot().mode == Mode::Reference
         });
