@@ -230,6 +230,10 @@ fn traces_show_executed_lines() {
             .contains("cycle 1, MAIN.PLC")
     );
     assert_eq!(folder.bahn("plc run MAIN.PLC --trace 3..2").code(), 2);
+    folder.write("MAIN.PLC", "L K-1\nA K+43\n= W8\nEM\n");
+    let table = folder.bahn("plc trace MAIN.PLC --hex").out();
+    let columns: Vec<_> = table.lines().nth(3).unwrap().split_whitespace().collect();
+    assert_eq!(columns, ["2", "A", "K+43", "2Bh", "0", "2Bh"], "{table}");
 }
 
 #[test]
