@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use bahn_parameters::ControlModel;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
+use crate::mp::MpOptions;
 use crate::plc::PlcOptions;
 use crate::{Outcome, UsageError, console};
 
@@ -36,6 +37,8 @@ pub(crate) enum Command {
     Fmt(FmtOptions),
     /// Compile, run and debug PLC programs.
     Plc(Box<PlcOptions>),
+    /// Check, explain, compare and write lists of machine parameters.
+    Mp(Box<MpOptions>),
     /// Say what a message of the control means and what to do about it.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainOptions),

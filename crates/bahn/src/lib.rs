@@ -8,7 +8,8 @@
 //!   other rooms;
 //! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
 //!   `path_csv`, `path_svg` and `cutting` take the path elements;
-//! - `check`, `format`, `explain`: the other subcommands; `plc`: the group `bahn plc`;
+//! - `check`, `format`, `explain`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
+//!   `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
@@ -23,6 +24,7 @@ mod explain;
 mod files;
 mod format;
 mod interrupt;
+mod mp;
 mod path_csv;
 mod path_svg;
 mod plc;
@@ -53,6 +55,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Check(options) => check::command(options),
         cli::Command::Fmt(options) => format::command(options),
         cli::Command::Plc(options) => plc::command(options),
+        cli::Command::Mp(options) => mp::command(options),
         cli::Command::Explain(options) => explain::command(options),
         cli::Command::Completions(options) => cli::completions(options),
     };

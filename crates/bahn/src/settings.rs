@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use bahn_interpreter::{ContourPocketRules, MFunctionRules, ProbeRules, Rules};
+use bahn_interpreter::Rules;
 use bahn_motion::{AuxiliaryTimes, Limits};
-use bahn_parameters::{ControlModel, ParameterList, ScaledAxes};
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, Position};
 
 use crate::UsageError;
@@ -55,54 +55,15 @@ pub(crate) fn interpreter(
     let model = list.model();
     Ok(bahn_interpreter::Settings {
         model,
-        rules: rules(list),
+        rules: Rules::of(list),
         tools: machine.tools.as_deref().map(tool_table::load).transpose()?,
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
+        tool_length_mm: None,
         skip_blocks: run.skip_blocks,
         strict: run.strict,
         max_blocks_without_motion: run.max_blocks,
     })
-}
-
-/// What the machine parameters say about how programs run. The datum of a test run is machine zero.
-fn rules(list: &ParameterList) -> Rules {
-    let pocket = list.contour_pocket();
-    let m = list.m_functions();
-    let tapping = list.tapping();
-    let probe = list.probe();
-    let [least, greatest] = tapping.override_percent;
-    Rules {
-        arc_tolerance_mm: list.arc_tolerance_mm(),
-        scaling_in_plane_only: list.scaled_axes() == ScaledAxes::WorkingPlane,
-        probe_keeps_tool: probe.keeps_tool_data,
-        contour_pocket: ContourPocketRules {
-            channel_clockwise: pocket.pocket_clockwise,
-            clear_first: pocket.clear_out_first,
-            merge_programmed: pocket.merge_programmed,
-            per_infeed: pocket.each_infeed,
-            stay_at_clearance: pocket.end_at_clearance,
-        },
-        overlap: list.pocket_overlap(),
-        m_functions: MFunctionRules {
-            m6_stops: m.m6_stops,
-            m89_calls_cycle: m.m89_calls_cycle,
-            axes_wait: m.axes_wait,
-            m103_enabled: m.m103_works,
-        },
-        tapping_override_percent: (least, greatest),
-        orient_before_rigid_tapping: tapping.orientation,
-        machine_datum: all_axes(|axis| list.m92_datum(axis)).into(),
-        probe: ProbeRules {
-            feed_mm_min: probe.feed_mm_min,
-            range_mm: probe.range_mm,
-            clearance_mm: probe.clearance_mm,
-            rapid_mm_min: probe.rapid_mm_min,
-            ..ProbeRules::default()
-        },
-        speed_max_rpm: list.spindle_speed_max_rpm(),
-        ..Rules::default()
-    }
 }
 
 /// The limits of motion.
@@ -237,27 +198,5 @@ mod tests {
         ] {
             assert!(read(wrong).is_err(), "{wrong:?}");
         }
-    }
-
-    #[test]
-    fn rules_follow_the_list() {
-        let mut list = ParameterList::reference(ControlModel::Tnc415b);
-        for assignment in [
-            "7420=%01101",
-            "7430=0.9",
-            "7410=1",
-            "7440=%00001",
-            "7110.0=80",
-            "950.2=-7",
-        ] {
-            list.assign(assignment).unwrap();
-        }
-        let rules = rules(&list);
-        assert_eq!(rules.contour_pocket, ContourPocketRules::from_bits(0b01101));
-        assert_eq!(rules.m_functions, MFunctionRules::from_bits(0b00001));
-        assert_eq!(rules.overlap, 0.9);
-        assert!(rules.scaling_in_plane_only);
-        assert_eq!(rules.tapping_override_percent.0, 80.0);
-        assert_eq!(rules.machine_datum[Axis::Z], -7.0);
     }
 }

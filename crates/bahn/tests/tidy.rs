@@ -15,6 +15,21 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("workpiece", &["path"]),
     ("exchange", &[]),
     ("plc", &["exchange", "parameters"]),
+    ("servo", &["parameters"]),
+    ("machine", &["servo"]),
+    (
+        "control",
+        &[
+            "path",
+            "parameters",
+            "program",
+            "interpreter",
+            "motion",
+            "exchange",
+            "plc",
+            "servo",
+        ],
+    ),
     (
         "bahn",
         &[
@@ -26,6 +41,9 @@ const ROOMS: &[(&str, &[&str])] = &[
             "workpiece",
             "exchange",
             "plc",
+            "servo",
+            "machine",
+            "control",
         ],
     ),
 ];

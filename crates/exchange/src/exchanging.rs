@@ -112,6 +112,12 @@ impl Exchange {
         }
     }
 
+    /// Code number 531 210: erases what power-off keeps, on both sides [000:11581].
+    pub fn erase_retained(&mut self) {
+        self.nc.erase_retained();
+        self.plc.erase_retained();
+    }
+
     /// RESET: everything but M1000-M1999 and B0-B127 is cleared on both sides [000:11579-11584]. That
     /// markers outside M1000-M1999 are cleared is inferred.
     pub fn reset(&mut self) {

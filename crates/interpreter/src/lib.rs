@@ -162,6 +162,36 @@ impl Interpreter {
         self.position = checkpoint.position;
     }
 
+    /// Says where the axes really stand, workpiece coordinates: after a stop inside a block, or after they
+    /// were moved. What was on its way is dropped; radius compensation begins anew with the next block.
+    pub fn relocate(&mut self, position: &Position) {
+        self.run.contour = Contour::default();
+        self.run.out = Output::default();
+        self.run.modal.nominal = *position;
+        self.run.modal.actual = *position;
+        self.run.modal.last_move = None;
+        self.waiting = None;
+        self.position = *position;
+    }
+
+    /// Goes on at a block of the main program, with everything else as it is; calls and repeats that are
+    /// open are left.
+    pub fn goto(&mut self, block: u32) {
+        self.run.at = flow::Position::at(0, block);
+        self.ended = None;
+        self.enter_unit();
+    }
+
+    /// Sets a Q parameter from outside: the PLC, or the operator.
+    pub fn set_q(&mut self, number: u16, value: f64) {
+        self.run.q.preassign(number, value);
+    }
+
+    /// The block that is executed next.
+    pub fn at(&self) -> BlockRef {
+        self.run.at.block_ref()
+    }
+
     /// Executes blocks until a step is finished or the run ends.
     fn advance(&mut self) {
         while self.run.out.queue.is_empty() && self.ended.is_none() {

@@ -33,6 +33,8 @@ pub(crate) struct Modal {
     pub paraxial: Compensation,
     /// Tool in the spindle.
     pub tool: Option<Tool>,
+    /// Length that the position in the tool axis contains, mm; `None` as long as nobody knows it.
+    pub length_mm: Option<f64>,
     /// Spindle speed, rpm.
     pub speed_rpm: f64,
     pub spindle: Spindle,
@@ -104,7 +106,7 @@ pub(crate) struct LastMove {
 }
 
 impl Modal {
-    pub fn new(start: Position) -> Modal {
+    pub fn new(start: Position, length_mm: Option<f64>) -> Modal {
         Modal {
             nominal: start,
             actual: start,
@@ -117,6 +119,7 @@ impl Modal {
             compensation: Compensation::Off,
             paraxial: Compensation::Off,
             tool: None,
+            length_mm,
             speed_rpm: 0.0,
             spindle: Spindle::Undefined,
             feed_law: FeedLaw::Centre,

@@ -235,7 +235,13 @@ impl Run {
         let mut nominal = self.modal.nominal;
         for (axis, word) in motion.coordinates.iter() {
             let value = self.q.value(word.value)? * self.axis_unit(axis);
-            let zero = settings.rules.machine_zero[axis];
+            // Machine coordinates are those of the spindle nose, not of the tool's tip (inferred: a position
+            // for tool changes must not depend on the tool).
+            let length = match self.modal.tool {
+                Some(tool) if tool.axis == axis => tool.shape.length,
+                _ => 0.0,
+            };
+            let zero = settings.rules.machine_zero[axis] - length;
             nominal[axis] = match functions.reference {
                 _ if word.incremental => known(nominal[axis]) + value,
                 Reference::MachineZero => zero + value,

@@ -55,7 +55,7 @@ pub(crate) struct Run {
 impl Run {
     pub fn new(settings: &Settings, unit: Unit) -> Run {
         let mut q = QTable::new(usize::from(settings.model.limits().q_max) + 1);
-        let modal = Modal::new(settings.start);
+        let modal = Modal::new(settings.start, settings.tool_length_mm);
         q.preassign(preassigned::TOOL_AXIS, -1.0);
         q.preassign(preassigned::SPINDLE, modal.spindle.q110());
         q.preassign(preassigned::OVERLAP, settings.rules.overlap);

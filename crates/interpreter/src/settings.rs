@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use bahn_parameters::ControlModel;
-use bahn_path::{Position, ToolShape};
+use bahn_parameters::{ControlModel, ParameterList, ScaledAxes};
+use bahn_path::{Axis, Position, ToolShape};
 
 /// Everything a run depends on beside the program.
 #[derive(Clone, Debug)]
@@ -18,6 +18,9 @@ pub struct Settings {
     pub q_values: Vec<(u16, f64)>,
     /// Where the axes stand before the start, mm and degrees; axes without a position stay unknown.
     pub start: Position,
+    /// Length of the tool that is in the spindle before the start, mm. `None` when nobody knows: the first
+    /// TOOL CALL then leaves the position as it is.
+    pub tool_length_mm: Option<f64>,
     /// Pass over blocks with `/`.
     pub skip_blocks: bool,
     /// Refuse what is otherwise accepted with a warning (sign of cycle parameters, tools without data).
@@ -34,6 +37,7 @@ impl Default for Settings {
             tools: None,
             q_values: Vec::new(),
             start: Position::UNKNOWN,
+            tool_length_mm: None,
             skip_blocks: false,
             strict: false,
             max_blocks_without_motion: 10_000_000,
@@ -73,6 +77,49 @@ pub struct Rules {
     pub probe: ProbeRules,
     /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
     pub speed_max_rpm: f64,
+}
+
+impl Rules {
+    /// What a list of machine parameters says. Machine zero is that of the workpiece: the caller knows where
+    /// the workpiece lies.
+    pub fn of(list: &ParameterList) -> Rules {
+        let pocket = list.contour_pocket();
+        let m = list.m_functions();
+        let tapping = list.tapping();
+        let probe = list.probe();
+        let [least, greatest] = tapping.override_percent;
+        Rules {
+            arc_tolerance_mm: list.arc_tolerance_mm(),
+            scaling_in_plane_only: list.scaled_axes() == ScaledAxes::WorkingPlane,
+            probe_keeps_tool: probe.keeps_tool_data,
+            contour_pocket: ContourPocketRules {
+                channel_clockwise: pocket.pocket_clockwise,
+                clear_first: pocket.clear_out_first,
+                merge_programmed: pocket.merge_programmed,
+                per_infeed: pocket.each_infeed,
+                stay_at_clearance: pocket.end_at_clearance,
+            },
+            overlap: list.pocket_overlap(),
+            m_functions: MFunctionRules {
+                m6_stops: m.m6_stops,
+                m89_calls_cycle: m.m89_calls_cycle,
+                axes_wait: m.axes_wait,
+                m103_enabled: m.m103_works,
+            },
+            tapping_override_percent: (least, greatest),
+            orient_before_rigid_tapping: tapping.orientation,
+            machine_datum: Axis::ALL.map(|axis| list.m92_datum(axis)).into(),
+            probe: ProbeRules {
+                feed_mm_min: probe.feed_mm_min,
+                range_mm: probe.range_mm,
+                clearance_mm: probe.clearance_mm,
+                rapid_mm_min: probe.rapid_mm_min,
+                ..ProbeRules::default()
+            },
+            speed_max_rpm: list.spindle_speed_max_rpm(),
+            ..Rules::default()
+        }
+    }
 }
 
 impl Default for Rules {
@@ -186,5 +233,33 @@ impl Default for ProbeRules {
             radius_mm: 2.0,
             length_mm: 0.0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+    use super::*;
+
+    #[test]
+    fn rules_follow_the_list() {
+        let mut list = ParameterList::reference(ControlModel::Tnc415b);
+        for assignment in [
+            "7420=%01101",
+            "7430=0.9",
+            "7410=1",
+            "7440=%00001",
+            "7110.0=80",
+            "950.2=-7",
+        ] {
+            list.assign(assignment).unwrap();
+        }
+        let rules = Rules::of(&list);
+        assert_eq!(rules.contour_pocket, ContourPocketRules::from_bits(0b01101));
+        assert_eq!(rules.m_functions, MFunctionRules::from_bits(0b00001));
+        assert_eq!(rules.overlap, 0.9);
+        assert!(rules.scaling_in_plane_only);
+        assert_eq!(rules.tapping_override_percent.0, 80.0);
+        assert_eq!(rules.machine_datum[Axis::Z], -7.0);
     }
 }

@@ -93,6 +93,7 @@ impl Run {
             .unwrap_or(0.0);
         let axis = axis.or(self.modal.tool.map(|tool| tool.axis)).unwrap_or(Axis::Z);
         self.set_tool_axis(axis)?;
+        self.change_length(axis, shape.length);
         self.modal.tool = Some(Tool {
             number,
             axis,
@@ -121,6 +122,21 @@ impl Run {
         };
         self.hold(functions)?;
         Ok(())
+    }
+
+    /// The axes stand still at a tool change, so the tip of a longer tool stands lower: the position in the
+    /// tool axis changes by the difference of the lengths, and the next block starts there.
+    fn change_length(&mut self, axis: Axis, length: f64) {
+        let old_axis = self.modal.tool.map_or(axis, |tool| tool.axis);
+        let Some(before) = self.modal.length_mm.replace(length) else {
+            return;
+        };
+        if old_axis != axis || before != length {
+            for position in [&mut self.modal.nominal, &mut self.modal.actual] {
+                position[old_axis] += before;
+                position[axis] -= length;
+            }
+        }
     }
 
     fn tool_number(&self, tool: Value, settings: &Settings) -> Result<u32, Fault> {

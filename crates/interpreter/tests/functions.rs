@@ -158,3 +158,17 @@ fn rotary_axes() {
     assert_eq!(lengths[1..], [90.0, 30.0]);
     assert_eq!(run.position[Axis::C], 135.0);
 }
+
+/// At a tool change the axes stand: the tip of a tool that is 15 mm longer stands 15 mm lower, and IZ counts
+/// from there. M91 positions the spindle nose: with a tool of 25 mm its tip is 25 mm below.
+#[test]
+fn tip_follows_the_length_at_a_tool_change() {
+    let run = run(
+        "TOOL DEF 1 L+10 R+1\nTOOL DEF 2 L+25 R+1\nTOOL CALL 1 Z S500\nL X+0 Y+0 Z+100 R0 FMAX\n\
+                   TOOL CALL 2 Z S500\nL X+5 R0 FMAX\nL IZ+10 R0 FMAX\nL Z+0 R0 FMAX M91",
+    );
+    let moves: Vec<_> = run.moves().map(|e| (xyz(&e.start), xyz(&e.end))).collect();
+    assert_eq!(moves[1], ([0.0, 0.0, 85.0], [5.0, 0.0, 85.0]));
+    assert_eq!(moves[2], ([5.0, 0.0, 85.0], [5.0, 0.0, 95.0]));
+    assert_eq!(moves[3].1, [5.0, 0.0, -25.0]);
+}

@@ -16,6 +16,8 @@
 //! - `τ` is the corner's own time: half the time to the corner before and to the next one, each at most
 //!   T/2. No two corners own the same time, so many small ones in a row share a cycle, and in the limit
 //!   of short lines on a curve the law becomes the one of radial acceleration, `v² <= r · a`;
+//! - an arc within one cycle of a corner between lines takes its acceleration towards the centre out of
+//!   the reserve of that corner too, as there are windows that see both;
 //! - [`SHARE`] covers that a step acts at one instant of its own time, in the worst case the middle of
 //!   the triangle.
 
@@ -45,6 +47,68 @@ pub(crate) enum Joint {
     Corner(Corner),
 }
 
+/// The path since the corner or stop before.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Run {
+    /// Its length, mm.
+    way: f64,
+    /// The last arc of it.
+    bend: Option<Bend>,
+}
+
+/// An arc, some way from a corner.
+#[derive(Clone, Copy, Debug)]
+struct Bend {
+    /// Greatest curvature of an axis at its end next to the corner, 1/mm.
+    curvature: f64,
+    /// In a run the way from its start to the end of the arc, at a corner that between the two, mm.
+    way: f64,
+}
+
+impl Run {
+    /// The path goes on with a motion.
+    #[inline]
+    pub(crate) fn add(&mut self, motion: &Motion) {
+        self.way += motion.length;
+        if let Some([_, curvature]) = motion.bends() {
+            self.bend = Some(Bend {
+                curvature,
+                way: self.way,
+            });
+        }
+    }
+
+    /// Whether more of it changes nothing about the speed at the corner before it.
+    #[inline]
+    pub(crate) fn is_enough_for(&self, corner: &Corner) -> bool {
+        self.way >= corner.reach(corner.speed)
+    }
+
+    /// The arc at some distance from the end of the run.
+    #[inline]
+    fn bend_before(&self) -> Option<Bend> {
+        let way_to = |bend: Bend| Bend {
+            way: self.way - bend.way,
+            ..bend
+        };
+        self.bend.map(way_to).filter(|bend| bend.way > 0.0)
+    }
+
+    /// At a corner the run begins again. An arc that ends there is near to the next corner too.
+    #[inline]
+    pub(crate) fn turn(&mut self) {
+        let ends_here = self.bend.filter(|bend| bend.way == self.way);
+        self.way = 0.0;
+        self.bend = ends_here.map(|bend| Bend { way: 0.0, ..bend });
+    }
+
+    /// At a stop the run begins again.
+    #[inline]
+    pub(crate) fn reset(&mut self) {
+        *self = Run::default();
+    }
+}
+
 /// A corner to pass. Its speed is known when the way to the next corner is.
 #[derive(Debug)]
 pub(crate) struct Corner {
@@ -57,13 +121,17 @@ pub(crate) struct Corner {
     /// What the path can gain in speed within half a cycle, mm/s.
     gain: f64,
     steps: Steps,
+    /// The nearest arcs before and after that do not begin or end at the corner itself.
+    bends: [Option<Bend>; 2],
+    /// Whether the one after is still to come.
+    bend_to_come: bool,
 }
 
 /// The velocity steps of a corner.
 #[derive(Debug)]
 enum Steps {
-    /// Between lines: the least `SHARE · reserve / |Δt|` of all axes, mm/s².
-    Lines(f64),
+    /// Between lines: the least `SHARE · reserve / |Δt|` and the least reserve of all axes, mm/s².
+    Lines { limit: f64, reserve: f64 },
     /// Next to an arc the reserve depends on the speed: bound less acceleration along the path,
     /// difference of direction and curvature, for each axis.
     Arcs(Box<ArcSteps>),
@@ -77,13 +145,13 @@ struct ArcSteps {
 }
 
 impl Joint {
-    /// The joint between two motions. `before` is the way since the corner or stop before it;
+    /// The joint between two motions. `run` is the path since the corner or stop before it;
     /// `any_angle` says that the corner is passed whatever its angle.
     #[inline]
     pub(crate) fn between(
         last: &Motion,
         next: &Motion,
-        before: f64,
+        run: &Run,
         any_angle: bool,
         dynamics: &Dynamics,
     ) -> Joint {
@@ -106,10 +174,12 @@ impl Joint {
             None => Joint::Smooth(speed),
             Some(steps) => Joint::Corner(Corner {
                 speed,
-                before,
+                before: run.way,
                 cycle: dynamics.cycle,
                 gain: 0.5 * dynamics.cycle * last.acceleration.max(next.acceleration),
                 steps,
+                bends: [run.bend_before(), None],
+                bend_to_come: to.curvature.is_none(),
             }),
         }
     }
@@ -129,21 +199,38 @@ fn cosine(from: &MotionEnd, to: &MotionEnd, rotary: bool) -> f64 {
 }
 
 impl Corner {
-    /// The way to the next corner from which on more of it changes nothing.
-    pub(crate) fn enough(&self) -> f64 {
-        self.cycle * (self.speed + self.gain)
+    /// The way of one cycle at a speed.
+    #[inline]
+    fn reach(&self, speed: f64) -> f64 {
+        self.cycle * (speed + self.gain)
     }
 
-    /// The speed of passing, mm/s, when the way to the next corner is at least `after`.
-    pub(crate) fn pass_speed(&self, after: f64) -> f64 {
-        let after = after.max(0.0);
+    /// After the corner and a `run` without a stop the path goes on with a motion.
+    #[inline]
+    pub(crate) fn meet(&mut self, next: &Motion, run: &Run) {
+        if self.bend_to_come
+            && let Some([curvature, _]) = next.bends()
+        {
+            self.bend_to_come = false;
+            self.bends[1] = Some(Bend {
+                curvature,
+                way: run.way,
+            });
+        }
+    }
+
+    /// The speed of passing, mm/s, when the path to the next corner is at least `after`.
+    pub(crate) fn pass_speed(&self, after: &Run) -> f64 {
+        let after = after.way.max(0.0);
         if self.allows(self.speed, after) {
             return self.speed;
         }
         match &self.steps {
-            Steps::Lines(limit) => self.solve(*limit, after).min(self.speed),
+            Steps::Lines { limit, .. } if self.bend(self.speed) == 0.0 => {
+                self.solve(*limit, after).min(self.speed)
+            }
             // Rare and monotone: halving until the speed is known to a part in 2^40.
-            Steps::Arcs(_) => {
+            Steps::Lines { .. } | Steps::Arcs(_) => {
                 let (mut low, mut high) = (0.0, self.speed);
                 for _ in 0..40 {
                     let middle = 0.5 * (low + high);
@@ -158,10 +245,24 @@ impl Corner {
         }
     }
 
+    /// Greatest curvature of the arcs nearby that a cycle at a speed reaches, 1/mm.
+    #[inline]
+    fn bend(&self, speed: f64) -> f64 {
+        let mut greatest = 0.0;
+        for bend in self.bends.iter().flatten() {
+            if bend.curvature > greatest && bend.way < self.reach(speed) {
+                greatest = bend.curvature;
+            }
+        }
+        greatest
+    }
+
     fn allows(&self, speed: f64, after: f64) -> bool {
         let time = self.own_time(speed, after);
+        let bend = self.bend(speed);
         match &self.steps {
-            Steps::Lines(limit) => speed <= limit * time,
+            Steps::Lines { limit, .. } if bend == 0.0 => speed <= limit * time,
+            Steps::Lines { limit, reserve } => speed <= limit * time * (1.0 - bend * speed * speed / reserve),
             Steps::Arcs(arcs) => {
                 let ArcSteps {
                     reserve,
@@ -170,7 +271,8 @@ impl Corner {
                 } = arcs.as_ref();
                 let step = speed / (SHARE * time);
                 (0..reserve.len()).all(|i| {
-                    change[i] <= NO_CHANGE || change[i] * step + curvature[i] * speed * speed <= reserve[i]
+                    let towards_centre = curvature[i].max(bend) * speed * speed;
+                    change[i] <= NO_CHANGE || change[i] * step + towards_centre <= reserve[i]
                 })
             }
         }
@@ -222,12 +324,16 @@ impl Steps {
             return None;
         }
         if from.curvature.is_none() && to.curvature.is_none() {
-            let mut limit = f64::INFINITY;
+            let (mut limit, mut least) = (f64::INFINITY, f64::INFINITY);
             for i in axes {
                 let own = SHARE * reserve[i] / change[i].max(NO_CHANGE);
                 limit = if own < limit { own } else { limit };
+                least = if reserve[i] < least { reserve[i] } else { least };
             }
-            return Some(Steps::Lines(limit));
+            return Some(Steps::Lines {
+                limit,
+                reserve: least,
+            });
         }
         let zero = [0.0; Axis::COUNT];
         let (c0, c1) = (from.curvature.unwrap_or(zero), to.curvature.unwrap_or(zero));

@@ -9,10 +9,12 @@ pub(crate) struct Gates {
     pub(crate) end: bool,
 }
 
-/// The end of the element at which the axes wait for a function.
+/// An end of an element, where the path can wait for functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wait {
+pub enum Gate {
+    /// Before its movement.
     Start,
+    /// After its movement.
     End,
 }
 
@@ -28,8 +30,8 @@ impl Gates {
         };
         for function in element.functions() {
             match wait(function) {
-                Some(Wait::Start) => gates.start = true,
-                Some(Wait::End) => gates.end = true,
+                Some(Gate::Start) => gates.start = true,
+                Some(Gate::End) => gates.end = true,
                 None => {}
             }
         }
@@ -37,14 +39,20 @@ impl Gates {
     }
 }
 
-/// Where the axes wait for a function, `None` when they do not (MP7440 bit 2) [004:54]. The place
-/// decides; in the midst of a movement, where nothing can wait, the type does.
-pub(crate) fn wait(function: &TechnologyFunction) -> Option<Wait> {
-    match (function.synchronisation, function.at) {
-        (Synchronisation::Mos, _) => None,
-        (_, At::Start) => Some(Wait::Start),
-        (_, At::End) => Some(Wait::End),
-        (Synchronisation::MvsSvs, At::Length(_)) => Some(Wait::Start),
-        (Synchronisation::MnsSns, At::Length(_)) => Some(Wait::End),
+/// Where the axes wait for a function, `None` when they do not (MP7440 bit 2) [004:54].
+pub(crate) fn wait(function: &TechnologyFunction) -> Option<Gate> {
+    match function.synchronisation {
+        Synchronisation::Mos => None,
+        Synchronisation::MvsSvs | Synchronisation::MnsSns => place(function),
+    }
+}
+
+/// The end of the element at which a function is output, `None` in the midst of the movement. Nothing
+/// can wait there: the type decides at which end a function that waits is output instead.
+pub(crate) fn place(function: &TechnologyFunction) -> Option<Gate> {
+    match (function.at, function.synchronisation) {
+        (At::Start, _) | (At::Length(_), Synchronisation::MvsSvs) => Some(Gate::Start),
+        (At::End, _) | (At::Length(_), Synchronisation::MnsSns) => Some(Gate::End),
+        (At::Length(_), Synchronisation::Mos) => None,
     }
 }

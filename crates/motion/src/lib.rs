@@ -6,7 +6,10 @@
 //!   planned to a stop;
 //! - [`Limits`] says what the machine can do: feed limits, accelerations, corners, overrides;
 //! - [`AuxiliaryTimes`] says how long tool changes, spindle starts and M functions take;
-//! - [`Sampler`] walks the planned path in contour cycles through [`Kinematics`].
+//! - [`Sampler`] walks the planned path in contour cycles through [`Kinematics`];
+//! - [`Interpolator`] does the same online: overrides, NC stop, single block and acknowledgements come at
+//!   any moment, and no cycle allocates;
+//! - [`PointToPoint`] moves one axis by itself, for jog, reference run and PLC positioning.
 //!
 //! The rules of planning:
 //! - along the path the smallest acceleration (MP1060) of the moving axes is effective, on the rising
@@ -58,17 +61,26 @@
 //! ```
 
 mod corner;
+mod drive;
 mod gate;
+mod interpolator;
 mod limits;
 mod motion;
 mod planner;
+mod point_to_point;
 mod profile;
+mod ramp;
+mod ring;
 mod sampler;
 mod times;
 mod window;
 
+pub use drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
+pub use gate::Gate;
+pub use interpolator::Interpolator;
 pub use limits::Limits;
 pub use planner::{Planned, PlannedStep, Planner};
+pub use point_to_point::{Aim, PointToPoint};
 pub use profile::Profile;
 pub use sampler::{Identity, Kinematics, Sample, Sampler};
 pub use times::AuxiliaryTimes;

@@ -88,6 +88,11 @@ impl Dynamics {
         }
     }
 
+    /// Other overrides, %.
+    pub(crate) fn set_overrides(&mut self, feed_percent: f64, rapid_percent: f64) {
+        (self.feed_override, self.rapid_override) = (feed_percent, rapid_percent);
+    }
+
     /// Greatest path speed, mm/s, of a movement: the programmed feed with its override, and no axis
     /// faster than it can be. `slowest` is the time that a mm of path takes the axis that needs longest
     /// for its part of it.
@@ -121,6 +126,6 @@ fn effective(percent: f64, law: OverrideLaw) -> f64 {
     percent.clamp(0.0, GREATEST_OVERRIDE_PERCENT) / 100.0
 }
 
-fn mm_s2(m_s2: f64) -> f64 {
+pub(crate) fn mm_s2(m_s2: f64) -> f64 {
     1000.0 * m_s2.max(LEAST_ACCELERATION_M_S2).min(f64::from(u16::MAX))
 }

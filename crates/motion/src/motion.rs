@@ -32,6 +32,10 @@ pub(crate) struct Motion {
     pub(crate) length: f64,
     /// Greatest path speed, mm/s; 0 when it cannot move.
     pub(crate) speed: f64,
+    /// The time, s, that a mm of path takes the axis that needs longest for its share of it.
+    pub(crate) slowest: f64,
+    /// Path speed that the radial acceleration allows, mm/s; infinite on lines.
+    pub(crate) radial_speed: f64,
     /// Path acceleration, mm/s².
     pub(crate) acceleration: f64,
     /// Whether the length counts degrees of the rotary axes.
@@ -81,9 +85,12 @@ impl Motion {
         let share = direction.map(f64::abs);
         let main_axes = delta[MAIN.len()..].iter().all(|d| *d == 0.0);
         let share = if main_axes { &share[MAIN] } else { &share[..] };
+        let slowest = slowest(share, dynamics);
         Some(Motion {
             length: length.min(LONGEST),
-            speed: dynamics.speed(element.feed, element.override_law, slowest(share, dynamics)),
+            speed: dynamics.speed(element.feed, element.override_law, slowest),
+            slowest,
+            radial_speed: f64::INFINITY,
             acceleration: acceleration(share, dynamics),
             rotary,
             main_axes,
@@ -113,7 +120,14 @@ impl Motion {
                 radial[0] * turn * r + radial[1] * outward,
             ]
         };
-        let curvature = |radial: Point2, r: f64| radial.map(|x| -x * r * turn * turn);
+        // Towards the centre, and around when the radius changes, as on a turning table.
+        let curvature = |radial: Point2, r: f64| {
+            let (centre, around) = (r * turn * turn, 2.0 * outward * turn);
+            [
+                -radial[0] * centre - radial[1] * around,
+                -radial[1] * centre + radial[0] * around,
+            ]
+        };
         let (start_direction, end_direction) = (tangent(from, r0), tangent(to, r1));
         let greatest = r0.max(r1);
         let fastest = (greatest * turn).hypot(outward);
@@ -137,10 +151,13 @@ impl Motion {
         } else {
             f64::INFINITY
         };
-        let speed = dynamics.speed(element.feed, element.override_law, slowest(&share, dynamics));
+        let slowest = slowest(&share, dynamics);
+        let speed = dynamics.speed(element.feed, element.override_law, slowest);
         Some(Motion {
             length: length.min(LONGEST),
             speed: speed.min(radial_speed),
+            slowest,
+            radial_speed,
             acceleration: acceleration(&share, dynamics),
             rotary,
             main_axes: false,
@@ -151,6 +168,13 @@ impl Motion {
                 curvature: [curvature(from, r0), curvature(to, r1)],
             }),
         })
+    }
+
+    /// Greatest curvature of an axis at the start and at the end, 1/mm; `None` for lines.
+    #[inline]
+    pub(crate) fn bends(&self) -> Option<[f64; 2]> {
+        let greatest = |curvature: Point2| curvature[0].abs().max(curvature[1].abs());
+        self.bend.as_ref().map(|bend| bend.curvature.map(greatest))
     }
 
     #[inline]

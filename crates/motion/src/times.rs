@@ -2,7 +2,7 @@
 
 use bahn_path::{Function, PathElement};
 
-use crate::gate::{Wait, wait};
+use crate::gate::{Gate, wait};
 
 /// How long the machine needs for what is no movement, s. Only functions for which the axes wait take
 /// time. A programmed stop takes none: waiting for the operator is no machining.
@@ -80,8 +80,8 @@ impl Stopwatch {
         for function in element.functions() {
             let time = self.time(&function.function).max(0.0);
             match wait(function) {
-                Some(Wait::Start) => waiting.before += time,
-                Some(Wait::End) => waiting.after += time,
+                Some(Gate::Start) => waiting.before += time,
+                Some(Gate::End) => waiting.after += time,
                 None => {}
             }
         }

@@ -122,6 +122,93 @@ impl Definition {
             .ok()
     }
 
+    /// The machine parameter that a text names: one with several indices must be named with its index.
+    ///
+    /// # Errors
+    /// [`ParameterError::UnknownNumber`] when the model has no such parameter,
+    /// [`ParameterError::IndexMissing`] when the number alone is ambiguous.
+    pub fn named(model: ControlModel, id: ParameterId) -> Result<&'static Definition, ParameterError> {
+        let found = Definition::find(model, id.number, id.index.unwrap_or(0));
+        let has_indices = || {
+            Definition::all(model)
+                .iter()
+                .any(|row| row.id.number == id.number)
+        };
+        match found {
+            Some(definition) if id.index.is_none() && definition.id.index.is_some() => {
+                Err(ParameterError::IndexMissing(id))
+            }
+            Some(definition) => Ok(definition),
+            None if id.index.is_none() && has_indices() => Err(ParameterError::IndexMissing(id)),
+            None => Err(ParameterError::UnknownNumber(id)),
+        }
+    }
+
+    /// The value of the list that the control makes when none is entered: standard colours, a programming
+    /// station, and the smallest value everywhere else [000:10066]. Whether the station is 1 or 2 is not
+    /// said; with PLC (inferred).
+    pub fn standard(&self) -> f64 {
+        // MP7210, and MP170 of the TNC 151/155, whose numbers end at 263.
+        let is_station = self.id.number == 7210 || self.id.number == 170;
+        let colour = self.recommended.strip_prefix("std ").and_then(parse_number);
+        if is_station {
+            1.0
+        } else {
+            colour.unwrap_or(if self.min.is_finite() { self.min } else { 0.0 })
+        }
+    }
+
+    /// Whether a list of the model may lack the parameter: those of certain software versions or options,
+    /// and those that the manual's list does not print (inferred; the manual calls any missing entry a
+    /// fault [000:10050-10062]).
+    pub fn is_optional(&self) -> bool {
+        const OF_SOFTWARE: [&str; 7] = ["from ", "only ", "243 ", "259 36", "dropped", "TT 110", "option"];
+        OF_SOFTWARE.iter().any(|start| self.versions.starts_with(start))
+            || self.versions.contains("; from ")
+            || self.versions.contains("; added ")
+            || self.notes.starts_with("NOT IN THE PRINTED LIST")
+    }
+
+    /// The functional group of the number [000:9978-9990]; none on the TNC 151/155, whose numbers are not
+    /// grouped.
+    pub fn group(&self) -> Option<&'static str> {
+        const GROUPS: [(u16, u16, &str); 15] = [
+            (264, 999, "Measuring systems and machine"),
+            (1000, 1399, "Positioning"),
+            (1400, 1699, "Feed pre-control"),
+            (1700, 1999, "Servo lag"),
+            (3000, 3999, "Spindle"),
+            (4000, 4999, "Integral PLC"),
+            (5000, 5999, "Data interface"),
+            (6000, 6199, "3D touch probe"),
+            (6200, 6299, "Digitizing with TS 120"),
+            (6300, 6499, "Digitizing with TM 110"),
+            (6500, 6599, "Tool measurement with TT 110"),
+            (7100, 7199, "Tapping"),
+            (7200, 7399, "Display and programming"),
+            (7400, 7599, "Machining and program run"),
+            (7600, 7699, "Hardware"),
+        ];
+        // Numbers up to 263 mean something else in each list; only the new one has sources in manual 000.
+        if self.id.number < 264 && self.source.starts_with("000") {
+            return Some("Measuring systems and machine");
+        }
+        let found = GROUPS
+            .iter()
+            .find(|(first, last, _)| (*first..=*last).contains(&self.id.number));
+        found.map(|(_, _, name)| *name)
+    }
+
+    /// A line of a list: number, value as it is written, name and what the index stands for.
+    pub fn line(&self, value: &str) -> String {
+        let axis = if self.axis.is_empty() {
+            String::new()
+        } else {
+            format!(", {}", self.axis)
+        };
+        format!("{:<9}: {value:<12} ;{}{axis}", self.id.to_string(), self.name)
+    }
+
     /// Checks a value and rounds it to the decimal places that are stored [000:10015].
     ///
     /// # Errors
@@ -130,13 +217,19 @@ impl Definition {
     pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
         let scale = 10f64.powi(self.decimals.into());
         let rounded = (value * scale).round() / scale;
-        if !rounded.is_finite() || !(self.min..=self.max).contains(&rounded) {
+        // Binary and hexadecimal numbers have no sign.
+        let unsigned = self.format != Format::Decimal && rounded < 0.0;
+        if !rounded.is_finite() || unsigned || !(self.min..=self.max).contains(&rounded) {
             return Err(ParameterError::OutOfRange {
                 id: self.id,
                 value,
                 min: self.min,
                 max: self.max,
             });
+        }
+        // What has no printed range is stored in 32 bits (inferred).
+        if self.min.is_infinite() && (rounded * scale).abs() > f64::from(u32::MAX) {
+            return Err(ParameterError::NotStorable(self.id, value));
         }
         if self.decimals == 0 && rounded != value {
             return Err(ParameterError::NotWhole(self.id, value));
@@ -173,6 +266,8 @@ impl Definition {
                 !versions.starts_with("TNC 4")
                     && !versions.starts_with("not TNC 407")
                     && !self.axis.starts_with("5th")
+                    // The TNC 360 has MP7470 itself [003:7424-7430].
+                    && !self.notes.starts_with("replaces MP7470")
             }
             ControlModel::Tnc407 => {
                 !versions.starts_with("TNC 425 only")

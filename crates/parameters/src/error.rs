@@ -35,6 +35,12 @@ pub enum ParameterError {
     /// The value has a fraction, and the parameter takes whole numbers.
     #[error("{0}: {1} is no whole number")]
     NotWhole(ParameterId, f64),
+    /// The value needs more bits than there are.
+    #[error("{0}: {1} cannot be stored")]
+    NotStorable(ParameterId, f64),
+    /// The list does not define a parameter of the model.
+    #[error("{0} is not defined")]
+    NotDefined(ParameterId),
     /// The list gives the parameter twice; the first value counts.
     #[error("{id} is already defined in line {first_line}")]
     DoublyDefined {
@@ -56,6 +62,38 @@ impl ParameterError {
             | ParameterError::OutOfRange { .. }
             | ParameterError::NotWhole(..) => 3,
             ParameterError::DoublyDefined { .. } => 4,
+            ParameterError::NotDefined(_) => 5,
+            ParameterError::NotStorable(..) => 6,
+        }
+    }
+
+    /// The text that the control shows with [`ParameterError::number`] [000:10056-10062].
+    pub fn control_text(&self) -> &'static str {
+        const TEXTS: [&str; 7] = [
+            "No MP number found",
+            "Invalid MP number",
+            "No separator \";\" found",
+            "Entry value incorrect",
+            "MP doubly defined",
+            "MP not defined",
+            "MP can not be stored",
+        ];
+        TEXTS.get(usize::from(self.number())).copied().unwrap_or_default()
+    }
+
+    /// The parameter that is meant, when its number could be read.
+    pub fn id(&self) -> Option<ParameterId> {
+        match *self {
+            ParameterError::NoNumber => None,
+            ParameterError::UnknownNumber(id)
+            | ParameterError::IndexMissing(id)
+            | ParameterError::NoSeparator(id, _)
+            | ParameterError::NotANumber(id, _)
+            | ParameterError::OutOfRange { id, .. }
+            | ParameterError::NotWhole(id, _)
+            | ParameterError::NotStorable(id, _)
+            | ParameterError::NotDefined(id)
+            | ParameterError::DoublyDefined { id, .. } => Some(id),
         }
     }
 }
@@ -66,6 +104,10 @@ impl ParameterError {
 pub struct ListError {
     /// Line of the text, from 1.
     pub line: usize,
+    /// First character of the line that is meant, from 1.
+    pub column: usize,
+    /// Number of characters that are meant.
+    pub length: usize,
     /// What is wrong there.
     pub error: ParameterError,
 }

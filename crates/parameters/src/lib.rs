@@ -5,8 +5,9 @@
 //! - [`MessageId`]: the control's messages with text, cause, remedy and source; [`error_text`] for the
 //!   numbered ones;
 //! - [`Definition`]: what the manual's list says of each machine parameter;
-//! - [`ParameterList`]: the machine parameters of one machine, read and written as text, with typed
-//!   getters that answer for every model.
+//! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
+//!   model: [`ParameterList::axis_parameters`], [`ParameterList::spindle_parameters`] and so on;
+//! - [`ListText`]: the text of a list, whose values change in their places.
 //!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
@@ -18,15 +19,19 @@
     reason = "citations as [003:7868] look like links"
 )]
 
+mod consistency;
 mod definition;
 mod error;
 mod fn14;
 mod limits;
 mod list;
+mod meaning;
 mod message;
 mod model;
 mod settings;
+mod text;
 
+pub use consistency::Inconsistency;
 pub use definition::{Change, Definition, Format, ParameterId, Reaction};
 pub use error::{ListError, ParameterError};
 pub use fn14::error_text;
@@ -35,6 +40,13 @@ pub use list::ParameterList;
 pub use message::MessageId;
 pub use model::{ControlModel, UnknownModel};
 pub use settings::{
-    ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
-    Tapping,
+    AxisParameters, CompensationParameters, ContourPocket, DatumParameters, Decimal, DigitalSpeedParameters,
+    EncoderParameters, FreeOutput, Gear, GearSignal, GraphicsSettings, Handwheel, HandwheelParameters,
+    LagParameters, MFunctions, MonitoringInput, MonitoringParameters, MotionParameters, OperationParameters,
+    OrientationParameters, OutputParameters, OverrideParameters, OverrideSteps, PlcParameters,
+    PrecontrolParameters, ProbeSettings, ProgramEndClearing, ReferenceParameters, ReferenceType,
+    RestartParameters, ScaledAxes, SpeedCodes, SpindleOutput, SpindleParameters, SpindlePolarity,
+    SpindleRamps, Station, StrobeTimes, Synchronization, Tapping, TappingParameters, ToolOutput,
+    ToolOutputKind, ToolParameters, TravelParameters, UserParameter,
 };
+pub use text::{Entry, ListText};

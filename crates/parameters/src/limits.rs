@@ -134,6 +134,9 @@ limits! {
     /// Period of the fine interpolation between them, µs: TNC 415 B of the contour, TNC 425 of the
     /// speed loop [000:212-224].
     fine_cycle_us: Option<u32> = None, None, None, None, Some(600), Some(600);
+    /// Bits of the converter behind a nominal value output, for 10 V of either sign: 16 [000:4863], 14
+    /// [000:4863], TNC 151/155 steps of 2.44 mV [001:2573-2585]; TNC 360 as TNC 407 (inferred).
+    output_bits: u8 = 12, 12, 14, 14, 16, 16;
 }
 
 /// Zero of the coordinates in a block with M91.

@@ -1,10 +1,9 @@
 //! A list of machine parameters: the values that make a control fit its machine.
 
-use std::collections::HashMap;
 use std::fmt;
 
-use crate::definition::{parse_id, parse_number};
-use crate::{ControlModel, Definition, ListError, ParameterError, ParameterId};
+use crate::text::read_assignment;
+use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};
 
 /// The machine parameters of one machine: a value within its range for every parameter of the model.
 ///
@@ -28,26 +27,10 @@ impl ParameterList {
     /// everywhere else [000:10066]. It is called a programming station there, 1 or 2 is not said;
     /// PLC active (inferred).
     pub fn smallest(model: ControlModel) -> ParameterList {
-        let value = |definition: &Definition| {
-            let standard = definition.recommended.strip_prefix("std ").and_then(parse_number);
-            let smallest = if definition.min.is_finite() {
-                definition.min
-            } else {
-                0.0
-            };
-            standard.unwrap_or(smallest)
-        };
-        let mut list = ParameterList {
+        ParameterList {
             model,
-            values: Definition::all(model).iter().map(value).collect(),
-        };
-        let station = if list.has_old_numbers() {
-            (170, 0)
-        } else {
-            (7210, 0)
-        };
-        list.put(station, 1.0);
-        list
+            values: Definition::all(model).iter().map(Definition::standard).collect(),
+        }
     }
 
     /// The documented reference list of the model: a typical milling machine, for test runs and as a
@@ -102,16 +85,14 @@ impl ParameterList {
     /// # Errors
     /// When it is no assignment, the model has no such parameter, or the value is outside its range.
     pub fn assign(&mut self, assignment: &str) -> Result<(), ParameterError> {
-        let (id, value) = parse_assignment(assignment)?;
-        self.set_id(id, value).map(|_| ())
+        let found = read_assignment(self.model, assignment, 0).map_err(|(error, _)| error)?;
+        self.set_id(found.id, found.value).map(|_| ())
     }
 
     /// Reads the text of a list over the values of this one. Parsing never fails: what can be read is
     /// taken, and the errors are returned in the order of lines.
     ///
-    /// A line holds number, separator (`:`, `=` or blanks), value and, behind a semicolon, a comment
-    /// [000:10017]. The value is decimal, `%` binary or `$` hexadecimal [000:10019-10046]. A line
-    /// that starts with `;` or `*` is a comment [001:2521-2523].
+    /// What a line may hold is said at [`ListText`].
     ///
     /// ```
     /// # use bahn_parameters::{ControlModel, ParameterList};
@@ -121,64 +102,40 @@ impl ParameterList {
     /// assert_eq!(errors[0].to_string(), "line 3: MP7460: 200 is not between 0.0001 and 179.9999");
     /// ```
     pub fn read(&mut self, text: &[u8]) -> Vec<ListError> {
-        let text = String::from_utf8_lossy(text);
-        let mut errors = Vec::new();
-        let mut first_lines = HashMap::new();
-        for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-            if let Err(error) = self.read_line(line, index + 1, &mut first_lines) {
-                errors.push(ListError {
-                    line: index + 1,
-                    error,
-                });
-            }
-        }
-        errors
+        let text = ListText::from_bytes(self.model, text);
+        self.take(&text);
+        text.faults().to_vec()
     }
 
-    fn read_line(
-        &mut self,
-        line: &str,
-        number: usize,
-        first_lines: &mut HashMap<ParameterId, usize>,
-    ) -> Result<(), ParameterError> {
-        // Control characters frame lists on tape and interface.
-        let line = line.trim_matches(|c: char| c.is_whitespace() || c.is_control());
-        let entry = line.split_once(';').map_or(line, |(entry, _)| entry);
-        if entry.trim().is_empty() || line.starts_with('*') {
-            return Ok(());
+    /// Takes the values of a text, whatever faults it has.
+    pub fn take(&mut self, text: &ListText) {
+        for entry in text.entries() {
+            self.put((entry.id.number, entry.id.index.unwrap_or(0)), entry.value);
         }
-        let (id, value) = parse_assignment(entry)?;
-        let id = self.definition(id)?.id;
-        if let Some(&first_line) = first_lines.get(&id) {
-            return Err(ParameterError::DoublyDefined { id, first_line });
+    }
+
+    /// Reads the text of a list as the control does when its editor is left: every parameter must be
+    /// defined, and a text without any entry gives the list of [`ParameterList::smallest`]
+    /// [000:10050-10066].
+    ///
+    /// # Errors
+    /// All faults of the text, in the order of lines, then all parameters that are missing.
+    pub fn load(model: ControlModel, text: &[u8]) -> Result<ParameterList, Vec<ListError>> {
+        let text = ListText::from_bytes(model, text);
+        let faults = text.all_faults();
+        if !faults.is_empty() {
+            return Err(faults);
         }
-        self.set_id(id, value)?;
-        first_lines.insert(id, number);
-        Ok(())
+        let mut list = ParameterList::smallest(model);
+        list.take(&text);
+        Ok(list)
     }
 
     fn set_id(&mut self, id: ParameterId, value: f64) -> Result<f64, ParameterError> {
-        let definition = self.definition(id)?;
+        let definition = Definition::named(self.model, id)?;
         let value = definition.check(value)?;
         self.put((id.number, id.index.unwrap_or(0)), value);
         Ok(value)
-    }
-
-    fn definition(&self, id: ParameterId) -> Result<&'static Definition, ParameterError> {
-        let found = Definition::find(self.model, id.number, id.index.unwrap_or(0));
-        let has_indices = || {
-            Definition::all(self.model)
-                .iter()
-                .any(|d| d.id.number == id.number)
-        };
-        match found {
-            Some(definition) if id.index.is_none() && definition.id.index.is_some() => {
-                Err(ParameterError::IndexMissing(id))
-            }
-            Some(definition) => Ok(definition),
-            None if id.index.is_none() && has_indices() => Err(ParameterError::IndexMissing(id)),
-            None => Err(ParameterError::UnknownNumber(id)),
-        }
     }
 
     fn put(&mut self, (number, index): (u16, u8), value: f64) {
@@ -193,49 +150,8 @@ impl ParameterList {
 impl fmt::Display for ParameterList {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (definition, value) in Definition::all(self.model).iter().zip(&self.values) {
-            let (id, value) = (definition.id.to_string(), definition.format_value(*value));
-            write!(f, "{id:<9}: {value:<12} ;{}", definition.name)?;
-            if !definition.axis.is_empty() {
-                write!(f, ", {}", definition.axis)?;
-            }
-            writeln!(f)?;
+            writeln!(f, "{}", definition.line(&definition.format_value(*value)))?;
         }
         Ok(())
-    }
-}
-
-/// Reads `MP1010.0 : 10000`, `1010.0=10000` or `MP1010.0 10000`.
-fn parse_assignment(text: &str) -> Result<(ParameterId, f64), ParameterError> {
-    let text = text.trim();
-    let prefix = if text.get(..2).is_some_and(|mp| mp.eq_ignore_ascii_case("MP")) {
-        2
-    } else {
-        0
-    };
-    let number_at = text.len() - text[prefix..].trim_start().len();
-    let is_number = |c: char| c.is_ascii_digit() || c == '.';
-    let end = text[number_at..]
-        .find(|c| !is_number(c))
-        .map_or(text.len(), |at| number_at + at);
-    let (name, rest) = text.split_at(end);
-    let id = parse_id(name).ok_or(ParameterError::NoNumber)?;
-    let rest = rest.trim_start();
-    let value = rest.strip_prefix([':', '=']).unwrap_or(rest).trim();
-    if let Some(number) = parse_number(value) {
-        return Ok((id, number));
-    }
-    // Groups of bits may stand apart, as in the manual's "%111 000" [000:10040].
-    if let Some(number) = value
-        .starts_with('%')
-        .then(|| parse_number(&value.replace(' ', "")))
-        .flatten()
-    {
-        return Ok((id, number));
-    }
-    match value.split_once(char::is_whitespace) {
-        Some((first, behind)) if parse_number(first).is_some() => {
-            Err(ParameterError::NoSeparator(id, behind.trim().to_owned()))
-        }
-        _ => Err(ParameterError::NotANumber(id, value.to_owned())),
     }
 }

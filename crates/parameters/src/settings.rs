@@ -6,13 +6,32 @@
 //! rotary axis, otherwise like the 4th axis (inferred).
 
 mod axes;
+mod axis_parameters;
+mod axis_reader;
 mod machining;
+mod operation;
+mod plc_parameters;
 mod spindle;
+mod spindle_parameters;
 
+pub use axis_parameters::{
+    AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
+    MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
+    ReferenceType, Synchronization, TravelParameters,
+};
 pub use machining::{
     ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
 };
+pub use operation::{
+    DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters, OverrideSteps,
+    RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
+};
+pub use plc_parameters::{MonitoringInput, PlcParameters, StrobeTimes};
 pub use spindle::Tapping;
+pub use spindle_parameters::{
+    FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,
+    SpindlePolarity, SpindleRamps, TappingParameters,
+};
 
 use crate::{ControlModel, ParameterList};
 

@@ -119,6 +119,45 @@ impl Curve {
         result
     }
 
+    /// Least and greatest position of each axis on the way. An axis without a position at the start counts
+    /// with its end alone.
+    pub fn bounds(&self, start: &Position, end: &Position) -> [Position; 2] {
+        // `f64::min` and `max` pass over NaN.
+        let mut min: Position = Axis::ALL.map(|axis| start[axis].min(end[axis])).into();
+        let mut max: Position = Axis::ALL.map(|axis| start[axis].max(end[axis])).into();
+        let Curve::Arc(arc) = self else {
+            return [min, max];
+        };
+        let s = arc.plane.point(start);
+        let (r0, r1) = arc.radii(start, end);
+        let first = (s[1] - arc.centre[1]).atan2(s[0] - arc.centre[0]).to_degrees();
+        let (from, to) = if arc.sweep_deg < 0.0 {
+            (first + arc.sweep_deg, first)
+        } else {
+            (first, first + arc.sweep_deg)
+        };
+        let quadrant = (from / 90.0).ceil();
+        // A full turn and more passes all four quadrant points.
+        for step in 0..4 {
+            let angle = (quadrant + f64::from(step)) * 90.0;
+            if angle > to {
+                break;
+            }
+            let (axis, centre) = if (quadrant + f64::from(step)).rem_euclid(2.0) == 0.0 {
+                (arc.plane.first, arc.centre[0])
+            } else {
+                (arc.plane.second, arc.centre[1])
+            };
+            let radius = r0.max(r1);
+            if (quadrant + f64::from(step)).rem_euclid(4.0) < 2.0 {
+                max[axis] = max[axis].max(centre + radius);
+            } else {
+                min[axis] = min[axis].min(centre - radius);
+            }
+        }
+        [min, max]
+    }
+
     /// Derivative of the position by the path length at the fraction `t`: a vector over all axes that
     /// has length 1 over the axes that [`Curve::length`] counts. Zero when nothing moves.
     pub fn tangent(&self, start: &Position, end: &Position, t: f64) -> [f64; Axis::COUNT] {

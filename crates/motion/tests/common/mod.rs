@@ -1,6 +1,8 @@
 //! What the tests share: a path as a list, built block by block, and the run of a planner over it.
 #![allow(dead_code, reason = "every test file uses its part")]
 
+pub mod random;
+
 use bahn_motion::{AuxiliaryTimes, Limits, Planned, PlannedStep, Planner};
 use bahn_path::{
     Arc, Axis, BlockRef, Curve, ElementSource, FeedRate, LiveData, OverrideLaw, PathElement, Plane, Position,

@@ -216,6 +216,50 @@ messages! {
         remedy "Enter a longer time limit, or 0 for none.";
         source "[003:8087-8089]";
 
+    // Messages of the machine: power-on, monitoring, PLC. Where an axis or a letter belongs to the text, `#`
+    // stands for the axis.
+
+    PowerInterrupted: "POWER INTERRUPTED";
+        cause "The control voltage was off.";
+        remedy "Clear the message with CE; the PLC program runs from then on.";
+        source "[000:7033-7037]";
+    RelayExtDcVoltageMissing: "RELAY EXT. DC VOLTAGE MISSING";
+        cause "The control waits for the control voltage of the machine.";
+        remedy "Switch the control voltage on.";
+        source "[000:6184]";
+    EmergencyStopDefective: "EMERGENCY STOP DEFECTIVE";
+        cause "The acknowledgement 'control is ready' did not fall in time when the output was tested.";
+        remedy "Switch off and check the EMERGENCY STOP circuit.";
+        source "[000:6186]";
+    ExternalEmergencyStop: "EXTERNAL EMERGENCY STOP";
+        cause "The acknowledgement 'control is ready' was lost.";
+        remedy "Release the EMERGENCY STOP button, switch the control voltage on and clear the message with CE.";
+        source "[000:6155] [000:6203-6204]";
+    EmergencyStopPlc: "EMERGENCY STOP PLC";
+        cause "The PLC program asks for a flashing message and names none.";
+        remedy "Switch off, find the cause in the machine, and start again.";
+        source "[000:6633]";
+    ErrorInPlcProgram: "ERROR IN PLC-PROGRAM";
+        cause "Markers of the PLC program contradict each other, or the program stopped; the code says where.";
+        remedy "Check the key or switch that belongs to the code, and the PLC program.";
+        source "[000:7543-7585] [000:5496-5498] [000:631-633]";
+    LimitSwitch: "LIMIT SWITCH #";
+        cause "A software limit switch is reached, or the path would pass it.";
+        remedy "Traverse away from the limit, or change the program.";
+        source "[000:3522-3534]";
+    PositioningError: "POSITIONING ERROR #";
+        cause "The servo lag, or the deviation in operation with feed precontrol, is greater than its first limit.";
+        remedy "Clear the message with CE; check drive, mechanics and machine parameters.";
+        source "[000:5192-5198] [000:5228-5234]";
+    MeasuringSystemDefective: "MEASURING SYSTEM # DEFECTIVE";
+        cause "Monitoring of the encoder: A amplitude, B edge separation, C distance-coded marks.";
+        remedy "Switch off, check encoder and cable.";
+        source "[000:3290-3297]";
+    MaxToolLifeExpired: "MAX. TOOL LIFE EXPIRED";
+        cause "The tool was in use longer than TIME2 and has no replacement tool.";
+        remedy "Change the tool and reset its time.";
+        source "[000:9171]";
+
     // Messages that no manual prints: files and programs that a real control would never hold.
 
     BlockNotKnown: "FUNCTION NOT AVAILABLE ON THIS CONTROL";

@@ -124,6 +124,18 @@ impl ParameterList {
         }
     }
 
+    /// The letter of an axis by its index; `None` for one that the model does not have.
+    pub(super) fn axis_letter(&self, index: u8) -> Option<Axis> {
+        let exists = index < self.model().limits().axes_max;
+        match index {
+            0 => Some(Axis::X),
+            1 => Some(Axis::Y),
+            2 => Some(Axis::Z),
+            FOURTH | FIFTH if exists => self.letter(index),
+            _ => None,
+        }
+    }
+
     /// The letter of the 4th or 5th axis [000:3350-3370] [001:3275].
     fn letter(&self, index: u8) -> Option<Axis> {
         let letter = match (self.has_old_numbers(), index) {

@@ -1,0 +1,137 @@
+//! `bahn mp diff`: in which parameters two lists differ.
+
+use bahn_parameters::{Definition, ParameterList};
+use serde::Serialize;
+
+use super::list::Row;
+use super::options::DiffOptions;
+use super::style::Style;
+use super::{count, explain, print_json, source};
+use crate::cli::Format;
+use crate::{Outcome, UsageError, console};
+
+/// Compares two lists, parameter by parameter.
+pub(super) fn command(options: &DiffOptions) -> Result<Outcome, UsageError> {
+    let first = source::read(&options.a, options.model)?;
+    let model = first.model();
+    let a = source::values(&options.a, &first)?;
+    let (a, b) = match &options.b {
+        Some(path) => (a, source::values(path, &source::read(path, Some(model))?)?),
+        None => (ParameterList::reference(model), a),
+    };
+    let differences: Vec<Difference> = Definition::all(model)
+        .iter()
+        .map(|definition| (Row::new(definition, &a), Row::new(definition, &b)))
+        .filter(|(a, b)| a.number != b.number)
+        .map(Difference::new)
+        .collect();
+    match options.format {
+        Format::Json => print_json(&differences)?,
+        Format::Text => console::print(&text(&differences, Style::of_output()))?,
+    }
+    Ok(if differences.is_empty() {
+        Outcome::Fine
+    } else {
+        Outcome::ProgramError
+    })
+}
+
+/// A parameter that is not the same in both lists.
+#[derive(Debug, Serialize)]
+struct Difference {
+    parameter: String,
+    name: String,
+    unit: &'static str,
+    a: Value,
+    b: Value,
+    /// What the change needs: none, RESET or REF.
+    reaction: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct Value {
+    value: String,
+    number: f64,
+    meaning: Vec<String>,
+}
+
+impl Difference {
+    fn new((a, b): (Row, Row)) -> Difference {
+        // Bits that are the same in both say nothing.
+        let said = |own: &[String], other: &[String]| -> Vec<String> {
+            own.iter().filter(|item| !other.contains(item)).cloned().collect()
+        };
+        let (a_said, b_said) = (said(&a.meaning, &b.meaning), said(&b.meaning, &a.meaning));
+        Difference {
+            parameter: a.parameter.clone(),
+            name: a.title(),
+            unit: a.unit,
+            reaction: a.reaction,
+            a: Value {
+                value: a.value,
+                number: a.number,
+                meaning: a_said,
+            },
+            b: Value {
+                value: b.value,
+                number: b.number,
+                meaning: b_said,
+            },
+        }
+    }
+}
+
+fn text(differences: &[Difference], style: Style) -> String {
+    let value = |value: &Value, unit: &str| {
+        let meaning = if value.meaning.is_empty() {
+            String::new()
+        } else {
+            format!("  {}", value.meaning.join("; "))
+        };
+        format!("{} {unit}", value.value).trim_end().to_owned() + &meaning
+    };
+    let mut text = String::new();
+    for difference in differences {
+        let needs = explain::reaction(difference.reaction);
+        let needs = if needs.is_empty() {
+            String::new()
+        } else {
+            style.warning(&format!("  needs {needs}"))
+        };
+        let title = style.bold(&format!("{}  {}", difference.parameter, difference.name));
+        text += &format!("{title}{needs}\n");
+        text += &format!(
+            "  {}\n",
+            style.removed(&format!("- {}", value(&difference.a, difference.unit)))
+        );
+        text += &format!(
+            "  {}\n",
+            style.added(&format!("+ {}", value(&difference.b, difference.unit)))
+        );
+    }
+    text += &format!("{}\n", summary(differences));
+    text
+}
+
+/// How many, and what all changes together need.
+fn summary(differences: &[Difference]) -> String {
+    let has = |reaction: &str| {
+        differences
+            .iter()
+            .any(|difference| difference.reaction == reaction)
+    };
+    let needs: Vec<&str> = ["RESET", "REF"]
+        .into_iter()
+        .filter(|name| has(name))
+        .map(explain::reaction)
+        .collect();
+    match (differences.len(), needs.as_slice()) {
+        (0, _) => "no difference".to_owned(),
+        (number, []) => count(number, "difference"),
+        (number, needs) => format!(
+            "{}; the change needs {}",
+            count(number, "difference"),
+            needs.join(" and ")
+        ),
+    }
+}

@@ -1,0 +1,140 @@
+//! `bahn mp explain`: what a parameter means.
+
+use bahn_parameters::Definition;
+
+use super::list::Row;
+use super::options::ExplainOptions;
+use super::style::Style;
+use super::{print_json, source};
+use crate::cli::Format;
+use crate::{Outcome, UsageError, console};
+
+/// Explains one parameter, or all indices of a number.
+pub(super) fn command(options: &ExplainOptions) -> Result<Outcome, UsageError> {
+    let (list, name) = source::shown(&options.values)?;
+    let written = options
+        .number
+        .trim()
+        .trim_start_matches(['M', 'P', 'm', 'p'])
+        .trim_start();
+    let is_meant = |definition: &&Definition| {
+        let id = definition.id.to_string();
+        let own = id.trim_start_matches("MP");
+        let without_index = own.split('.').next();
+        // One value only may be named with index 0.
+        own == written || without_index == Some(written) || format!("{own}.0") == written
+    };
+    let rows: Vec<Row> = Definition::all(list.model())
+        .iter()
+        .filter(is_meant)
+        .map(|definition| Row::new(definition, &list))
+        .collect();
+    let Some(first) = rows.first() else {
+        return Err(UsageError::new(format!(
+            "the {} has no machine parameter `{}`; `bahn mp list` lists all",
+            list.model(),
+            options.number
+        )));
+    };
+    match options.values.format {
+        Format::Json => print_json(&rows)?,
+        Format::Text => console::print(&text(first, &rows, &name, Style::of_output()))?,
+    }
+    Ok(Outcome::Fine)
+}
+
+fn text(first: &Row, rows: &[Row], list: &str, style: Style) -> String {
+    let number = first.parameter.split('.').next().unwrap_or_default();
+    let title = match rows {
+        [one] => format!("{}  {}", one.parameter, one.title()),
+        _ => format!("{number}  {}", first.name),
+    };
+    let mut text = format!("{}\n", style.bold(&title));
+    let mut line = |label: &str, content: &str| {
+        if !content.is_empty() {
+            text += &format!("  {label:<13}{content}\n");
+        }
+    };
+    line("group:", first.group.unwrap_or_default());
+    line("range:", &first.range());
+    for (at, choice) in first.choices.iter().enumerate() {
+        line(if at == 0 { "values:" } else { "" }, choice);
+    }
+    line("default:", &standard(rows));
+    line("recommended:", &recommended(first.recommended));
+    line("change:", change(first));
+    line(
+        "operator:",
+        if first.user {
+            "may change it with code number 123"
+        } else {
+            ""
+        },
+    );
+    line("needs:", reaction(first.reaction));
+    line("versions:", first.versions);
+    line("note:", first.notes);
+    line("source:", &first.source.replace(';', ", "));
+    text += &format!("  in the {list}:\n");
+    let index_width = rows
+        .iter()
+        .map(|row| row.parameter.len())
+        .max()
+        .unwrap_or_default();
+    for row in rows {
+        let index = if row.index.is_empty() {
+            String::new()
+        } else {
+            format!("  {}", row.index)
+        };
+        let meaning = if row.meaning.is_empty() {
+            String::new()
+        } else {
+            format!("  = {}", row.meaning.join("; "))
+        };
+        let value = format!("{} {}", row.value, row.unit);
+        text += &format!(
+            "    {:<index_width$}  {}{index}{meaning}\n",
+            row.parameter,
+            style.added(value.trim_end())
+        );
+    }
+    text
+}
+
+/// The values of the list that the control makes by itself.
+fn standard(rows: &[Row]) -> String {
+    let mut values: Vec<&str> = rows.iter().map(|row| row.standard.as_str()).collect();
+    values.dedup();
+    format!(
+        "{} (the list that the control makes by itself)",
+        values.join(", ")
+    )
+}
+
+/// The manual's advice: `rec` recommended, `comm` provisional for commissioning, `std` standard colour.
+fn recommended(text: &str) -> String {
+    match text.split_once(' ') {
+        Some(("rec", value)) => value.to_owned(),
+        Some(("comm", value)) => format!("{value} (for commissioning)"),
+        Some(("std", value)) => format!("{value} (standard colour)"),
+        _ => text.to_owned(),
+    }
+}
+
+fn change(row: &Row) -> &'static str {
+    match row.change {
+        "PLC EDIT" => "by the PLC too while no program runs (PLC EDIT)",
+        "PLC RUN" => "by the PLC too, also while a program runs (PLC RUN)",
+        _ => "in the list, code number 95148",
+    }
+}
+
+/// What the operator has to do after a change.
+pub(super) fn reaction(reaction: &str) -> &'static str {
+    match reaction {
+        "RESET" => "a restart of the control (RESET)",
+        "REF" => "a reference run (REF)",
+        _ => "",
+    }
+}

@@ -1,0 +1,46 @@
+//! `bahn mp`: machine parameters.
+//!
+//! - `options`: options and help texts;
+//! - `source`: lists from files, and for which control they are;
+//! - `style`: colours of standard output;
+//! - `check`, `list`, `explain`, `diff`, `new`: the subcommands.
+
+mod check;
+mod diff;
+mod explain;
+mod list;
+mod new;
+mod options;
+mod source;
+mod style;
+
+pub(crate) use options::MpOptions;
+
+use crate::{Outcome, UsageError, console};
+use options::MpCommand;
+
+/// Executes a subcommand of `bahn mp`.
+pub(crate) fn command(options: &MpOptions) -> Result<Outcome, UsageError> {
+    match &options.command {
+        MpCommand::Check(options) => check::command(options),
+        MpCommand::List(options) => list::command(options),
+        MpCommand::Explain(options) => explain::command(options),
+        MpCommand::Diff(options) => diff::command(options),
+        MpCommand::New(options) => new::command(options),
+    }
+}
+
+/// Prints a report as JSON.
+fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
+    let json = serde_json::to_string_pretty(report)
+        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
+    console::print(&(json + "\n"))
+}
+
+/// `1 error`, `2 errors`.
+fn count(number: usize, what: &str) -> String {
+    match number {
+        1 => format!("1 {what}"),
+        _ => format!("{number} {what}s"),
+    }
+}

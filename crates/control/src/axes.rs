@@ -1,0 +1,174 @@
+//! One axis of the machine as the kernel sees it: its loop, its nominal position, what moves it.
+
+use bahn_motion::{Aim, PointToPoint};
+use bahn_parameters::AxisParameters;
+use bahn_path::Axis;
+use bahn_servo::{Axis as Servo, Method, Timing};
+
+use crate::panel::Direction;
+
+/// What moves an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Mover {
+    /// Nothing: it is held where it is.
+    #[default]
+    None,
+    /// The path of a program.
+    Path,
+    /// Direction keys, handwheel, jog increment.
+    Manual,
+    /// The reference run.
+    Reference,
+    /// PLC positioning, return to the contour.
+    Positioning,
+    /// A PLC axis on command of modules.
+    Plc,
+    /// Free rotation.
+    Rotation,
+}
+
+/// An axis.
+#[derive(Debug)]
+pub(crate) struct AxisUnit {
+    /// Axis index of markers and machine parameters.
+    pub index: usize,
+    /// Its place in positions of the path.
+    pub axis: Axis,
+    pub parameters: AxisParameters,
+    pub servo: Servo,
+    /// Its reference mark was passed.
+    pub referenced: bool,
+    pub mover: Mover,
+    /// Nominal position at the end of the contour cycle, machine coordinates, mm or degrees.
+    pub nominal: f64,
+    /// Nominal speed, mm/s, with its sign.
+    pub speed: f64,
+    /// Generator of movements that are no path.
+    pub ptp: PointToPoint,
+    /// The feed is enabled.
+    pub enabled: bool,
+    /// Direction of the last movement.
+    pub direction: Direction,
+    /// Way since the last lubrication, mm.
+    pub travelled: f64,
+    /// Actual position of the last cycle, for the way travelled.
+    last_actual: f64,
+    /// Largest lag since power-on, mm.
+    pub max_lag: f64,
+    /// Largest distance from the nominal path in this axis, mm.
+    pub max_deviation: f64,
+    /// Status marker M2008 ff.: in position after a movement.
+    pub in_position: bool,
+    /// Software limits of the active traverse range with the AXIS LIMIT of MOD, least and greatest.
+    pub limits: [f64; 2],
+    /// At a software limit.
+    pub at_limit: Option<Direction>,
+}
+
+impl AxisUnit {
+    pub fn new(parameters: AxisParameters, timing: Timing) -> Option<AxisUnit> {
+        let axis = parameters.letter.filter(|_| parameters.active)?;
+        Some(AxisUnit {
+            index: parameters.index.into(),
+            axis,
+            servo: Servo::new(parameters, timing),
+            referenced: false,
+            mover: Mover::None,
+            nominal: 0.0,
+            speed: 0.0,
+            ptp: PointToPoint::new(0.0),
+            enabled: false,
+            direction: Direction::Plus,
+            travelled: 0.0,
+            last_actual: 0.0,
+            max_lag: 0.0,
+            max_deviation: 0.0,
+            in_position: true,
+            limits: [f64::NEG_INFINITY, f64::INFINITY],
+            at_limit: None,
+            parameters,
+        })
+    }
+
+    /// A PLC axis is driven by modules only [000:4094-4116].
+    pub fn is_plc_axis(&self) -> bool {
+        self.parameters.plc_axis
+    }
+
+    /// The software limits are effective: the axis is referenced and shows no modulo value [000:3442]
+    /// [000:4570].
+    pub fn limited(&self) -> Option<[f64; 2]> {
+        (self.referenced && self.parameters.travel.modulo_deg.is_none()).then_some(self.limits)
+    }
+
+    /// Moves for a cycle, no path; no faster than the rapid traverse.
+    pub fn drive(&mut self, time_s: f64, aim: Aim, feed_mm_min: f64) {
+        let acceleration = self.parameters.motion.acceleration_m_s2;
+        let feed = feed_mm_min.min(self.parameters.motion.rapid_mm_min);
+        self.nominal = self.ptp.cycle(time_s, aim, feed, acceleration);
+        self.speed = self.ptp.speed_mm_s();
+    }
+
+    /// Takes the nominal position of the path.
+    pub fn follow(&mut self, position: f64, time_s: f64) {
+        self.speed = (position - self.nominal) / time_s;
+        self.nominal = position;
+        self.ptp = PointToPoint::moving(position, self.speed);
+    }
+
+    /// Stands at once where it is: the loop was opened, or the feed enable withdrawn.
+    pub fn stand(&mut self, position: f64) {
+        self.nominal = position;
+        self.speed = 0.0;
+        self.ptp = PointToPoint::new(position);
+    }
+
+    /// Makes the actual position the nominal one.
+    pub fn transfer(&mut self) {
+        self.servo.transfer();
+        self.stand(self.servo.actual_mm());
+    }
+
+    /// Whether nothing is commanded to move.
+    pub fn stands(&self) -> bool {
+        self.speed == 0.0
+    }
+
+    /// Chooses lag or feed pre-control for a kind of operation [000:4721-4733].
+    pub fn choose_method(&mut self, automatic: bool) {
+        let precontrol = &self.parameters.precontrol;
+        let wanted = if automatic {
+            precontrol.in_automatic
+        } else {
+            precontrol.in_manual
+        };
+        self.servo.set_method(if wanted && !self.is_plc_axis() {
+            Method::Precontrol
+        } else {
+            Method::Lag
+        });
+    }
+
+    /// Says at which machine position a count is; nominal and actual position shift alike.
+    pub fn set_datum(&mut self, count: i64, position_mm: f64) {
+        let shift = self.servo.set_datum(count, position_mm);
+        self.nominal += shift;
+        self.last_actual += shift;
+        self.ptp = PointToPoint::moving(self.nominal, self.speed);
+    }
+
+    /// Goes on by a contour cycle: counts the way, remembers direction and lag.
+    pub fn count(&mut self) {
+        let actual = self.servo.actual_mm();
+        self.travelled += (actual - self.last_actual).abs();
+        self.last_actual = actual;
+        if self.servo.closed() {
+            self.max_lag = self.max_lag.max(self.servo.lag_mm().abs());
+        }
+        if self.speed > 0.0 {
+            self.direction = Direction::Plus;
+        } else if self.speed < 0.0 {
+            self.direction = Direction::Minus;
+        }
+    }
+}

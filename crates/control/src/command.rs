@@ -1,0 +1,290 @@
+//! What an operator, a script or a screen asks the control to do.
+
+use std::fmt;
+use std::str::FromStr;
+
+use bahn_path::Axis;
+
+/// The machine operating modes, as W272 codes them [000:4680-4687].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// MANUAL OPERATION.
+    #[default]
+    Manual,
+    /// ELECTRONIC HANDWHEEL.
+    Handwheel,
+    /// POSITIONING WITH MANUAL DATA INPUT.
+    Mdi,
+    /// PROGRAM RUN SINGLE BLOCK.
+    SingleBlock,
+    /// PROGRAM RUN FULL SEQUENCE.
+    FullSequence,
+    /// PASS OVER REFERENCE MARKS.
+    Reference,
+}
+
+impl Mode {
+    /// All modes.
+    pub const ALL: [Mode; 6] = [
+        Mode::Manual,
+        Mode::Handwheel,
+        Mode::Mdi,
+        Mode::SingleBlock,
+        Mode::FullSequence,
+        Mode::Reference,
+    ];
+
+    /// The code in W272 [000:4680-4687].
+    pub fn code(self) -> i32 {
+        match self {
+            Mode::Manual => 1,
+            Mode::Handwheel => 2,
+            Mode::Mdi => 3,
+            Mode::SingleBlock => 4,
+            Mode::FullSequence => 5,
+            Mode::Reference => 7,
+        }
+    }
+
+    /// The name in commands: `manual`, `handwheel`, `mdi`, `single`, `full`, `reference`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Mode::Manual => "manual",
+            Mode::Handwheel => "handwheel",
+            Mode::Mdi => "mdi",
+            Mode::SingleBlock => "single",
+            Mode::FullSequence => "full",
+            Mode::Reference => "reference",
+        }
+    }
+
+    /// Blocks run in this mode: MDI, single block, full sequence.
+    pub fn is_automatic(self) -> bool {
+        matches!(self, Mode::Mdi | Mode::SingleBlock | Mode::FullSequence)
+    }
+}
+
+/// One input of the operator at the control's keyboard. Keys of the machine operating panel are inputs of
+/// the PLC and do not come this way.
+///
+/// The text form is that of scripts and command logs:
+///
+/// ```
+/// use bahn_control::{Command, Mode};
+/// let command: Command = "mode full".parse()?;
+/// assert_eq!(command, Command::Mode(Mode::FullSequence));
+/// assert_eq!(command.to_string(), "mode full");
+/// assert_eq!("datum X -12.5".parse::<Command>()?.to_string(), "datum X -12.5");
+/// # Ok::<(), bahn_control::CommandError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// `mode NAME`: an operating mode.
+    Mode(Mode),
+    /// `ce`: clears the message.
+    Ce,
+    /// `stop`: INTERNAL STOP of an interrupted run.
+    InternalStop,
+    /// `select NAME`: selects the program that runs.
+    Select(String),
+    /// `goto N`: the run starts at this block of the main program.
+    Goto(u32),
+    /// `mdi BLOCKS`: the block of POSITIONING WITH MDI; `\n` separates several.
+    Mdi(String),
+    /// `m N`: an M function in MANUAL or HANDWHEEL, output with the next NC start [003:1103-1111].
+    MFunction(u16),
+    /// `s RPM`: a spindle speed in MANUAL or HANDWHEEL, output with the next NC start.
+    Speed(f64),
+    /// `datum AXIS VALUE`: the actual position of the axis becomes this value, mm or degrees.
+    Datum(Axis, f64),
+    /// `jog MM`: the jog increment, mm.
+    JogIncrement(f64),
+    /// `handwheel AXIS FACTOR`: axis of the handwheel and its interpolation factor 0 to 10.
+    Handwheel(Axis, u8),
+    /// `manual-operation`: axes may be moved while a run is interrupted (M2018).
+    ManualOperation,
+    /// `restore-position`: return to the contour with NC start (M2019).
+    RestorePosition,
+    /// `restore-at N`: block scan to block N.
+    RestoreAt(u32),
+    /// `code N`: a code number [000:6928-6947].
+    Code(u32),
+    /// `key CODE`: a key by its code 58 to 127 [000:7338-7404].
+    Key(u8),
+    /// `offset adjust`, `offset off`: answers to code number 75 368 [000:5014-5020].
+    OffsetAdjustment(bool),
+}
+
+/// A text is no command.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct CommandError(String);
+
+impl FromStr for Command {
+    type Err = CommandError;
+
+    fn from_str(text: &str) -> Result<Command, CommandError> {
+        let text = text.trim();
+        let (name, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+        let rest = rest.trim();
+        let nothing = |command: Command| {
+            if rest.is_empty() {
+                Ok(command)
+            } else {
+                Err(CommandError(format!("`{name}` takes nothing behind it")))
+            }
+        };
+        match name {
+            "mode" => Mode::ALL
+                .into_iter()
+                .find(|mode| mode.name() == rest)
+                .map(Command::Mode)
+                .ok_or_else(|| {
+                    let names = Mode::ALL.map(Mode::name).join(", ");
+                    CommandError(format!("there is no mode `{rest}`; modes are {names}"))
+                }),
+            "ce" => nothing(Command::Ce),
+            "stop" => nothing(Command::InternalStop),
+            "manual-operation" => nothing(Command::ManualOperation),
+            "restore-position" => nothing(Command::RestorePosition),
+            "select" if !rest.is_empty() => Ok(Command::Select(rest.to_owned())),
+            "mdi" if !rest.is_empty() => Ok(Command::Mdi(rest.replace("\\n", "\n"))),
+            "goto" => number(name, rest, 0, u32::MAX).map(Command::Goto),
+            "restore-at" => number(name, rest, 0, u32::MAX).map(Command::RestoreAt),
+            "code" => number(name, rest, 0, u32::MAX).map(Command::Code),
+            "m" => number(name, rest, 0, 999).map(Command::MFunction),
+            "key" => number(name, rest, 58, 127).map(Command::Key),
+            "s" => value(name, rest, 0.0, 99_999.999).map(Command::Speed),
+            "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
+            "datum" => {
+                let (axis, rest) = axis(name, rest)?;
+                value(name, rest, -99_999.9999, 99_999.9999).map(|value| Command::Datum(axis, value))
+            }
+            "handwheel" => {
+                let (axis, rest) = axis(name, rest)?;
+                number(name, rest, 0, 10).map(|factor| Command::Handwheel(axis, factor))
+            }
+            "offset" => match rest {
+                "adjust" => Ok(Command::OffsetAdjustment(true)),
+                "off" => Ok(Command::OffsetAdjustment(false)),
+                _ => Err(CommandError("`offset` takes `adjust` or `off`".into())),
+            },
+            "select" | "mdi" => Err(CommandError(format!("`{name}` needs something behind it"))),
+            _ => Err(CommandError(format!("`{name}` is no command"))),
+        }
+    }
+}
+
+fn axis<'a>(name: &str, text: &'a str) -> Result<(Axis, &'a str), CommandError> {
+    let mut characters = text.chars();
+    let axis = characters
+        .next()
+        .filter(char::is_ascii)
+        .and_then(|letter| Axis::from_letter(letter.to_ascii_uppercase() as u8));
+    match axis {
+        Some(axis) => Ok((axis, characters.as_str().trim())),
+        None => Err(CommandError(format!(
+            "`{name}` takes an axis and a value, as `{name} X 5`"
+        ))),
+    }
+}
+
+fn number<T: TryFrom<u32>>(name: &str, text: &str, min: u32, max: u32) -> Result<T, CommandError> {
+    text.parse::<u32>()
+        .ok()
+        .filter(|number| (min..=max).contains(number))
+        .and_then(|number| T::try_from(number).ok())
+        .ok_or_else(|| {
+            CommandError(format!(
+                "`{name}` takes a number from {min} to {max}, not `{text}`"
+            ))
+        })
+}
+
+fn value(name: &str, text: &str, min: f64, max: f64) -> Result<f64, CommandError> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|value| (min..=max).contains(value))
+        .ok_or_else(|| {
+            CommandError(format!(
+                "`{name}` takes a value from {min} to {max}, not `{text}`"
+            ))
+        })
+}
+
+impl fmt::Display for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Command::Mode(mode) => write!(f, "mode {}", mode.name()),
+            Command::Ce => write!(f, "ce"),
+            Command::InternalStop => write!(f, "stop"),
+            Command::Select(name) => write!(f, "select {name}"),
+            Command::Goto(block) => write!(f, "goto {block}"),
+            Command::Mdi(blocks) => write!(f, "mdi {}", blocks.trim().replace('\n', "\\n")),
+            Command::MFunction(m) => write!(f, "m {m}"),
+            Command::Speed(rpm) => write!(f, "s {rpm}"),
+            Command::Datum(axis, value) => write!(f, "datum {axis} {value}"),
+            Command::JogIncrement(mm) => write!(f, "jog {mm}"),
+            Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
+            Command::ManualOperation => write!(f, "manual-operation"),
+            Command::RestorePosition => write!(f, "restore-position"),
+            Command::RestoreAt(block) => write!(f, "restore-at {block}"),
+            Command::Code(code) => write!(f, "code {code}"),
+            Command::Key(code) => write!(f, "key {code}"),
+            Command::OffsetAdjustment(adjust) => {
+                write!(f, "offset {}", if *adjust { "adjust" } else { "off" })
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_read_as_they_are_written() {
+        for text in [
+            "mode reference",
+            "ce",
+            "stop",
+            "select 4711.H",
+            "goto 12",
+            "mdi L X+10 R0 F500\\nL Y+5",
+            "m 3",
+            "s 1500.5",
+            "datum Z -0.25",
+            "jog 0.5",
+            "handwheel C 3",
+            "manual-operation",
+            "restore-position",
+            "restore-at 7",
+            "code 807667",
+            "key 107",
+            "offset off",
+        ] {
+            let command = text.parse::<Command>();
+            assert_eq!(command.map(|command| command.to_string()), Ok(text.to_owned()));
+        }
+    }
+
+    #[test]
+    fn faults_say_what_is_expected() {
+        for (text, expected) in [
+            ("", "no command"),
+            ("mode auto", "modes are manual"),
+            ("ce now", "nothing behind"),
+            ("s -1", "from 0 to 99999.999"),
+            ("s nan", "not `nan`"),
+            ("datum Q 5", "an axis and a value"),
+            ("handwheel X 11", "from 0 to 10"),
+            ("select", "needs something"),
+        ] {
+            let error = text.parse::<Command>().map_err(|error| error.to_string());
+            assert!(
+                error.as_ref().is_err_and(|error| error.contains(expected)),
+                "{text}: {error:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,451 @@
+//! The kernel: one state machine whose time is a count of microseconds.
+
+use std::sync::Arc;
+
+use bahn_exchange::{Bit, BitArea, Exchange, Image, Number, signal};
+use bahn_motion::{Interpolator, Limits as PathLimits};
+use bahn_parameters::{ControlModel, MessageId, OperationParameters, PlcParameters, Station};
+use bahn_path::{Axis, Position};
+use bahn_plc::{Machine, Start, mirror_parameters};
+use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
+
+use crate::axes::AxisUnit;
+use crate::command::{Command, Mode};
+use crate::emergency::EmergencyStop;
+use crate::feeder::{Offsets, Programs};
+use crate::handshake::{Handshakes, Transfer};
+use crate::manual::Manual;
+use crate::markers::AXES;
+use crate::message::{Message, Messages};
+use crate::overrides::Override;
+use crate::panel::Panel;
+use crate::plc_link::PlcLink;
+use crate::positioning::Positioning;
+use crate::reference::ReferenceRun;
+use crate::run::ProgramRun;
+use crate::setup::{Remembered, Setup};
+use crate::spindle::SpindleUnit;
+use crate::tools::Tools;
+
+/// PLC cycles, µs [000:239] [000:10260].
+const PLC_CYCLE_US: u64 = 20_000;
+const PLC_CYCLE_407_US: u64 = 24_000;
+
+/// Elements of the path that are prepared ahead at most.
+const LOOK_AHEAD: usize = 512;
+
+/// A control with its PLC, axes and programs. The machine comes with every cycle.
+///
+/// [`Control::prepare`] interprets and plans ahead and may allocate; [`Control::cycle`] spends one contour
+/// cycle and does not. Both are called in turn. The same setup, commands and plant give the same bits.
+pub struct Control {
+    pub(crate) model: ControlModel,
+    pub(crate) timing: Timing,
+    pub(crate) operation: OperationParameters,
+    pub(crate) plc_parameters: PlcParameters,
+    pub(crate) now_us: u64,
+    pub(crate) cycles: u64,
+    pub(crate) exchange: Exchange,
+    pub(crate) link: PlcLink,
+    pub(crate) plc: PlcUnit,
+    pub(crate) emergency: EmergencyStop,
+    pub(crate) messages: Messages,
+    pub(crate) panel: Panel,
+    /// NC start was pressed and not yet used.
+    pub(crate) start_pressed: bool,
+    pub(crate) handshakes: Handshakes,
+    pub(crate) axes: Vec<AxisUnit>,
+    /// The index into `axes` of each axis index.
+    pub(crate) places: [Option<usize>; AXES],
+    pub(crate) spindle: SpindleUnit,
+    pub(crate) feed_override: Override,
+    pub(crate) spindle_override: Override,
+    pub(crate) mode: Mode,
+    /// The loops were closed since the control voltage came on.
+    pub(crate) loops_closed: bool,
+    pub(crate) manual: Manual,
+    pub(crate) reference: ReferenceRun,
+    pub(crate) positioning: Positioning,
+    pub(crate) run: ProgramRun,
+    pub(crate) path: Interpolator<crate::feeder::RunFault>,
+    pub(crate) offsets: Offsets,
+    /// Machine position of the workpiece datum for each traverse range.
+    pub(crate) datums: [Position; 3],
+    /// Datum correction by the PLC, mm or degrees.
+    pub(crate) correction: [f64; AXES],
+    /// Active traverse range, 0 to 2.
+    pub(crate) range: usize,
+    pub(crate) tools: Tools,
+    pub(crate) programs: Arc<dyn Programs>,
+    /// Q parameters between runs.
+    pub(crate) q: Vec<(u16, f64)>,
+    log: Vec<(u64, Command)>,
+    inputs: [bool; INPUTS],
+    outputs: [bool; OUTPUTS],
+    output_bits: Vec<(usize, Bit)>,
+    input_bits: Vec<(usize, Bit)>,
+    pub(crate) letters: [char; AXES],
+}
+
+/// The PLC and its clock.
+pub(crate) struct PlcUnit {
+    pub machine: Machine,
+    pub due_us: u64,
+    pub period_us: u64,
+    /// Scans that were started.
+    pub scans: u64,
+}
+
+impl Control {
+    /// A control at power-on. The PLC does not run yet, and the loops are open.
+    pub fn new(setup: Setup) -> Control {
+        let Setup {
+            parameters,
+            plc,
+            plc_messages,
+            plc_dialogues,
+            tools,
+            programs,
+            files,
+            remembered,
+            mut exchange,
+        } = setup;
+        let model = parameters.model();
+        let timing = Timing::of(model);
+        let operation = parameters.operation_parameters();
+        let axes: Vec<AxisUnit> = (0..AXES)
+            .filter_map(|index| {
+                let index = u8::try_from(index).ok()?;
+                AxisUnit::new(parameters.axis_parameters(index), timing)
+            })
+            .collect();
+        let mut places = [None; AXES];
+        let mut letters = ['X', 'Y', 'Z', '4', '5'];
+        for (place, unit) in axes.iter().enumerate() {
+            if let (Some(slot), Some(letter)) = (places.get_mut(unit.index), letters.get_mut(unit.index)) {
+                *slot = Some(place);
+                *letter = unit.axis.letter();
+            }
+        }
+        mirror_parameters(&parameters, &mut exchange);
+        let path_limits = path_limits(&parameters, &axes);
+        let bits = |area: BitArea, count: usize| {
+            (0..count)
+                .filter_map(|number| Some((number, Bit::new(area, u16::try_from(number).ok()?)?)))
+                .filter(|(_, bit)| bit.is_listed())
+                .collect()
+        };
+        let datums = remembered.datums.map(|datum| datum.0);
+        let [first, ..] = datums;
+        let mut control = Control {
+            model,
+            timing,
+            operation,
+            plc_parameters: parameters.plc_parameters(),
+            now_us: 0,
+            cycles: 0,
+            exchange,
+            spindle: SpindleUnit::new(parameters.spindle_parameters(), timing),
+            tools: Tools::new(tools, operation.tools, &remembered),
+            link: PlcLink::new(parameters, plc_messages, plc_dialogues, files),
+            plc: PlcUnit {
+                machine: Machine::new(plc, Start::PowerOn),
+                due_us: 0,
+                period_us: if model == ControlModel::Tnc407 {
+                    PLC_CYCLE_407_US
+                } else {
+                    PLC_CYCLE_US
+                },
+                scans: 0,
+            },
+            emergency: EmergencyStop::new(model, operation.power_interrupted),
+            messages: Messages::default(),
+            panel: Panel::default(),
+            start_pressed: false,
+            handshakes: Handshakes::default(),
+            places,
+            feed_override: Override::feed(operation.overrides.feed_steps),
+            spindle_override: Override::spindle(operation.overrides.spindle_steps),
+            mode: Mode::Manual,
+            loops_closed: false,
+            manual: Manual::default(),
+            reference: ReferenceRun::default(),
+            positioning: Positioning::default(),
+            run: ProgramRun::default(),
+            path: Interpolator::new(&path_limits, LOOK_AHEAD),
+            offsets: Offsets {
+                datum: first,
+                tool_axis: remembered.tool_axis.unwrap_or(Axis::Z),
+                tool_length: remembered.tool_length,
+            },
+            datums,
+            correction: [0.0; AXES],
+            range: 0,
+            programs,
+            q: remembered.q,
+            log: Vec::new(),
+            inputs: [false; INPUTS],
+            outputs: [false; OUTPUTS],
+            output_bits: bits(BitArea::O, OUTPUTS),
+            input_bits: bits(BitArea::I, INPUTS),
+            letters,
+            axes,
+        };
+        if let Some(name) = remembered.program {
+            control.run.selected = Some(name);
+        }
+        control.select_range(0);
+        control.preset_markers();
+        if control.operation.power_interrupted {
+            control.show(Message::Plain(MessageId::PowerInterrupted), false);
+        }
+        control
+    }
+
+    /// Markers and words with a value at power-on.
+    fn preset_markers(&mut self) {
+        for unit in &self.axes {
+            if let Some(marker) = crate::markers::REFERENCE_MISSING.get(unit.index) {
+                self.exchange.nc_set(*marker, unit.parameters.controlled);
+            }
+        }
+        self.exchange.nc_set_number(signal::RAPID_TRAVERSE_LIMIT, 300_000);
+        self.exchange
+            .nc_set(signal::ENGLISH_SELECTED, self.operation.english);
+        self.spindle.preset(&mut self.exchange);
+    }
+
+    /// Time since power-on, µs.
+    pub fn time_us(&self) -> u64 {
+        self.now_us
+    }
+
+    /// The contour cycle, µs.
+    pub fn cycle_us(&self) -> u32 {
+        self.timing.contour_us()
+    }
+
+    pub(crate) fn cycle_s(&self) -> f64 {
+        f64::from(self.timing.contour_us()) * 1e-6
+    }
+
+    /// Spends one contour cycle on a machine. It does not allocate unless something out of the ordinary
+    /// happens: a message, a fault.
+    pub fn cycle(&mut self, plant: &mut dyn Plant) {
+        for step in 0..self.timing.steps() {
+            self.servo_step(plant, step == 0);
+        }
+        self.cycles += 1;
+    }
+
+    /// One servo step: a contour cycle begins with the first of its steps, a PLC scan with the first step
+    /// at or after its time.
+    fn servo_step(&mut self, plant: &mut dyn Plant, first: bool) {
+        let step_us = self.timing.step_us();
+        self.emergency.step(self.now_us, plant.control_ready());
+        plant.set_control_ready(self.emergency.output());
+        for unit in &mut self.axes {
+            let encoder = plant.encoder(unit.parameters.encoder.input.into());
+            unit.servo.measure(encoder);
+        }
+        self.spindle.measure(plant);
+        if self.plc_runs() && self.now_us >= self.plc.due_us {
+            self.scan(plant);
+            self.plc.due_us += self.plc.period_us;
+        }
+        if first {
+            self.contour_cycle(plant);
+        }
+        for unit in &mut self.axes {
+            let volts = unit.servo.step();
+            plant.set_nominal(unit.parameters.output.output.into(), volts);
+        }
+        self.spindle.output(plant);
+        plant.advance(step_us);
+        self.now_us += u64::from(step_us);
+    }
+
+    /// The PLC runs from the end of `POWER INTERRUPTED` on [000:7033-7040].
+    fn plc_runs(&mut self) -> bool {
+        use crate::emergency::Circuit;
+        if self.operation.station == Station::WithoutPlc || self.plc.machine.stopped().is_some() {
+            return false;
+        }
+        let runs = !matches!(
+            self.emergency.circuit(),
+            Circuit::PowerInterrupted | Circuit::Defective
+        );
+        if runs && self.plc.scans == 0 && self.plc.due_us < self.now_us {
+            self.plc.due_us = self.now_us;
+        }
+        runs
+    }
+
+    /// A PLC scan: inputs in, program, outputs out, then what the PLC asks for.
+    fn scan(&mut self, plant: &mut dyn Plant) {
+        plant.inputs(&mut self.inputs);
+        for (number, bit) in &self.input_bits {
+            let value = self.inputs.get(*number).copied().unwrap_or(false);
+            if self.exchange.nc().bit(*bit) != value {
+                self.exchange.nc_set(*bit, value);
+            }
+        }
+        let operator = plant.operator();
+        self.feed_override
+            .publish(&mut self.exchange, operator.feed_override_percent);
+        self.spindle_override
+            .publish(&mut self.exchange, operator.spindle_override_percent);
+        self.publish();
+        self.link.program_running = self.run.is_active();
+        self.plc.scans += 1;
+        if let Err(error) = self.plc.machine.scan(&mut self.exchange, &mut self.link) {
+            let message = Message::PlcStopped {
+                number: error.error.number(),
+                file: error.file,
+                line: error.line,
+            };
+            self.show(message, true);
+            return;
+        }
+        self.feed_override.take(&self.exchange);
+        self.spindle_override.take(&self.exchange);
+        let nc = self.exchange.nc();
+        for (number, bit) in &self.output_bits {
+            if let Some(output) = self.outputs.get_mut(*number) {
+                *output = nc.bit(*bit);
+            }
+        }
+        plant.set_outputs(&self.outputs);
+        self.after_scan();
+    }
+
+    /// What the PLC asked for in the scan that has ended.
+    fn after_scan(&mut self) {
+        match self.panel.read(self.exchange.nc()) {
+            Ok(panel) => {
+                self.start_pressed |= panel.started;
+                self.panel = panel;
+            }
+            Err(code) => self.show(Message::PlcMarkers(code), true),
+        }
+        self.messages.follow_plc(&self.exchange, self.now_us);
+        self.take_plc_strobes();
+        self.take_module_requests();
+    }
+
+    /// What is decided once in each contour cycle.
+    fn contour_cycle(&mut self, plant: &mut dyn Plant) {
+        self.follow_circuit();
+        self.follow_loops();
+        self.take_faults();
+        if self.loops_closed {
+            self.move_axes(plant);
+        }
+        self.start_pressed = false;
+        if let Some(transfer) = self.handshakes.cycle(&mut self.exchange) {
+            self.acknowledged(transfer);
+        }
+        let percent = self.spindle_override.percent();
+        self.spindle.cycle(&mut self.exchange, percent);
+        if self.spindle.take_wrong_speed() {
+            self.show(Message::Plain(MessageId::WrongRpm), false);
+            self.stop_run();
+        }
+        for unit in &mut self.axes {
+            unit.count();
+        }
+        self.lubricate();
+    }
+
+    /// What was acknowledged has its effect now.
+    fn acknowledged(&mut self, transfer: Transfer) {
+        match transfer {
+            Transfer::ToolCall { more: false, .. } => self.tools.inserted(),
+            Transfer::Gear { .. } => self.spindle.gear_changed(),
+            _ => {}
+        }
+    }
+
+    /// Interprets and plans ahead; may allocate. To be called after every cycle.
+    pub fn prepare(&mut self) {
+        self.prepare_restore();
+        self.prepare_run();
+    }
+
+    /// Gives a command of the operator; it is logged with the time. `false` when it is not possible now.
+    pub fn command(&mut self, command: Command) -> bool {
+        self.log.push((self.now_us, command.clone()));
+        let done = self.execute(command);
+        if !done {
+            self.show(Message::Plain(MessageId::KeyNonFunctional), false);
+        }
+        done
+    }
+
+    /// The commands since power-on with their times, µs: given again at these times they repeat the run.
+    pub fn command_log(&self) -> &[(u64, Command)] {
+        &self.log
+    }
+
+    pub(crate) fn show(&mut self, message: Message, flashing: bool) {
+        self.messages.show(message, flashing, self.now_us);
+    }
+
+    /// Sets a marker for the PLC when it changes.
+    pub(crate) fn put(&mut self, bit: Bit, value: bool) {
+        if self.exchange.nc().bit(bit) != value {
+            self.exchange.nc_set(bit, value);
+        }
+    }
+
+    /// Sets a word for the PLC when it changes.
+    pub(crate) fn put_number(&mut self, number: Number, value: i32) {
+        if self.exchange.nc().number(number) != value {
+            self.exchange.nc_set_number(number, value);
+        }
+    }
+
+    /// What the NC sees of the PLC's memory.
+    pub fn memory(&self) -> &Image {
+        self.exchange.nc()
+    }
+
+    /// What survives power-off, as of now.
+    pub fn remember(&self) -> Remembered {
+        Remembered {
+            datums: self.datums.map(crate::setup::Position0),
+            tool: self.tools.number,
+            tool_length: self.offsets.tool_length,
+            tool_axis: Some(self.offsets.tool_axis),
+            q: self.q_values(),
+            offsets_volts: self.offset_volts(),
+            program: self.run.selected.clone(),
+        }
+    }
+
+    /// The exchanged memory, for the journal of retained markers and bytes.
+    pub fn exchange(&self) -> &Exchange {
+        &self.exchange
+    }
+}
+
+/// The limits of the path: those of the axes by their letters.
+fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[AxisUnit]) -> PathLimits {
+    let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
+        Axis::ALL.map(|axis| {
+            axes.iter()
+                .find(|unit| unit.axis == axis)
+                .map_or(otherwise, value)
+        })
+    };
+    PathLimits {
+        max_feed_mm_min: of(|unit| unit.parameters.motion.rapid_mm_min, 0.0),
+        acceleration_m_s2: of(|unit| unit.parameters.motion.acceleration_m_s2, 1.0),
+        radial_acceleration_m_s2: parameters.radial_acceleration_m_s2(),
+        corner_angle_deg: parameters.corner_angle_deg(),
+        servo_lag: !parameters.feed_precontrol(),
+        cycle_s: f64::from(Timing::of(parameters.model()).contour_us()) * 1e-6,
+        feed_override_percent: 100.0,
+        rapid_override_percent: 100.0,
+    }
+}

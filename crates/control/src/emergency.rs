@@ -1,0 +1,218 @@
+//! Power-on and the "control is ready" circuit: output X41/34 and its acknowledgement X42/4.
+//!
+//! At every power-on the control tests that its output switches the control voltage off: it waits for the
+//! voltage, drops the output, and the acknowledgement must fall in time; then the output comes on again.
+//! The TNC 415 and 425 have three processors that do so in turn, the others one [000:6175-6228].
+
+use bahn_parameters::ControlModel;
+
+/// What the circuit says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Circuit {
+    /// `POWER INTERRUPTED` is shown; CE goes on [000:7033-7040].
+    PowerInterrupted,
+    /// `RELAY EXT. DC VOLTAGE MISSING`: waiting for the control voltage.
+    VoltageMissing,
+    /// The output is being tested.
+    Testing,
+    /// `EMERGENCY STOP DEFECTIVE`.
+    Defective,
+    /// The control voltage is on.
+    Ready,
+    /// `EXTERNAL EMERGENCY STOP`: the acknowledgement was lost.
+    EmergencyStop,
+    /// The acknowledgement is back; CE goes on.
+    VoltageBack,
+}
+
+/// Times and repetitions of the test, as data of the models.
+struct Test {
+    processors: u8,
+    /// From the voltage to the output dropped: at most 66 or 70 ms, µs.
+    recognise_us: u64,
+    /// In which the acknowledgement must fall, µs.
+    fall_us: u64,
+    /// From the fallen acknowledgement to the output on again: at most 20 or 24 ms, µs.
+    restore_us: u64,
+}
+
+fn test_of(model: ControlModel) -> Test {
+    match model {
+        ControlModel::Tnc415b | ControlModel::Tnc425 => Test {
+            processors: 3,
+            recognise_us: 60_000,
+            fall_us: 114_000,
+            restore_us: 18_000,
+        },
+        // The manuals of the TNC 151, 155 and 360 give no times (inferred).
+        _ => Test {
+            processors: 1,
+            recognise_us: 60_000,
+            fall_us: 146_000,
+            restore_us: 18_000,
+        },
+    }
+}
+
+/// The circuit, step by step.
+pub(crate) struct EmergencyStop {
+    test: Test,
+    state: State,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    PowerInterrupted,
+    /// Waiting for the voltage before the test by a processor, or after the last one.
+    Waiting {
+        tested: u8,
+    },
+    /// The voltage is seen; the output drops at a time.
+    Recognised {
+        tested: u8,
+        until: u64,
+    },
+    /// The output is off; the acknowledgement must fall before a time.
+    Dropped {
+        tested: u8,
+        until: u64,
+    },
+    /// The acknowledgement fell; the output comes on at a time.
+    Fallen {
+        tested: u8,
+        until: u64,
+    },
+    Defective,
+    Ready,
+    Lost,
+    Back,
+}
+
+impl EmergencyStop {
+    pub fn new(model: ControlModel, power_interrupted: bool) -> EmergencyStop {
+        EmergencyStop {
+            test: test_of(model),
+            state: if power_interrupted {
+                State::PowerInterrupted
+            } else {
+                State::Waiting { tested: 0 }
+            },
+        }
+    }
+
+    pub fn circuit(&self) -> Circuit {
+        match self.state {
+            State::PowerInterrupted => Circuit::PowerInterrupted,
+            State::Waiting { .. } => Circuit::VoltageMissing,
+            State::Recognised { .. } | State::Dropped { .. } | State::Fallen { .. } => Circuit::Testing,
+            State::Defective => Circuit::Defective,
+            State::Ready => Circuit::Ready,
+            State::Lost => Circuit::EmergencyStop,
+            State::Back => Circuit::VoltageBack,
+        }
+    }
+
+    /// The output X41/34.
+    pub fn output(&self) -> bool {
+        !matches!(
+            self.state,
+            State::Dropped { .. } | State::Fallen { .. } | State::Defective
+        )
+    }
+
+    /// Goes on by a servo step with the acknowledgement X42/4.
+    pub fn step(&mut self, now_us: u64, acknowledged: bool) {
+        let test = &self.test;
+        self.state = match self.state {
+            State::Waiting { tested } if acknowledged && tested >= test.processors => State::Ready,
+            State::Waiting { tested } if acknowledged => State::Recognised {
+                tested,
+                until: now_us + test.recognise_us,
+            },
+            State::Recognised { tested, until } if now_us >= until => State::Dropped {
+                tested,
+                until: now_us + test.fall_us,
+            },
+            State::Dropped { tested, .. } if !acknowledged => State::Fallen {
+                tested,
+                until: now_us + test.restore_us,
+            },
+            State::Dropped { until, .. } if now_us >= until => State::Defective,
+            State::Fallen { tested, until } if now_us >= until => State::Waiting { tested: tested + 1 },
+            State::Ready if !acknowledged => State::Lost,
+            State::Lost if acknowledged => State::Back,
+            State::Back if !acknowledged => State::Lost,
+            state => state,
+        };
+    }
+
+    /// CE: goes on after `POWER INTERRUPTED`, and after an EMERGENCY STOP when the voltage is back.
+    pub fn clear(&mut self) -> bool {
+        self.state = match self.state {
+            State::PowerInterrupted => State::Waiting { tested: 0 },
+            State::Back => State::Ready,
+            _ => return false,
+        };
+        true
+    }
+
+    /// An internal fault: the output goes off and stays off [000:6153].
+    pub fn fail(&mut self) {
+        self.state = State::Defective;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A relay that follows the output after a delay; the operator switches the voltage on at 1 s.
+    fn power_on(model: ControlModel, relay_us: u64) -> (Circuit, u32) {
+        let mut stop = EmergencyStop::new(model, false);
+        let (mut relay, mut changed, mut falls) = (false, 0, 0);
+        for step in 0..10_000u64 {
+            let now = step * 600;
+            let wanted = stop.output() && now >= 1_000_000;
+            if wanted == relay {
+                changed = now;
+            } else if now - changed >= relay_us {
+                relay = wanted;
+                changed = now;
+                falls += u32::from(!relay);
+            }
+            stop.step(now, relay);
+        }
+        (stop.circuit(), falls)
+    }
+
+    /// X42/4 falling after 113 ms passes on the TNC 415, 115 ms gives EMERGENCY STOP DEFECTIVE; on the TNC
+    /// 407 it is 145 and 147 ms [000:6177-6228].
+    #[test]
+    fn the_circuit_must_answer_in_time() {
+        use ControlModel::{Tnc407, Tnc415b};
+        assert_eq!(
+            power_on(Tnc415b, 113_000),
+            (Circuit::Ready, 3),
+            "each processor tests once"
+        );
+        assert_eq!(power_on(Tnc415b, 115_000).0, Circuit::Defective);
+        assert_eq!(power_on(Tnc407, 145_000), (Circuit::Ready, 1));
+        assert_eq!(power_on(Tnc407, 147_000).0, Circuit::Defective);
+    }
+
+    #[test]
+    fn the_voltage_must_come_back_before_ce() {
+        let mut stop = EmergencyStop::new(ControlModel::Tnc407, true);
+        stop.step(0, true);
+        assert_eq!(stop.circuit(), Circuit::PowerInterrupted, "waits for CE");
+        assert!(stop.clear());
+        stop.state = State::Ready;
+        stop.step(0, false);
+        assert_eq!(stop.circuit(), Circuit::EmergencyStop);
+        assert!(!stop.clear(), "not before the voltage is back");
+        assert!(stop.output(), "the output stays on: the fault is outside");
+        stop.step(0, true);
+        assert!(stop.clear());
+        assert_eq!(stop.circuit(), Circuit::Ready);
+    }
+}

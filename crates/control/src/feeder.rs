@@ -1,0 +1,361 @@
+//! From the part program to the interpolator: an element source that keeps a checkpoint for each block and
+//! refuses what leaves the traverse range.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use bahn_interpreter::{Checkpoint, Interpreter, Library, ProgramError, Settings};
+use bahn_path::{Axis, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, Position, Step};
+use bahn_program::Program;
+
+use crate::panel::Direction;
+
+/// Where programs come from. The control asks by name, as written in CALL PGM and chosen by the operator.
+pub trait Programs: Send + Sync {
+    /// The program of a name; `Ok(None)` when there is none.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
+}
+
+/// Programs as a library for the interpreter.
+struct Shelf(Arc<dyn Programs>);
+
+impl Library for Shelf {
+    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.0.open(name, caller)
+    }
+}
+
+/// Why a run cannot go on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum RunFault {
+    /// The program is wrong.
+    Program(Box<ProgramError>),
+    /// A block would leave the traverse range [000:3522].
+    Limit {
+        axis: Axis,
+        direction: Direction,
+        block: BlockRef,
+    },
+}
+
+/// From path positions to axis positions in machine coordinates: the workpiece datum and, in the tool axis,
+/// the length of the tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Offsets {
+    /// Machine position of the workpiece datum, mm or degrees.
+    pub datum: Position,
+    /// Axis of the tool.
+    pub tool_axis: Axis,
+    /// Length of the tool, mm.
+    pub tool_length: f64,
+}
+
+impl Offsets {
+    /// What is added to a path position.
+    pub fn of(&self, axis: Axis) -> f64 {
+        let length = if axis == self.tool_axis {
+            self.tool_length
+        } else {
+            0.0
+        };
+        self.datum[axis] + length
+    }
+
+    /// The axis positions of a path position.
+    pub fn to_machine(&self, path: &Position) -> Position {
+        Axis::ALL.map(|axis| path[axis] + self.of(axis)).into()
+    }
+
+    /// The path position of axis positions.
+    pub fn to_path(&self, machine: &Position) -> Position {
+        Axis::ALL.map(|axis| machine[axis] - self.of(axis)).into()
+    }
+
+    /// Takes the tool of a call.
+    pub fn take(&mut self, function: &Function) {
+        if let Function::Tool(call) = function {
+            self.tool_axis = call.axis;
+            self.tool_length = call.shape.length;
+        }
+    }
+}
+
+/// The least and greatest machine position of each axis; infinite where there is no limit.
+pub(crate) type Box2 = [Position; 2];
+
+/// Feeds the interpolator from a program.
+pub(crate) struct Feeder {
+    interpreter: Interpreter,
+    /// Offsets as of the last element handed out.
+    offsets: Offsets,
+    limits: Box2,
+    /// State before the blocks that are on their way, with the count of blocks executed before.
+    checkpoints: VecDeque<(u64, Checkpoint)>,
+    fault: Option<RunFault>,
+    /// An element that a block scan has found: it comes next.
+    found: Option<PathElement>,
+    /// Executed elements for whoever wants to see the path.
+    tap: Option<Vec<PathElement>>,
+}
+
+impl Feeder {
+    pub fn new(
+        main: Arc<Program>,
+        settings: Settings,
+        programs: Arc<dyn Programs>,
+        offsets: Offsets,
+        limits: Box2,
+    ) -> Feeder {
+        Feeder {
+            interpreter: Interpreter::new(main, settings, Box::new(Shelf(programs))),
+            offsets,
+            limits,
+            checkpoints: VecDeque::new(),
+            fault: None,
+            found: None,
+            tap: None,
+        }
+    }
+
+    pub fn interpreter(&self) -> &Interpreter {
+        &self.interpreter
+    }
+
+    pub fn interpreter_mut(&mut self) -> &mut Interpreter {
+        &mut self.interpreter
+    }
+
+    /// The program that is executed is in inches.
+    pub fn inch(&self) -> bool {
+        let program = self.interpreter.program(self.interpreter.at().program);
+        program.is_some_and(|program| program.unit() == bahn_program::Unit::Inch)
+    }
+
+    /// The datum changed: limits count from it.
+    pub fn set_datum(&mut self, datum: Position) {
+        self.offsets.datum = datum;
+    }
+
+    /// Gives an element back, to come again.
+    pub fn put_back(&mut self, element: PathElement) {
+        self.found = Some(element);
+    }
+
+    /// Keeps a copy of every element that is handed out.
+    pub fn set_tap(&mut self, on: bool) {
+        self.tap = on.then(Vec::new);
+    }
+
+    /// The elements handed out since the last call.
+    pub fn take_tap(&mut self) -> Vec<PathElement> {
+        self.tap.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Forgets the checkpoints of blocks before the one that is executed; the last of them stays.
+    pub fn forget_before(&mut self, sequence: u64) {
+        while self.checkpoints.len() > 1
+            && self
+                .checkpoints
+                .get(1)
+                .is_some_and(|(before, _)| *before < sequence)
+        {
+            self.checkpoints.pop_front();
+        }
+    }
+
+    /// Goes back to the state before a block, which then starts from where the axes stand.
+    pub fn return_to(&mut self, sequence: u64, machine: &Position, offsets: Offsets, limits: Box2) {
+        let checkpoint = self
+            .checkpoints
+            .iter()
+            .rev()
+            .find(|(before, _)| *before < sequence)
+            .or(self.checkpoints.front());
+        if let Some((_, checkpoint)) = checkpoint {
+            self.interpreter.restore(checkpoint);
+        }
+        self.checkpoints.clear();
+        self.found = None;
+        self.fault = None;
+        self.offsets = offsets;
+        self.limits = limits;
+        self.interpreter.relocate(&offsets.to_path(machine));
+    }
+
+    /// The first axis that would leave its range on an element.
+    fn outside(&self, element: &PathElement) -> Option<RunFault> {
+        // The resolution of positions is no violation.
+        const ROUNDING: f64 = 1e-6;
+        let [min, max] = element.curve.bounds(&element.start, &element.end);
+        let [least, greatest] = &self.limits;
+        for axis in Axis::ALL {
+            if element.start[axis] == element.end[axis] && element.curve == Curve::Line {
+                continue;
+            }
+            let offset = self.offsets.of(axis);
+            let direction = if max[axis] + offset > greatest[axis] + ROUNDING {
+                Direction::Plus
+            } else if min[axis] + offset < least[axis] - ROUNDING {
+                Direction::Minus
+            } else {
+                continue;
+            };
+            return Some(RunFault::Limit {
+                axis,
+                direction,
+                block: element.block,
+            });
+        }
+        None
+    }
+}
+
+impl ElementSource for Feeder {
+    type Error = RunFault;
+
+    fn next(&mut self) -> Step<RunFault> {
+        if let Some(fault) = &self.fault {
+            return Step::Error(fault.clone());
+        }
+        if let Some(found) = self.found.take() {
+            return Step::Element(found);
+        }
+        let executed = self.interpreter.blocks_executed();
+        if self
+            .checkpoints
+            .back()
+            .is_none_or(|(before, _)| *before != executed)
+        {
+            self.checkpoints
+                .push_back((executed, self.interpreter.checkpoint()));
+        }
+        let element = match self.interpreter.next() {
+            Step::Element(element) => element,
+            Step::Barrier(barrier) => return Step::Barrier(barrier),
+            Step::Starved => return Step::Starved,
+            Step::End => return Step::End,
+            Step::Error(error) => return Step::Error(RunFault::Program(error)),
+        };
+        for output in element.functions() {
+            self.offsets.take(&output.function);
+        }
+        if element.curve != Curve::Hold
+            && let Some(fault) = self.outside(&element)
+        {
+            self.fault = Some(fault.clone());
+            return Step::Error(fault);
+        }
+        if let Some(tap) = &mut self.tap {
+            tap.push(element.clone());
+        }
+        Step::Element(element)
+    }
+
+    fn resume(&mut self, live: LiveData) {
+        self.interpreter.resume(live);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+    use super::*;
+
+    struct Empty;
+
+    impl Programs for Empty {
+        fn open(&self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+            Ok(None)
+        }
+    }
+
+    fn feeder(blocks: &str) -> Feeder {
+        let text = format!("BEGIN PGM 1 MM\n{blocks}\nEND PGM 1 MM\n");
+        let program = Arc::new(Program::from_bytes("1.H", text.into()));
+        let mut datum = Position::ZERO;
+        datum[Axis::X] = 100.0;
+        datum[Axis::Z] = -50.0;
+        let offsets = Offsets {
+            datum,
+            tool_axis: Axis::Z,
+            tool_length: 0.0,
+        };
+        let limits = [[-200.0; 9].into(), [200.0; 9].into()];
+        let settings = Settings {
+            start: Position::ZERO,
+            tool_length_mm: Some(0.0),
+            ..Settings::default()
+        };
+        Feeder::new(program, settings, Arc::new(Empty), offsets, limits)
+    }
+
+    fn end(blocks: &str) -> Step<RunFault> {
+        let mut feeder = feeder(blocks);
+        loop {
+            match feeder.next() {
+                Step::Element(_) => {}
+                step => return step,
+            }
+        }
+    }
+
+    /// X datum at machine 100: X+100 is machine 200, the limit; X+100.01 is beyond it.
+    #[test]
+    fn a_block_beyond_the_limit_is_refused() {
+        assert_eq!(end("L X+100 R0 FMAX"), Step::End);
+        let block = BlockRef { program: 0, block: 1 };
+        let limit = |axis, direction| {
+            Step::Error(RunFault::Limit {
+                axis,
+                direction,
+                block,
+            })
+        };
+        assert_eq!(end("L X+100.01 R0 FMAX"), limit(Axis::X, Direction::Plus));
+        assert_eq!(end("L Z-150.5 R0 FMAX"), limit(Axis::Z, Direction::Minus));
+    }
+
+    /// The tool lifts the spindle nose by its length: Z datum -50, tool 80 long: Z+170 is machine 200.
+    #[test]
+    fn the_tool_length_counts() {
+        let program = |z: &str| format!("TOOL DEF 1 L+80 R+1\nTOOL CALL 1 Z S1\nL Z{z} R0 FMAX");
+        assert_eq!(end(&program("+170")), Step::End);
+        assert!(matches!(end(&program("+170.1")), Step::Error(_)));
+    }
+
+    /// A circle whose ends are inside bulges over the limit.
+    #[test]
+    fn arcs_count_with_their_whole_way() {
+        let circle = |r: &str| format!("L X+99 Y+0 R0 FMAX\nCC X+99 Y+{r}\nC X+99 Y+0 DR+ R0 F100");
+        assert_eq!(end(&circle("1")), Step::End);
+        assert!(matches!(end(&circle("1.5")), Step::Error(_)));
+    }
+
+    /// After an internal stop in block 3 the run goes on with block 3 from where the axes stand; Q1 is as
+    /// of that block.
+    #[test]
+    fn return_to_a_block() {
+        let mut feeder = feeder("FN 0: Q1 = +5\nL X+10 R0 F100\nL X+20\nFN 0: Q1 = +7\nL X+Q1");
+        let mut third = None;
+        while let Step::Element(element) = feeder.next() {
+            if element.block.block == 3 {
+                third = Some(element.sequence);
+            }
+        }
+        let mut machine = Position::ZERO;
+        machine[Axis::X] = 112.0;
+        let (offsets, limits) = (feeder.offsets, feeder.limits);
+        feeder.return_to(third.unwrap(), &machine, offsets, limits);
+        assert_eq!(feeder.interpreter().q_values()[1], 5.0);
+        let Step::Element(again) = feeder.next() else {
+            panic!("block 3 runs again")
+        };
+        assert_eq!(
+            (again.block.block, again.start[Axis::X], again.end[Axis::X]),
+            (3, 12.0, 20.0)
+        );
+    }
+}

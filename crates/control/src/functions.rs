@@ -1,0 +1,80 @@
+//! What the functions of a program do when the path comes to them.
+
+use bahn_exchange::{Exchange, signal};
+use bahn_path::{Axis, Function, ToolCall};
+
+use crate::feeder::Offsets;
+use crate::handshake::{Handshakes, Transfer};
+use crate::markers::TOOL_AXIS;
+use crate::spindle::SpindleUnit;
+use crate::tools::Tools;
+
+/// Highest M function that goes to the PLC [000:7206].
+const M_MAX: u16 = 99;
+
+/// The parts of the control that functions act on.
+pub(crate) struct Target<'a> {
+    pub spindle: &'a mut SpindleUnit,
+    pub tools: &'a mut Tools,
+    pub offsets: &'a mut Offsets,
+    pub handshakes: &'a mut Handshakes,
+    pub exchange: &'a mut Exchange,
+    /// The program is in inches.
+    pub inch: bool,
+}
+
+impl Target<'_> {
+    /// Outputs a function: its effect in the control, and what goes to the PLC.
+    pub fn output(&mut self, function: &Function) {
+        match function {
+            Function::M(code) => self.m(*code),
+            Function::Tool(call) => self.tool(call),
+            Function::NextTool(tool) => {
+                if let Some(transfer) = self.tools.define(*tool) {
+                    self.handshakes.push(transfer);
+                }
+            }
+            Function::SpindleSpeed(rpm) => self.speed(*rpm, false),
+            Function::SpindleOrientation(angle) => self.spindle.set_cycle_angle(*angle, self.exchange),
+            Function::Plc(values) => self.handshakes.push(Transfer::Plc {
+                values: values.map(|value| value.map(|value| value.round() as i32)),
+                inch: self.inch,
+            }),
+            // A stop has its barrier; printing and the blank concern nothing that moves.
+            Function::Stop | Function::Print(_) | Function::Blank(_) => {}
+        }
+    }
+
+    fn m(&mut self, code: u16) {
+        if code <= M_MAX
+            && let Ok(code) = u8::try_from(code)
+        {
+            self.handshakes.push(Transfer::M(code));
+        }
+    }
+
+    /// TOOL CALL: the tool goes to the PLC, then its speed; length and axis count from here on.
+    fn tool(&mut self, call: &ToolCall) {
+        self.tools.call(call.tool, self.handshakes);
+        self.offsets.tool_axis = call.axis;
+        self.offsets.tool_length = call.shape.length;
+        let axes = [Axis::X, Axis::Y, Axis::Z];
+        for (place, marker) in TOOL_AXIS.iter().enumerate() {
+            let set = axes
+                .get(place)
+                .map_or(!axes.contains(&call.axis), |axis| *axis == call.axis);
+            if self.exchange.nc().bit(*marker) != set {
+                self.exchange.nc_set(*marker, set);
+            }
+        }
+        self.exchange.nc_set(signal::TOOL_0_PROGRAMMED, call.tool == 0);
+        self.speed(call.speed_rpm, true);
+    }
+
+    /// A speed: gear range or S code, by MP3010.
+    pub fn speed(&mut self, rpm: f64, tool_call: bool) {
+        if let Some(transfer) = self.spindle.program(rpm, tool_call, self.exchange) {
+            self.handshakes.push(transfer);
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Control voltage, EMERGENCY STOP, loops and feed enable: whether an axis may move at all.
+
+use bahn_exchange::signal;
+use bahn_parameters::MessageId;
+use bahn_servo::Fault;
+
+use crate::command::Mode;
+use crate::control::Control;
+use crate::emergency::Circuit;
+use crate::markers::{MONITORING_OFF, OPEN_LOOP};
+use crate::message::Message;
+
+const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
+const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop);
+
+impl Control {
+    /// Follows the "control is ready" circuit.
+    pub(crate) fn follow_circuit(&mut self) {
+        if self.messages.is_fatal() {
+            self.emergency.fail();
+        }
+        let circuit = self.emergency.circuit();
+        if circuit == Circuit::VoltageMissing {
+            self.show(VOLTAGE_MISSING, false);
+        } else if self.messages.contains(&VOLTAGE_MISSING) {
+            self.messages.remove(&VOLTAGE_MISSING);
+        }
+        match circuit {
+            Circuit::PowerInterrupted | Circuit::VoltageMissing | Circuit::Testing => {}
+            Circuit::Ready => {
+                if !self.loops_closed {
+                    self.close_loops();
+                }
+            }
+            Circuit::Defective => {
+                if !self.messages.is_fatal() {
+                    self.show(Message::Plain(MessageId::EmergencyStopDefective), true);
+                }
+                self.open_loops();
+            }
+            Circuit::EmergencyStop | Circuit::VoltageBack => self.emergency_stop(circuit),
+        }
+    }
+
+    /// The acknowledgement was lost: as an external stop, a moving axis is ramped down under control
+    /// [000:6155-6157]. Then the loops are opened (inferred). With M2827 nothing is reported and the loops
+    /// open at once [000:5403-5421].
+    fn emergency_stop(&mut self, circuit: Circuit) {
+        self.stop_run();
+        let silent = self.exchange.nc().bit(signal::EMERGENCY_STOP_AS_NC_STOP);
+        if silent {
+            self.open_loops();
+            if circuit == Circuit::VoltageBack {
+                self.emergency.clear();
+            }
+            return;
+        }
+        self.show(EMERGENCY_STOP, false);
+        if self.axes.iter().all(|unit| unit.stands()) {
+            self.open_loops();
+        }
+    }
+
+    /// The control voltage has come: the axes are held where they are, M2000 ff. are set [000:5341-5350].
+    fn close_loops(&mut self) {
+        self.loops_closed = true;
+        for unit in self.axes.iter_mut().filter(|unit| unit.parameters.controlled) {
+            unit.transfer();
+            unit.servo.close();
+        }
+        if self
+            .axes
+            .iter()
+            .any(|unit| !unit.referenced && !unit.is_plc_axis())
+        {
+            self.mode = Mode::Reference;
+        }
+    }
+
+    pub(crate) fn open_loops(&mut self) {
+        self.loops_closed = false;
+        self.spindle.open();
+        for unit in &mut self.axes {
+            unit.servo.open();
+            unit.stand(unit.servo.actual_mm());
+            unit.mover = crate::axes::Mover::None;
+        }
+    }
+
+    /// Opens and closes the loop of each axis as the PLC asks for, and gives the feed enable
+    /// [000:5352-5369] [000:5403-5421].
+    pub(crate) fn follow_loops(&mut self) {
+        let nc = self.exchange.nc();
+        let all_open = nc.bit(signal::NC_STOP_AND_OPEN_LOOPS);
+        let by_axis = nc.number(signal::FEED_ENABLE_AXES);
+        for unit in self.axes.iter_mut().filter(|unit| unit.parameters.controlled) {
+            let open = OPEN_LOOP.get(unit.index).is_some_and(|marker| nc.bit(*marker));
+            let wanted = self.loops_closed && !open && !all_open;
+            if wanted && !unit.servo.closed() {
+                // A clamped axis goes back to its nominal position, unless it was moved meanwhile.
+                let moved = (unit.servo.actual_mm() - unit.nominal).abs();
+                if moved > unit.parameters.monitoring.standstill_mm {
+                    unit.transfer();
+                }
+                unit.servo.close();
+            } else if !wanted && unit.servo.closed() {
+                unit.servo.open();
+                unit.stand(unit.nominal);
+            }
+            let enabled = self.panel.feed_enable || by_axis >> unit.index & 1 != 0;
+            if unit.enabled && !enabled {
+                // The voltage is 0 at once, without a ramp [000:5352].
+                unit.stand(unit.nominal);
+            } else if !unit.enabled && enabled && !self.run.is_active() {
+                unit.transfer();
+            }
+            unit.enabled = enabled;
+            unit.servo.set_enabled(enabled || unit.stands());
+            unit.servo.set_monitored(
+                MONITORING_OFF
+                    .get(unit.index)
+                    .is_none_or(|marker| !nc.bit(*marker)),
+            );
+        }
+        if all_open {
+            self.spindle.open();
+            self.stop_run();
+        }
+    }
+
+    /// Faults of the loops: message and machine stop [000:5162].
+    pub(crate) fn take_faults(&mut self) {
+        for place in 0..self.axes.len() {
+            let Some(unit) = self.axes.get(place) else {
+                continue;
+            };
+            let Some(fault) = unit.servo.fault() else {
+                continue;
+            };
+            let message = Message::axis(fault.message(), unit.index, fault.letter());
+            if fault == Fault::Positioning && self.messages.contains(&message) {
+                continue;
+            }
+            self.show(message, !fault.cancellable());
+            self.stop_run();
+        }
+    }
+
+    /// NC stop is given by the PLC, the circuit or a flashing message.
+    pub(crate) fn stop_given(&self) -> bool {
+        self.panel.stop
+            || self.exchange.nc().bit(signal::NC_STOP_AND_OPEN_LOOPS)
+            || self.emergency.circuit() != Circuit::Ready
+            || self.messages.is_fatal()
+    }
+}

@@ -1,0 +1,338 @@
+//! The messages under the operating-mode line.
+//!
+//! Non-flashing messages are cleared with CE, one after another; flashing ones need switching off
+//! [000:6619-6649]. M2190 is 1 while a non-flashing one is shown, M2191 while `EXTERNAL EMERGENCY STOP` is.
+
+use bahn_exchange::{Exchange, signal};
+use bahn_interpreter::ProgramError;
+use bahn_parameters::{ControlModel, MessageId};
+
+use crate::panel::Direction;
+
+/// Axis letters by axis index, as the messages print them; the letters of the 4th and 5th axis are given
+/// by MP410.
+pub(crate) type AxisLetters = [char; 5];
+
+/// A message of the running control.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    /// A message that needs nothing else.
+    Plain(MessageId),
+    /// A message of one axis, with the letter behind it, 'A' to 'E', where it has one.
+    Axis {
+        /// The message.
+        id: MessageId,
+        /// Axis index, 0 to 4.
+        axis: u8,
+        /// The letter.
+        letter: Option<char>,
+    },
+    /// `LIMIT SWITCH` with axis and sign.
+    Limit {
+        /// Axis index, 0 to 4.
+        axis: u8,
+        /// The positive limit.
+        plus: bool,
+    },
+    /// `ERROR IN PLC-PROGRAM` with the code of the markers that contradict each other.
+    PlcMarkers([u8; 2]),
+    /// The PLC stopped with a run-time error: its number, file and line.
+    PlcStopped {
+        /// Error number 50 to 56.
+        number: u8,
+        /// Source file.
+        file: String,
+        /// Line, from 1.
+        line: u32,
+    },
+    /// PLC message 0 to 99 (M2924 to M3023).
+    Plc(u8),
+    /// A fault of the part program.
+    Program(Box<ProgramError>),
+}
+
+impl Message {
+    pub(crate) fn limit(axis: usize, direction: Direction) -> Message {
+        Message::Limit {
+            axis: index(axis),
+            plus: direction == Direction::Plus,
+        }
+    }
+
+    pub(crate) fn axis(id: MessageId, axis: usize, letter: Option<char>) -> Message {
+        Message::Axis {
+            id,
+            axis: index(axis),
+            letter,
+        }
+    }
+
+    /// The text that the model shows, `plc` being the texts of the PLC messages.
+    pub fn text(&self, model: ControlModel, letters: &[char; 5], plc: &[String]) -> String {
+        let with_axis = |id: MessageId, axis: u8| {
+            let letter = letters.get(usize::from(axis)).copied().unwrap_or('?');
+            let text = id.text(model);
+            if text.contains('#') {
+                text.replace('#', letter.encode_utf8(&mut [0; 4]))
+            } else {
+                format!("{text} {letter}")
+            }
+        };
+        match self {
+            Message::Plain(id) => id.text(model).to_owned(),
+            Message::Axis { id, axis, letter } => match letter {
+                Some(letter) => format!("{} {letter}", with_axis(*id, *axis)),
+                None => with_axis(*id, *axis),
+            },
+            Message::Limit { axis, plus } => {
+                format!(
+                    "{}{}",
+                    with_axis(MessageId::LimitSwitch, *axis),
+                    if *plus { '+' } else { '-' }
+                )
+            }
+            Message::PlcMarkers(code) => format!(
+                "{} {}",
+                MessageId::ErrorInPlcProgram.text(model),
+                String::from_utf8_lossy(code)
+            ),
+            // The error list of the PLC prints the number behind it [000:11919].
+            Message::PlcStopped { number, .. } => {
+                format!("{} {number}", MessageId::ErrorInPlcProgram.text(model))
+            }
+            Message::Plc(number) => plc
+                .get(usize::from(*number))
+                .filter(|text| !text.is_empty())
+                .cloned()
+                .unwrap_or_else(|| format!("PLC: ERROR {number}")),
+            Message::Program(error) => error.message.text(model).to_owned(),
+        }
+    }
+
+    /// Where it comes from, beside the text: program, block and detail; file and line.
+    pub fn place(&self) -> Option<String> {
+        match self {
+            Message::PlcStopped { file, line, .. } => Some(format!("{file} line {line}")),
+            Message::Program(error) => {
+                let mut place = format!("program {} block {}", error.program, error.block.block);
+                if !error.detail.is_empty() {
+                    place.push_str(": ");
+                    place.push_str(&error.detail);
+                }
+                Some(place)
+            }
+            _ => None,
+        }
+    }
+
+    fn is_emergency_stop(&self) -> bool {
+        *self == Message::Plain(MessageId::ExternalEmergencyStop)
+    }
+
+    fn plc_number(&self) -> Option<u8> {
+        match self {
+            Message::Plc(number) => Some(*number),
+            _ => None,
+        }
+    }
+}
+
+fn index(axis: usize) -> u8 {
+    u8::try_from(axis).unwrap_or(u8::MAX)
+}
+
+/// A message with how it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// The message.
+    pub message: Message,
+    /// It flashes: only power-off clears it.
+    pub flashing: bool,
+    /// When it came up, µs since power-on.
+    pub time_us: u64,
+}
+
+/// The messages that are shown, and their history.
+#[derive(Debug, Default)]
+pub(crate) struct Messages {
+    shown: Vec<Shown>,
+    /// What came up since somebody asked.
+    news: Vec<Shown>,
+}
+
+/// News that nobody took are dropped beyond this, the oldest first.
+const NEWS_MAX: usize = 10_000;
+
+impl Messages {
+    /// Shows a message; the same one again changes nothing.
+    pub fn show(&mut self, message: Message, flashing: bool, time_us: u64) {
+        if self.shown.iter().any(|shown| shown.message == message) {
+            return;
+        }
+        let shown = Shown {
+            message,
+            flashing,
+            time_us,
+        };
+        if self.news.len() >= NEWS_MAX {
+            self.news.remove(0);
+        }
+        self.news.push(shown.clone());
+        self.shown.push(shown);
+    }
+
+    /// What is shown, the oldest first.
+    pub fn shown(&self) -> &[Shown] {
+        &self.shown
+    }
+
+    /// A flashing message is shown: the control does nothing more.
+    pub fn is_fatal(&self) -> bool {
+        self.shown.iter().any(|shown| shown.flashing)
+    }
+
+    pub fn contains(&self, message: &Message) -> bool {
+        self.shown.iter().any(|shown| shown.message == *message)
+    }
+
+    pub fn take_news(&mut self) -> Vec<Shown> {
+        std::mem::take(&mut self.news)
+    }
+
+    /// CE: clears the first message that does not flash and that `may` be cleared.
+    pub fn clear(&mut self, exchange: &mut Exchange, may: impl Fn(&Message) -> bool) -> Option<Message> {
+        let at = self
+            .shown
+            .iter()
+            .position(|shown| !shown.flashing && may(&shown.message))?;
+        let message = self.shown.remove(at).message;
+        if let Some(marker) = message
+            .plc_number()
+            .and_then(|n| signal::PLC_MESSAGES.get(n.into()))
+        {
+            exchange.nc_set(marker, false);
+        }
+        Some(message)
+    }
+
+    /// Takes a message away whose reason is gone.
+    pub fn remove(&mut self, message: &Message) {
+        self.shown.retain(|shown| shown.message != *message);
+    }
+
+    /// After a PLC scan: the PLC's messages by their markers. With M2815 they flash; M2815 alone is
+    /// `EMERGENCY STOP PLC` [000:6625-6633].
+    pub fn follow_plc(&mut self, exchange: &Exchange, time_us: u64) {
+        let nc = exchange.nc();
+        let flashes = nc.bit(signal::PLC_MESSAGE_FLASHES);
+        let mut any = false;
+        for (number, marker) in (0..).zip(signal::PLC_MESSAGES.iter()) {
+            if nc.bit(marker) {
+                any = true;
+                self.show(Message::Plc(number), flashes, time_us);
+            }
+        }
+        self.shown.retain(|shown| {
+            let marker = shown
+                .message
+                .plc_number()
+                .and_then(|n| signal::PLC_MESSAGES.get(n.into()));
+            shown.flashing || marker.is_none_or(|marker| nc.bit(marker))
+        });
+        if flashes && !any {
+            self.show(Message::Plain(MessageId::EmergencyStopPlc), true, time_us);
+        }
+    }
+
+    /// M2190 and M2191.
+    pub fn markers(&self) -> [(bahn_exchange::Bit, bool); 2] {
+        [
+            (
+                signal::CANCELLABLE_MESSAGE_SHOWN,
+                self.shown.iter().any(|shown| !shown.flashing),
+            ),
+            (
+                signal::EMERGENCY_STOP_SHOWN,
+                self.shown.iter().any(|shown| shown.message.is_emergency_stop()),
+            ),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MODEL: ControlModel = ControlModel::Tnc415b;
+    const LETTERS: AxisLetters = ['X', 'Y', 'Z', 'C', 'V'];
+
+    fn text(message: &Message) -> String {
+        message.text(MODEL, &LETTERS, &["TOOL CLAMP OPEN".to_owned(), String::new()])
+    }
+
+    #[test]
+    fn texts_carry_axis_sign_and_letter() {
+        let gross = Message::axis(MessageId::GrossPositioningError, 3, Some('A'));
+        assert_eq!(text(&gross), "GROSS POSITIONING ERROR C A");
+        assert_eq!(text(&Message::limit(0, Direction::Minus)), "LIMIT SWITCH X-");
+        let encoder = Message::axis(MessageId::MeasuringSystemDefective, 2, Some('B'));
+        assert_eq!(text(&encoder), "MEASURING SYSTEM Z DEFECTIVE B");
+        assert_eq!(text(&Message::PlcMarkers(*b"1Q")), "ERROR IN PLC-PROGRAM 1Q");
+        assert_eq!(text(&Message::Plc(0)), "TOOL CLAMP OPEN");
+        assert_eq!(
+            text(&Message::Plc(1)),
+            "PLC: ERROR 1",
+            "an empty line has the default text"
+        );
+        assert_eq!(text(&Message::Plc(99)), "PLC: ERROR 99");
+    }
+
+    fn plc_sets(exchange: &mut Exchange, bit: bahn_exchange::Bit, value: bool) {
+        exchange.begin_scan();
+        exchange.plc_mut().set_bit(bit, value);
+        exchange.end_scan();
+    }
+
+    /// CE steps through several PLC messages and resets their markers; the PLC may do so, too
+    /// [000:6625-6633].
+    #[test]
+    fn plc_messages_follow_their_markers() {
+        let mut exchange = Exchange::default();
+        let mut messages = Messages::default();
+        let marker = |number| signal::PLC_MESSAGES.get(number);
+        for number in [5, 7] {
+            plc_sets(&mut exchange, marker(number).unwrap_or(signal::NC_START), true);
+        }
+        messages.follow_plc(&exchange, 0);
+        assert_eq!(messages.shown().len(), 2);
+        assert_eq!(messages.clear(&mut exchange, |_| true), Some(Message::Plc(5)));
+        exchange.begin_scan();
+        assert_eq!(
+            marker(5).map(|m| exchange.plc().bit(m)),
+            Some(false),
+            "NC resets M2929"
+        );
+        exchange.end_scan();
+        plc_sets(&mut exchange, marker(7).unwrap_or(signal::NC_START), false);
+        messages.follow_plc(&exchange, 0);
+        assert!(messages.shown().is_empty());
+    }
+
+    #[test]
+    fn m2815_makes_them_flash() {
+        let mut exchange = Exchange::default();
+        let mut messages = Messages::default();
+        plc_sets(&mut exchange, signal::PLC_MESSAGE_FLASHES, true);
+        messages.follow_plc(&exchange, 0);
+        assert_eq!(
+            messages.shown().first().map(|s| text(&s.message)).as_deref(),
+            Some("EMERGENCY STOP PLC")
+        );
+        assert!(messages.is_fatal());
+        assert_eq!(
+            messages.clear(&mut exchange, |_| true),
+            None,
+            "CE does not clear it"
+        );
+    }
+}

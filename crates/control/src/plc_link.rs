@@ -1,0 +1,275 @@
+//! What the modules of the PLC read of the control and ask from it.
+//!
+//! What a scan reads is put here before it starts; what it asks is taken from here after it. So the modules
+//! see one consistent state, and nothing happens in the middle of a scan.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use bahn_parameters::ParameterList;
+use bahn_plc::{
+    CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, Nc, NotSaved, PalletLine,
+    ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
+    SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
+};
+
+use crate::markers::AXES;
+
+/// Files and tables of the NC memory that modules read.
+#[derive(Clone, Debug, Default)]
+pub struct NcFiles {
+    /// Names with extension.
+    pub names: BTreeSet<String>,
+    /// Lines of the pallet file with M status.
+    pub pallet: Option<Vec<PalletLine>>,
+    /// Tool, pocket and datum table with M status.
+    pub tables: BTreeMap<TableKind, MemoryTable>,
+    /// Machine parameter lists by name; `None` for a faulty one.
+    pub parameter_lists: BTreeMap<String, Option<ParameterList>>,
+    /// The compensation assignment (.CMA): names of tables, line by line.
+    pub compensation: Option<Vec<Vec<String>>>,
+    /// Points of each compensation table (.COM).
+    pub compensation_points: BTreeMap<String, usize>,
+}
+
+/// What modules asked for since it was taken.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Requests {
+    pub plc_axes: [Option<PlcAxisCommand>; AXES],
+    pub plc_axis_override: [Option<f64>; AXES],
+    pub spindle_volts: Option<f64>,
+    pub tool_call: Option<ToolCallBlock>,
+    pub orientation: Option<SpindleOrientation>,
+    pub geometry: bool,
+    pub restart: bool,
+    pub compensation_line: Option<i32>,
+    pub program: Option<(String, Option<String>)>,
+    pub status: Vec<StatusChange>,
+    pub parameters_changed: bool,
+}
+
+/// Kinds of coordinates that modules read.
+const KINDS: usize = CoordinateKind::ALL.len();
+/// Items of status that modules read.
+const ITEMS: usize = StatusItem::ALL.len();
+
+/// The control as its PLC sees it.
+#[derive(Debug)]
+pub(crate) struct PlcLink {
+    /// The list in force, with what 9031 changed.
+    parameters: ParameterList,
+    /// The list as it is edited.
+    edited: ParameterList,
+    messages: Vec<String>,
+    dialogues: Vec<String>,
+    pub files: NcFiles,
+    pub window: PlcWindow,
+    pub window_view: WindowView,
+    pub interfaces: [DataInterface; 2],
+    pub host: Option<HostLink>,
+    pub program_running: bool,
+    pub coordinates: [[f64; AXES]; KINDS],
+    pub spindle: SpindlePosition,
+    pub status: [i32; ITEMS],
+    pub plc_axes: [PlcAxisStatus; AXES],
+    pub orienting: bool,
+    pub requests: Requests,
+    selected_list: String,
+}
+
+impl PlcLink {
+    pub fn new(
+        parameters: ParameterList,
+        messages: Vec<String>,
+        dialogues: Vec<String>,
+        files: NcFiles,
+    ) -> PlcLink {
+        PlcLink {
+            edited: parameters.clone(),
+            parameters,
+            messages,
+            dialogues,
+            files,
+            window: PlcWindow::default(),
+            window_view: WindowView::default(),
+            interfaces: Default::default(),
+            host: None,
+            program_running: false,
+            coordinates: [[0.0; AXES]; KINDS],
+            spindle: SpindlePosition::default(),
+            status: [0; ITEMS],
+            plc_axes: [PlcAxisStatus::default(); AXES],
+            orienting: false,
+            requests: Requests::default(),
+            selected_list: String::new(),
+        }
+    }
+
+    /// Texts of the PLC messages.
+    pub fn messages(&self) -> &[String] {
+        &self.messages
+    }
+
+    pub fn list(&self) -> &ParameterList {
+        &self.parameters
+    }
+
+    /// Sets what a module will read.
+    pub fn set_coordinates(&mut self, kind: CoordinateKind, values: [f64; AXES]) {
+        if let Some(row) = self.coordinates.get_mut(kind as usize) {
+            *row = values;
+        }
+    }
+
+    /// Sets what 9035 will read.
+    pub fn set_status(&mut self, item: StatusItem, value: i32) {
+        if let Some(cell) = self.status.get_mut(item as usize) {
+            *cell = value;
+        }
+    }
+}
+
+impl Nc for PlcLink {
+    fn parameters(&self) -> &ParameterList {
+        &self.parameters
+    }
+
+    fn editable_parameter(&self, number: u16, index: u8) -> Result<f64, ParameterFault> {
+        self.edited.get(number, index).ok_or(ParameterFault::NoSuchNumber)
+    }
+
+    fn change_parameter(&mut self, number: u16, index: u8, value: f64) -> Result<(), NotSaved> {
+        self.parameters.set(number, index, value).map_err(|_| NotSaved)?;
+        self.requests.parameters_changed = true;
+        Ok(())
+    }
+
+    fn select_parameter_file(&mut self, name: &str) -> Result<(), ParameterFileFault> {
+        let list = self
+            .files
+            .parameter_lists
+            .get(name)
+            .ok_or(ParameterFileFault::NotFound)?;
+        let list = list.clone().ok_or(ParameterFileFault::Faulty)?;
+        if self.selected_list != name {
+            name.clone_into(&mut self.selected_list);
+            self.edited = list.clone();
+            self.parameters = list;
+            self.requests.restart = true;
+        }
+        Ok(())
+    }
+
+    fn program_running(&self) -> bool {
+        self.program_running
+    }
+
+    fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>> {
+        let lines = match file {
+            TextFile::Messages => &self.messages,
+            TextFile::Dialogues => &self.dialogues,
+        };
+        Some(lines.get(usize::from(line))?.clone().into_bytes())
+    }
+
+    fn status(&self, item: StatusItem) -> i32 {
+        self.status.get(item as usize).copied().unwrap_or(0)
+    }
+
+    fn change_status(&mut self, change: StatusChange) {
+        self.requests.status.push(change);
+    }
+
+    fn coordinates(&self, kind: CoordinateKind) -> [f64; 5] {
+        self.coordinates.get(kind as usize).copied().unwrap_or_default()
+    }
+
+    fn spindle_position(&self) -> SpindlePosition {
+        self.spindle
+    }
+
+    fn window(&mut self) -> &mut PlcWindow {
+        &mut self.window
+    }
+
+    fn window_view(&self) -> WindowView {
+        self.window_view
+    }
+
+    fn pallet_line(&self, line: i32) -> Result<PalletLine, LineFault> {
+        let lines = self.files.pallet.as_ref().ok_or(LineFault::NoFile)?;
+        nth(lines, line).cloned().ok_or(LineFault::NoLine)
+    }
+
+    fn has_file(&self, name: &str) -> bool {
+        self.files.names.contains(name)
+    }
+
+    fn select_program(&mut self, program: &str, datum_table: Option<&str>) {
+        self.requests.program = Some((program.to_owned(), datum_table.map(str::to_owned)));
+    }
+
+    fn compensation_line(&self, line: i32) -> Result<Vec<Option<usize>>, LineFault> {
+        let lines = self.files.compensation.as_ref().ok_or(LineFault::NoFile)?;
+        let tables = nth(lines, line).ok_or(LineFault::NoLine)?;
+        let points = |name| self.files.compensation_points.get(name).copied();
+        Ok(tables.iter().map(points).collect())
+    }
+
+    fn activate_compensation(&mut self, line: i32) {
+        self.requests.compensation_line = Some(line);
+    }
+
+    fn table(&mut self, kind: TableKind) -> Option<&mut dyn TableFile> {
+        let table = self.files.tables.get_mut(&kind)?;
+        Some(table)
+    }
+
+    fn initialise_geometry(&mut self) {
+        self.requests.geometry = true;
+    }
+
+    fn data_interface(&mut self, number: usize) -> &mut DataInterface {
+        let [rs232, rs422] = &mut self.interfaces;
+        if number == 0 { rs232 } else { rs422 }
+    }
+
+    fn host(&mut self) -> Option<&mut HostLink> {
+        self.host.as_mut()
+    }
+
+    fn plc_axis_status(&self, axis: usize) -> PlcAxisStatus {
+        self.plc_axes.get(axis).copied().unwrap_or_default()
+    }
+
+    fn command_plc_axis(&mut self, axis: usize, command: PlcAxisCommand) {
+        if let Some(request) = self.requests.plc_axes.get_mut(axis) {
+            *request = Some(command);
+        }
+    }
+
+    fn override_plc_axis(&mut self, axis: usize, percent: f64) {
+        if let Some(request) = self.requests.plc_axis_override.get_mut(axis) {
+            *request = Some(percent);
+        }
+    }
+
+    fn output_spindle_voltage(&mut self, volts: f64) {
+        self.requests.spindle_volts = Some(volts);
+    }
+
+    fn insert_tool_call(&mut self, block: ToolCallBlock) {
+        self.requests.tool_call = Some(block);
+    }
+
+    fn spindle_orienting(&self) -> bool {
+        self.orienting
+    }
+
+    fn orient_spindle(&mut self, orientation: SpindleOrientation) {
+        self.requests.orientation = Some(orientation);
+    }
+}
+
+fn nth<T>(lines: &[T], line: i32) -> Option<&T> {
+    lines.get(usize::try_from(line).ok()?)
+}

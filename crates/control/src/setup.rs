@@ -1,0 +1,75 @@
+//! What a control is made of: model, machine parameters, PLC program, tools, programs, what it remembers.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use bahn_exchange::Exchange;
+use bahn_parameters::ParameterList;
+use bahn_path::{Axis, Position, ToolShape};
+use bahn_plc::PlcProgram;
+
+use crate::feeder::Programs;
+use crate::plc_link::NcFiles;
+
+/// A tool of the tool table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tool {
+    /// Length, radius, corner radius, mm.
+    pub shape: ToolShape,
+    /// Its pocket in the magazine.
+    pub pocket: Option<u16>,
+    /// A special tool, which takes more than one pocket.
+    pub special: bool,
+}
+
+/// Everything a [`Control`](crate::Control) starts with.
+#[derive(Clone)]
+pub struct Setup {
+    /// Machine parameters; their model is that of the control. The list must be checked already.
+    pub parameters: ParameterList,
+    /// The compiled PLC program.
+    pub plc: Arc<PlcProgram>,
+    /// Texts of the PLC messages 0 to 99.
+    pub plc_messages: Vec<String>,
+    /// Texts of the PLC dialogues.
+    pub plc_dialogues: Vec<String>,
+    /// Tools by number; `None` when tools are defined in the programs.
+    pub tools: Option<BTreeMap<u32, Tool>>,
+    /// Where programs come from.
+    pub programs: Arc<dyn Programs>,
+    /// Files and tables that PLC modules read.
+    pub files: NcFiles,
+    /// What was remembered over power-off.
+    pub remembered: Remembered,
+    /// Memory of the PLC with what power-off keeps (see [`bahn_exchange::Retention`]).
+    pub exchange: Exchange,
+}
+
+/// What survives power-off beside the memory of the PLC.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Remembered {
+    /// Machine position of the workpiece datum for each traverse range, mm or degrees.
+    pub datums: [Position0; 3],
+    /// Tool in the spindle.
+    pub tool: u32,
+    /// Length of the tool in the spindle, mm.
+    pub tool_length: f64,
+    /// Axis of the tool.
+    pub tool_axis: Option<Axis>,
+    /// Q parameters by number.
+    pub q: Vec<(u16, f64)>,
+    /// Offsets of the axes as adjusted with code number 75 368, V.
+    pub offsets_volts: [f64; 5],
+    /// Name of the selected program.
+    pub program: Option<String>,
+}
+
+/// A position that is 0 by default.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position0(pub Position);
+
+impl Default for Position0 {
+    fn default() -> Position0 {
+        Position0(Position::ZERO)
+    }
+}

@@ -1,0 +1,165 @@
+//! Signals that can be recorded, like those of the control's oscilloscope.
+
+use std::fmt;
+use std::str::FromStr;
+
+use bahn_exchange::{Bit, Number};
+
+use crate::control::Control;
+
+/// What of an axis is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisSignal {
+    /// `actual`: actual position in machine coordinates, mm or degrees.
+    Actual,
+    /// `nominal`: nominal position in machine coordinates, mm or degrees.
+    Nominal,
+    /// `lag`: servo lag, mm or degrees.
+    Lag,
+    /// `speed`: actual speed, mm/min.
+    Speed,
+    /// `nominal-speed`: nominal speed, mm/min.
+    NominalSpeed,
+    /// `volts`: nominal value output, V.
+    Volts,
+}
+
+/// A signal: `X.lag`, `path.speed`, `S.rpm`, `S.volts`, `M2045`, `W260`.
+///
+/// ```
+/// use bahn_control::Signal;
+/// assert_eq!("X.lag".parse::<Signal>()?.to_string(), "X.lag");
+/// assert_eq!("M2045".parse::<Signal>()?.to_string(), "M2045");
+/// assert!("X.temperature".parse::<Signal>().is_err());
+/// # Ok::<(), bahn_control::SignalError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// Of an axis by its letter.
+    Axis(char, AxisSignal),
+    /// `path.speed`: nominal speed along the path, mm/min.
+    PathSpeed,
+    /// `path.block`: number of the block that is executed.
+    Block,
+    /// `S.rpm`: actual speed of the spindle, rpm.
+    SpindleRpm,
+    /// `S.volts`: voltage of the spindle, V.
+    SpindleVolts,
+    /// A marker, input, output, timer or counter as the PLC sees it, 0 or 1.
+    Bit(Bit),
+    /// A byte, word or doubleword as the PLC sees it.
+    Number(Number),
+}
+
+/// A text is no signal.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{0}` is no signal: there are X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts for each axis, \
+     path.speed, path.block, S.rpm, S.volts, and operands of the PLC like M2045, I4, O2, W260, D356"
+)]
+pub struct SignalError(String);
+
+const AXIS_SIGNALS: [(&str, AxisSignal); 6] = [
+    ("actual", AxisSignal::Actual),
+    ("nominal", AxisSignal::Nominal),
+    ("lag", AxisSignal::Lag),
+    ("speed", AxisSignal::Speed),
+    ("nominal-speed", AxisSignal::NominalSpeed),
+    ("volts", AxisSignal::Volts),
+];
+
+impl FromStr for Signal {
+    type Err = SignalError;
+
+    fn from_str(text: &str) -> Result<Signal, SignalError> {
+        let wrong = || SignalError(text.to_owned());
+        let text = text.trim();
+        match text {
+            "path.speed" => return Ok(Signal::PathSpeed),
+            "path.block" => return Ok(Signal::Block),
+            "S.rpm" => return Ok(Signal::SpindleRpm),
+            "S.volts" => return Ok(Signal::SpindleVolts),
+            _ => {}
+        }
+        if let Some((letter, name)) = text.split_once('.') {
+            let mut letters = letter.chars();
+            let (Some(letter), None) = (letters.next(), letters.next()) else {
+                return Err(wrong());
+            };
+            let signal = AXIS_SIGNALS.iter().find(|(known, _)| *known == name);
+            let axis = letter
+                .is_ascii()
+                .then(|| bahn_path::Axis::from_letter(letter as u8))
+                .flatten();
+            return match (axis, signal) {
+                (Some(axis), Some((_, signal))) => Ok(Signal::Axis(axis.letter(), *signal)),
+                _ => Err(wrong()),
+            };
+        }
+        if let Ok(bit) = text.parse::<Bit>() {
+            return Ok(Signal::Bit(bit));
+        }
+        text.parse::<Number>().map(Signal::Number).map_err(|_| wrong())
+    }
+}
+
+impl fmt::Display for Signal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Signal::Axis(letter, signal) => {
+                let name = AXIS_SIGNALS
+                    .iter()
+                    .find(|(_, of)| of == signal)
+                    .map_or("", |(name, _)| *name);
+                write!(f, "{letter}.{name}")
+            }
+            Signal::PathSpeed => write!(f, "path.speed"),
+            Signal::Block => write!(f, "path.block"),
+            Signal::SpindleRpm => write!(f, "S.rpm"),
+            Signal::SpindleVolts => write!(f, "S.volts"),
+            Signal::Bit(bit) => bit.fmt(f),
+            Signal::Number(number) => number.fmt(f),
+        }
+    }
+}
+
+impl Signal {
+    /// Unit of its values; empty for operands.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Signal::Axis(_, AxisSignal::Actual | AxisSignal::Nominal | AxisSignal::Lag) => "mm",
+            Signal::Axis(_, AxisSignal::Speed | AxisSignal::NominalSpeed) | Signal::PathSpeed => "mm/min",
+            Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts => "V",
+            Signal::SpindleRpm => "rpm",
+            Signal::Block | Signal::Bit(_) | Signal::Number(_) => "",
+        }
+    }
+}
+
+impl Control {
+    /// The value of a signal now; an axis that the machine does not have reads 0.
+    pub fn observe(&self, signal: &Signal) -> f64 {
+        match signal {
+            Signal::Axis(letter, signal) => {
+                let unit = self.axes.iter().find(|unit| unit.axis.letter() == *letter);
+                unit.map_or(0.0, |unit| match signal {
+                    AxisSignal::Actual => unit.servo.actual_mm(),
+                    AxisSignal::Nominal => unit.servo.nominal_mm(),
+                    AxisSignal::Lag => unit.servo.lag_mm(),
+                    AxisSignal::Speed => unit.servo.actual_velocity_mm_min(),
+                    AxisSignal::NominalSpeed => unit.speed * 60.0,
+                    AxisSignal::Volts => unit.servo.volts(),
+                })
+            }
+            Signal::PathSpeed => self.run.speed * 60.0,
+            Signal::Block => self
+                .path
+                .element()
+                .map_or(0.0, |element| element.block.block.into()),
+            Signal::SpindleRpm => self.spindle.state().actual_rpm,
+            Signal::SpindleVolts => self.spindle.state().volts,
+            Signal::Bit(bit) => f64::from(u8::from(self.exchange.plc().bit(*bit))),
+            Signal::Number(number) => self.exchange.plc().number(*number).into(),
+        }
+    }
+}

@@ -1,0 +1,351 @@
+//! The spindle as the kernel sees it: speed and gear towards the PLC, the PLC's markers towards the servo
+//! [000:5438-5945].
+
+use bahn_exchange::{Bit, Exchange, signal};
+use bahn_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
+use bahn_plc::{OrientationDirection, SpindleOrientation};
+use bahn_servo::{Plant, Rotation, SpeedCode, Spindle, Timing, Way};
+
+use crate::handshake::Transfer;
+use crate::panel::PlcFaultCode;
+
+/// Analogue output of the spindle [000:3393-3406].
+const OUTPUT_S: usize = 5;
+/// Encoder input of the spindle, X6 [000:3376].
+const INPUT_X6: usize = 5;
+/// D356, D756 and module 9171 count in 1/1000 rpm.
+const PER_RPM: f64 = 1000.0;
+/// D592 counts in 1/10 000 degree (inferred).
+const PER_DEGREE: f64 = 10_000.0;
+/// D592 with bit 31 alone: the angle of cycle 13.
+const ANGLE_OF_CYCLE: i32 = i32::MIN;
+
+/// The state of the spindle for displays and reports.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpindleState {
+    /// Programmed speed, rpm.
+    pub programmed_rpm: f64,
+    /// Nominal speed with override and limits, rpm.
+    pub nominal_rpm: f64,
+    /// Actual speed, rpm, negative as M04.
+    pub actual_rpm: f64,
+    /// Voltage, V.
+    pub volts: f64,
+    /// Gear range, 1 to 8.
+    pub gear: u8,
+    /// M03, M04 or M05 as shown.
+    pub rotation: Rotation,
+}
+
+/// The spindle.
+#[derive(Debug)]
+pub(crate) struct SpindleUnit {
+    parameters: SpindleParameters,
+    servo: Spindle,
+    rotation: Rotation,
+    programmed_rpm: f64,
+    code: Option<u8>,
+    /// Gear and speed that are on their way to the PLC.
+    pending: Option<(u8, f64)>,
+    /// Angle of cycle 13, degrees.
+    cycle_deg: f64,
+    /// A speed was refused since somebody asked.
+    wrong_speed: bool,
+    /// M2092.
+    wrong: bool,
+    /// Markers as of the last scan, for their edges.
+    shown: [bool; 3],
+    jogging: bool,
+    turning: bool,
+    orienting: bool,
+    plc_volts: f64,
+}
+
+impl SpindleUnit {
+    pub fn new(parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
+        SpindleUnit {
+            servo: Spindle::new(parameters, timing),
+            parameters,
+            rotation: Rotation::M5,
+            programmed_rpm: 0.0,
+            code: None,
+            pending: None,
+            cycle_deg: 0.0,
+            wrong_speed: false,
+            wrong: false,
+            shown: [false; 3],
+            jogging: false,
+            turning: false,
+            orienting: false,
+            plc_volts: 0.0,
+        }
+    }
+
+    fn is_analogue(&self) -> bool {
+        matches!(self.parameters.output, SpindleOutput::Analogue { .. })
+    }
+
+    /// Markers and words at power-on.
+    pub fn preset(&self, exchange: &mut Exchange) {
+        exchange.nc_set(signal::SPINDLE_IS_ANALOGUE, self.is_analogue());
+        exchange.nc_set_number(signal::MINIMUM_S_CODE, self.parameters.codes.min.into());
+    }
+
+    pub fn measure(&mut self, plant: &mut dyn Plant) {
+        self.servo.measure(plant.encoder(INPUT_X6));
+    }
+
+    /// One servo step.
+    pub fn output(&mut self, plant: &mut dyn Plant) {
+        let volts = self.servo.step();
+        if self.is_analogue() {
+            plant.set_nominal(OUTPUT_S, volts);
+        } else if self.parameters.free_output == FreeOutput::Plc {
+            plant.set_nominal(OUTPUT_S, self.plc_volts);
+        }
+    }
+
+    /// Module 9130: a voltage at output S, where the spindle does not use it.
+    pub fn set_plc_volts(&mut self, volts: f64) {
+        self.plc_volts = volts;
+    }
+
+    /// A programmed speed: the gear range or the S code that goes to the PLC, when one does. A speed that
+    /// the spindle does not have is refused: M2092 [000:5653-5656].
+    pub fn program(&mut self, rpm: f64, tool_call: bool, exchange: &mut Exchange) -> Option<Transfer> {
+        let transfer = match self.parameters.output {
+            SpindleOutput::None => return None,
+            SpindleOutput::Coded { always } => {
+                let code = SpeedCode::nearest(rpm).filter(|code| code.permitted(&self.parameters.codes));
+                code.map(|code| {
+                    let code = code.number();
+                    let changed = self.code.replace(code) != Some(code);
+                    (changed || always && tool_call).then_some(Transfer::SCode(code))
+                })
+            }
+            SpindleOutput::Analogue { gear: when } => self
+                .servo
+                .gear_for(rpm)
+                .map(|gear| self.choose_gear(rpm, gear, when, tool_call, exchange)),
+        };
+        self.wrong = transfer.is_none();
+        self.wrong_speed |= transfer.is_none();
+        exchange.nc_set(signal::ILLEGAL_SPINDLE_SPEED, self.wrong);
+        if transfer.is_some() {
+            self.programmed_rpm = rpm;
+        }
+        transfer.flatten()
+    }
+
+    fn choose_gear(
+        &mut self,
+        rpm: f64,
+        gear: u8,
+        when: GearSignal,
+        tool_call: bool,
+        exchange: &mut Exchange,
+    ) -> Option<Transfer> {
+        let speed = (rpm * PER_RPM).round() as i32;
+        let signal = match when {
+            GearSignal::OnChange => gear != self.servo.gear_range(),
+            GearSignal::Always => tool_call || gear != self.servo.gear_range(),
+            GearSignal::Never => false,
+        };
+        if signal {
+            self.pending = Some((gear, rpm));
+            return Some(Transfer::Gear { code: gear, speed });
+        }
+        self.servo.set_speed(rpm, gear);
+        exchange.nc_set_number(signal::PROGRAMMED_SPINDLE_SPEED, speed);
+        exchange.nc_set_number(signal::SPINDLE_SPEED_FROM_PLC, speed);
+        None
+    }
+
+    /// The PLC acknowledged the gear: from now on the speed is that of it.
+    pub fn gear_changed(&mut self) {
+        if let Some((gear, rpm)) = self.pending.take() {
+            self.servo.set_speed(rpm, gear);
+        }
+    }
+
+    /// A speed was refused since the last call.
+    pub fn take_wrong_speed(&mut self) -> bool {
+        std::mem::take(&mut self.wrong_speed)
+    }
+
+    /// Cycle 13: the angle that D592 = $80000000 stands for; M2408 tells the PLC.
+    pub fn set_cycle_angle(&mut self, angle_deg: f64, exchange: &mut Exchange) {
+        self.cycle_deg = angle_deg;
+        exchange.nc_set(signal::CYCLE_13_EXECUTED, true);
+    }
+
+    /// Module 9171.
+    pub fn orient(&mut self, orientation: SpindleOrientation, exchange: &mut Exchange) {
+        let added = if orientation.added_to_cycle {
+            self.cycle_deg
+        } else {
+            0.0
+        };
+        let way = match orientation.direction {
+            OrientationDirection::Negative => Way::In(Rotation::M4),
+            OrientationDirection::Shortest => Way::Shortest,
+            OrientationDirection::Positive => Way::In(Rotation::M3),
+        };
+        self.servo
+            .orient(orientation.angle + added, orientation.speed, way);
+        self.orienting = true;
+        exchange.nc_set(signal::ORIENT_SPINDLE, true);
+    }
+
+    /// Opens the loop and takes the voltage away: EMERGENCY STOP, M2830.
+    pub fn open(&mut self) {
+        self.servo.rotate(Rotation::M5);
+        self.servo.set_enabled(false);
+    }
+
+    /// After a PLC scan: direction, jog, orientation, gear and speed by the PLC. The code of the fault when
+    /// more than one direction is set [000:5492-5518].
+    pub fn take_markers(&mut self, exchange: &mut Exchange) -> Option<PlcFaultCode> {
+        let nc = exchange.nc();
+        let shown = [signal::M03_SHOWN, signal::M04_SHOWN, signal::M05_SHOWN].map(|marker| nc.bit(marker));
+        if shown.iter().filter(|set| **set).count() > 1 {
+            return Some(*b"1Q");
+        }
+        let rotations = [Rotation::M3, Rotation::M4, Rotation::M5];
+        for ((now, before), rotation) in shown.iter().zip(self.shown).zip(rotations) {
+            if *now && !before {
+                self.rotation = rotation;
+                self.servo.rotate(rotation);
+                self.orienting = false;
+            }
+        }
+        self.shown = shown;
+        self.servo.set_inverted(nc.bit(signal::INVERT_SPINDLE_DIRECTION));
+        let closed = !nc.bit(signal::NC_STOP_AND_OPEN_LOOPS);
+        self.servo
+            .set_enabled(closed && !nc.bit(signal::SPINDLE_DISPLAY_INVERSE));
+        self.servo.set_opens(nc.bit(signal::OPEN_SPINDLE_LOOP));
+        self.take_jog(
+            nc.bit(signal::SPINDLE_JOG_LEFT),
+            nc.bit(signal::SPINDLE_JOG_RIGHT),
+        );
+        let turn = nc.bit(signal::RUN_SPINDLE_AT_MP3520);
+        if turn != self.turning {
+            self.turning = turn;
+            let direction = if nc.bit(signal::ORIENTATION_DIRECTION) {
+                Rotation::M4
+            } else {
+                Rotation::M3
+            };
+            self.servo.turn(if turn { direction } else { Rotation::M5 });
+        }
+        self.take_orientation(exchange);
+        self.take_gear(exchange);
+        None
+    }
+
+    /// M2490 and M2491: the spindle moves to and fro while the gear changes [000:5636-5641].
+    fn take_jog(&mut self, left: bool, right: bool) {
+        if left || right {
+            self.jogging = true;
+            self.servo.jog(match (left, right) {
+                (true, false) => Rotation::M4,
+                (false, true) => Rotation::M3,
+                _ => Rotation::M5,
+            });
+        } else if self.jogging {
+            self.jogging = false;
+            self.servo.rotate(self.rotation);
+        }
+    }
+
+    /// M2712 with D592, and M2615 [000:5851-5881]. Not in the mode of the TNC 355 (M2719 = 0)
+    /// [000:16166-16190].
+    fn take_orientation(&mut self, exchange: &mut Exchange) {
+        if exchange.nc().bit(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN) {
+            self.servo.forget_mark();
+            exchange.nc_set(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN, false);
+        }
+        let nc = exchange.nc();
+        let wanted = nc.bit(signal::ORIENT_SPINDLE) && nc.bit(signal::WORD_PROCESSING);
+        if !wanted || self.orienting || !self.parameters.controlled {
+            return;
+        }
+        let target = nc.number(signal::NOMINAL_SPINDLE_POSITION);
+        let angle = if target == ANGLE_OF_CYCLE {
+            self.cycle_deg
+        } else {
+            f64::from(target) / PER_DEGREE
+        };
+        let direction = if nc.bit(signal::ORIENTATION_DIRECTION) {
+            Rotation::M4
+        } else {
+            Rotation::M3
+        };
+        self.servo.orient(angle, 0.0, Way::In(direction));
+        self.orienting = true;
+    }
+
+    /// M2814: gear range W256 and speed D756 of the PLC [000:5620-5624].
+    fn take_gear(&mut self, exchange: &mut Exchange) {
+        if !exchange.nc().bit(signal::GEAR_AND_SPEED_FROM_PLC) {
+            return;
+        }
+        let gear = u8::try_from(exchange.nc().number(signal::GEAR_CODE)).unwrap_or(0);
+        let rpm = f64::from(exchange.nc().number(signal::SPINDLE_SPEED_FROM_PLC)) / PER_RPM;
+        self.servo.set_speed(rpm, gear.min(7));
+        exchange.nc_set(signal::GEAR_AND_SPEED_FROM_PLC, false);
+    }
+
+    /// Once in each contour cycle.
+    pub fn cycle(&mut self, exchange: &mut Exchange, override_percent: f64) {
+        self.servo.set_override(override_percent);
+        if self.orienting && self.servo.in_position() {
+            self.orienting = false;
+            exchange.nc_set(signal::ORIENT_SPINDLE, false);
+        }
+    }
+
+    /// Markers and words of the spindle. M2004 is 1 while the voltage is not on a ramp.
+    pub fn publish(&self, exchange: &mut Exchange) {
+        let mut put = |marker: Bit, value: bool| {
+            if exchange.nc().bit(marker) != value {
+                exchange.nc_set(marker, value);
+            }
+        };
+        put(signal::SPINDLE_VOLTAGE_NOT_ON_RAMP, !self.servo.on_ramp());
+        put(signal::SPINDLE_VOLTAGE_ZERO, self.servo.at_zero());
+        put(signal::SPINDLE_IN_POSITION, self.servo.in_position());
+        put(signal::SPINDLE_IN_MOTION, self.servo.orienting());
+        let words = [
+            (signal::NOMINAL_SPINDLE_SPEED, self.servo.nominal_rpm()),
+            (signal::ACTUAL_SPINDLE_SPEED, self.servo.actual_rpm().abs()),
+        ];
+        for (word, rpm) in words {
+            let value = rpm.round().min(32_767.0) as i32;
+            if exchange.nc().number(word) != value {
+                exchange.nc_set_number(word, value);
+            }
+        }
+    }
+
+    pub fn state(&self) -> SpindleState {
+        SpindleState {
+            programmed_rpm: self.programmed_rpm,
+            nominal_rpm: self.servo.nominal_rpm(),
+            actual_rpm: self.servo.actual_rpm(),
+            volts: self.servo.volts(),
+            gear: self.servo.gear_range() + 1,
+            rotation: self.rotation,
+        }
+    }
+
+    /// Angle of the spindle, degrees, once its reference mark was crossed.
+    pub fn angle_deg(&self) -> Option<f64> {
+        self.servo.angle_deg()
+    }
+
+    pub fn orienting(&self) -> bool {
+        self.orienting
+    }
+}

@@ -1,0 +1,241 @@
+//! Doing what events say: the hands of the operator, and what breaks.
+
+use bahn_servo::INPUTS;
+
+use crate::axis::Axis;
+use crate::device::DeviceFault;
+use crate::encoder::EncoderFault;
+use crate::event::{Event, EventError, Fault, KeyAction};
+use crate::machine::{Machine, set};
+use crate::probe::Probe;
+use crate::spindle::Spindle;
+
+impl Machine {
+    /// Reads an event and does what it says; [`Event::HELP`] lists the forms, [`Machine::keys`] and the like
+    /// the names.
+    ///
+    /// # Errors
+    /// When the text is no event, or names what the machine does not have. Nothing is done then.
+    pub fn apply(&mut self, event: &str) -> Result<(), EventError> {
+        self.act(&Event::parse(event)?)
+    }
+
+    /// Does what an event says.
+    ///
+    /// # Errors
+    /// When it names what the machine does not have. Nothing is done then.
+    pub fn act(&mut self, event: &Event) -> Result<(), EventError> {
+        match event {
+            Event::Key(name, action) => self.key(name, *action)?,
+            Event::FeedOverride(percent) => self.panel.operator.feed_override_percent = *percent,
+            Event::SpindleOverride(percent) => self.panel.operator.spindle_override_percent = *percent,
+            Event::Handwheel(steps) => {
+                let count = &mut self.panel.operator.handwheel_count;
+                *count = count.wrapping_add(*steps);
+            }
+            Event::Switch(name, state) => self.switch(name, state)?,
+            Event::EmergencyStop(pressed) => self.chain.button = *pressed,
+            Event::Voltage(on) => self.chain.supply = *on,
+            Event::Probe(inserted) => self.probe()?.inserted = *inserted,
+            Event::Analogue(input, volts) => set(&mut self.volts, *input, *volts),
+            Event::Temperature(input, celsius) => set(&mut self.temperatures, *input, *celsius),
+            Event::Force(letter, force) => self.axis_mut(*letter)?.push(*force),
+            Event::Fault(fault) => self.inject(fault)?,
+            Event::Repair(what) => self.repair(what)?,
+        }
+        Ok(())
+    }
+
+    /// Presses a key and holds it.
+    ///
+    /// # Errors
+    /// When the panel has no such key.
+    pub fn press(&mut self, key: &str) -> Result<(), EventError> {
+        self.key(key, KeyAction::Press)
+    }
+
+    /// Releases a key.
+    ///
+    /// # Errors
+    /// When the panel has no such key.
+    pub fn release(&mut self, key: &str) -> Result<(), EventError> {
+        self.key(key, KeyAction::Release)
+    }
+
+    fn key(&mut self, name: &str, action: KeyAction) -> Result<(), EventError> {
+        if self.panel.act(name, action) {
+            return Ok(());
+        }
+        Err(no("key", name, self.keys()))
+    }
+
+    fn switch(&mut self, name: &str, state: &str) -> Result<(), EventError> {
+        let Some(device) = self.devices.iter_mut().find(|device| device.name == name) else {
+            return Err(no("thing", name, self.devices().map(|device| device.name)));
+        };
+        if !device.by_hand() {
+            return Err(EventError::NotByHand(name.to_owned()));
+        }
+        let Some(state) = device.states.iter().position(|own| own == state) else {
+            return Err(no("state", state, device.states.iter().map(String::as_str)));
+        };
+        device.switch(state == 1);
+        Ok(())
+    }
+
+    fn probe(&mut self) -> Result<&mut Probe, EventError> {
+        self.probe
+            .as_mut()
+            .ok_or_else(|| no("part", "probe", std::iter::empty()))
+    }
+
+    fn axis_mut(&mut self, letter: char) -> Result<&mut Axis, EventError> {
+        let known: String = self.axes.iter().map(|axis| axis.letter).collect();
+        self.axes
+            .iter_mut()
+            .find(|axis| axis.letter == letter)
+            .ok_or_else(|| EventError::Name {
+                what: "axis",
+                name: letter.to_string(),
+                known,
+            })
+    }
+
+    fn spindle_mut(&mut self) -> Result<&mut Spindle, EventError> {
+        self.spindle
+            .as_mut()
+            .ok_or_else(|| no("part", "spindle", std::iter::empty()))
+    }
+
+    /// Makes something fail.
+    ///
+    /// # Errors
+    /// When the machine does not have it.
+    pub fn inject(&mut self, fault: &Fault) -> Result<(), EventError> {
+        match fault {
+            Fault::Encoder(letter, kind) => return self.encoder_fault(*letter, Some(*kind)),
+            Fault::Drive('S', kind) => self.spindle_mut()?.fault = Some(*kind),
+            Fault::Drive(letter, kind) => self.axis_mut(*letter)?.set_drive_fault(Some(*kind)),
+            Fault::Offset(letter, volts) => self.axis_mut(*letter)?.offset = *volts,
+            Fault::Input(input, on) => {
+                self.stuck.retain(|(stuck, _)| stuck != input);
+                self.stuck.push((*input, *on));
+            }
+            Fault::Device(name, kind) => return self.device_fault(name, Some(*kind)),
+            Fault::Relay(kind) => self.chain.fault = Some(*kind),
+            Fault::ProbeNotReady => self.probe()?.ready = false,
+            Fault::ProbeBattery => self.probe()?.battery_low = true,
+        }
+        Ok(())
+    }
+
+    fn encoder_fault(&mut self, letter: char, kind: Option<EncoderFault>) -> Result<(), EventError> {
+        let found = if letter == 'S' {
+            self.spindle_mut()?.set_encoder_fault(kind)
+        } else {
+            self.axis_mut(letter)?.set_encoder_fault(kind)
+        };
+        if found {
+            return Ok(());
+        }
+        let with_encoder = |axis: &&Axis| axis.counter.is_some();
+        let known: Vec<String> = self
+            .axes
+            .iter()
+            .filter(with_encoder)
+            .map(|axis| axis.letter.to_string())
+            .collect();
+        Err(no(
+            "encoder",
+            &letter.to_string(),
+            known.iter().map(String::as_str),
+        ))
+    }
+
+    fn device_fault(&mut self, name: &str, kind: Option<DeviceFault>) -> Result<(), EventError> {
+        if name == "gear" {
+            self.spindle_mut()?.gear_fault = kind;
+            return Ok(());
+        }
+        if let Some(device) = self.devices.iter_mut().find(|device| device.name == name) {
+            device.fault = kind;
+            return Ok(());
+        }
+        Err(no("thing", name, self.devices().map(|device| device.name)))
+    }
+
+    /// Repairs one thing, or `all`. Counts that an encoder lost stay lost, a changed offset stays.
+    fn repair(&mut self, what: &str) -> Result<(), EventError> {
+        if what == "all" {
+            let letters: Vec<char> = self.axes.iter().map(|axis| axis.letter).collect();
+            for letter in letters {
+                self.repair_axis(letter)?;
+            }
+            if self.spindle.is_some() {
+                self.repair("S")?;
+                self.repair("gear")?;
+            }
+            self.devices.iter_mut().for_each(|device| device.fault = None);
+            self.stuck.clear();
+            self.chain.fault = None;
+            if self.probe.is_some() {
+                self.repair("probe")?;
+            }
+            return Ok(());
+        }
+        if let Some(input) = input_number(what) {
+            self.stuck.retain(|(stuck, _)| *stuck != input);
+            return Ok(());
+        }
+        match what {
+            "relay" => self.chain.fault = None,
+            "probe" => {
+                let probe = self.probe()?;
+                probe.ready = true;
+                probe.battery_low = false;
+            }
+            "S" => {
+                let spindle = self.spindle_mut()?;
+                spindle.fault = None;
+                spindle.set_encoder_fault(None);
+            }
+            _ => {
+                let mut letters = what.chars();
+                return match (letters.next(), letters.next()) {
+                    (Some(letter), None) => self.repair_axis(letter),
+                    _ => self.device_fault(what, None),
+                };
+            }
+        }
+        Ok(())
+    }
+
+    fn repair_axis(&mut self, letter: char) -> Result<(), EventError> {
+        let axis = self.axis_mut(letter)?;
+        axis.set_drive_fault(None);
+        axis.set_encoder_fault(None);
+        Ok(())
+    }
+}
+
+/// `I12`.
+pub(crate) fn input_number(text: &str) -> Option<usize> {
+    let digits = text.strip_prefix('I')?;
+    if !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    digits.parse().ok().filter(|input| *input < INPUTS)
+}
+
+fn no<'a>(what: &'static str, name: &str, known: impl Iterator<Item = &'a str>) -> EventError {
+    let known: Vec<&str> = known.collect();
+    EventError::Name {
+        what,
+        name: name.to_owned(),
+        known: if known.is_empty() {
+            "none".to_owned()
+        } else {
+            known.join(", ")
+        },
+    }
+}

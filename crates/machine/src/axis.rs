@@ -1,0 +1,367 @@
+//! A feed axis: amplifier and motor, guideway, play, ends of travel, encoder.
+
+use crate::encoder::{Counter, EncoderFault};
+use crate::noise::Noise;
+use crate::reader::{Coil, Contact, Section};
+use bahn_servo::{INPUTS, OUTPUTS};
+
+/// How a drive can fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriveFault {
+    /// The drive gives no force.
+    Dead,
+    /// The drive runs with 10 V whatever the control puts out: the tachometer is lost.
+    Runaway,
+    /// The drive turns the other way: its wires are exchanged.
+    Reversed,
+}
+
+/// The true state of an axis, which no control sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisState {
+    /// Letter of the axis.
+    pub letter: char,
+    /// Position of the table, mm or degrees.
+    pub position: f64,
+    /// Position of the motor behind the play, mm or degrees.
+    pub motor_position: f64,
+    /// Speed of the motor, mm/min or degrees/min.
+    pub speed_per_min: f64,
+    /// Nominal voltage from the control, V.
+    pub volts: f64,
+    /// The drive is enabled and has voltage.
+    pub powered: bool,
+    /// The clamp of the axis is closed.
+    pub clamped: bool,
+}
+
+/// A switch that is closed within a range of the travel.
+#[derive(Clone, Debug)]
+struct Cam {
+    from: f64,
+    to: f64,
+    contact: Option<Contact>,
+}
+
+impl Cam {
+    fn holds(&self, position: f64) -> bool {
+        (self.from..=self.to).contains(&position)
+    }
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Axis {
+    pub letter: char,
+    pub output: usize,
+    enable: Option<Coil>,
+    ready: Option<Contact>,
+    /// Speed per volt, units/s; the offset of the amplifier and its noise, V.
+    gain: f64,
+    pub offset: f64,
+    noise_volts: f64,
+    noise: Noise,
+    /// Speed controller: share of the speed error taken away per step, divided by the step; the same
+    /// for the integral part; the mean of the speed over a step lies `early` before its end.
+    rate: f64,
+    integral_rate: f64,
+    early: f64,
+    /// Accelerations by motor, friction, weight and brake, units/s².
+    motor_max: f64,
+    friction: f64,
+    stiction: f64,
+    weight: f64,
+    brake: f64,
+    /// Acceleration of 1 N (1 Nm).
+    per_force: f64,
+    play: f64,
+    travel: [f64; 2],
+    reference_cam: Option<Cam>,
+    /// Limit switches below and above, open when actuated.
+    limits: [Option<Cam>; 2],
+    on_motor: bool,
+    pub counter: Option<Counter>,
+
+    pub volts: f64,
+    pub powered: bool,
+    pub clamped: bool,
+    fault: Option<DriveFault>,
+    /// Acceleration by a force from outside.
+    push: f64,
+    speed: f64,
+    integral: f64,
+    motor: f64,
+    pub table: f64,
+}
+
+/// Speeds below this count as standing, units/s.
+const STANDING: f64 = 1e-12;
+
+impl Axis {
+    /// Reads `[axis.X]`.
+    pub fn read(name: &str, section: Section, step_s: f64, seed: u64) -> Option<Axis> {
+        let letter = name.chars().next().filter(|letter| {
+            name.len() == 1 && matches!(letter, 'X' | 'Y' | 'Z' | 'A' | 'B' | 'C' | 'U' | 'V' | 'W')
+        });
+        let Some(letter) = letter else {
+            section.fault(format!("`{name}` is no axis: X Y Z A B C U V W"));
+            return None;
+        };
+        let part = u64::from(u32::from(letter));
+        // N and kg give m/s², Nm and kg m² give radians/s².
+        let unit = if matches!(letter, 'A' | 'B' | 'C') {
+            180.0 / std::f64::consts::PI
+        } else {
+            1000.0
+        };
+        let travel = section
+            .range("travel")
+            .unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let start = section.number("start", -1e6..=1e6).unwrap_or(0.0);
+        if !(travel[0]..=travel[1]).contains(&start) {
+            section.fault_at("start", "start lies outside travel".to_owned());
+        }
+        let speed = section.needed_number("speed", 1.0..=1e6) / 60.0;
+        let volts = section.needed_number("volts", 0.1..=10.0);
+        let turn = if section.flag("reversed").unwrap_or(false) {
+            -1.0
+        } else {
+            1.0
+        };
+        let time = section.number("time_constant_ms", 0.0..=10_000.0).unwrap_or(0.0) / 1000.0;
+        let reset = section.number("reset_ms", 0.0..=100_000.0).unwrap_or(0.0) / 1000.0;
+        let kept = (-step_s / time).exp();
+        let mass = section.number("mass", 0.001..=1e6).unwrap_or(1.0);
+        let load = section.number("load", 0.0..=1e6).unwrap_or(0.0);
+        let per_force = unit / (mass + load);
+        let force = |key| section.number(key, 0.0..=1e9).unwrap_or(0.0) * per_force;
+        let friction = force("friction");
+        let axis = Axis {
+            letter,
+            output: section
+                .word("output", &["1", "2", "3", "4", "5", "S"])
+                .unwrap_or_else(|| {
+                    if !section.has("output") {
+                        section.fault(format!("[{}] needs output", section.name));
+                    }
+                    0
+                }),
+            enable: section.coil("enable"),
+            ready: section.contact("ready"),
+            gain: turn * speed / volts,
+            offset: section.number("offset_mv", -1000.0..=1000.0).unwrap_or(0.0) / 1000.0,
+            noise_volts: section.number("noise_mv", 0.0..=1000.0).unwrap_or(0.0) / 1000.0,
+            noise: Noise::new(seed, part),
+            // The controller was tuned without the load: with it, it is slower.
+            rate: (1.0 - kept) / step_s * mass / (mass + load),
+            integral_rate: if reset > 0.0 { step_s / reset.max(step_s) } else { 0.0 },
+            early: time / step_s - kept / (1.0 - kept),
+            motor_max: section
+                .number("force", 0.001..=1e9)
+                .map_or(f64::INFINITY, |force| force * per_force),
+            friction,
+            stiction: force("stiction").max(friction),
+            weight: section.number("weight", -1e9..=1e9).unwrap_or(0.0) * per_force,
+            brake: force("brake"),
+            per_force,
+            play: section.number("backlash", 0.0..=100.0).unwrap_or(0.0),
+            travel,
+            reference_cam: section.section("reference_cam").map(|section| {
+                let [from, to] = section.range("range").unwrap_or([0.0, 1.0]);
+                let contact = section.contact("input");
+                section.finish();
+                Cam { from, to, contact }
+            }),
+            limits: ["limit_minus", "limit_plus"].map(|key| {
+                let section = section.section(key)?;
+                let at = section.needed_number("at", -1e6..=1e6);
+                let contact = section.contact("input");
+                section.finish();
+                let (from, to) = if key == "limit_minus" {
+                    (f64::NEG_INFINITY, at)
+                } else {
+                    (at, f64::INFINITY)
+                };
+                Some(Cam { from, to, contact })
+            }),
+            on_motor: section
+                .section("encoder")
+                .is_some_and(|encoder| encoder.word("on", &["table", "motor"]) == Some(1)),
+            counter: section.section("encoder").and_then(|encoder| {
+                encoder.word("on", &["table", "motor"]);
+                let noise = Noise::new(seed, part + 1000);
+                let counter = Counter::read(&encoder, travel, start, noise);
+                encoder.finish();
+                counter
+            }),
+            volts: 0.0,
+            powered: false,
+            clamped: false,
+            fault: None,
+            push: 0.0,
+            speed: 0.0,
+            integral: 0.0,
+            motor: start,
+            table: start,
+        };
+        section.finish();
+        Some(axis)
+    }
+
+    /// Lets the drive have voltage or not, as enable output and control voltage say.
+    pub fn set_power(&mut self, voltage: bool, outputs: &[bool; OUTPUTS]) {
+        let enabled = self.enable.is_none_or(|enable| enable.is_on(outputs));
+        self.powered = voltage && enabled && self.fault != Some(DriveFault::Dead);
+        if !self.powered {
+            self.integral = 0.0;
+        }
+    }
+
+    /// Makes the drive fail or repairs it.
+    pub fn set_drive_fault(&mut self, fault: Option<DriveFault>) {
+        self.fault = fault;
+        self.powered &= fault != Some(DriveFault::Dead);
+    }
+
+    /// Pushes the axis with a force, N or Nm.
+    pub fn push(&mut self, force: f64) {
+        self.push = force * self.per_force;
+    }
+
+    /// Makes the encoder fail or repairs it. `false` when the axis has none.
+    pub fn set_encoder_fault(&mut self, fault: Option<EncoderFault>) -> bool {
+        let position = self.measured();
+        self.counter
+            .as_mut()
+            .map(|counter| counter.set_fault(fault, position))
+            .is_some()
+    }
+
+    /// One step of the simulation.
+    #[inline]
+    pub fn step(&mut self, step_s: f64) {
+        let mut acceleration = self.push - self.weight;
+        let (mut friction, mut stiction) = (self.friction, self.stiction);
+        if self.powered {
+            acceleration += self.motor_acceleration();
+        } else {
+            friction += self.brake;
+            stiction += self.brake;
+        }
+        let before = self.speed;
+        self.speed = if self.clamped {
+            0.0
+        } else {
+            rubbed(before, acceleration, friction, stiction, step_s)
+        };
+        self.motor += (self.speed + (before - self.speed) * self.early) * step_s;
+        self.stay_in_travel();
+        self.table = self
+            .table
+            .clamp(self.motor - self.play / 2.0, self.motor + self.play / 2.0)
+            .clamp(self.travel[0], self.travel[1]);
+        let measured = self.measured();
+        if let Some(counter) = &mut self.counter {
+            counter.move_to(measured);
+        }
+    }
+
+    /// The speed controller of the amplifier: proportional and integral, its force limited. The integral
+    /// part waits while the force is at its limit.
+    #[inline]
+    fn motor_acceleration(&mut self) -> f64 {
+        let mut volts = self.volts + self.offset;
+        match self.fault {
+            Some(DriveFault::Runaway) => volts = 10.0,
+            Some(DriveFault::Reversed) => volts = -volts,
+            _ => {}
+        }
+        if self.noise_volts > 0.0 {
+            volts += self.noise.next() * self.noise_volts;
+        }
+        let error = volts * self.gain - self.speed;
+        let wanted = (error + self.integral) * self.rate;
+        let given = wanted.clamp(-self.motor_max, self.motor_max);
+        if given == wanted {
+            self.integral += error * self.integral_rate;
+        }
+        given
+    }
+
+    fn stay_in_travel(&mut self) {
+        if self.motor < self.travel[0] {
+            self.motor = self.travel[0];
+            self.speed = self.speed.max(0.0);
+        } else if self.motor > self.travel[1] {
+            self.motor = self.travel[1];
+            self.speed = self.speed.min(0.0);
+        }
+    }
+
+    /// The position where the encoder sits.
+    fn measured(&self) -> f64 {
+        if self.on_motor { self.motor } else { self.table }
+    }
+
+    /// What the control reads of the encoder.
+    pub fn read_encoder(&mut self) -> bahn_servo::Encoder {
+        let measured = self.measured();
+        let speed = self.speed;
+        self.counter
+            .as_mut()
+            .map_or_else(Default::default, |counter| counter.read_at(measured, speed))
+    }
+
+    /// No limit switch is actuated.
+    pub fn limits_clear(&self) -> bool {
+        !self.limits.iter().flatten().any(|cam| cam.holds(self.table))
+    }
+
+    /// Sets reference cam, limit switches and ready contact. Limit switches open when actuated.
+    pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
+        if let Some((cam, contact)) = self
+            .reference_cam
+            .as_ref()
+            .and_then(|cam| Some((cam, cam.contact?)))
+        {
+            contact.set(inputs, cam.holds(self.table));
+        }
+        for cam in self.limits.iter().flatten() {
+            if let Some(contact) = cam.contact {
+                contact.set(inputs, !cam.holds(self.table));
+            }
+        }
+        if let Some(ready) = self.ready {
+            ready.set(inputs, self.fault != Some(DriveFault::Dead));
+        }
+    }
+
+    pub fn state(&self) -> AxisState {
+        AxisState {
+            letter: self.letter,
+            position: self.table,
+            motor_position: self.motor,
+            speed_per_min: self.speed * 60.0,
+            volts: self.volts,
+            powered: self.powered,
+            clamped: self.clamped,
+        }
+    }
+}
+
+/// The speed after a step with dry friction: what stands stays until stiction is overcome, and what
+/// comes to rest stops before it turns round.
+#[inline]
+fn rubbed(speed: f64, acceleration: f64, friction: f64, stiction: f64, step_s: f64) -> f64 {
+    if speed.abs() < STANDING {
+        if acceleration.abs() <= stiction {
+            return 0.0;
+        }
+        return (acceleration - friction.copysign(acceleration)) * step_s;
+    }
+    let after = speed + (acceleration - friction.copysign(speed)) * step_s;
+    if after * speed < 0.0 && acceleration.abs() <= stiction {
+        return 0.0;
+    }
+    after
+}

@@ -1,0 +1,155 @@
+//! The EMERGENCY STOP chain and the relay for the control voltage [000:6149-6228].
+//!
+//! The relay holds as long as the supply is there, the button is not pressed, no limit switch of the chain
+//! is actuated and the control has switched "control is ready" on. Its contact is the acknowledgement I3
+//! and feeds the drives and the outputs that an EMERGENCY STOP switches off.
+
+use bahn_servo::{INPUTS, OUTPUTS};
+
+use crate::reader::{Contact, Reader, Section};
+
+/// How the relay can fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RelayFault {
+    /// It drops out only after so many milliseconds.
+    Slow(u32),
+    /// Its contacts are welded: it never drops out.
+    Welded,
+    /// It never pulls in.
+    Open,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Chain {
+    pub acknowledgement: Option<Contact>,
+    /// The key that switches the control voltage on; without one it comes on by itself.
+    key: Option<String>,
+    limit_switches: bool,
+    pull_in_ms: u32,
+    drop_out_ms: u32,
+    /// Outputs without voltage while the relay is off [000:2134-2174].
+    switched: Vec<bool>,
+
+    pub supply: bool,
+    pub button: bool,
+    pub control_ready: bool,
+    pub fault: Option<RelayFault>,
+    relay: bool,
+    changing_ms: u32,
+}
+
+impl Chain {
+    /// Reads `[emergency_stop]`; without it the usual values hold.
+    pub fn read(root: &Section) -> Chain {
+        let mut chain = Chain {
+            acknowledgement: None,
+            key: None,
+            limit_switches: false,
+            pull_in_ms: 15,
+            drop_out_ms: 15,
+            switched: vec![false; OUTPUTS],
+            supply: true,
+            button: false,
+            control_ready: false,
+            fault: None,
+            relay: false,
+            changing_ms: 0,
+        };
+        let Some(section) = root.section("emergency_stop") else {
+            root.fault("the machine needs [emergency_stop] with its acknowledgement, usually I3".to_owned());
+            return chain;
+        };
+        if !section.has("acknowledgement") {
+            section.fault("[emergency_stop] needs acknowledgement, usually \"I3\"".to_owned());
+        }
+        chain.acknowledgement = section.contact("acknowledgement");
+        chain.key = section.text("control_voltage_key").map(str::to_owned);
+        chain.limit_switches = section.flag("limit_switches").unwrap_or(false);
+        let delay = |key| {
+            section
+                .number(key, 0.0..=10_000.0)
+                .map_or(15, |delay| delay as u32)
+        };
+        chain.pull_in_ms = delay("pull_in_ms");
+        chain.drop_out_ms = delay("drop_out_ms");
+        for (at, text) in section.texts("switched_outputs") {
+            chain.read_switched(section.reader, at, text);
+        }
+        section.finish();
+        chain
+    }
+
+    /// `O5` or `O0-O23`.
+    fn read_switched(&mut self, reader: &Reader, at: usize, text: &str) {
+        let (first, last) = text.split_once('-').unwrap_or((text, text));
+        let number = |text: &str| {
+            let number: usize = text.trim().strip_prefix('O')?.parse().ok()?;
+            Some(number).filter(|number| *number < OUTPUTS)
+        };
+        match (number(first), number(last)) {
+            (Some(first), Some(last)) if first <= last => {
+                for switched in self.switched.iter_mut().take(last + 1).skip(first) {
+                    *switched = true;
+                }
+            }
+            _ => reader.fault(at, format!("`{text}` is no range of outputs like O0-O23")),
+        }
+    }
+
+    /// The key of the control voltage, if there is one.
+    pub fn key(&self) -> Option<&str> {
+        self.key.as_deref()
+    }
+
+    /// The control voltage is on.
+    pub fn voltage(&self) -> bool {
+        self.relay
+    }
+
+    /// Lets a millisecond pass.
+    pub fn advance(&mut self, limits_clear: bool, key_pressed: bool) {
+        let held = self.key.is_none() || self.relay || key_pressed;
+        let closed = self.supply
+            && !self.button
+            && self.control_ready
+            && held
+            && (limits_clear || !self.limit_switches);
+        let wanted = match self.fault {
+            Some(RelayFault::Welded) => self.supply && (closed || self.relay),
+            Some(RelayFault::Open) => false,
+            _ => closed,
+        };
+        if wanted == self.relay {
+            self.changing_ms = 0;
+            return;
+        }
+        self.changing_ms += 1;
+        let delay = match (self.relay, self.fault) {
+            (false, _) => self.pull_in_ms,
+            (true, Some(RelayFault::Slow(delay))) => delay,
+            (true, _) => self.drop_out_ms,
+        };
+        if self.changing_ms >= delay {
+            self.relay = wanted;
+            self.changing_ms = 0;
+        }
+    }
+
+    /// What arrives of the PLC's outputs at the machine.
+    pub fn live(&self, outputs: &[bool; OUTPUTS]) -> [bool; OUTPUTS] {
+        let mut live = *outputs;
+        if !self.relay {
+            for (output, switched) in live.iter_mut().zip(&self.switched) {
+                *output &= !switched;
+            }
+        }
+        live
+    }
+
+    pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
+        if let Some(contact) = self.acknowledgement {
+            contact.set(inputs, self.relay);
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Things with two states: pumps, clamps, doors, tool clamps, valves.
+
+use bahn_servo::{INPUTS, OUTPUTS};
+
+use crate::reader::{Coil, Contact, Section};
+
+/// How such a thing can fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeviceFault {
+    /// It stays where it is.
+    Jammed,
+    /// It moves, but none of its switches closes.
+    NoFeedback,
+}
+
+/// The true state of such a thing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeviceState<'a> {
+    /// Its name in the description.
+    pub name: &'a str,
+    /// 0 is the first of its states, 1 the second, between them it moves.
+    pub position: f64,
+    /// The name of the state that it has reached.
+    pub state: Option<&'a str>,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Device {
+    pub name: String,
+    pub states: [String; 2],
+    output: Option<Coil>,
+    /// A second output that moves it back; without one a spring does.
+    output_back: Option<Coil>,
+    inputs: [Option<Contact>; 2],
+    /// Way in a millisecond, back and forth.
+    speed: [f64; 2],
+    /// The axis that it clamps in its second state.
+    pub clamps: Option<char>,
+    pub fault: Option<DeviceFault>,
+    position: f64,
+    forth: bool,
+}
+
+impl Device {
+    /// Reads `[device.NAME]`.
+    pub fn read(name: String, section: Section) -> Device {
+        let states = section.texts("states");
+        let states = match states.as_slice() {
+            [] => ["off".to_owned(), "on".to_owned()],
+            [(_, first), (_, second)] if first != second => [(*first).to_owned(), (*second).to_owned()],
+            _ => {
+                section.fault_at("states", "states are two different words".to_owned());
+                ["off".to_owned(), "on".to_owned()]
+            }
+        };
+        let words = [states[0].as_str(), states[1].as_str()];
+        let start = section.word("start", &words) == Some(1);
+        let per_ms = |key| match section.number(key, 0.0..=1e7).unwrap_or(0.0) {
+            time if time < 1.0 => 1.0,
+            time => 1.0 / time,
+        };
+        let device = Device {
+            name,
+            output: section.coil("output"),
+            output_back: section.coil("output_back"),
+            inputs: [section.contact("input_first"), section.contact("input_second")],
+            speed: [per_ms("back_ms"), per_ms("forth_ms")],
+            clamps: section
+                .word("clamps", &["X", "Y", "Z", "A", "B", "C", "U", "V", "W"])
+                .and_then(|index| "XYZABCUVW".chars().nth(index)),
+            fault: None,
+            position: if start { 1.0 } else { 0.0 },
+            forth: start,
+            states,
+        };
+        if device.output_back.is_some() && device.output.is_none() {
+            section.fault_at("output_back", "output_back goes with output".to_owned());
+        }
+        section.finish();
+        device
+    }
+
+    /// Whether the operator moves it, not the PLC.
+    pub fn by_hand(&self) -> bool {
+        self.output.is_none()
+    }
+
+    /// Moves it by hand to one of its states.
+    pub fn switch(&mut self, forth: bool) {
+        self.forth = forth;
+    }
+
+    /// Lets a millisecond pass.
+    pub fn advance(&mut self, outputs: &[bool; OUTPUTS]) {
+        if let Some(output) = self.output {
+            match self.output_back.map(|back| back.is_on(outputs)) {
+                None => self.forth = output.is_on(outputs),
+                Some(back) if back != output.is_on(outputs) => self.forth = !back,
+                Some(_) => {}
+            }
+        }
+        if self.fault == Some(DeviceFault::Jammed) {
+            return;
+        }
+        self.position = if self.forth {
+            (self.position + self.speed[1]).min(1.0)
+        } else {
+            (self.position - self.speed[0]).max(0.0)
+        };
+    }
+
+    /// It has arrived in its second state.
+    pub fn is_forth(&self) -> bool {
+        self.position >= 1.0 - END
+    }
+
+    fn is_back(&self) -> bool {
+        self.position <= END
+    }
+
+    pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
+        let seen = self.fault != Some(DeviceFault::NoFeedback);
+        for (contact, reached) in self.inputs.iter().zip([self.is_back(), self.is_forth()]) {
+            if let Some(contact) = contact {
+                contact.set(inputs, reached && seen);
+            }
+        }
+    }
+
+    pub fn state(&self) -> DeviceState<'_> {
+        let state = match (self.is_back(), self.is_forth()) {
+            (true, _) => Some(self.states[0].as_str()),
+            (_, true) => Some(self.states[1].as_str()),
+            _ => None,
+        };
+        DeviceState {
+            name: &self.name,
+            position: self.position,
+            state,
+        }
+    }
+}
+
+/// So near the end counts as there: the steps of the way do not add up to 1 exactly.
+const END: f64 = 1e-9;

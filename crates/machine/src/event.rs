@@ -1,0 +1,298 @@
+//! What an operator, a script or a test does to the machine, as text.
+
+use crate::axis::DriveFault;
+use crate::chain::RelayFault;
+use crate::device::DeviceFault;
+use crate::encoder::EncoderFault;
+
+/// What can be done to a machine. The text form is in the table of [`Event::HELP`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// A key of the machine operating panel.
+    Key(String, KeyAction),
+    /// The feed-rate override potentiometer, %.
+    FeedOverride(f64),
+    /// The spindle override potentiometer, %.
+    SpindleOverride(f64),
+    /// The handwheel is turned by so many counting steps.
+    Handwheel(i64),
+    /// A thing is moved by hand to one of its states.
+    Switch(String, String),
+    /// The EMERGENCY STOP button is pressed or released.
+    EmergencyStop(bool),
+    /// The supply of the control voltage comes or goes.
+    Voltage(bool),
+    /// The touch probe is put into the spindle or taken out.
+    Probe(bool),
+    /// A voltage at an analogue input, V.
+    Analogue(usize, f64),
+    /// A temperature at a Pt 100 input, degrees Celsius.
+    Temperature(usize, f64),
+    /// An axis is pushed with a force, N or Nm, until the next such event.
+    Force(char, f64),
+    /// Something fails.
+    Fault(Fault),
+    /// Something is repaired: an axis letter, `S`, the name of a thing, an input, `relay`, or `all`.
+    Repair(String),
+}
+
+/// What is done with a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyAction {
+    /// Pressed and held.
+    Press,
+    /// Released.
+    Release,
+    /// Pressed for [`KeyAction::TAP_MS`].
+    Tap,
+}
+
+impl KeyAction {
+    /// So long lasts a tap, ms: several PLC scans.
+    pub const TAP_MS: u32 = 200;
+}
+
+/// What can fail.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    /// The encoder of an axis, or of the spindle (`S`).
+    Encoder(char, EncoderFault),
+    /// The drive of an axis, or of the spindle (`S`).
+    Drive(char, DriveFault),
+    /// The offset of the amplifier of an axis jumps to this voltage, V.
+    Offset(char, f64),
+    /// A PLC input always reads so.
+    Input(usize, bool),
+    /// A thing with two states, or `gear`.
+    Device(String, DeviceFault),
+    /// The relay of the control voltage.
+    Relay(RelayFault),
+    /// The touch probe does not answer (M2022).
+    ProbeNotReady,
+    /// The battery of the touch probe is low (M2027).
+    ProbeBattery,
+}
+
+/// Why an event was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EventError {
+    /// The first word is none of the events.
+    #[error("`{0}` is no event; there are {list}", list = Event::WORDS.join(", "))]
+    Unknown(String),
+    /// The words do not fit the event.
+    #[error("this event is written `{0}`")]
+    Form(&'static str),
+    /// A number is wrong or out of its range.
+    #[error("`{0}` is no number from {1} to {2}")]
+    Number(String, i64, i64),
+    /// The machine has nothing of this name.
+    #[error("the machine has no {what} `{name}`; there are {known}")]
+    Name {
+        /// What kind of thing.
+        what: &'static str,
+        /// The name given.
+        name: String,
+        /// The names that it has.
+        known: String,
+    },
+    /// The PLC moves this thing with its outputs.
+    #[error("`{0}` is moved by the PLC, not by hand")]
+    NotByHand(String),
+}
+
+impl Event {
+    /// The first words of all events.
+    pub const WORDS: &[&str] = &[
+        "key",
+        "override",
+        "handwheel",
+        "switch",
+        "emergency",
+        "voltage",
+        "probe",
+        "analogue",
+        "temperature",
+        "force",
+        "fault",
+        "repair",
+    ];
+
+    /// The forms of all events, a line each.
+    pub const HELP: &str = "\
+key NAME press|release|tap          a key of the panel; tap presses it for 200 ms
+override feed|spindle PERCENT       a potentiometer, 0 to 150
+handwheel STEPS                     turns the handwheel, + or -
+switch THING STATE                  moves a thing by hand, as a door
+emergency press|release             the EMERGENCY STOP button
+voltage on|off                      the supply of the control voltage
+probe insert|remove                 the touch probe in the spindle
+analogue INPUT VOLTS                an analogue input 0 to 7
+temperature INPUT CELSIUS           a Pt 100 input 0 to 7
+force AXIS NEWTON                   pushes an axis, N or Nm
+fault encoder AXIS|S amplitude|edges|stuck|marks
+fault drive AXIS|S dead|runaway|reversed
+fault offset AXIS VOLTS
+fault input I12 0|1                 a contact that sticks
+fault device THING|gear jammed|no-feedback
+fault relay slow MS | welded | open
+fault probe not-ready|battery
+repair AXIS|S|THING|gear|I12|relay|probe|all
+";
+
+    /// Reads an event from its text form. Whether the machine has what it names shows when it is
+    /// applied.
+    ///
+    /// # Errors
+    /// When the text is no event.
+    ///
+    /// ```
+    /// use bahn_machine::{Event, KeyAction};
+    /// assert_eq!(
+    ///     Event::parse("key NC_START tap"),
+    ///     Ok(Event::Key("NC_START".to_owned(), KeyAction::Tap))
+    /// );
+    /// assert!(Event::parse("override feed 200").is_err());
+    /// ```
+    pub fn parse(text: &str) -> Result<Event, EventError> {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let Some((first, rest)) = words.split_first() else {
+            return Err(EventError::Unknown(String::new()));
+        };
+        match *first {
+            "key" => key(rest),
+            "override" => match rest {
+                ["feed", percent] => Ok(Event::FeedOverride(number(percent, 0, 150)?)),
+                ["spindle", percent] => Ok(Event::SpindleOverride(number(percent, 0, 150)?)),
+                _ => Err(EventError::Form("override feed|spindle PERCENT")),
+            },
+            "handwheel" => match rest {
+                [steps] => Ok(Event::Handwheel(number(steps, -1_000_000, 1_000_000)? as i64)),
+                _ => Err(EventError::Form("handwheel STEPS")),
+            },
+            "switch" => match rest {
+                [name, state] => Ok(Event::Switch((*name).to_owned(), (*state).to_owned())),
+                _ => Err(EventError::Form("switch THING STATE")),
+            },
+            "emergency" => {
+                either(rest, "press", "release", "emergency press|release").map(Event::EmergencyStop)
+            }
+            "voltage" => either(rest, "on", "off", "voltage on|off").map(Event::Voltage),
+            "probe" => either(rest, "insert", "remove", "probe insert|remove").map(Event::Probe),
+            "analogue" => match rest {
+                [input, volts] => Ok(Event::Analogue(analogue_input(input)?, number(volts, -10, 10)?)),
+                _ => Err(EventError::Form("analogue INPUT VOLTS")),
+            },
+            "temperature" => match rest {
+                [input, celsius] => Ok(Event::Temperature(
+                    analogue_input(input)?,
+                    number(celsius, -50, 150)?,
+                )),
+                _ => Err(EventError::Form("temperature INPUT CELSIUS")),
+            },
+            "force" => match rest {
+                [axis, force] => Ok(Event::Force(
+                    letter(axis, "force AXIS NEWTON")?,
+                    number(force, -1_000_000, 1_000_000)?,
+                )),
+                _ => Err(EventError::Form("force AXIS NEWTON")),
+            },
+            "fault" => fault(rest).map(Event::Fault),
+            "repair" => match rest {
+                [what] => Ok(Event::Repair((*what).to_owned())),
+                _ => Err(EventError::Form("repair AXIS|S|THING|gear|I12|relay|probe|all")),
+            },
+            other => Err(EventError::Unknown(other.to_owned())),
+        }
+    }
+}
+
+fn key(rest: &[&str]) -> Result<Event, EventError> {
+    let (name, action) = match rest {
+        [name] | [name, "tap"] => (name, KeyAction::Tap),
+        [name, "press"] => (name, KeyAction::Press),
+        [name, "release"] => (name, KeyAction::Release),
+        _ => return Err(EventError::Form("key NAME press|release|tap")),
+    };
+    Ok(Event::Key((*name).to_owned(), action))
+}
+
+fn fault(rest: &[&str]) -> Result<Fault, EventError> {
+    match rest {
+        ["encoder", axis, kind] => {
+            const FORM: &str = "fault encoder AXIS|S amplitude|edges|stuck|marks";
+            let kind = match *kind {
+                "amplitude" => EncoderFault::Amplitude,
+                "edges" => EncoderFault::Edges,
+                "stuck" => EncoderFault::Stuck,
+                "marks" => EncoderFault::Marks,
+                _ => return Err(EventError::Form(FORM)),
+            };
+            Ok(Fault::Encoder(letter(axis, FORM)?, kind))
+        }
+        ["drive", axis, kind] => {
+            const FORM: &str = "fault drive AXIS|S dead|runaway|reversed";
+            let kind = match *kind {
+                "dead" => DriveFault::Dead,
+                "runaway" => DriveFault::Runaway,
+                "reversed" => DriveFault::Reversed,
+                _ => return Err(EventError::Form(FORM)),
+            };
+            Ok(Fault::Drive(letter(axis, FORM)?, kind))
+        }
+        ["offset", axis, volts] => Ok(Fault::Offset(
+            letter(axis, "fault offset AXIS VOLTS")?,
+            number(volts, -10, 10)?,
+        )),
+        ["input", input, state] => {
+            const FORM: &str = "fault input I12 0|1";
+            let input = crate::acting::input_number(input).ok_or(EventError::Form(FORM))?;
+            match *state {
+                "0" => Ok(Fault::Input(input, false)),
+                "1" => Ok(Fault::Input(input, true)),
+                _ => Err(EventError::Form(FORM)),
+            }
+        }
+        ["device", name, "jammed"] => Ok(Fault::Device((*name).to_owned(), DeviceFault::Jammed)),
+        ["device", name, "no-feedback"] => Ok(Fault::Device((*name).to_owned(), DeviceFault::NoFeedback)),
+        ["relay", "slow", delay] => Ok(Fault::Relay(RelayFault::Slow(number(delay, 0, 10_000)? as u32))),
+        ["relay", "welded"] => Ok(Fault::Relay(RelayFault::Welded)),
+        ["relay", "open"] => Ok(Fault::Relay(RelayFault::Open)),
+        ["probe", "not-ready"] => Ok(Fault::ProbeNotReady),
+        ["probe", "battery"] => Ok(Fault::ProbeBattery),
+        ["device", ..] => Err(EventError::Form("fault device THING|gear jammed|no-feedback")),
+        ["relay", ..] => Err(EventError::Form("fault relay slow MS | welded | open")),
+        _ => Err(EventError::Form(
+            "fault encoder|drive|offset|input|device|relay|probe ..",
+        )),
+    }
+}
+
+fn either(rest: &[&str], yes: &str, no: &str, form: &'static str) -> Result<bool, EventError> {
+    match rest {
+        [word] if *word == yes => Ok(true),
+        [word] if *word == no => Ok(false),
+        _ => Err(EventError::Form(form)),
+    }
+}
+
+fn letter(text: &str, form: &'static str) -> Result<char, EventError> {
+    let mut letters = text.chars();
+    match (letters.next(), letters.next()) {
+        (Some(letter), None) => Ok(letter),
+        _ => Err(EventError::Form(form)),
+    }
+}
+
+fn analogue_input(text: &str) -> Result<usize, EventError> {
+    text.parse()
+        .ok()
+        .filter(|input| *input < crate::machine::ANALOGUE_INPUTS)
+        .ok_or_else(|| EventError::Number(text.to_owned(), 0, crate::machine::ANALOGUE_INPUTS as i64 - 1))
+}
+
+fn number(text: &str, min: i64, max: i64) -> Result<f64, EventError> {
+    let number = text.parse::<f64>().ok();
+    number
+        .filter(|number| (min as f64..=max as f64).contains(number))
+        .ok_or_else(|| EventError::Number(text.to_owned(), min, max))
+}

@@ -1,0 +1,37 @@
+//! The simulated machine: what the control drives when no real one is there.
+//!
+//! [`Machine`] is a [`bahn_servo::Plant`] that can be wrong: drives have a time constant, friction and
+//! offset, guideways have play, switches stick, encoders fail. It is described by one TOML file
+//! ([`Machine::from_toml`]); what an operator does to it comes as [`Event`]s, also as lines of text.
+//!
+//! [`MachineFolder`] says which file of a machine's folder is what.
+//!
+//! The control sees nothing but the trait. The true state ([`Machine::axis`], [`Machine::spindle`],
+//! [`Machine::device`]) is for tests and recordings.
+//!
+//! Invariant: time passes in fixed steps only, so however [`bahn_servo::Plant::advance`] is divided the
+//! machine is the same, bit by bit; no call of the trait allocates.
+
+mod acting;
+mod axis;
+mod chain;
+mod device;
+mod encoder;
+mod event;
+mod folder;
+mod machine;
+mod noise;
+mod panel;
+mod probe;
+mod reader;
+mod spindle;
+
+pub use axis::{AxisState, DriveFault};
+pub use chain::RelayFault;
+pub use device::{DeviceFault, DeviceState};
+pub use encoder::EncoderFault;
+pub use event::{Event, EventError, Fault, KeyAction};
+pub use folder::MachineFolder;
+pub use machine::Machine;
+pub use reader::PlantError;
+pub use spindle::SpindleState;

@@ -1,0 +1,380 @@
+//! The whole machine.
+
+use bahn_servo::{Encoder, INPUTS, OUTPUTS, OperatorInputs, Plant};
+
+use crate::axis::{Axis, AxisState};
+use crate::chain::Chain;
+use crate::device::{Device, DeviceState};
+use crate::panel::Panel;
+use crate::probe::Probe;
+use crate::reader::{PlantError, Reader, Section};
+use crate::spindle::{Spindle, SpindleState};
+
+/// Analogue inputs and Pt 100 inputs of two PLC boards.
+pub(crate) const ANALOGUE_INPUTS: usize = 8;
+/// Contacts, relays and things move once in so many µs.
+const TICK_US: u32 = 1000;
+
+/// A simulated machine, described by a TOML file. The same description and the same calls give the
+/// same machine, bit by bit.
+///
+/// ```
+/// use bahn_machine::Machine;
+/// use bahn_servo::Plant;
+/// let text = r#"
+///     name = "one axis"
+///     [emergency_stop]
+///     acknowledgement = "I3"
+///     [axis.X]
+///     output = "1"
+///     speed = 15000
+///     volts = 9
+///     encoder = { input = "X1", period_um = 20 }
+/// "#;
+/// let mut machine = Machine::from_toml(text).map_err(|faults| faults[0].clone())?;
+/// machine.set_control_ready(true);
+/// machine.advance(20_000);
+/// machine.set_nominal(0, 0.9);
+/// machine.advance(1_000_000);
+/// // 1500 mm/min for a second are 25 mm: 1250 signal periods of 1024 steps.
+/// assert!((machine.encoder(0).count - 1250 * 1024).abs() <= 1);
+/// # Ok::<(), bahn_machine::PlantError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Machine {
+    name: String,
+    step_us: u32,
+    step_s: f64,
+    /// Time that has not filled a step, and steps that have not filled a tick.
+    pending_us: u32,
+    tick_us: u32,
+    time_us: u64,
+    pub(crate) axes: Vec<Axis>,
+    /// The axes X, Y, Z of the probe in `axes`.
+    probe_axes: [Option<usize>; 3],
+    pub(crate) spindle: Option<Spindle>,
+    pub(crate) chain: Chain,
+    pub(crate) devices: Vec<Device>,
+    pub(crate) panel: Panel,
+    pub(crate) probe: Option<Probe>,
+    pub(crate) volts: [f64; ANALOGUE_INPUTS],
+    pub(crate) temperatures: [f64; ANALOGUE_INPUTS],
+    plc_volts: [f64; OUTPUTS_ANALOGUE],
+    /// As the PLC set them, and as they arrive.
+    outputs: [bool; OUTPUTS],
+    live: [bool; OUTPUTS],
+    pub(crate) stuck: Vec<(usize, bool)>,
+}
+
+/// Analogue outputs that a PLC may set.
+const OUTPUTS_ANALOGUE: usize = 8;
+
+impl Machine {
+    /// Builds a machine from its description; `machines/mill/plant.toml` explains every key.
+    ///
+    /// # Errors
+    /// All faults of the description, in its order.
+    pub fn from_toml(text: &str) -> Result<Machine, Vec<PlantError>> {
+        let reader = Reader::new(text);
+        let table = reader.parse();
+        let machine = Machine::read(Section::root(&reader, &table));
+        let faults = reader.faults();
+        if faults.is_empty() {
+            Ok(machine)
+        } else {
+            Err(faults)
+        }
+    }
+
+    fn read(root: Section) -> Machine {
+        let step_us = root.number("step_us", 10.0..=1000.0).unwrap_or(200.0) as u32;
+        if !TICK_US.is_multiple_of(step_us.max(1)) {
+            root.fault_at("step_us", "step_us divides 1000".to_owned());
+        }
+        let step_s = f64::from(step_us) * 1e-6;
+        let seed = root.number("seed", 0.0..=1e15).unwrap_or(0.0) as u64;
+        let axes: Vec<Axis> = root
+            .named_sections("axis")
+            .into_iter()
+            .filter_map(|(name, section)| Axis::read(&name, section, step_s, seed))
+            .collect();
+        let index = |letter| axes.iter().position(|axis| axis.letter == letter);
+        let machine = Machine {
+            name: root.text("name").unwrap_or("machine").to_owned(),
+            step_us,
+            step_s,
+            pending_us: 0,
+            tick_us: 0,
+            time_us: 0,
+            probe_axes: ['X', 'Y', 'Z'].map(index),
+            spindle: root
+                .section("spindle")
+                .map(|section| Spindle::read(section, step_s, seed)),
+            chain: Chain::read(&root),
+            devices: root
+                .named_sections("device")
+                .into_iter()
+                .map(|(name, section)| Device::read(name, section))
+                .collect(),
+            panel: Panel::read(&root),
+            probe: root.section("probe").map(Probe::read),
+            volts: [0.0; ANALOGUE_INPUTS],
+            temperatures: [20.0; ANALOGUE_INPUTS],
+            plc_volts: [0.0; OUTPUTS_ANALOGUE],
+            outputs: [false; OUTPUTS],
+            live: [false; OUTPUTS],
+            stuck: Vec::new(),
+            axes,
+        };
+        machine.check(&root);
+        root.finish();
+        machine
+    }
+
+    /// What only shows when all parts are known.
+    fn check(&self, root: &Section) {
+        if self.axes.is_empty() {
+            root.fault("a machine has at least one axis: [axis.X]".to_owned());
+        }
+        for (place, axis) in self.axes.iter().enumerate() {
+            for other in self.axes.iter().take(place) {
+                let input = |axis: &Axis| axis.counter.as_ref().map(|counter| counter.input);
+                if other.output == axis.output {
+                    root.fault_at(
+                        "axis",
+                        format!("{} and {} share an output", other.letter, axis.letter),
+                    );
+                }
+                if input(other).is_some() && input(other) == input(axis) {
+                    root.fault_at(
+                        "axis",
+                        format!("{} and {} share an encoder input", other.letter, axis.letter),
+                    );
+                }
+            }
+        }
+        for clamped in self.devices.iter().filter_map(|device| device.clamps) {
+            if !self.axes.iter().any(|axis| axis.letter == clamped) {
+                root.fault_at("device", format!("there is no axis {clamped} to clamp"));
+            }
+        }
+        if let Some(key) = self
+            .chain
+            .key()
+            .filter(|key| !self.panel.keys.iter().any(|own| own.name == *key))
+        {
+            root.fault_at("emergency_stop", format!("there is no key `{key}` in [keys]"));
+        }
+    }
+
+    /// The name in the description.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Time since power-on, µs.
+    pub fn time_us(&self) -> u64 {
+        self.time_us
+    }
+
+    /// The names of the keys.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.panel.keys.iter().map(|key| key.name.as_str())
+    }
+
+    /// The names of the lamps.
+    pub fn lamps(&self) -> impl Iterator<Item = &str> {
+        self.panel.lamps.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Whether a lamp is lit.
+    pub fn lamp(&self, name: &str) -> Option<bool> {
+        self.panel.lamp(name, &self.live)
+    }
+
+    /// The true state of all axes, in the order of the description.
+    pub fn axes(&self) -> impl Iterator<Item = AxisState> {
+        self.axes.iter().map(Axis::state)
+    }
+
+    /// The true state of one axis.
+    pub fn axis(&self, letter: char) -> Option<AxisState> {
+        self.axes().find(|axis| axis.letter == letter)
+    }
+
+    /// The true state of the spindle.
+    pub fn spindle(&self) -> Option<SpindleState> {
+        self.spindle.as_ref().map(Spindle::state)
+    }
+
+    /// The state of all things with two states.
+    pub fn devices(&self) -> impl Iterator<Item = DeviceState<'_>> {
+        self.devices.iter().map(Device::state)
+    }
+
+    /// The state of one of them.
+    pub fn device(&self, name: &str) -> Option<DeviceState<'_>> {
+        self.devices().find(|device| device.name == name)
+    }
+
+    /// The control voltage is on.
+    pub fn control_voltage(&self) -> bool {
+        self.chain.voltage()
+    }
+
+    /// A voltage that the PLC put out (module 9130), V.
+    pub fn plc_volts(&self, output: usize) -> Option<f64> {
+        self.plc_volts.get(output).copied()
+    }
+
+    /// Contacts, relays and things: once in a millisecond.
+    fn tick(&mut self) {
+        self.panel.advance();
+        let limits_clear = self.axes.iter().all(Axis::limits_clear);
+        let key = self.chain.key().is_some_and(|key| self.panel.pressed(key));
+        self.chain.advance(limits_clear, key);
+        self.live = self.chain.live(&self.outputs);
+        for device in &mut self.devices {
+            device.advance(&self.live);
+        }
+        let voltage = self.chain.voltage();
+        for axis in &mut self.axes {
+            axis.set_power(voltage, &self.live);
+            axis.clamped = self
+                .devices
+                .iter()
+                .any(|device| device.clamps == Some(axis.letter) && device.is_forth());
+        }
+        if let Some(spindle) = &mut self.spindle {
+            spindle.set_power(voltage, &self.live);
+            spindle.shift(&self.live);
+        }
+    }
+}
+
+impl Plant for Machine {
+    fn advance(&mut self, micros: u32) {
+        self.time_us += u64::from(micros);
+        self.pending_us = self.pending_us.saturating_add(micros);
+        while self.pending_us >= self.step_us {
+            self.pending_us -= self.step_us;
+            for axis in &mut self.axes {
+                axis.step(self.step_s);
+            }
+            if let Some(spindle) = &mut self.spindle {
+                spindle.step(self.step_s);
+            }
+            self.tick_us += self.step_us;
+            if self.tick_us >= TICK_US {
+                self.tick_us = 0;
+                self.tick();
+            }
+        }
+    }
+
+    fn set_nominal(&mut self, output: usize, volts: f64) {
+        let volts = if volts.is_finite() {
+            volts.clamp(-10.0, 10.0)
+        } else {
+            0.0
+        };
+        for axis in self.axes.iter_mut().filter(|axis| axis.output == output) {
+            axis.volts = volts;
+        }
+        if let Some(spindle) = self.spindle.as_mut().filter(|spindle| spindle.output == output) {
+            spindle.volts = volts;
+        }
+    }
+
+    fn encoder(&mut self, input: usize) -> Encoder {
+        let at = |counter: &Option<crate::encoder::Counter>| {
+            counter.as_ref().is_some_and(|counter| counter.input == input)
+        };
+        if let Some(axis) = self.axes.iter_mut().find(|axis| at(&axis.counter)) {
+            return axis.read_encoder();
+        }
+        match &mut self.spindle {
+            Some(spindle) if at(&spindle.counter) => spindle.read_encoder(),
+            _ => Encoder::default(),
+        }
+    }
+
+    fn inputs(&mut self, inputs: &mut [bool; INPUTS]) {
+        inputs.fill(false);
+        self.panel.set_inputs(inputs);
+        self.chain.set_inputs(inputs);
+        for axis in &self.axes {
+            axis.set_inputs(inputs);
+        }
+        if let Some(spindle) = &self.spindle {
+            spindle.set_inputs(inputs);
+        }
+        for device in &self.devices {
+            device.set_inputs(inputs);
+        }
+        for (input, on) in &self.stuck {
+            set(inputs, *input, *on);
+        }
+    }
+
+    fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]) {
+        self.outputs = *outputs;
+    }
+
+    fn set_control_ready(&mut self, on: bool) {
+        self.chain.control_ready = on;
+    }
+
+    fn control_ready(&mut self) -> bool {
+        self.chain.voltage()
+    }
+
+    fn operator(&mut self) -> OperatorInputs {
+        self.panel.operator
+    }
+
+    fn probe_deflected(&mut self) -> bool {
+        let [Some(x), Some(y), Some(z)] = self.probe_axes.map(|index| {
+            index
+                .and_then(|index| self.axes.get(index))
+                .map(|axis| axis.table)
+        }) else {
+            return false;
+        };
+        self.probe
+            .as_ref()
+            .is_some_and(|probe| probe.deflected([x, y, z]))
+    }
+
+    fn probe_ready(&mut self) -> bool {
+        self.probe
+            .as_ref()
+            .is_some_and(|probe| probe.inserted && probe.ready)
+    }
+
+    fn probe_battery_low(&mut self) -> bool {
+        self.probe.as_ref().is_some_and(|probe| probe.battery_low)
+    }
+
+    fn analogue_input(&mut self, input: usize) -> f64 {
+        self.volts.get(input).copied().unwrap_or(0.0)
+    }
+
+    fn temperature_input(&mut self, input: usize) -> f64 {
+        self.temperatures.get(input).copied().unwrap_or(0.0)
+    }
+
+    fn set_plc_analogue(&mut self, output: usize, volts: f64) {
+        set(&mut self.plc_volts, output, volts);
+        // The free output S leads to what hangs there [000:16037-16061].
+        if output == 0 {
+            self.set_nominal(5, volts);
+        }
+    }
+}
+
+pub(crate) fn set<T>(list: &mut [T], index: usize, value: T) {
+    if let Some(place) = list.get_mut(index) {
+        *place = value;
+    }
+}

@@ -1,0 +1,84 @@
+//! The machine operating panel: keys, lamps, potentiometers [000:2622-2683].
+
+use bahn_servo::{INPUTS, OUTPUTS, OperatorInputs};
+
+use crate::event::KeyAction;
+use crate::reader::{Coil, Contact, Section};
+
+/// A key with one contact or, as NC START, with two [000:7598-7608].
+#[derive(Clone, Debug)]
+pub(crate) struct Key {
+    pub name: String,
+    contacts: Vec<Contact>,
+    pub pressed: bool,
+    /// Milliseconds until a tapped key is released.
+    tapped_ms: u32,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Panel {
+    pub keys: Vec<Key>,
+    pub lamps: Vec<(String, Coil)>,
+    pub operator: OperatorInputs,
+}
+
+impl Panel {
+    /// Reads `[keys]` and `[lamps]`.
+    pub fn read(root: &Section) -> Panel {
+        let key = |(name, contacts): (String, _)| Key {
+            name,
+            contacts,
+            pressed: false,
+            tapped_ms: 0,
+        };
+        Panel {
+            keys: root.named_contacts("keys").into_iter().map(key).collect(),
+            lamps: root.named_coils("lamps"),
+            operator: OperatorInputs {
+                feed_override_percent: 100.0,
+                spindle_override_percent: 100.0,
+                handwheel_count: 0,
+            },
+        }
+    }
+
+    /// Presses, releases or taps a key. `false` when there is none of this name.
+    pub fn act(&mut self, name: &str, action: KeyAction) -> bool {
+        let Some(key) = self.keys.iter_mut().find(|key| key.name == name) else {
+            return false;
+        };
+        key.pressed = action != KeyAction::Release;
+        key.tapped_ms = if action == KeyAction::Tap {
+            KeyAction::TAP_MS
+        } else {
+            0
+        };
+        true
+    }
+
+    pub fn pressed(&self, name: &str) -> bool {
+        self.keys.iter().any(|key| key.pressed && key.name == name)
+    }
+
+    /// Lets a millisecond pass.
+    pub fn advance(&mut self) {
+        for key in self.keys.iter_mut().filter(|key| key.tapped_ms > 0) {
+            key.tapped_ms -= 1;
+            key.pressed = key.tapped_ms > 0;
+        }
+    }
+
+    pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
+        for key in &self.keys {
+            for contact in &key.contacts {
+                contact.set(inputs, key.pressed);
+            }
+        }
+    }
+
+    pub fn lamp(&self, name: &str, outputs: &[bool; OUTPUTS]) -> Option<bool> {
+        let (_, coil) = self.lamps.iter().find(|(lamp, _)| lamp == name)?;
+        Some(coil.is_on(outputs))
+    }
+}

@@ -1,0 +1,458 @@
+//! Reading the description of a machine: every fault with its place, unknown keys refused.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::ops::RangeInclusive;
+
+use bahn_servo::{INPUTS, OUTPUTS};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A fault in the description of a machine.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
+#[error("{line}:{column}: {message}")]
+pub struct PlantError {
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+/// A PLC input and the sense in which it is wired.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact {
+    input: usize,
+    inverted: bool,
+}
+
+impl Contact {
+    pub fn set(self, inputs: &mut [bool; INPUTS], on: bool) {
+        if let Some(input) = inputs.get_mut(self.input) {
+            *input = on != self.inverted;
+        }
+    }
+}
+
+/// A PLC output and the sense in which it acts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coil {
+    output: usize,
+    inverted: bool,
+}
+
+impl Coil {
+    pub fn is_on(self, outputs: &[bool; OUTPUTS]) -> bool {
+        outputs.get(self.output).copied().unwrap_or(false) != self.inverted
+    }
+}
+
+/// The text being read and what was found wrong in it.
+pub(crate) struct Reader<'t> {
+    text: &'t str,
+    faults: RefCell<Vec<PlantError>>,
+    /// The inputs given away: where, which, to whom.
+    taken: RefCell<Vec<(usize, usize, String)>>,
+}
+
+impl<'t> Reader<'t> {
+    pub fn new(text: &'t str) -> Reader<'t> {
+        Reader {
+            text,
+            faults: RefCell::default(),
+            taken: RefCell::default(),
+        }
+    }
+
+    /// The tables of the text; faults in its form are noted.
+    pub fn parse(&self) -> Spanned<DeTable<'t>> {
+        let (table, errors) = DeTable::parse_recoverable(self.text);
+        for error in errors {
+            self.fault(
+                error.span().map_or(0, |span| span.start),
+                error.message().to_owned(),
+            );
+        }
+        table
+    }
+
+    /// Notes a fault at a place of the text, in bytes.
+    pub fn fault(&self, at: usize, message: String) {
+        let before = self.text.get(..at).unwrap_or(self.text);
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        self.faults.borrow_mut().push(PlantError {
+            line: before.matches('\n').count() + 1,
+            column: before.get(line_start..).map_or(0, |line| line.chars().count()) + 1,
+            message,
+        });
+    }
+
+    /// All faults in the order of the text.
+    pub fn faults(self) -> Vec<PlantError> {
+        self.check_taken();
+        let mut faults = self.faults.into_inner();
+        faults.sort();
+        faults.dedup();
+        faults
+    }
+
+    /// An input has one source.
+    fn check_taken(&self) {
+        let mut taken = self.taken.take();
+        taken.sort();
+        let mut owners: BTreeMap<usize, String> = BTreeMap::new();
+        for (at, input, owner) in taken {
+            match owners.entry(input) {
+                Entry::Occupied(first) => {
+                    self.fault(at, format!("I{input} belongs to {} already", first.get()));
+                }
+                Entry::Vacant(free) => {
+                    free.insert(owner);
+                }
+            }
+        }
+    }
+}
+
+/// A table of the description. What is read is checked; what is not read is refused at
+/// [`Section::finish`].
+pub(crate) struct Section<'r, 't> {
+    pub reader: &'r Reader<'t>,
+    pub name: String,
+    at: usize,
+    table: &'r DeTable<'t>,
+    known: RefCell<Vec<&'static str>>,
+}
+
+impl<'r, 't> Section<'r, 't> {
+    pub fn root(reader: &'r Reader<'t>, table: &'r Spanned<DeTable<'t>>) -> Section<'r, 't> {
+        Section::new(reader, String::new(), table.span().start, table.get_ref())
+    }
+
+    fn new(reader: &'r Reader<'t>, name: String, at: usize, table: &'r DeTable<'t>) -> Section<'r, 't> {
+        Section {
+            reader,
+            name,
+            at,
+            table,
+            known: RefCell::default(),
+        }
+    }
+
+    /// Notes a fault of the whole table.
+    pub fn fault(&self, message: String) {
+        self.reader.fault(self.at, message);
+    }
+
+    /// Notes a fault of the value of a key.
+    pub fn fault_at(&self, key: &str, message: String) {
+        let at = self.table.get(key).map_or(self.at, |value| value.span().start);
+        self.reader.fault(at, message);
+    }
+
+    fn value(&self, key: &'static str) -> Option<&'r Spanned<DeValue<'t>>> {
+        self.known.borrow_mut().push(key);
+        self.table.get(key)
+    }
+
+    fn path(&self, key: &str) -> String {
+        if self.name.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{}.{key}", self.name)
+        }
+    }
+
+    /// Whether the key is there.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// A number within its range.
+    pub fn number(&self, key: &'static str, range: RangeInclusive<f64>) -> Option<f64> {
+        let value = self.value(key)?;
+        self.as_number(key, value, &range)
+    }
+
+    fn as_number(&self, key: &str, value: &Spanned<DeValue<'t>>, range: &RangeInclusive<f64>) -> Option<f64> {
+        let number = match value.get_ref() {
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+                .ok()
+                .map(|integer| integer as f64),
+            DeValue::Float(float) => float.as_str().parse::<f64>().ok(),
+            _ => None,
+        };
+        let number = number.filter(|number| range.contains(number));
+        if number.is_none() {
+            let (min, max) = (range.start(), range.end());
+            self.reader.fault(
+                value.span().start,
+                format!("{key} is a number from {min} to {max}"),
+            );
+        }
+        number
+    }
+
+    /// A number that must be there; 1 stands for a wrong one while reading goes on.
+    pub fn needed_number(&self, key: &'static str, range: RangeInclusive<f64>) -> f64 {
+        if !self.has(key) {
+            self.missing(key);
+        }
+        self.number(key, range).unwrap_or(1.0)
+    }
+
+    fn missing(&self, key: &str) {
+        self.fault(format!("[{}] needs {key}", self.name));
+    }
+
+    /// Two numbers, the first below the second.
+    pub fn range(&self, key: &'static str) -> Option<[f64; 2]> {
+        let limits = self.numbers::<2>(key)?;
+        if limits[0] >= limits[1] {
+            self.fault_at(key, format!("{key} runs from a lower to a higher value"));
+            return None;
+        }
+        Some(limits)
+    }
+
+    /// As many numbers as wanted.
+    pub fn numbers<const N: usize>(&self, key: &'static str) -> Option<[f64; N]> {
+        let value = self.value(key)?;
+        let Some(list) = value.get_ref().as_array().filter(|list| list.len() == N) else {
+            self.reader
+                .fault(value.span().start, format!("{key} is a list of {N} numbers"));
+            return None;
+        };
+        let mut numbers = [0.0; N];
+        for (number, entry) in numbers.iter_mut().zip(list.iter()) {
+            *number = self.as_number(key, entry, &(-1e6..=1e6))?;
+        }
+        Some(numbers)
+    }
+
+    pub fn flag(&self, key: &'static str) -> Option<bool> {
+        let value = self.value(key)?;
+        let flag = value.get_ref().as_bool();
+        if flag.is_none() {
+            self.reader
+                .fault(value.span().start, format!("{key} is true or false"));
+        }
+        flag
+    }
+
+    pub fn text(&self, key: &'static str) -> Option<&'r str> {
+        let value = self.value(key)?;
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            self.reader
+                .fault(value.span().start, format!("{key} is a text in quotes"));
+        }
+        text
+    }
+
+    /// A list of texts, each with its place.
+    pub fn texts(&self, key: &'static str) -> Vec<(usize, &'r str)> {
+        let Some(value) = self.value(key) else {
+            return Vec::new();
+        };
+        let list = value.get_ref().as_array().and_then(|list| {
+            list.iter()
+                .map(|entry| Some((entry.span().start, entry.get_ref().as_str()?)))
+                .collect()
+        });
+        list.unwrap_or_else(|| {
+            self.reader
+                .fault(value.span().start, format!("{key} is a list of texts"));
+            Vec::new()
+        })
+    }
+
+    /// One of several words; its place in the list.
+    pub fn word(&self, key: &'static str, words: &[&str]) -> Option<usize> {
+        let text = self.text(key)?;
+        let index = words.iter().position(|word| *word == text);
+        if index.is_none() {
+            self.fault_at(key, format!("{key} is one of {}", words.join(", ")));
+        }
+        index
+    }
+
+    /// A PLC input: `I24`, or `not I24` for a contact that opens.
+    pub fn contact(&self, key: &'static str) -> Option<Contact> {
+        let value = self.value(key)?;
+        match self.contacts(key, value).as_slice() {
+            [contact] => Some(*contact),
+            [] => None,
+            _ => {
+                self.fault_at(key, format!("{key} is one input"));
+                None
+            }
+        }
+    }
+
+    /// One PLC input or a list of them.
+    fn contacts(&self, key: &str, value: &'r Spanned<DeValue<'t>>) -> Vec<Contact> {
+        let entries: Vec<&Spanned<DeValue<'t>>> = match value.get_ref() {
+            DeValue::Array(list) => list.iter().collect(),
+            _ => vec![value],
+        };
+        let mut contacts = Vec::new();
+        for entry in entries {
+            let at = entry.span().start;
+            match entry
+                .get_ref()
+                .as_str()
+                .and_then(|text| operand(text, 'I', INPUTS))
+            {
+                Some((input, inverted)) => {
+                    self.reader.taken.borrow_mut().push((at, input, self.path(key)));
+                    contacts.push(Contact { input, inverted });
+                }
+                None => {
+                    let last = INPUTS - 1;
+                    self.reader.fault(
+                        at,
+                        format!("{key} is an input \"I0\" to \"I{last}\", or \"not I0\""),
+                    );
+                }
+            }
+        }
+        contacts
+    }
+
+    /// A PLC output: `O10`, or `not O10` for one that acts when it is off.
+    pub fn coil(&self, key: &'static str) -> Option<Coil> {
+        let value = self.value(key)?;
+        self.as_coil(key, value)
+    }
+
+    fn as_coil(&self, key: &str, value: &'r Spanned<DeValue<'t>>) -> Option<Coil> {
+        let coil = value
+            .get_ref()
+            .as_str()
+            .and_then(|text| operand(text, 'O', OUTPUTS));
+        if coil.is_none() {
+            let last = OUTPUTS - 1;
+            self.reader.fault(
+                value.span().start,
+                format!("{key} is an output \"O0\" to \"O{last}\", or \"not O0\""),
+            );
+        }
+        coil.map(|(output, inverted)| Coil { output, inverted })
+    }
+
+    /// The entries of a table whose keys are the user's names.
+    fn entries(&self) -> impl Iterator<Item = (&'r str, &'r Spanned<DeValue<'t>>)> {
+        self.table.iter().map(|(name, value)| {
+            let name: &str = name.get_ref();
+            (name, value)
+        })
+    }
+
+    /// Names and their inputs, as `"X+" = "I133"` or `NC_START = ["I146", "not I147"]`.
+    pub fn named_contacts(&self, key: &'static str) -> Vec<(String, Vec<Contact>)> {
+        let Some(section) = self.section(key) else {
+            return Vec::new();
+        };
+        section
+            .entries()
+            .map(|(name, value)| (name.to_owned(), section.contacts(name, value)))
+            .collect()
+    }
+
+    /// Names and their outputs.
+    pub fn named_coils(&self, key: &'static str) -> Vec<(String, Coil)> {
+        let Some(section) = self.section(key) else {
+            return Vec::new();
+        };
+        section
+            .entries()
+            .filter_map(|(name, value)| Some((name.to_owned(), section.as_coil(name, value)?)))
+            .collect()
+    }
+
+    /// A table within this one.
+    pub fn section(&self, key: &'static str) -> Option<Section<'r, 't>> {
+        let value = self.value(key)?;
+        self.as_section(self.path(key), value)
+    }
+
+    fn as_section(&self, name: String, value: &'r Spanned<DeValue<'t>>) -> Option<Section<'r, 't>> {
+        let table = value.get_ref().as_table();
+        if table.is_none() {
+            self.reader.fault(
+                value.span().start,
+                format!("{name} is a table: [{name}] or {{ .. }}"),
+            );
+        }
+        Some(Section::new(self.reader, name, value.span().start, table?))
+    }
+
+    /// The tables named by the user, as `[axis.X]` and `[axis.Y]`, in the order of the file.
+    pub fn named_sections(&self, key: &'static str) -> Vec<(String, Section<'r, 't>)> {
+        let Some(section) = self.section(key) else {
+            return Vec::new();
+        };
+        section
+            .entries()
+            .filter_map(|(name, value)| {
+                Some((name.to_owned(), section.as_section(section.path(name), value)?))
+            })
+            .collect()
+    }
+
+    /// The tables of a list, as several `[[spindle.gear]]`.
+    pub fn list(&self, key: &'static str) -> Vec<Section<'r, 't>> {
+        let Some(value) = self.value(key) else {
+            return Vec::new();
+        };
+        let Some(list) = value.get_ref().as_array() else {
+            let name = self.path(key);
+            self.reader
+                .fault(value.span().start, format!("{name} is a list: [[{name}]]"));
+            return Vec::new();
+        };
+        let path = self.path(key);
+        list.iter()
+            .filter_map(|entry| self.as_section(path.clone(), entry))
+            .collect()
+    }
+
+    /// Refuses all keys that were not asked for.
+    pub fn finish(self) {
+        let mut known = self.known.into_inner();
+        known.sort_unstable();
+        known.dedup();
+        for (key, _) in self.table {
+            let name: &str = key.get_ref();
+            if !known.contains(&name) {
+                let known = known.join(", ");
+                let place = if self.name.is_empty() {
+                    "here".to_owned()
+                } else {
+                    format!("in [{}]", self.name)
+                };
+                self.reader.fault(
+                    key.span().start,
+                    format!("unknown key `{name}` {place}; there are {known}"),
+                );
+            }
+        }
+    }
+}
+
+/// `I12` or `not I12`.
+fn operand(text: &str, letter: char, count: usize) -> Option<(usize, bool)> {
+    let (inverted, plain) = match text.strip_prefix("not ") {
+        Some(rest) => (true, rest.trim_start()),
+        None => (false, text),
+    };
+    let digits = plain.strip_prefix(letter)?;
+    if !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let number = digits.parse().ok().filter(|number| *number < count)?;
+    Some((number, inverted))
+}

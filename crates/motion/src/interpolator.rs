@@ -1,0 +1,562 @@
+//! The path in contour cycles, with overrides and stops that come at any moment.
+
+use std::collections::VecDeque;
+
+use bahn_path::{
+    At, Axis, AxisSet, Curve, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction,
+};
+
+use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
+use crate::gate::{Gate, place};
+use crate::limits::{Dynamics, Limits};
+use crate::ramp::{Driven, Ramp};
+use crate::ring::{Item, Output, Ring};
+
+/// Drives along the path of an [`ElementSource`], contour cycle by contour cycle.
+///
+/// [`Interpolator::prepare`] reads ahead and may allocate; [`Interpolator::cycle`] spends one contour
+/// cycle of time and never does. Both are called in turn, `prepare` as often as there is time for it:
+/// where it falls behind, the path comes to a stop at the end of what is known and goes on when more
+/// is. At an override that does not change the path runs as a [`Planner`](crate::Planner) plans it.
+#[derive(Debug)]
+pub struct Interpolator<E> {
+    ring: Ring,
+    cycle_s: f64,
+    /// What the source said last, when that was no element.
+    after: After<E>,
+    feed_override_percent: f64,
+    rapid_override_percent: f64,
+    phase: Phase,
+    /// Path speed, mm/s.
+    speed: f64,
+    /// Way to the end of the current element, mm.
+    rest: f64,
+    position: Position,
+    single_block: bool,
+    clamped: AxisSet,
+    clamping: AxisSet,
+    /// The stop of single block, or for axes that are clamped, is to be looked for.
+    seek_stop: bool,
+    /// The gate ahead is passed without waiting.
+    released: bool,
+    /// Functions along the current element up to this length are output, mm.
+    output_to: f64,
+    outputs: VecDeque<FunctionOutput>,
+}
+
+#[derive(Debug)]
+enum After<E> {
+    Open,
+    Stop(Stop<E>),
+    /// The stop was taken.
+    Taken,
+}
+
+/// How far the current element is executed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    /// Its functions at the start are still to be output.
+    Begin,
+    /// A gate waits.
+    Gate(Gate),
+    Move,
+    /// Dwell to go, s.
+    Dwell(f64),
+    /// Its functions at the end are still to be output.
+    Finish,
+    /// Executed.
+    Done,
+    /// Executed; single block waits.
+    BlockEnd,
+    /// Executed, and single block does not wait any more.
+    Over,
+}
+
+impl<E> Interpolator<E> {
+    /// An interpolator with room for `capacity` elements of look-ahead. Overrides come with every
+    /// cycle; those of the limits do not matter. No axis has a position yet.
+    pub fn new(limits: &Limits, capacity: usize) -> Interpolator<E> {
+        let mut dynamics = Dynamics::new(limits);
+        dynamics.set_overrides(100.0, 100.0);
+        Interpolator {
+            cycle_s: dynamics.cycle,
+            ring: Ring::new(dynamics, capacity),
+            after: After::Open,
+            feed_override_percent: 100.0,
+            rapid_override_percent: 100.0,
+            phase: Phase::Done,
+            speed: 0.0,
+            rest: 0.0,
+            position: Position::UNKNOWN,
+            single_block: false,
+            clamped: AxisSet::EMPTY,
+            clamping: AxisSet::EMPTY,
+            seek_stop: false,
+            released: false,
+            output_to: 0.0,
+            outputs: VecDeque::new(),
+        }
+    }
+
+    /// Where the path starts; drops what was prepared.
+    pub fn set_position(&mut self, position: Position) {
+        self.position = position;
+        self.clear();
+    }
+
+    /// Reads elements from the source while there is room, `budget` at most. It may allocate; outputs
+    /// not yet asked for lose their functions.
+    pub fn prepare<S>(&mut self, source: &mut S, budget: usize) -> Prepared
+    where
+        S: ElementSource<Error = E>,
+    {
+        self.ring.discard();
+        let mut left = budget;
+        let answer = loop {
+            if !matches!(self.after, After::Open) {
+                break Prepared::Closed;
+            }
+            if !self.ring.has_room() {
+                break Prepared::Full;
+            }
+            if left == 0 {
+                break Prepared::Budget;
+            }
+            left -= 1;
+            let stop = match source.next() {
+                Step::Element(element) => {
+                    self.push(element);
+                    continue;
+                }
+                Step::Starved => break Prepared::Starved,
+                Step::Barrier(barrier) => Stop::Barrier(barrier),
+                Step::End => Stop::End,
+                Step::Error(error) => Stop::Error(error),
+            };
+            self.ring.stop();
+            self.seek_stop = true;
+            self.after = After::Stop(stop);
+        };
+        self.ring.settle();
+        // Room for whatever the elements can output, so that no cycle allocates.
+        self.outputs
+            .reserve(self.ring.ahead().map(Item::outputs).sum::<usize>());
+        answer
+    }
+
+    fn push(&mut self, element: PathElement) {
+        let first = self.ring.current().is_none();
+        self.ring.push(element);
+        self.seek_stop = true;
+        if first {
+            self.enter();
+        }
+    }
+
+    /// Stops at once, without a ramp: the feed enable was withdrawn.
+    pub fn halt(&mut self) {
+        self.speed = 0.0;
+    }
+
+    /// Spends one contour cycle.
+    pub fn cycle(&mut self, drive: &Drive) -> Cycle {
+        self.take(drive);
+        let state = self.spend(drive);
+        if matches!(self.phase, Phase::Move)
+            && let Some(item) = self.ring.current()
+        {
+            self.position = position(item, self.rest);
+        }
+        Cycle {
+            position: self.position,
+            speed_mm_s: self.speed,
+            state,
+        }
+    }
+
+    /// Takes over what has changed in how to drive.
+    fn take(&mut self, drive: &Drive) {
+        // NaN is no override: the path stands.
+        let percent = |percent: f64| if percent > 0.0 { percent } else { 0.0 };
+        let feed = percent(drive.feed_override_percent);
+        let rapid = percent(drive.rapid_override_percent);
+        if (feed, rapid) != (self.feed_override_percent, self.rapid_override_percent) {
+            (self.feed_override_percent, self.rapid_override_percent) = (feed, rapid);
+            self.ring.set_overrides(feed, rapid);
+        }
+        if drive.single_block != self.single_block {
+            self.single_block = drive.single_block;
+            self.seek_stop = true;
+        }
+        if (drive.clamped, drive.clamping) != (self.clamped, self.clamping) {
+            (self.clamped, self.clamping) = (drive.clamped, drive.clamping);
+            self.seek_stop = true;
+        }
+        if self.seek_stop {
+            self.seek_stop = false;
+            let stop = self.block_end();
+            self.ring.set_stop(stop);
+        }
+    }
+
+    /// Number of the element at whose end the path stops for single block or for axes that are clamped,
+    /// where it can still come to a standstill.
+    fn block_end(&self) -> Option<u64> {
+        if !self.single_block && self.clamped.union(self.clamping).is_empty() {
+            return None;
+        }
+        let squared = self.speed * self.speed * (1.0 - 1e-9);
+        let mut possible = 0.0;
+        let mut length = self.rest;
+        for (number, item) in (self.ring.number()..).zip(self.ring.ahead()) {
+            possible += 2.0 * item.acceleration * length;
+            let next = self.ring.get(number + 1);
+            let stops = item.block_end && (self.single_block || moves(&item.element, self.clamping))
+                || next.is_some_and(|next| moves(&next.element, self.clamped));
+            if stops && squared <= possible {
+                return Some(number);
+            }
+            length = next.map_or(0.0, |next| next.length);
+        }
+        None
+    }
+
+    /// Goes along the path until the time of the cycle is spent or the path waits.
+    fn spend(&mut self, drive: &Drive) -> State {
+        let mut time = self.cycle_s;
+        loop {
+            let Some(item) = self.ring.current() else {
+                return self.at_the_end();
+            };
+            // Nothing new begins while the path is held.
+            let held = drive.hold && self.speed <= 0.0;
+            match self.phase {
+                Phase::Begin if held => return State::Held,
+                Phase::Begin if self.speed <= 0.0 && moves(&item.element, self.clamped) => {
+                    return State::Clamped;
+                }
+                Phase::Begin => {
+                    let output = item.start;
+                    self.phase = self.output(output, Gate::Start, Phase::Move);
+                }
+                Phase::Gate(end) => return State::Gate(end),
+                Phase::Move => {
+                    let driven = drive_along(item, self.speed, self.rest, drive.hold, time);
+                    let along = item.along;
+                    let before = self.rest;
+                    match driven {
+                        Driven::OnTheWay { speed, rest } => {
+                            (self.speed, self.rest) = (speed, rest);
+                            if along {
+                                self.output_along();
+                            }
+                            let stands = speed <= 0.0 && rest == before;
+                            return if stands && drive.hold {
+                                State::Held
+                            } else {
+                                State::Moving
+                            };
+                        }
+                        Driven::Arrived { speed, left } => {
+                            let dwell = item.element.dwell_s;
+                            // Rounding must not carry the path over what was found to be possible.
+                            let exit = if speed * speed > item.cap {
+                                item.cap.sqrt()
+                            } else {
+                                speed
+                            };
+                            self.position = item.element.end;
+                            (self.speed, self.rest, time) = (exit, 0.0, left);
+                            if along {
+                                self.output_along();
+                            }
+                            self.phase = if dwell > 0.0 {
+                                Phase::Dwell(dwell)
+                            } else {
+                                Phase::Finish
+                            };
+                        }
+                    }
+                }
+                // The manual is silent: dwell goes on only while the path is not held (inferred).
+                Phase::Dwell(_) if drive.hold => return State::Held,
+                Phase::Dwell(dwell) if dwell > time => {
+                    self.phase = Phase::Dwell(dwell - time);
+                    return State::Dwell;
+                }
+                Phase::Dwell(dwell) => {
+                    time -= dwell;
+                    self.phase = Phase::Finish;
+                }
+                Phase::Finish => {
+                    let output = item.end;
+                    self.phase = self.output(output, Gate::End, Phase::Done);
+                }
+                Phase::Done => {
+                    // Whether the block has ended is known when the next element is, or that none comes.
+                    let stands = self.speed <= 0.0;
+                    if stands && item.length > 0.0 && !drive.in_position {
+                        return State::Settling;
+                    }
+                    if stands && item.block_end && moves(&item.element, self.clamping) {
+                        return State::Clamping;
+                    }
+                    if self.single_block && item.block_end && stands {
+                        self.phase = Phase::BlockEnd;
+                    } else if self.ring.following().is_some() {
+                        self.next();
+                    } else {
+                        return self.at_the_end();
+                    }
+                }
+                Phase::BlockEnd => return State::BlockEnd,
+                Phase::Over if self.ring.following().is_some() => self.next(),
+                Phase::Over => return self.at_the_end(),
+            }
+        }
+    }
+
+    fn at_the_end(&self) -> State {
+        match self.after {
+            After::Stop(_) => State::Stopped,
+            After::Open | After::Taken => State::Empty,
+        }
+    }
+
+    /// Goes on to the next element.
+    fn next(&mut self) {
+        self.ring.advance();
+        self.enter();
+        let stops = self.single_block || !self.clamped.union(self.clamping).is_empty();
+        if stops && self.ring.stop_is_behind() {
+            let stop = self.block_end();
+            self.ring.set_stop(stop);
+        }
+    }
+
+    /// Begins the current element.
+    fn enter(&mut self) {
+        self.phase = Phase::Begin;
+        self.rest = self.ring.current().map_or(0.0, |item| item.length);
+        self.output_to = f64::NEG_INFINITY;
+    }
+
+    /// Outputs the functions at one end of the current element; the phase after it.
+    fn output(&mut self, output: Output, gate: Gate, then: Phase) -> Phase {
+        let place = match gate {
+            Gate::Start => Place::Start,
+            Gate::End => Place::End,
+        };
+        match output {
+            Output::Nothing => then,
+            Output::Passing => {
+                self.queue(place, false);
+                then
+            }
+            Output::Waiting => {
+                let waits = !std::mem::take(&mut self.released);
+                self.queue(place, waits);
+                if waits { Phase::Gate(gate) } else { then }
+            }
+        }
+    }
+
+    /// Outputs the functions along the current element that were passed.
+    fn output_along(&mut self) {
+        let Some(item) = self.ring.current() else { return };
+        let to = if self.rest > 0.0 {
+            item.length - self.rest
+        } else {
+            f64::INFINITY
+        };
+        let passed = self.output_to..to;
+        for index in 0..item.element.functions().len() {
+            let length = self
+                .ring
+                .current()
+                .and_then(|item| item.element.functions().get(index))
+                .filter(|function| place(function).is_none())
+                .and_then(|function| match function.at {
+                    At::Length(length) if length > 0.0 => Some(length.min(f64::MAX)),
+                    At::Length(_) => Some(0.0),
+                    At::Start | At::End => None,
+                });
+            if length.is_some_and(|length| passed.contains(&length)) {
+                self.queue(Place::Along(index), false);
+            }
+        }
+        self.output_to = to;
+    }
+
+    fn queue(&mut self, place: Place, waits: bool) {
+        if let Some(item) = self.ring.current() {
+            self.outputs.push_back(FunctionOutput {
+                element: self.ring.number(),
+                block: item.element.block,
+                sequence: item.element.sequence,
+                place,
+                waits,
+            });
+        }
+    }
+
+    /// The next functions to be output, in the order of the path. To be asked for until there are no
+    /// more after each cycle.
+    pub fn next_output(&mut self) -> Option<FunctionOutput> {
+        self.outputs.pop_front()
+    }
+
+    /// The functions of an output. They are kept until the next [`Interpolator::prepare`], those of
+    /// the current element longer.
+    pub fn functions(&self, output: &FunctionOutput) -> impl Iterator<Item = &TechnologyFunction> {
+        let wanted = output.place;
+        let functions = self
+            .ring
+            .get(output.element)
+            .map_or(&[] as &[_], |item| item.element.functions());
+        functions
+            .iter()
+            .enumerate()
+            .filter(move |(index, function)| match wanted {
+                Place::Start => place(function) == Some(Gate::Start),
+                Place::End => place(function) == Some(Gate::End),
+                Place::Along(along) => *index == along,
+            })
+            .map(|(_, function)| function)
+    }
+
+    /// The functions for which the path waits are acknowledged. When it does not wait yet, the next
+    /// gate is passed at once.
+    pub fn release(&mut self) {
+        match self.phase {
+            Phase::Gate(Gate::Start) => self.phase = Phase::Move,
+            Phase::Gate(Gate::End) => self.phase = Phase::Done,
+            _ => self.released = true,
+        }
+    }
+
+    /// Single block: goes on with the next block. Without effect unless the path waits for it.
+    pub fn go_on(&mut self) {
+        if self.phase == Phase::BlockEnd {
+            self.phase = Phase::Over;
+        }
+    }
+
+    /// Why no more elements come, once in [`State::Stopped`].
+    pub fn take_stop(&mut self) -> Option<Stop<E>> {
+        let executed = matches!(self.phase, Phase::Done | Phase::Over) && self.ring.following().is_none();
+        if !executed || !matches!(self.after, After::Stop(_)) {
+            return None;
+        }
+        match std::mem::replace(&mut self.after, After::Taken) {
+            After::Stop(stop) => Some(stop),
+            After::Open | After::Taken => None,
+        }
+    }
+
+    /// Lets the source go on after a barrier.
+    pub fn resume<S>(&mut self, source: &mut S, live: LiveData)
+    where
+        S: ElementSource<Error = E>,
+    {
+        source.resume(live);
+        self.after = After::Open;
+    }
+
+    /// Internal stop: drops all that is not executed, wherever the path is, and says where that was.
+    /// `None` when all was executed. The next path starts from here.
+    pub fn clear(&mut self) -> Option<Cut> {
+        let cut = self.ring.current().and_then(|item| {
+            let unfinished = !matches!(self.phase, Phase::Done | Phase::BlockEnd | Phase::Over);
+            let cut_at = if unfinished {
+                Some(item)
+            } else {
+                self.ring.following()
+            };
+            cut_at.map(|item| {
+                let rest_mm = if unfinished { self.rest } else { item.length };
+                Cut {
+                    block: item.element.block,
+                    sequence: item.element.sequence,
+                    covered_mm: item.length - rest_mm,
+                    rest_mm,
+                    position: self.position,
+                }
+            })
+        });
+        self.ring.clear(self.position);
+        self.after = After::Open;
+        self.phase = Phase::Done;
+        (self.speed, self.rest) = (0.0, 0.0);
+        self.released = false;
+        self.outputs.clear();
+        cut
+    }
+
+    /// Nominal position on the path.
+    pub fn position(&self) -> Position {
+        self.position
+    }
+
+    /// Path speed, mm/s.
+    pub fn speed_mm_s(&self) -> f64 {
+        self.speed
+    }
+
+    /// The element that is executed, or was last.
+    pub fn element(&self) -> Option<&PathElement> {
+        self.ring.current().map(|item| &item.element)
+    }
+
+    /// Path length to the end of that element, mm.
+    pub fn rest_mm(&self) -> f64 {
+        self.rest
+    }
+
+    /// Elements that are prepared and not yet executed, the current one included.
+    pub fn ahead(&self) -> usize {
+        self.ring.ahead().count()
+    }
+}
+
+/// Drives along an item for a time.
+#[inline]
+fn drive_along(item: &Item, speed: f64, rest: f64, hold: bool, time: f64) -> Driven {
+    let (limit, exit_squared) = if hold { (0.0, 0.0) } else { (item.feed, item.exit) };
+    Ramp {
+        speed,
+        rest,
+        acceleration: item.acceleration,
+        limit,
+        exit_squared,
+    }
+    .drive(time)
+}
+
+/// The position with so much of an item to go, mm.
+fn position(item: &Item, rest: f64) -> Position {
+    let PathElement {
+        curve, start, end, ..
+    } = &item.element;
+    let fraction = if item.length > 0.0 {
+        (item.length - rest) / item.length
+    } else {
+        1.0
+    };
+    curve.position(start, end, fraction)
+}
+
+/// Whether an element moves one of the axes.
+fn moves(element: &PathElement, axes: AxisSet) -> bool {
+    if axes.is_empty() {
+        return false;
+    }
+    let turns = |axis: Axis| match &element.curve {
+        Curve::Hold => false,
+        Curve::Line => element.start[axis] != element.end[axis] && !element.end[axis].is_nan(),
+        Curve::Arc(arc) => {
+            axis == arc.plane.first || axis == arc.plane.second || element.start[axis] != element.end[axis]
+        }
+    };
+    axes.iter().any(turns)
+}

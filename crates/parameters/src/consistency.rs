@@ -1,0 +1,307 @@
+//! Values that are in range each, but do not go together.
+//!
+//! The control's editor does not look for them; each rule is a sentence of the manual.
+
+use crate::{
+    AxisParameters, ControlModel, ParameterId, ParameterList, SpindleOutput, SpindleParameters, Station,
+};
+
+/// Values that do not go together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inconsistency {
+    /// The parameter that is wrong, or one of them.
+    pub id: ParameterId,
+    /// The rule.
+    pub rule: &'static str,
+    /// What it is here.
+    pub detail: String,
+    /// Where the manuals say so, as `000:5012`.
+    pub source: &'static str,
+}
+
+impl ParameterList {
+    /// Everything that does not go together, by the rules of the manuals. Empty for a programming station,
+    /// which moves nothing.
+    pub fn inconsistencies(&self) -> Vec<Inconsistency> {
+        if self.operation_parameters().station != Station::Machine {
+            return Vec::new();
+        }
+        let axes: Vec<AxisParameters> = (0..self.model().limits().axes_max)
+            .map(|index| self.axis_parameters(index))
+            .filter(|axis| axis.active)
+            .collect();
+        let mut found = Vec::new();
+        let mut report = Reporter {
+            list: self,
+            found: &mut found,
+        };
+        for axis in &axes {
+            travel(axis, &mut report);
+            if axis.controlled {
+                lag(axis, &mut report);
+                monitoring(axis, &mut report);
+            }
+            offset(axis, &mut report);
+        }
+        assignment(&axes, &mut report);
+        same_kv(&axes, &mut report);
+        reference_run(&axes, &mut report);
+        spindle(&self.spindle_parameters(), &axes, &mut report);
+        found
+    }
+}
+
+struct Reporter<'a> {
+    list: &'a ParameterList,
+    found: &'a mut Vec<Inconsistency>,
+}
+
+impl Reporter<'_> {
+    fn is_old(&self) -> bool {
+        matches!(self.list.model(), ControlModel::Tnc151 | ControlModel::Tnc155)
+    }
+
+    /// Reports when a rule does not hold. `new` is number and index, `old` the number in the list of the
+    /// TNC 151/155.
+    fn check(
+        &mut self,
+        holds: bool,
+        (new, index, old): (u16, Option<u8>, u16),
+        rule: &'static str,
+        source: &'static str,
+        detail: impl FnOnce() -> String,
+    ) {
+        if holds {
+            return;
+        }
+        let id = if self.is_old() {
+            ParameterId {
+                number: old,
+                index: None,
+            }
+        } else {
+            ParameterId { number: new, index }
+        };
+        self.found.push(Inconsistency {
+            id,
+            rule,
+            detail: detail(),
+            source,
+        });
+    }
+}
+
+fn travel(axis: &AxisParameters, report: &mut Reporter) {
+    if axis.travel.modulo_deg.is_some() {
+        return;
+    }
+    let ranges = if report.is_old() { 1 } else { 3 };
+    for (range, [min, max]) in (0u16..ranges).zip(axis.travel.ranges_mm) {
+        let name = (910 + range, Some(axis.index), 44 + 2 * u16::from(axis.index));
+        report.check(
+            min < max,
+            name,
+            "the axis cannot move between its software limits",
+            "000:3438-3497",
+            || format!("traverse range {}: {min} to {max}", range + 1),
+        );
+    }
+}
+
+fn lag(axis: &AxisParameters, report: &mut Reporter) {
+    let (index, lag) = (Some(axis.index), axis.lag);
+    let v_m_min = axis.motion.rapid_mm_min / 1000.0;
+    // [000:4907]
+    let kink = lag.kink_percent / 100.0;
+    let lag_mm = v_m_min / lag.kv * (kink + (1.0 - kink) / lag.kink_factor);
+    let rule = "rapid traverse gives POSITIONING ERROR in lag operation";
+    report.check(
+        lag.monitoring_mm > lag_mm,
+        (1710, index, 175),
+        rule,
+        "000:9806-9817",
+        || {
+            format!(
+                "{} mm, the lag at rapid traverse is {lag_mm:.3} mm",
+                lag.monitoring_mm
+            )
+        },
+    );
+    let rule = "the limit for EMERGENCY STOP is not above the cancellable one";
+    report.check(
+        lag.emergency_mm > lag.monitoring_mm,
+        (1720, index, 174),
+        rule,
+        "000:5200-5206",
+        || format!("{} mm and {} mm", lag.emergency_mm, lag.monitoring_mm),
+    );
+    let precontrol = axis.precontrol;
+    let ascends = precontrol.emergency_mm > precontrol.monitoring_mm;
+    report.check(ascends, (1420, index, 57), rule, "000:5228-5238", || {
+        format!(
+            "{} mm and {} mm",
+            precontrol.emergency_mm, precontrol.monitoring_mm
+        )
+    });
+    let rule = "pre-control needs a kv factor of 0.1 at least";
+    let name = (1510, index, 32 + u16::from(axis.index));
+    report.check(
+        !precontrol.in_automatic || precontrol.kv >= 0.1,
+        name,
+        rule,
+        "000:4984-4991",
+        || format!("kv {:.3} (m/min)/mm", precontrol.kv),
+    );
+    let rule = "manual feed is above rapid traverse";
+    let (manual, rapid) = (axis.motion.manual_mm_min, axis.motion.rapid_mm_min);
+    report.check(
+        manual <= rapid,
+        (1020, index, 4 + u16::from(axis.index)),
+        rule,
+        "000:4822",
+        || format!("{manual} and {rapid} mm/min"),
+    );
+}
+
+fn monitoring(axis: &AxisParameters, report: &mut Reporter) {
+    let (window, standstill) = (axis.monitoring.window_mm, axis.monitoring.standstill_mm);
+    let rule = "standstill monitoring reacts inside the positioning window";
+    report.check(
+        standstill > window,
+        (1110, Some(axis.index), 169),
+        rule,
+        "000:5289-5300",
+        || format!("{standstill} mm, the window is {window} mm"),
+    );
+}
+
+fn offset(axis: &AxisParameters, report: &mut Reporter) {
+    let output = axis.output;
+    let holds = output.integral_factor == 0.0 || output.offset_interval_s == 0.0;
+    let rule = "integral factor and automatic offset adjustment are both active";
+    let name = (1080, Some(axis.index), 28 + u16::from(axis.index));
+    report.check(holds, name, rule, "000:5012", || {
+        format!(
+            "factor {}, interval {} s",
+            output.integral_factor, output.offset_interval_s
+        )
+    });
+}
+
+fn assignment(axes: &[AxisParameters], report: &mut Reporter) {
+    for (at, axis) in axes.iter().enumerate() {
+        let before = axes.get(..at).unwrap_or_default();
+        let index = Some(axis.index);
+        let input = axis.encoder.input;
+        let free = before.iter().all(|other| other.encoder.input != input);
+        let rule = "two axes have the same encoder input";
+        report.check(
+            free,
+            (110, index, 253 + u16::from(axis.index)),
+            rule,
+            "000:3374-3391",
+            || format!("X{}", input + 1),
+        );
+        let output = axis.output.output;
+        let free = before.iter().all(|other| other.output.output != output);
+        let rule = "two axes have the same nominal value output";
+        report.check(free, (120, index, 0), rule, "000:3393-3406", || {
+            format!("output {}", output + 1)
+        });
+    }
+}
+
+/// The main axes interpolate; their following errors must agree [000:4780-4788].
+fn same_kv(axes: &[AxisParameters], report: &mut Reporter) {
+    let main: Vec<&AxisParameters> = axes
+        .iter()
+        .filter(|axis| axis.index < 3 && axis.controlled)
+        .collect();
+    let Some(first) = main.first() else { return };
+    for axis in main.iter().skip(1) {
+        let name = (1810, Some(axis.index), 177 + u16::from(axis.index));
+        let rule = "axes that interpolate have different kv factors";
+        report.check(axis.lag.kv == first.lag.kv, name, rule, "000:4780-4788", || {
+            format!("{} and {}", axis.lag.kv, first.lag.kv)
+        });
+    }
+}
+
+fn reference_run(axes: &[AxisParameters], report: &mut Reporter) {
+    for axis in axes.iter().filter(|axis| axis.controlled) {
+        let rule = "the axis is not referenced automatically";
+        report.check(
+            axis.reference.place.is_some(),
+            (1340, Some(0), 59),
+            rule,
+            "000:4649-4654",
+            || format!("MP1340 does not name axis {}", axis.index + 1),
+        );
+    }
+}
+
+fn spindle(spindle: &SpindleParameters, axes: &[AxisParameters], report: &mut Reporter) {
+    if matches!(spindle.output, SpindleOutput::Analogue { .. }) {
+        let codes = spindle.codes;
+        let unlimited = codes.min <= 1 && codes.max == 99 && codes.step == 1;
+        let rule = "the analogue spindle needs a speed code without limits";
+        report.check(unlimited, (3020, None, 63), rule, "000:5478-5480", || {
+            format!("codes {} to {}, step {}", codes.min, codes.max, codes.step)
+        });
+        let speeds: Vec<f64> = spindle.gears.map(|gear| gear.rated_rpm).to_vec();
+        let used = speeds
+            .iter()
+            .rposition(|speed| *speed > 0.0)
+            .map_or(0, |last| last + 1);
+        let ascending = speeds
+            .iter()
+            .take(used)
+            .is_sorted_by(|slower, faster| slower < faster);
+        let rule = "the gear ranges do not ascend";
+        report.check(
+            ascending && used > 0,
+            (3510, Some(0), 78),
+            rule,
+            "000:5522-5524",
+            || format!("{speeds:?} rpm"),
+        );
+        let taken = axes.iter().find(|axis| axis.output.output == 5);
+        let rule = "an axis has the output of the spindle";
+        report.check(
+            taken.is_none(),
+            (120, taken.map(|axis| axis.index), 0),
+            rule,
+            "000:3374-3378",
+            String::new,
+        );
+    }
+    if spindle.controlled {
+        let taken = axes.iter().find(|axis| axis.encoder.input == 5);
+        let rule = "an axis has the encoder input of the spindle";
+        report.check(
+            taken.is_none(),
+            (110, taken.map(|axis| axis.index), 0),
+            rule,
+            "000:3374-3378",
+            String::new,
+        );
+        let window = spindle.tapping.window_mm;
+        let widest = axes
+            .iter()
+            .map(|axis| axis.monitoring.window_mm)
+            .fold(0.0, f64::max);
+        let rule = "the window of rigid tapping is wider than the positioning window";
+        report.check(window <= widest, (7150, None, 0), rule, "000:6137-6141", || {
+            format!("{window} mm and {widest} mm")
+        });
+    }
+    let [least, greatest] = spindle.override_percent;
+    let rule = "the least spindle override is above the greatest";
+    report.check(
+        least <= greatest,
+        (3310, Some(1), 89),
+        rule,
+        "000:5585-5589",
+        || format!("{least} and {greatest} %"),
+    );
+}

@@ -1,0 +1,340 @@
+//! Settings of the operating modes: switch-on, overrides, handwheel, tools, restart, display.
+
+use super::bit_of;
+use crate::{ControlModel, ParameterId, ParameterList};
+
+/// Settings of the operating modes. "old" are the numbers of the TNC 151/155.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OperationParameters {
+    /// Whether there is a machine: MP7210 (old MP170) [000:6949-6954] [001:1637-1641].
+    pub station: Station,
+    /// POWER INTERRUPTED waits for CE after switch-on: MP7212 = 0; old: always [000:7033-7040].
+    pub power_interrupted: bool,
+    /// The dialogue is English: MP7230 = 1 (old MP92 + 2) [000:6956-6966] [001:3277-3281].
+    pub english: bool,
+    /// The RAM is tested at switch-on: MP7690 bit 0 = 0 (old MP92 without + 4) [000:6978-6986].
+    pub ram_test: bool,
+    /// The EPROM is tested at switch-on: MP7690 bit 1 = 0 (old MP92 without + 8) [000:6978-6986].
+    pub eprom_test: bool,
+    /// START while an axis direction key is held keeps the axis moving: MP7680 bit 0 (old MP68)
+    /// [000:7545-7552].
+    pub keys_latched: bool,
+    /// Manual modes always show the smallest manual feed: MP7270 = 1 (old MP167) [000:6536].
+    pub manual_feed_shown: bool,
+    /// Overrides.
+    pub overrides: OverrideParameters,
+    /// Return to the contour and block scan.
+    pub restart: RestartParameters,
+    /// Tool table, magazine and what TOOL CALL and TOOL DEF hand to the PLC.
+    pub tools: ToolParameters,
+    /// Datums and traverse ranges.
+    pub datums: DatumParameters,
+    /// Handwheel.
+    pub handwheel: HandwheelParameters,
+    /// The length of the tool counts in the display of the tool axis: MP7285 = 1; old: no
+    /// [000:6428-6434].
+    pub tool_length_shown: bool,
+    /// The working plane can be tilted: MP7500 = 1, TNC 415/425 only [000:4264-4400].
+    pub tilting: bool,
+    /// Length for blocks with surface normals includes DR2: MP7680 bit 6 [000:9179-9192].
+    pub normal_length_with_dr2: bool,
+    /// Step of the block numbers of ISO programs: MP7220; 1 where there is none [000:6885].
+    pub iso_step: u8,
+}
+
+/// Whether there is a machine [000:6949-6954].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Station {
+    /// Control of a machine.
+    Machine,
+    /// Programming station, the PLC runs.
+    WithPlc,
+    /// Programming station, no PLC.
+    WithoutPlc,
+}
+
+/// In which steps an override acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OverrideSteps {
+    /// 2 % [001:3262-3265] [003:7434-7443].
+    TwoPercent,
+    /// 1 % [000:5583] [003:7434-7443], called continuous on the TNC 151/155.
+    OnePercent,
+    /// 0.01 % up to 2.5 %, 0.75 % above [000:5583].
+    NonLinear,
+}
+
+/// Overrides: MP7620 (old MP74) [000:10512] [000:6527-6543] [001:3262-3265] [003:7434-7443].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OverrideParameters {
+    /// The feed override acts on rapid traverse by key in program run: bit 0.
+    pub on_rapid_key: bool,
+    /// It acts on rapid key with direction keys in manual operation: bit 2.
+    pub on_manual_rapid: bool,
+    /// Steps of the feed override.
+    pub feed_steps: OverrideSteps,
+    /// Steps of the spindle override.
+    pub spindle_steps: OverrideSteps,
+}
+
+/// Return to the contour and block scan: MP7680 bits 1 to 5; old: neither [000:6785-6812].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RestartParameters {
+    /// Return to the contour works.
+    pub return_to_contour: bool,
+    /// Block scan works.
+    pub block_scan: bool,
+    /// The scan passes over programmed stops and M06.
+    pub passes_stops: bool,
+    /// The scan ignores dwell times.
+    pub ignores_dwell: bool,
+    /// The scan starts at the begin of the program, not at the cursor.
+    pub from_start: bool,
+}
+
+/// When and how a tool is handed to the PLC: MP7480 (old MP61, MP157) [000:9231-9283].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ToolOutput {
+    /// What is put out.
+    pub what: ToolOutputKind,
+    /// At every block, not only when the number changes.
+    pub always: bool,
+}
+
+/// What of a tool is handed to the PLC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ToolOutputKind {
+    /// Nothing.
+    None,
+    /// The number of the tool.
+    Tool,
+    /// Pocket and tool; the tool returns to any pocket.
+    Pocket,
+    /// Pocket and tool; the tool returns to its own pocket, the pocket table does not change.
+    FixedPocket,
+}
+
+/// Tools [000:8994-9283].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ToolParameters {
+    /// Lines of the tool table, 0 without one: MP7260 (old MP225) [000:9103-9111].
+    pub table_size: u32,
+    /// Pockets of the magazine, 0 without pocket table: MP7261 (old MP225, the same) [000:9103-9111].
+    pub pockets: u32,
+    /// Pockets kept free on each side of a special tool: MP7264, dropped later; 0 without it
+    /// [000:9162-9164].
+    pub reserved_pockets: u8,
+    /// TOOL CALL: MP7480.0 (old MP61).
+    pub call: ToolOutput,
+    /// TOOL DEF: MP7480.1 (old MP157).
+    pub definition: ToolOutput,
+}
+
+/// Datums and traverse ranges: MP7490, MP7295, MP7296, MP7475 [000:3499-3508].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DatumParameters {
+    /// Traverse ranges that the MOD function sets: 3 or 1; old: 1.
+    pub ranges: u8,
+    /// Each traverse range has a datum of its own; old: no.
+    pub datum_for_each_range: bool,
+    /// The datum is set with the soft key only, not with the axis keys: MP7296 = 1 [000:6277-6285].
+    pub soft_key_only: bool,
+    /// Datum tables count from the machine datum, not from the workpiece datum: MP7475 = 1
+    /// [000:6900-6902].
+    pub table_from_machine: bool,
+}
+
+/// Handwheel [000:8060-8446].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandwheelParameters {
+    /// Which one: MP7640 (old MP171) [000:8096-8106] [001:2208-2226].
+    pub kind: Handwheel,
+    /// The interpolation factor comes from module 9036, not from the panel: MP7641 = 1.
+    pub factor_from_plc: bool,
+    /// Initialization: MP7645.0 to .7; their meaning depends on the handwheel [000:8112-8351].
+    pub initialization: [u8; 8],
+    /// Turning right moves positive: MP7650 = 1; old: yes [000:8117].
+    pub positive: bool,
+    /// Increments below which a movement is a vibration: MP7660 (old MP247) [000:8122].
+    pub threshold: u16,
+    /// Least interpolation factor, 0 to 10; slow, medium, fast with the HR 410: MP7670
+    /// [000:8125-8132].
+    pub factor_min: [u8; 3],
+    /// Feed of the direction keys of the HR 410, slow, medium, fast, % of the manual feed: MP7671
+    /// [000:8300-8304].
+    pub jog_percent: [f64; 3],
+}
+
+/// Handwheels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Handwheel {
+    /// None.
+    None,
+    /// MP7640 = 1: HR 330, all keys to the NC.
+    Hr330,
+    /// 2: HR 130 or HR 330; old: HR 150 or HR 250.
+    Hr130,
+    /// 3: HR 330, direction and rapid keys to the PLC.
+    Hr330Plc,
+    /// 4: HR 332.
+    Hr332,
+    /// 5: up to three HR 150 with HRA 110.
+    Hra110,
+    /// 6: HR 410.
+    Hr410,
+    /// HE 310, two axes at once; TNC 151/155 only.
+    He310,
+}
+
+/// A parameter that the operator may change under USER PARAMETERS: MP7330 and MP7340
+/// [000:6907-6926].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UserParameter {
+    /// The parameter.
+    pub id: ParameterId,
+    /// Line of the PLC dialogue file that names it.
+    pub dialogue_line: u16,
+}
+
+impl ParameterList {
+    /// The settings of the operating modes.
+    pub fn operation_parameters(&self) -> OperationParameters {
+        let old = self.has_old_numbers();
+        // Tests are on unless their bit is set; the bits stand elsewhere in the old list.
+        let test = |bit: u32| !self.bit((7690, 0), (92, 0), if old { bit + 2 } else { bit });
+        let multi = |bit| bit_of(self.get_new(7680, 0).unwrap_or_default(), bit);
+        let is_one = |number| self.get_new(number, 0) == Some(1.0);
+        OperationParameters {
+            station: match self.value((7210, 0), (170, 0)) as u8 {
+                0 => Station::Machine,
+                1 => Station::WithPlc,
+                _ => Station::WithoutPlc,
+            },
+            power_interrupted: !is_one(7212),
+            english: if old { self.old_bit(92, 1) } else { is_one(7230) },
+            ram_test: test(0),
+            eprom_test: test(1),
+            keys_latched: if old { self.old(68) == 1.0 } else { multi(0) },
+            // The TNC 360 adds 2 for something else [003:7307-7315].
+            manual_feed_shown: self.bit((7270, 0), (167, 0), 0),
+            overrides: self.override_parameters(),
+            restart: RestartParameters {
+                return_to_contour: multi(1),
+                block_scan: multi(2),
+                passes_stops: multi(3),
+                ignores_dwell: multi(4),
+                from_start: multi(5),
+            },
+            tools: self.tool_parameters(),
+            datums: self.datum_parameters(),
+            handwheel: self.handwheel_parameters(),
+            tool_length_shown: is_one(7285),
+            tilting: is_one(7500),
+            normal_length_with_dr2: multi(6),
+            iso_step: self.get_new(7220, 0).map_or(1, |step| step as u8),
+        }
+    }
+
+    /// The parameters that the operator may change under USER PARAMETERS; an entry of 0 is none. MP7330
+    /// holds the number with a two-digit index: 5030.01 is MP5030.1 [000:6911-6919].
+    pub fn user_parameters(&self) -> Vec<UserParameter> {
+        let entry = |place: u8| {
+            let hundredths = (self.get_new(7330, place)? * 100.0).round() as u32;
+            let (number, index) = ((hundredths / 100) as u16, (hundredths % 100) as u8);
+            Some(UserParameter {
+                id: crate::Definition::find(self.model(), number, index)?.id,
+                dialogue_line: self.get(7340, place)? as u16,
+            })
+        };
+        (0..16).filter_map(entry).collect()
+    }
+
+    fn override_parameters(&self) -> OverrideParameters {
+        let value = self.value((7620, 0), (74, 0));
+        let continuous = |bit| {
+            if bit_of(value, bit) {
+                OverrideSteps::OnePercent
+            } else {
+                OverrideSteps::TwoPercent
+            }
+        };
+        let [feed_steps, spindle_steps] = match self.model() {
+            ControlModel::Tnc151 | ControlModel::Tnc155 => [continuous(1), continuous(3)],
+            ControlModel::Tnc360 => [continuous(1); 2],
+            _ if bit_of(value, 3) => [OverrideSteps::NonLinear; 2],
+            _ => [OverrideSteps::OnePercent; 2],
+        };
+        OverrideParameters {
+            on_rapid_key: bit_of(value, 0),
+            on_manual_rapid: bit_of(value, 2),
+            feed_steps,
+            spindle_steps,
+        }
+    }
+
+    fn tool_parameters(&self) -> ToolParameters {
+        ToolParameters {
+            table_size: self.tool_table_size(),
+            pockets: self.value((7261, 0), (225, 0)) as u32,
+            reserved_pockets: self.get_new(7264, 0).unwrap_or_default() as u8,
+            call: tool_output(self.value((7480, 0), (61, 0))),
+            definition: tool_output(self.value((7480, 1), (157, 0))),
+        }
+    }
+
+    fn datum_parameters(&self) -> DatumParameters {
+        // The TNC 151/155 have one range and one datum, as value 2 says.
+        let kind = self.get_new(7490, 0).unwrap_or(2.0) as u8;
+        DatumParameters {
+            ranges: if matches!(kind, 1 | 3) { 3 } else { 1 },
+            datum_for_each_range: kind < 2,
+            soft_key_only: self.get_new(7296, 0) == Some(1.0),
+            table_from_machine: self.get_new(7475, 0) == Some(1.0),
+        }
+    }
+
+    fn handwheel_parameters(&self) -> HandwheelParameters {
+        const KINDS: [Handwheel; 7] = [
+            Handwheel::None,
+            Handwheel::Hr330,
+            Handwheel::Hr130,
+            Handwheel::Hr330Plc,
+            Handwheel::Hr332,
+            Handwheel::Hra110,
+            Handwheel::Hr410,
+        ];
+        let old = self.has_old_numbers();
+        let value = |number, index| self.get_new(number, index).unwrap_or_default();
+        let kind = match self.old(171) as u8 {
+            _ if !old => KINDS
+                .get(value(7640, 0) as usize)
+                .copied()
+                .unwrap_or(Handwheel::None),
+            1 | 3 => Handwheel::He310,
+            _ => Handwheel::Hr130,
+        };
+        HandwheelParameters {
+            kind,
+            factor_from_plc: value(7641, 0) == 1.0,
+            initialization: [0, 1, 2, 3, 4, 5, 6, 7].map(|index| value(7645, index) as u8),
+            positive: old || value(7650, 0) == 1.0,
+            threshold: self.value((7660, 0), (247, 0)) as u16,
+            factor_min: [0, 1, 2].map(|index| value(7670, index) as u8),
+            jog_percent: [0, 1, 2].map(|index| value(7671, index)),
+        }
+    }
+}
+
+/// MP7480, and MP61 and MP157, which end at 3.
+fn tool_output(value: f64) -> ToolOutput {
+    let (what, always) = match value as u8 {
+        1 => (ToolOutputKind::Tool, false),
+        2 => (ToolOutputKind::Tool, true),
+        3 => (ToolOutputKind::Pocket, false),
+        4 => (ToolOutputKind::Pocket, true),
+        5 => (ToolOutputKind::FixedPocket, false),
+        6 => (ToolOutputKind::FixedPocket, true),
+        _ => (ToolOutputKind::None, false),
+    };
+    ToolOutput { what, always }
+}

@@ -1,0 +1,470 @@
+//! Everything that spindle, gear change, orientation and tapping need.
+
+use crate::ParameterList;
+
+/// Gear ranges of the spindle.
+const GEARS: u8 = 8;
+/// Gear ranges that the TNC 151/155 have beside comparator speeds [001:1514-1536].
+const OLD_GEARS: usize = 4;
+/// One increment of the spindle encoder, degrees: 1024 lines, 4-fold [000:5901-5907].
+const INCREMENT_DEG: f64 = 360.0 / 4096.0;
+/// Greatest voltage of the output, V.
+const OUTPUT_VOLTS: f64 = 10.0;
+
+/// The parameters of the spindle. "old" are the numbers of the TNC 151/155.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpindleParameters {
+    /// How the speed is put out: MP3010, 0 to 8 (old MP62, 0 to 5) [000:5444-5472] [001:1488-1490].
+    pub output: SpindleOutput,
+    /// The spindle can be position controlled, for orientation and rigid tapping: MP3010 of 6 to 8 (old
+    /// MP237 = 1, 2) [000:5444-5472] [001:3082-3115].
+    pub controlled: bool,
+    /// What output S is for when the spindle does not use it: MP3011 [000:9819-9860]; old: nothing.
+    pub free_output: FreeOutput,
+    /// Limits of the coded speed: MP3020 (old MP63) [000:5718-5745] [001:1497-1499].
+    pub codes: SpeedCodes,
+    /// The axes do not halt when TOOL CALL gives a speed only: MP3030 = 1 (old MP214 + 4)
+    /// [000:5645-5651] [001:1650-1652].
+    pub axes_run_on: bool,
+    /// Speed 0 may be programmed: MP3120 = 0 (old MP190 = 0) [000:5566] [001:1573-1575].
+    pub zero_permitted: bool,
+    /// Polarity of the voltage: MP3130 (old MP172) [000:5502-5506].
+    pub polarity: SpindlePolarity,
+    /// The encoder counts negative with M03: MP3140 (old MP239) [000:5508-5511].
+    pub counts_negative: bool,
+    /// The gear ranges, speeds ascending; those that are not used have rated speed 0 [000:5522-5564].
+    pub gears: [Gear; GEARS as usize],
+    /// Speeds that M2504 compares with, rpm; TNC 151/155 only, when MP78 to MP85 do not ascend
+    /// [001:1514-1536].
+    pub comparator_rpm: Option<[f64; OLD_GEARS]>,
+    /// Least voltage, V: MP3240.1, 0 to 9.999 (old MP184) [000:5565].
+    pub min_volts: f64,
+    /// Greatest voltage, V: 10 (old MP87) [000:5258] [001:1502-1536].
+    pub max_volts: f64,
+    /// Voltage in which the spindle jogs while the gear changes, V: MP3240.2, 0 to 9.999 (old MP70)
+    /// [000:5636-5641].
+    pub jog_volts: f64,
+    /// Least and greatest override, %: MP3310.1 and .0, 0 to 150 (old MP89, MP88) [000:5585-5589].
+    pub override_percent: [f64; 2],
+    /// Ramps; a ramp of 0 V/ms is none.
+    pub ramps: SpindleRamps,
+    /// Orientation.
+    pub orientation: OrientationParameters,
+    /// Tapping with a floating holder and rigid tapping.
+    pub tapping: TappingParameters,
+}
+
+/// How the speed of the spindle is put out [000:5444-5472].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpindleOutput {
+    /// Not at all.
+    None,
+    /// As S code of DIN 66025 with strobe.
+    Coded {
+        /// At every TOOL CALL, not only when the speed changes.
+        always: bool,
+    },
+    /// As voltage.
+    Analogue {
+        /// When the gear range is put out.
+        gear: GearSignal,
+    },
+}
+
+/// When the gear range is put out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GearSignal {
+    /// When it changes.
+    OnChange,
+    /// At every TOOL CALL.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// What output S is for when the spindle does not use it, MP3010 less than 3 [000:9819-9860].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FreeOutput {
+    /// Nothing.
+    None,
+    /// A voltage proportional to the contour feed, 10 V at the feed of MP3012, mm/min.
+    Feed {
+        /// Feed for 10 V, mm/min.
+        full_mm_min: f64,
+    },
+    /// The PLC sets it with module 9130.
+    Plc,
+    /// M200 to M204 set it.
+    MFunctions,
+}
+
+/// Polarity of the spindle's voltage: MP3130 (old MP172) [000:5502-5506].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpindlePolarity {
+    /// 0: M03 positive, M04 negative.
+    M3Positive,
+    /// 1: M03 negative, M04 positive.
+    M3Negative,
+    /// 2: both positive.
+    BothPositive,
+    /// 3: both negative.
+    BothNegative,
+}
+
+/// Limits of the S code: MP3020, five digits `mmMMs` [000:5718-5745].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SpeedCodes {
+    /// Least code, 0 to 99.
+    pub min: u8,
+    /// Greatest code, 0 to 99.
+    pub max: u8,
+    /// Step of the codes, 1 to 9.
+    pub step: u8,
+}
+
+/// A gear range [000:5522-5564].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Gear {
+    /// Speed at override 100 %, rpm: MP3510 (old MP78-85).
+    pub rated_rpm: f64,
+    /// Voltage at that speed, V: MP3210, 0 to 9.999 (old MP86, one for all).
+    pub rated_volts: f64,
+    /// Highest speed, which the override does not pass, rpm: MP3515 (old: the speed at MP87 volts). 0 stands
+    /// for the rated speed (inferred).
+    pub max_rpm: f64,
+    /// kv of the orientation, (1000 degrees/min)/degree: MP3440, 0.1 to 10 (old MP238)
+    /// [000:5913-5931].
+    pub kv: f64,
+}
+
+/// Ramps of the spindle's voltage, V/ms: MP3410, 0 to 1.9999; on the TNC 151/155 all are MP168
+/// [000:5534] [001:1567-1570].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpindleRamps {
+    /// M03, M04, M05: MP3410.0.
+    pub normal_v_ms: f64,
+    /// Orientation: MP3410.1.
+    pub orientation_v_ms: f64,
+    /// Tapping with a floating holder: MP3410.2.
+    pub tapping_v_ms: f64,
+    /// Rigid tapping: MP3410.3.
+    pub rigid_v_ms: f64,
+}
+
+/// Orientation of the spindle [000:5851-5939].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrientationParameters {
+    /// Positioning window, degrees: MP3420 increments of 360/4096 degree (old MP246).
+    pub window_deg: f64,
+    /// Position of the reference mark, degrees: MP3430, 0 to 360 (old MP240).
+    pub reference_deg: f64,
+    /// Speed while M2501 turns the spindle, rpm: MP3520.0 (old MP258).
+    pub jog_rpm: f64,
+    /// Speed of the orientation, rpm: MP3520.1 (old MP248).
+    pub speed_rpm: f64,
+}
+
+/// Tapping [000:6060-6141] [001:1804-1812].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TappingParameters {
+    /// Least and greatest feed override in cycle 2, %: MP7110.0 and .1 (old MP182, MP183).
+    pub override_percent: [f64; 2],
+    /// Dwell before the spindle reverses, s: MP7120.0, 0 to 65.535 (old MP67).
+    pub reversal_dwell_s: f64,
+    /// Time before the end at which the spindle is switched off, coded speed only, s: MP7120.1 (old MP73).
+    pub coded_lead_s: f64,
+    /// Time that the spindle runs on after the depth, s: MP7120.2; old: 0.
+    pub run_on_s: f64,
+    /// Rigid tapping: run-in of the spindle, degrees/min: MP7130, 0.001 to 10; old: none, 0.
+    pub run_in_deg_min: f64,
+    /// Rigid tapping: transient response on acceleration: MP7140, 0.001 to 1; old: none, 0.
+    pub transient: f64,
+    /// Rigid tapping: positioning window of the tool axis, mm: MP7150, 0.0001 to 2; old: none, 0.
+    pub window_mm: f64,
+    /// The spindle is oriented before cycle 17: MP7160 = 0; old: never.
+    pub orientation: bool,
+}
+
+impl ParameterList {
+    /// The parameters of the spindle.
+    pub fn spindle_parameters(&self) -> SpindleParameters {
+        let kind = self.value((3010, 0), (62, 0)) as u8;
+        let (gears, comparator_rpm) = self.gears();
+        let old = self.has_old_numbers();
+        SpindleParameters {
+            output: output(kind),
+            controlled: if old {
+                matches!(self.old(237) as u8, 1 | 2)
+            } else {
+                kind >= 6
+            },
+            free_output: self.free_output(kind),
+            codes: codes(self.value((3020, 0), (63, 0))),
+            axes_run_on: !self.m_functions().axes_wait_for_speed,
+            zero_permitted: self.spindle_zero_permitted(),
+            polarity: polarity(self.value((3130, 0), (172, 0))),
+            counts_negative: self.value((3140, 0), (239, 0)) == 1.0,
+            gears,
+            comparator_rpm,
+            min_volts: self.value((3240, 1), (184, 0)),
+            max_volts: if old { self.old(87) } else { OUTPUT_VOLTS },
+            jog_volts: self.value((3240, 2), (70, 0)),
+            override_percent: self.spindle_override_percent(),
+            ramps: SpindleRamps {
+                normal_v_ms: self.value((3410, 0), (168, 0)),
+                orientation_v_ms: self.value((3410, 1), (168, 0)),
+                tapping_v_ms: self.value((3410, 2), (168, 0)),
+                rigid_v_ms: self.value((3410, 3), (168, 0)),
+            },
+            orientation: OrientationParameters {
+                window_deg: self.value((3420, 0), (246, 0)) * INCREMENT_DEG,
+                reference_deg: self.value((3430, 0), (240, 0)),
+                jog_rpm: self.value((3520, 0), (258, 0)),
+                speed_rpm: self.value((3520, 1), (248, 0)),
+            },
+            tapping: self.tapping_parameters(),
+        }
+    }
+
+    /// The characteristics of M202, velocity in mm/min to volts: MP3013 and MP3014. A velocity of 0 starts
+    /// the next one; at most 3 with up to 4 points [000:9862-9941].
+    pub fn laser_characteristics(&self) -> Vec<Vec<[f64; 2]>> {
+        let mut curves: Vec<Vec<[f64; 2]>> = Vec::new();
+        let points = (0u8..).map_while(|at| Some([self.get_new(3013, at)?, self.get_new(3014, at)?]));
+        for point in points {
+            match curves.last_mut() {
+                Some(curve) if point[0] > 0.0 => curve.push(point),
+                _ => curves.push(vec![point]),
+            }
+        }
+        curves.retain(|curve| curve.len() > 1);
+        curves
+    }
+
+    fn gears(&self) -> ([Gear; GEARS as usize], Option<[f64; OLD_GEARS]>) {
+        let mut gears = [Gear::default(); GEARS as usize];
+        for (index, gear) in (0u8..).zip(&mut gears) {
+            *gear = Gear {
+                rated_rpm: self.value((3510, index), (78 + u16::from(index), 0)),
+                rated_volts: self.value((3210, index), (86, 0)),
+                max_rpm: self.get_new(3515, index).unwrap_or_default(),
+                kv: self.value((3440, index), (238, 0)),
+            };
+        }
+        let mut comparator = None;
+        if self.has_old_numbers() {
+            let used = gears.iter().filter(|gear| gear.rated_rpm > 0.0);
+            if !used.is_sorted_by(|gear, next| gear.rated_rpm < next.rated_rpm) {
+                let mut speeds = [0.0; OLD_GEARS];
+                for (speed, gear) in speeds.iter_mut().zip(gears.iter_mut().skip(OLD_GEARS)) {
+                    *speed = std::mem::take(gear).rated_rpm;
+                }
+                comparator = Some(speeds);
+            }
+        }
+        let volts_max = self.old(87);
+        for gear in gears.iter_mut().filter(|gear| gear.max_rpm == 0.0) {
+            let limited = volts_max > 0.0 && gear.rated_volts > 0.0;
+            let factor = if limited {
+                volts_max / gear.rated_volts
+            } else {
+                1.0
+            };
+            gear.max_rpm = gear.rated_rpm * factor;
+        }
+        (gears, comparator)
+    }
+
+    fn free_output(&self, kind: u8) -> FreeOutput {
+        // Kinds from 3 need the output for the spindle.
+        match self.get_new(3011, 0).filter(|_| kind < 3).unwrap_or_default() as u8 {
+            1 => FreeOutput::Feed {
+                full_mm_min: self.get(3012, 0).unwrap_or_default(),
+            },
+            2 => FreeOutput::Plc,
+            3 => FreeOutput::MFunctions,
+            _ => FreeOutput::None,
+        }
+    }
+
+    fn tapping_parameters(&self) -> TappingParameters {
+        let tapping = self.tapping();
+        let rigid = |number| self.get_new(number, 0).unwrap_or_default();
+        TappingParameters {
+            override_percent: tapping.override_percent,
+            reversal_dwell_s: tapping.reversal_dwell_s,
+            coded_lead_s: self.value((7120, 1), (73, 0)),
+            run_on_s: self.get_new(7120, 2).unwrap_or_default(),
+            run_in_deg_min: rigid(7130),
+            transient: rigid(7140),
+            window_mm: rigid(7150),
+            orientation: tapping.orientation,
+        }
+    }
+}
+
+fn output(kind: u8) -> SpindleOutput {
+    match kind {
+        1 => SpindleOutput::Coded { always: false },
+        2 => SpindleOutput::Coded { always: true },
+        3 | 6 => SpindleOutput::Analogue {
+            gear: GearSignal::OnChange,
+        },
+        4 | 7 => SpindleOutput::Analogue {
+            gear: GearSignal::Always,
+        },
+        5 | 8 => SpindleOutput::Analogue {
+            gear: GearSignal::Never,
+        },
+        _ => SpindleOutput::None,
+    }
+}
+
+fn polarity(value: f64) -> SpindlePolarity {
+    match value as u8 {
+        0 => SpindlePolarity::M3Positive,
+        1 => SpindlePolarity::M3Negative,
+        2 => SpindlePolarity::BothPositive,
+        _ => SpindlePolarity::BothNegative,
+    }
+}
+
+/// Reads `20802`: codes 20 to 80, every second. A step of 0 counts as 1 (inferred).
+fn codes(value: f64) -> SpeedCodes {
+    let digits = value as u32;
+    SpeedCodes {
+        min: (digits / 1000 % 100) as u8,
+        max: (digits / 10 % 100) as u8,
+        step: (digits % 10).max(1) as u8,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ControlModel;
+
+    #[test]
+    fn the_code_range_reads_as_the_manual_says() {
+        // 20802 = codes 20 to 80, every second; 991 = all [000:5718-5745].
+        assert_eq!(
+            codes(20802.0),
+            SpeedCodes {
+                min: 20,
+                max: 80,
+                step: 2
+            }
+        );
+        assert_eq!(
+            codes(991.0),
+            SpeedCodes {
+                min: 0,
+                max: 99,
+                step: 1
+            }
+        );
+        // The TNC 155 prints 1991: codes 1 to 99 [001:1497-1499].
+        assert_eq!(
+            codes(1991.0),
+            SpeedCodes {
+                min: 1,
+                max: 99,
+                step: 1
+            }
+        );
+    }
+
+    #[test]
+    fn mp3010_says_kind_gear_signal_and_control() {
+        let mut list = ParameterList::reference(ControlModel::Tnc407);
+        let table = [
+            (0, SpindleOutput::None, false),
+            (1, SpindleOutput::Coded { always: false }, false),
+            (2, SpindleOutput::Coded { always: true }, false),
+            (
+                3,
+                SpindleOutput::Analogue {
+                    gear: GearSignal::OnChange,
+                },
+                false,
+            ),
+            (
+                4,
+                SpindleOutput::Analogue {
+                    gear: GearSignal::Always,
+                },
+                false,
+            ),
+            (
+                5,
+                SpindleOutput::Analogue {
+                    gear: GearSignal::Never,
+                },
+                false,
+            ),
+            (
+                6,
+                SpindleOutput::Analogue {
+                    gear: GearSignal::OnChange,
+                },
+                true,
+            ),
+            (
+                7,
+                SpindleOutput::Analogue {
+                    gear: GearSignal::Always,
+                },
+                true,
+            ),
+            (
+                8,
+                SpindleOutput::Analogue {
+                    gear: GearSignal::Never,
+                },
+                true,
+            ),
+        ];
+        for (value, output, controlled) in table {
+            list.set(3010, 0, f64::from(value)).unwrap();
+            let spindle = list.spindle_parameters();
+            assert_eq!(
+                (spindle.output, spindle.controlled),
+                (output, controlled),
+                "MP3010 = {value}"
+            );
+        }
+    }
+
+    #[test]
+    fn old_speeds_that_do_not_ascend_are_four_gears_and_a_comparator() {
+        let mut list = ParameterList::reference(ControlModel::Tnc155);
+        for (number, rpm) in (78..).zip([500.0, 1000.0, 2000.0, 4000.0, 450.0, 900.0, 1800.0, 3600.0]) {
+            list.set(number, 0, rpm).unwrap();
+        }
+        let spindle = list.spindle_parameters();
+        assert_eq!(spindle.gears[3].rated_rpm, 4000.0);
+        assert_eq!(spindle.gears[4].rated_rpm, 0.0);
+        assert_eq!(spindle.comparator_rpm, Some([450.0, 900.0, 1800.0, 3600.0]));
+        // 9 V at the rated speed, 9.999 V at most: 4000 / 9 * 9.999 = 4444 rpm.
+        assert!((spindle.gears[3].max_rpm - 4444.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_velocity_of_zero_starts_the_next_characteristic() {
+        let mut list = ParameterList::reference(ControlModel::Tnc415b);
+        let points = [
+            [0.0, 1.0],
+            [1000.0, 2.0],
+            [5000.0, 9.0],
+            [0.0, 0.5],
+            [2000.0, 3.0],
+        ];
+        for (index, [velocity, volts]) in (0u8..).zip(points) {
+            list.set(3013, index, velocity).unwrap();
+            list.set(3014, index, volts).unwrap();
+        }
+        let curves = list.laser_characteristics();
+        assert_eq!(curves[0], points[..3]);
+        assert_eq!(curves[1], points[3..]);
+    }
+}

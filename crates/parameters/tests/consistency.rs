@@ -1,0 +1,129 @@
+//! Values that do not go together, each rule with an example.
+
+#![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
+
+use bahn_parameters::{ControlModel, ParameterList};
+
+/// Where and what is wrong with the reference list with these values.
+fn wrong(model: ControlModel, assignments: &[&str]) -> Vec<String> {
+    let mut list = ParameterList::reference(model);
+    for assignment in assignments {
+        list.assign(assignment).unwrap();
+    }
+    list.inconsistencies()
+        .iter()
+        .map(|found| format!("{} {}", found.id, found.rule))
+        .collect()
+}
+
+#[test]
+fn the_reference_lists_go_together() {
+    for model in ControlModel::ALL {
+        assert_eq!(ParameterList::reference(model).inconsistencies(), [], "{model}");
+    }
+}
+
+#[test]
+fn every_rule_finds_what_breaks_it() {
+    let rules: [(&[&str], &str); 16] = [
+        (
+            &["910.1=-500"],
+            "MP910.1 the axis cannot move between its software limits",
+        ),
+        (
+            &["922.0=700"],
+            "MP912.0 the axis cannot move between its software limits",
+        ),
+        // 15 m/min / kv 1 = 15 mm.
+        (
+            &["1710.0=14.9"],
+            "MP1710.0 rapid traverse gives POSITIONING ERROR in lag operation",
+        ),
+        (
+            &["1720.2=14"],
+            "MP1720.2 the limit for EMERGENCY STOP is not above the cancellable one",
+        ),
+        (
+            &["1420.4=0.4"],
+            "MP1420.4 the limit for EMERGENCY STOP is not above the cancellable one",
+        ),
+        (&["1020.3=9000"], "MP1020.3 manual feed is above rapid traverse"),
+        (
+            &["1110.0=0.01"],
+            "MP1110.0 standstill monitoring reacts inside the positioning window",
+        ),
+        (&["110.2=0"], "MP110.2 two axes have the same encoder input"),
+        (
+            &["120.1=3", "120.3=1", "120.4=1"],
+            "MP120.4 two axes have the same nominal value output",
+        ),
+        (&["120.4=5"], "MP120.4 an axis has the output of the spindle"),
+        (
+            &["110.4=5"],
+            "MP110.4 an axis has the encoder input of the spindle",
+        ),
+        (
+            &["1810.2=1.5", "1710.2=18"],
+            "MP1810.2 axes that interpolate have different kv factors",
+        ),
+        (&["1340.2=1"], "MP1340.0 the axis is not referenced automatically"),
+        (
+            &["3020=20802"],
+            "MP3020 the analogue spindle needs a speed code without limits",
+        ),
+        (&["3510.0=40000"], "MP3510.0 the gear ranges do not ascend"),
+        (
+            &["7150=0.02"],
+            "MP7150 the window of rigid tapping is wider than the positioning window",
+        ),
+    ];
+    for (assignments, expected) in rules {
+        let found = wrong(ControlModel::Tnc415b, assignments);
+        assert!(
+            found.iter().any(|text| text == expected),
+            "{assignments:?}: {found:?}"
+        );
+    }
+    assert_eq!(
+        wrong(
+            ControlModel::Tnc407,
+            &["1220=10", "1080.1=0", "1080.2=0", "1080.3=0"]
+        ),
+        ["MP1080.0 integral factor and automatic offset adjustment are both active"]
+    );
+    assert_eq!(wrong(ControlModel::Tnc425, &["3310.0=50", "3310.1=60"]).len(), 1);
+}
+
+#[test]
+fn the_kink_counts_in_the_lag() {
+    // v/kv * (0.5 + 0.5/0.25) = 15 * 2.5 = 37.5 mm [000:4907].
+    let kink = ["1820.0=0.25", "1830.0=50", "1710.0=37", "1720.0=45"];
+    assert_eq!(wrong(ControlModel::Tnc415b, &kink).len(), 1);
+    let kink = ["1820.0=0.25", "1830.0=50", "1710.0=38", "1720.0=45"];
+    assert!(wrong(ControlModel::Tnc415b, &kink).is_empty());
+}
+
+#[test]
+fn the_old_list_is_named_by_its_numbers() {
+    assert_eq!(
+        wrong(ControlModel::Tnc155, &["47=450"]),
+        ["MP46 the axis cannot move between its software limits"]
+    );
+    // Without a factor the square-root characteristic has no loop [001:1746-1762].
+    assert_eq!(
+        wrong(ControlModel::Tnc155, &["33=0"]),
+        ["MP33 pre-control needs a kv factor of 0.1 at least"]
+    );
+    assert!(
+        wrong(ControlModel::Tnc155, &["33=0", "60=1"]).is_empty(),
+        "lag operation"
+    );
+    assert!(wrong(ControlModel::Tnc155, &["175=9"])[0].starts_with("MP175 rapid traverse"));
+}
+
+#[test]
+fn a_programming_station_has_no_machine() {
+    for model in ControlModel::ALL {
+        assert_eq!(ParameterList::smallest(model).inconsistencies(), [], "{model}");
+    }
+}

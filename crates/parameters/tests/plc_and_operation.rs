@@ -1,0 +1,194 @@
+//! What PLC and operating modes get from the list.
+
+#![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
+
+use bahn_parameters::{
+    ControlModel, Handwheel, MonitoringInput, OverrideSteps, ParameterList, Station, ToolOutput,
+    ToolOutputKind,
+};
+
+/// The reference list of a model with other values.
+fn with(model: ControlModel, assignments: &[&str]) -> ParameterList {
+    let mut list = ParameterList::reference(model);
+    for assignment in assignments {
+        list.assign(assignment).unwrap();
+    }
+    list
+}
+
+#[test]
+fn the_plc_gets_its_presets_and_numbers() {
+    let plc = with(
+        ControlModel::Tnc415b,
+        &[
+            "4010=1",
+            "4110.0=100",
+            "4110.47=7",
+            "4120.31=9",
+            "4210.1=12.5",
+            "4220.2=700",
+            "4310.6=$8001",
+            "4130=130",
+            "4131=1",
+            "4410=%10",
+        ],
+    )
+    .plc_parameters();
+    assert!(!plc.from_eprom);
+    assert_eq!((plc.timers[0], plc.timers[47], plc.counters[31]), (100, 7, 9));
+    assert_eq!(
+        (plc.positions_mm[1], plc.feeds_mm_min[2], plc.words[6]),
+        (12.5, 700.0, 0x8001)
+    );
+    assert_eq!(
+        plc.monitoring_input,
+        Some(MonitoringInput {
+            input: 130,
+            active_high: true
+        })
+    );
+    assert_eq!((plc.analogue_inputs, plc.strobes), ([false, true], None));
+}
+
+#[test]
+fn the_old_plc_has_fewer_of_them() {
+    let plc = with(
+        ControlModel::Tnc155,
+        &[
+            "77=1", "110=3", "125=4", "193=5", "208=6", "94=7", "109=8", "126=1.5", "156=-2", "163=90",
+            "158=1", "250=2", "120=2", "121=7", "122=9",
+        ],
+    )
+    .plc_parameters();
+    assert!(plc.from_eprom);
+    assert_eq!(
+        [0, 15, 16, 31, 32].map(|timer| plc.timers[timer]),
+        [3, 4, 5, 6, 0]
+    );
+    assert_eq!([0, 15, 16].map(|counter| plc.counters[counter]), [7, 8, 0]);
+    assert_eq!(
+        [0, 30, 31].map(|position| plc.positions_mm[position]),
+        [1.5, -2.0, 0.0]
+    );
+    assert_eq!((plc.feeds_mm_min[0], plc.words[0], plc.words[2]), (90.0, 1, 2));
+    // Strobe on after 40 ms, off after 140 ms, acknowledgement looked at after 180 ms.
+    let strobes = plc.strobes.unwrap();
+    assert!((strobes.on_s - 0.04).abs() < 1e-12 && (strobes.off_s - 0.14).abs() < 1e-12);
+    assert!((strobes.test_s - 0.18).abs() < 1e-12);
+}
+
+#[test]
+fn overrides_step_as_the_model_can() {
+    let steps = |model, assignment: &str| {
+        let overrides = with(model, &[assignment]).operation_parameters().overrides;
+        (overrides.feed_steps, overrides.spindle_steps)
+    };
+    use OverrideSteps::{NonLinear, OnePercent, TwoPercent};
+    assert_eq!(
+        steps(ControlModel::Tnc415b, "7620=%0000"),
+        (OnePercent, OnePercent)
+    );
+    assert_eq!(steps(ControlModel::Tnc415b, "7620=%1000"), (NonLinear, NonLinear));
+    assert_eq!(steps(ControlModel::Tnc360, "7620=5"), (TwoPercent, TwoPercent));
+    assert_eq!(steps(ControlModel::Tnc155, "74=2"), (OnePercent, TwoPercent));
+    assert_eq!(steps(ControlModel::Tnc155, "74=8"), (TwoPercent, OnePercent));
+    let overrides = with(ControlModel::Tnc407, &["7620=%0100"])
+        .operation_parameters()
+        .overrides;
+    assert!(!overrides.on_rapid_key && overrides.on_manual_rapid);
+}
+
+#[test]
+fn tools_are_put_out_as_mp7480_says() {
+    let output = |value: f64| {
+        let mut list = ParameterList::reference(ControlModel::Tnc425);
+        list.set(7480, 0, value).unwrap();
+        list.operation_parameters().tools.call
+    };
+    use ToolOutputKind::{FixedPocket, None, Pocket, Tool};
+    let table = [
+        (None, false),
+        (Tool, false),
+        (Tool, true),
+        (Pocket, false),
+        (Pocket, true),
+        (FixedPocket, false),
+        (FixedPocket, true),
+    ];
+    for (value, (what, always)) in (0u8..).zip(table) {
+        assert_eq!(
+            output(value.into()),
+            ToolOutput { what, always },
+            "MP7480.0 = {value}"
+        );
+    }
+    let tools = with(ControlModel::Tnc155, &["225=40", "61=3", "157=1"])
+        .operation_parameters()
+        .tools;
+    assert_eq!((tools.table_size, tools.pockets), (40, 40));
+    assert_eq!((tools.call.what, tools.definition.what), (Pocket, Tool));
+}
+
+#[test]
+fn switch_on_restart_and_datums() {
+    let operation = with(
+        ControlModel::Tnc415b,
+        &[
+            "7212=1",
+            "7690=%10",
+            "7680=%0100110",
+            "7490=1",
+            "7475=1",
+            "7500=1",
+            "7210=2",
+        ],
+    )
+    .operation_parameters();
+    assert_eq!(operation.station, Station::WithoutPlc);
+    assert!(!operation.power_interrupted && operation.ram_test && !operation.eprom_test);
+    let restart = operation.restart;
+    assert!(restart.return_to_contour && restart.block_scan && restart.from_start && operation.tilting);
+    assert!(!restart.passes_stops && !restart.ignores_dwell && !operation.keys_latched);
+    assert!(
+        operation.datums.ranges == 3
+            && operation.datums.datum_for_each_range
+            && operation.datums.table_from_machine
+    );
+    let old = with(ControlModel::Tnc151, &["92=6", "68=1", "167=1"]).operation_parameters();
+    assert!(old.english && !old.ram_test && old.eprom_test && old.keys_latched && old.manual_feed_shown);
+    assert!(old.power_interrupted && !old.restart.block_scan && old.datums.ranges == 1);
+}
+
+#[test]
+fn handwheels() {
+    let handwheel = |model, assignments: &[&str]| with(model, assignments).operation_parameters().handwheel;
+    let hr410 = handwheel(
+        ControlModel::Tnc415b,
+        &["7640=6", "7650=1", "7660=4", "7670.2=3", "7671.0=25"],
+    );
+    assert_eq!(
+        (hr410.kind, hr410.positive, hr410.threshold),
+        (Handwheel::Hr410, true, 4)
+    );
+    assert_eq!((hr410.factor_min, hr410.jog_percent[0]), ([0, 0, 3], 25.0));
+    assert_eq!(
+        handwheel(ControlModel::Tnc155, &["171=1", "247=9"]).kind,
+        Handwheel::He310
+    );
+    assert_eq!(handwheel(ControlModel::Tnc155, &["171=2"]).kind, Handwheel::Hr130);
+}
+
+#[test]
+fn user_parameters_have_a_two_digit_index() {
+    // MP5030.1 is entered as 5030.01 [000:6911-6919].
+    let list = with(
+        ControlModel::Tnc407,
+        &["7330.0=5030.01", "7340.0=17", "7330.1=7280", "7330.2=0"],
+    );
+    let found: Vec<_> = list
+        .user_parameters()
+        .iter()
+        .map(|user| (user.id.to_string(), user.dialogue_line))
+        .collect();
+    assert_eq!(found, [("MP5030.1".to_owned(), 17), ("MP7280".to_owned(), 0)]);
+}

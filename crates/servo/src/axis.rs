@@ -1,0 +1,578 @@
+//! The position loop of an axis.
+
+use bahn_parameters::AxisParameters;
+
+use crate::characteristic::Characteristic;
+use crate::fault::Fault;
+use crate::interpolation::{FineInterpolation, Transient};
+use crate::measuring::{Mark, MeasuringSystem};
+use crate::monitor::{Monitor, Sample};
+use crate::offset::Offset;
+use crate::plant::Encoder;
+use crate::reversal::{ReversalPeak, Travel};
+use crate::timing::Timing;
+
+/// Time constants of the loop after which an axis whose nominal position stands is at rest (inferred).
+const REST_TIME_CONSTANTS: f64 = 5.0;
+/// Counting steps of a grating period in which MP1512 counts [000:3957].
+const STICTION_STEPS: f64 = 256.0;
+
+/// No machine is larger, mm: farther commands are not taken.
+const POSITION_MAX_MM: f64 = 1e9;
+
+/// A nominal way of a servo step that is rounding and not movement, mm.
+const STANDING_MM: f64 = 1e-9;
+/// So far may the nominal position of an axis in position go without being a movement, mm.
+const REST_MM: f64 = 1e-6;
+
+/// How an axis is positioned [000:4714-4733].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// With servo lag: the velocity is kv times the lag [000:4735-4776].
+    Lag,
+    /// With feed pre-control: the velocity of the nominal position, and kv times what lag is left
+    /// [000:4929-4975].
+    Precontrol,
+}
+
+/// The position loop of one axis: nominal position in, voltage out.
+///
+/// In each contour cycle [`Axis::command`] says where the axis shall be at its end; in each servo step
+/// [`Axis::measure`] takes the encoder in and [`Axis::step`] gives the voltage that holds until the next
+/// one. Positions are mm (degrees for rotary axes) in machine coordinates, once [`Axis::set_datum`] has
+/// told them; until then they count from where the axis stood at power-on. Nothing here allocates.
+///
+/// The loop is open after power-on: [`Axis::close`] closes it. A fault other than POSITIONING ERROR opens it
+/// for good.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    parameters: AxisParameters,
+    timing: Timing,
+    measuring: MeasuringSystem,
+    interpolation: FineInterpolation,
+    transient: Transient,
+    travel: Travel,
+    reversal: ReversalPeak,
+    characteristic: Characteristic,
+    offset: Offset,
+    monitor: Monitor,
+    method: Method,
+    second_set: bool,
+    circular: bool,
+    closed: bool,
+    enabled: bool,
+    monitored: bool,
+    window_mm: Option<f64>,
+    /// Nominal position of the contour cycle without the reversal peak.
+    commanded_mm: f64,
+    /// The commanded position at which the window was reached last.
+    rest_mm: f64,
+    nominal_mm: f64,
+    actual_mm: f64,
+    /// A contour cycle has begun and its first step is not done.
+    cycle_begins: bool,
+    cycle_actual_mm: f64,
+    actual_mm_min: f64,
+    cycle_lag_mm: f64,
+    stiction_mm_min: f64,
+    /// Velocity of the nominal position with pre-control.
+    profile_mm_min: f64,
+    /// Velocity of the nominal value.
+    velocity_mm_min: f64,
+    /// What keeps the velocity steady after a change of method or kv; it runs down with the lag.
+    bias_mm_min: f64,
+    changed: bool,
+    /// The last step put a voltage out.
+    drove: bool,
+    volts: f64,
+    standing_steps: u32,
+    in_position: bool,
+    fault: Option<Fault>,
+    /// Steps until the residual voltage is switched off after POSITIONING ERROR.
+    residual_steps: u32,
+}
+
+impl Axis {
+    /// An axis with open loop, at position 0.
+    pub fn new(parameters: AxisParameters, timing: Timing) -> Axis {
+        let mut axis = Axis {
+            parameters,
+            timing,
+            measuring: MeasuringSystem::new(&parameters),
+            interpolation: FineInterpolation::new(timing.steps()),
+            transient: Transient::new(timing.steps(), parameters.precontrol.transient_m_min),
+            travel: Travel::default(),
+            reversal: ReversalPeak::default(),
+            characteristic: Characteristic::straight(1.0),
+            offset: Offset::default(),
+            monitor: Monitor::new(&timing),
+            method: Method::Lag,
+            second_set: false,
+            circular: false,
+            closed: false,
+            enabled: true,
+            monitored: true,
+            window_mm: None,
+            commanded_mm: 0.0,
+            rest_mm: 0.0,
+            nominal_mm: 0.0,
+            actual_mm: 0.0,
+            cycle_begins: false,
+            cycle_actual_mm: 0.0,
+            actual_mm_min: 0.0,
+            cycle_lag_mm: 0.0,
+            stiction_mm_min: 0.0,
+            profile_mm_min: 0.0,
+            velocity_mm_min: 0.0,
+            bias_mm_min: 0.0,
+            changed: false,
+            drove: false,
+            volts: 0.0,
+            standing_steps: 0,
+            in_position: false,
+            fault: None,
+            residual_steps: 0,
+        };
+        axis.choose_characteristic();
+        axis
+    }
+
+    /// Takes changed parameters over (those that the PLC may change); state and positions stay.
+    pub fn set_parameters(&mut self, parameters: AxisParameters) {
+        self.parameters = parameters;
+        self.measuring.set_parameters(&parameters);
+        self.transient
+            .set_entry(self.timing.steps(), parameters.precontrol.transient_m_min);
+        self.choose_characteristic();
+    }
+
+    /// The parameters of the axis.
+    pub fn parameters(&self) -> &AxisParameters {
+        &self.parameters
+    }
+
+    /// Takes an encoder reading; once in each servo step, before [`Axis::step`].
+    pub fn measure(&mut self, encoder: Encoder) {
+        if let Some(fault) = self.measuring.read(encoder, &self.parameters) {
+            self.raise(Fault::MeasuringSystem(fault));
+        }
+        self.actual_mm = self.measuring.actual_mm();
+    }
+
+    /// The position for the end of the contour cycle that begins, mm; once in each contour cycle, before its
+    /// first servo step. What is no position of any machine leaves the axis where it is.
+    pub fn command(&mut self, nominal_mm: f64) {
+        self.cycle_begins = true;
+        if nominal_mm.is_nan() || nominal_mm.abs() > POSITION_MAX_MM {
+            return;
+        }
+        self.commanded_mm = nominal_mm;
+        if (nominal_mm - self.rest_mm).abs() > REST_MM {
+            self.in_position = false;
+        }
+        let set = usize::from(self.second_set);
+        let compensation = &self.parameters.compensation;
+        let (height, part) = (compensation.reversal_mm[set], compensation.reversal_step_mm[set]);
+        let before = self.travel.direction();
+        if let Some(direction) = self.travel.advance(nominal_mm) {
+            self.measuring.set_direction(direction > 0.0);
+            if self.circular && before != 0.0 && part > 0.0 {
+                self.reversal.begin(direction, height);
+            }
+        }
+        let peak = self.reversal.advance(part);
+        self.interpolation.command(nominal_mm + peak);
+    }
+
+    /// One servo step: the voltage for the nominal value output, V.
+    pub fn step(&mut self) -> f64 {
+        if self.is_released() {
+            self.transfer();
+        }
+        let rough_now = self.interpolation.now();
+        let smooth_now = self.transient.now();
+        let rough_next = self.interpolation.advance();
+        let smooth_next = self.transient.advance(rough_next);
+        let (now, next) = match self.method {
+            Method::Lag => (rough_now, rough_next),
+            Method::Precontrol => (smooth_now, smooth_next),
+        };
+        self.nominal_mm = now;
+        if std::mem::take(&mut self.cycle_begins) {
+            self.begin_cycle();
+        }
+
+        let left = (next - now).abs().max((self.interpolation.end() - next).abs());
+        let standing = left <= STANDING_MM;
+        self.standing_steps = if standing {
+            self.standing_steps.saturating_add(1)
+        } else {
+            0
+        };
+        self.update_velocity(next - now);
+        let full = self.parameters.output.rapid_volts / self.parameters.motion.rapid_mm_min;
+        let wanted = self.velocity_mm_min * full + self.offset.volts();
+        if standing && self.is_in_window() {
+            self.in_position = true;
+            self.rest_mm = self.commanded_mm;
+        }
+        if self.closed {
+            self.watch(standing, next - now, wanted);
+        }
+        self.drove = self.drives();
+        self.volts = if self.drove {
+            let polarity = if self.parameters.output.polarity_negative {
+                -1.0
+            } else {
+                1.0
+            };
+            polarity * self.timing.convert(wanted)
+        } else {
+            0.0
+        };
+        self.volts
+    }
+
+    /// What is done once in a contour cycle, with the lag at its beginning.
+    fn begin_cycle(&mut self) {
+        let lag = self.lag_mm();
+        self.actual_mm_min = (self.actual_mm - self.cycle_actual_mm) / self.timing.contour_min();
+        self.cycle_actual_mm = self.actual_mm;
+        self.stiction_mm_min = self.stiction(lag - self.cycle_lag_mm);
+        self.cycle_lag_mm = lag;
+        let time_constants =
+            f64::from(self.standing_steps) * self.characteristic.slope() * self.timing.step_min();
+        let rest = time_constants >= REST_TIME_CONSTANTS;
+        // A digital speed loop has no offset [000:18147].
+        if rest && self.drives() && self.parameters.digital.is_none() {
+            let output = &self.parameters.output;
+            let full = output.rapid_volts / self.parameters.motion.rapid_mm_min;
+            self.offset
+                .rest(self.velocity_mm_min * full, output.integral_factor);
+        }
+    }
+
+    /// Additional velocity against stiction, mm/min: change of the lag in a cycle / cycle · kv · MP1511
+    /// [000:3935-3965]. "Feed" is read as the nominal velocity of the axis (inferred).
+    fn stiction(&self, change_mm: f64) -> f64 {
+        let compensation = &self.parameters.compensation;
+        if self.method != Method::Precontrol
+            || compensation.stiction_us == 0.0
+            || self.profile_mm_min.abs() >= compensation.stiction_feed_mm_min
+        {
+            return 0.0;
+        }
+        let encoder = &self.parameters.encoder;
+        let grating_mm = encoder.signal_period_um * f64::from(encoder.interpolation.max(1)) * 1e-3;
+        let limit = compensation.stiction_limit_steps * grating_mm / STICTION_STEPS;
+        let factor = compensation.stiction_us / f64::from(self.timing.contour_us());
+        change_mm.clamp(-limit, limit) * self.characteristic.slope() * factor
+    }
+
+    /// Velocity of the nominal value for a nominal way in this step.
+    fn update_velocity(&mut self, way_mm: f64) {
+        let slope = self.characteristic.slope();
+        self.profile_mm_min = way_mm / self.timing.step_min();
+        let control = self.characteristic.velocity_mm_min(self.lag_mm());
+        let velocity = match self.method {
+            Method::Lag => control,
+            Method::Precontrol => control + self.profile_mm_min + self.stiction_mm_min,
+        };
+        let decay = (1.0 - slope * self.timing.step_min()).max(0.0);
+        self.bias_mm_min *= decay;
+        if std::mem::take(&mut self.changed) {
+            self.bias_mm_min = if self.drove {
+                self.velocity_mm_min - velocity
+            } else {
+                0.0
+            };
+        }
+        self.velocity_mm_min = velocity + self.bias_mm_min;
+    }
+
+    fn watch(&mut self, standing: bool, way_mm: f64, volts: f64) {
+        if let Some(fault) = self.offset.fault() {
+            self.raise(Fault::Gross(fault));
+        }
+        self.residual_steps = self.residual_steps.saturating_sub(1);
+        if !self.monitored {
+            self.monitor.reset();
+            return;
+        }
+        let sample = Sample {
+            actual_mm: self.actual_mm,
+            lag_mm: self.lag_mm(),
+            way_mm,
+            standing,
+            in_position: self.in_position,
+            velocity_mm_min: self.velocity_mm_min,
+            volts,
+            enabled: self.drives(),
+        };
+        let found = self
+            .monitor
+            .check(&sample, self.method, &self.parameters, &self.timing);
+        if let Some(fault) = found {
+            self.raise(fault);
+        }
+    }
+
+    /// Whether the actual position is within the window; with pre-control only below the velocity MP1525
+    /// [000:5304-5318].
+    fn is_in_window(&self) -> bool {
+        let slow = self.profile_mm_min.abs() < self.parameters.precontrol.window_mm_min;
+        let window = self.window_mm.unwrap_or(self.parameters.monitoring.window_mm);
+        (slow || self.method == Method::Lag) && self.lag_mm().abs() <= window
+    }
+
+    /// Whether a voltage is put out at all.
+    fn drives(&self) -> bool {
+        self.closed() && self.enabled && !self.is_released()
+    }
+
+    fn is_sound(&self) -> bool {
+        self.fault.is_none_or(Fault::cancellable)
+    }
+
+    /// Whether the residual voltage after POSITIONING ERROR is switched off.
+    fn is_released(&self) -> bool {
+        self.fault == Some(Fault::Positioning) && self.residual_steps == 0
+    }
+
+    /// Closes the loop. The nominal position stays what it was: see [`Axis::transfer`].
+    pub fn close(&mut self) {
+        self.closed = true;
+        self.in_position = self.is_in_window();
+        self.monitor.reset();
+    }
+
+    /// Opens the loop: 0 V [000:5403-5421].
+    pub fn open(&mut self) {
+        self.closed = false;
+        self.volts = 0.0;
+    }
+
+    /// Makes the actual position the nominal one [000:5423-5434].
+    pub fn transfer(&mut self) {
+        self.interpolation.set(self.actual_mm);
+        self.transient.set(self.actual_mm);
+        self.reversal.clear();
+        self.travel.set(self.actual_mm);
+        self.commanded_mm = self.actual_mm;
+        self.rest_mm = self.actual_mm;
+        self.nominal_mm = self.actual_mm;
+        self.bias_mm_min = 0.0;
+    }
+
+    /// Gives or withdraws the feed enable; without it the output is 0 V at once [000:5352]. The nominal
+    /// position stays: what lag is left then is driven out when the enable comes back.
+    pub fn set_enabled(&mut self, enabled: bool) {
+        self.enabled = enabled;
+    }
+
+    /// Switches the monitoring of lag, voltage, movement and standstill on or off: M2688 to M2692, MP4130
+    /// [000:5162-5188].
+    pub fn set_monitored(&mut self, monitored: bool) {
+        self.monitored = monitored;
+    }
+
+    /// Chooses the method of positioning. In motion the velocity goes on without a jump.
+    pub fn set_method(&mut self, method: Method) {
+        if method != self.method {
+            self.method = method;
+            self.choose_characteristic();
+        }
+    }
+
+    /// Chooses the second set of kv and reversal peaks, M105, or the first, M106 [000:4975].
+    pub fn set_second_set(&mut self, second: bool) {
+        if second != self.second_set {
+            self.second_set = second;
+            self.choose_characteristic();
+        }
+    }
+
+    fn choose_characteristic(&mut self) {
+        let (lag, precontrol) = (&self.parameters.lag, &self.parameters.precontrol);
+        let choose = |first, second| if self.second_set { second } else { first };
+        self.characteristic = match self.method {
+            Method::Lag => Characteristic::with_kink(
+                choose(lag.kv, lag.kv_m105),
+                lag,
+                self.parameters.motion.rapid_mm_min,
+            ),
+            Method::Precontrol => Characteristic::straight(choose(precontrol.kv, precontrol.kv_m105)),
+        };
+        self.changed = true;
+    }
+
+    /// Says whether the axis moves on a circle, where reversal peaks are compensated [000:3663-3709].
+    pub fn set_circular(&mut self, circular: bool) {
+        self.circular = circular;
+    }
+
+    /// Replaces the positioning window, mm: MP7150 in cycle 17 [000:6128]; `None` is MP1030 again.
+    pub fn set_window(&mut self, window_mm: Option<f64>) {
+        self.window_mm = window_mm;
+    }
+
+    /// Takes the last reference mark that was crossed.
+    pub fn take_mark(&mut self) -> Option<Mark> {
+        self.measuring.take_mark()
+    }
+
+    /// Forgets the marks that were crossed, at the start of a reference run.
+    pub fn forget_marks(&mut self) {
+        self.measuring.forget_marks();
+    }
+
+    /// Says at which position a count is, mm: the reference mark's, or for a display axis that of
+    /// [`Axis::count`]. Nominal and actual position shift alike, by the value returned, mm.
+    pub fn set_datum(&mut self, count: i64, position_mm: f64) -> f64 {
+        self.measuring.set_datum(count, position_mm);
+        let shift = self.measuring.actual_mm() - self.actual_mm;
+        self.actual_mm += shift;
+        self.cycle_actual_mm += shift;
+        self.nominal_mm += shift;
+        self.commanded_mm += shift;
+        self.rest_mm += shift;
+        self.travel.shift(shift);
+        self.interpolation.shift(shift);
+        self.transient.shift(shift);
+        self.monitor.shift(shift);
+        shift
+    }
+
+    /// The error of the axis at the present position after the error tables, mm: positive where the table
+    /// travels too far [000:3736]. See [`ErrorTable`](crate::ErrorTable).
+    pub fn set_error(&mut self, error_mm: f64) {
+        self.measuring.set_error(error_mm);
+    }
+
+    /// Lag tracking: moves the machine towards an offset (W576 to W584) by at most a step (MP4070), mm,
+    /// without a change of the actual position; once in each PLC cycle [000:3902-3912].
+    pub fn track(&mut self, offset_mm: f64, step_mm: f64) {
+        self.measuring.track(offset_mm, step_mm);
+    }
+
+    /// The offset that the drive shows at rest, in units of 0.15 mV, as code number 75 368 shows it
+    /// [000:5014-5016].
+    pub fn offset_units(&self) -> i32 {
+        self.offset.units()
+    }
+
+    /// Compensates the offset that is shown: ENT after code number 75 368; on a TNC 407 from 0.6 mV on
+    /// [000:5018].
+    pub fn compensate_offset(&mut self) {
+        self.offset.compensate(&self.timing);
+    }
+
+    /// One cyclic adjustment: 1 mV, below that one step of the converter [000:5032-5034]. See
+    /// [`OffsetInterval`](crate::OffsetInterval).
+    pub fn adjust_offset(&mut self) {
+        self.offset.adjust(&self.timing);
+    }
+
+    /// The compensation by code number and cycle, V: what must survive power-off [000:5020].
+    pub fn offset_compensation_volts(&self) -> f64 {
+        self.offset.compensation_volts()
+    }
+
+    /// Sets the compensation, V; 0 switches it off (NO ENT) [000:5018].
+    pub fn set_offset_compensation(&mut self, volts: f64) {
+        self.offset.set_compensation(volts);
+    }
+
+    /// Enters a fault: what monitoring found, or a slave too far from its master.
+    pub(crate) fn raise(&mut self, fault: Fault) {
+        match self.fault {
+            None => {
+                self.fault = Some(fault);
+                self.residual_steps = self
+                    .timing
+                    .steps_of(self.parameters.monitoring.residual_voltage_s);
+            }
+            Some(known) if known.cancellable() && !fault.cancellable() => self.fault = Some(fault),
+            Some(_) => {}
+        }
+    }
+
+    /// The key CE: clears a fault that can be cleared, switches the residual voltage off and makes the
+    /// actual position the nominal one [000:5240-5242].
+    pub fn acknowledge(&mut self) {
+        if self.fault.is_some_and(Fault::cancellable) {
+            self.fault = None;
+            self.transfer();
+        }
+    }
+
+    /// The fault that monitoring has found and that was not cleared.
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
+    }
+
+    /// The count of the last reading.
+    pub fn count(&self) -> i64 {
+        self.measuring.count()
+    }
+
+    /// Actual position, mm.
+    pub fn actual_mm(&self) -> f64 {
+        self.actual_mm
+    }
+
+    /// Nominal position at the last step, mm: it belongs to the actual position read before it.
+    pub fn nominal_mm(&self) -> f64 {
+        self.nominal_mm
+    }
+
+    /// The position that was commanded last, mm.
+    pub fn target_mm(&self) -> f64 {
+        self.commanded_mm
+    }
+
+    /// Nominal less actual position, mm.
+    pub fn lag_mm(&self) -> f64 {
+        self.nominal_mm - self.actual_mm
+    }
+
+    /// Velocity of the nominal value, mm/min.
+    pub fn velocity_mm_min(&self) -> f64 {
+        self.velocity_mm_min
+    }
+
+    /// Velocity of the nominal position, mm/min; its sign is the direction of travel (M2160).
+    pub fn profile_mm_min(&self) -> f64 {
+        self.profile_mm_min
+    }
+
+    /// Velocity of the actual position over the last contour cycle, mm/min.
+    pub fn actual_velocity_mm_min(&self) -> f64 {
+        self.actual_mm_min
+    }
+
+    /// Velocity that stiction compensation adds, mm/min.
+    pub fn stiction_mm_min(&self) -> f64 {
+        self.stiction_mm_min
+    }
+
+    /// Voltage of the output, V.
+    pub fn volts(&self) -> f64 {
+        self.volts
+    }
+
+    /// Whether the loop is closed; not with a fault that cannot be cleared.
+    pub fn closed(&self) -> bool {
+        self.closed && self.is_sound()
+    }
+
+    /// Method of positioning.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// Whether the axis has reached its positioning window MP1030 after the last movement [000:5302-5318].
+    pub fn in_position(&self) -> bool {
+        self.in_position
+    }
+}

@@ -1,0 +1,104 @@
+//! Synchronized axes: a slave that follows its master [000:4451-4539].
+
+use bahn_parameters::AxisParameters;
+
+use crate::axis::Axis;
+use crate::fault::{Fault, GrossFault};
+use crate::timing::Timing;
+
+/// The coupling of a slave axis to its master.
+///
+/// In each contour cycle [`Gantry::command`] hands the master's nominal position on and watches the
+/// difference of the two.
+#[derive(Clone, Debug)]
+pub struct Gantry {
+    /// Position of the slave less that of the master when they are synchronous, mm.
+    offset_mm: f64,
+    /// Where the offset is driven to, mm.
+    goal_mm: f64,
+    /// Way in a contour cycle in which it is driven, mm.
+    part_mm: f64,
+    limit_mm: Option<f64>,
+    from_marks: bool,
+    synchronized: bool,
+    difference_mm: f64,
+}
+
+impl Gantry {
+    /// The coupling that the slave's parameters ask for (MP855, MP860); the speed at which an offset is
+    /// driven out is the master's for the reference run, MP1330 [000:4498-4502].
+    pub fn new(slave: &AxisParameters, master: &AxisParameters, timing: Timing) -> Gantry {
+        Gantry {
+            offset_mm: 0.0,
+            goal_mm: 0.0,
+            part_mm: master.reference.feed_mm_min * timing.contour_min(),
+            limit_mm: slave.synchronization.difference_mm,
+            from_marks: slave.synchronization.from_reference_marks,
+            synchronized: false,
+            difference_mm: 0.0,
+        }
+    }
+
+    /// The parameters that the slave works with: feeds and acceleration, limits and datums are the master's
+    /// [000:4535].
+    pub fn slave_parameters(slave: &AxisParameters, master: &AxisParameters) -> AxisParameters {
+        let mut parameters = *slave;
+        parameters.motion = master.motion;
+        parameters.travel.ranges_mm = master.travel.ranges_mm;
+        parameters.reference.feed_mm_min = master.reference.feed_mm_min;
+        parameters
+    }
+
+    /// Takes the present relation of the two as it is, at switch-on. With MP860 = 0 they are synchronous from
+    /// here on [000:4492-4496].
+    pub fn switch_on(&mut self, master: &Axis, slave: &Axis) {
+        self.offset_mm = slave.actual_mm() - master.actual_mm();
+        self.goal_mm = self.offset_mm;
+        self.synchronized = !self.from_marks;
+    }
+
+    /// Both have their datum, and nominal positions shifted by these ways (see [`Axis::set_datum`]), mm. With
+    /// MP860 = 1 the slave drives out what offset remains; with 0 the relation stays.
+    pub fn referenced(&mut self, master_shift_mm: f64, slave_shift_mm: f64) {
+        self.shift(master_shift_mm, slave_shift_mm);
+        if self.from_marks {
+            self.goal_mm = 0.0;
+        }
+    }
+
+    /// The positions of the two were shifted by these ways, mm; their relation is what it was.
+    pub fn shift(&mut self, master_mm: f64, slave_mm: f64) {
+        self.offset_mm += slave_mm - master_mm;
+        self.goal_mm += slave_mm - master_mm;
+    }
+
+    /// Commands the slave to the master's nominal position, mm, and compares the two. A difference above
+    /// MP855 is GROSS POSITIONING ERROR A of the slave [000:4490].
+    pub fn command(&mut self, nominal_mm: f64, master: &Axis, slave: &mut Axis) {
+        let way = self.goal_mm - self.offset_mm;
+        self.offset_mm += way.clamp(-self.part_mm, self.part_mm);
+        if self.from_marks && self.goal_mm == 0.0 && self.offset_mm == 0.0 {
+            self.synchronized = true;
+        }
+        slave.command(nominal_mm + self.offset_mm);
+        self.difference_mm = master.actual_mm() + self.offset_mm - slave.actual_mm();
+        let monitored = self.synchronized && slave.closed();
+        if monitored
+            && self
+                .limit_mm
+                .is_some_and(|limit| self.difference_mm.abs() > limit)
+        {
+            slave.raise(Fault::Gross(GrossFault::Deviation));
+        }
+    }
+
+    /// Position of the master less that of the slave, mm: what the slave shows as its lag [000:4490].
+    pub fn difference_mm(&self) -> f64 {
+        self.difference_mm
+    }
+
+    /// Whether the slave keeps its place beside the master and is monitored.
+    pub fn synchronized(&self) -> bool {
+        self.synchronized
+    }
+}

@@ -1,0 +1,92 @@
+//! What the servo needs to know of the control: its cycles and its output converter.
+
+use bahn_parameters::ControlModel;
+
+/// Greatest voltage of a nominal value output, V [000:4863].
+pub const OUTPUT_VOLTS: f64 = 10.0;
+/// Microseconds of a minute.
+const MINUTE_US: f64 = 60e6;
+
+/// Cycles and output resolution of a control.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    contour_us: u32,
+    steps: u32,
+    output_bits: u8,
+}
+
+impl Timing {
+    /// Those of a control model: the contour cycle of 3 or 6 ms, in steps of 0.6 ms where the model has
+    /// fine interpolation [000:212-224].
+    pub fn of(model: ControlModel) -> Timing {
+        let limits = model.limits();
+        let contour_us = limits.contour_cycle_us;
+        Timing {
+            contour_us,
+            steps: limits.fine_cycle_us.map_or(1, |fine_us| contour_us / fine_us),
+            output_bits: limits.output_bits,
+        }
+    }
+
+    /// The contour cycle, µs.
+    pub fn contour_us(&self) -> u32 {
+        self.contour_us
+    }
+
+    /// A servo step, µs.
+    pub fn step_us(&self) -> u32 {
+        self.contour_us / self.steps
+    }
+
+    /// Servo steps of a contour cycle.
+    pub fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// Smallest step of the output voltage, V: 0.15 mV with 16 bits, 0.6 mV with 14 [000:4863].
+    pub fn resolution_volts(&self) -> f64 {
+        OUTPUT_VOLTS / f64::from(1u32 << self.output_bits.min(30))
+    }
+
+    /// The voltage that the converter makes of a nominal value, V: a multiple of the resolution, at most
+    /// 10 V of either sign; 0 V for what is no number.
+    pub fn convert(&self, volts: f64) -> f64 {
+        if volts.is_nan() {
+            return 0.0;
+        }
+        let resolution = self.resolution_volts();
+        (volts.clamp(-OUTPUT_VOLTS, OUTPUT_VOLTS) / resolution).round() * resolution
+    }
+
+    pub(crate) fn step_min(&self) -> f64 {
+        f64::from(self.step_us()) / MINUTE_US
+    }
+
+    pub(crate) fn contour_min(&self) -> f64 {
+        f64::from(self.contour_us) / MINUTE_US
+    }
+
+    /// Servo steps of a time in s.
+    pub(crate) fn steps_of(&self, seconds: f64) -> u32 {
+        (seconds * 1e6 / f64::from(self.step_us())).round() as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_converter_steps_as_the_manual_says() {
+        // 10 V / 65 536 = 0.15 mV, 10 V / 16 384 = 0.6 mV [000:4863].
+        let tnc415 = Timing::of(ControlModel::Tnc415b);
+        assert!((tnc415.resolution_volts() * 1e3 - 0.1526).abs() < 1e-4);
+        let tnc407 = Timing::of(ControlModel::Tnc407);
+        assert!((tnc407.resolution_volts() * 1e3 - 0.6104).abs() < 1e-4);
+        assert_eq!(tnc407.convert(0.000_3), 0.0);
+        assert_eq!(tnc407.convert(-0.000_4), -tnc407.resolution_volts());
+        assert_eq!(tnc415.convert(12.0), 10.0);
+        assert_eq!((tnc415.steps(), tnc415.step_us()), (5, 600));
+        assert_eq!((tnc407.steps(), tnc407.step_us()), (1, 6000));
+    }
+}

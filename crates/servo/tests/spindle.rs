@@ -1,0 +1,373 @@
+//! The main spindle [000:5438-5945].
+#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+
+use bahn_parameters::{ControlModel::Tnc415b, ParameterList};
+use bahn_servo::{Encoder, Ramp, Rotation, Spindle, Timing, Way};
+
+/// Counting steps of a turn: 1024 lines.
+const TURN: f64 = 1024.0 * 1024.0;
+
+/// A spindle whose speed is its voltage, with one reference mark.
+struct Bench {
+    spindle: Spindle,
+    timing: Timing,
+    rpm_per_volt: f64,
+    turns: f64,
+    mark_turns: f64,
+    offset_volts: f64,
+    counts: f64,
+}
+
+impl Bench {
+    fn new(assignments: &[&str]) -> Bench {
+        let mut list = ParameterList::reference(Tnc415b);
+        let quick = [
+            "3410.0=0",
+            "3410.1=0.05",
+            "3120=0",
+            "3420=10",
+            "3520.1=100",
+            "3520.0=50",
+        ];
+        for assignment in quick.iter().chain(assignments) {
+            list.assign(assignment).unwrap();
+        }
+        for index in 0..8 {
+            list.set(3440, index, 1.0).unwrap();
+        }
+        let parameters = list.spindle_parameters();
+        let timing = Timing::of(Tnc415b);
+        let counts = if parameters.counts_negative { -TURN } else { TURN };
+        Bench {
+            spindle: Spindle::new(parameters, timing),
+            timing,
+            rpm_per_volt: parameters.gears[0].rated_rpm / parameters.gears[0].rated_volts,
+            turns: 0.0,
+            mark_turns: 0.25,
+            offset_volts: 0.0,
+            counts,
+        }
+    }
+
+    fn step(&mut self) -> f64 {
+        let volts = self.spindle.volts() + self.offset_volts;
+        let way = volts * self.rpm_per_volt * f64::from(self.timing.step_us()) / 60e6;
+        let (before, after) = (self.turns, self.turns + way);
+        self.turns = after;
+        let mark = (after.max(before) - self.mark_turns).floor();
+        let crossed = mark > (after.min(before) - self.mark_turns).floor();
+        self.spindle.measure(Encoder {
+            count: (after * self.counts).round() as i64,
+            mark: crossed.then_some(((mark + self.mark_turns) * self.counts).round() as i64),
+            ..Encoder::default()
+        });
+        self.spindle.step()
+    }
+
+    fn run(&mut self, seconds: f64) {
+        for _ in 0..(seconds / 0.0006).round() as u32 {
+            self.step();
+        }
+    }
+
+    /// A speed in gear range 1, reached at once, then some turns.
+    fn turning(&mut self, rpm: f64, rotation: Rotation) {
+        self.spindle.set_speed(rpm, 0);
+        self.spindle.rotate(rotation);
+        self.run(1.0);
+    }
+
+    /// Angle of the table of the test from the reference mark, degrees.
+    fn angle(&self) -> f64 {
+        ((self.turns - self.mark_turns) * 360.0).rem_euclid(360.0)
+    }
+}
+
+/// Gear I 1500 rpm at 6 V, gear II 3000 rpm at 8 V up to 3375 rpm, override 50 to 125 %, at least 1 V
+/// [000:5596-5610].
+const DIAGRAM: &[&str] = &[
+    "3510.0=1500",
+    "3210.0=6",
+    "3515.0=1875",
+    "3510.1=3000",
+    "3210.1=8",
+    "3515.1=3375",
+    "3310.0=125",
+    "3310.1=50",
+    "3240.1=1",
+];
+
+#[test]
+fn the_spindle_diagram_of_the_manual() {
+    for (speed, percent, gear, rpm, volts) in [
+        (1500.0, 100.0, 0, 1500.0, 6.0),
+        (1500.0, 125.0, 0, 1875.0, 7.5),
+        (1501.0, 100.0, 1, 1501.0, 4.002_667),
+        (3000.0, 100.0, 1, 3000.0, 8.0),
+        (3000.0, 125.0, 1, 3375.0, 9.0),
+        (3000.0, 150.0, 1, 3375.0, 9.0),
+        (3000.0, 50.0, 1, 1500.0, 4.0),
+        (3000.0, 10.0, 1, 1500.0, 4.0),
+        // 100/1500 · 6 V = 0.4 V, raised to the least voltage.
+        (100.0, 100.0, 0, 100.0, 1.0),
+        (0.0, 100.0, 0, 0.0, 0.0),
+    ] {
+        let mut bench = Bench::new(DIAGRAM);
+        assert_eq!(bench.spindle.gear_for(speed), Some(gear), "S{speed}");
+        bench.spindle.set_speed(speed, gear);
+        bench.spindle.set_override(percent);
+        bench.spindle.rotate(Rotation::M3);
+        let put_out = bench.step();
+        assert!((put_out - volts).abs() < 1e-4, "S{speed} {percent} %: {put_out}");
+        assert!(
+            (bench.spindle.nominal_rpm() - rpm).abs() < 1e-9,
+            "S{speed} {percent} %"
+        );
+        assert_eq!(bench.spindle.at_zero(), volts == 0.0);
+    }
+}
+
+#[test]
+fn speeds_that_no_gear_has_are_wrong() {
+    let bench = Bench::new(DIAGRAM);
+    assert_eq!(bench.spindle.gear_for(3000.001), None);
+    assert_eq!(bench.spindle.gear_for(-1.0), None);
+    assert_eq!(bench.spindle.gear_for(f64::NAN), None);
+    assert_eq!(bench.spindle.gear_for(0.0), Some(0));
+    assert_eq!(
+        Bench::new(&[DIAGRAM, &["3120=1"]].concat()).spindle.gear_for(0.0),
+        None
+    );
+}
+
+#[test]
+fn the_override_down_to_0_stops_the_spindle() {
+    let mut bench = Bench::new(&[DIAGRAM, &["3310.1=0"]].concat());
+    bench.turning(1000.0, Rotation::M3);
+    bench.spindle.set_override(0.0);
+    bench.step();
+    assert!(bench.spindle.at_zero());
+}
+
+#[test]
+fn mp3130_and_m2489_are_the_polarity() {
+    for (entry, m3, m4) in [
+        ("3130=0", 6.0, -6.0),
+        ("3130=1", -6.0, 6.0),
+        ("3130=2", 6.0, 6.0),
+        ("3130=3", -6.0, -6.0),
+    ] {
+        for (inverted, sign) in [(false, 1.0), (true, -1.0)] {
+            let mut bench = Bench::new(&[DIAGRAM, &[entry]].concat());
+            bench.spindle.set_inverted(inverted);
+            bench.spindle.set_speed(1500.0, 0);
+            for (rotation, volts) in [(Rotation::M3, m3), (Rotation::M4, m4), (Rotation::M5, 0.0)] {
+                bench.spindle.rotate(rotation);
+                let put_out = bench.step();
+                assert!(
+                    (put_out - sign * volts).abs() < 1e-4,
+                    "{entry} {rotation:?} {inverted}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_voltage_follows_its_ramp() {
+    // 6 V at 0.01 V/ms are 600 ms: 1000 steps of 0.6 ms.
+    let mut bench = Bench::new(&[DIAGRAM, &["3410.0=0.01", "3410.2=0.02", "3410.3=0.04"]].concat());
+    bench.spindle.set_speed(1500.0, 0);
+    let mut steps = |rotation, ramp| {
+        bench.spindle.set_ramp(ramp);
+        bench.spindle.rotate(rotation);
+        let mut steps = 0;
+        loop {
+            bench.step();
+            steps += 1;
+            if !bench.spindle.on_ramp() {
+                return steps;
+            }
+            assert!(steps < 10_000);
+        }
+    };
+    let near = |steps: u32, expected: u32| assert!(steps.abs_diff(expected) <= 1, "{steps} {expected}");
+    near(steps(Rotation::M3, Ramp::Normal), 1000);
+    near(steps(Rotation::M5, Ramp::Tapping), 500);
+    near(steps(Rotation::M4, Ramp::Rigid), 250);
+    // Through 0 to the other side: 12 V.
+    near(steps(Rotation::M3, Ramp::Normal), 2000);
+    near(steps(Rotation::M5, Ramp::Volts(0.005)), 2000);
+    assert!(bench.spindle.at_zero() && !bench.spindle.on_ramp());
+}
+
+#[test]
+fn without_enable_the_output_is_0_volts_at_once() {
+    let mut bench = Bench::new(&[DIAGRAM, &["3410.0=0.01"]].concat());
+    bench.turning(1500.0, Rotation::M3);
+    bench.spindle.set_enabled(false);
+    assert_eq!(bench.step(), 0.0);
+    bench.spindle.set_enabled(true);
+    assert!(
+        (bench.step() - 0.006).abs() < 2e-4,
+        "and it starts along its ramp"
+    );
+}
+
+#[test]
+fn the_gear_change_jogs_to_and_fro() {
+    let mut bench = Bench::new(&[DIAGRAM, &["3240.2=0.5"]].concat());
+    let mut jog = |rotation| {
+        bench.spindle.jog(rotation);
+        (bench.step() * 1e3).round()
+    };
+    assert_eq!(
+        [jog(Rotation::M4), jog(Rotation::M3), jog(Rotation::M5)],
+        [-500.0, 500.0, 0.0]
+    );
+}
+
+#[test]
+fn the_actual_speed_is_that_of_the_encoder() {
+    for counting in ["3140=0", "3140=1"] {
+        let mut bench = Bench::new(&[DIAGRAM, &[counting]].concat());
+        bench.turning(1200.0, Rotation::M3);
+        assert!((bench.spindle.actual_rpm() - 1200.0).abs() < 0.5, "{counting}");
+        bench.turning(600.0, Rotation::M4);
+        assert!((bench.spindle.actual_rpm() + 600.0).abs() < 0.5, "{counting}");
+        let turned = bench.turns * 360.0;
+        assert!((bench.spindle.turned_deg() - turned).abs() < 1e-3, "{counting}");
+    }
+}
+
+/// Window 10 increments of 360/4096: 0.88 degrees; the orientation goes on to the target itself.
+fn near(angle: f64, target: f64) -> bool {
+    let difference = (angle - target).rem_euclid(360.0);
+    difference.min(360.0 - difference) < 0.05
+}
+
+#[test]
+fn a_turning_spindle_stops_at_its_angle_in_its_direction() {
+    for (rotation, sign) in [(Rotation::M3, 1.0), (Rotation::M4, -1.0)] {
+        for target in [0.0, 90.0, 181.0, 359.9] {
+            let mut bench = Bench::new(DIAGRAM);
+            bench.turning(1000.0, rotation);
+            // The way said is ignored [000:16130].
+            bench.spindle.orient(target, 0.0, Way::In(Rotation::M3));
+            assert!(bench.spindle.orienting() && !bench.spindle.in_position());
+            let mut last = bench.turns;
+            let mut furthest = 0.0f64;
+            for _ in 0..5000 {
+                bench.step();
+                furthest = furthest.min(sign * (bench.turns - last));
+                last = bench.turns;
+            }
+            assert!(bench.spindle.in_position(), "{rotation:?} {target}");
+            assert!(
+                near(bench.angle(), target),
+                "{rotation:?} {target}: {}",
+                bench.angle()
+            );
+            assert!(near(bench.spindle.angle_deg().unwrap(), target));
+            assert!(furthest > -2e-4, "no way back: {furthest} turns");
+        }
+    }
+}
+
+#[test]
+fn a_standing_spindle_goes_the_way_said() {
+    let after = |start: f64, target: f64, way: Way| {
+        let mut bench = Bench::new(DIAGRAM);
+        bench.turning(1000.0, Rotation::M3);
+        bench.spindle.orient(start, 0.0, Way::Shortest);
+        bench.run(2.0);
+        let before = bench.turns;
+        bench.spindle.orient(target, 200.0, way);
+        bench.run(2.0);
+        assert!(bench.spindle.in_position());
+        ((bench.turns - before) * 360.0).round()
+    };
+    assert_eq!(after(10.0, 350.0, Way::Shortest), -20.0);
+    assert_eq!(after(10.0, 350.0, Way::In(Rotation::M3)), 340.0);
+    assert_eq!(after(350.0, 10.0, Way::In(Rotation::M4)), -340.0);
+    // Within the window MP3420, 0.88 degrees: the shortest way.
+    assert_eq!(after(10.4, 10.0, Way::In(Rotation::M3)), 0.0);
+}
+
+#[test]
+fn the_first_orientation_looks_for_the_reference_mark() {
+    let mut bench = Bench::new(DIAGRAM);
+    assert_eq!(bench.spindle.angle_deg(), None);
+    bench.spindle.orient(30.0, 0.0, Way::Shortest);
+    bench.run(3.0);
+    assert!(bench.spindle.in_position());
+    assert!(near(bench.angle(), 30.0), "{}", bench.angle());
+}
+
+#[test]
+fn the_reference_mark_stands_at_mp3430() {
+    let mut bench = Bench::new(&[DIAGRAM, &["3430=20"]].concat());
+    bench.turning(500.0, Rotation::M3);
+    bench.spindle.orient(30.0, 0.0, Way::Shortest);
+    bench.run(3.0);
+    assert!(near(bench.angle(), 10.0), "{}", bench.angle());
+    // M2615: the mark is looked for again.
+    bench.mark_turns = 0.5;
+    bench.spindle.forget_mark();
+    assert_eq!(bench.spindle.angle_deg(), None);
+    bench.turning(500.0, Rotation::M3);
+    bench.spindle.orient(30.0, 0.0, Way::Shortest);
+    bench.run(3.0);
+    assert!(near(bench.angle(), 10.0), "{}", bench.angle());
+}
+
+#[test]
+fn with_m2499_the_loop_opens_in_the_window() {
+    for opens in [false, true] {
+        let mut bench = Bench::new(DIAGRAM);
+        bench.turning(500.0, Rotation::M3);
+        bench.spindle.set_opens(opens);
+        bench.spindle.orient(30.0, 0.0, Way::Shortest);
+        bench.run(3.0);
+        assert!(bench.spindle.in_position());
+        // A push of 10 degrees is driven back by the loop only.
+        let before = bench.turns;
+        bench.turns += 10.0 / 360.0;
+        bench.run(1.0);
+        assert_eq!((bench.turns - before) * 360.0 > 9.0, opens);
+        assert_eq!(bench.spindle.at_zero(), opens || bench.spindle.volts() == 0.0);
+    }
+}
+
+#[test]
+fn m2501_turns_the_spindle_at_its_speed() {
+    let mut bench = Bench::new(DIAGRAM);
+    bench.spindle.turn(Rotation::M4);
+    bench.run(1.0);
+    assert!(
+        (bench.spindle.actual_rpm() + 50.0).abs() < 0.5,
+        "{}",
+        bench.spindle.actual_rpm()
+    );
+    bench.spindle.turn(Rotation::M5);
+    bench.run(0.5);
+    assert!(bench.spindle.at_zero());
+}
+
+#[test]
+fn after_an_orientation_the_offset_goes_by_1_mv_in_7_seconds() {
+    let mut bench = Bench::new(DIAGRAM);
+    bench.offset_volts = -0.005;
+    bench.turning(500.0, Rotation::M3);
+    bench.spindle.orient(30.0, 0.0, Way::Shortest);
+    bench.run(3.5);
+    assert!(bench.spindle.in_position());
+    // 5 mV are 1.25 rpm, 450 degrees/min; kv 1 is 1000 degrees/min for a degree: 0.45 degrees.
+    let lag = |bench: &Bench| 30.0 - bench.angle();
+    let first = lag(&bench);
+    assert!((first - 0.45).abs() < 0.03, "{first}");
+    bench.run(7.0);
+    let second = lag(&bench);
+    // 7 steps of 0.1526 mV = 1.07 mV of 5 mV: 0.096 degrees.
+    assert!((first - second - 0.096).abs() < 0.02, "{first} {second}");
+}
