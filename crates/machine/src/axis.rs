@@ -154,7 +154,11 @@ impl Axis {
             noise: Noise::new(seed, part),
             // The controller was tuned without the load: with it, it is slower.
             rate: (1.0 - kept) / step_s * mass / (mass + load),
-            integral_rate: if reset > 0.0 { step_s / reset.max(step_s) } else { 0.0 },
+            integral_rate: if reset > 0.0 {
+                step_s / reset.max(step_s)
+            } else {
+                0.0
+            },
             early: time / step_s - kept / (1.0 - kept),
             motor_max: section
                 .number("force", 0.001..=1e9)
