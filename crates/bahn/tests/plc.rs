@@ -238,7 +238,7 @@ fn traces_show_executed_lines() {
 
 #[test]
 fn listings_have_columns() {
-    let folder = folder("l i4;on\nIFT\nL K1\n= B0\nENDI\nEM\nLBL 5\nEM\n");
+    let folder = folder("l i4;on\nIFT\nL K1\n= B0\nENDI\nEM\nLBL 5\nEM\n  ; door\n");
     let run = folder.bahn("plc list MAIN.PLC");
     assert_eq!(run.code(), 0, "{}", run.err());
     let lines: Vec<String> = run.out().lines().map(str::to_owned).collect();
@@ -247,6 +247,7 @@ fn listings_have_columns() {
     assert_eq!(lines[3], "    3      L     K1");
     assert_eq!(lines[5], "    5    ENDI");
     assert_eq!(lines[7], "    7  LBL   5");
+    assert_eq!(lines[9], "    9  ; door");
 }
 
 #[test]
@@ -280,6 +281,9 @@ fn warnings_are_said_by_all_that_compile() {
         let run = folder.bahn(&format!("plc {command} MAIN.PLC"));
         assert_eq!(run.code(), 0);
         assert!(run.err().contains("warning: 5 "), "{command}: {}", run.err());
+        let strict = folder.bahn(&format!("plc {command} MAIN.PLC --strict"));
+        assert_eq!(strict.code(), 1);
+        assert!(strict.err().contains("error: 5 "), "{command}: {}", strict.err());
     }
 }
 

@@ -119,6 +119,9 @@ pub(crate) struct ProgramOptions {
     /// it files are linked from the folder EPROM beside the main file only.
     #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
     pub parameters: Option<PathBuf>,
+    /// Refuse loose spelling, as `LM 4`, that is accepted with a warning otherwise.
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// What the program runs against.
