@@ -11,7 +11,7 @@
 
 use std::collections::VecDeque;
 
-use bahn_path::{Curve, FeedRate, OverrideLaw, PathElement, Position};
+use bahn_path::{Curve, FeedRate, Function, OverrideLaw, PathElement, Position};
 
 use crate::corner::{Corner, Joint, Run};
 use crate::gate::{Gate, Gates, place, wait};
@@ -393,7 +393,18 @@ impl Item {
 /// it was programmed; when that is elsewhere the answer is a line to there.
 fn connect(at: &Position, element: &mut PathElement) -> Option<PathElement> {
     let from_source = element.start;
+    // The tip of another tool stands elsewhere in the tool axis, without a movement.
+    let tool_axis = element
+        .functions()
+        .iter()
+        .find_map(|output| match &output.function {
+            Function::Tool(call) => Some(call.axis),
+            _ => None,
+        });
     for axis in at.known().iter() {
+        if tool_axis == Some(axis) && matches!(element.curve, Curve::Hold) && !from_source[axis].is_nan() {
+            continue;
+        }
         element.start[axis] = at[axis];
         if element.end[axis].is_nan() || matches!(element.curve, Curve::Hold) {
             element.end[axis] = at[axis];

@@ -85,10 +85,7 @@ fn every_rule_finds_what_breaks_it() {
         );
     }
     assert_eq!(
-        wrong(
-            ControlModel::Tnc407,
-            &["1220=10", "1080.1=0", "1080.2=0", "1080.3=0"]
-        ),
+        wrong(ControlModel::Tnc407, &["1220=10", "1080.0=100"]),
         ["MP1080.0 integral factor and automatic offset adjustment are both active"]
     );
     assert_eq!(wrong(ControlModel::Tnc425, &["3310.0=50", "3310.1=60"]).len(), 1);
