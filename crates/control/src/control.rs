@@ -79,6 +79,11 @@ pub struct Control {
     /// Active traverse range, 0 to 2.
     pub(crate) range: usize,
     pub(crate) tools: Tools,
+    pub(crate) test: Option<crate::test_run::TestRun>,
+    /// Tool changes and datums must be stored before their strobe is reset.
+    keeps: bool,
+    /// What is to be stored has changed since [`Control::stored`].
+    pub(crate) unsaved: bool,
     pub(crate) programs: Arc<dyn Programs>,
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
@@ -185,6 +190,9 @@ impl Control {
             datums,
             correction: [0.0; AXES],
             range: 0,
+            test: None,
+            keeps: false,
+            unsaved: false,
             programs,
             q: remembered.q,
             log: Vec::new(),
@@ -354,7 +362,9 @@ impl Control {
             self.move_axes(plant);
         }
         self.start_pressed = false;
-        if let Some(transfer) = self.handshakes.cycle(&mut self.exchange) {
+        // What a tool change leads to is on the medium before the PLC sees its end.
+        let waits = self.keeps && self.unsaved;
+        if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
             self.acknowledged(transfer);
         }
         let percent = self.spindle_override.percent();
@@ -382,6 +392,7 @@ impl Control {
     pub fn prepare(&mut self) {
         self.prepare_restore();
         self.prepare_run();
+        self.prepare_test();
     }
 
     /// Gives a command of the operator; it is logged with the time. `false` when it is not possible now.
@@ -420,6 +431,28 @@ impl Control {
     /// What the NC sees of the PLC's memory.
     pub fn memory(&self) -> &Image {
         self.exchange.nc()
+    }
+
+    /// Lets the end of a tool change wait until what survives power-off is stored: whoever calls
+    /// [`Control::prepare`] asks [`Control::unsaved`], writes, and says [`Control::stored`].
+    pub fn keep_state(&mut self, keep: bool) {
+        self.keeps = keep;
+    }
+
+    /// What survives power-off when it has changed since it was stored.
+    pub fn unsaved(&self) -> Option<Remembered> {
+        self.unsaved.then(|| self.remember())
+    }
+
+    /// What survives power-off is on the medium.
+    pub fn stored(&mut self) {
+        self.unsaved = false;
+    }
+
+    /// The list of machine parameters that module 9033 has selected: the control is to be started anew with
+    /// it.
+    pub fn take_restart(&mut self) -> Option<bahn_parameters::ParameterList> {
+        std::mem::take(&mut self.run.restart_wanted).then(|| self.link.list().clone())
     }
 
     /// What survives power-off, as of now.

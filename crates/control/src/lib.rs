@@ -44,6 +44,7 @@ mod snapshot;
 mod spindle;
 mod status;
 mod strobes;
+mod test_run;
 mod tools;
 
 pub use command::{Command, CommandError, Mode};
@@ -58,3 +59,4 @@ pub use setup::{Position0, Remembered, Setup, Tool};
 pub use signal::{AxisSignal, Signal, SignalError};
 pub use snapshot::{AxisState, Snapshot};
 pub use spindle::SpindleState;
+pub use test_run::{TestReport, TestState};

@@ -190,6 +190,7 @@ impl Control {
             datums[axis] = datum;
         }
         self.offsets.datum = self.active_datum();
+        self.unsaved = true;
         true
     }
 

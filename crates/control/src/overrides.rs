@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(
             value(OverrideSteps::NonLinear, 200.0),
             15_000,
-            "the end of the range"
+            "the end of its way"
         );
         assert_eq!(value(OverrideSteps::TwoPercent, 33.0), 34);
         assert_eq!(value(OverrideSteps::OnePercent, 149.6), 150);

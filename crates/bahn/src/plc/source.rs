@@ -31,7 +31,8 @@ impl Source {
             (Some(_), Some(0.0)) => ProgramMemory::Eprom,
             _ => ProgramMemory::Ram,
         };
-        let compile_options = Options::for_model(options.model).stored_in(memory);
+        let mut compile_options = Options::for_model(options.model).stored_in(memory);
+        compile_options.strict = options.strict;
         let folder = Folder {
             folder,
             main: main.to_string(),
