@@ -327,6 +327,7 @@ impl Control {
                 self.exchange.nc_set(*bit, value);
             }
         }
+        self.publish_analogue(plant);
         let operator = plant.operator();
         self.feed_override
             .publish(&mut self.exchange, operator.feed_override_percent);

@@ -57,26 +57,22 @@ fn no_lubrication() {
     assert!(!rig.bit("M2012"));
 }
 
-/// Thermal: MP4210.44 = 0.0005 is D944 = 5; 40 in W506 make 200 tenths of a µm in W578. With MP4070 = 0.0005
+/// Thermal: MP4210.44 = 0.0005 is D944 = 5; 20 degrees are 40 in W506 and make 200 tenths of a µm in W578. With MP4070 = 0.0005
 /// the table of Y moves 20 µm within 40 PLC cycles; the display does not change [000:3900-3929].
 #[test]
 fn lag_tracking() {
     let program = "
-       L I28
-       IFT
-       L K+40
-       = W506
        L D944
        X W506
        = W578
-       ENDI
 ";
-    let mut rig = bench(program).mps("4070=0.0005 4210.44=0.0005").ready();
-    rig.settle();
+    let mut rig = bench(program).mps("4070=0.0005 4210.44=0.0005 4410=1").ready();
+    rig.event("temperature 1 0");
+    rig.seconds(2.0);
     let (stood, shown) = (rig.table('Y'), rig.axis('Y').actual);
-    rig.input("I28", true);
+    rig.event("temperature 1 20");
     rig.seconds(0.4 + 0.1);
-    assert_eq!(rig.number("W578"), 200);
+    assert_eq!((rig.number("W506"), rig.number("W578")), (40, 200));
     let half = rig.table('Y') - stood;
     assert!(
         half.abs() > 0.008 && half.abs() < 0.014,
