@@ -134,19 +134,33 @@ impl AxisUnit {
         self.speed == 0.0
     }
 
-    /// Chooses lag or feed pre-control for a kind of operation [000:4721-4733].
-    pub fn choose_method(&mut self, automatic: bool) {
+    /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag.
+    fn wanted_method(&self, automatic: bool) -> Method {
         let precontrol = &self.parameters.precontrol;
         let wanted = if automatic {
             precontrol.in_automatic
         } else {
             precontrol.in_manual
         };
-        self.servo.set_method(if wanted && !self.is_plc_axis() {
+        if wanted && !self.is_plc_axis() {
             Method::Precontrol
         } else {
             Method::Lag
-        });
+        }
+    }
+
+    /// Chooses lag or feed pre-control for a kind of operation; an axis that moves changes when it has come
+    /// to a standstill (inferred). Whether it has the method.
+    pub fn choose_method(&mut self, automatic: bool) -> bool {
+        let wanted = self.wanted_method(automatic);
+        if self.servo.method() == wanted {
+            return true;
+        }
+        let rests = !self.servo.closed() || self.stands() && self.servo.in_position();
+        if rests {
+            self.servo.set_method(wanted);
+        }
+        rests
     }
 
     /// Says at which machine position a count is; nominal and actual position shift alike.

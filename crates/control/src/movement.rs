@@ -7,10 +7,23 @@ use crate::command::Mode;
 use crate::control::Control;
 
 impl Control {
-    /// Finds the nominal positions of all axes for the end of the contour cycle.
-    pub(crate) fn move_axes(&mut self, plant: &mut dyn Plant) {
+    /// Finds the nominal positions of all axes for the end of the contour cycle. `false` as long as the
+    /// operating mode waits for axes to come to a standstill: NC start then counts later.
+    pub(crate) fn move_axes(&mut self, plant: &mut dyn Plant) -> bool {
         let handwheel = plant.operator().handwheel_count;
+        if self.mode != Mode::Handwheel {
+            // What is turned in another mode moves nothing later.
+            self.manual.forget_turns(handwheel);
+        }
+        let automatic = self.mode.is_automatic();
+        let mut ready = true;
+        for unit in &mut self.axes {
+            ready &= unit.choose_method(automatic && !self.reference.is_running());
+        }
+        let waits = automatic && !ready && !self.run.is_active();
         match self.mode {
+            // What the mode before moved comes to a standstill first.
+            _ if waits => {}
             Mode::Manual | Mode::Handwheel => {
                 if self.start_pressed && !self.stop_given() {
                     self.output_entered();
@@ -43,6 +56,7 @@ impl Control {
             unit.servo.command(unit.nominal);
         }
         self.note_deviation();
+        !waits
     }
 
     /// The distance of the actual position from the nominal path: the part of the lag that is across the
