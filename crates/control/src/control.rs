@@ -31,6 +31,9 @@ use crate::tools::Tools;
 const PLC_CYCLE_US: u64 = 20_000;
 const PLC_CYCLE_407_US: u64 = 24_000;
 
+/// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
+const MILLISECOND_US: u32 = 1000;
+
 /// Elements of the path that are prepared ahead at most.
 const LOOK_AHEAD: usize = 512;
 
@@ -85,7 +88,7 @@ pub struct Control {
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
     log: Vec<(u64, Command)>,
-    inputs: [bool; INPUTS],
+    pub(crate) inputs: [bool; INPUTS],
     outputs: [bool; OUTPUTS],
     output_bits: Vec<(usize, Bit)>,
     input_bits: Vec<(usize, Bit)>,
@@ -124,6 +127,7 @@ impl Control {
                 AxisUnit::new(parameters.axis_parameters(index), timing)
             })
             .collect();
+        let axes = crate::gantry::couple(axes, timing);
         let mut places = [None; AXES];
         let mut letters = ['X', 'Y', 'Z', '4', '5'];
         for (place, unit) in axes.iter().enumerate() {
@@ -269,7 +273,15 @@ impl Control {
             plant.set_nominal(unit.parameters.output.output.into(), volts);
         }
         self.spindle.output(plant);
-        plant.advance(step_us);
+        let mut rest = step_us;
+        while rest > 0 && self.emergency.is_timing() {
+            let part = rest.min(MILLISECOND_US);
+            plant.advance(part);
+            rest -= part;
+            let now = self.now_us + u64::from(step_us - rest);
+            self.emergency.step(now, plant.control_ready());
+        }
+        plant.advance(rest);
         self.now_us += u64::from(step_us);
     }
 
@@ -344,7 +356,7 @@ impl Control {
     /// What is decided once in each contour cycle.
     fn contour_cycle(&mut self, plant: &mut dyn Plant) {
         self.follow_circuit();
-        self.follow_loops();
+        self.follow_loops(plant);
         self.take_faults();
         if !self.loops_closed || self.move_axes(plant) {
             self.start_pressed = false;

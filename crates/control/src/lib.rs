@@ -23,6 +23,7 @@ mod control;
 mod emergency;
 mod feeder;
 mod functions;
+mod gantry;
 mod handshake;
 mod loops;
 mod manual;

@@ -113,9 +113,7 @@ impl Control {
                 let unit = self.axes.iter_mut().find(|unit| unit.index == usize::from(axis));
                 if let Some(unit) = unit {
                     unit.servo.acknowledge();
-                    if !self.run.is_active() {
-                        unit.transfer();
-                    }
+                    unit.transfer();
                 }
             }
             _ => {}

@@ -112,7 +112,10 @@ impl Control {
         }
         match self.run.state {
             RunState::Idle => self.run.begin_wanted = true,
-            RunState::Interrupted => self.run.state = RunState::Running,
+            RunState::Interrupted => {
+                self.return_to_path();
+                self.run.state = RunState::Running;
+            }
             RunState::BlockEnd => {
                 self.path.go_on();
                 self.run.state = RunState::Running;
