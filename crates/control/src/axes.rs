@@ -71,8 +71,6 @@ pub(crate) struct AxisUnit {
     pub halted: bool,
     /// Where an interrupted path has left it, when the actual position became the nominal one meanwhile.
     pub left_at: Option<f64>,
-    /// The kind of operation, automatic or not, whose method is to be chosen.
-    pub method_due: Option<bool>,
     /// A synchronized slave is led by its master.
     pub coupling: Option<Coupling>,
 }
@@ -100,7 +98,6 @@ impl AxisUnit {
             at_limit: None,
             halted: false,
             left_at: None,
-            method_due: Some(false),
             coupling: None,
             parameters,
         })
@@ -181,24 +178,33 @@ impl AxisUnit {
         self.speed == 0.0
     }
 
-    /// Chooses lag or feed pre-control for a kind of operation [000:4721-4733], as soon as the axis is at
-    /// rest: in motion its lag would be a fault of the other method.
-    pub fn choose_method(&mut self) {
-        let resting = self.stands() && (self.servo.in_position() || !self.servo.closed());
-        let Some(automatic) = self.method_due.take_if(|_| resting) else {
-            return;
-        };
+    /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag.
+    fn wanted_method(&self, automatic: bool) -> Method {
         let precontrol = &self.parameters.precontrol;
         let wanted = if automatic {
             precontrol.in_automatic
         } else {
             precontrol.in_manual
         };
-        self.servo.set_method(if wanted && !self.is_plc_axis() {
+        if wanted && !self.is_plc_axis() {
             Method::Precontrol
         } else {
             Method::Lag
-        });
+        }
+    }
+
+    /// Chooses lag or feed pre-control for a kind of operation; an axis that moves changes when it has come
+    /// to a standstill (inferred). Whether it has the method.
+    pub fn choose_method(&mut self, automatic: bool) -> bool {
+        let wanted = self.wanted_method(automatic);
+        if self.servo.method() == wanted {
+            return true;
+        }
+        let rests = !self.servo.closed() || self.stands() && self.servo.in_position();
+        if rests {
+            self.servo.set_method(wanted);
+        }
+        rests
     }
 
     /// Says at which machine position a count is; nominal and actual position shift alike, by the value

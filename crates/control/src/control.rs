@@ -376,10 +376,9 @@ impl Control {
         self.follow_circuit();
         self.follow_loops(plant);
         self.take_faults();
-        if self.loops_closed {
-            self.move_axes(plant);
+        if !self.loops_closed || self.move_axes(plant) {
+            self.start_pressed = false;
         }
-        self.start_pressed = false;
         // What a tool change leads to is on the medium before the PLC sees its end.
         let waits = self.keeps && self.unsaved;
         if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {

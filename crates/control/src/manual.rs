@@ -67,6 +67,11 @@ impl Default for Manual {
 }
 
 impl Manual {
+    /// Counts the handwheel without following it.
+    pub fn forget_turns(&mut self, count: i64) {
+        self.count = Some(count);
+    }
+
     /// Lets go of everything.
     pub fn stop(&mut self) {
         self.latched = [None; AXES];

@@ -9,11 +9,24 @@ use crate::restore::Restore;
 use crate::run::RunState;
 
 impl Control {
-    /// Finds the nominal positions of all axes for the end of the contour cycle.
-    pub(crate) fn move_axes(&mut self, plant: &mut dyn Plant) {
+    /// Finds the nominal positions of all axes for the end of the contour cycle. `false` as long as the
+    /// operating mode waits for axes to come to a standstill: NC start then counts later.
+    pub(crate) fn move_axes(&mut self, plant: &mut dyn Plant) -> bool {
         self.count_display_axes();
         let handwheel = plant.operator().handwheel_count;
+        if self.mode != Mode::Handwheel {
+            // What is turned in another mode moves nothing later.
+            self.manual.forget_turns(handwheel);
+        }
+        let automatic = self.mode.is_automatic();
+        let mut ready = true;
+        for unit in &mut self.axes {
+            ready &= unit.choose_method(automatic && !self.reference.is_running());
+        }
+        let waits = automatic && !ready && !self.run.is_active();
         match self.mode {
+            // What the mode before moved comes to a standstill first.
+            _ if waits => {}
             Mode::Manual | Mode::Handwheel => {
                 if self.start_pressed && !self.stop_given() {
                     self.output_entered();
@@ -43,7 +56,6 @@ impl Control {
                     rapid,
                 );
             }
-            unit.choose_method();
             if unit.coupling.is_none() {
                 unit.servo.command(unit.nominal);
             }
@@ -58,6 +70,7 @@ impl Control {
             }
         }
         self.note_deviation();
+        !waits
     }
 
     /// After a stop in which axes lost their nominal positions (EMERGENCY STOP, POSITIONING ERROR) they go

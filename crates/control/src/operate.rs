@@ -75,18 +75,14 @@ impl Control {
         if self.mode == Mode::Reference {
             self.reference.abort();
         }
-        if self.run.state == RunState::BlockEnd && mode == Mode::FullSequence {
-            // The next NC start runs on to the end.
-        }
-        self.mode = mode;
-        self.manual.stop();
+        // What the old mode moved comes to a standstill on its ramp.
         for unit in &mut self.axes {
-            unit.method_due = Some(mode.is_automatic());
-            // What still moves goes down to a standstill.
-            if matches!(unit.mover, Mover::Manual | Mover::Reference) {
+            if matches!(unit.mover, Mover::Reference | Mover::Manual) {
                 unit.mover = Mover::None;
             }
         }
+        self.mode = mode;
+        self.manual.stop();
     }
 
     /// CE: clears a message, and what it stands for.

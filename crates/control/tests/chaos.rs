@@ -174,6 +174,9 @@ fn check(rig: &Rig, seed: u64, history: &[String], faults: bool) {
                 .join("\n")
         )
     };
+    if !faults && rig.control.snapshot().messages.iter().any(|shown| shown.flashing) {
+        fail("a flashing message".into());
+    }
     for axis in rig.machine.axes() {
         if axis.volts.abs() > 10.0 {
             fail(format!("{} has {} V", axis.letter, axis.volts));
@@ -256,6 +259,14 @@ fn the_operator_gets_the_machine_back() {
             rig.control.command("ce".parse().unwrap());
             rig.control.command("stop".parse().unwrap());
             rig.seconds(0.1);
+        }
+        if rig
+            .messages()
+            .iter()
+            .any(|text| text == "EXTERNAL EMERGENCY STOP")
+        {
+            // Without reference marks an axis may stand on its limit switch: only a key of the builder helps.
+            continue;
         }
         if rig.control.snapshot().mode == Mode::Reference {
             rig.start();
