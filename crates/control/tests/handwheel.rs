@@ -207,7 +207,7 @@ LBL 12
     );
     let mut rig = wheel(&program);
     rig.command("jog 4");
-    let mut step = |rig: &mut Rig, input: Option<&str>| {
+    let step = |rig: &mut Rig, input: Option<&str>| {
         if let Some(input) = input {
             rig.input(input, true);
             rig.seconds(0.1);

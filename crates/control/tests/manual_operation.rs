@@ -4,7 +4,6 @@
 mod support;
 
 use support::bench::*;
-use support::*;
 
 /// The axis runs as long as its key is pressed, with MP1020 = 1200 mm/min; two axes at once [003:1031-1041].
 /// Both keys of one axis stop it.
