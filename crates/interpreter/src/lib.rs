@@ -73,6 +73,8 @@ pub struct Interpreter {
     ended: Option<Ended>,
     waiting: Option<Barrier>,
     interrupt: Option<Arc<AtomicBool>>,
+    /// States before blocks, kept for whoever asked for them.
+    kept: Option<Vec<Checkpoint>>,
     /// End of the last element that was handed out.
     position: Position,
 }
@@ -95,6 +97,18 @@ pub struct Checkpoint {
     position: Position,
 }
 
+impl Checkpoint {
+    /// Count of executed blocks up to and with the block that is executed next: the sequence of its elements.
+    pub fn sequence(&self) -> u64 {
+        self.run.sequence + 1
+    }
+
+    /// The block that is executed next.
+    pub fn at(&self) -> BlockRef {
+        self.run.at.block_ref()
+    }
+}
+
 impl Interpreter {
     /// Prepares the run of a main program.
     pub fn new(main: Arc<Program>, settings: Settings, library: Box<dyn Library + Send>) -> Interpreter {
@@ -108,6 +122,7 @@ impl Interpreter {
             ended: None,
             waiting: None,
             interrupt: None,
+            kept: None,
             position,
         }
     }
@@ -144,6 +159,23 @@ impl Interpreter {
         std::mem::take(&mut self.run.warnings)
     }
 
+    /// Keeps the state before each block that can move or output something, for
+    /// [`Interpreter::take_checkpoints`].
+    pub fn keep_checkpoints(&mut self) {
+        self.kept = Some(Vec::new());
+    }
+
+    /// The states kept since the last call, in the order of execution.
+    pub fn take_checkpoints(&mut self) -> impl Iterator<Item = Checkpoint> + '_ {
+        self.kept.iter_mut().flat_map(|kept| kept.drain(..))
+    }
+
+    /// After an error: the run goes on with the block that failed.
+    pub fn retry(&mut self) {
+        self.ended = None;
+        self.waiting = None;
+    }
+
     /// The state as of the next block to be executed.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
@@ -156,17 +188,21 @@ impl Interpreter {
 
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
+        let warnings = std::mem::take(&mut self.run.warnings);
         self.run = (*checkpoint.run).clone();
+        self.run.warnings = warnings;
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;
     }
 
     /// Says where the axes really stand, workpiece coordinates: after a stop inside a block, or after they
-    /// were moved. What was on its way is dropped; radius compensation begins anew with the next block.
+    /// were moved. What was on its way is dropped; radius compensation begins anew with the next block, whose
+    /// incremental coordinates count from where it would have begun.
     pub fn relocate(&mut self, position: &Position) {
         self.run.contour = Contour::default();
         self.run.out = Output::default();
+        self.run.increments_from = Some(self.run.modal.nominal);
         self.run.modal.nominal = *position;
         self.run.modal.actual = *position;
         self.run.modal.last_move = None;
@@ -222,6 +258,23 @@ impl Interpreter {
         if block.skip && self.settings.skip_blocks {
             self.run.at.block += 1;
             return Ok(());
+        }
+        self.run.join_follows = next.is_some_and(|next| {
+            matches!(next.operation, Operation::Rounding { .. } | Operation::Chamfer { .. })
+        });
+        if self.kept.is_some() && self.run.recording.is_none() && acts(&block.operation) {
+            // Warnings are no state to go back to.
+            let warnings = std::mem::take(&mut self.run.warnings);
+            let checkpoint = Checkpoint {
+                run: Box::new(self.run.clone()),
+                ended: None,
+                waiting: None,
+                position: self.position,
+            };
+            self.run.warnings = warnings;
+            if let Some(kept) = &mut self.kept {
+                kept.push(checkpoint);
+            }
         }
         self.run.block = at;
         if !matches!(
@@ -431,6 +484,22 @@ impl Interpreter {
         }
         job.ok_or_else(|| MessageId::CyclIncomplete.into())
     }
+}
+
+/// Whether a block can move or output something.
+fn acts(operation: &Operation) -> bool {
+    !matches!(
+        operation,
+        Operation::Calculate { .. }
+            | Operation::Formula { .. }
+            | Operation::Jump { .. }
+            | Operation::Label(_)
+            | Operation::CallLabel { .. }
+            | Operation::Comment(_)
+            | Operation::Begin(_)
+            | Operation::End(_)
+            | Operation::CircleCentre(_)
+    )
 }
 
 /// Whether a block certainly moves on a straight line.
