@@ -249,6 +249,7 @@ impl Control {
             unit.servo.measure(encoder);
         }
         self.spindle.measure(plant);
+        self.watch_probe(plant);
         if self.plc_runs() && self.now_us >= self.plc.due_us {
             self.scan(plant);
             self.plc.due_us += self.plc.period_us;
@@ -349,7 +350,7 @@ impl Control {
         self.spindle.cycle(&mut self.exchange, percent);
         if self.spindle.take_wrong_speed() {
             self.show(Message::Plain(MessageId::WrongRpm), false);
-            self.stop_run();
+            self.refuse_block();
         }
         for unit in &mut self.axes {
             unit.count();
@@ -360,7 +361,7 @@ impl Control {
     /// What was acknowledged has its effect now.
     fn acknowledged(&mut self, transfer: Transfer) {
         match transfer {
-            Transfer::ToolCall { more: false, .. } => self.tools.inserted(),
+            Transfer::ToolCall { more: false, .. } => self.tools.inserted(&self.exchange),
             Transfer::Gear { .. } => self.spindle.gear_changed(),
             _ => {}
         }

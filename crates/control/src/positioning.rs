@@ -123,6 +123,11 @@ impl Control {
         }
     }
 
+    /// The PLC positions an axis.
+    pub(crate) fn is_positioning(&self) -> bool {
+        self.positioning.targets.iter().any(Option::is_some)
+    }
+
     /// Resets the strobe of a PLC positioning.
     pub(crate) fn end_positioning(&mut self, index: usize) {
         if let Some(target) = self.positioning.targets.get_mut(index)

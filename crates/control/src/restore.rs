@@ -114,6 +114,7 @@ impl Control {
                     offsets: &mut self.offsets,
                     handshakes: &mut self.handshakes,
                     exchange: &mut self.exchange,
+                    axes: &mut self.axes,
                     inch: self.run.feeder.as_ref().is_some_and(Feeder::inch),
                 };
                 target.output(&function.function);
@@ -154,7 +155,7 @@ impl Control {
             }
             self.path.set_position(element.start);
             if let Some(feeder) = &mut self.run.feeder {
-                feeder.put_back(element);
+                feeder.put_back(std::iter::once(element));
             }
             self.run.restore = Some(Restore::Ready { target });
             return;

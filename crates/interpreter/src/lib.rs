@@ -33,8 +33,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_parameters::MessageId;
-use bahn_path::{AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
-use bahn_program::{Block, MotionKind, Operation, Program};
+use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
+use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
 pub use code::{Library, NoLibrary};
 pub use error::{Message, ProgramError, Warning, WarningKind};
@@ -218,9 +218,38 @@ impl Interpreter {
         self.enter_unit();
     }
 
+    /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
+    pub fn set_machine_zero(&mut self, zero: Position) {
+        self.settings.rules.machine_zero = zero;
+    }
+
     /// Sets a Q parameter from outside: the PLC, or the operator.
     pub fn set_q(&mut self, number: u16, value: f64) {
         self.run.q.preassign(number, value);
+    }
+
+    /// Executes a TOOL CALL that is in no program before the next block: tool number, tool axis, spindle speed
+    /// in rpm, and DL and DR in mm; what is `None` stays as it is.
+    pub fn insert_tool_call(
+        &mut self,
+        tool: Option<f64>,
+        axis: Option<Axis>,
+        speed_rpm: Option<f64>,
+        oversize_mm: [f64; 2],
+    ) {
+        let at = self.run.at.block_ref();
+        let current = self.run.modal.tool.map(|tool| f64::from(tool.number));
+        let unit = self.run.unit_mm;
+        let result = self.run.tool_call(
+            tool.or(current).map(Value::Number),
+            axis,
+            speed_rpm.map(Value::Number),
+            oversize_mm.map(|mm| Some(Value::Number(mm / unit))),
+            &self.settings,
+        );
+        if let Err(fault) = result {
+            self.fail(fault, at);
+        }
     }
 
     /// The block that is executed next.

@@ -141,6 +141,12 @@ impl Ring {
         self.items.range(self.current.min(self.items.len())..)
     }
 
+    /// Takes out the item that is executed and those after it.
+    pub(crate) fn take_ahead(&mut self) -> impl Iterator<Item = PathElement> + '_ {
+        let from = self.current.min(self.items.len());
+        self.items.drain(from..).map(|item| item.element)
+    }
+
     /// Drops the executed items.
     pub(crate) fn discard(&mut self) {
         self.first += self.current as u64;
@@ -406,7 +412,12 @@ fn connect(at: &Position, element: &mut PathElement) -> Option<PathElement> {
             continue;
         }
         element.start[axis] = at[axis];
-        if element.end[axis].is_nan() || matches!(element.curve, Curve::Hold) {
+        // What the element does not move stays where it is.
+        let stays = match &element.curve {
+            Curve::Arc(arc) if axis == arc.plane.first || axis == arc.plane.second => false,
+            _ => element.end[axis] == from_source[axis],
+        };
+        if stays || element.end[axis].is_nan() || matches!(element.curve, Curve::Hold) {
             element.end[axis] = at[axis];
         }
     }
