@@ -41,6 +41,7 @@ impl Control {
         let drive = Drive {
             feed_override_percent: percent,
             rapid_override_percent: percent,
+            rapid_limit_mm_min: self.rapid_limit_mm_min(),
             hold: self.run.state != RunState::Running,
             single_block: self.mode == Mode::SingleBlock,
             in_position: settled,

@@ -212,7 +212,8 @@ impl Run {
             Operation::CycleCall(m) => {
                 // CYCL CALL ends M89 [003:4875-4881].
                 self.modal.cycle_after_each_block = false;
-                let functions = self.take_m_functions(m, settings)?;
+                let mut functions = self.take_m_functions(m, settings)?;
+                functions.cycle_call = true;
                 self.hold(functions)?;
                 return self.call_cycle(settings);
             }
@@ -369,7 +370,7 @@ impl Run {
                 synchronisation: Synchronisation::MnsSns,
             });
             barrier = Some(Barrier::Stop { block: self.block });
-        } else if self.machine && self.may_wait_for_plc(&element, &functions.output) {
+        } else if self.machine && !functions.cycle_call && self.may_wait_for_plc(&element, &functions.output) {
             barrier = Some(Barrier::Acknowledge { block: self.block });
         }
         if !functions.output.is_empty() {
@@ -404,7 +405,7 @@ impl Run {
 
     /// Whether the path stands until the PLC has acknowledged, so that nothing is lost when the next block is
     /// read only then. A block that goes on moving after its functions is not cut off from the next one, nor
-    /// from its rounding.
+    /// from its rounding or its cycle.
     fn may_wait_for_plc(&self, element: &PathElement, functions: &[TechnologyFunction]) -> bool {
         let stands = |function: &TechnologyFunction| {
             function.synchronisation != Synchronisation::Mos

@@ -299,6 +299,20 @@ impl Ring {
         self.envelope(0);
     }
 
+    /// No axis is faster than this from now on, mm/min.
+    pub(crate) fn set_rapid_limit(&mut self, limit_mm_min: f64) {
+        self.dynamics.set_rapid_limit(limit_mm_min);
+        let dynamics = &self.dynamics;
+        let current = self.current.min(self.items.len());
+        for item in self.items.range_mut(current..) {
+            if let Some(motion) = Motion::of(&item.element, dynamics) {
+                item.slowest = motion.slowest;
+            }
+            item.set_feed(dynamics);
+        }
+        self.envelope(0);
+    }
+
     /// The envelope ends in a stop at the end of an item.
     pub(crate) fn set_stop(&mut self, number: Option<u64>) {
         if self.stop_at != number {
