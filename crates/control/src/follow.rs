@@ -231,13 +231,17 @@ impl Control {
             })) => self.begin_probing(from, to, feed_mm_min),
             Some(Stop::End) => self.end_run(),
             Some(Stop::Error(fault)) => {
-                let message = match fault {
-                    RunFault::Program(error) => Message::Program(error),
-                    RunFault::Limit { axis, direction, .. } => self.limit_message(axis, direction),
-                };
+                let message = self.fault_message(fault);
                 self.show(message, false);
                 self.abort_run(Resume::Fault);
             }
+        }
+    }
+
+    pub(crate) fn fault_message(&mut self, fault: RunFault) -> Message {
+        match fault {
+            RunFault::Program(error) => Message::Program(error),
+            RunFault::Limit { axis, direction, .. } => self.limit_message(axis, direction),
         }
     }
 

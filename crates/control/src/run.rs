@@ -15,6 +15,7 @@ use crate::control::Control;
 use crate::feeder::{Box2, Feeder};
 use crate::message::Message;
 use crate::probing::Probing;
+use crate::restore::Restore;
 use crate::q_transfer::QTransfer;
 
 /// Elements that one call of prepare reads at most.
@@ -70,7 +71,7 @@ pub(crate) struct ProgramRun {
     /// Keep the executed elements.
     pub tap: bool,
     /// Return to the contour.
-    pub restore: Option<crate::restore::Restore>,
+    pub restore: Option<Restore>,
     /// The path speed, mm/s.
     pub speed: f64,
     /// Feed without override of the element that is executed, mm/min; `None` for rapid traverse.
@@ -102,7 +103,7 @@ impl ProgramRun {
         self.resume_from = None;
     }
 
-    pub fn restoring(&self) -> Option<&crate::restore::Restore> {
+    pub fn restoring(&self) -> Option<&Restore> {
         self.restore.as_ref()
     }
 }
@@ -205,8 +206,11 @@ impl Control {
             self.call_inserted_tool();
         }
         let limits = self.traverse_box();
+        // A block scan reads the blocks itself.
+        let scans = self.run.restore.as_ref().is_some_and(Restore::scans);
         if let Some(feeder) = &mut self.run.feeder
             && self.run.state != RunState::Idle
+            && !scans
         {
             feeder.set_datum(self.offsets.datum, limits);
             if let Some(answer) = self.run.answer.take() {
