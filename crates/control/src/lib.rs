@@ -19,6 +19,7 @@
 
 mod axes;
 mod command;
+mod compensation;
 mod control;
 mod emergency;
 mod feeder;
@@ -49,8 +50,10 @@ mod status;
 mod strobes;
 mod test_run;
 mod tools;
+mod upkeep;
 
 pub use command::{Command, CommandError, Mode};
+pub use compensation::{CompensationAssignment, CompensationError, CompensationTable};
 pub use control::Control;
 pub use feeder::Programs;
 pub use handshake::{Handshake, Transfer, Waiting};

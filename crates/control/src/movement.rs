@@ -62,7 +62,12 @@ impl Control {
         }
         crate::gantry::command(&mut self.axes);
         if self.run.state == RunState::Idle {
-            self.axes.iter_mut().for_each(|unit| unit.left_at = None);
+            for unit in &mut self.axes {
+                unit.left_at = None;
+                if unit.mover == Mover::None && unit.stands() {
+                    unit.wrap();
+                }
+            }
         }
         self.note_deviation();
         !waits

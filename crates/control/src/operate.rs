@@ -219,33 +219,6 @@ impl Control {
         true
     }
 
-    /// Answers to code number 75 368: compensates the offsets of the axes, or switches the automatic
-    /// adjustment off [000:5014-5020].
-    fn adjust_offsets(&mut self, adjust: bool) -> bool {
-        if !std::mem::take(&mut self.manual.offsets_shown) {
-            return false;
-        }
-        for unit in &mut self.axes {
-            if adjust {
-                unit.servo.compensate_offset();
-            } else {
-                unit.servo.set_offset_compensation(0.0);
-            }
-        }
-        true
-    }
-
-    /// The compensated offsets, V.
-    pub(crate) fn offset_volts(&self) -> [f64; 5] {
-        let mut volts = [0.0; 5];
-        for unit in &self.axes {
-            if let Some(slot) = volts.get_mut(unit.index) {
-                *slot = unit.servo.offset_compensation_volts();
-            }
-        }
-        volts
-    }
-
     /// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319].
     fn press_key(&mut self, code: u8) -> bool {
         let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + u16::from(code));

@@ -81,6 +81,12 @@ impl SpindleUnit {
         }
     }
 
+    /// Takes changed machine parameters over.
+    pub fn set_parameters(&mut self, parameters: SpindleParameters) {
+        self.servo.set_parameters(parameters.clone());
+        self.parameters = parameters;
+    }
+
     fn is_analogue(&self) -> bool {
         matches!(self.parameters.output, SpindleOutput::Analogue { .. })
     }
