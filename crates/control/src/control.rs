@@ -278,6 +278,7 @@ impl Control {
             unit.servo.measure(encoder);
         }
         self.spindle.measure(plant);
+        self.watch_probe(plant);
         if self.plc_runs() && self.now_us >= self.plc.due_us {
             self.scan(plant);
             self.plc.due_us += self.plc.period_us;
@@ -380,6 +381,12 @@ impl Control {
             self.start_pressed = false;
         }
         // What a tool change leads to is on the medium before the PLC sees its end.
+        if let Some(Transfer::ToolCall { more: false, .. }) = self.handshakes.acknowledged(self.exchange.nc())
+            && self.tools.is_changing()
+        {
+            self.tools.inserted(&self.exchange);
+            self.unsaved = true;
+        }
         let waits = self.keeps && self.unsaved;
         if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
             self.acknowledged(transfer);
@@ -388,7 +395,7 @@ impl Control {
         self.spindle.cycle(&mut self.exchange, percent);
         if self.spindle.take_wrong_speed() {
             self.show(Message::Plain(MessageId::WrongRpm), false);
-            self.stop_run();
+            self.refuse_block();
         }
         for unit in &mut self.axes {
             unit.count();
@@ -398,10 +405,8 @@ impl Control {
 
     /// What was acknowledged has its effect now.
     fn acknowledged(&mut self, transfer: Transfer) {
-        match transfer {
-            Transfer::ToolCall { more: false, .. } => self.tools.inserted(),
-            Transfer::Gear { .. } => self.spindle.gear_changed(),
-            _ => {}
+        if let Transfer::Gear { .. } = transfer {
+            self.spindle.gear_changed();
         }
     }
 

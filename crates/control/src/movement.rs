@@ -38,7 +38,7 @@ impl Control {
                 if self.manual_operation_is_on() {
                     self.move_manually(handwheel);
                 } else {
-                    self.move_path();
+                    self.move_path(plant);
                 }
                 self.move_restore();
             }

@@ -153,6 +153,7 @@ impl Control {
             offsets: &mut self.offsets,
             handshakes: &mut self.handshakes,
             exchange: &mut self.exchange,
+            axes: &mut self.axes,
             inch,
         };
         if let Some(rpm) = self.manual.s.take() {

@@ -8,7 +8,8 @@ use std::collections::VecDeque;
 
 use bahn_exchange::signal;
 use bahn_motion::Aim;
-use bahn_path::{Barrier, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
+use bahn_parameters::MessageId;
+use bahn_path::{Barrier, ElementSource, PathElement, Position, Step, TechnologyFunction};
 
 use crate::axes::Mover;
 use crate::control::Control;
@@ -27,6 +28,8 @@ pub(crate) enum Restore {
     Scan {
         block: u32,
         functions: VecDeque<TechnologyFunction>,
+        /// A dwell time lasts until then, µs since power-on.
+        dwell_until_us: u64,
     },
     /// The scan is at a programmed stop; NC start goes on (MP7680 bit 3 = 0).
     Stopped { block: u32 },
@@ -36,6 +39,13 @@ pub(crate) enum Restore {
     Armed { target: Position },
     /// The axes move.
     Moving { target: Position },
+}
+
+impl Restore {
+    /// The block is not found yet.
+    pub fn scans(&self) -> bool {
+        matches!(self, Restore::Scan { .. } | Restore::Stopped { .. })
+    }
 }
 
 impl Control {
@@ -58,6 +68,7 @@ impl Control {
         self.run.restore = Some(Restore::Scan {
             block,
             functions: VecDeque::new(),
+            dwell_until_us: 0,
         });
         self.put(signal::BLOCK_SCAN_ACTIVE, true);
         true
@@ -100,20 +111,27 @@ impl Control {
     /// Goes on with a scan; may allocate.
     pub(crate) fn prepare_restore(&mut self) {
         for _ in 0..BUDGET {
-            let Some(Restore::Scan { block, functions }) = &mut self.run.restore else {
+            let Some(Restore::Scan {
+                block,
+                functions,
+                dwell_until_us,
+            }) = &mut self.run.restore
+            else {
                 return;
             };
-            if !self.handshakes.is_idle() || self.panel.stop {
+            if !self.handshakes.is_idle() || self.panel.stop || self.now_us < *dwell_until_us {
                 return;
             }
             let block = *block;
             if let Some(function) = functions.pop_front() {
+                self.run.q_transfer.strobe();
                 let mut target = Target {
                     spindle: &mut self.spindle,
                     tools: &mut self.tools,
                     offsets: &mut self.offsets,
                     handshakes: &mut self.handshakes,
                     exchange: &mut self.exchange,
+                    axes: &mut self.axes,
                     inch: self.run.feeder.as_ref().is_some_and(Feeder::inch),
                 };
                 target.output(&function.function);
@@ -127,14 +145,17 @@ impl Control {
                 Step::Barrier(Barrier::Stop { .. }) if !self.operation.restart.passes_stops => {
                     self.run.restore = Some(Restore::Stopped { block });
                 }
-                Step::Barrier(_) => feeder.resume(LiveData::default()),
+                Step::Barrier(_) => feeder.resume(self.run.q_transfer.answer()),
                 Step::Starved => return,
-                Step::End | Step::Error(_) => {
+                Step::End => {
                     // The block does not come: the scan ends with the program.
-                    self.show(
-                        Message::Plain(bahn_parameters::MessageId::SelectedBlockNotAddressed),
-                        false,
-                    );
+                    self.show(Message::Plain(MessageId::SelectedBlockNotAddressed), false);
+                    self.internal_stop();
+                    return;
+                }
+                Step::Error(fault) => {
+                    let message = self.fault_message(fault);
+                    self.show(message, false);
                     self.internal_stop();
                     return;
                 }
@@ -154,12 +175,20 @@ impl Control {
             }
             self.path.set_position(element.start);
             if let Some(feeder) = &mut self.run.feeder {
-                feeder.put_back(element);
+                feeder.put_back(std::iter::once(element));
             }
             self.run.restore = Some(Restore::Ready { target });
             return;
         }
-        if let Some(Restore::Scan { functions, .. }) = &mut self.run.restore {
+        if let Some(Restore::Scan {
+            functions,
+            dwell_until_us,
+            ..
+        }) = &mut self.run.restore
+        {
+            if !self.operation.restart.ignores_dwell {
+                *dwell_until_us = self.now_us + (element.dwell_s * 1e6) as u64;
+            }
             functions.extend(element.functions().iter().cloned());
         }
     }
@@ -172,11 +201,12 @@ impl Control {
             Some(Restore::Stopped { block }) if start => {
                 let block = *block;
                 if let Some(feeder) = &mut self.run.feeder {
-                    feeder.resume(LiveData::default());
+                    feeder.resume(self.run.q_transfer.answer());
                 }
                 self.run.restore = Some(Restore::Scan {
                     block,
                     functions: VecDeque::new(),
+                    dwell_until_us: 0,
                 });
                 return;
             }

@@ -11,11 +11,10 @@ use crate::markers::LUBRICATION_PULSE;
 use crate::markers::{ACTUAL_TO_NOMINAL, AXES, LAG_TRACKING, LUBRICATED, PLC_POSITIONING, TRANSFER};
 use crate::message::Message;
 use crate::positioning::PER_MM;
+use crate::q_transfer::Q_FROM_PLC;
 
 /// W576 ff. count in 1/10 µm [000:10950].
 const PER_MM_TRACKING: f64 = 10_000.0;
-/// First of the Q parameters that the PLC writes: Q100 to Q107 [000:6997-7008].
-const Q_FROM_PLC: u16 = 100;
 
 impl Control {
     /// Takes the strobes that the PLC set in a scan, and resets them.
@@ -119,7 +118,6 @@ impl Control {
                 *value = f64::from(self.exchange.nc().number(number)) / PER_MM;
             }
             self.offsets.datum = self.active_datum();
-            self.run.datum_changed = true;
         }
         self.exchange.nc_set(signal::CORRECT_DATUM, false);
     }
