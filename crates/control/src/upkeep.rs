@@ -19,6 +19,8 @@ pub(crate) struct Upkeep {
     pub corrections: Vec<Correction>,
     /// The active line of the assignment.
     pub line: Option<usize>,
+    /// The PLC chose another traverse range: the blocks that are on their way are to be looked at anew.
+    pub range_changed: bool,
     /// The limits of the path have changed; they take effect when no program runs.
     limits_changed: bool,
 }
@@ -29,6 +31,7 @@ impl Upkeep {
             interval: OffsetInterval::new(offset_interval_s),
             corrections: Vec::new(),
             line: None,
+            range_changed: false,
             limits_changed: false,
         }
     }
