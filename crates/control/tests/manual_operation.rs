@@ -379,3 +379,20 @@ fn a_program_changes_the_range() {
     rig.settle();
     close(rig.table('X'), 105.0, 0.01);
 }
+
+/// A block beyond the limit is refused: message, marker, no movement; CE takes both away.
+#[test]
+fn a_block_beyond_the_limit() {
+    let mut rig = bench("").program("1.H", "L X+120 R0 F3000\nL X+180").ready();
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(10.0, "it is refused", |rig| !rig.messages().is_empty());
+    assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
+    rig.scan();
+    assert!(rig.bit("M2624"));
+    close(rig.table('X'), 120.0, 0.02);
+    rig.command("ce");
+    rig.scan();
+    assert!(!rig.bit("M2624"));
+}
