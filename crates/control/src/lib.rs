@@ -44,6 +44,7 @@ mod spindle;
 mod status;
 mod strobes;
 mod tools;
+mod watch;
 
 pub use command::{Command, CommandError, Mode};
 pub use control::Control;
