@@ -31,6 +31,9 @@ use crate::tools::Tools;
 const PLC_CYCLE_US: u64 = 20_000;
 const PLC_CYCLE_407_US: u64 = 24_000;
 
+/// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
+const MILLISECOND_US: u32 = 1000;
+
 /// Elements of the path that are prepared ahead at most.
 const LOOK_AHEAD: usize = 512;
 
@@ -76,11 +79,16 @@ pub struct Control {
     /// Active traverse range, 0 to 2.
     pub(crate) range: usize,
     pub(crate) tools: Tools,
+    pub(crate) test: Option<crate::test_run::TestRun>,
+    /// Tool changes and datums must be stored before their strobe is reset.
+    keeps: bool,
+    /// What is to be stored has changed since [`Control::stored`].
+    pub(crate) unsaved: bool,
     pub(crate) programs: Arc<dyn Programs>,
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
     log: Vec<(u64, Command)>,
-    inputs: [bool; INPUTS],
+    pub(crate) inputs: [bool; INPUTS],
     outputs: [bool; OUTPUTS],
     output_bits: Vec<(usize, Bit)>,
     input_bits: Vec<(usize, Bit)>,
@@ -119,6 +127,7 @@ impl Control {
                 AxisUnit::new(parameters.axis_parameters(index), timing)
             })
             .collect();
+        let axes = crate::gantry::couple(axes, timing);
         let mut places = [None; AXES];
         let mut letters = ['X', 'Y', 'Z', '4', '5'];
         for (place, unit) in axes.iter().enumerate() {
@@ -181,6 +190,9 @@ impl Control {
             datums,
             correction: [0.0; AXES],
             range: 0,
+            test: None,
+            keeps: false,
+            unsaved: false,
             programs,
             q: remembered.q,
             log: Vec::new(),
@@ -261,7 +273,15 @@ impl Control {
             plant.set_nominal(unit.parameters.output.output.into(), volts);
         }
         self.spindle.output(plant);
-        plant.advance(step_us);
+        let mut rest = step_us;
+        while rest > 0 && self.emergency.is_timing() {
+            let part = rest.min(MILLISECOND_US);
+            plant.advance(part);
+            rest -= part;
+            let now = self.now_us + u64::from(step_us - rest);
+            self.emergency.step(now, plant.control_ready());
+        }
+        plant.advance(rest);
         self.now_us += u64::from(step_us);
     }
 
@@ -336,13 +356,14 @@ impl Control {
     /// What is decided once in each contour cycle.
     fn contour_cycle(&mut self, plant: &mut dyn Plant) {
         self.follow_circuit();
-        self.follow_loops();
+        self.follow_loops(plant);
         self.take_faults();
-        if self.loops_closed {
-            self.move_axes(plant);
+        if !self.loops_closed || self.move_axes(plant) {
+            self.start_pressed = false;
         }
-        self.start_pressed = false;
-        if let Some(transfer) = self.handshakes.cycle(&mut self.exchange) {
+        // What a tool change leads to is on the medium before the PLC sees its end.
+        let waits = self.keeps && self.unsaved;
+        if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
             self.acknowledged(transfer);
         }
         let percent = self.spindle_override.percent();
@@ -370,6 +391,7 @@ impl Control {
     pub fn prepare(&mut self) {
         self.prepare_restore();
         self.prepare_run();
+        self.prepare_test();
     }
 
     /// Gives a command of the operator; it is logged with the time. `false` when it is not possible now.
@@ -408,6 +430,28 @@ impl Control {
     /// What the NC sees of the PLC's memory.
     pub fn memory(&self) -> &Image {
         self.exchange.nc()
+    }
+
+    /// Lets the end of a tool change wait until what survives power-off is stored: whoever calls
+    /// [`Control::prepare`] asks [`Control::unsaved`], writes, and says [`Control::stored`].
+    pub fn keep_state(&mut self, keep: bool) {
+        self.keeps = keep;
+    }
+
+    /// What survives power-off when it has changed since it was stored.
+    pub fn unsaved(&self) -> Option<Remembered> {
+        self.unsaved.then(|| self.remember())
+    }
+
+    /// What survives power-off is on the medium.
+    pub fn stored(&mut self) {
+        self.unsaved = false;
+    }
+
+    /// The list of machine parameters that module 9033 has selected: the control is to be started anew with
+    /// it.
+    pub fn take_restart(&mut self) -> Option<bahn_parameters::ParameterList> {
+        std::mem::take(&mut self.run.restart_wanted).then(|| self.link.list().clone())
     }
 
     /// What survives power-off, as of now.

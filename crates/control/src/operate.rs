@@ -3,6 +3,7 @@
 use bahn_exchange::signal;
 use bahn_path::Axis;
 
+use crate::axes::Mover;
 use crate::command::{Command, Mode};
 use crate::control::Control;
 use crate::message::Message;
@@ -74,14 +75,14 @@ impl Control {
         if self.mode == Mode::Reference {
             self.reference.abort();
         }
-        if self.run.state == RunState::BlockEnd && mode == Mode::FullSequence {
-            // The next NC start runs on to the end.
+        // What the old mode moved comes to a standstill on its ramp.
+        for unit in &mut self.axes {
+            if matches!(unit.mover, Mover::Reference | Mover::Manual) {
+                unit.mover = Mover::None;
+            }
         }
         self.mode = mode;
         self.manual.stop();
-        for unit in &mut self.axes {
-            unit.choose_method(mode.is_automatic());
-        }
     }
 
     /// CE: clears a message, and what it stands for.
@@ -112,9 +113,7 @@ impl Control {
                 let unit = self.axes.iter_mut().find(|unit| unit.index == usize::from(axis));
                 if let Some(unit) = unit {
                     unit.servo.acknowledge();
-                    if !self.run.is_active() {
-                        unit.transfer();
-                    }
+                    unit.transfer();
                 }
             }
             _ => {}
@@ -187,6 +186,7 @@ impl Control {
             datums[axis] = datum;
         }
         self.offsets.datum = self.active_datum();
+        self.unsaved = true;
         true
     }
 

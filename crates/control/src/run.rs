@@ -112,7 +112,10 @@ impl Control {
         }
         match self.run.state {
             RunState::Idle => self.run.begin_wanted = true,
-            RunState::Interrupted => self.run.state = RunState::Running,
+            RunState::Interrupted => {
+                self.return_to_path();
+                self.run.state = RunState::Running;
+            }
             RunState::BlockEnd => {
                 self.path.go_on();
                 self.run.state = RunState::Running;
@@ -257,6 +260,24 @@ impl Control {
 
     /// A feeder of a program from the chosen start block on.
     pub(crate) fn new_feeder(&self, program: Arc<Program>, machine: &Position, limits: Box2) -> Feeder {
+        let block = if self.mode == Mode::Mdi {
+            0
+        } else {
+            self.run.start_block
+        };
+        let mut feeder = self.new_feeder_from(program, block, machine, limits);
+        feeder.set_tap(self.run.tap);
+        feeder
+    }
+
+    /// A feeder of a program from a block on.
+    pub(crate) fn new_feeder_from(
+        &self,
+        program: Arc<Program>,
+        block: u32,
+        machine: &Position,
+        limits: Box2,
+    ) -> Feeder {
         let mut rules = Rules::of(self.link.list());
         rules.machine_zero = Axis::ALL.map(|axis| -self.offsets.datum[axis]).into();
         let settings = Settings {
@@ -270,9 +291,8 @@ impl Control {
         };
         let programs = Arc::clone(&self.programs);
         let mut feeder = Feeder::new(program, settings, programs, self.offsets, limits);
-        feeder.set_tap(self.run.tap);
-        if self.mode != Mode::Mdi && self.run.start_block > 0 {
-            feeder.interpreter_mut().goto(self.run.start_block);
+        if block > 0 {
+            feeder.interpreter_mut().goto(block);
         }
         feeder
     }
@@ -491,6 +511,7 @@ impl Control {
                 return;
             }
             self.run.waiting.pop_front();
+            self.unsaved |= path_changes_tool(self.path.functions(&output));
             let Control {
                 path,
                 spindle,
@@ -635,6 +656,11 @@ impl Control {
             _ => 0.0,
         }
     }
+}
+
+/// Whether a tool is called.
+fn path_changes_tool<'a>(mut functions: impl Iterator<Item = &'a bahn_path::TechnologyFunction>) -> bool {
+    functions.any(|output| matches!(output.function, bahn_path::Function::Tool(_)))
 }
 
 /// Whether an element moves an axis.

@@ -99,7 +99,7 @@ impl Control {
                         actual: unit.servo.actual_mm() - offset,
                         nominal: unit.nominal - offset,
                         machine: unit.servo.actual_mm(),
-                        lag: unit.servo.lag_mm(),
+                        lag: unit.lag_mm(),
                         max_lag: unit.max_lag,
                         distance_to_go: self.distance_to_go(unit),
                         referenced: unit.referenced,

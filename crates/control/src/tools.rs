@@ -207,7 +207,7 @@ mod tests {
         let mut exchange = Exchange::default();
         let mut codes = Vec::new();
         while !handshakes.is_idle() {
-            handshakes.cycle(&mut exchange);
+            handshakes.cycle(&mut exchange, true);
             let nc = exchange.nc();
             let code = |number| i16::try_from(nc.number(number)).unwrap_or_default();
             codes.push((
@@ -218,7 +218,7 @@ mod tests {
             exchange.begin_scan();
             exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, true);
             exchange.end_scan();
-            handshakes.cycle(&mut exchange);
+            handshakes.cycle(&mut exchange, true);
             exchange.begin_scan();
             exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, false);
             exchange.end_scan();

@@ -176,6 +176,7 @@ impl Axis {
         let before = self.travel.direction();
         if let Some(direction) = self.travel.advance(nominal_mm) {
             self.measuring.set_direction(direction > 0.0);
+            self.actual_mm = self.measuring.actual_mm();
             if self.circular && before != 0.0 && part > 0.0 {
                 self.reversal.begin(direction, height);
             }

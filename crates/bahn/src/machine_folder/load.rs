@@ -8,7 +8,7 @@ use bahn_control::Tool;
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::{Axis, Position};
-use bahn_plc::{PlcProgram, ProgramMemory};
+use bahn_plc::{Options, PlcProgram, ProgramMemory};
 
 use crate::diagnostics::{FileFault, Marked, Severity};
 use crate::{UsageError, files, mp, plc, tool_table};
@@ -175,7 +175,8 @@ impl Loader<'_> {
             Some(0.0) => ProgramMemory::Eprom,
             _ => ProgramMemory::Ram,
         };
-        let mut source = plc::Source::compile_for(&path, parameters, memory);
+        let options = Options::for_model(model).stored_in(memory);
+        let mut source = plc::Source::compile_for(&path, parameters, options);
         let found = source.errors().into_iter().chain(source.warnings()).collect();
         self.sort(found);
         source.compilation.program.take().map(Arc::new)

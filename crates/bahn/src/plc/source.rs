@@ -29,13 +29,15 @@ impl Source {
             (Some(_), Some(0.0)) => ProgramMemory::Eprom,
             _ => ProgramMemory::Ram,
         };
-        Ok(Source::compile_for(&options.file, parameters, memory))
+        let mut compile_options = Options::for_model(options.model).stored_in(memory);
+        compile_options.strict = options.strict;
+        Ok(Source::compile_for(&options.file, parameters, compile_options))
     }
 
     /// Compiles the main file for a machine.
-    pub fn compile_for(file: &Path, parameters: ParameterList, memory: ProgramMemory) -> Source {
+    pub fn compile_for(file: &Path, parameters: ParameterList, options: Options) -> Source {
         let main = file.file_name().unwrap_or_default().to_string_lossy();
-        let options = Options::for_model(parameters.model()).stored_in(memory);
+        let memory = options.memory;
         let folder = Folder {
             folder: file.parent().map(Path::to_owned).unwrap_or_default(),
             main: main.to_string(),
