@@ -51,6 +51,7 @@ mod strobes;
 mod test_run;
 mod tools;
 mod upkeep;
+mod watch;
 
 pub use command::{Command, CommandError, Mode};
 pub use compensation::{CompensationAssignment, CompensationError, CompensationTable};

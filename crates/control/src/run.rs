@@ -74,8 +74,6 @@ pub(crate) struct ProgramRun {
     pub restore: Option<Restore>,
     /// The path speed, mm/s.
     pub speed: f64,
-    /// Feed without override of the element that is executed, mm/min; `None` for rapid traverse.
-    pub programmed_feed: Option<f64>,
 }
 
 /// Where a run goes on that was broken off.

@@ -345,13 +345,4 @@ impl SpindleUnit {
             rotation: self.rotation,
         }
     }
-
-    /// Angle of the spindle, degrees, once its reference mark was crossed.
-    pub fn angle_deg(&self) -> Option<f64> {
-        self.servo.angle_deg()
-    }
-
-    pub fn orienting(&self) -> bool {
-        self.orienting
-    }
 }
