@@ -298,6 +298,7 @@ impl Control {
             .publish(&mut self.exchange, operator.spindle_override_percent);
         self.publish();
         self.link.program_running = self.run.is_active();
+        self.link.orienting = self.spindle.orienting();
         self.plc.scans += 1;
         if let Err(error) = self.plc.machine.scan(&mut self.exchange, &mut self.link) {
             let message = Message::PlcStopped {

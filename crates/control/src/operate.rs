@@ -3,6 +3,7 @@
 use bahn_exchange::signal;
 use bahn_path::Axis;
 
+use crate::axes::Mover;
 use crate::command::{Command, Mode};
 use crate::control::Control;
 use crate::message::Message;
@@ -74,12 +75,13 @@ impl Control {
         if self.mode == Mode::Reference {
             self.reference.abort();
         }
-        if self.run.state == RunState::BlockEnd && mode == Mode::FullSequence {
-            // The next NC start runs on to the end.
-        }
         self.mode = mode;
         self.manual.stop();
         for unit in &mut self.axes {
+            // What moved the axis lets go of it: it comes to a standstill.
+            if matches!(unit.mover, Mover::Manual | Mover::Reference) {
+                unit.mover = Mover::None;
+            }
             unit.choose_method(mode.is_automatic());
         }
     }
