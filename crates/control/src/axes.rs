@@ -134,6 +134,11 @@ impl AxisUnit {
         self.speed == 0.0
     }
 
+    /// Whether it is held at its place, or not held at all.
+    pub fn is_at_rest(&self) -> bool {
+        self.stands() && (self.servo.in_position() || !self.servo.closed())
+    }
+
     /// Chooses lag or feed pre-control for a kind of operation [000:4721-4733].
     pub fn choose_method(&mut self, automatic: bool) {
         let precontrol = &self.parameters.precontrol;

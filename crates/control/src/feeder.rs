@@ -151,7 +151,8 @@ impl Feeder {
         let axis = call.axis.and_then(crate::tools::inserted_axis);
         let tool = call.tool.map(f64::from);
         let oversize = [call.length_oversize, call.radius_oversize];
-        self.interpreter.insert_tool_call(tool, axis, call.speed, oversize);
+        self.interpreter
+            .insert_tool_call(tool, axis, call.speed, oversize);
     }
 
     /// Gives elements back, to come again before all others.

@@ -227,7 +227,10 @@ impl Control {
                 self.run.answer = Some(self.run.q_transfer.answer());
             }
             Some(Stop::Barrier(Barrier::Probe {
-                from, to, feed_mm_min, ..
+                from,
+                to,
+                feed_mm_min,
+                ..
             })) => self.begin_probing(from, to, feed_mm_min),
             Some(Stop::End) => self.end_run(),
             Some(Stop::Error(fault)) => {

@@ -82,7 +82,10 @@ impl Control {
             if matches!(unit.mover, Mover::Manual | Mover::Reference) {
                 unit.mover = Mover::None;
             }
-            unit.choose_method(mode.is_automatic());
+            // With the lag of a movement the other method would see a positioning error.
+            if unit.is_at_rest() || !mode.is_automatic() {
+                unit.choose_method(mode.is_automatic());
+            }
         }
     }
 

@@ -15,8 +15,8 @@ use crate::control::Control;
 use crate::feeder::{Box2, Feeder};
 use crate::message::Message;
 use crate::probing::Probing;
-use crate::restore::Restore;
 use crate::q_transfer::QTransfer;
+use crate::restore::Restore;
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
@@ -284,7 +284,8 @@ impl Control {
 
     /// Nothing moves that a run could take over in the midst of its movement.
     fn axes_stand(&self) -> bool {
-        let moves = |unit: &AxisUnit| !unit.stands() && unit.mover != Mover::Rotation && !unit.is_plc_axis();
+        let moves =
+            |unit: &AxisUnit| !unit.is_at_rest() && unit.mover != Mover::Rotation && !unit.is_plc_axis();
         !self.axes.iter().any(moves)
     }
 
@@ -312,6 +313,9 @@ impl Control {
     fn begin_run(&mut self) {
         let machine = self.machine_position();
         let limits = self.traverse_box();
+        for unit in &mut self.axes {
+            unit.choose_method(true);
+        }
         self.put(bahn_exchange::signal::PROGRAM_END_EXECUTED, false);
         self.run.ended = false;
         self.run.last = None;

@@ -163,7 +163,9 @@ impl Tools {
 
     /// The TOOL CALL of module 9150; `None` when it is none that can be executed. What is not given stays.
     pub fn tool_call(&self, block: &ToolCallBlock, axis: Axis) -> Option<ToolCall> {
-        let tool = block.tool.map_or(Some(self.called), |tool| u32::try_from(tool).ok())?;
+        let tool = block
+            .tool
+            .map_or(Some(self.called), |tool| u32::try_from(tool).ok())?;
         let axis = match block.axis {
             None => axis,
             Some(number) => inserted_axis(number)?,

@@ -8,7 +8,12 @@ use bench::*;
 use support::*;
 
 fn lag(build: Build) -> Build {
-    build.mp("1390=1").mp("1710.0=50").mp("1720.0=60").mp("1710.1=50").mp("1720.1=60")
+    build
+        .mp("1390=1")
+        .mp("1710.0=50")
+        .mp("1720.0=60")
+        .mp("1710.1=50")
+        .mp("1720.1=60")
 }
 
 /// Operation with servo lag: lag = v / kv within 1 %: 2.5 mm at 5 m/min and kv 2, at the voltage of the feed:
@@ -21,7 +26,10 @@ fn following_error() {
         rig.start();
         rig.seconds(2.0);
         let measured = rig.control.snapshot().axes[0].lag;
-        assert!((measured / expected - 1.0).abs() < 0.01, "F{feed} kv {kv}: {measured}");
+        assert!(
+            (measured / expected - 1.0).abs() < 0.01,
+            "F{feed} kv {kv}: {measured}"
+        );
         let volts = f64::from(feed) / 15_000.0 * 9.0;
         let signal = rig.control.observe(&"X.volts".parse().unwrap());
         assert!((signal / volts - 1.0).abs() < 0.01, "{signal}");
@@ -34,20 +42,35 @@ fn following_error() {
 #[test]
 fn circle_with_precontrol() {
     for (radius, feed) in [(10, 9000), (25, 9000), (60, 3000)] {
-        let program = format!("L X+{} Y+50 R0 F3000\nCC X+100 Y+50\nC X+{} Y+50 DR+ F{feed}", 100 + radius, 100 + radius);
+        let program = format!(
+            "L X+{} Y+50 R0 F3000\nCC X+100 Y+50\nC X+{} Y+50 DR+ F{feed}",
+            100 + radius,
+            100 + radius
+        );
         let build = bench(ACKNOWLEDGE).mp("1520=10").mp("1070=1");
         let mut rig = ready(build.program("1.H", &program));
         rig.start();
-        rig.until(10.0, "the circle", |rig| rig.control.snapshot().block.is_some_and(|block| block.block == 3));
-        let (x0, y0) = (rig.machine_position('X') - display(&rig, 'X'), rig.machine_position('Y') - display(&rig, 'Y'));
+        rig.until(10.0, "the circle", |rig| {
+            rig.control.snapshot().block.is_some_and(|block| block.block == 3)
+        });
+        let (x0, y0) = (
+            rig.machine_position('X') - display(&rig, 'X'),
+            rig.machine_position('Y') - display(&rig, 'Y'),
+        );
         let mut worst: f64 = 0.0;
         while !rig.control.snapshot().ended {
             rig.cycle();
-            let (x, y) = (rig.machine.axis('X').unwrap().position, rig.machine.axis('Y').unwrap().position);
+            let (x, y) = (
+                rig.machine.axis('X').unwrap().position,
+                rig.machine.axis('Y').unwrap().position,
+            );
             worst = worst.max((((x - x0 - 100.0).hypot(y - y0 - 50.0)) - f64::from(radius)).abs());
         }
         let bound = 1000.0 * 0.003f64.powi(2) / 8.0;
-        assert!(worst <= bound + 0.01 / 1024.0 * 2.0, "r {radius}: {worst} > {bound}");
+        assert!(
+            worst <= bound + 0.01 / 1024.0 * 2.0,
+            "r {radius}: {worst} > {bound}"
+        );
         assert!(worst > 0.0);
     }
 }
@@ -75,7 +98,8 @@ fn corners_with_lag() {
 #[test]
 fn angle_of_constant_feed() {
     let slowest = |y: f64| {
-        let mut rig = ready(bench(ACKNOWLEDGE).program("1.H", &format!("L X+100 R0 F2000\nL X+150 Y+{}", 50.0 + y)));
+        let mut rig =
+            ready(bench(ACKNOWLEDGE).program("1.H", &format!("L X+100 R0 F2000\nL X+150 Y+{}", 50.0 + y)));
         rig.start();
         rig.until(5.0, "near the corner", |rig| nominal(rig, 'X') > 90.0);
         let mut slowest = f64::INFINITY;

@@ -165,7 +165,12 @@ fn the_command_log_replays() {
     .map(|(time, text)| (time, text.parse().unwrap()))
     .collect();
     let (first, trace) = drive(&given);
-    assert!(first.control.snapshot().ended, "{:?} {:?}", first.messages(), first.control.snapshot().run);
+    assert!(
+        first.control.snapshot().ended,
+        "{:?} {:?}",
+        first.messages(),
+        first.control.snapshot().run
+    );
     let (_, replayed) = drive(first.control.command_log());
     assert_eq!(trace.hash, replayed.hash);
 }

@@ -81,7 +81,10 @@ fn missing_acknowledgement() {
     let waiting = rig.control.snapshot().waiting.unwrap().to_string();
     assert_eq!(waiting, "strobe M2045: the PLC must set M2482");
     near(display(&rig, 'X'), 50.0);
-    assert!(!rig.control.command("stop".parse().unwrap()), "only after an external stop");
+    assert!(
+        !rig.control.command("stop".parse().unwrap()),
+        "only after an external stop"
+    );
     rig.command("ce");
     rig.event("key NC_STOP tap");
     rig.seconds(0.3);
@@ -99,7 +102,10 @@ fn missing_acknowledgement() {
 /// NC stop while M08 waits, and START: the acknowledgement counts all the same, and the block goes on.
 #[test]
 fn stop_while_an_acknowledgement_is_missing() {
-    let mut rig = bench_with("       L     M2045\n       A     I20\n       = M2482", "L X+60 R0 F6000 M8");
+    let mut rig = bench_with(
+        "       L     M2045\n       A     I20\n       = M2482",
+        "L X+60 R0 F6000 M8",
+    );
     rig.start();
     rig.seconds(0.5);
     rig.event("key NC_STOP tap");
@@ -126,7 +132,10 @@ fn acknowledgement_left_set() {
     rig.event("key A press");
     rig.start();
     rig.seconds(1.0);
-    assert_eq!(rig.control.snapshot().waiting.unwrap().to_string(), "next strobe M2045: the PLC must reset M2482");
+    assert_eq!(
+        rig.control.snapshot().waiting.unwrap().to_string(),
+        "next strobe M2045: the PLC must reset M2482"
+    );
     rig.event("key A release");
     rig.seconds(0.06);
     rig.event("key A press");
@@ -172,7 +181,11 @@ fn begin_and_end_of_block() {
 /// MP7440 bit 2: the axes do not wait for the acknowledgement.
 #[test]
 fn without_waiting() {
-    let mut rig = ready(bench("").mp("7440=%00111").program("1.H", "L X+60 R0 F6000 M8\nL X+70"));
+    let mut rig = ready(
+        bench("")
+            .mp("7440=%00111")
+            .program("1.H", "L X+60 R0 F6000 M8\nL X+70"),
+    );
     rig.start();
     rig.seconds(2.0);
     near(display(&rig, 'X'), 70.0);
@@ -196,7 +209,11 @@ fn programmed_stops() {
         rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
         near(display(&rig, 'X'), 70.0);
     }
-    let mut rig = ready(bench(ACKNOWLEDGE).mp("7440=%00011").program("1.H", "M6\nL X+70 R0 F6000"));
+    let mut rig = ready(
+        bench(ACKNOWLEDGE)
+            .mp("7440=%00011")
+            .program("1.H", "M6\nL X+70 R0 F6000"),
+    );
     run(&mut rig, 3.0);
     near(display(&rig, 'X'), 70.0);
 }
@@ -256,7 +273,10 @@ fn second_set_of_kv() {
         (first, lag(&rig))
     };
     let (second, first) = lags("7440=%01011");
-    assert!((second - 1.5).abs() < 0.015 && (first + 6.0).abs() < 0.06, "{second} {first}");
+    assert!(
+        (second - 1.5).abs() < 0.015 && (first + 6.0).abs() < 0.06,
+        "{second} {first}"
+    );
     let (off, _) = lags("7440=%00011");
     assert!((off - 6.0).abs() < 0.06, "{off}");
 }
@@ -265,13 +285,16 @@ fn second_set_of_kv() {
 #[test]
 fn drilling_with_m89_and_m99() {
     let cycle = "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SETUP -2\nCYCL DEF 1.2 DEPTH -10\nCYCL DEF 1.3 PECKG -10\nCYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F3000";
-    let program =
-        format!("TOOL CALL 0 Z S0\n{cycle}\nL Z+2 R0 FMAX\nL X+60 FMAX M89\nL X+70 FMAX\nL X+80 FMAX M99\nL X+90 FMAX");
+    let program = format!(
+        "TOOL CALL 0 Z S0\n{cycle}\nL Z+2 R0 FMAX\nL X+60 FMAX M89\nL X+70 FMAX\nL X+80 FMAX M99\nL X+90 FMAX"
+    );
     let mut rig = ready(bench(ACKNOWLEDGE).mp("7440=%00011").program("1.H", &program));
     rig.start();
     let mut holes = Vec::new();
     let mut deep = false;
-    rig.until(1.0, "begin", |rig| rig.control.snapshot().run == RunState::Running);
+    rig.until(1.0, "begin", |rig| {
+        rig.control.snapshot().run == RunState::Running
+    });
     while !rig.control.snapshot().ended {
         rig.cycle();
         let down = nominal(&rig, 'Z') < -9.999;

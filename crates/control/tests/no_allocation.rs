@@ -39,7 +39,12 @@ fn no_cycle_allocates() {
             "cycle {cycles}: {allocated:?} {:?}",
             rig.control.snapshot()
         );
-        assert!(cycles < 100_000, "{:?} {:?}", rig.messages(), rig.control.snapshot());
+        assert!(
+            cycles < 100_000,
+            "{:?} {:?}",
+            rig.messages(),
+            rig.control.snapshot()
+        );
     }
     assert_eq!(rig.control.snapshot().mode, Mode::FullSequence);
     assert_eq!(rig.messages(), [""; 0]);

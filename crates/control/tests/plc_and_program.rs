@@ -20,7 +20,10 @@ fn fn14() {
     rig.start();
     rig.seconds(1.0);
     let messages = rig.messages();
-    assert!(messages.len() == 1 && messages[0].ends_with("program 1.H block 2"), "{messages:?}");
+    assert!(
+        messages.len() == 1 && messages[0].ends_with("program 1.H block 2"),
+        "{messages:?}"
+    );
     assert_eq!(rig.control.snapshot().run, RunState::Idle);
     near(display(&rig, 'X'), 55.0);
     rig.command("ce");
@@ -41,7 +44,10 @@ fn fn15() {
 /// on after M2611 [000:11595-11655].
 #[test]
 fn fn19() {
-    let mut rig = bench_with("       L     M2149\n       A     I20\n       = M2611", "FN 19: PLC=+20.25/+100\nL X+60 R0 F6000");
+    let mut rig = bench_with(
+        "       L     M2149\n       A     I20\n       = M2611",
+        "FN 19: PLC=+20.25/+100\nL X+60 R0 F6000",
+    );
     rig.start();
     rig.seconds(1.0);
     assert!(rig.bit("M2149") && !rig.bit("M2150"));
@@ -97,10 +103,16 @@ fn q_parameters_from_the_plc() {
     );
     let mut rig = bench_with(&plc, "M50\nL X+50 IY+Q102 R0 F6000\nM51\nL IY+Q102");
     rig.start();
-    assert_eq!(edges(&mut rig, "M2045 M2713 M2482", 0.2), "M2045+ M2713+ M2713- M2482+ M2045- M2482- M2045+ M2482+ M2045- M2482-");
+    assert_eq!(
+        edges(&mut rig, "M2045 M2713 M2482", 0.2),
+        "M2045+ M2713+ M2713- M2482+ M2045- M2482- M2045+ M2482+ M2045- M2482-"
+    );
     rig.until(3.0, "the end", |rig| rig.control.snapshot().ended);
     near(display(&rig, 'Y'), 62.5);
-    assert_eq!(rig.control.remember().q.iter().find(|(number, _)| *number == 102), Some(&(102, 12.5)));
+    assert_eq!(
+        rig.control.remember().q.iter().find(|(number, _)| *number == 102),
+        Some(&(102, 12.5))
+    );
 }
 
 /// M20 corrects the datum by +20: X shows 70 instead of 50, nothing moves; the path goes straight on from where
@@ -134,7 +146,10 @@ fn datum_correction() {
        = M2482
 ",
     );
-    for program in ["M20\nL X+100 Y+70 R0 F6000\nL X+50", "L X+100 Y+70 R0 F6000 M20\nL X+50"] {
+    for program in [
+        "M20\nL X+100 Y+70 R0 F6000\nL X+50",
+        "L X+100 Y+70 R0 F6000 M20\nL X+50",
+    ] {
         let mut rig = bench_with(&plc, program);
         let machine = rig.machine_position('X');
         rig.start();

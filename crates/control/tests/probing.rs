@@ -49,7 +49,14 @@ fn a_side_is_measured() {
     rig.until(5.0, "the touch", |rig| rig.bit("M2025"));
     rig.until(5.0, "the end of probing", |rig| rig.bit("M2026"));
     rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
-    let q5 = rig.control.remember().q.iter().find(|(number, _)| *number == 5).unwrap().1;
+    let q5 = rig
+        .control
+        .remember()
+        .q
+        .iter()
+        .find(|(number, _)| *number == 5)
+        .unwrap()
+        .1;
     assert!((q5 - 80.0).abs() < 0.004, "{q5}");
     assert!(x < 78.0);
     near(display(&rig, 'X'), 50.0);
@@ -77,7 +84,11 @@ fn stylus_in_contact() {
     let mut rig = rig(&PROGRAM.replace("X+80", "X+83"));
     rig.start();
     rig.until(10.0, "the message", |rig| !rig.messages().is_empty());
-    assert!(rig.messages()[0].starts_with("STYLUS ALREADY IN CONTACT"), "{:?}", rig.messages());
+    assert!(
+        rig.messages()[0].starts_with("STYLUS ALREADY IN CONTACT"),
+        "{:?}",
+        rig.messages()
+    );
     rig.seconds(0.1);
     assert!(rig.bit("M2023"));
 }
@@ -105,18 +116,30 @@ fn stop_while_probing() {
     for internal in [false, true] {
         let mut rig = rig(PROGRAM);
         rig.start();
-        rig.until(5.0, "probing", |rig| nominal(rig, 'X') > 76.5 && rig.control.snapshot().run == RunState::Running);
+        rig.until(5.0, "probing", |rig| {
+            nominal(rig, 'X') > 76.5 && rig.control.snapshot().run == RunState::Running
+        });
         rig.event("key NC_STOP tap");
         rig.seconds(0.4);
         let x = nominal(&rig, 'X');
         rig.seconds(0.2);
-        assert_eq!((nominal(&rig, 'X'), rig.control.snapshot().run), (x, RunState::Interrupted));
+        assert_eq!(
+            (nominal(&rig, 'X'), rig.control.snapshot().run),
+            (x, RunState::Interrupted)
+        );
         if internal {
             rig.command("stop");
         }
         rig.start();
         rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
-        let q5 = rig.control.remember().q.iter().find(|(number, _)| *number == 5).unwrap().1;
+        let q5 = rig
+            .control
+            .remember()
+            .q
+            .iter()
+            .find(|(number, _)| *number == 5)
+            .unwrap()
+            .1;
         assert!((q5 - 80.0).abs() < 0.004, "{q5}");
     }
 }

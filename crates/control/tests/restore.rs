@@ -25,7 +25,11 @@ fn plc() -> String {
 }
 
 fn restore_rig(parameters: &str, program: &str) -> Rig {
-    ready(bench(&plc()).mp(&format!("7680={parameters}")).program("1.H", program))
+    ready(
+        bench(&plc())
+            .mp(&format!("7680={parameters}"))
+            .program("1.H", program),
+    )
 }
 
 const RETURN: &str = "%0000010";
@@ -41,7 +45,10 @@ fn return_to_the_contour() {
     rig.event("key NC_STOP tap");
     rig.seconds(0.5);
     let (x, z) = (nominal(&rig, 'X'), nominal(&rig, 'Z'));
-    assert!(!rig.control.command("restore-position".parse().unwrap()), "nothing to restore");
+    assert!(
+        !rig.control.command("restore-position".parse().unwrap()),
+        "nothing to restore"
+    );
     rig.command("ce");
     rig.command("manual-operation");
     rig.seconds(0.1);
@@ -65,7 +72,10 @@ fn return_to_the_contour() {
     rig.until(5.0, "Z is back", |rig| !rig.bit("M2019"));
     assert_eq!((nominal(&rig, 'X'), nominal(&rig, 'Z')), (x, z));
     rig.seconds(0.5);
-    assert_eq!((nominal(&rig, 'X'), rig.control.snapshot().run), (x, RunState::Interrupted));
+    assert_eq!(
+        (nominal(&rig, 'X'), rig.control.snapshot().run),
+        (x, RunState::Interrupted)
+    );
     rig.start();
     rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
     near(display(&rig, 'X'), 90.0);
@@ -84,7 +94,8 @@ fn without_the_functions() {
     assert!(!rig.control.command("manual-operation".parse().unwrap()));
 }
 
-const PROGRAM: &str = "TOOL CALL 2 Z S1000\nFN 0: Q1 = +30\nL X+80 Y+60 R0 F3000 M3\nL X+90 M8\nL X+Q1\nL Y+20";
+const PROGRAM: &str =
+    "TOOL CALL 2 Z S1000\nFN 0: Q1 = +30\nL X+80 Y+60 R0 F3000 M3\nL X+90 M8\nL X+Q1\nL Y+20";
 
 /// RESTORE AT 6: the functions before block 6 go to the PLC with M2059 = 1, no axis moves; RESTORE POSITION and
 /// NC start bring the axes to where block 6 begins (X 30, Y 60), the tool axis last; then the run goes on.
@@ -161,7 +172,13 @@ fn dwell_in_the_scan() {
         rig.seconds(1.0);
         assert_eq!(rig.number("W260") == 8, seen, "{parameters}");
         rig.seconds(3.0);
-        assert_eq!(rig.number("W260"), 8, "{:?} {:?}", rig.messages(), rig.control.snapshot());
+        assert_eq!(
+            rig.number("W260"),
+            8,
+            "{:?} {:?}",
+            rig.messages(),
+            rig.control.snapshot()
+        );
     }
 }
 
@@ -176,7 +193,12 @@ fn ends_of_the_scan() {
     rig.command("ce");
     rig.command("restore-at 6");
     rig.seconds(1.0);
-    assert!(rig.bit("M2059"), "{:?} {:?}", rig.messages(), rig.control.snapshot());
+    assert!(
+        rig.bit("M2059"),
+        "{:?} {:?}",
+        rig.messages(),
+        rig.control.snapshot()
+    );
     rig.command("stop");
     rig.seconds(0.1);
     assert!(!rig.bit("M2059"));

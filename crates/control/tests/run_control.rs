@@ -29,7 +29,9 @@ fn start_block(rig: &mut Rig) {
 #[test]
 fn single_block() {
     let cycle = "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SETUP -2\nCYCL DEF 1.2 DEPTH -6\nCYCL DEF 1.3 PECKG -3\nCYCL DEF 1.4 DWELL 0.2\nCYCL DEF 1.5 F3000";
-    let program = format!("TOOL CALL 0 Z S0\n{cycle}\nL X+60 R0 F6000 M3\nL Z+2 M8\nCYCL CALL M7\nL X+70 M99\nL X+80 M9");
+    let program = format!(
+        "TOOL CALL 0 Z S0\n{cycle}\nL X+60 R0 F6000 M3\nL Z+2 M8\nCYCL CALL M7\nL X+70 M99\nL X+80 M9"
+    );
     let mut rig = bench_with(ACKNOWLEDGE, &program);
     rig.command("mode single");
     start_block(&mut rig);
@@ -53,7 +55,9 @@ fn full_sequence_to_single_block_and_back() {
     rig.start();
     rig.until(3.0, "block 2", |rig| nominal(rig, 'X') > 65.0);
     rig.command("mode single");
-    rig.until(3.0, "the end of the block", |rig| state(rig) == RunState::BlockEnd);
+    rig.until(3.0, "the end of the block", |rig| {
+        state(rig) == RunState::BlockEnd
+    });
     near(display(&rig, 'X'), 70.0);
     start_block(&mut rig);
     near(display(&rig, 'X'), 80.0);
@@ -132,7 +136,9 @@ fn feed_override() {
 /// [000:4812-4814].
 #[test]
 fn rapid_override() {
-    let plc = format!("{ACKNOWLEDGE}       L     I20\n       IFT\n         L     K+6000\n         = D596\n       ENDI");
+    let plc = format!(
+        "{ACKNOWLEDGE}       L     I20\n       IFT\n         L     K+6000\n         = D596\n       ENDI"
+    );
     let mut rig = bench_with(&plc, "L X+450 R0 FMAX\nL X+50 FMAX");
     rig.start();
     for (percent, feed) in [(100, 15_000.0), (150, 15_000.0), (20, 3000.0)] {
@@ -225,7 +231,9 @@ fn mdi_while_a_program_is_interrupted() {
 /// START while an axis still brakes from manual operation waits until it stands.
 #[test]
 fn start_while_an_axis_brakes() {
-    let plc = format!("{ACKNOWLEDGE}       L     I20\n       = M2456\n       =N M2472\n       L     I14\n       = M2449\n       =N M2465");
+    let plc = format!(
+        "{ACKNOWLEDGE}       L     I20\n       = M2456\n       =N M2472\n       L     I14\n       = M2449\n       =N M2465"
+    );
     let mut rig = bench_with(&plc, "L X+150 R0 F3000");
     rig.command("mode manual");
     rig.event("key RAPID press");
@@ -239,10 +247,18 @@ fn start_while_an_axis_brakes() {
         rig.cycle();
         let now = (nominal(&rig, 'X') - before) / 0.003;
         before = nominal(&rig, 'X');
-        assert!(speed.is_nan() || (now - speed).abs() / 0.003 < 1001.0, "{speed} {now}");
+        assert!(
+            speed.is_nan() || (now - speed).abs() / 0.003 < 1001.0,
+            "{speed} {now}"
+        );
         speed = now;
     }
-    assert!(rig.control.snapshot().ended, "{:?} {:?}", rig.messages(), rig.control.snapshot());
+    assert!(
+        rig.control.snapshot().ended,
+        "{:?} {:?}",
+        rig.messages(),
+        rig.control.snapshot()
+    );
     near(display(&rig, 'X'), 150.0);
 }
 
@@ -256,7 +272,10 @@ fn error_in_the_program() {
     assert_eq!(state(&rig), RunState::Idle);
     near(display(&rig, 'X'), 55.0);
     let messages = rig.messages();
-    assert!(messages[0].starts_with("ARITHMETICAL ERROR program 1.H block 2"), "{messages:?}");
+    assert!(
+        messages[0].starts_with("ARITHMETICAL ERROR program 1.H block 2"),
+        "{messages:?}"
+    );
     rig.command("ce");
     rig.start();
     rig.seconds(0.5);
@@ -294,7 +313,10 @@ fn feed_enable_lost_on_the_path() {
     let (x, y) = (nominal(&rig, 'X'), nominal(&rig, 'Y'));
     rig.seconds(0.3);
     assert_eq!((nominal(&rig, 'X'), nominal(&rig, 'Y')), (x, y));
-    assert!(((x - 50.0) * 2.0 - (y - 50.0) * 5.0).abs() < 0.05, "on the path: {x} {y}");
+    assert!(
+        ((x - 50.0) * 2.0 - (y - 50.0) * 5.0).abs() < 0.05,
+        "on the path: {x} {y}"
+    );
     rig.event("key A release");
     rig.until(4.0, "the end", |rig| rig.control.snapshot().ended);
     assert_eq!(rig.messages(), [""; 0]);

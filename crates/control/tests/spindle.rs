@@ -41,8 +41,16 @@ fn diagram(plc: &str) -> Build {
     // Gear I 1500 rpm at 6 V, gear II 3000 rpm at 8 V and 3375 rpm at most, override 50 to 125 %, at least 1 V.
     let mut build = bench(plc);
     for parameter in [
-        "3510.0=1500", "3510.1=3000", "3210.0=6", "3210.1=8", "3515.0=1875", "3515.1=3375", "3310.0=125", "3310.1=50",
-        "3240.1=1", "3410.0=0.1",
+        "3510.0=1500",
+        "3510.1=3000",
+        "3210.0=6",
+        "3210.1=8",
+        "3515.0=1875",
+        "3515.1=3375",
+        "3310.0=125",
+        "3310.1=50",
+        "3240.1=1",
+        "3410.0=0.1",
     ] {
         build = build.mp(parameter);
     }
@@ -67,7 +75,10 @@ fn diagram_of_the_manual() {
         run(&mut rig, 5.0);
         rig.seconds(0.5);
         let spindle = rig.control.snapshot().spindle;
-        assert!((spindle.volts - volts).abs() < 0.001, "S{speed} {percent} %: {spindle:?}");
+        assert!(
+            (spindle.volts - volts).abs() < 0.001,
+            "S{speed} {percent} %: {spindle:?}"
+        );
         near(spindle.nominal_rpm, rpm);
         assert_eq!(spindle.gear, if speed > 1500 { 2 } else { 1 });
         assert_eq!(rig.number("D356"), speed * 1000);
@@ -79,7 +90,10 @@ fn diagram_of_the_manual() {
 /// The PLC's override in W764 replaces the potentiometer.
 #[test]
 fn override_by_the_plc() {
-    let plc = format!("{}       L     I20\n       IFT\n         L     K+60\n         = W764\n       ENDI", with_gear());
+    let plc = format!(
+        "{}       L     I20\n       IFT\n         L     K+60\n         = W764\n       ENDI",
+        with_gear()
+    );
     let mut rig = ready(diagram(&plc).program("1.H", "TOOL CALL 0 Z S1000\nM3"));
     run(&mut rig, 5.0);
     rig.event("key A press");
@@ -123,15 +137,24 @@ fn gear_change_with_jog() {
        = M2480
 "
     );
-    let plc = plc.replace("       L     W256\n       B=    O15\n", "       L     W256\n       == K+1\n       = O15\n");
+    let plc = plc.replace(
+        "       L     W256\n       B=    O15\n",
+        "       L     W256\n       == K+1\n       = O15\n",
+    );
     let build = diagram(&plc).mp("4110.13=10").mp("4110.14=5").mp("3240.2=0.6");
     let mut rig = ready(build.program("1.H", "TOOL CALL 0 Z S3000\nL X+60 R0 F6000"));
     rig.start();
     rig.until(1.0, "the gear strobe", |rig| rig.bit("M2043"));
-    assert_eq!((rig.number("W256"), rig.number("D356"), rig.number("D756")), (1, 3_000_000, 3_000_000));
+    assert_eq!(
+        (rig.number("W256"), rig.number("D356"), rig.number("D756")),
+        (1, 3_000_000, 3_000_000)
+    );
     let jog = edges(&mut rig, "M2490 M2491", 0.7);
     // 10 and 5 cycles of 20 ms, with a scan between them.
-    assert!(jog.starts_with("M2490+ M2490- M2491+ M2491- M2490+ M2490- M2491+ M2491-"), "{jog}");
+    assert!(
+        jog.starts_with("M2490+ M2490- M2491+ M2491- M2490+ M2490- M2491+ M2491-"),
+        "{jog}"
+    );
     rig.until(1.0, "jog left", |rig| rig.bit("M2490"));
     rig.seconds(0.1);
     near(rig.control.snapshot().spindle.volts, -0.6);
@@ -183,11 +206,19 @@ fn kinds_of_output() {
     let strobes = |mp3010: u8| {
         let build = diagram(&with_gear()).mp(&format!("3010={mp3010}"));
         let program = "TOOL CALL 1 Z S1000\nTOOL CALL 1 Z S1000\nTOOL CALL 1 Z S1120\nTOOL CALL 1 Z S3150";
-        let program = if mp3010 > 2 { program.replace("3150", "3000") } else { program.to_owned() };
+        let program = if mp3010 > 2 {
+            program.replace("3150", "3000")
+        } else {
+            program.to_owned()
+        };
         let mut rig = ready(build.program("1.H", &program));
         rig.start();
         let edges = edges(&mut rig, "M2043 M2044", 2.0);
-        assert!(rig.control.snapshot().ended, "MP3010 = {mp3010}: {:?}", rig.messages());
+        assert!(
+            rig.control.snapshot().ended,
+            "MP3010 = {mp3010}: {:?}",
+            rig.messages()
+        );
         [edges.matches("M2043+").count(), edges.matches("M2044+").count()]
     };
     assert_eq!(strobes(0), [0, 0]);
@@ -260,7 +291,11 @@ fn two_directions_are_a_fault() {
     rig.seconds(0.2);
     assert_eq!(rig.messages(), ["ERROR IN PLC-PROGRAM 1Q"]);
     rig.control.command("ce".parse().unwrap());
-    assert_eq!(rig.messages()[0], "ERROR IN PLC-PROGRAM 1Q", "it flashes: CE does not clear it");
+    assert_eq!(
+        rig.messages()[0],
+        "ERROR IN PLC-PROGRAM 1Q",
+        "it flashes: CE does not clear it"
+    );
 }
 
 /// M19 orients to the angle of cycle 13 (D592 = $80000000), M20 to MP4210.47; M2482 only when the
@@ -314,7 +349,11 @@ LBL FROM_MP
 #[test]
 fn orientation() {
     let program = "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 45\nTOOL CALL 0 Z S1000\nM19\nM20";
-    let build = diagram(ORIENTATION).mp("4210.47=120").mp("3440.0=5").mp("3520.1=60").mp("3410.1=0.05");
+    let build = diagram(ORIENTATION)
+        .mp("4210.47=120")
+        .mp("3440.0=5")
+        .mp("3520.1=60")
+        .mp("3410.1=0.05");
     let mut rig = ready(build.program("1.H", program));
     rig.start();
     rig.until(2.0, "M19", |rig| rig.bit("M1919"));
@@ -360,7 +399,10 @@ LBL ORIENT
             rig.event("key B press");
         }
         rig.event("key A press");
-        assert_eq!(edges(&mut rig, "M2712 M2127 M2007", 5.0), "M2712+ M2127+ M2712- M2127- M2007+");
+        assert_eq!(
+            edges(&mut rig, "M2712 M2127 M2007", 5.0),
+            "M2712+ M2127+ M2712- M2127- M2007+"
+        );
         let angle = rig.machine.spindle().unwrap().angle_deg.rem_euclid(360.0);
         assert!((angle - 30.0).abs() < 1.0, "{angle}");
         assert!(rig.control.snapshot().spindle.volts.abs() < 0.01);

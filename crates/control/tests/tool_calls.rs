@@ -15,7 +15,11 @@ fn build(parameters: &[&str], plc: &str, program: &str) -> Rig {
         build = build.mp(parameter);
     }
     let tool = |length, pocket, special| Tool {
-        shape: ToolShape { length, radius: 5.0, corner_radius: 0.0 },
+        shape: ToolShape {
+            length,
+            radius: 5.0,
+            corner_radius: 0.0,
+        },
         pocket,
         special,
     };
@@ -69,8 +73,15 @@ fn outputs_of_mp7480() {
 /// axes wait for both.
 #[test]
 fn two_strobes() {
-    let plc = ACKNOWLEDGE.replace("       L     M2046\n       = M2483\n", "       L     M2046\n       A     I20\n       = M2483\n");
-    let mut rig = build(&["7480.0=3"], &plc, "TOOL CALL 1 Z S0\nTOOL CALL 3 Z S0\nL X+60 R0 F6000");
+    let plc = ACKNOWLEDGE.replace(
+        "       L     M2046\n       = M2483\n",
+        "       L     M2046\n       A     I20\n       = M2483\n",
+    );
+    let mut rig = build(
+        &["7480.0=3"],
+        &plc,
+        "TOOL CALL 1 Z S0\nTOOL CALL 3 Z S0\nL X+60 R0 F6000",
+    );
     rig.event("key A press");
     rig.start();
     rig.until(2.0, "tool 1", |rig| rig.number("W262") == 11);
@@ -90,16 +101,25 @@ fn two_strobes() {
 /// T0: M2400 until another tool is called.
 #[test]
 fn tool_zero() {
-    let mut rig = build(&["7480.0=3"], ACKNOWLEDGE, "TOOL CALL 1 Z S0\nTOOL CALL 0 Z S0\nM8\nTOOL CALL 4 Z S0");
+    let mut rig = build(
+        &["7480.0=3"],
+        ACKNOWLEDGE,
+        "TOOL CALL 1 Z S0\nTOOL CALL 0 Z S0\nM8\nTOOL CALL 4 Z S0",
+    );
     rig.start();
-    assert_eq!(edges(&mut rig, "M2400 M2403 W262", 1.0), "W262=11 M2400+ M2400- M2403+ W262=14");
+    assert_eq!(
+        edges(&mut rig, "M2400 M2403 W262", 1.0),
+        "W262=11 M2400+ M2400- M2403+ W262=14"
+    );
 }
 
 /// The tip of a longer tool stands lower: the display of Z changes with the call, no axis moves; the next
 /// block drives the tip to its place. M2717 makes the geometry of the tool in W264 active [000:9217-9219].
 #[test]
 fn length_of_the_tool() {
-    let plc = format!("{ACKNOWLEDGE}       L     I20\n       AN    M0\n       = M1\n       L     I20\n       = M0\n       L     M1\n       IFT\n         L     K+1\n         = W264\n       ENDI\n       L     M1\n       S     M2717");
+    let plc = format!(
+        "{ACKNOWLEDGE}       L     I20\n       AN    M0\n       = M1\n       L     I20\n       = M0\n       L     M1\n       IFT\n         L     K+1\n         = W264\n       ENDI\n       L     M1\n       S     M2717"
+    );
     let mut rig = build(&["7480.0=1"], &plc, "TOOL CALL 2 Z S0\nM7\nL Z+10 R0 F6000");
     let z = rig.machine_position('Z');
     rig.command("mode single");

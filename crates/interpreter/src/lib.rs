@@ -289,7 +289,10 @@ impl Interpreter {
             return Ok(());
         }
         self.run.join_follows = next.is_some_and(|next| {
-            matches!(next.operation, Operation::Rounding { .. } | Operation::Chamfer { .. })
+            matches!(
+                next.operation,
+                Operation::Rounding { .. } | Operation::Chamfer { .. }
+            )
         });
         if self.kept.is_some() && self.run.recording.is_none() && acts(&block.operation) {
             // Warnings are no state to go back to.

@@ -370,7 +370,8 @@ impl Run {
                 synchronisation: Synchronisation::MnsSns,
             });
             barrier = Some(Barrier::Stop { block: self.block });
-        } else if self.machine && !functions.cycle_call && self.may_wait_for_plc(&element, &functions.output) {
+        } else if self.machine && !functions.cycle_call && self.may_wait_for_plc(&element, &functions.output)
+        {
             barrier = Some(Barrier::Acknowledge { block: self.block });
         }
         if !functions.output.is_empty() {

@@ -523,7 +523,11 @@ impl<E> Interpolator<E> {
         match self.phase {
             Phase::Begin => return Some(left),
             Phase::Gate(Gate::Start) | Phase::Move => {
-                let from = if item.length > 0.0 { covered / item.length } else { 0.0 };
+                let from = if item.length > 0.0 {
+                    covered / item.length
+                } else {
+                    0.0
+                };
                 (left.curve, left.start, left.end) =
                     element.curve.part(&element.start, &element.end, from, 1.0);
                 left.end = element.end;
@@ -538,7 +542,11 @@ impl<E> Interpolator<E> {
             }
             Phase::Gate(Gate::End) | Phase::Done | Phase::BlockEnd | Phase::Over => return None,
         }
-        let functions = element.functions().iter().filter(|function| later(function)).cloned();
+        let functions = element
+            .functions()
+            .iter()
+            .filter(|function| later(function))
+            .cloned();
         let functions: Vec<TechnologyFunction> = functions
             .map(|mut function| {
                 if let At::Length(length) = &mut function.at {

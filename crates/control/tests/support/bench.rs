@@ -70,9 +70,30 @@ max = [120, 100, 0]
 
 /// Machine parameters that differ from those of the mill.
 const PARAMETERS: &[&str] = &[
-    "10=%00111", "50=%00111", "30=0", "31=0", "32=0", "1350.0=1", "1350.1=1", "1350.2=1", "960.0=-52", "960.1=-52", "960.2=-52",
-    "910.0=500", "910.1=500", "910.2=500", "920.0=-500", "920.1=-500", "920.2=-500", "1060.0=1", "1060.1=1",
-    "1060.2=1", "7212=1", "4060.0=0", "4060.1=0", "4060.2=0",
+    "10=%00111",
+    "50=%00111",
+    "30=0",
+    "31=0",
+    "32=0",
+    "1350.0=1",
+    "1350.1=1",
+    "1350.2=1",
+    "960.0=-52",
+    "960.1=-52",
+    "960.2=-52",
+    "910.0=500",
+    "910.1=500",
+    "910.2=500",
+    "920.0=-500",
+    "920.1=-500",
+    "920.2=-500",
+    "1060.0=1",
+    "1060.1=1",
+    "1060.2=1",
+    "7212=1",
+    "4060.0=0",
+    "4060.1=0",
+    "4060.2=0",
 ];
 
 /// Panel and complements; the test's own lines run as module TEST in every scan.
@@ -170,7 +191,11 @@ pub fn edges(rig: &mut Rig, names: &str, seconds: f64) -> String {
     let now = |rig: &Rig| -> Vec<i32> {
         let value = |name: &str| match name.parse::<Bit>() {
             Ok(bit) => i32::from(rig.control.exchange().plc().bit(bit)),
-            Err(_) => rig.control.exchange().plc().number(name.parse::<Number>().unwrap()),
+            Err(_) => rig
+                .control
+                .exchange()
+                .plc()
+                .number(name.parse::<Number>().unwrap()),
         };
         names.split(' ').map(value).collect()
     };
