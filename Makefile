@@ -19,6 +19,10 @@ test: tools
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked --quiet
 	PROPTEST_RNG_SEED=$(SEED) $(CARGO) test --workspace --locked --quiet
+	@mkdir -p $(OUT)
+	BAHN_TRAIL=$(CURDIR)/$(OUT)/debug.trail $(CARGO) test -p bahn-control --locked --quiet --test reproducible every_build
+	BAHN_TRAIL=$(CURDIR)/$(OUT)/release.trail $(CARGO) test -p bahn-control --locked --quiet --release --test reproducible every_build
+	cmp $(OUT)/debug.trail $(OUT)/release.trail
 
 bench:
 	$(CARGO) bench --workspace --locked

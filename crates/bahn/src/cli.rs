@@ -6,8 +6,11 @@ use std::path::PathBuf;
 use bahn_parameters::ControlModel;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
+use crate::machine_folder::MachineFolderOptions;
 use crate::mp::MpOptions;
 use crate::plc::PlcOptions;
+use crate::run::RunMachineOptions;
+use crate::scope::ScopeOptions;
 use crate::{Outcome, UsageError, console};
 
 /// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
@@ -29,6 +32,14 @@ pub(crate) enum Command {
     /// Run a program without a machine: report, tool path, picture of the part.
     #[command(after_help = TEST_EXAMPLES)]
     Test(Box<TestOptions>),
+    /// Run a program on a simulated machine: power-up, reference run, program, with PLC and servo loops.
+    #[command(after_help = crate::run::EXAMPLES)]
+    Run(Box<RunMachineOptions>),
+    /// Draw recorded signals like an oscilloscope, and sum them up.
+    #[command(after_help = crate::scope::EXAMPLES)]
+    Scope(ScopeOptions),
+    /// Write, check and list folders of machines.
+    Machine(MachineFolderOptions),
     /// Show all errors of programs that can be found without running them.
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckOptions),
@@ -348,14 +359,14 @@ fn positive(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "it takes a length greater than 0 mm".to_owned())
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()
         .filter(|value| *value >= 0.0)
         .ok_or_else(|| "it takes a time of 0 s or more".to_owned())
 }
 
-fn override_percent(text: &str) -> Result<f64, String> {
+pub(crate) fn override_percent(text: &str) -> Result<f64, String> {
     finite(text.trim_end_matches('%'))
         .ok()
         .filter(|value| (0.0..=150.0).contains(value))
@@ -376,7 +387,7 @@ fn path_file(text: &str) -> Result<PathFile, String> {
     }
 }
 
-fn image_size(text: &str) -> Result<(u32, u32), String> {
+pub(crate) fn image_size(text: &str) -> Result<(u32, u32), String> {
     let wrong = || {
         let (least, most) = (bahn_workpiece::Page::MIN_SIDE, bahn_workpiece::Page::MAX_SIDE);
         format!("it takes width x height, as 1000x800, from {least} to {most}")

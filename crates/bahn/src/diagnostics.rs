@@ -1,6 +1,7 @@
 //! Errors as rustc prints them: message, place, the line with a mark, what to do.
 
 use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use bahn_program::{Operation, Program};
@@ -21,6 +22,33 @@ pub(crate) struct Diagnostic<'a> {
     pub label: String,
     /// What to do about it.
     pub help: Option<&'a str>,
+}
+
+/// Something to be said about a place in a file, kept until all files are read.
+#[derive(Clone, Debug)]
+pub(crate) struct FileFault {
+    pub severity: Severity,
+    pub title: String,
+    pub path: PathBuf,
+    pub marked: Marked,
+    /// What exactly is wrong; may be empty.
+    pub label: String,
+    pub help: Option<String>,
+}
+
+impl FileFault {
+    /// Prints it as rustc does, with an empty line behind it.
+    pub fn print(&self) {
+        print(&Diagnostic {
+            severity: self.severity,
+            title: &self.title,
+            path: &self.path.to_string_lossy(),
+            marked: self.marked.clone(),
+            label: self.label.clone(),
+            help: self.help.as_deref(),
+        });
+        print_line("");
+    }
 }
 
 /// A line of a file with the characters that are meant.

@@ -8,6 +8,8 @@
 //!   other rooms;
 //! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
 //!   `path_csv`, `path_svg` and `cutting` take the path elements;
+//! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
+//!   makes folders of machines;
 //! - `check`, `format`, `explain`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
 //!   `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
@@ -24,6 +26,7 @@ mod explain;
 mod files;
 mod format;
 mod interrupt;
+mod machine_folder;
 mod mp;
 mod path_csv;
 mod path_svg;
@@ -31,6 +34,8 @@ mod plc;
 mod progress;
 mod report;
 mod report_text;
+mod run;
+mod scope;
 mod settings;
 mod test_run;
 mod tool_table;
@@ -52,6 +57,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let result = match &command {
         cli::Command::Test(options) => test_run::command(options),
+        cli::Command::Run(options) => run::command(options),
+        cli::Command::Scope(options) => scope::command(options),
+        cli::Command::Machine(options) => machine_folder::command(options),
         cli::Command::Check(options) => check::command(options),
         cli::Command::Fmt(options) => format::command(options),
         cli::Command::Plc(options) => plc::command(options),

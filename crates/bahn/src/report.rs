@@ -75,7 +75,11 @@ impl Record {
     #[inline]
     pub fn element(&mut self, planned: &Planned) {
         self.machining_time_s += planned.duration_s();
-        let element = &planned.element;
+        self.path(&planned.element);
+    }
+
+    /// Takes the way and the functions of an element.
+    pub fn path(&mut self, element: &PathElement) {
         self.blocks = element.sequence;
         if element.curve != Curve::Hold {
             let length = element.curve.linear_length(&element.start, &element.end);

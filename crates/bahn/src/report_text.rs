@@ -2,29 +2,39 @@
 
 use std::fmt::Write;
 
-use crate::cli::{PathFile, TestOptions};
+use bahn_parameters::ControlModel;
+
+use crate::cli::{OutputOptions, PathFile};
 use crate::diagnostics::printable;
 use crate::report::Report;
 
 /// Entries of a list that are shown; the JSON report has more.
 const SHOWN: usize = 20;
 /// Width of the left column.
-const LABEL: usize = 18;
+pub(crate) const LABEL: usize = 18;
 
 /// The report with its lines.
-pub(crate) fn render(report: &Report, options: &TestOptions) -> String {
+pub(crate) fn render(report: &Report, model: ControlModel, written: &[String]) -> String {
     let mut text = String::new();
     let mut row = |label: &str, value: &str| {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{label:<LABEL$}{}", printable(value));
     };
+    head(&mut row, report, model);
+    body(&mut row, report);
+    list(&mut row, "Written", written, Clone::clone);
+    text
+}
+
+/// Program, result, time, path.
+pub(crate) fn head(row: &mut impl FnMut(&str, &str), report: &Report, model: ControlModel) {
     row(
         "Program",
         &format!(
             "{} ({}), {}",
             report.program,
             report.unit,
-            options.model.to_string().to_uppercase()
+            model.to_string().to_uppercase()
         ),
     );
     row("Result", &result(report));
@@ -42,6 +52,10 @@ pub(crate) fn render(report: &Report, options: &TestOptions) -> String {
             report.path_mm.feed, report.path_mm.rapid
         ),
     );
+}
+
+/// Blocks, tools, Q parameters, stops, warnings.
+pub(crate) fn body(row: &mut impl FnMut(&str, &str), report: &Report) {
     row("Blocks executed", &report.blocks_executed.to_string());
     row("Final position", &report.final_position.to_string());
     if let Some(removed) = report.removed_mm3 {
@@ -50,7 +64,7 @@ pub(crate) fn render(report: &Report, options: &TestOptions) -> String {
             &format!("{:.1} mm³ ({:.2} cm³)", removed, removed / 1000.0),
         );
     }
-    list(&mut row, "Tool calls", &report.tool_calls, |call| {
+    list(row, "Tool calls", &report.tool_calls, |call| {
         let tool = call
             .tool
             .map_or("no tool".to_owned(), |tool| format!("tool {tool}"));
@@ -64,17 +78,17 @@ pub(crate) fn render(report: &Report, options: &TestOptions) -> String {
         .take(100)
         .filter(|(_, value)| **value != 0.0)
         .collect();
-    list(&mut row, "Q parameters", &q, |(number, value)| {
+    list(row, "Q parameters", &q, |(number, value)| {
         format!("Q{number} = {value}")
     });
-    list(&mut row, "Stops", &report.stops, |stop| {
+    list(row, "Stops", &report.stops, |stop| {
         format!(
             "{} at {}",
             stop.function,
             place(&stop.program, stop.block, stop.line, report)
         )
     });
-    list(&mut row, "Warnings", &report.warnings, |warning| {
+    list(row, "Warnings", &report.warnings, |warning| {
         let times = if warning.count > 1 {
             format!(" ({} times)", warning.count)
         } else {
@@ -95,8 +109,6 @@ pub(crate) fn render(report: &Report, options: &TestOptions) -> String {
             &format!("{} more tool calls and stops are not listed", report.not_listed),
         );
     }
-    list(&mut row, "Written", &written(options), Clone::clone);
-    text
 }
 
 fn result(report: &Report) -> String {
@@ -128,7 +140,12 @@ fn place(program: &str, block: u32, line: u32, report: &Report) -> String {
 }
 
 /// Rows of a list, its name before the first.
-fn list<T>(row: &mut impl FnMut(&str, &str), name: &str, items: &[T], text: impl Fn(&T) -> String) {
+pub(crate) fn list<T>(
+    row: &mut impl FnMut(&str, &str),
+    name: &str,
+    items: &[T],
+    text: impl Fn(&T) -> String,
+) {
     let mut label = name;
     for item in items.iter().take(SHOWN) {
         row(label, &text(item));
@@ -142,11 +159,12 @@ fn list<T>(row: &mut impl FnMut(&str, &str), name: &str, items: &[T], text: impl
     }
 }
 
-fn written(options: &TestOptions) -> Vec<String> {
-    let paths = options.output.path.iter().map(|file| match file {
+/// The files that the output options name.
+pub(crate) fn written(output: &OutputOptions) -> Vec<String> {
+    let paths = output.path.iter().map(|file| match file {
         PathFile::Csv(path) | PathFile::Svg(path) => path,
     });
-    let all = paths.chain(&options.output.image).chain(&options.output.mesh);
+    let all = paths.chain(&output.image).chain(&output.mesh);
     all.map(|path| path.display().to_string()).collect()
 }
 

@@ -249,7 +249,7 @@ impl TestRun {
 }
 
 /// What stops in a block: STOP, M0 or M1; `None` for M6.
-fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'static str> {
+pub(crate) fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'static str> {
     let chunk = run
         .program(block.program)?
         .decode(block.block / Program::CHUNK_SIZE);
@@ -265,7 +265,7 @@ fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'static str> {
         .find_map(|(code, name)| m.contains(code).then_some(name))
 }
 
-fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
+pub(crate) fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
     let Some(program) = run.program(error.at.program) else {
         return;
     };
@@ -289,7 +289,11 @@ fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
 
 fn print_report(report: &Report, options: &TestOptions) -> Result<(), UsageError> {
     match options.format {
-        Format::Text => console::print(&report_text::render(report, options)),
+        Format::Text => console::print(&report_text::render(
+            report,
+            options.model,
+            &report_text::written(&options.output),
+        )),
         Format::Json => {
             let json = serde_json::to_string_pretty(report)
                 .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
@@ -300,7 +304,7 @@ fn print_report(report: &Report, options: &TestOptions) -> Result<(), UsageError
 
 /// The files that take the tool path.
 #[derive(Default)]
-struct Outputs {
+pub(crate) struct Outputs {
     tables: Vec<(PathTable, std::path::PathBuf)>,
     drawings: Vec<(PathDrawing, NewFile)>,
     /// Short names of the programs of the run by number.
@@ -308,7 +312,7 @@ struct Outputs {
 }
 
 impl Outputs {
-    fn create(wanted: &[PathFile]) -> Result<Outputs, UsageError> {
+    pub fn create(wanted: &[PathFile]) -> Result<Outputs, UsageError> {
         let mut outputs = Outputs::default();
         for file in wanted {
             match file {
@@ -326,11 +330,11 @@ impl Outputs {
         Ok(outputs)
     }
 
-    fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.tables.is_empty() && self.drawings.is_empty()
     }
 
-    fn element(
+    pub fn element(
         &mut self,
         element: &PathElement,
         run: &Interpreter,
@@ -359,7 +363,7 @@ impl Outputs {
         Ok(())
     }
 
-    fn finish(&mut self) -> Result<(), UsageError> {
+    pub fn finish(&mut self) -> Result<(), UsageError> {
         for (table, _) in self.tables.drain(..) {
             table.into_file().finish()?;
         }

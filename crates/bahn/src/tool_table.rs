@@ -1,8 +1,10 @@
 //! Tool tables: text with a line of column names and one line for each tool.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
 
+use bahn_control::Tool;
 use bahn_interpreter::ToolTable;
 use bahn_path::ToolShape;
 
@@ -11,12 +13,39 @@ use crate::{UsageError, files};
 /// Reads the tool table of a file.
 pub(crate) fn load(path: &Path) -> Result<ToolTable, UsageError> {
     let bytes = files::read_table(path)?;
-    parse(&String::from_utf8_lossy(&bytes))
-        .map_err(|error| UsageError::new(format!("{}: {error}", path.display())))
+    let tools = parse(&String::from_utf8_lossy(&bytes));
+    match tools {
+        Ok(tools) => Ok(tools
+            .into_iter()
+            .map(|(number, tool)| (number, tool.shape))
+            .collect()),
+        Err(faults) => Err(UsageError::new(format!(
+            "{}: {}",
+            path.display(),
+            faults.first().map(TableFault::to_string).unwrap_or_default()
+        ))),
+    }
 }
 
-/// Reads a tool table: see the help of `bahn test`.
-fn parse(text: &str) -> Result<ToolTable, String> {
+/// What is wrong in a line of a table, from 1; 0 is the table as a whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct TableFault {
+    pub line: u32,
+    pub message: String,
+}
+
+impl fmt::Display for TableFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => f.write_str(&self.message),
+            line => write!(f, "line {line}: {}", self.message),
+        }
+    }
+}
+
+/// Reads a tool table: see the help of `bahn test`. All faults are named.
+pub(crate) fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
+    let whole = |message: String| vec![TableFault { line: 0, message }];
     let text = text.trim_start_matches('\u{feff}');
     let mut lines = (1..)
         .zip(text.lines())
@@ -28,23 +57,35 @@ fn parse(text: &str) -> Result<ToolTable, String> {
         _ => 1.0,
     };
     let Some((_, header)) = lines.next() else {
-        return Err("the table is empty".into());
+        return Err(whole("the table is empty".into()));
     };
-    let columns = Columns::new(header, frame.is_some())?;
+    let columns = Columns::new(header, frame.is_some()).map_err(whole)?;
     let mut table = BTreeMap::new();
+    let mut faults = Vec::new();
     for (number, line) in lines {
         if matches!(first_word(line).to_ascii_uppercase().as_str(), "[END]" | "END") {
             break;
         }
-        let (tool, shape) = columns
-            .tool(line, unit_mm)
-            .map_err(|error| format!("line {number}: {error}"))?;
-        if table.insert(tool, shape).is_some() {
-            return Err(format!("line {number}: tool {tool} is there twice"));
+        let mut fault = |message| {
+            faults.push(TableFault {
+                line: number,
+                message,
+            })
+        };
+        match columns.tool(line, unit_mm) {
+            Ok((number, tool)) => {
+                if table.insert(number, tool).is_some() {
+                    fault(format!("tool {number} is there twice"));
+                }
+            }
+            Err(message) => fault(message),
         }
     }
-    Ok(table)
+    if faults.is_empty() { Ok(table) } else { Err(faults) }
 }
+
+/// Pockets of a magazine: MP7261 [000:10398]; 255 in W262 is a tool without one.
+const POCKET_MAX: u16 = 254;
 
 fn is_comment(line: &str) -> bool {
     let line = line.trim();
@@ -97,7 +138,7 @@ impl Columns {
         Ok(Columns { names, layout })
     }
 
-    fn tool(&self, line: &str, unit_mm: f64) -> Result<(u32, ToolShape), String> {
+    fn tool(&self, line: &str, unit_mm: f64) -> Result<(u32, Tool), String> {
         let fields = self.fields(line)?;
         let length = |name: &str| self.length(&fields, name).map(|value| value * unit_mm);
         let shape = ToolShape {
@@ -112,7 +153,26 @@ impl Columns {
         let tool = tool
             .parse::<u32>()
             .map_err(|_| format!("T: `{tool}` is no tool number"))?;
-        Ok((tool, shape))
+        let pocket = match self.field(&fields, "P") {
+            "" | "-" => None,
+            text => Some(
+                text.parse::<u16>()
+                    .ok()
+                    .filter(|pocket| *pocket <= POCKET_MAX)
+                    .ok_or_else(|| format!("P: `{text}` is no pocket from 0 to {POCKET_MAX}"))?,
+            ),
+        };
+        let special = match self.field(&fields, "ST").to_ascii_uppercase().as_str() {
+            "" | "-" | "0" | "N" => false,
+            "1" | "Y" | "J" | "S" | "ST" => true,
+            text => return Err(format!("ST: `{text}` is neither empty nor S")),
+        };
+        let tool_data = Tool {
+            shape,
+            pocket,
+            special,
+        };
+        Ok((tool, tool_data))
     }
 
     fn fields(&self, line: &str) -> Result<Vec<String>, String> {
@@ -187,11 +247,14 @@ fn column_starts(line: &str) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    fn shape(length: f64, radius: f64, corner_radius: f64) -> ToolShape {
-        ToolShape {
-            length,
-            radius,
-            corner_radius,
+    fn shape(length: f64, radius: f64, corner_radius: f64) -> Tool {
+        Tool {
+            shape: ToolShape {
+                length,
+                radius,
+                corner_radius,
+            },
+            ..Tool::default()
         }
     }
 
@@ -226,12 +289,25 @@ mod tests {
 
     #[test]
     fn errors_name_the_line() {
-        let error = |text| parse(text).unwrap_err();
+        let error = |text| parse(text).unwrap_err().first().unwrap().to_string();
         assert_eq!(error("T R\n1 5\n2 x"), "line 3: R: `x` is no number");
         assert_eq!(error("T R\n1 5\n1 6"), "line 3: tool 1 is there twice");
         assert_eq!(error("T R\n-1 5"), "line 2: T: `-1` is no tool number");
         assert_eq!(error("T R\n1 -5"), "line 2: a radius is negative");
         assert_eq!(error("\n"), "the table is empty");
         assert!(error("1 5 7").contains("no column T"));
+        assert_eq!(
+            error("T R P\n1 5 255"),
+            "line 2: P: `255` is no pocket from 0 to 254"
+        );
+        let all = parse("T R ST\n1 x\n2 5 ?\n3 1\n3 1").unwrap_err();
+        assert_eq!(all.iter().map(|fault| fault.line).collect::<Vec<_>>(), [2, 3, 5]);
+    }
+
+    #[test]
+    fn pockets_and_special_tools() {
+        let table = parse("T;L;R;P;ST\n1;80;5;12;\n2;60;50;3;S\n3;60;5;-;-\n").unwrap();
+        let kinds: Vec<_> = table.values().map(|tool| (tool.pocket, tool.special)).collect();
+        assert_eq!(kinds, [(Some(12), false), (Some(3), true), (None, false)]);
     }
 }

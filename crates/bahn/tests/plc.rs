@@ -230,11 +230,15 @@ fn traces_show_executed_lines() {
             .contains("cycle 1, MAIN.PLC")
     );
     assert_eq!(folder.bahn("plc run MAIN.PLC --trace 3..2").code(), 2);
+    folder.write("MAIN.PLC", "L K-1\nA K+43\n= W8\nEM\n");
+    let table = folder.bahn("plc trace MAIN.PLC --hex").out();
+    let columns: Vec<_> = table.lines().nth(3).unwrap().split_whitespace().collect();
+    assert_eq!(columns, ["2", "A", "K+43", "2Bh", "0", "2Bh"], "{table}");
 }
 
 #[test]
 fn listings_have_columns() {
-    let folder = folder("l i4;on\nIFT\nL K1\n= B0\nENDI\nEM\nLBL 5\nEM\n");
+    let folder = folder("l i4;on\nIFT\nL K1\n= B0\nENDI\nEM\nLBL 5\nEM\n  ; door\n");
     let run = folder.bahn("plc list MAIN.PLC");
     assert_eq!(run.code(), 0, "{}", run.err());
     let lines: Vec<String> = run.out().lines().map(str::to_owned).collect();
@@ -243,6 +247,7 @@ fn listings_have_columns() {
     assert_eq!(lines[3], "    3      L     K1");
     assert_eq!(lines[5], "    5    ENDI");
     assert_eq!(lines[7], "    7  LBL   5");
+    assert_eq!(lines[9], "    9  ; door");
 }
 
 #[test]
@@ -276,6 +281,9 @@ fn warnings_are_said_by_all_that_compile() {
         let run = folder.bahn(&format!("plc {command} MAIN.PLC"));
         assert_eq!(run.code(), 0);
         assert!(run.err().contains("warning: 5 "), "{command}: {}", run.err());
+        let strict = folder.bahn(&format!("plc {command} MAIN.PLC --strict"));
+        assert_eq!(strict.code(), 1);
+        assert!(strict.err().contains("error: 5 "), "{command}: {}", strict.err());
     }
 }
 

@@ -69,6 +69,12 @@ fn triggers_choose_the_cycles() {
     );
     let run = folder.bahn("plc diagram MAIN.PLC --show O2 --trigger O2=1 --before 5 --cycles 6");
     assert!(run.out().starts_with("cycles 1 to 6\n"), "{}", run.out());
+    // 0 is the negative edge, not the level of the first cycle.
+    let run = folder.bahn("plc diagram MAIN.PLC --show O2 --trigger O2=0 --before 1 --cycles 3");
+    assert_eq!(
+        run.out(),
+        "cycles 6 to 8\n          v trigger\n      O2 \u{2580}__\n"
+    );
     let run = folder.bahn("plc diagram MAIN.PLC --show O2 --trigger O3=1 --limit 50");
     assert_eq!(run.code(), 1);
     assert!(run.err().contains("within 50 cycles"), "{}", run.err());

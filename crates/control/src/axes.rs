@@ -5,7 +5,11 @@ use bahn_parameters::AxisParameters;
 use bahn_path::Axis;
 use bahn_servo::{Axis as Servo, Method, Timing};
 
+use crate::gantry::Coupling;
 use crate::panel::Direction;
+
+/// So far below 0 an axis counts as being at 0, degrees.
+const TURN_TOLERANCE_DEG: f64 = 1e-3;
 
 /// What moves an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,6 +67,12 @@ pub(crate) struct AxisUnit {
     pub limits: [f64; 2],
     /// At a software limit.
     pub at_limit: Option<Direction>,
+    /// The feed enable was withdrawn while it moved: 0 V until the enable is back.
+    pub halted: bool,
+    /// Where an interrupted path has left it, when the actual position became the nominal one meanwhile.
+    pub left_at: Option<f64>,
+    /// A synchronized slave is led by its master.
+    pub coupling: Option<Coupling>,
 }
 
 impl AxisUnit {
@@ -86,6 +96,9 @@ impl AxisUnit {
             in_position: true,
             limits: [f64::NEG_INFINITY, f64::INFINITY],
             at_limit: None,
+            halted: false,
+            left_at: None,
+            coupling: None,
             parameters,
         })
     }
@@ -93,6 +106,19 @@ impl AxisUnit {
     /// A PLC axis is driven by modules only [000:4094-4116].
     pub fn is_plc_axis(&self) -> bool {
         self.parameters.plc_axis
+    }
+
+    /// It is moved for itself: neither by modules of the PLC nor by its master.
+    pub fn is_free(&self) -> bool {
+        !self.is_plc_axis() && self.coupling.is_none()
+    }
+
+    /// What the status display shows as lag: a slave shows how far it is from its master [000:4490].
+    pub fn lag_mm(&self) -> f64 {
+        match &self.coupling {
+            Some(coupling) => coupling.gantry.difference_mm(),
+            None => self.servo.lag_mm(),
+        }
     }
 
     /// The software limits are effective: the axis is referenced and shows no modulo value [000:3442]
@@ -116,6 +142,20 @@ impl AxisUnit {
         self.ptp = PointToPoint::moving(position, self.speed);
     }
 
+    /// Takes over the nominal position of its master.
+    pub fn follow_master(&mut self, position: f64, speed_mm_s: f64) {
+        self.speed = speed_mm_s;
+        self.nominal = position;
+        self.ptp = PointToPoint::moving(position, speed_mm_s);
+    }
+
+    /// A clamped axis is wanted: its marker M2008 ff. falls, and the PLC is to close its loop [000:5407].
+    pub fn ask_to_unclamp(&mut self) {
+        if !self.servo.closed() {
+            self.in_position = false;
+        }
+    }
+
     /// Stands at once where it is: the loop was opened, or the feed enable withdrawn.
     pub fn stand(&mut self, position: f64) {
         self.nominal = position;
@@ -123,8 +163,12 @@ impl AxisUnit {
         self.ptp = PointToPoint::new(position);
     }
 
-    /// Makes the actual position the nominal one.
+    /// Makes the actual position the nominal one. On an interrupted path it is remembered where the path
+    /// left the axis: it goes on there.
     pub fn transfer(&mut self) {
+        if self.mover == Mover::Path {
+            self.left_at.get_or_insert(self.nominal);
+        }
         self.servo.transfer();
         self.stand(self.servo.actual_mm());
     }
@@ -136,30 +180,75 @@ impl AxisUnit {
 
     /// Whether it is held at its place, or not held at all.
     pub fn is_at_rest(&self) -> bool {
-        self.stands() && (self.servo.in_position() || !self.servo.closed())
+        !self.servo.closed() || self.stands() && self.servo.in_position()
     }
 
-    /// Chooses lag or feed pre-control for a kind of operation [000:4721-4733].
-    pub fn choose_method(&mut self, automatic: bool) {
+    /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag.
+    fn wanted_method(&self, automatic: bool) -> Method {
         let precontrol = &self.parameters.precontrol;
         let wanted = if automatic {
             precontrol.in_automatic
         } else {
             precontrol.in_manual
         };
-        self.servo.set_method(if wanted && !self.is_plc_axis() {
+        if wanted && !self.is_plc_axis() {
             Method::Precontrol
         } else {
             Method::Lag
-        });
+        }
     }
 
-    /// Says at which machine position a count is; nominal and actual position shift alike.
-    pub fn set_datum(&mut self, count: i64, position_mm: f64) {
+    /// Chooses lag or feed pre-control for a kind of operation; an axis that moves changes when it has come
+    /// to a standstill (inferred). Whether it has the method.
+    pub fn choose_method(&mut self, automatic: bool) -> bool {
+        let wanted = self.wanted_method(automatic);
+        if self.servo.method() == wanted {
+            return true;
+        }
+        let rests = self.is_at_rest();
+        if rests {
+            self.servo.set_method(wanted);
+        }
+        rests
+    }
+
+    /// Says at which machine position a count is; nominal and actual position shift alike, by the value
+    /// returned.
+    pub fn set_datum(&mut self, count: i64, position_mm: f64) -> f64 {
         let shift = self.servo.set_datum(count, position_mm);
         self.nominal += shift;
         self.last_actual += shift;
         self.ptp = PointToPoint::moving(self.nominal, self.speed);
+        shift
+    }
+
+    /// Counts within one turn again (MP810), after it has turned farther; nothing moves.
+    pub fn wrap(&mut self) {
+        let Some(modulo) = self.parameters.travel.modulo_deg else {
+            return;
+        };
+        let turns = ((self.nominal + TURN_TOLERANCE_DEG) / modulo).floor();
+        if turns != 0.0 {
+            let shift = -turns * modulo;
+            self.servo.shift(shift);
+            self.nominal += shift;
+            self.last_actual += shift;
+            self.ptp = PointToPoint::moving(self.nominal, self.speed);
+        }
+    }
+
+    /// A position as it is shown: within one turn where MP810 says so [000:6468-6484].
+    pub fn shown(&self, position: f64) -> f64 {
+        match self.parameters.travel.modulo_deg {
+            Some(modulo) => position.rem_euclid(modulo),
+            None => position,
+        }
+    }
+
+    /// Goes over to changed machine parameters, as far as they take effect without a restart.
+    pub fn set_parameters(&mut self, parameters: AxisParameters) {
+        self.servo.set_parameters(parameters);
+        self.parameters = parameters;
     }
 
     /// Goes on by a contour cycle: counts the way, remembers direction and lag.

@@ -26,13 +26,17 @@ use crate::run::ProgramRun;
 use crate::setup::{Remembered, Setup};
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
+use crate::upkeep::Upkeep;
 
 /// PLC cycles, µs [000:239] [000:10260].
 const PLC_CYCLE_US: u64 = 20_000;
 const PLC_CYCLE_407_US: u64 = 24_000;
 
+/// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
+const MILLISECOND_US: u32 = 1000;
+
 /// Elements of the path that are prepared ahead at most.
-const LOOK_AHEAD: usize = 512;
+pub(crate) const LOOK_AHEAD: usize = 512;
 
 /// A control with its PLC, axes and programs. The machine comes with every cycle.
 ///
@@ -76,11 +80,17 @@ pub struct Control {
     /// Active traverse range, 0 to 2.
     pub(crate) range: usize,
     pub(crate) tools: Tools,
+    pub(crate) upkeep: Upkeep,
+    pub(crate) test: Option<crate::test_run::TestRun>,
+    /// Tool changes and datums must be stored before their strobe is reset.
+    keeps: bool,
+    /// What is to be stored has changed since [`Control::stored`].
+    pub(crate) unsaved: bool,
     pub(crate) programs: Arc<dyn Programs>,
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
     log: Vec<(u64, Command)>,
-    inputs: [bool; INPUTS],
+    pub(crate) inputs: [bool; INPUTS],
     outputs: [bool; OUTPUTS],
     output_bits: Vec<(usize, Bit)>,
     input_bits: Vec<(usize, Bit)>,
@@ -119,6 +129,14 @@ impl Control {
                 AxisUnit::new(parameters.axis_parameters(index), timing)
             })
             .collect();
+        let mut axes = crate::gantry::couple(axes, timing);
+        for unit in &mut axes {
+            let volts = remembered.offsets_volts.get(unit.index).copied();
+            unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
+        }
+        let parameters_interval_s = axes
+            .first()
+            .map_or(0.0, |unit| unit.parameters.output.offset_interval_s);
         let mut places = [None; AXES];
         let mut letters = ['X', 'Y', 'Z', '4', '5'];
         for (place, unit) in axes.iter().enumerate() {
@@ -181,6 +199,10 @@ impl Control {
             datums,
             correction: [0.0; AXES],
             range: 0,
+            upkeep: Upkeep::new(parameters_interval_s),
+            test: None,
+            keeps: false,
+            unsaved: false,
             programs,
             q: remembered.q,
             log: Vec::new(),
@@ -195,6 +217,13 @@ impl Control {
             control.run.selected = Some(name);
         }
         control.select_range(0);
+        let active = control
+            .link
+            .files
+            .compensation
+            .as_ref()
+            .and_then(|file| file.active);
+        control.activate_compensation(active);
         control.preset_markers();
         if control.operation.power_interrupted {
             control.show(Message::Plain(MessageId::PowerInterrupted), false);
@@ -262,7 +291,15 @@ impl Control {
             plant.set_nominal(unit.parameters.output.output.into(), volts);
         }
         self.spindle.output(plant);
-        plant.advance(step_us);
+        let mut rest = step_us;
+        while rest > 0 && self.emergency.is_timing() {
+            let part = rest.min(MILLISECOND_US);
+            plant.advance(part);
+            rest -= part;
+            let now = self.now_us + u64::from(step_us - rest);
+            self.emergency.step(now, plant.control_ready());
+        }
+        plant.advance(rest);
         self.now_us += u64::from(step_us);
     }
 
@@ -291,6 +328,7 @@ impl Control {
                 self.exchange.nc_set(*bit, value);
             }
         }
+        self.publish_analogue(plant);
         let operator = plant.operator();
         self.feed_override
             .publish(&mut self.exchange, operator.feed_override_percent);
@@ -298,7 +336,7 @@ impl Control {
             .publish(&mut self.exchange, operator.spindle_override_percent);
         self.publish();
         self.link.program_running = self.run.is_active();
-        self.link.orienting = self.spindle.orienting();
+        self.link.orienting = self.spindle.is_orienting();
         let angle = self.spindle.angle_deg().unwrap_or(0.0);
         (self.link.spindle.actual, self.link.spindle.reference) = (angle, angle);
         self.plc.scans += 1;
@@ -340,13 +378,20 @@ impl Control {
     /// What is decided once in each contour cycle.
     fn contour_cycle(&mut self, plant: &mut dyn Plant) {
         self.follow_circuit();
-        self.follow_loops();
+        self.follow_loops(plant);
         self.take_faults();
-        if self.loops_closed {
-            self.move_axes(plant);
+        if !self.loops_closed || self.move_axes(plant) {
+            self.start_pressed = false;
         }
-        self.start_pressed = false;
-        if let Some(transfer) = self.handshakes.cycle(&mut self.exchange) {
+        // What a tool change leads to is on the medium before the PLC sees its end.
+        if let Some(Transfer::ToolCall { more: false, .. }) = self.handshakes.acknowledged(self.exchange.nc())
+            && self.tools.is_changing()
+        {
+            self.tools.inserted(&self.exchange);
+            self.unsaved = true;
+        }
+        let waits = self.keeps && self.unsaved;
+        if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
             self.acknowledged(transfer);
         }
         let percent = self.spindle_override.percent();
@@ -358,15 +403,13 @@ impl Control {
         for unit in &mut self.axes {
             unit.count();
         }
-        self.lubricate();
+        self.look_after();
     }
 
     /// What was acknowledged has its effect now.
     fn acknowledged(&mut self, transfer: Transfer) {
-        match transfer {
-            Transfer::ToolCall { more: false, .. } => self.tools.inserted(&self.exchange),
-            Transfer::Gear { .. } => self.spindle.gear_changed(),
-            _ => {}
+        if let Transfer::Gear { .. } = transfer {
+            self.spindle.gear_changed();
         }
     }
 
@@ -374,6 +417,7 @@ impl Control {
     pub fn prepare(&mut self) {
         self.prepare_restore();
         self.prepare_run();
+        self.prepare_test();
     }
 
     /// Gives a command of the operator; it is logged with the time. `false` when it is not possible now.
@@ -414,6 +458,28 @@ impl Control {
         self.exchange.nc()
     }
 
+    /// Lets the end of a tool change wait until what survives power-off is stored: whoever calls
+    /// [`Control::prepare`] asks [`Control::unsaved`], writes, and says [`Control::stored`].
+    pub fn keep_state(&mut self, keep: bool) {
+        self.keeps = keep;
+    }
+
+    /// What survives power-off when it has changed since it was stored.
+    pub fn unsaved(&self) -> Option<Remembered> {
+        self.unsaved.then(|| self.remember())
+    }
+
+    /// What survives power-off is on the medium.
+    pub fn stored(&mut self) {
+        self.unsaved = false;
+    }
+
+    /// The list of machine parameters that module 9033 has selected: the control is to be started anew with
+    /// it.
+    pub fn take_restart(&mut self) -> Option<bahn_parameters::ParameterList> {
+        std::mem::take(&mut self.run.restart_wanted).then(|| self.link.list().clone())
+    }
+
     /// What survives power-off, as of now.
     pub fn remember(&self) -> Remembered {
         Remembered {
@@ -434,7 +500,7 @@ impl Control {
 }
 
 /// The limits of the path: those of the axes by their letters.
-fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[AxisUnit]) -> PathLimits {
+pub(crate) fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[AxisUnit]) -> PathLimits {
     let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
         Axis::ALL.map(|axis| {
             axes.iter()

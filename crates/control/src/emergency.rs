@@ -63,9 +63,12 @@ pub(crate) struct EmergencyStop {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     PowerInterrupted,
-    /// Waiting for the voltage before the test by a processor, or after the last one.
+    /// Waiting for the voltage before the test by a processor, or after the last one; it is said to be
+    /// missing from a time on.
     Waiting {
         tested: u8,
+        missing_from: u64,
+        missing: bool,
     },
     /// The voltage is seen; the output drops at a time.
     Recognised {
@@ -88,6 +91,13 @@ enum State {
     Back,
 }
 
+/// Waiting for the voltage from power-on.
+const WAITING: State = State::Waiting {
+    tested: 0,
+    missing_from: 0,
+    missing: true,
+};
+
 impl EmergencyStop {
     pub fn new(model: ControlModel, power_interrupted: bool) -> EmergencyStop {
         EmergencyStop {
@@ -95,7 +105,7 @@ impl EmergencyStop {
             state: if power_interrupted {
                 State::PowerInterrupted
             } else {
-                State::Waiting { tested: 0 }
+                WAITING
             },
         }
     }
@@ -103,13 +113,19 @@ impl EmergencyStop {
     pub fn circuit(&self) -> Circuit {
         match self.state {
             State::PowerInterrupted => Circuit::PowerInterrupted,
-            State::Waiting { .. } => Circuit::VoltageMissing,
+            State::Waiting { missing: true, .. } => Circuit::VoltageMissing,
+            State::Waiting { .. } => Circuit::Testing,
             State::Recognised { .. } | State::Dropped { .. } | State::Fallen { .. } => Circuit::Testing,
             State::Defective => Circuit::Defective,
             State::Ready => Circuit::Ready,
             State::Lost => Circuit::EmergencyStop,
             State::Back => Circuit::VoltageBack,
         }
+    }
+
+    /// The acknowledgement is timed: it is looked at each millisecond, however long a servo step is.
+    pub fn is_timing(&self) -> bool {
+        matches!(self.state, State::Dropped { .. })
     }
 
     /// The output X41/34.
@@ -124,21 +140,33 @@ impl EmergencyStop {
     pub fn step(&mut self, now_us: u64, acknowledged: bool) {
         let test = &self.test;
         self.state = match self.state {
-            State::Waiting { tested } if acknowledged && tested >= test.processors => State::Ready,
-            State::Waiting { tested } if acknowledged => State::Recognised {
+            State::Waiting { tested, .. } if acknowledged && tested >= test.processors => State::Ready,
+            State::Waiting { tested, .. } if acknowledged => State::Recognised {
                 tested,
                 until: now_us + test.recognise_us,
+            },
+            State::Waiting {
+                tested, missing_from, ..
+            } => State::Waiting {
+                tested,
+                missing_from,
+                missing: now_us >= missing_from,
             },
             State::Recognised { tested, until } if now_us >= until => State::Dropped {
                 tested,
                 until: now_us + test.fall_us,
             },
-            State::Dropped { tested, .. } if !acknowledged => State::Fallen {
+            State::Dropped { tested, until } if !acknowledged && now_us <= until => State::Fallen {
                 tested,
                 until: now_us + test.restore_us,
             },
-            State::Dropped { until, .. } if now_us >= until => State::Defective,
-            State::Fallen { tested, until } if now_us >= until => State::Waiting { tested: tested + 1 },
+            State::Dropped { until, .. } if now_us > until => State::Defective,
+            State::Fallen { tested, until } if now_us >= until => State::Waiting {
+                tested: tested + 1,
+                // The relay needs its time to come back (inferred: as long as it may take to fall).
+                missing_from: now_us + test.fall_us,
+                missing: false,
+            },
             State::Ready if !acknowledged => State::Lost,
             State::Lost if acknowledged => State::Back,
             State::Back if !acknowledged => State::Lost,
@@ -149,7 +177,7 @@ impl EmergencyStop {
     /// CE: goes on after `POWER INTERRUPTED`, and after an EMERGENCY STOP when the voltage is back.
     pub fn clear(&mut self) -> bool {
         self.state = match self.state {
-            State::PowerInterrupted => State::Waiting { tested: 0 },
+            State::PowerInterrupted => WAITING,
             State::Back => State::Ready,
             _ => return false,
         };

@@ -192,10 +192,11 @@ impl Handshakes {
         self.active.is_some()
     }
 
-    /// Goes on by one control cycle; the transfer that was acknowledged in it.
-    pub fn cycle(&mut self, exchange: &mut Exchange) -> Option<Transfer> {
+    /// Goes on by one control cycle; the transfer that was acknowledged in it. Its strobe is reset only
+    /// when it `may_end`.
+    pub fn cycle(&mut self, exchange: &mut Exchange, may_end: bool) -> Option<Transfer> {
         if let Some(transfer) = self.active {
-            if !exchange.nc().bit(transfer.handshake().acknowledge) {
+            if !may_end || !exchange.nc().bit(transfer.handshake().acknowledge) {
                 return None;
             }
             transfer.end(exchange);
@@ -208,6 +209,12 @@ impl Handshakes {
             self.active = self.queue.pop_front();
         }
         None
+    }
+
+    /// The transfer that the PLC has acknowledged and whose strobe is still set.
+    pub fn acknowledged(&self, nc: &Image) -> Option<Transfer> {
+        self.active
+            .filter(|transfer| nc.bit(transfer.handshake().acknowledge))
     }
 
     /// What is waited for.
@@ -248,7 +255,7 @@ mod tests {
         let mut handshakes = Handshakes::default();
         handshakes.push(Transfer::M(3));
         handshakes.push(Transfer::M(8));
-        assert_eq!(handshakes.cycle(&mut exchange), None);
+        assert_eq!(handshakes.cycle(&mut exchange, true), None);
         assert!(
             !exchange.plc().bit(signal::M_FUNCTION_STROBE),
             "the PLC sees it with the next scan"
@@ -256,25 +263,25 @@ mod tests {
         scan(&mut exchange, false);
         assert!(exchange.plc().bit(signal::M_FUNCTION_STROBE));
         assert_eq!(exchange.plc().number(signal::M_CODE), 3);
-        assert_eq!(handshakes.cycle(&mut exchange), None, "not acknowledged");
+        assert_eq!(handshakes.cycle(&mut exchange, true), None, "not acknowledged");
         assert_eq!(handshakes.waiting(exchange.nc()), Some(Waiting::Acknowledge(M)));
         scan(&mut exchange, true);
-        assert_eq!(handshakes.cycle(&mut exchange), Some(Transfer::M(3)));
+        assert_eq!(handshakes.cycle(&mut exchange, true), Some(Transfer::M(3)));
         assert!(
             exchange.plc().bit(signal::M_FUNCTION_STROBE),
             "until the next scan"
         );
-        assert_eq!(handshakes.cycle(&mut exchange), None);
+        assert_eq!(handshakes.cycle(&mut exchange, true), None);
         assert_eq!(
             handshakes.waiting(exchange.nc()),
             Some(Waiting::AcknowledgeReset(M))
         );
         scan(&mut exchange, true);
         assert!(!exchange.plc().bit(signal::M_FUNCTION_STROBE));
-        assert_eq!(handshakes.cycle(&mut exchange), None);
+        assert_eq!(handshakes.cycle(&mut exchange, true), None);
         assert_eq!(exchange.nc().number(signal::M_CODE), 3, "M2482 is still set");
         scan(&mut exchange, false);
-        assert_eq!(handshakes.cycle(&mut exchange), None);
+        assert_eq!(handshakes.cycle(&mut exchange, true), None);
         assert_eq!(exchange.nc().number(signal::M_CODE), 8);
     }
 
@@ -285,11 +292,11 @@ mod tests {
         exchange.nc_set(signal::ENABLE_DECODED_M, true);
         let mut handshakes = Handshakes::default();
         handshakes.push(Transfer::M(70));
-        handshakes.cycle(&mut exchange);
+        handshakes.cycle(&mut exchange, true);
         let m1970 = signal::DECODED_M_FUNCTIONS.get(70);
         assert_eq!(m1970.map(|marker| exchange.nc().bit(marker)), Some(true));
         scan(&mut exchange, true);
-        assert_eq!(handshakes.cycle(&mut exchange), Some(Transfer::M(70)));
+        assert_eq!(handshakes.cycle(&mut exchange, true), Some(Transfer::M(70)));
         assert_eq!(m1970.map(|marker| exchange.nc().bit(marker)), Some(false));
     }
 
@@ -302,7 +309,7 @@ mod tests {
             values: [Some(202_500), Some(1_000_000)],
             inch: false,
         });
-        handshakes.cycle(&mut exchange);
+        handshakes.cycle(&mut exchange, true);
         exchange.begin_scan();
         let plc = exchange.plc();
         assert!(plc.bit(signal::FN19_STROBE) && !plc.bit(signal::FN19_INCH));
@@ -316,7 +323,7 @@ mod tests {
         let mut handshakes = Handshakes::default();
         handshakes.push(Transfer::SCode(80));
         handshakes.push(Transfer::M(3));
-        handshakes.cycle(&mut exchange);
+        handshakes.cycle(&mut exchange, true);
         assert!(exchange.nc().bit(signal::S_STROBE));
         handshakes.abort(&mut exchange);
         assert!(!exchange.nc().bit(signal::S_STROBE) && handshakes.is_idle());

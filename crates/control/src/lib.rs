@@ -19,11 +19,13 @@
 
 mod axes;
 mod command;
+mod compensation;
 mod control;
 mod emergency;
 mod feeder;
 mod follow;
 mod functions;
+mod gantry;
 mod handshake;
 mod loops;
 mod manual;
@@ -46,9 +48,13 @@ mod snapshot;
 mod spindle;
 mod status;
 mod strobes;
+mod test_run;
 mod tools;
+mod upkeep;
+mod watch;
 
 pub use command::{Command, CommandError, Mode};
+pub use compensation::{CompensationAssignment, CompensationError, CompensationTable};
 pub use control::Control;
 pub use feeder::Programs;
 pub use handshake::{Handshake, Transfer, Waiting};
@@ -60,3 +66,4 @@ pub use setup::{Position0, Remembered, Setup, Tool};
 pub use signal::{AxisSignal, Signal, SignalError};
 pub use snapshot::{AxisState, Snapshot};
 pub use spindle::SpindleState;
+pub use test_run::{TestReport, TestState};

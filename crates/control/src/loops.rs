@@ -2,12 +2,13 @@
 
 use bahn_exchange::signal;
 use bahn_parameters::MessageId;
-use bahn_servo::Fault;
+use bahn_servo::{Fault, Plant};
 
+use crate::axes::Mover;
 use crate::command::Mode;
 use crate::control::Control;
 use crate::emergency::Circuit;
-use crate::markers::{MONITORING_OFF, OPEN_LOOP};
+use crate::markers::{AXES, MONITORING_OFF, OPEN_LOOP};
 use crate::message::Message;
 
 const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
@@ -56,7 +57,12 @@ impl Control {
             return;
         }
         self.show(EMERGENCY_STOP, false);
-        if self.axes.iter().all(|unit| unit.stands()) {
+        // What the PLC positions ends with it; the strobes are reset [000:4013-4019].
+        for index in 0..AXES {
+            self.end_positioning(index);
+        }
+        self.positioning.stop();
+        if self.loops_closed && self.axes.iter().all(|unit| unit.stands()) {
             self.open_loops();
         }
     }
@@ -68,35 +74,38 @@ impl Control {
             unit.transfer();
             unit.servo.close();
         }
-        if self
-            .axes
-            .iter()
-            .any(|unit| !unit.referenced && !unit.is_plc_axis())
-        {
-            self.mode = Mode::Reference;
+        crate::gantry::switch_on(&mut self.axes);
+        if !std::mem::replace(&mut self.reference.asked, true) && self.reference_is_missing(true) {
+            self.set_mode(Mode::Reference);
         }
     }
 
     pub(crate) fn open_loops(&mut self) {
         self.loops_closed = false;
         self.spindle.open();
+        self.manual.stop();
+        self.reference.abort();
+        self.positioning.stop();
+        self.path.halt();
         for unit in &mut self.axes {
             unit.servo.open();
-            unit.stand(unit.servo.actual_mm());
-            unit.mover = crate::axes::Mover::None;
+            unit.transfer();
+            unit.mover = Mover::None;
         }
     }
 
     /// Opens and closes the loop of each axis as the PLC asks for, and gives the feed enable
     /// [000:5352-5369] [000:5403-5421].
-    pub(crate) fn follow_loops(&mut self) {
+    pub(crate) fn follow_loops(&mut self, plant: &mut dyn Plant) {
+        let monitoring_off = self.monitoring_is_off(plant);
         let nc = self.exchange.nc();
         let all_open = nc.bit(signal::NC_STOP_AND_OPEN_LOOPS);
         let by_axis = nc.number(signal::FEED_ENABLE_AXES);
         for unit in self.axes.iter_mut().filter(|unit| unit.parameters.controlled) {
             let open = OPEN_LOOP.get(unit.index).is_some_and(|marker| nc.bit(*marker));
             let wanted = self.loops_closed && !open && !all_open;
-            if wanted && !unit.servo.closed() {
+            let sound = unit.servo.fault().is_none_or(Fault::cancellable);
+            if wanted && sound && !unit.servo.closed() {
                 // A clamped axis goes back to its nominal position, unless it was moved meanwhile.
                 let moved = (unit.servo.actual_mm() - unit.nominal).abs();
                 if moved > unit.parameters.monitoring.standstill_mm {
@@ -108,24 +117,42 @@ impl Control {
                 unit.stand(unit.nominal);
             }
             let enabled = self.panel.feed_enable || by_axis >> unit.index & 1 != 0;
-            if unit.enabled && !enabled {
-                // The voltage is 0 at once, without a ramp [000:5352].
+            if unit.enabled && !enabled && !(unit.stands() && unit.servo.in_position()) {
+                // The voltage is 0 at once, without a ramp [000:5352]. An axis that stands is held in its
+                // loop (inferred).
+                unit.halted = true;
                 unit.stand(unit.nominal);
-            } else if !unit.enabled && enabled && !self.run.is_active() {
-                unit.transfer();
+            } else if unit.halted && enabled {
+                // The lag that was left is driven out on a path; by hand the axis stands where it stopped.
+                unit.halted = false;
+                if unit.mover != Mover::Path {
+                    unit.transfer();
+                }
             }
             unit.enabled = enabled;
-            unit.servo.set_enabled(enabled || unit.stands());
-            unit.servo.set_monitored(
-                MONITORING_OFF
-                    .get(unit.index)
-                    .is_none_or(|marker| !nc.bit(*marker)),
-            );
+            unit.servo.set_enabled(!unit.halted);
+            let suppressed = MONITORING_OFF
+                .get(unit.index)
+                .is_some_and(|marker| nc.bit(*marker));
+            unit.servo.set_monitored(!(suppressed || monitoring_off));
         }
         if all_open {
             self.spindle.open();
             self.stop_run();
         }
+    }
+
+    /// W522 bit 0 lets the input MP4130, sampled in each control cycle, switch the monitoring off
+    /// [000:5178-5188].
+    fn monitoring_is_off(&mut self, plant: &mut dyn Plant) -> bool {
+        let permitted = self.exchange.nc().number(signal::MONITORING_SUPPRESSION) & 1 != 0;
+        let Some(input) = self.plc_parameters.monitoring_input.filter(|_| permitted) else {
+            return false;
+        };
+        plant.inputs(&mut self.inputs);
+        self.inputs
+            .get(usize::from(input.input))
+            .is_some_and(|high| *high == input.active_high)
     }
 
     /// Faults of the loops: message and machine stop [000:5162].
@@ -138,19 +165,24 @@ impl Control {
                 continue;
             };
             let message = Message::axis(fault.message(), unit.index, fault.letter());
-            if fault == Fault::Positioning && self.messages.contains(&message) {
+            if self.messages.contains(&message) {
                 continue;
             }
             self.show(message, !fault.cancellable());
             self.stop_run();
+            // An error with stop ends what the PLC positions [000:4013-4019].
+            for index in 0..AXES {
+                self.end_positioning(index);
+            }
         }
     }
 
-    /// NC stop is given by the PLC, the circuit or a flashing message.
+    /// NC stop is given by the PLC, the circuit, a flashing message or a fault of an axis.
     pub(crate) fn stop_given(&self) -> bool {
         self.panel.stop
             || self.exchange.nc().bit(signal::NC_STOP_AND_OPEN_LOOPS)
             || self.emergency.circuit() != Circuit::Ready
             || self.messages.is_fatal()
+            || self.axes.iter().any(|unit| unit.servo.fault().is_some())
     }
 }

@@ -2,6 +2,7 @@
 
 use bahn_exchange::signal;
 use bahn_motion::Aim;
+use bahn_parameters::Handwheel;
 
 use crate::axes::{AxisUnit, Mover};
 use crate::command::Mode;
@@ -20,7 +21,7 @@ const FACTOR_MAX: u8 = 10;
 /// What manual operation remembers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Manual {
-    /// Latched direction keys (M2450 with MP7680 bit 0).
+    /// Direction keys that were latched (M2450 with MP7680 bit 0): they count until NC stop [000:7545-7552].
     latched: [Option<Direction>; AXES],
     /// Jog increment, mm.
     pub increment: f64,
@@ -34,8 +35,8 @@ pub(crate) struct Manual {
     pub factors: [u8; AXES],
     /// Handwheel count up to which it was followed.
     count: Option<i64>,
-    /// Where the handwheel leads the axis to.
-    wheel: Option<f64>,
+    /// Axis index that the handwheel leads, and where to.
+    wheel: Option<(usize, f64)>,
     /// Axis key pressed last.
     pub last_key: usize,
     /// M function that was entered and waits for NC start.
@@ -66,6 +67,11 @@ impl Default for Manual {
 }
 
 impl Manual {
+    /// Counts the handwheel without following it.
+    pub fn forget_turns(&mut self, count: i64) {
+        self.count = Some(count);
+    }
+
     /// Lets go of everything.
     pub fn stop(&mut self) {
         self.latched = [None; AXES];
@@ -74,7 +80,7 @@ impl Manual {
     }
 }
 
-/// Least interpolation factor that the rapid traverse allows [000:8075-8092].
+/// Least interpolation factor that the rapid traverse of the slowest axis allows [000:8075-8092].
 pub(crate) fn factor_min(rapid_mm_min: f64) -> u8 {
     // Rapid traverse from which on factors 0 to 4 are possible.
     const FROM: [f64; 5] = [12_000.0, 6_000.0, 3_000.0, 1_500.0, 750.0];
@@ -115,9 +121,6 @@ impl Control {
         } else {
             self.panel.axis_keys
         };
-        if !(self.panel.memory && self.operation.keys_latched) {
-            self.manual.latched = [None; AXES];
-        }
         for (index, (key, latched)) in keys.iter_mut().zip(&mut self.manual.latched).enumerate() {
             if key.is_some() {
                 self.manual.last_key = index;
@@ -143,14 +146,21 @@ impl Control {
         let rapid_limit = self.rapid_limit_mm_min();
         let stop = self.stop_given();
         let jog = self.jog_target(place, index);
-        let wheel = self.manual.wheel.filter(|_| self.manual.handwheel_axis == index);
+        let wheel = self.manual.wheel.filter(|(axis, _)| *axis == index);
+        let wheel = wheel.map(|(_, target)| target);
         let Some(unit) = self.axes.get_mut(place) else {
             return;
         };
-        if !matches!(unit.mover, Mover::None | Mover::Manual) || unit.is_plc_axis() {
+        if !matches!(unit.mover, Mover::None | Mover::Manual) || !unit.is_free() {
             return;
         }
         if !(unit.servo.closed() && unit.enabled) {
+            if !stop && (key.is_some() || jog.is_some() || wheel.is_some()) {
+                unit.ask_to_unclamp();
+            }
+            if unit.mover == Mover::Manual && unit.stands() {
+                unit.mover = Mover::None;
+            }
             return;
         }
         let motion = unit.parameters.motion;
@@ -244,13 +254,22 @@ impl Control {
     fn turn_handwheel(&mut self, count: i64) {
         let before = self.manual.count.replace(count).unwrap_or(count);
         let index = self.manual.handwheel_axis;
+        if self.manual.wheel.is_some_and(|(axis, _)| axis != index) {
+            self.manual.wheel = None;
+        }
+        let slowest = self
+            .axes
+            .iter()
+            .map(|unit| unit.parameters.motion.rapid_mm_min)
+            .fold(f64::INFINITY, f64::min);
         let unit = self
             .places
             .get(index)
             .copied()
             .flatten()
             .and_then(|place| self.axes.get(place));
-        let Some(unit) = unit.filter(|_| self.mode == Mode::Handwheel) else {
+        let there = self.mode == Mode::Handwheel && self.operation.handwheel.kind != Handwheel::None;
+        let Some(unit) = unit.filter(|_| there) else {
             self.manual.wheel = None;
             return;
         };
@@ -262,7 +281,7 @@ impl Control {
                 self.manual.count = Some(before);
             }
         } else if steps != 0 {
-            let least = factor_min(unit.parameters.motion.rapid_mm_min);
+            let least = factor_min(slowest);
             let factor = self
                 .manual
                 .factors
@@ -277,11 +296,11 @@ impl Control {
             } else {
                 -1.0
             };
-            let from = self.manual.wheel.unwrap_or(unit.nominal);
+            let from = self.manual.wheel.map_or(unit.nominal, |(_, target)| target);
             let target = from + sign * steps as f64 / HANDWHEEL_STEPS * travel;
-            self.manual.wheel = Some(within(unit, target));
+            self.manual.wheel = Some((index, within(unit, target)));
         }
-        if self.manual.wheel == Some(unit.nominal) && unit.stands() {
+        if self.manual.wheel == Some((index, unit.nominal)) && unit.stands() {
             self.manual.wheel = None;
         }
     }

@@ -5,12 +5,28 @@ use bahn_servo::Plant;
 use crate::axes::Mover;
 use crate::command::Mode;
 use crate::control::Control;
+use crate::restore::Restore;
+use crate::run::RunState;
 
 impl Control {
-    /// Finds the nominal positions of all axes for the end of the contour cycle.
-    pub(crate) fn move_axes(&mut self, plant: &mut dyn Plant) {
+    /// Finds the nominal positions of all axes for the end of the contour cycle. `false` as long as the
+    /// operating mode waits for axes to come to a standstill: NC start then counts later.
+    pub(crate) fn move_axes(&mut self, plant: &mut dyn Plant) -> bool {
+        self.count_display_axes();
         let handwheel = plant.operator().handwheel_count;
+        if self.mode != Mode::Handwheel {
+            // What is turned in another mode moves nothing later.
+            self.manual.forget_turns(handwheel);
+        }
+        let automatic = self.mode.is_automatic();
+        let mut ready = true;
+        for unit in &mut self.axes {
+            ready &= unit.choose_method(automatic && !self.reference.is_running());
+        }
+        let waits = automatic && !ready && !self.run.is_active();
         match self.mode {
+            // What the mode before moved comes to a standstill first.
+            _ if waits => {}
             Mode::Manual | Mode::Handwheel => {
                 if self.start_pressed && !self.stop_given() {
                     self.output_entered();
@@ -31,7 +47,7 @@ impl Control {
         self.move_plc_axes();
         self.move_rotation();
         for unit in self.axes.iter_mut() {
-            if unit.mover == Mover::None && !unit.stands() {
+            if unit.mover == Mover::None && !unit.stands() && unit.coupling.is_none() {
                 // Nobody moves it any more: down to a standstill.
                 let rapid = unit.parameters.motion.rapid_mm_min;
                 unit.drive(
@@ -40,9 +56,37 @@ impl Control {
                     rapid,
                 );
             }
-            unit.servo.command(unit.nominal);
+            if unit.coupling.is_none() {
+                unit.servo.command(unit.nominal);
+            }
+        }
+        crate::gantry::command(&mut self.axes);
+        if self.run.state == RunState::Idle {
+            for unit in &mut self.axes {
+                unit.left_at = None;
+                if unit.mover == Mover::None && unit.stands() {
+                    unit.wrap();
+                }
+            }
         }
         self.note_deviation();
+        !waits
+    }
+
+    /// After a stop in which axes lost their nominal positions (EMERGENCY STOP, POSITIONING ERROR) they go
+    /// back to where the path left them before it goes on (inferred).
+    pub(crate) fn return_to_path(&mut self) {
+        let mut target = self.machine_position();
+        let mut away = false;
+        for unit in &mut self.axes {
+            if let Some(left_at) = unit.left_at.take() {
+                target[unit.axis] = left_at;
+                away |= left_at != unit.nominal;
+            }
+        }
+        if away && self.run.restore.is_none() {
+            self.run.restore = Some(Restore::Moving { target });
+        }
     }
 
     /// The distance of the actual position from the nominal path: the part of the lag that is across the

@@ -75,18 +75,14 @@ impl Control {
         if self.mode == Mode::Reference {
             self.reference.abort();
         }
-        self.mode = mode;
-        self.manual.stop();
+        // What the old mode moved comes to a standstill on its ramp.
         for unit in &mut self.axes {
-            // What moved the axis lets go of it: it comes to a standstill.
-            if matches!(unit.mover, Mover::Manual | Mover::Reference) {
+            if matches!(unit.mover, Mover::Reference | Mover::Manual) {
                 unit.mover = Mover::None;
             }
-            // With the lag of a movement the other method would see a positioning error.
-            if unit.is_at_rest() || !mode.is_automatic() {
-                unit.choose_method(mode.is_automatic());
-            }
         }
+        self.mode = mode;
+        self.manual.stop();
     }
 
     /// CE: clears a message, and what it stands for.
@@ -117,9 +113,7 @@ impl Control {
                 let unit = self.axes.iter_mut().find(|unit| unit.index == usize::from(axis));
                 if let Some(unit) = unit {
                     unit.servo.acknowledge();
-                    if !self.run.is_active() {
-                        unit.transfer();
-                    }
+                    unit.transfer();
                 }
             }
             _ => {}
@@ -193,6 +187,7 @@ impl Control {
             datums[axis] = datum;
         }
         self.offsets.datum = self.active_datum();
+        self.unsaved = true;
         true
     }
 
@@ -222,33 +217,6 @@ impl Control {
             _ => {}
         }
         true
-    }
-
-    /// Answers to code number 75 368: compensates the offsets of the axes, or switches the automatic
-    /// adjustment off [000:5014-5020].
-    fn adjust_offsets(&mut self, adjust: bool) -> bool {
-        if !std::mem::take(&mut self.manual.offsets_shown) {
-            return false;
-        }
-        for unit in &mut self.axes {
-            if adjust {
-                unit.servo.compensate_offset();
-            } else {
-                unit.servo.set_offset_compensation(0.0);
-            }
-        }
-        true
-    }
-
-    /// The compensated offsets, V.
-    pub(crate) fn offset_volts(&self) -> [f64; 5] {
-        let mut volts = [0.0; 5];
-        for unit in &self.axes {
-            if let Some(slot) = volts.get_mut(unit.index) {
-                *slot = unit.servo.offset_compensation_volts();
-            }
-        }
-        volts
     }
 
     /// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319].

@@ -131,8 +131,8 @@ mod tests {
         assert_eq!(value(OverrideSteps::NonLinear, 3.0), 325);
         assert_eq!(
             value(OverrideSteps::NonLinear, 200.0),
-            14_950 + 50 - 25,
-            "the last step"
+            15_000,
+            "the end of its way"
         );
         assert_eq!(value(OverrideSteps::TwoPercent, 33.0), 34);
         assert_eq!(value(OverrideSteps::OnePercent, 149.6), 150);

@@ -2,6 +2,7 @@
 
 use bahn_exchange::signal;
 use bahn_motion::Aim;
+use bahn_parameters::ControlModel;
 use bahn_plc::PlcAxisCommand;
 
 use crate::axes::Mover;
@@ -10,6 +11,9 @@ use crate::markers::{AXES, PLC_POSITIONING, POSITIONING_FEED, TRANSFER};
 
 /// Position words count in 1/10 000 mm [000:4026].
 pub(crate) const PER_MM: f64 = 10_000.0;
+
+/// Axes that the PLC of a TNC 407 positions at once [000:4011].
+const AXES_AT_ONCE_407: usize = 3;
 
 /// What the PLC commanded.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,6 +45,18 @@ impl Default for PlcAxis {
     }
 }
 
+impl Positioning {
+    /// Ends what PLC axes do and the free rotation: EMERGENCY STOP.
+    pub fn stop(&mut self) {
+        for axis in &mut self.plc_axes {
+            if axis.command.is_some() {
+                axis.command = Some(PlcAxisCommand::Stop);
+            }
+        }
+        self.rotation = [None; AXES];
+    }
+}
+
 impl Control {
     /// PLC positioning: M2704 ff. with target and feed, relative to the machine datum, without software
     /// limits. It starts only on referenced axes, without a program or during a strobe of it, in Manual
@@ -49,6 +65,13 @@ impl Control {
         let nc = self.exchange.nc();
         let free = !self.run.is_running() || self.handshakes.strobe_is_set();
         let keys = self.panel.axis_keys.iter().any(Option::is_some);
+        let free = free && !keys && !self.stop_given();
+        let most = if self.model == ControlModel::Tnc407 {
+            AXES_AT_ONCE_407
+        } else {
+            AXES
+        };
+        let mut running = self.positioning.targets.iter().flatten().count();
         for index in 0..AXES {
             let (Some(strobe), Some(target), Some(feed)) = (
                 PLC_POSITIONING.get(index),
@@ -70,8 +93,10 @@ impl Control {
                 .copied()
                 .flatten()
                 .and_then(|place| self.axes.get(place));
-            let ready = unit.is_some_and(|unit| unit.referenced && !unit.is_plc_axis());
-            if slot.is_none() && ready && free && !keys {
+            let ready =
+                unit.is_some_and(|unit| unit.referenced && unit.is_free() && unit.parameters.controlled);
+            if slot.is_none() && ready && free && running < most {
+                running += 1;
                 let target = f64::from(nc.number(*target)) / PER_MM;
                 // Feeds above 32 767 mm/min count on in the word.
                 let feed = f64::from(nc.number(*feed) as u16);
@@ -99,6 +124,7 @@ impl Control {
                 }
                 continue;
             };
+            unit.ask_to_unclamp();
             if !(unit.servo.closed() && unit.enabled) {
                 continue;
             }

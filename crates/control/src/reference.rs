@@ -10,6 +10,7 @@ use bahn_parameters::ReferenceType;
 use crate::axes::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::control::Control;
+use crate::gantry;
 use crate::markers::REFERENCE_CAM;
 
 /// The reference run.
@@ -19,6 +20,8 @@ pub(crate) struct ReferenceRun {
     automatic: bool,
     /// The axis that runs, by its place, and its step.
     running: Option<(usize, Step)>,
+    /// The control has asked for it since power-on.
+    pub asked: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,11 +43,19 @@ impl ReferenceRun {
 
     /// The run is broken off.
     pub fn abort(&mut self) {
-        *self = ReferenceRun::default();
+        self.automatic = false;
+        self.running = None;
     }
 }
 
 impl Control {
+    /// An axis has not passed its reference mark: any one, or one of those that MP1340 names.
+    pub(crate) fn reference_is_missing(&self, named: bool) -> bool {
+        self.axes
+            .iter()
+            .any(|unit| waits(unit) && (!named || unit.parameters.reference.place.is_some()))
+    }
+
     /// Moves the axes in PASS OVER REFERENCE MARKS.
     pub(crate) fn move_reference(&mut self) {
         if self.stop_given() {
@@ -52,7 +63,6 @@ impl Control {
         } else if self.start_pressed {
             self.reference.automatic = true;
         }
-        self.count_display_axes();
         if self.reference.running.is_none() {
             self.next_reference_axis();
         }
@@ -60,11 +70,12 @@ impl Control {
             let stop = self.stop_given() || !(self.reference.automatic || self.key_of(place));
             self.reference.running = self.run_reference(place, step, stop);
         }
-        let missing = self
-            .axes
-            .iter()
-            .any(|unit| !unit.referenced && !unit.is_plc_axis() && unit.parameters.controlled);
-        if !missing && self.reference.running.is_none() {
+        if self.reference.running.is_some() {
+            return;
+        }
+        // Axes that MP1340 does not name pass their marks by their keys only [000:4649-4654].
+        let automatic = self.reference.automatic && !self.reference_is_missing(true);
+        if automatic || !self.reference_is_missing(false) {
             self.reference.abort();
             self.set_mode(Mode::Manual);
         }
@@ -78,30 +89,32 @@ impl Control {
             .is_some_and(Option::is_some)
     }
 
+    /// Chooses the axis that runs next; one that is clamped or has no feed enable is waited for.
     fn next_reference_axis(&mut self) {
-        let waiting = |unit: &AxisUnit| {
-            !unit.referenced
-                && !unit.is_plc_axis()
-                && unit.parameters.controlled
-                && unit.servo.closed()
-                && unit.enabled
-                && unit.parameters.synchronization.master.is_none()
-        };
         let next = if self.reference.automatic {
-            let named = self.axes.iter().enumerate().filter(|(_, unit)| waiting(unit));
+            let named = self.axes.iter().enumerate().filter(|(_, unit)| waits(unit));
             named
                 .filter_map(|(place, unit)| Some((unit.parameters.reference.place?, place)))
                 .min()
                 .map(|(_, place)| place)
         } else {
-            (0..self.axes.len())
-                .find(|place| self.key_of(*place) && self.axes.get(*place).is_some_and(waiting))
+            (0..self.axes.len()).find(|place| self.key_of(*place) && self.axes.get(*place).is_some_and(waits))
         };
-        let Some(place) = next else {
-            self.reference.automatic = false;
+        let Some(place) = next else { return };
+        let Some(unit) = self.axes.get_mut(place) else {
             return;
         };
+        unit.ask_to_unclamp();
+        if !(unit.servo.closed() && unit.enabled && unit.stands()) {
+            return;
+        }
         let cam = self.cam(place);
+        for unit in &mut self.axes {
+            let slave = unit.coupling.as_ref().is_some_and(|of| of.master == place);
+            if slave {
+                unit.servo.forget_marks();
+            }
+        }
         if let Some(unit) = self.axes.get_mut(place) {
             unit.servo.forget_marks();
             let step = match unit.parameters.reference.kind {
@@ -141,7 +154,8 @@ impl Control {
             unit.mover = Mover::None;
             return None;
         }
-        let step = next_step(unit, step, cam);
+        let (step, synchronous) = self.next_step(place, step, cam);
+        let unit = self.axes.get_mut(place)?;
         let (direction, feed) = match step {
             Step::Seek { reversed: false } => (forwards, reference.feed_mm_min),
             Step::Seek { reversed: true } => (-forwards, reference.feed_mm_min),
@@ -166,49 +180,79 @@ impl Control {
             feed
         };
         unit.drive(time, aim, greatest);
-        if step == Step::Stop && unit.stands() && outside.is_none() {
+        let settled = unit.stands() && unit.servo.in_position();
+        if step == Step::Stop && settled && synchronous && outside.is_none() {
+            // The next axis starts when the PLC has seen this one in position.
             unit.mover = Mover::None;
-            return None;
+            return (!unit.in_position).then_some((place, step));
         }
         Some((place, step))
     }
 
+    /// What the cam and the marks make of a step, and whether slaves are where they shall be.
+    fn next_step(&mut self, place: usize, step: Step, cam: bool) -> (Step, bool) {
+        let nc = self.exchange.nc();
+        let cam_of = |unit: &AxisUnit| REFERENCE_CAM.get(unit.index).is_some_and(|cam| nc.bit(*cam));
+        let Some(unit) = self.axes.get_mut(place) else {
+            return (Step::Stop, true);
+        };
+        let kind = unit.parameters.reference.kind;
+        let turned = turn_at_cam(unit, step, kind, cam);
+        // Marks do not count before the cam has chosen them, nor under the cam with one mark: it must lie
+        // outside.
+        let choosing = kind == ReferenceType::RotaryEncoder && turned != Step::Pulse;
+        let counts = turned == step && !choosing;
+        let mark = unit.servo.take_mark();
+        let mark = mark.filter(|_| counts && !unit.referenced && !(cam && kind == ReferenceType::OneMark));
+        if let Some((count, scale_mm)) = mark.and_then(|mark| Some((mark.count, mark.scale_mm?))) {
+            let datum = unit.parameters.travel.machine_datum_mm;
+            unit.referenced = true;
+            let shift = unit.set_datum(count, scale_mm - datum);
+            gantry::shifted(&mut self.axes, place, shift);
+        }
+        let slaves = gantry::reference(&mut self.axes, place, counts, |unit| {
+            kind == ReferenceType::OneMark && cam_of(unit)
+        });
+        let found = self.axes.get(place).is_some_and(|unit| unit.referenced) && slaves.found;
+        let step = if found { Step::Stop } else { turned };
+        (step, slaves.synchronous)
+    }
+
     /// Axes that are only displayed: the counter is zero on the reference mark [000:4573].
-    fn count_display_axes(&mut self) {
+    pub(crate) fn count_display_axes(&mut self) {
         for unit in self.axes.iter_mut().filter(|unit| !unit.parameters.controlled) {
-            if let Some(mark) = unit.servo.take_mark() {
-                unit.set_datum(mark.count, mark.scale_mm.unwrap_or(0.0));
+            if unit.referenced {
+                continue;
+            }
+            if let Some((count, scale)) = unit
+                .servo
+                .take_mark()
+                .and_then(|mark| Some((mark.count, mark.scale_mm?)))
+            {
+                unit.set_datum(count, scale);
                 unit.referenced = true;
             }
         }
     }
 }
 
-/// What the cam and the marks make of a step.
-fn next_step(unit: &mut AxisUnit, step: Step, cam: bool) -> Step {
-    let kind = unit.parameters.reference.kind;
-    let mark = unit.servo.take_mark();
-    let step = match (step, kind) {
-        // The cam ends the range; the mark lies before it.
+/// An axis that must pass its reference mark by itself.
+fn waits(unit: &AxisUnit) -> bool {
+    !unit.referenced && unit.parameters.controlled && unit.is_free()
+}
+
+/// What the cam makes of a step.
+fn turn_at_cam(unit: &mut AxisUnit, step: Step, kind: ReferenceType, cam: bool) -> Step {
+    match (step, kind) {
+        // The cam ends the range; the mark lies before it. With old distance-coded marks it is ignored
+        // once the axis runs [000:4605].
         (Step::Seek { reversed: false }, ReferenceType::OneMark | ReferenceType::DistanceCoded) if cam => {
             unit.servo.forget_marks();
-            return Step::Seek { reversed: true };
+            Step::Seek { reversed: true }
         }
         // The cam selects the pulse: the first one after leaving it (inferred).
-        (Step::Seek { .. }, ReferenceType::RotaryEncoder) => {
-            return if cam { Step::LeaveCam } else { step };
-        }
-        (Step::LeaveCam, _) => return if cam { step } else { Step::Pulse },
+        (Step::Seek { .. }, ReferenceType::RotaryEncoder) if cam => Step::LeaveCam,
+        (Step::LeaveCam, _) if !cam => Step::Pulse,
         _ => step,
-    };
-    // Marks under the cam do not count with one mark: it must lie outside.
-    if step == Step::Stop || (cam && kind == ReferenceType::OneMark) {
-        return step;
     }
-    let Some((count, scale_mm)) = mark.and_then(|mark| Some((mark.count, mark.scale_mm?))) else {
-        return step;
-    };
-    unit.set_datum(count, scale_mm - unit.parameters.travel.machine_datum_mm);
-    unit.referenced = true;
-    Step::Stop
 }

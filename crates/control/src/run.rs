@@ -128,7 +128,10 @@ impl Control {
                     _ => {}
                 }
                 self.run.state = RunState::Running;
-                self.regain_path();
+                self.return_to_path();
+                if self.run.restore.is_none() {
+                    self.regain_path();
+                }
             }
         }
     }
@@ -313,9 +316,6 @@ impl Control {
     fn begin_run(&mut self) {
         let machine = self.machine_position();
         let limits = self.traverse_box();
-        for unit in &mut self.axes {
-            unit.choose_method(true);
-        }
         self.put(bahn_exchange::signal::PROGRAM_END_EXECUTED, false);
         self.run.ended = false;
         self.run.last = None;
@@ -346,6 +346,24 @@ impl Control {
 
     /// A feeder of a program from the chosen start block on.
     pub(crate) fn new_feeder(&self, program: Arc<Program>, machine: &Position, limits: Box2) -> Feeder {
+        let block = if self.mode == Mode::Mdi {
+            0
+        } else {
+            self.run.start_block
+        };
+        let mut feeder = self.new_feeder_from(program, block, machine, limits);
+        feeder.set_tap(self.run.tap);
+        feeder
+    }
+
+    /// A feeder of a program from a block on.
+    pub(crate) fn new_feeder_from(
+        &self,
+        program: Arc<Program>,
+        block: u32,
+        machine: &Position,
+        limits: Box2,
+    ) -> Feeder {
         let mut rules = Rules::of(self.link.list());
         rules.machine_zero = Axis::ALL.map(|axis| -self.offsets.datum[axis]).into();
         let settings = Settings {
@@ -360,9 +378,8 @@ impl Control {
         };
         let programs = Arc::clone(&self.programs);
         let mut feeder = Feeder::new(program, settings, programs, self.offsets, limits);
-        feeder.set_tap(self.run.tap);
-        if self.mode != Mode::Mdi && self.run.start_block > 0 {
-            feeder.interpreter_mut().goto(self.run.start_block);
+        if block > 0 {
+            feeder.interpreter_mut().goto(block);
         }
         feeder
     }

@@ -186,21 +186,6 @@ impl Control {
         }
     }
 
-    /// Counts the way of each axis; beyond MP4060 it asks for lubrication.
-    pub(crate) fn lubricate(&mut self) {
-        for unit in &self.axes {
-            let Some(limit) = unit.parameters.travel.lubrication_mm else {
-                continue;
-            };
-            if unit.travelled > limit
-                && let Some(pulse) = LUBRICATION_PULSE.get(unit.index)
-                && !self.exchange.nc().bit(*pulse)
-            {
-                self.exchange.nc_set(*pulse, true);
-            }
-        }
-    }
-
     /// W576 ff.: thermal lag tracking, once in each PLC cycle [000:3902-3912].
     fn take_lag_tracking(&mut self) {
         let step = self.plc_parameters.tracking_step_mm;
@@ -247,6 +232,10 @@ impl Control {
         if std::mem::take(&mut self.link.requests.restart) {
             self.run.restart_wanted = true;
         }
+        if let Some(line) = self.link.requests.compensation_line.take() {
+            self.activate_compensation(usize::try_from(line).ok());
+        }
+        self.take_changed_parameters();
         self.link.requests.geometry = false;
     }
 

@@ -198,6 +198,11 @@ impl Tools {
         }
     }
 
+    /// A tool is called that is not yet in the spindle.
+    pub fn is_changing(&self) -> bool {
+        self.number != self.called
+    }
+
     /// The last code of a TOOL CALL was acknowledged: the tool is in the spindle. With variable pocket
     /// coding the old tool has taken the pocket of the new one, unless it went to its own (inferred), and
     /// M2612 = 0 [000:9281].
@@ -292,7 +297,7 @@ mod tests {
             let mut handshakes = Handshakes::default();
             tools.call(*call, exchange, &mut handshakes);
             while !handshakes.is_idle() {
-                handshakes.cycle(exchange);
+                handshakes.cycle(exchange, true);
                 let nc = exchange.nc();
                 let code = |number| i16::try_from(nc.number(number)).unwrap_or_default();
                 codes.push((
@@ -303,7 +308,7 @@ mod tests {
                 exchange.begin_scan();
                 exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, true);
                 exchange.end_scan();
-                handshakes.cycle(exchange);
+                handshakes.cycle(exchange, true);
                 exchange.begin_scan();
                 exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, false);
                 exchange.end_scan();

@@ -1,10 +1,10 @@
 //! The path through the whole kernel: lag, feed pre-control, exact stops, corners.
 
-#[path = "support/bench.rs"]
-mod bench;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
-use bench::*;
+use stand::*;
 use support::*;
 
 fn lag(build: Build) -> Build {

@@ -1,11 +1,11 @@
 //! M functions: strobe and acknowledgement, begin and end of block, stops [000:7076-7306].
 
-#[path = "support/bench.rs"]
-mod bench;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
 use bahn_control::RunState;
-use bench::*;
+use stand::*;
 use support::*;
 
 /// The pattern of the manual with the M function by a CASE, M03 acknowledged when the spindle has its speed

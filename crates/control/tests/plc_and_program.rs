@@ -1,12 +1,12 @@
 //! Data between program and PLC: FN14, FN15, FN19, Q100 to Q107, datum correction, PLC positioning, module
 //! 9150, inch programs.
 
-#[path = "support/bench.rs"]
-mod bench;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
 use bahn_control::RunState;
-use bench::*;
+use stand::*;
 use support::*;
 
 fn m_functions(lines: &str) -> String {

@@ -1,11 +1,11 @@
 //! TCH PROBE in the program on the machine [000:7613-7718].
 
-#[path = "support/bench.rs"]
-mod bench;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
 use bahn_control::RunState;
-use bench::*;
+use stand::*;
 use support::*;
 
 /// PLC: the probing is enabled while contact A is open, as in the manual's example [000:7696-7704].

@@ -1,11 +1,11 @@
 //! Return to the contour and block scan [000:6765-6832].
 
-#[path = "support/bench.rs"]
-mod bench;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
 use bahn_control::RunState;
-use bench::*;
+use stand::*;
 use support::*;
 
 /// Contact A moves X in positive direction, B Z, while MANUAL OPERATION is on (M2018).

@@ -1,11 +1,11 @@
 //! Program run: single block, stops, restart, errors, limits, feed enable, EMERGENCY STOP.
 
-#[path = "support/bench.rs"]
-mod bench;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
 use bahn_control::{Mode, RunState};
-use bench::*;
+use stand::*;
 use support::*;
 
 fn state(rig: &Rig) -> RunState {

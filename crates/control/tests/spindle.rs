@@ -1,11 +1,11 @@
 //! The spindle through the kernel: gears, diagram, S codes, orientation [000:5438-6043].
 
-#[path = "support/bench.rs"]
-mod bench;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
 use bahn_control::RunState;
-use bench::*;
+use stand::*;
 use support::Build;
 
 /// The M functions of the spindle, acknowledged at once, without the gear.

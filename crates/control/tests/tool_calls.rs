@@ -1,12 +1,12 @@
 //! TOOL CALL and TOOL DEF through the kernel [000:9194-9410].
 
-#[path = "support/bench.rs"]
-mod bench;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
 use bahn_control::Tool;
 use bahn_path::ToolShape;
-use bench::*;
+use stand::*;
 use support::*;
 
 fn build(parameters: &[&str], plc: &str, program: &str) -> Rig {

@@ -101,11 +101,6 @@ pub enum WarningKind {
     BlankIncomplete,
     /// A blank was given in a called program only [003:7908-7912].
     BlankInCalledProgram,
-    /// An M function whose effect on the path is not simulated.
-    NotSimulated {
-        /// Its number.
-        m: u16,
-    },
     /// M2 or M30 stands in a called program, where it must not [003:3870-3902].
     EndInCalledProgram,
 }
@@ -129,7 +124,6 @@ impl std::fmt::Display for WarningKind {
                     "BLK FORM stands in a called program only; give it in the main program"
                 )
             }
-            WarningKind::NotSimulated { m } => write!(f, "M{m} is output but does not change the path here"),
             WarningKind::EndInCalledProgram => {
                 write!(
                     f,

@@ -4,7 +4,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{At, Axis, Function, Synchronisation, TechnologyFunction};
 use bahn_program::MFunctions;
 
-use crate::contour::{Corner, FeedLaw};
+use crate::contour::{Corner, CornerArcs, FeedLaw};
 use crate::error::{Fault, WarningKind};
 use crate::modal::Spindle;
 use crate::q_parameters::preassigned;
@@ -148,12 +148,30 @@ impl Run {
             109 => self.modal.feed_law = FeedLaw::Edge,
             110 => self.modal.feed_law = FeedLaw::EdgeReduced,
             111 => self.modal.feed_law = FeedLaw::Centre,
+            112 => {
+                let value = |letter| -> Result<Option<f64>, Fault> {
+                    m.argument(112, letter)
+                        .map(|value| self.q.value(value))
+                        .transpose()
+                };
+                let (tolerance, angle) = (value('T')?, value('A')?);
+                let rules = &settings.rules;
+                let plane = self.modal.plane;
+                self.modal.corner_arcs = Some(CornerArcs {
+                    tolerance_mm: tolerance.map_or(f64::INFINITY, |value| value * self.unit_mm),
+                    angle_deg: angle.unwrap_or(0.0),
+                    acceleration_m_s2: [plane.first, plane.second]
+                        .into_iter()
+                        .filter_map(|axis| rules.acceleration_m_s2.get(axis.index()))
+                        .fold(rules.radial_acceleration_m_s2, |least, value| least.min(*value)),
+                });
+            }
+            113 => self.modal.corner_arcs = None,
             105 | 106 if rules.m105_enabled => block.output.push(TechnologyFunction {
                 function: Function::M(code),
                 at: At::Start,
                 synchronisation: Synchronisation::Mos,
             }),
-            112 => self.warn(WarningKind::NotSimulated { m: code }),
             _ => {}
         }
         if matches!(code, 13 | 14) {

@@ -3,7 +3,7 @@
 use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position, ToolShape};
 use bahn_program::{Compensation, Unit};
 
-use crate::contour::FeedLaw;
+use crate::contour::{CornerArcs, FeedLaw};
 use crate::cycles::CycleData;
 use crate::probe::ReferencePlane;
 
@@ -39,6 +39,8 @@ pub(crate) struct Modal {
     pub speed_rpm: f64,
     pub spindle: Spindle,
     pub feed_law: FeedLaw,
+    /// M112: arcs at corners of uncompensated lines.
+    pub corner_arcs: Option<CornerArcs>,
     /// M103: factor of the feed into the material.
     pub plunge_factor: Option<f64>,
     /// Last movement in programmed coordinates, for tangential arcs.
@@ -123,6 +125,7 @@ impl Modal {
             speed_rpm: 0.0,
             spindle: Spindle::Undefined,
             feed_law: FeedLaw::Centre,
+            corner_arcs: None,
             plunge_factor: None,
             last_move: None,
             cycle: CycleData::default(),

@@ -58,6 +58,7 @@ impl Run {
         let coordinates = &motion.coordinates;
         motion.kind == MotionKind::Line
             && self.line_follows
+            && self.modal.corner_arcs.is_none()
             && motion.m.is_empty()
             && matches!(motion.compensation, None | Some(Compensation::Off))
             && self.modal.compensation == Compensation::Off

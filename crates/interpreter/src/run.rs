@@ -391,6 +391,7 @@ impl Run {
             in_plane,
             smooth: None,
             barrier,
+            corner_arcs: self.modal.corner_arcs,
         };
         let waits = item.barrier.is_some() && item.side == Side::Off;
         self.contour

@@ -77,6 +77,10 @@ pub struct Rules {
     pub machine_datum: Position,
     /// MP960: machine zero of M91 from the workpiece datum of the run, mm or degrees [000:6244].
     pub machine_zero: Position,
+    /// MP1060: acceleration of each axis, m/s²: limits the rounding arcs of M112 [000:5140-5152].
+    pub acceleration_m_s2: [f64; Axis::COUNT],
+    /// MP1070: radial acceleration, m/s².
+    pub radial_acceleration_m_s2: f64,
     /// Touch probe.
     pub probe: ProbeRules,
     /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
@@ -114,6 +118,8 @@ impl Rules {
             },
             tapping_override_percent: (least, greatest),
             orient_before_rigid_tapping: tapping.orientation,
+            acceleration_m_s2: Axis::ALL.map(|axis| list.acceleration_m_s2(axis)),
+            radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
             machine_datum: Axis::ALL.map(|axis| list.m92_datum(axis)).into(),
             probe: ProbeRules {
                 feed_mm_min: probe.feed_mm_min,
@@ -142,6 +148,8 @@ impl Default for Rules {
             spindle_orientation_deg: 0.0,
             machine_datum: Position::ZERO,
             machine_zero: Position::ZERO,
+            acceleration_m_s2: [1.0; Axis::COUNT],
+            radial_acceleration_m_s2: 1.0,
             probe: ProbeRules::default(),
             speed_max_rpm: 99_999.0,
         }

@@ -411,3 +411,37 @@ fn a_ramp_along_the_contour() {
         EXACT,
     );
 }
+
+/// M112 T0.05 puts an arc of 0.1207 mm at a corner of 90 degrees, tangent to both lines; M113 ends it; a
+/// block in the tool axis has no arc [000:5128-5158].
+#[test]
+fn m112_rounds_corners_of_uncompensated_lines() {
+    let run = run(
+        "L X+0 Y+0 Z+0 R0 F1000\nL X+10 R0 F6000 M112 T0.05 A10\nL Y+10\nL X+0\nL Z+5\nL X+10 M113\nL Y+0",
+    );
+    let arcs: Vec<_> = run
+        .moves()
+        .filter_map(|e| match &e.curve {
+            Curve::Arc(arc) => Some((e, arc)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(arcs.len(), 2);
+    let tolerance = 0.05;
+    let sine = 45f64.to_radians().sin();
+    let radius = tolerance * sine / (1.0 - sine);
+    let (first, arc) = arcs[0];
+    let close = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
+    assert!(
+        close(xyz(&first.start), [10.0 - radius, 0.0, 0.0]),
+        "{:?}",
+        first.start
+    );
+    assert!(close(xyz(&first.end), [10.0, radius, 0.0]), "{:?}", first.end);
+    assert!((arc.sweep_deg - 90.0).abs() < 1e-9);
+    // The path has no gap.
+    let moves: Vec<_> = run.moves().collect();
+    for pair in moves.windows(2) {
+        assert!(close(xyz(&pair[0].end), xyz(&pair[1].start)));
+    }
+}

@@ -35,6 +35,29 @@ pub struct MachineFolder {
     pub state: String,
     /// Workpiece datum in machine coordinates, mm or degrees, as long as the state holds no other.
     pub datum: Vec<(char, f64)>,
+    /// What an operator does who stands by while programs run.
+    pub operator: OperatorKeys,
+}
+
+/// The keys of the panel that an operator presses who stands by.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OperatorKeys {
+    /// NC start.
+    pub start: String,
+    /// The control voltage, where it waits for a key.
+    pub control_voltage: Option<String>,
+    /// One after the other, when a tool change waits for the operator.
+    pub tool_change: Vec<String>,
+}
+
+impl Default for OperatorKeys {
+    fn default() -> OperatorKeys {
+        OperatorKeys {
+            start: "NC_START".to_owned(),
+            control_voltage: None,
+            tool_change: vec!["CONFIRM".to_owned()],
+        }
+    }
 }
 
 impl MachineFolder {
@@ -46,6 +69,17 @@ impl MachineFolder {
     /// # Errors
     /// All faults of the text, in its order.
     pub fn from_toml(text: &str) -> Result<MachineFolder, Vec<PlantError>> {
+        let (folder, faults) = MachineFolder::read(text);
+        if faults.is_empty() {
+            Ok(folder)
+        } else {
+            Err(faults)
+        }
+    }
+
+    /// Reads the text of `machine.toml` as far as it can be understood, with all faults in its order. What
+    /// is missing is empty.
+    pub fn read(text: &str) -> (MachineFolder, Vec<PlantError>) {
         let reader = Reader::new(text);
         let table = reader.parse();
         let root = Section::root(&reader, &table);
@@ -70,14 +104,10 @@ impl MachineFolder {
             programs: optional("programs").unwrap_or_else(|| "programs".to_owned()),
             state: optional("state").unwrap_or_else(|| "state".to_owned()),
             datum: root.section("datum").map(read_datum).unwrap_or_default(),
+            operator: root.section("operator").map(read_operator).unwrap_or_default(),
         };
         root.finish();
-        let faults = reader.faults();
-        if faults.is_empty() {
-            Ok(folder)
-        } else {
-            Err(faults)
-        }
+        (folder, reader.faults())
     }
 }
 
@@ -94,4 +124,20 @@ fn read_datum(section: Section) -> Vec<(char, f64)> {
         .collect();
     section.finish();
     datum
+}
+
+fn read_operator(section: Section) -> OperatorKeys {
+    let usual = OperatorKeys::default();
+    let tool_change = section.texts("tool_change");
+    let keys = OperatorKeys {
+        start: section.text("start").map_or(usual.start, str::to_owned),
+        control_voltage: section.text("control_voltage").map(str::to_owned),
+        tool_change: if section.has("tool_change") {
+            tool_change.into_iter().map(|(_, key)| key.to_owned()).collect()
+        } else {
+            usual.tool_change
+        },
+    };
+    section.finish();
+    keys
 }

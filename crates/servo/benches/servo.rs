@@ -1,7 +1,7 @@
 //! How long a servo step takes.
 
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_servo::{Axis, Encoder, Method, Timing};
+use bahn_servo::{Axis, Encoder, Method, Rotation, Spindle, Timing, Way};
 use divan::{Bencher, black_box, counter::ItemsCount};
 
 fn main() {
@@ -44,5 +44,34 @@ fn axis_step(bencher: Bencher, method: Method) {
             }
             assert_eq!(axis.fault(), None);
             axis
+        });
+}
+
+/// Ramp, orientation and position loop of the spindle; an item is a servo step.
+#[divan::bench]
+fn spindle_step(bencher: Bencher) {
+    let model = ControlModel::Tnc415b;
+    let parameters = ParameterList::reference(model).spindle_parameters();
+    let timing = Timing::of(model);
+    let steps = CYCLES * timing.steps();
+    bencher
+        .counter(ItemsCount::new(steps))
+        .with_inputs(|| {
+            let mut spindle = Spindle::new(parameters, timing);
+            spindle.set_speed(1000.0, 0);
+            spindle.rotate(Rotation::M3);
+            spindle
+        })
+        .bench_values(|mut spindle| {
+            let mut encoder = Encoder::default();
+            for step in 0..steps {
+                if step == steps / 2 {
+                    spindle.orient(90.0, 0.0, Way::Shortest);
+                }
+                encoder.mark = (step == 500).then_some(encoder.count);
+                spindle.measure(black_box(encoder));
+                encoder.count += (spindle.step() * 3000.0) as i64;
+            }
+            spindle
         });
 }

@@ -9,6 +9,38 @@
 //! - [`Spindle`] is the main spindle: gear, override, ramps, orientation; [`SpeedCode`] its coded output;
 //! - [`Timing`] says in which cycles, and how fine the output is.
 //!
+//! ```
+//! use bahn_parameters::{ControlModel, ParameterList};
+//! use bahn_servo::{Axis, Encoder, Timing};
+//!
+//! let mut list = ParameterList::reference(ControlModel::Tnc415b);
+//! for entry in ["710.0=0", "720.0=0", "1010.0=5000", "1050.0=9", "1810.0=2"] {
+//!     list.assign(entry)?;
+//! }
+//! let timing = Timing::of(ControlModel::Tnc415b);
+//! let mut axis = Axis::new(list.axis_parameters(0), timing);
+//! // An ideal machine: 9 V are 5000 mm/min, an encoder counts 51 200 steps for 1 mm.
+//! let mut table_mm = 0.0;
+//! let mut read = |volts: f64| {
+//!     table_mm += volts / 9.0 * 5000.0 / 60.0 * f64::from(timing.step_us()) * 1e-6;
+//!     Encoder { count: (table_mm * 51_200.0) as i64, ..Encoder::default() }
+//! };
+//! axis.measure(read(0.0));
+//! axis.transfer();
+//! axis.close();
+//! for cycle in 1..=400 {
+//!     axis.command(0.25 * f64::from(cycle)); // 0.25 mm in 3 ms are 5000 mm/min
+//!     for _ in 0..timing.steps() {
+//!         let volts = axis.step();
+//!         axis.measure(read(volts));
+//!     }
+//! }
+//! // 5 m/min / 2 (m/min)/mm [000:4881-4891].
+//! assert!((axis.volts() - 9.0).abs() < 0.01);
+//! # assert_eq!(axis.fault(), None);
+//! # Ok::<(), bahn_parameters::ParameterError>(())
+//! ```
+//!
 //! mm stands for degrees on rotary axes. Nothing here allocates after construction, and the same inputs
 //! give the same bits.
 

@@ -25,9 +25,14 @@ pub(crate) struct Offset {
 }
 
 impl Offset {
-    /// A contour cycle at rest, in which the loop puts a voltage out.
+    /// A contour cycle at rest, in which the loop puts a voltage out. A voltage that cannot be an offset, as
+    /// of a clamped axis, is not integrated (inferred).
     pub(crate) fn rest(&mut self, loop_volts: f64, integral_factor: f64) {
-        let part = loop_volts * integral_factor / INTEGRAL_UNIT;
+        let part = if loop_volts.abs() < OFFSET_MAX_VOLTS {
+            loop_volts * integral_factor / INTEGRAL_UNIT
+        } else {
+            0.0
+        };
         self.integral_volts += part;
         self.residual_volts = loop_volts - part;
     }

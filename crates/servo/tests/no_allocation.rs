@@ -6,8 +6,8 @@ mod common;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use bahn_parameters::ControlModel::Tnc415b;
-use bahn_servo::Method;
+use bahn_parameters::{ControlModel::Tnc415b, ParameterList};
+use bahn_servo::{Encoder, Method, Rotation, Spindle, Timing, Way};
 use common::Bench;
 
 thread_local! {
@@ -61,5 +61,27 @@ fn the_cycle_of_an_axis_does_not_allocate() {
     bench.axis.acknowledge();
     bench.run(9000.0, 1.0);
     assert!(bench.axis.fault().is_some());
+    assert_eq!(allocations() - before, 0);
+}
+
+#[test]
+fn the_cycle_of_the_spindle_does_not_allocate() {
+    let parameters = ParameterList::reference(Tnc415b).spindle_parameters();
+    let mut spindle = Spindle::new(parameters, Timing::of(Tnc415b));
+    let mut encoder = Encoder::default();
+    let before = allocations();
+    for round in 0..4 {
+        let gear = spindle.gear_for(1000.0).unwrap();
+        spindle.set_speed(1000.0, gear);
+        spindle.rotate(Rotation::M3);
+        for step in 0..2000 {
+            if step == 1000 {
+                spindle.orient(f64::from(round), 0.0, Way::Shortest);
+            }
+            encoder.count += (spindle.step() * 1000.0) as i64;
+            encoder.mark = (step % 100 == 0).then_some(encoder.count);
+            spindle.measure(encoder);
+        }
+    }
     assert_eq!(allocations() - before, 0);
 }

@@ -132,7 +132,22 @@ fn an_offset_of_100_mv_is_a_fault() {
         bench.stand(0.003);
         assert_eq!(bench.axis.fault(), fault, "{offset} mV");
     }
-    let mut integral = resting(Tnc415b, -101.0, &["1080.0=1000"]);
+    // 60 mV are taken over by the integral factor, then the offset grows.
+    let mut integral = resting(Tnc415b, -60.0, &["1080.0=1000"]);
+    integral.stand(10.0);
+    assert_eq!(integral.axis.fault(), None);
+    integral.offset_volts = -0.101;
     integral.stand(10.0);
     assert_eq!(integral.axis.fault().and_then(Fault::letter), Some('E'));
+}
+
+#[test]
+fn the_integral_factor_does_not_push_against_a_clamp() {
+    let mut bench = resting(Tnc415b, 0.0, &["1080.0=1000"]);
+    bench.blocked = true;
+    bench.table_mm -= 0.2;
+    bench.stand(5.0);
+    // 0.2 mm are 0.18 V, no offset.
+    assert!((bench.axis.volts() - 0.18).abs() < 1e-3, "{}", bench.axis.volts());
+    assert_eq!(bench.axis.fault(), None);
 }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::options::CheckOptions;
 use super::{count, print_json, source};
 use crate::cli::Format;
-use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::diagnostics::{self, FileFault, Marked, Severity};
 use crate::{Outcome, UsageError, files};
 
 /// Checks lists and prints what is wrong.
@@ -104,14 +104,14 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
     };
     if options.format == Format::Text {
         for fault in faults.iter().filter(|fault| !is_missing(fault)) {
-            print_fault(fault, &text, &report.file);
+            file_fault(fault, &text, path).print();
         }
         let missing: Vec<&ListError> = faults.iter().filter(|fault| is_missing(fault)).collect();
         if let Some(first) = missing.first() {
             print_missing(&missing, first);
         }
         for warning in &report.warnings {
-            print_warning(warning, &text, &report.file);
+            file_warning(warning, &text, path).print();
         }
         diagnostics::print_line(&format!(
             "{}: {}, {}, {}, {}",
@@ -148,6 +148,10 @@ fn warnings(text: &ListText, is_part: bool) -> Vec<Item> {
     }
     let mut list = ParameterList::smallest(text.model());
     list.take(text);
+    warnings_of(text, &list)
+}
+
+fn warnings_of(text: &ListText, list: &ParameterList) -> Vec<Item> {
     let line_of = |id| {
         text.entries()
             .iter()
@@ -166,20 +170,33 @@ fn warnings(text: &ListText, is_part: bool) -> Vec<Item> {
     list.inconsistencies().into_iter().map(item).collect()
 }
 
-fn print_fault(fault: &ListError, text: &ListText, path: &str) {
-    diagnostics::print(&Diagnostic {
+/// A fault of a list at its place.
+fn file_fault(fault: &ListError, text: &ListText, path: &Path) -> FileFault {
+    FileFault {
         severity: Severity::Error,
-        title: &format!("{} {}", fault.error.number(), fault.error.control_text()),
-        path,
+        title: format!("{} {}", fault.error.number(), fault.error.control_text()),
+        path: path.to_owned(),
         marked: Marked {
             line: fault.line as u32,
             text: text.line(fault.line),
             columns: Some((fault.column as u32, fault.length as u32)),
         },
         label: fault.error.to_string(),
-        help: help(fault, text).as_deref(),
-    });
-    diagnostics::print_line("");
+        help: help(fault, text),
+    }
+}
+
+/// All faults of the list of a machine, then what does not go together in it. What the list does not name
+/// keeps its value of the reference list.
+pub(crate) fn machine_list(text: &ListText, list: &ParameterList, path: &Path) -> Vec<FileFault> {
+    let faults = text.faults();
+    if !faults.is_empty() {
+        return faults.iter().map(|fault| file_fault(fault, text, path)).collect();
+    }
+    warnings_of(text, list)
+        .iter()
+        .map(|warning| file_warning(warning, text, path))
+        .collect()
 }
 
 /// What the parameter is, for someone who has to enter another value.
@@ -238,11 +255,11 @@ fn run_name(run: &[ParameterId]) -> Option<String> {
     })
 }
 
-fn print_warning(warning: &Item, text: &ListText, path: &str) {
-    diagnostics::print(&Diagnostic {
+fn file_warning(warning: &Item, text: &ListText, path: &Path) -> FileFault {
+    FileFault {
         severity: Severity::Warning,
-        title: &warning.text,
-        path,
+        title: warning.text.clone(),
+        path: path.to_owned(),
         marked: Marked {
             line: warning.line as u32,
             text: text.line(warning.line),
@@ -250,6 +267,5 @@ fn print_warning(warning: &Item, text: &ListText, path: &str) {
         },
         label: warning.detail.clone(),
         help: None,
-    });
-    diagnostics::print_line("");
+    }
 }

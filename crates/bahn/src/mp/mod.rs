@@ -14,6 +14,7 @@ mod options;
 mod source;
 mod style;
 
+pub(crate) use check::machine_list;
 pub(crate) use options::MpOptions;
 
 use crate::{Outcome, UsageError, console};

@@ -36,6 +36,12 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
     let mut samples = VecDeque::new();
     // The cycle that triggers; without trigger the first.
     let mut triggered = trigger.is_none().then_some(1);
+    let is_met = |bench: &Bench| {
+        let wanted = trigger.as_ref();
+        wanted.is_some_and(|(operand, wanted)| bench.read(*operand) == *wanted)
+    };
+    // A trigger is an edge: the operand gets its value [000:11461].
+    let mut was_met = is_met(&bench);
     let before = options.before.min(options.cycles.saturating_sub(1));
     let mut outcome = Outcome::Fine;
     loop {
@@ -56,10 +62,8 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
         }
         samples.push_back(options.show.iter().map(|operand| bench.read(*operand)).collect());
         if triggered.is_none() {
-            if trigger
-                .as_ref()
-                .is_some_and(|(operand, wanted)| bench.read(*operand) == *wanted)
-            {
+            let is_met = is_met(&bench);
+            if !std::mem::replace(&mut was_met, is_met) && is_met {
                 triggered = Some(bench.cycle);
             } else if samples.len() as u64 > before {
                 samples.pop_front();

@@ -111,7 +111,11 @@ impl Line<'_> {
         } else {
             format!("  {:indent$}{command:<5} {operand}", "", indent = 2 * self.depth)
         };
-        let row = format!("{:>5}  {:<30} {}", self.line, code.trim_end(), self.comment);
+        let row = if command.is_empty() {
+            format!("{:>5}  {}", self.line, self.comment)
+        } else {
+            format!("{:>5}  {:<30} {}", self.line, code.trim_end(), self.comment)
+        };
         let mut text = printable(row.trim_end()) + "\n";
         for (what, entries) in [("error", &self.errors), ("warning", &self.warnings)] {
             for entry in entries {

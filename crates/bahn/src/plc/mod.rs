@@ -24,6 +24,8 @@ mod watch;
 mod xref;
 
 pub(crate) use options::PlcOptions;
+pub(crate) use retain::Retained;
+pub(crate) use source::Source;
 
 use crate::{Outcome, UsageError, console};
 use options::PlcCommand;

@@ -72,12 +72,13 @@ Without --cycles the run ends with the last cycle of the script.
 
 JSON: cycles, values, processing_percent (current, maximum), error (number, file, line, or null); with
 --trace also trace, with failed expectations also failed_expectations.
-Exit codes: 0 fine, 1 compile error, run-time error or failed expectation, 2 wrong use.";
+Exit codes: 0 fine, 1 compile error, run-time error or failed expectation, 2 wrong use, 130 ended by Ctrl-C
+(with the report so far).";
 
 const TRACE_EXAMPLES: &str = "\
 Examples:
   bahn plc trace MAIN.PLC --set I4=1
-  bahn plc trace MAIN.PLC --script door.txt --cycle 3";
+  bahn plc trace MAIN.PLC --script door.txt --cycle 3 --hex";
 
 const DIAGRAM_EXAMPLES: &str = "\
 Examples:
@@ -118,6 +119,9 @@ pub(crate) struct ProgramOptions {
     /// it files are linked from the folder EPROM beside the main file only.
     #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
     pub parameters: Option<PathBuf>,
+    /// Refuse loose spelling, as `LM 4`, that is accepted with a warning otherwise.
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// What the program runs against.
@@ -178,6 +182,9 @@ pub(crate) struct TraceOptions {
     /// The cycle that is shown.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     pub cycle: u64,
+    /// Show numbers hexadecimal.
+    #[arg(long, conflicts_with = "format")]
+    pub hex: bool,
     /// How the result is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
@@ -196,7 +203,7 @@ pub(crate) struct DiagramOptions {
     /// Cycles that are drawn, up to 1024.
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u64).range(1..=1024))]
     pub cycles: u64,
-    /// Draw from the first cycle after which an operand has a value.
+    /// Draw from the cycle in which an operand gets a value: O2=1 is its positive edge, O2=0 its negative.
     #[arg(long, value_name = "OPERAND=V")]
     pub trigger: Option<String>,
     /// Cycles that are drawn before the one that triggers.

@@ -13,7 +13,7 @@ use crate::{UsageError, files};
 const MARK: &[u8] = b"BPR1";
 
 /// What survives power-off, kept while a program runs.
-pub(super) struct Retained {
+pub(crate) struct Retained {
     path: PathBuf,
     retention: Retention<FileStorage>,
     started: Instant,

@@ -14,6 +14,7 @@ use super::source::Source;
 use super::trace::{Line, Trace};
 use crate::cli::Format;
 use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, console};
 
 /// Runs a program and shows what came out.
@@ -51,7 +52,8 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     }
     let mut report = Report::not_run(None);
     let mut trace = Trace::default();
-    while bench.cycle < cycles && report.error.is_none() {
+    let interrupt = Interrupt::on_ctrl_c();
+    while bench.cycle < cycles && !interrupt.is_requested() {
         trace.cycle = bench.cycle + 1;
         let traced = options.trace.is_some_and(|range| range.contains(trace.cycle));
         let result = bench.scan(traced.then_some(&mut trace));
@@ -97,10 +99,10 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         }
         Format::Text => console::print(&(trace.text() + &report.text()))?,
     }
-    Ok(if fine {
-        Outcome::Fine
-    } else {
-        Outcome::ProgramError
+    Ok(match fine {
+        true if interrupt.is_requested() => Outcome::Interrupted,
+        true => Outcome::Fine,
+        false => Outcome::ProgramError,
     })
 }
 

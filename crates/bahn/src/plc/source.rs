@@ -7,11 +7,11 @@ use bahn_parameters::ParameterList;
 use bahn_plc::{Compilation, Diagnostic as Fault, Options, PlcProgram, ProgramMemory, SourceFiles};
 
 use super::options::ProgramOptions;
-use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::diagnostics::{FileFault, Marked, Severity};
 use crate::{UsageError, files, settings};
 
 /// A compiled program with the folder it comes from.
-pub(super) struct Source {
+pub(crate) struct Source {
     folder: Folder,
     /// The machine parameters of the model or of the user's list.
     pub parameters: ParameterList,
@@ -23,33 +23,53 @@ impl Source {
     pub fn compile(options: &ProgramOptions) -> Result<Source, UsageError> {
         // An unreadable main file is wrong use; a linked one is an error of the program.
         files::read_table(&options.file)?;
-        let folder = options.file.parent().map(Path::to_owned).unwrap_or_default();
-        let main = options.file.file_name().unwrap_or_default().to_string_lossy();
         let parameters = settings::parameter_list(options.model, options.parameters.as_deref())?;
         // Only the list of a machine says that it has an EPROM.
         let memory = match (&options.parameters, parameters.get(4010, 0)) {
             (Some(_), Some(0.0)) => ProgramMemory::Eprom,
             _ => ProgramMemory::Ram,
         };
-        let compile_options = Options::for_model(options.model).stored_in(memory);
+        let mut compile_options = Options::for_model(options.model).stored_in(memory);
+        compile_options.strict = options.strict;
+        Ok(Source::compile_for(&options.file, parameters, compile_options))
+    }
+
+    /// Compiles the main file for a machine.
+    pub fn compile_for(file: &Path, parameters: ParameterList, options: Options) -> Source {
+        let main = file.file_name().unwrap_or_default().to_string_lossy();
+        let memory = options.memory;
         let folder = Folder {
-            folder,
+            folder: file.parent().map(Path::to_owned).unwrap_or_default(),
             main: main.to_string(),
             memory,
         };
-        let compilation = Compilation::compile(&folder, &main, compile_options);
-        Ok(Source {
+        let compilation = Compilation::compile(&folder, &main, options);
+        Source {
             folder,
             parameters,
             compilation,
-        })
+        }
     }
 
     /// Prints errors and warnings as rustc does.
     pub fn print_faults(&self) {
-        let with = |severity, faults: &[Fault]| faults.iter().for_each(|fault| self.print(severity, fault));
-        with(Severity::Error, &self.compilation.errors);
-        with(Severity::Warning, &self.compilation.warnings);
+        for fault in self.errors().into_iter().chain(self.warnings()) {
+            fault.print();
+        }
+    }
+
+    /// What keeps the program from running.
+    pub fn errors(&self) -> Vec<FileFault> {
+        let errors = self.compilation.errors.iter();
+        errors.map(|fault| self.fault(Severity::Error, fault)).collect()
+    }
+
+    /// What is accepted although the printed rules refuse it.
+    pub fn warnings(&self) -> Vec<FileFault> {
+        let warnings = self.compilation.warnings.iter();
+        warnings
+            .map(|fault| self.fault(Severity::Warning, fault))
+            .collect()
     }
 
     /// The program; prints errors and warnings, and gives `None` when there are errors.
@@ -58,7 +78,7 @@ impl Source {
         self.compilation.program.take().map(Arc::new)
     }
 
-    fn print(&self, severity: Severity, fault: &Fault) {
+    fn fault(&self, severity: Severity, fault: &Fault) -> FileFault {
         let file = self.compilation.files.iter().find(|file| file.name == fault.file);
         let line = (fault.line as usize).saturating_sub(1);
         let text = file
@@ -75,10 +95,10 @@ impl Source {
             .message
             .strip_prefix(fault.error.text())
             .unwrap_or(&fault.message);
-        diagnostics::print(&Diagnostic {
+        FileFault {
             severity,
-            title: &format!("{} {}", fault.error.number(), fault.error.text()),
-            path: &self.folder.path(&fault.file).to_string_lossy(),
+            title: format!("{} {}", fault.error.number(), fault.error.text()),
+            path: self.folder.path(&fault.file),
             marked: Marked {
                 line: fault.line,
                 text,
@@ -86,8 +106,7 @@ impl Source {
             },
             label: detail.trim_start_matches(':').trim().to_owned(),
             help: None,
-        });
-        diagnostics::print_line("");
+        }
     }
 }
 

@@ -19,7 +19,10 @@ pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
         return Ok(Outcome::ProgramError);
     };
     let mut bench = Bench::new(program, parameters, &options.bench, Exchange::default())?;
-    let mut trace = Trace::default();
+    let mut trace = Trace {
+        hex: options.hex,
+        ..Trace::default()
+    };
     let mut result = Ok(());
     while result.is_ok() && bench.cycle < options.cycle {
         let shown = bench.cycle + 1 == options.cycle;
@@ -45,6 +48,8 @@ pub(super) struct Trace {
     /// The cycle that is being executed.
     pub cycle: u64,
     pub lines: Vec<Line>,
+    /// Whether numbers of the table are hexadecimal [000:11422].
+    hex: bool,
 }
 
 /// An executed line with what it left behind.
@@ -54,23 +59,28 @@ pub(super) struct Line {
     file: String,
     line: u32,
     instruction: String,
-    operand: Option<serde_json::Value>,
+    operand: Option<Shown>,
     logic: u8,
     word: i32,
     index: i32,
     job: Option<u8>,
 }
 
+/// The content of an operand.
+#[derive(Debug, serde::Serialize)]
+#[serde(untagged)]
+enum Shown {
+    Bit(u8),
+    Number(i32),
+    Text(String),
+}
+
 impl Tracer for Trace {
     fn executed(&mut self, step: &TraceStep<'_>) {
         let operand = step.operand().map(|content| match content {
-            OperandContent::Bit(bit) => u8::from(bit).into(),
-            OperandContent::Number(value) => value.into(),
-            OperandContent::Text(text) => text
-                .iter()
-                .map(|byte| char::from(*byte))
-                .collect::<String>()
-                .into(),
+            OperandContent::Bit(bit) => Shown::Bit(bit.into()),
+            OperandContent::Number(value) => Shown::Number(value),
+            OperandContent::Text(text) => Shown::Text(text.iter().map(|byte| char::from(*byte)).collect()),
         });
         self.lines.push(Line {
             cycle: self.cycle,
@@ -102,10 +112,22 @@ impl Trace {
                 text += " LINE  INSTRUCTION               OPERAND  LOGIC         WORD\n";
                 shown = place;
             }
-            let operand = line.operand.as_ref().map(ToString::to_string).unwrap_or_default();
+            let number = |value: i32| match self.hex {
+                true => format!("{value:X}h"),
+                false => value.to_string(),
+            };
+            let operand = match &line.operand {
+                None => String::new(),
+                Some(Shown::Number(value)) => number(*value),
+                Some(Shown::Bit(bit)) => bit.to_string(),
+                Some(Shown::Text(text)) => format!("\"{text}\""),
+            };
             text += &format!(
                 "{:>5}  {:<20} {operand:>12}  {:>5}  {:>11}\n",
-                line.line, line.instruction, line.logic, line.word
+                line.line,
+                line.instruction,
+                line.logic,
+                number(line.word)
             );
         }
         text

@@ -7,6 +7,8 @@
     reason = "each test file uses a part of it; a helper that panics fails its test"
 )]
 
+pub mod bench;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

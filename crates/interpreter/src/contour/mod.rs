@@ -6,10 +6,13 @@
 
 pub(crate) mod compensation;
 mod corner;
+mod corner_arc;
 pub(crate) mod flat;
 pub(crate) mod rounding;
 
 use bahn_path::{Barrier, PathElement, Plane};
+
+pub(crate) use self::corner_arc::CornerArcs;
 
 use self::compensation::CompensationStage;
 use self::rounding::RoundingStage;
@@ -37,6 +40,8 @@ pub(crate) struct ContourMove {
     pub smooth: Option<Smooth>,
     /// What the run waits for after the element.
     pub barrier: Option<Barrier>,
+    /// M112: an arc at the corner with the next line.
+    pub corner_arcs: Option<CornerArcs>,
 }
 
 /// Side of the tool, seen in the direction of travel.

@@ -5,7 +5,7 @@ use bahn_path::{Arc, BlockRef, Curve, FeedRate, PathElement, Point2};
 
 use super::compensation::CompensationStage;
 use super::flat::{self, Flat, SAME_POINT_MM};
-use super::{ContourMove, Side, Smooth};
+use super::{ContourMove, Side, Smooth, corner_arc};
 use crate::error::Fault;
 use crate::output::Output;
 
@@ -31,6 +31,8 @@ pub(crate) enum JoinKind {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RoundingStage {
     held: Option<ContourMove>,
+    /// Length of the held movement before arcs of M112 took from it, mm.
+    held_length: f64,
     join: Option<Join>,
     /// Holds (functions without movement) that came after the join was asked for.
     after: Vec<ContourMove>,
@@ -49,12 +51,47 @@ impl RoundingStage {
         if let Some(join) = self.join {
             return self.push_joined(join, item, next, out);
         }
+        if item.corner_arcs.is_some() {
+            return self.push_with_arc(item, next, out);
+        }
         if let Some(held) = self.held.replace(item) {
             if held.in_plane {
                 self.side_before = held.side;
             }
             next.push(held, out)?;
         }
+        Ok(())
+    }
+
+    /// M112: an arc at the corner to the held movement, where there is one.
+    fn push_with_arc(
+        &mut self,
+        mut item: ContourMove,
+        next: &mut CompensationStage,
+        out: &mut Output,
+    ) -> Result<(), Fault> {
+        let length = item.element.length();
+        if let Some(mut held) = self.held.take() {
+            if held.in_plane {
+                self.side_before = held.side;
+            }
+            let mut arc = None;
+            if let Some(radius) = corner_arc::radius_between(&held, self.held_length, &item) {
+                let join = Join {
+                    kind: JoinKind::Rounding(radius),
+                    feed_mm_min: None,
+                    block: held.element.block,
+                    sequence: held.element.sequence,
+                };
+                arc = round(&mut held, &mut item, radius, join)?;
+            }
+            next.push(held, out)?;
+            if let Some(arc) = arc {
+                next.push(arc, out)?;
+            }
+        }
+        self.held_length = length;
+        self.held = Some(item);
         Ok(())
     }
 

@@ -4,6 +4,7 @@ use bahn_exchange::STRING_LENGTH;
 
 use super::numbers::{binary, hexadecimal};
 use super::{Call, Outcome};
+use crate::run::Text;
 use crate::{DataInterface, InterfaceUser, PlcError};
 
 /// Bytes of a binary transfer: two characters each [000:15605].
@@ -70,6 +71,7 @@ pub(super) fn transmit_text(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [interface, string] = call.arguments()?;
     let text = call.text(string).map(|text| call.resolved(&text));
     let text = text.filter(|text| text.len() < STRING_LENGTH);
+    let text = text.and_then(|text| Text::try_from(text.as_slice()).ok());
     Ok(transmit(call, interface, text))
 }
 
@@ -88,7 +90,8 @@ pub(super) fn transmit_bytes(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [interface, first, length] = call.arguments()?;
     let valid = (0..=BYTES_MAX).contains(&length);
     let bytes = call.bytes(first, length).filter(|_| valid);
-    Ok(transmit(call, interface, bytes.map(|bytes| hexadecimal(&bytes))))
+    let text = bytes.and_then(|bytes| hexadecimal(&bytes));
+    Ok(transmit(call, interface, text))
 }
 
 /// 9106: takes received hexadecimal text as bytes; the result is their number.
@@ -132,7 +135,7 @@ fn received(call: &mut Call<'_>, interface: i32) -> Option<Vec<u8>> {
     (!interface.receive.is_empty()).then(|| interface.receive.clone())
 }
 
-fn transmit(call: &mut Call<'_>, interface: i32, text: Option<Vec<u8>>) -> Outcome {
+fn transmit(call: &mut Call<'_>, interface: i32, text: Option<Text>) -> Outcome {
     let (Some(interface), Some(text)) = (assigned(call, interface), text) else {
         return Outcome::Failed;
     };

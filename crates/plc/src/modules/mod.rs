@@ -242,10 +242,12 @@ impl Call<'_> {
         resolved
     }
 
-    /// Bytes of the word memory; `None` when they do not lie inside it, or the first address does not.
-    fn bytes(&self, first: i32, length: i32) -> Option<Vec<u8>> {
+    /// Bytes of the word memory; `None` when they do not lie inside it, the first address does not, or they
+    /// are more than a string has characters.
+    fn bytes(&self, first: i32, length: i32) -> Option<Text> {
         let inside = first < memory::BYTES && memory::fits(first, length, memory::BYTES);
-        inside.then_some(())?;
+        let few = usize::try_from(length).is_ok_and(|length| length <= bahn_exchange::STRING_LENGTH);
+        (inside && few).then_some(())?;
         let byte = |address| Some(self.image.number(memory::operand(Size::Byte, address)?) as u8);
         (first..first + length).map(byte).collect()
     }
@@ -267,8 +269,17 @@ impl Call<'_> {
     /// Writes doublewords one behind the other; false when the first address is not divisible by 4 or
     /// there is no room for all.
     fn set_doubles(&mut self, first: i32, values: &[i32]) -> bool {
-        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
-        first % 4 == 0 && self.set_bytes(first, &bytes)
+        let length = i32::try_from(4 * values.len()).unwrap_or(i32::MAX);
+        let fits = first < memory::BYTES && memory::fits(first, length, memory::BYTES);
+        if first % 4 != 0 || !fits {
+            return false;
+        }
+        for (address, value) in (first..).step_by(4).zip(values) {
+            if let Some(number) = self.double(address) {
+                self.image.set_number(number, *value);
+            }
+        }
+        true
     }
 
     /// A doubleword by its address.

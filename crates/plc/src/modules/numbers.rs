@@ -2,6 +2,7 @@
 
 use super::{Call, Outcome};
 use crate::PlcError;
+use crate::run::Text;
 
 /// 9050: mantissa and power of ten to the shortest decimal number [000:15023-15064].
 pub(super) fn to_text(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
@@ -33,7 +34,7 @@ pub(super) fn from_text(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
 /// [000:15146-15171].
 pub(super) fn to_hexadecimal(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let [address, string, length] = call.arguments()?;
-    let text = call.bytes(address, length).map(|bytes| hexadecimal(&bytes));
+    let text = call.bytes(address, length).and_then(|bytes| hexadecimal(&bytes));
     Ok(Outcome::of(text.is_some_and(|text| call.set_text(string, &text))))
 }
 
@@ -46,27 +47,33 @@ pub(super) fn from_hexadecimal(call: &mut Call<'_>) -> Result<Outcome, PlcError>
     ))
 }
 
-/// Two characters per byte.
-pub(super) fn hexadecimal(bytes: &[u8]) -> Vec<u8> {
-    bytes
-        .iter()
-        .flat_map(|byte| format!("{byte:02X}").into_bytes())
-        .collect()
+/// Two characters per byte; `None` when they are more than a string has.
+pub(super) fn hexadecimal(bytes: &[u8]) -> Option<Text> {
+    const DIGITS: [u8; 16] = *b"0123456789ABCDEF";
+    let mut text = Text::new();
+    for byte in bytes {
+        for digit in [byte >> 4, byte & 15] {
+            text.try_push(DIGITS[usize::from(digit)]).ok()?;
+        }
+    }
+    Some(text)
 }
 
 /// One byte from two characters 0-9 A-F; `None` for others and for an odd number of them.
-pub(super) fn binary(text: &[u8]) -> Option<Vec<u8>> {
+pub(super) fn binary(text: &[u8]) -> Option<Text> {
     let digit = |character: u8| match character {
         b'0'..=b'9' => Some(character - b'0'),
         b'A'..=b'F' => Some(character - b'A' + 10),
         _ => None,
     };
-    text.chunks(2)
-        .map(|pair| match pair {
-            [high, low] => Some(digit(*high)? << 4 | digit(*low)?),
-            _ => None,
-        })
-        .collect()
+    let mut bytes = Text::new();
+    for pair in text.chunks(2) {
+        let [high, low] = pair else {
+            return None;
+        };
+        bytes.try_push(digit(*high)? << 4 | digit(*low)?).ok()?;
+    }
+    Some(bytes)
 }
 
 /// Comma or point, as MP7280 says [000:15033].
@@ -81,11 +88,11 @@ fn decimal_sign(call: &Call<'_>) -> u8 {
 /// Places before and behind the point that 9050 allows [000:15038-15039].
 const PLACES_MAX: i64 = 10;
 
-fn decimal(mantissa: i32, exponent: i32, sign: u8) -> Option<Vec<u8>> {
+fn decimal(mantissa: i32, exponent: i32, sign: u8) -> Option<Text> {
+    let mut digits = digits_of(mantissa.unsigned_abs().into());
     if mantissa == 0 {
-        return Some(b"0".to_vec());
+        return Some(digits);
     }
-    let mut digits = mantissa.unsigned_abs().to_string().into_bytes();
     let mut exponent = i64::from(exponent);
     while digits.last() == Some(&b'0') {
         digits.pop();
@@ -108,10 +115,23 @@ fn decimal(mantissa: i32, exponent: i32, sign: u8) -> Option<Vec<u8>> {
     Some(digits)
 }
 
+/// The decimal digits of a number, at least one.
+fn digits_of(mut number: u64) -> Text {
+    let mut digits = Text::new();
+    loop {
+        digits.insert(0, b'0' + (number % 10) as u8);
+        number /= 10;
+        if number == 0 {
+            return digits;
+        }
+    }
+}
+
 /// Puts zeros before a number until it has so many digits.
-fn pad(digits: &mut Vec<u8>, count: usize) {
-    let missing = count.saturating_sub(digits.len());
-    digits.splice(0..0, std::iter::repeat_n(b'0', missing));
+fn pad(digits: &mut Text, count: usize) {
+    while digits.len() < count {
+        digits.insert(0, b'0');
+    }
 }
 
 /// How 9051 writes a number.
@@ -157,15 +177,15 @@ impl Format {
         })
     }
 
-    fn text(&self, value: i32, point: u8) -> Vec<u8> {
-        let magnitude = i64::from(value).abs();
+    fn text(&self, value: i32, point: u8) -> Text {
+        let magnitude = u64::from(value.unsigned_abs());
         // Divided by 25.4 and rounded half up (inferred).
         let magnitude = if self.inch {
             (magnitude * 10 + 127) / 254
         } else {
             magnitude
         };
-        let mut digits = magnitude.to_string().into_bytes();
+        let mut digits = digits_of(magnitude);
         pad(&mut digits, self.decimals + 1);
         let width = self.decimals + self.places;
         digits.drain(..digits.len().saturating_sub(width));
@@ -173,7 +193,7 @@ impl Format {
         while digits.len() > self.decimals + 1 && digits.first() == Some(&b'0') {
             digits.remove(0);
         }
-        let blanks = vec![b' '; width.saturating_sub(digits.len())];
+        let blanks = width.saturating_sub(digits.len());
         if self.decimals > 0 {
             digits.insert(digits.len().saturating_sub(self.decimals), point);
         }
@@ -182,10 +202,12 @@ impl Format {
             (true, false) => b"+",
             (true, true) => b"-",
         };
+        let blanks = std::iter::repeat_n(b' ', blanks);
+        let (sign, digits) = (sign.iter().copied(), digits.into_iter());
         match self.align {
-            Align::Left => [sign, &digits].concat(),
-            Align::SignLeft => [sign, &blanks, &digits].concat(),
-            Align::Right => [&blanks, sign, &digits].concat(),
+            Align::Left => sign.chain(digits).collect(),
+            Align::SignLeft => sign.chain(blanks).chain(digits).collect(),
+            Align::Right => blanks.chain(sign).chain(digits).collect(),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Call, Outcome, string_number};
 use crate::PlcError;
+use crate::run::Text;
 
 /// Longest number that 9070 copies [000:15213].
 const NUMBER_MAX: usize = 79;
@@ -12,7 +13,7 @@ pub(super) fn copy_number(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
     let found = call.text(source).and_then(|text| {
         let start = (0..text.len()).find(|start| text.get(*start..).and_then(number_length).is_some())?;
         let length = text.get(start..).and_then(number_length)?;
-        let number = text.get(start..start + length)?.to_vec();
+        let number = Text::try_from(text.get(start..start + length)?).ok()?;
         (length <= NUMBER_MAX).then_some((number, start + length))
     });
     let found = found.filter(|_| string_number(destination).is_some());

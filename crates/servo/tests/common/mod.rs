@@ -5,8 +5,8 @@
 use bahn_parameters::{AxisParameters, ControlModel, ParameterList};
 use bahn_servo::{Axis, Encoder, Method, Timing};
 
-/// Mechanics without errors: the reference lists hold the least entries, -1 mm.
-const NO_ERRORS: [&str; 4] = ["710.0=0", "711.0=0", "715.0=0", "720.0=0"];
+/// Mechanics without errors, and a drive without offset.
+const NO_ERRORS: [&str; 5] = ["710.0=0", "711.0=0", "715.0=0", "720.0=0", "1080.0=0"];
 
 /// The X axis of a model's reference list, without errors, with some parameters changed.
 pub fn parameters(model: ControlModel, assignments: &[&str]) -> AxisParameters {

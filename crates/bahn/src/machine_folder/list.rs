@@ -1,0 +1,55 @@
+//! `bahn machine list`: what a script can speak of.
+
+use bahn_machine::Event;
+
+use super::load::load;
+use super::options::ListOptions;
+use crate::diagnostics::FileFault;
+use crate::run::Expectation;
+use crate::{Outcome, UsageError, console};
+
+/// Commands of the control, a line each.
+const COMMANDS: &str = "\
+mode manual|handwheel|mdi|single|full|reference
+ce                                  clears a message
+stop                                internal stop of an interrupted run
+select PROGRAM                      the program that runs
+goto N                              the run starts at this block
+mdi BLOCK                           a block for MDI; \\n separates several
+m N                                 an M function in manual operation, output with NC start
+s RPM                               a spindle speed, likewise
+datum AXIS VALUE                    the actual position becomes this value
+jog MM                              jog increment
+handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
+manual-operation                    axes may be moved while a run is interrupted
+restore-position                    back to the contour with NC start
+restore-at N                        block scan to block N
+code N                              a code number
+key CODE                            a key of the keyboard by its code, 58 to 127
+offset adjust|off                   answers to code number 75368
+";
+
+/// Prints the names of a machine.
+pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
+    let machine = match load(&options.folder)? {
+        Ok(machine) => machine,
+        Err(faults) => {
+            faults.iter().for_each(FileFault::print);
+            return Ok(Outcome::ProgramError);
+        }
+    };
+    let plant = &machine.plant;
+    let axes: Vec<String> = plant.axes().map(|axis| axis.letter.to_string()).collect();
+    let things: Vec<&str> = plant.devices().map(|device| device.name).collect();
+    let row = |name: &str, items: Vec<&str>| format!("{name:<10}{}\n", items.join(" "));
+    let mut text = format!("{}, {}\n\n", machine.folder.name, machine.parameters.model());
+    text += &row("axes", axes.iter().map(String::as_str).collect());
+    text += &row("keys", plant.keys().collect());
+    text += &row("lamps", plant.lamps().collect());
+    text += &row("things", things);
+    text += &format!("\nEvents:\n{}", Event::HELP);
+    text += &format!("\nCommands:\n{COMMANDS}");
+    text += &format!("\nExpectations, and the end:\n{}end\n", Expectation::HELP);
+    console::print(&text)?;
+    Ok(Outcome::Fine)
+}

@@ -1,0 +1,342 @@
+//! Everything that belongs to a machine, from its folder; all faults of all files at once.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use bahn_control::Tool;
+use bahn_machine::{Machine, MachineFolder};
+use bahn_parameters::{ControlModel, ListText, ParameterList};
+use bahn_path::{Axis, Position};
+use bahn_plc::{Options, PlcProgram, ProgramMemory};
+
+use crate::diagnostics::{FileFault, Marked, Severity};
+use crate::{UsageError, files, mp, plc, tool_table};
+
+/// Texts that a PLC message file holds at most: M2924 to M3023 [000:6625-6633].
+const MESSAGES: usize = 100;
+
+/// A machine that can be switched on.
+pub(crate) struct LoadedMachine {
+    /// The folder.
+    pub root: PathBuf,
+    /// What `machine.toml` says.
+    pub folder: MachineFolder,
+    pub parameters: ParameterList,
+    pub plc: Arc<PlcProgram>,
+    pub plc_messages: Vec<String>,
+    pub plc_dialogues: Vec<String>,
+    /// The machine at power-on.
+    pub plant: Machine,
+    /// `None` when tools come from TOOL DEF.
+    pub tools: Option<BTreeMap<u32, Tool>>,
+    /// What is accepted, but looks wrong.
+    pub warnings: Vec<FileFault>,
+}
+
+impl LoadedMachine {
+    /// The datum of `machine.toml`, for the axes that it names.
+    pub fn datum(&self) -> Position {
+        let mut datum = Position::ZERO;
+        for (letter, value) in &self.folder.datum {
+            if let Some(axis) = axis(*letter) {
+                datum[axis] = *value;
+            }
+        }
+        datum
+    }
+}
+
+fn axis(letter: char) -> Option<Axis> {
+    u8::try_from(letter).ok().and_then(Axis::from_letter)
+}
+
+/// Loads the machine of a folder; `Err` holds every fault of every file.
+///
+/// # Errors
+/// [`UsageError`] when there is no such folder or no `machine.toml` in it.
+pub(crate) fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
+    let file = root.join(MachineFolder::FILE);
+    let bytes = files::read_table(&file).map_err(|error| {
+        UsageError::new(format!(
+            "{error}\na machine is a folder with {}; `bahn machine new` makes one",
+            MachineFolder::FILE
+        ))
+    })?;
+    let text = decode(&bytes);
+    let (folder, faults) = MachineFolder::read(&text);
+    let mut loader = Loader {
+        root,
+        faults: Vec::new(),
+        warnings: Vec::new(),
+        description: (file.clone(), text),
+    };
+    for fault in faults {
+        loader.fault_in_description(fault.line, fault.column, fault.message);
+    }
+    let machine = loader.load(folder);
+    Ok(match machine {
+        Some(mut machine) if loader.faults.is_empty() => {
+            machine.warnings = loader.warnings;
+            Ok(machine)
+        }
+        _ => {
+            loader
+                .faults
+                .sort_by_key(|fault| fault.severity == Severity::Warning);
+            Err(loader.faults)
+        }
+    })
+}
+
+struct Loader<'a> {
+    root: &'a Path,
+    faults: Vec<FileFault>,
+    warnings: Vec<FileFault>,
+    /// `machine.toml`: its path and text.
+    description: (PathBuf, String),
+}
+
+impl Loader<'_> {
+    /// Reads all files, so that every fault is found; `None` when one of them could not be read.
+    fn load(&mut self, folder: MachineFolder) -> Option<LoadedMachine> {
+        let model = self.model(&folder.model);
+        let plant = self.plant(&folder);
+        let tools = self.tools(&folder);
+        let plc_messages = self.texts("plc_messages", folder.plc_messages.as_deref(), MESSAGES);
+        let plc_dialogues = self.texts("plc_dialogues", folder.plc_dialogues.as_deref(), 4096);
+        let parameters = self.parameters(&folder, model?);
+        let plc = self.plc(&folder, model?, parameters.as_ref());
+        let (parameters, plant) = (parameters?, plant?);
+        self.agree(&folder, &plant);
+        Some(LoadedMachine {
+            root: self.root.to_owned(),
+            parameters,
+            plc: plc?,
+            plc_messages: plc_messages?,
+            plc_dialogues: plc_dialogues?,
+            plant,
+            tools: tools?,
+            warnings: Vec::new(),
+            folder,
+        })
+    }
+
+    fn model(&mut self, name: &str) -> Option<ControlModel> {
+        if name.is_empty() {
+            return None;
+        }
+        let model = name.parse().ok();
+        if model.is_none() {
+            let known = ControlModel::ALL.map(ControlModel::id).join(", ");
+            self.fault_at_key(
+                "model",
+                &format!("`{name}` is no control model; there are {known}"),
+            );
+        }
+        model
+    }
+
+    /// The bytes of a file that `machine.toml` names.
+    fn read(&mut self, key: &str, name: &str) -> Option<(PathBuf, Vec<u8>)> {
+        if name.is_empty() {
+            return None;
+        }
+        let path = self.root.join(name);
+        match files::read_table(&path) {
+            Ok(bytes) => Some((path, bytes)),
+            Err(error) => {
+                self.fault_at_key(key, &error.to_string());
+                None
+            }
+        }
+    }
+
+    fn parameters(&mut self, folder: &MachineFolder, model: ControlModel) -> Option<ParameterList> {
+        let (path, bytes) = self.read("parameters", &folder.parameters)?;
+        let text = ListText::from_bytes(model, &bytes);
+        let mut list = ParameterList::reference(model);
+        list.take(&text);
+        let found = mp::machine_list(&text, &list, &path);
+        self.sort(found).then_some(list)
+    }
+
+    fn plc(
+        &mut self,
+        folder: &MachineFolder,
+        model: ControlModel,
+        parameters: Option<&ParameterList>,
+    ) -> Option<Arc<PlcProgram>> {
+        let (path, _) = self.read("plc", &folder.plc)?;
+        let parameters = parameters
+            .cloned()
+            .unwrap_or_else(|| ParameterList::reference(model));
+        let memory = match parameters.get(4010, 0) {
+            Some(0.0) => ProgramMemory::Eprom,
+            _ => ProgramMemory::Ram,
+        };
+        let options = Options::for_model(model).stored_in(memory);
+        let mut source = plc::Source::compile_for(&path, parameters, options);
+        let found = source.errors().into_iter().chain(source.warnings()).collect();
+        self.sort(found);
+        source.compilation.program.take().map(Arc::new)
+    }
+
+    fn plant(&mut self, folder: &MachineFolder) -> Option<Machine> {
+        let (path, bytes) = self.read("plant", &folder.plant)?;
+        let text = decode(&bytes);
+        match Machine::from_toml(&text) {
+            Ok(machine) => Some(machine),
+            Err(faults) => {
+                for fault in faults {
+                    let place = (fault.line, Some(fault.column));
+                    self.faults.push(file_fault(
+                        &path,
+                        &text,
+                        place,
+                        "the machine is wrong",
+                        &fault.message,
+                    ));
+                }
+                None
+            }
+        }
+    }
+
+    fn tools(&mut self, folder: &MachineFolder) -> Option<Option<BTreeMap<u32, Tool>>> {
+        let Some(name) = &folder.tools else {
+            return Some(None);
+        };
+        let (path, bytes) = self.read("tools", name)?;
+        let text = decode(&bytes);
+        match tool_table::parse(&text) {
+            Ok(tools) => Some(Some(tools)),
+            Err(faults) => {
+                for fault in faults {
+                    let place = (fault.line.max(1) as usize, None);
+                    self.faults.push(file_fault(
+                        &path,
+                        &text,
+                        place,
+                        "the tool table is wrong",
+                        &fault.message,
+                    ));
+                }
+                None
+            }
+        }
+    }
+
+    fn texts(&mut self, key: &str, name: Option<&str>, most: usize) -> Option<Vec<String>> {
+        let Some(name) = name else {
+            return Some(Vec::new());
+        };
+        let (path, bytes) = self.read(key, name)?;
+        let text = decode(&bytes);
+        let lines: Vec<String> = text.lines().map(|line| line.trim_end().to_owned()).collect();
+        if lines.len() > most {
+            let place = (most + 1, None);
+            let message = format!("there are {most} texts at most");
+            self.faults
+                .push(file_fault(&path, &text, place, "too many texts", &message));
+        }
+        Some(lines)
+    }
+
+    /// What must fit between the files.
+    fn agree(&mut self, folder: &MachineFolder, plant: &Machine) {
+        for (letter, _) in &folder.datum {
+            if plant.axis(*letter).is_none() {
+                self.fault_at_key(&letter.to_string(), &format!("the machine has no axis {letter}"));
+            }
+        }
+        let operator = &folder.operator;
+        let voltage = operator.control_voltage.iter();
+        let named = [("start", &operator.start)]
+            .into_iter()
+            .chain(voltage.map(|key| ("control_voltage", key)))
+            .chain(operator.tool_change.iter().map(|key| ("tool_change", key)));
+        let keys: Vec<&str> = plant.keys().collect();
+        for (key, name) in named {
+            // What is not written is a guess; it shows when it is needed.
+            if !keys.contains(&name.as_str()) && self.line_of(key).is_some() {
+                let message = format!("the machine has no key `{name}`; there are {}", keys.join(", "));
+                self.fault_at_key(key, &message);
+            }
+        }
+    }
+
+    /// Keeps warnings, and errors as faults; whether there was no error.
+    fn sort(&mut self, found: Vec<FileFault>) -> bool {
+        let before = self.faults.len();
+        for fault in found {
+            match fault.severity {
+                Severity::Error => self.faults.push(fault),
+                Severity::Warning => self.warnings.push(fault),
+            }
+        }
+        self.faults.len() == before
+    }
+
+    /// The line of `machine.toml` that sets a key, from 1.
+    fn line_of(&self, key: &str) -> Option<usize> {
+        let sets = |line: &str| line.split('=').next().is_some_and(|name| name.trim() == key);
+        let (_, text) = &self.description;
+        text.lines()
+            .position(|line| line.contains('=') && sets(line))
+            .map(|index| index + 1)
+    }
+
+    fn fault_at_key(&mut self, key: &str, message: &str) {
+        let line = self.line_of(key).unwrap_or(1);
+        self.fault_in_description(line, 1, message.to_owned());
+    }
+
+    fn fault_in_description(&mut self, line: usize, column: usize, message: String) {
+        let (path, text) = &self.description;
+        let place = (line, (column > 1).then_some(column));
+        let fault = file_fault(path, text, place, "the machine's description is wrong", &message);
+        self.faults.push(fault);
+    }
+}
+
+/// A fault at a line of a text, at a column or as a whole.
+fn file_fault(
+    path: &Path,
+    text: &str,
+    (line, column): (usize, Option<usize>),
+    title: &str,
+    message: &str,
+) -> FileFault {
+    let shown = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
+    let columns = column.map(|column| {
+        let length = shown
+            .chars()
+            .skip(column.saturating_sub(1))
+            .take_while(|c| !c.is_whitespace())
+            .count();
+        let number = |value: usize| u32::try_from(value).unwrap_or(1).max(1);
+        (number(column), number(length))
+    });
+    FileFault {
+        severity: Severity::Error,
+        title: title.to_owned(),
+        path: path.to_owned(),
+        marked: Marked {
+            line: u32::try_from(line).unwrap_or(1),
+            text: shown.to_owned(),
+            columns,
+        },
+        label: message.to_owned(),
+        help: None,
+    }
+}
+
+/// Text of a file: UTF-8, or else the Latin alphabet of the control's own files.
+pub(crate) fn decode(bytes: &[u8]) -> String {
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect(),
+    };
+    text.trim_start_matches('\u{feff}').to_owned()
+}

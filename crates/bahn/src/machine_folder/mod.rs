@@ -1,0 +1,30 @@
+//! `bahn machine`: the folder of a machine.
+//!
+//! - `load`: everything in it, all faults at once; `programs`: its part programs; `state`: what survives
+//!   power-off;
+//! - `options`, `new`, `check`, `list`: the subcommands.
+
+mod check;
+mod list;
+mod load;
+mod new;
+mod options;
+mod programs;
+mod state;
+
+pub(crate) use load::{LoadedMachine, decode, load};
+pub(crate) use options::MachineFolderOptions;
+pub(crate) use programs::FolderPrograms;
+pub(crate) use state::State;
+
+use crate::{Outcome, UsageError};
+use options::MachineCommand;
+
+/// Executes a subcommand of `bahn machine`.
+pub(crate) fn command(options: &MachineFolderOptions) -> Result<Outcome, UsageError> {
+    match &options.command {
+        MachineCommand::New(options) => new::command(options),
+        MachineCommand::Check(options) => check::command(options),
+        MachineCommand::List(options) => list::command(options),
+    }
+}

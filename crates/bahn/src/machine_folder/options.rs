@@ -1,0 +1,78 @@
+//! Options and help texts of `bahn machine`.
+
+use std::path::PathBuf;
+
+use bahn_parameters::ControlModel;
+use clap::{Args, Subcommand, ValueHint};
+
+use crate::cli::{Format, model_parser};
+
+/// Options of `bahn machine`.
+#[derive(Args, Debug)]
+pub(crate) struct MachineFolderOptions {
+    #[command(subcommand)]
+    pub command: MachineCommand,
+}
+
+/// What to do with the folder of a machine.
+#[derive(Debug, Subcommand)]
+pub(crate) enum MachineCommand {
+    /// Write a machine to start from: parameters, PLC program, plant, tools, programs.
+    #[command(after_help = NEW_EXAMPLES)]
+    New(NewOptions),
+    /// Load everything in a folder, and show all faults of all files.
+    #[command(after_help = CHECK_EXAMPLES)]
+    Check(CheckOptions),
+    /// List axes, keys, lamps, things and signals of a machine, and the events and commands of scripts.
+    List(ListOptions),
+}
+
+const NEW_EXAMPLES: &str = "\
+Examples:
+  bahn machine new mymill --model tnc407
+  bahn machine check mymill
+  bahn run COVER.H --machine mymill
+
+Models of the 400 series start from a mill with rotary table and gear spindle, the others from a small mill
+without. The README.md in the folder explains every file and key.";
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  bahn machine check machines/mill
+  bahn machine check machines/* --format json
+
+JSON: for each folder: folder, name, model, ok, faults (severity, file, line, column, message, detail).
+Exit codes: 0 fine, 1 faults, 2 wrong use.";
+
+/// Options of `bahn machine new`.
+#[derive(Args, Debug)]
+pub(crate) struct NewOptions {
+    /// The folder; it is made, and must be empty when it is there.
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// Control model.
+    #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
+    pub model: ControlModel,
+    /// Name for people; that of the folder without it.
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+}
+
+/// Options of `bahn machine check`.
+#[derive(Args, Debug)]
+pub(crate) struct CheckOptions {
+    /// The folders.
+    #[arg(value_name = "DIR", required = true, value_hint = ValueHint::DirPath)]
+    pub folders: Vec<PathBuf>,
+    /// How faults are written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// Options of `bahn machine list`.
+#[derive(Args, Debug)]
+pub(crate) struct ListOptions {
+    /// The folder.
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+}

@@ -1,0 +1,83 @@
+//! The part programs of a machine.
+
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bahn_control::Programs;
+use bahn_interpreter::Library;
+use bahn_program::Program;
+
+use crate::UsageError;
+use crate::files::{self, FileLibrary, Loaded};
+
+/// The folder of programs, and the program that was given by its path.
+pub(crate) struct FolderPrograms {
+    /// A name in the folder: programs lie beside their caller.
+    caller: String,
+    main: Option<Arc<Program>>,
+    library: Mutex<FileLibrary>,
+}
+
+impl FolderPrograms {
+    /// The programs of a folder, and a main program from anywhere: a path, or the name of a program in the
+    /// folder.
+    ///
+    /// # Errors
+    /// When the program cannot be read.
+    pub fn new(folder: &Path, main: Option<&Path>) -> Result<FolderPrograms, UsageError> {
+        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        let main = main.map(|path| load(&folder, path)).transpose()?;
+        let library = match &main {
+            Some(main) => FileLibrary::with_main(main),
+            None => FileLibrary::default(),
+        };
+        Ok(FolderPrograms {
+            caller: folder.join("operator").to_string_lossy().into_owned(),
+            main,
+            library: Mutex::new(library),
+        })
+    }
+
+    /// The name by which the operator selects the main program.
+    pub fn main_name(&self) -> Option<&str> {
+        self.main.as_ref().map(|main| files::short_name(main))
+    }
+
+    /// The main program.
+    pub fn main(&self) -> Option<&Arc<Program>> {
+        self.main.as_ref()
+    }
+}
+
+fn load(folder: &Path, path: &Path) -> Result<Arc<Program>, UsageError> {
+    let beside = folder.join(path);
+    let path = if !path.exists() && beside.is_file() {
+        &beside
+    } else {
+        path
+    };
+    match files::load_program(path)? {
+        Loaded::Program(program) => Ok(program),
+        Loaded::Empty(_) => Err(UsageError::new(format!("{}: {}", path.display(), files::EMPTY))),
+        Loaded::TooLarge => Err(UsageError::new(format!(
+            "{}: {}",
+            path.display(),
+            files::TOO_LARGE
+        ))),
+    }
+}
+
+impl Programs for FolderPrograms {
+    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        if let Some(main) = self.main.as_ref().filter(|_| self.main_name() == Some(name)) {
+            return Ok(Some(Arc::clone(main)));
+        }
+        let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
+        if !caller.is_empty()
+            && let Some(program) = library.find(name, caller)?
+        {
+            return Ok(Some(program));
+        }
+        library.find(name, &self.caller)
+    }
+}

@@ -1,0 +1,187 @@
+//! How far the axes leave the contour: the distance of the actual position from the nominal path.
+//!
+//! The lag along the path is no error of the contour. So the actual position is compared with the nearest
+//! point of the path that was commanded, not with the nominal position of the moment.
+
+use std::collections::VecDeque;
+
+use bahn_control::{AxisSignal, Control, Signal};
+use bahn_path::BlockRef;
+
+/// Contour cycles that are remembered; the lag of the slowest axis is far shorter.
+const POINTS: usize = 2048;
+
+/// The largest values of an axis.
+#[derive(Clone, Debug)]
+pub(super) struct AxisExtremes {
+    pub letter: char,
+    /// Largest lag, mm or degrees, and in which block.
+    pub max_lag: f64,
+    pub lag_block: Option<BlockRef>,
+    /// Largest distance from the contour in this axis, mm; rotary axes have none.
+    pub max_deviation: f64,
+    pub deviation_block: Option<BlockRef>,
+    linear: Option<usize>,
+}
+
+impl AxisExtremes {
+    /// It takes part in the contour.
+    pub fn is_linear(&self) -> bool {
+        self.linear.is_some()
+    }
+}
+
+/// Follows the axes while a program runs.
+pub(super) struct Deviation {
+    pub axes: Vec<AxisExtremes>,
+    linear: Vec<char>,
+    /// The nominal path, the oldest point first.
+    path: VecDeque<[f64; 3]>,
+    /// Largest distance from the contour in space, mm.
+    pub max_mm: f64,
+}
+
+impl Deviation {
+    pub fn new(control: &Control) -> Deviation {
+        // Three linear axes span the contour; others run beside it.
+        let linear: Vec<char> = control
+            .axis_letters()
+            .filter(|letter| matches!(letter, 'X' | 'Y' | 'Z'))
+            .collect();
+        let axes = control.axis_letters().map(|letter| AxisExtremes {
+            letter,
+            max_lag: 0.0,
+            lag_block: None,
+            max_deviation: 0.0,
+            deviation_block: None,
+            linear: linear.iter().position(|own| *own == letter),
+        });
+        Deviation {
+            axes: axes.collect(),
+            linear,
+            path: VecDeque::with_capacity(POINTS),
+            max_mm: 0.0,
+        }
+    }
+
+    /// Takes a contour cycle of a running program. `contour` says that it is machined, not positioned.
+    pub fn cycle(&mut self, control: &Control, contour: bool) {
+        let block = control.element().map(|element| element.block);
+        for axis in &mut self.axes {
+            let lag = control.observe(&Signal::Axis(axis.letter, AxisSignal::Lag)).abs();
+            if lag > axis.max_lag {
+                (axis.max_lag, axis.lag_block) = (lag, block);
+            }
+        }
+        let read = |signal| {
+            let mut point = [0.0; 3];
+            for (value, letter) in point.iter_mut().zip(&self.linear) {
+                *value = control.observe(&Signal::Axis(*letter, signal));
+            }
+            point
+        };
+        let (nominal, actual) = (read(AxisSignal::Nominal), read(AxisSignal::Actual));
+        if self.path.back() != Some(&nominal) {
+            if self.path.len() == POINTS {
+                self.path.pop_front();
+            }
+            self.path.push_back(nominal);
+        }
+        let Some(across) = self.nearest(actual) else {
+            return;
+        };
+        if !contour {
+            return;
+        }
+        self.max_mm = self.max_mm.max(length(across));
+        for axis in &mut self.axes {
+            let Some(value) = axis.linear.and_then(|place| across.get(place)) else {
+                continue;
+            };
+            if value.abs() > axis.max_deviation {
+                (axis.max_deviation, axis.deviation_block) = (value.abs(), block);
+            }
+        }
+    }
+
+    /// Forgets the path: a new one begins.
+    pub fn restart(&mut self) {
+        self.path.clear();
+    }
+
+    /// The way from the nearest point of the path to a position. What lies before that point is forgotten:
+    /// an axis does not run back.
+    fn nearest(&mut self, actual: [f64; 3]) -> Option<[f64; 3]> {
+        let mut best = difference(actual, *self.path.front()?);
+        let mut at = 0;
+        for (index, (from, to)) in self.path.iter().zip(self.path.iter().skip(1)).enumerate() {
+            let across = from_segment(actual, *from, *to);
+            if length(across) < length(best) {
+                (best, at) = (across, index);
+            }
+        }
+        self.path.drain(..at);
+        Some(best)
+    }
+}
+
+/// The way from the nearest point of a segment to a position.
+fn from_segment(position: [f64; 3], from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+    let way = difference(to, from);
+    let behind = difference(position, from);
+    let square = product(way, way);
+    let along = if square > 0.0 {
+        (product(behind, way) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    difference(behind, way.map(|value| along * value))
+}
+
+fn difference([a, b, c]: [f64; 3], [d, e, f]: [f64; 3]) -> [f64; 3] {
+    [a - d, b - e, c - f]
+}
+
+fn product([a, b, c]: [f64; 3], [d, e, f]: [f64; 3]) -> f64 {
+    a * d + b * e + c * f
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    product(vector, vector).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn deviation(path: &[[f64; 3]]) -> Deviation {
+        Deviation {
+            axes: Vec::new(),
+            linear: vec!['X', 'Y', 'Z'],
+            path: path.iter().copied().collect(),
+            max_mm: 0.0,
+        }
+    }
+
+    /// 2 mm behind on a straight line is lag, no deviation; 0.1 mm beside it is.
+    #[test]
+    fn lag_is_no_deviation() {
+        let mut on_line = deviation(&[[0.0; 3], [5.0, 0.0, 0.0], [10.0, 0.0, 0.0]]);
+        assert_eq!(on_line.nearest([8.0, 0.1, 0.0]), Some([0.0, 0.1, 0.0]));
+        assert_eq!(on_line.path.len(), 2, "what was passed is forgotten");
+    }
+
+    /// A corner that is cut: the nearest points are on both legs.
+    #[test]
+    fn a_cut_corner_is_a_deviation() {
+        let mut corner = deviation(&[[0.0; 3], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0]]);
+        assert_eq!(corner.nearest([9.5, 0.5, 0.0]), Some([0.0, 0.5, 0.0]));
+    }
+
+    #[test]
+    fn what_stands_still_overshoots_its_last_point() {
+        let mut still = deviation(&[[10.0, 0.0, 0.0]]);
+        assert_eq!(still.nearest([10.0, 0.0, -0.25]), Some([0.0, 0.0, -0.25]));
+        assert_eq!(deviation(&[]).nearest([0.0; 3]), None);
+    }
+}

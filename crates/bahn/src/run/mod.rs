@@ -1,0 +1,357 @@
+//! `bahn run`: a part program on the simulated machine.
+//!
+//! - `options`: options and help text;
+//! - `session`: control and machine, cycle after cycle; `operator` who stands by, `script` what happens at
+//!   which time, `expectation` what must be so;
+//! - `deviation`, `times`: what is measured; `recording`, `log`: what is written while it runs; `pace`: the
+//!   clock on the wall;
+//! - `report`: what is said in the end.
+
+mod deviation;
+mod expectation;
+mod log;
+mod operator;
+mod options;
+mod pace;
+mod recording;
+mod report;
+mod script;
+mod session;
+mod times;
+
+pub(crate) use expectation::Expectation;
+pub(crate) use options::{EXAMPLES, RunMachineOptions};
+
+use std::path::Path;
+use std::sync::Arc;
+
+use bahn_control::{Control, Mode, NcFiles, Position0, Remembered, Setup, Signal};
+use bahn_exchange::Exchange;
+use bahn_machine::Machine;
+use bahn_workpiece::Projection;
+
+use crate::cli::Format;
+use crate::cutting::{self, Cutting};
+use crate::diagnostics::{self, FileFault};
+use crate::interrupt::Interrupt;
+use crate::machine_folder::{self, FolderPrograms, LoadedMachine, State};
+use crate::progress::Progress;
+use crate::report::{End, ErrorReport, Place, Record};
+use crate::test_run::{Outputs, print_error};
+use crate::{Outcome, UsageError, console, report_text};
+use log::Log;
+use operator::{Attendance, Job, Operator};
+use recording::Recording;
+use report::RunReport;
+use script::Script;
+use session::{Ended, Parts, Session, Writers};
+
+/// Runs a program on a machine and reports.
+pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
+    let mut machine = match machine_folder::load(&options.machine)? {
+        Ok(machine) => machine,
+        Err(faults) => return Ok(refused(&faults)),
+    };
+    for assignment in &options.run.mp {
+        let changed = machine.parameters.assign(assignment);
+        changed.map_err(|error| UsageError::new(format!("--mp {assignment}: {error}")))?;
+    }
+    let folder = machine.root.join(&machine.folder.programs);
+    let programs = Arc::new(FolderPrograms::new(&folder, options.file.as_deref())?);
+    let script = match load_script(options, &machine.plant)? {
+        Ok(script) => script,
+        Err(faults) => return Ok(refused(&faults)),
+    };
+    let (state, remembered, exchange) = power_on(options, &machine)?;
+    let mut plant = machine.plant.clone();
+    let mut log = options
+        .run
+        .log
+        .as_deref()
+        .map(|path| {
+            Log::create(
+                path,
+                &format!(
+                    "{}, {}",
+                    machine.folder.name,
+                    programs.main_name().unwrap_or("no program")
+                ),
+            )
+        })
+        .transpose()?;
+    if let Some(percent) = options.run.override_percent {
+        let event = format!("override feed {percent}");
+        plant
+            .apply(&event)
+            .map_err(|error| UsageError::new(error.to_string()))?;
+        if let Some(log) = &mut log {
+            log.note(0, &event)?;
+        }
+    }
+    let control = Control::new(Setup {
+        parameters: machine.parameters.clone(),
+        plc: Arc::clone(&machine.plc),
+        plc_messages: machine.plc_messages.clone(),
+        plc_dialogues: machine.plc_dialogues.clone(),
+        tools: machine.tools.clone(),
+        programs: Arc::clone(&programs) as Arc<dyn bahn_control::Programs>,
+        files: NcFiles::default(),
+        remembered,
+        exchange,
+    });
+    let writers = Writers {
+        recording: recording(options, &control)?,
+        log,
+        outputs: Outputs::create(&options.output.path)?,
+        state,
+    };
+    let mut session = Session::new(Parts {
+        operator: operator(options, &machine, &programs),
+        control,
+        machine: plant,
+        script,
+        writers,
+        cutting: (!options.output.no_graphics).then(|| Cutting::new(options.output.resolution)),
+        realtime: options.run.realtime,
+        max_time_s: options.run.max_time,
+        max_wait_s: options.run.max_wait,
+    });
+    let blocks = programs.main().map_or(0, |main| main.block_count());
+    let mut progress = Progress::new(blocks);
+    let ended = session.run(&Interrupt::on_ctrl_c(), &mut progress);
+    drop(progress);
+    if let Some(state) = &mut session.writers.state {
+        state.flush(&session.control)?;
+    }
+    finish(session, ended?, &machine, &programs, options)
+}
+
+/// Prints the faults of files that keep a machine from being switched on.
+fn refused(faults: &[FileFault]) -> Outcome {
+    faults.iter().for_each(FileFault::print);
+    Outcome::ProgramError
+}
+
+fn load_script(
+    options: &RunMachineOptions,
+    plant: &Machine,
+) -> Result<Result<Script, Vec<FileFault>>, UsageError> {
+    match options.run.script.as_ref().or(options.run.replay.as_ref()) {
+        Some(path) => Script::load(path, plant),
+        None => Ok(Ok(Script::default())),
+    }
+}
+
+/// What the control remembers, or what it begins with.
+fn power_on(
+    options: &RunMachineOptions,
+    machine: &LoadedMachine,
+) -> Result<(Option<State>, Remembered, Exchange), UsageError> {
+    let begin = || Remembered {
+        datums: [Position0(machine.datum()); 3],
+        ..Remembered::default()
+    };
+    if options.run.fresh {
+        return Ok((None, begin(), Exchange::default()));
+    }
+    let found = State::open(&machine.root.join(&machine.folder.state))?;
+    if let Some(damage) = &found.damage {
+        diagnostics::print_line(&format!(
+            "warning: {damage}\n  what the control remembered is lost; the datum is that of machine.toml"
+        ));
+    }
+    Ok((
+        Some(found.state),
+        found.remembered.unwrap_or_else(begin),
+        found.exchange,
+    ))
+}
+
+fn operator(options: &RunMachineOptions, machine: &LoadedMachine, programs: &FolderPrograms) -> Operator {
+    let attendance = options.run.operator.unwrap_or(match &options.run {
+        run if run.replay.is_some() => Attendance::Absent,
+        run if run.script.is_some() => Attendance::Start,
+        _ => Attendance::Full,
+    });
+    let job = programs.main_name().map(|name| Job {
+        program: name.to_owned(),
+        mode: if options.run.single_block {
+            Mode::SingleBlock
+        } else {
+            Mode::FullSequence
+        },
+        start_block: options.run.start_block,
+    });
+    Operator::new(attendance, machine.folder.operator.clone(), job)
+}
+
+fn recording(options: &RunMachineOptions, control: &Control) -> Result<Option<Recording>, UsageError> {
+    let wanted = &options.recording;
+    let Some(path) = &wanted.record else {
+        return Ok(None);
+    };
+    let letters: Vec<char> = control.axis_letters().collect();
+    for signal in &wanted.signals {
+        if let Signal::Axis(letter, _) = signal
+            && !letters.contains(letter)
+        {
+            let known: Vec<String> = letters.iter().map(char::to_string).collect();
+            return Err(UsageError::new(format!(
+                "--signals {signal}: the machine has no axis {letter}; there are {}",
+                known.join(", ")
+            )));
+        }
+    }
+    let signals = if wanted.signals.is_empty() {
+        recording::usual_signals(control)
+    } else {
+        wanted.signals.clone()
+    };
+    let every_us = wanted.every.map_or(0, |ms| u64::from(ms) * 1000);
+    Recording::create(path, signals, every_us).map(Some)
+}
+
+/// Writes all files and the report.
+fn finish(
+    mut session: Session,
+    ended: Ended,
+    machine: &LoadedMachine,
+    programs: &FolderPrograms,
+    options: &RunMachineOptions,
+) -> Result<Outcome, UsageError> {
+    let model = machine.parameters.model();
+    session.writers.outputs.finish()?;
+    if let Some(recording) = session.writers.recording.take() {
+        recording.finish()?;
+    }
+    if let Some(log) = session.writers.log.take() {
+        log.finish()?;
+    }
+    for failure in session.failures() {
+        failure.print();
+    }
+    let part = session
+        .cutting
+        .take()
+        .and_then(|cutting| cutting.finish(&mut session.record));
+    let removed_mm3 = part.as_ref().map(|part| part.removed_mm3());
+    let end = match &ended {
+        Ended::Completed => End::Completed,
+        Ended::Stopped(_) => End::Stopped,
+        Ended::Interrupted => End::Interrupted,
+        Ended::Broken(_) | Ended::Hangs(_) => End::Failed(Box::new(error(&session, &ended))),
+    };
+    let failure = match &end {
+        End::Failed(error) => Some(error.clone()),
+        _ => None,
+    };
+    let mut record = std::mem::replace(&mut session.record, Record::new(bahn_path::Position::UNKNOWN));
+    record.machining_time_s = session.program_us as f64 * 1e-6;
+    let run = session
+        .control
+        .interpreter()
+        .filter(|_| programs.main().is_some());
+    let report = run.map(|run| record.report(run, end, removed_mm3, model));
+    if let Some(error) = &failure {
+        say_failure(error, &session, programs);
+    }
+    let mut report = RunReport::new(&session, report, &machine.folder.name, model);
+    let outcome = match &ended {
+        Ended::Completed if session.failed.is_empty() => Outcome::Fine,
+        Ended::Stopped(why) if session.failed.is_empty() => {
+            diagnostics::print_line(&format!("the run ended: {why}"));
+            Outcome::Fine
+        }
+        Ended::Interrupted => {
+            diagnostics::print_line("interrupted: the report so far");
+            Outcome::Interrupted
+        }
+        _ => Outcome::ProgramError,
+    };
+    if let Ended::Hangs(what) = &ended {
+        report.waits_for = Some(what.clone());
+    }
+    let result = failure
+        .as_ref()
+        .map_or("completed", |error| error.message.as_str());
+    print_report(&report, result, model, options)?;
+    let projection = if machine.parameters.graphics().third_angle {
+        Projection::ThirdAngle
+    } else {
+        Projection::FirstAngle
+    };
+    let title = format!("PGM {}", programs.main_name().unwrap_or_default());
+    cutting::write(part.as_ref(), &options.output, &title, projection)?;
+    Ok(outcome)
+}
+
+/// What broke the run off.
+fn error(session: &Session, ended: &Ended) -> ErrorReport {
+    use bahn_control::Message;
+    let run = session.control.interpreter();
+    let mut at = session.block().unwrap_or_default();
+    let (message, detail) = match ended {
+        Ended::Broken(Some(message)) => {
+            let text = session.control.message_text(message);
+            match message.as_ref() {
+                Message::Program(error) => {
+                    at = error.block;
+                    (text, error.detail.clone())
+                }
+                other => (text, other.place().unwrap_or_default()),
+            }
+        }
+        Ended::Hangs(what) => ("nothing moves any more".to_owned(), what.clone()),
+        _ => ("the run was broken off".to_owned(), String::new()),
+    };
+    let place = run.map(|run| Place::of(run, at));
+    let remedy = match ended {
+        Ended::Broken(Some(broken)) => match broken.as_ref() {
+            Message::Program(error) => match &error.message {
+                bahn_interpreter::Message::Control(id) => Some(id.remedy()),
+                bahn_interpreter::Message::Numbered(_) => None,
+            },
+            Message::Plain(id) | Message::Axis { id, .. } => Some(id.remedy()),
+            _ => None,
+        },
+        _ => None,
+    };
+    ErrorReport {
+        message,
+        program: place
+            .as_ref()
+            .map(|place| place.program.clone())
+            .unwrap_or_default(),
+        block: at.block,
+        line: place.map_or(0, |place| place.line),
+        detail,
+        at,
+        remedy,
+    }
+}
+
+/// Says it with the block where that is known.
+fn say_failure(error: &ErrorReport, session: &Session, programs: &FolderPrograms) {
+    match (session.control.interpreter(), programs.main()) {
+        (Some(run), Some(main)) if error.line > 0 => print_error(error, run, Path::new(main.name())),
+        _ if error.detail.is_empty() => diagnostics::print_usage_error(&error.message),
+        _ => diagnostics::print_usage_error(&format!("{}: {}", error.message, error.detail)),
+    }
+}
+
+fn print_report(
+    report: &RunReport,
+    result: &str,
+    model: bahn_parameters::ControlModel,
+    options: &RunMachineOptions,
+) -> Result<(), UsageError> {
+    if options.format == Format::Json {
+        let json = serde_json::to_string_pretty(report)
+            .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
+        return console::print(&(json + "\n"));
+    }
+    let mut written = report_text::written(&options.output);
+    let files = options.recording.record.iter().chain(&options.run.log);
+    written.extend(files.map(|path| path.display().to_string()));
+    console::print(&report.text(model, result, &written))
+}

@@ -1,0 +1,197 @@
+//! The operator who stands by: switches on, passes the reference marks, starts the program, and lets the
+//! run go on where it waits for him.
+
+use bahn_control::{Command, Control, Message, Mode, RunState, Waiting};
+use bahn_exchange::signal;
+use bahn_machine::OperatorKeys;
+use bahn_parameters::MessageId;
+
+/// Between two things that he does, µs.
+const PAUSE_US: u64 = 500_000;
+/// NC start between two blocks of single block, µs.
+const BLOCK_US: u64 = 100_000;
+/// So long a tool change may take without him, µs.
+const PATIENCE_US: u64 = 5_000_000;
+/// Between the keys of a tool change, µs.
+const CHANGE_US: u64 = 1_500_000;
+
+/// How much he does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Attendance {
+    /// Everything: also NC start after programmed stops, and what a tool change waits for.
+    Full,
+    /// Switches on, passes the reference marks and starts the program; then the script is alone.
+    Start,
+    /// Nothing: the script does it.
+    Absent,
+}
+
+/// How far he is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// Until the loops are closed.
+    PowerUp,
+    /// Until all reference marks are passed.
+    Reference,
+    /// The program was chosen and started.
+    Program,
+    /// There is no program to start.
+    Ready,
+}
+
+/// What he does now.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Deed {
+    Command(Command),
+    /// Taps a key of the panel.
+    Key(String, Why),
+}
+
+/// Why he presses a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Why {
+    /// Voltage, reference run, start of the program, next block of single block.
+    Routine,
+    /// A programmed stop.
+    Stop,
+    /// A tool change waits for him.
+    ToolChange,
+}
+
+/// What he starts.
+pub(super) struct Job {
+    pub program: String,
+    pub mode: Mode,
+    pub start_block: Option<u32>,
+}
+
+pub(super) struct Operator {
+    attendance: Attendance,
+    keys: OperatorKeys,
+    job: Option<Job>,
+    pub phase: Phase,
+    /// When he did something last.
+    acted_us: u64,
+    /// The steps of choosing the program that are done.
+    chosen: u8,
+    /// NC start was pressed for the program.
+    pub started: bool,
+    /// Since when a tool change waits, and how many of its keys were pressed.
+    change: Option<(u64, usize)>,
+}
+
+impl Operator {
+    pub fn new(attendance: Attendance, keys: OperatorKeys, job: Option<Job>) -> Operator {
+        Operator {
+            attendance,
+            keys,
+            job,
+            phase: Phase::PowerUp,
+            acted_us: 0,
+            chosen: 0,
+            started: false,
+            change: None,
+        }
+    }
+
+    /// What he does in this cycle.
+    pub fn act(&mut self, control: &Control) -> Option<Deed> {
+        self.follow(control);
+        if self.attendance == Attendance::Absent {
+            return None;
+        }
+        let now = control.time_us();
+        let waited = now.saturating_sub(self.acted_us);
+        let deed = match self.phase {
+            Phase::PowerUp if waited >= PAUSE_US => self.power_up(control),
+            Phase::Reference if waited >= 2 * PAUSE_US && control.stands() => {
+                Some(Deed::Key(self.keys.start.clone(), Why::Routine))
+            }
+            Phase::Program if !self.started && waited >= PAUSE_US => self.choose(),
+            Phase::Program if self.attendance == Attendance::Full => self.stand_by(control, now, waited),
+            _ => None,
+        };
+        if deed.is_some() {
+            self.acted_us = now;
+        }
+        deed
+    }
+
+    /// The phase follows the control, whoever operates it.
+    fn follow(&mut self, control: &Control) {
+        let phase = match self.phase {
+            Phase::PowerUp if !control.loops_closed() => Phase::PowerUp,
+            Phase::PowerUp | Phase::Reference if control.mode() == Mode::Reference => Phase::Reference,
+            Phase::PowerUp | Phase::Reference if self.job.is_some() => Phase::Program,
+            Phase::PowerUp | Phase::Reference => Phase::Ready,
+            phase => phase,
+        };
+        if phase != self.phase {
+            self.phase = phase;
+            self.acted_us = control.time_us();
+        }
+        if self.phase == Phase::Program && control.run_state() == RunState::Running {
+            self.started = true;
+        }
+    }
+
+    fn power_up(&self, control: &Control) -> Option<Deed> {
+        let shows = |id| {
+            let message = Message::Plain(id);
+            control.shown().iter().any(|shown| shown.message == message)
+        };
+        if shows(MessageId::PowerInterrupted) {
+            return Some(Deed::Command(Command::Ce));
+        }
+        let voltage = self.keys.control_voltage.clone();
+        voltage
+            .filter(|_| shows(MessageId::RelayExtDcVoltageMissing))
+            .map(|key| Deed::Key(key, Why::Routine))
+    }
+
+    /// Mode, program, start block, then NC start.
+    fn choose(&mut self) -> Option<Deed> {
+        let job = self.job.as_ref()?;
+        loop {
+            self.chosen += 1;
+            let command = match self.chosen {
+                1 => Command::Mode(job.mode),
+                2 => Command::Select(job.program.clone()),
+                3 => match job.start_block {
+                    Some(block) => Command::Goto(block),
+                    None => continue,
+                },
+                _ => {
+                    self.started = true;
+                    return Some(Deed::Key(self.keys.start.clone(), Why::Routine));
+                }
+            };
+            return Some(Deed::Command(command));
+        }
+    }
+
+    fn stand_by(&mut self, control: &Control, now: u64, waited: u64) -> Option<Deed> {
+        let start = |why| Some(Deed::Key(self.keys.start.clone(), why));
+        match control.run_state() {
+            RunState::Stopped if waited >= PAUSE_US => return start(Why::Stop),
+            RunState::BlockEnd if waited >= 2 * BLOCK_US => return start(Why::Routine),
+            _ => {}
+        }
+        let changes = matches!(
+            control.waiting(),
+            Some(Waiting::Acknowledge(pair)) if pair.strobe == signal::TOOL_CALL_STROBE
+        );
+        if !changes {
+            self.change = None;
+            return None;
+        }
+        let (since, pressed) = *self.change.get_or_insert((now, 0));
+        let due = since + PATIENCE_US + pressed as u64 * CHANGE_US;
+        let key = self.keys.tool_change.get(pressed)?;
+        if now < due {
+            return None;
+        }
+        self.change = Some((since, pressed + 1));
+        Some(Deed::Key(key.clone(), Why::ToolChange))
+    }
+}

@@ -1,0 +1,133 @@
+//! Options and help texts of `bahn run`.
+
+use std::path::PathBuf;
+
+use bahn_control::Signal;
+use clap::{Args, ValueHint};
+
+use super::operator::Attendance;
+use crate::cli::{Format, OutputOptions, override_percent, seconds};
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  bahn run BRACKET.H --machine machines/mill
+      Switch the machine on, pass the reference marks, run the program; report times, lag, messages.
+  bahn run part.h --machine mill --record run.csv --signals X.actual,X.lag,M2045 --every 10
+      Record signals, a row every 10 ms; `bahn scope run.csv -o run.svg` draws them.
+  bahn run part.h --machine mill --script stop.txt
+      What happens at which time, and what is expected, stands in a script.
+  bahn run part.h --machine mill --log run.log
+  bahn run part.h --machine mill --replay run.log
+      The second run repeats the first one, bit by bit, when both have --fresh.
+  bahn run --machine mill --script jog.txt
+      Without a program: power-up, reference run, then the script.
+
+FILE is a path, or a program in the folder of programs of the machine.
+
+The operator who stands by (--operator): full confirms programmed stops and tool changes with the keys of
+[operator] in machine.toml, and reports it; start ends with the start of the program; absent does nothing.
+Without --operator it is full, with --script start, with --replay absent.
+
+Script (--script): lines `TIME: EVENT`. TIME is s since power-on (12.5), since the line before (+2) or since
+the program was started (start+3). Text behind ; or # is a comment. Events are those of the machine
+(machines/mill/README.md), commands of the control, what is expected, and `end`:
+  start+2: key NC_STOP tap
+  +3: expect run interrupted
+  +0: override feed 50
+  +0: key NC_START tap
+  start+20: expect X.actual=100±0.01
+  +0: expect message \"DOOR IS OPEN\"
+`bahn machine list` names all events, commands, keys and lamps.
+
+State: what survives power-off is read from the state folder of the machine and kept there; --fresh begins
+without it and leaves no trace.
+
+JSON report (--format json): the fields of `bahn test`; machining_time_s is that of the machine with all
+waits. machine, model, power_up_s, reference_s; times (what, count, time_s); axes by letter (max_lag,
+lag_block, max_deviation, deviation_block; mm, degrees; null where there is none), contour_deviation_mm;
+plc (max_percent, mean_percent of the nominal time, scans); messages (time_s, text, place, flashing,
+program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
+failed_expectations (line, text, actual); realtime (null, or cycles, late_cycles, worst_lateness_ms).
+
+Exit codes: 0 fine, 1 the program or the machine has an error, the run hangs or an expectation fails,
+2 wrong use, 130 ended by Ctrl-C.";
+
+/// Options of `bahn run`.
+#[derive(Args, Debug)]
+pub(crate) struct RunMachineOptions {
+    /// The part program; without one the script does everything after the reference run.
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+    /// Folder of the machine.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub machine: PathBuf,
+    /// How the report is written.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
+    pub format: Format,
+
+    #[command(flatten)]
+    pub run: RunControl,
+    #[command(flatten)]
+    pub recording: RecordingOptions,
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+/// How it runs.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Run")]
+pub(crate) struct RunControl {
+    /// Events at times, and expectations.
+    #[arg(long, value_name = "SCRIPT", value_hint = ValueHint::FilePath)]
+    pub script: Option<PathBuf>,
+    /// Write what was done to control and machine, to be repeated with --replay.
+    #[arg(long, value_name = "LOG", value_hint = ValueHint::FilePath)]
+    pub log: Option<PathBuf>,
+    /// Repeat a run from its log.
+    #[arg(long, value_name = "LOG", value_hint = ValueHint::FilePath, conflicts_with = "script")]
+    pub replay: Option<PathBuf>,
+    /// What the operator who stands by does.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub operator: Option<Attendance>,
+    /// Feed override potentiometer, 0 to 150 %.
+    #[arg(long = "override", value_name = "PERCENT", value_parser = override_percent)]
+    pub override_percent: Option<f64>,
+    /// Single block instead of full sequence.
+    #[arg(long)]
+    pub single_block: bool,
+    /// Start with this block instead of the first.
+    #[arg(long, value_name = "N")]
+    pub start_block: Option<u32>,
+    /// Begin without what survives power-off, and keep nothing.
+    #[arg(long)]
+    pub fresh: bool,
+    /// One machine parameter instead of that of the list, as 4310.0=0 (repeatable, or several with commas).
+    #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
+    pub mp: Vec<String>,
+    /// Keep pace with the clock on the wall, and report late cycles.
+    #[arg(long)]
+    pub realtime: bool,
+    /// Time of the machine after which the run ends, s.
+    #[arg(long, value_name = "S", default_value = "86400", value_parser = seconds)]
+    pub max_time: f64,
+    /// Time of the machine without any movement after which a run hangs, s.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = seconds)]
+    pub max_wait: f64,
+}
+
+/// What is recorded.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Recording")]
+pub(crate) struct RecordingOptions {
+    /// Write signals over time as a table.
+    #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
+    pub record: Option<PathBuf>,
+    /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, path.speed,
+    /// path.block, S.rpm, S.volts, operands of the PLC like M2045, I4, W260; by default speeds, positions,
+    /// lags, and the handshake of M functions.
+    #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
+    pub signals: Vec<Signal>,
+    /// Time between two rows, ms; every contour cycle without it.
+    #[arg(long, value_name = "MS", requires = "record", value_parser = clap::value_parser!(u32).range(1..))]
+    pub every: Option<u32>,
+}

@@ -1,0 +1,134 @@
+//! Signals over time, as a table.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use bahn_control::{AxisSignal, Control, Signal};
+
+use crate::UsageError;
+use crate::files::{self, NewFile};
+
+/// A table being written: a row for each contour cycle, or less often.
+pub(super) struct Recording {
+    path: PathBuf,
+    file: NewFile,
+    signals: Vec<Signal>,
+    every_us: u64,
+    due_us: u64,
+    row: String,
+}
+
+impl Recording {
+    /// Begins a table; `every_us` of 0 records every contour cycle.
+    pub fn create(path: &Path, signals: Vec<Signal>, every_us: u64) -> Result<Recording, UsageError> {
+        let mut recording = Recording {
+            path: path.to_owned(),
+            file: NewFile::create(path)?,
+            signals,
+            every_us,
+            due_us: 0,
+            row: String::with_capacity(256),
+        };
+        recording.row.push_str("time [s]");
+        for signal in &recording.signals {
+            match unit(signal) {
+                "" => write!(recording.row, ",{signal}"),
+                unit => write!(recording.row, ",{signal} [{unit}]"),
+            }
+            .unwrap_or_default();
+        }
+        recording.write_row()?;
+        Ok(recording)
+    }
+
+    /// Takes a row when it is time.
+    pub fn cycle(&mut self, control: &Control) -> Result<(), UsageError> {
+        let now = control.time_us();
+        if now < self.due_us {
+            return Ok(());
+        }
+        let rows = now.checked_div(self.every_us);
+        self.due_us = rows.map_or(0, |rows| (rows + 1) * self.every_us);
+        self.row.clear();
+        // Writing to a string cannot fail.
+        let _ = write!(self.row, "{:.4}", now as f64 * 1e-6);
+        for signal in &self.signals {
+            let _ = write!(self.row, ",{}", value(signal, control.observe(signal)));
+        }
+        self.write_row()
+    }
+
+    pub fn finish(self) -> Result<(), UsageError> {
+        self.file.finish()
+    }
+
+    fn write_row(&mut self) -> Result<(), UsageError> {
+        self.row.push('\n');
+        self.file
+            .write_all(self.row.as_bytes())
+            .map_err(|error| files::cannot("write", &self.path, &error))
+    }
+}
+
+/// What is recorded when nothing else is asked for: speed along the path and of the spindle, position and
+/// lag of each axis, the strobe of M functions and its acknowledgement.
+pub(super) fn usual_signals(control: &Control) -> Vec<Signal> {
+    let mut signals = vec![Signal::PathSpeed, Signal::SpindleRpm];
+    for letter in control.axis_letters() {
+        signals.push(Signal::Axis(letter, AxisSignal::Actual));
+        signals.push(Signal::Axis(letter, AxisSignal::Lag));
+    }
+    signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_STROBE));
+    signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_ACK));
+    signals
+}
+
+/// Unit of a signal; rotary axes have degrees.
+pub(super) fn unit(signal: &Signal) -> &'static str {
+    let rotary = matches!(signal, Signal::Axis('A' | 'B' | 'C', _));
+    match signal.unit() {
+        "mm" if rotary => "deg",
+        "mm/min" if rotary => "deg/min",
+        unit => unit,
+    }
+}
+
+/// A value with as many decimals as its signal is good for.
+pub(super) fn value(signal: &Signal, value: f64) -> Decimals {
+    let places = match signal {
+        Signal::Axis(_, AxisSignal::Actual | AxisSignal::Nominal | AxisSignal::Lag) => 5,
+        Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts => 4,
+        Signal::Axis(..) | Signal::PathSpeed | Signal::SpindleRpm => 3,
+        Signal::Block | Signal::Bit(_) | Signal::Number(_) => 0,
+    };
+    Decimals { value, places }
+}
+
+/// A number with its decimals, never -0.
+pub(super) struct Decimals {
+    value: f64,
+    places: usize,
+}
+
+impl std::fmt::Display for Decimals {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let scale = 10f64.powi(i32::try_from(self.places).unwrap_or(0));
+        let rounded = (self.value * scale).round() / scale + 0.0;
+        write!(f, "{rounded:.*}", self.places)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_have_the_decimals_of_their_signal() {
+        let text = |signal: &str, number: f64| value(&signal.parse().unwrap(), number).to_string();
+        assert_eq!(text("X.lag", -0.000001), "0.00000");
+        assert_eq!(text("X.volts", 9.12345), "9.1235");
+        assert_eq!(text("M2045", 1.0), "1");
+        assert_eq!(unit(&"C.speed".parse().unwrap()), "deg/min");
+    }
+}

@@ -1,0 +1,203 @@
+//! The report of a run on the machine: that of a test run, and what only a machine can tell.
+
+use std::collections::BTreeMap;
+
+use bahn_parameters::ControlModel;
+use serde::Serialize;
+
+use super::pace::Lateness;
+use super::session::Session;
+use super::times::Share;
+use crate::report::{Report, tidy};
+use crate::report_text::{self, LABEL, clock, list};
+
+/// A message of the control.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Said {
+    pub time_s: f64,
+    pub text: String,
+    pub place: Option<String>,
+    pub flashing: bool,
+    /// The program that ran; empty when none did.
+    pub program: String,
+    pub block: Option<u32>,
+}
+
+/// A key that the operator pressed because the run waited for him.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Confirmed {
+    pub time_s: f64,
+    pub key: String,
+    pub why: &'static str,
+    pub block: u32,
+}
+
+/// An expectation of the script that did not hold.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct FailedExpectation {
+    pub line: u32,
+    pub text: String,
+    pub actual: String,
+    pub time_s: f64,
+}
+
+/// What an axis did, mm or degrees.
+#[derive(Clone, Debug, Serialize)]
+struct AxisReport {
+    max_lag: f64,
+    lag_block: Option<u32>,
+    max_deviation: Option<f64>,
+    deviation_block: Option<u32>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct PlcReport {
+    /// Nominal processing time: 100 % are 5 ms.
+    max_percent: f64,
+    mean_percent: f64,
+}
+
+/// The report as JSON has it.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct RunReport {
+    #[serde(flatten)]
+    pub report: Option<Report>,
+    machine: String,
+    model: &'static str,
+    power_up_s: f64,
+    reference_s: f64,
+    times: Vec<Share>,
+    axes: BTreeMap<char, AxisReport>,
+    contour_deviation_mm: f64,
+    plc: PlcReport,
+    messages: Vec<Said>,
+    confirmed: Vec<Confirmed>,
+    pub waits_for: Option<String>,
+    failed_expectations: Vec<FailedExpectation>,
+    realtime: Option<Lateness>,
+}
+
+impl RunReport {
+    pub fn new(session: &Session, report: Option<Report>, machine: &str, model: ControlModel) -> RunReport {
+        let seconds = |us: u64| us as f64 * 1e-6;
+        let (sum, count, longest) = session.plc_percent;
+        let axes = session.deviation.axes.iter().map(|axis| {
+            let linear = axis.is_linear();
+            let report = AxisReport {
+                max_lag: tidy(axis.max_lag),
+                lag_block: axis.lag_block.map(|block| block.block),
+                max_deviation: linear.then(|| tidy(axis.max_deviation)),
+                deviation_block: axis.deviation_block.filter(|_| linear).map(|block| block.block),
+            };
+            (axis.letter, report)
+        });
+        RunReport {
+            machine: machine.to_owned(),
+            model: model.id(),
+            power_up_s: seconds(session.power_up_us),
+            reference_s: seconds(session.reference_us),
+            times: session.times.shares(),
+            axes: axes.collect(),
+            contour_deviation_mm: tidy(session.deviation.max_mm),
+            plc: PlcReport {
+                max_percent: tidy(longest),
+                mean_percent: tidy(sum / count.max(1) as f64),
+            },
+            messages: session.messages.clone(),
+            confirmed: session.confirmed.clone(),
+            waits_for: None,
+            failed_expectations: session.failed.clone(),
+            realtime: session.pace.as_ref().map(|pace| pace.lateness),
+            report,
+        }
+    }
+
+    /// The report for people.
+    pub fn text(&self, model: ControlModel, result: &str, written: &[String]) -> String {
+        let mut text = String::new();
+        let mut row = |label: &str, value: &str| {
+            text += &format!("{label:<LABEL$}{}\n", crate::diagnostics::printable(value));
+        };
+        row(
+            "Machine",
+            &format!("{}, {}", self.machine, model.to_string().to_uppercase()),
+        );
+        match &self.report {
+            Some(report) => report_text::head(&mut row, report, model),
+            None => row("Result", result),
+        }
+        row(
+            "Before",
+            &format!(
+                "power-up {:.1} s, reference run {:.1} s",
+                self.power_up_s, self.reference_s
+            ),
+        );
+        list(&mut row, "Time for", &self.times, |share| {
+            let times = if share.count == 1 { "time" } else { "times" };
+            format!(
+                "{:<16}{:>9.1} s  {} {times}",
+                share.what, share.time_s, share.count
+            )
+        });
+        let axes: Vec<_> = self.axes.iter().collect();
+        list(&mut row, "Largest lag", &axes, |(letter, axis)| {
+            let unit = if axis.max_deviation.is_some() { "mm" } else { "°" };
+            let deviation = axis.max_deviation.map(|deviation| {
+                format!(
+                    ", off the contour {:.1} µm{}",
+                    deviation * 1e3,
+                    at(axis.deviation_block)
+                )
+            });
+            format!(
+                "{letter} {:.4} {unit}{}{}",
+                axis.max_lag,
+                at(axis.lag_block),
+                deviation.unwrap_or_default()
+            )
+        });
+        row(
+            "PLC",
+            &format!(
+                "{:.1} % of the nominal time, longest scan {:.1} %",
+                self.plc.mean_percent, self.plc.max_percent
+            ),
+        );
+        list(&mut row, "Messages", &self.messages, |said| {
+            let place = match (&said.place, said.block) {
+                (Some(place), _) => format!(", {place}"),
+                (None, Some(block)) => format!(", {} block {block}", said.program),
+                (None, None) => String::new(),
+            };
+            format!("{} {}{place}", clock(said.time_s), said.text)
+        });
+        list(&mut row, "Confirmed", &self.confirmed, |confirmed| {
+            format!(
+                "{} {} with {}, block {}",
+                clock(confirmed.time_s),
+                confirmed.why,
+                confirmed.key,
+                confirmed.block
+            )
+        });
+        if let Some(report) = &self.report {
+            report_text::body(&mut row, report);
+        }
+        if let Some(lateness) = &self.realtime {
+            row(
+                "Real time",
+                &format!(
+                    "{} cycles, {} late, the worst by {:.3} ms",
+                    lateness.cycles, lateness.late_cycles, lateness.worst_lateness_ms
+                ),
+            );
+        }
+        list(&mut row, "Written", written, Clone::clone);
+        text
+    }
+}
+
+fn at(block: Option<u32>) -> String {
+    block.map_or(String::new(), |block| format!(" in block {block}"))
+}

@@ -1,0 +1,317 @@
+//! Scripts: what happens at which time, and what is expected. A log of a run has the same form.
+
+use std::path::{Path, PathBuf};
+
+use bahn_control::Command;
+use bahn_machine::{Event, Machine};
+
+use super::expectation::Expectation;
+use crate::diagnostics::{FileFault, Marked, Severity};
+use crate::machine_folder::decode;
+use crate::{UsageError, files};
+
+/// The last second that a script may speak of: eleven days.
+const SECONDS_MAX: f64 = 1e6;
+
+/// What a time counts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Base {
+    PowerOn,
+    /// The start of the program.
+    Start,
+}
+
+/// What happens.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Action {
+    /// To the machine.
+    Event(Event, String),
+    /// To the control.
+    Command(Command),
+    /// Nothing; something must be so.
+    Expect(Expectation),
+    /// The run ends.
+    End,
+}
+
+/// A line of a script.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Line {
+    /// In the file, from 1.
+    pub number: u32,
+    pub base: Base,
+    pub offset_us: u64,
+    pub action: Action,
+}
+
+/// A script: its lines in the order of the file.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Script {
+    path: PathBuf,
+    text: Vec<String>,
+    pub lines: Vec<Line>,
+}
+
+/// What is wrong in a line: first character and number of characters, and in words.
+struct Wrong {
+    column: usize,
+    length: usize,
+    message: String,
+}
+
+impl Script {
+    /// Reads a script; what it does to the machine is tried on a copy of it.
+    ///
+    /// # Errors
+    /// All faults of the script.
+    pub fn load(path: &Path, machine: &Machine) -> Result<Result<Script, Vec<FileFault>>, UsageError> {
+        let bytes = files::read_table(path)?;
+        Ok(Script::read(path, &decode(&bytes), machine))
+    }
+
+    fn read(path: &Path, text: &str, machine: &Machine) -> Result<Script, Vec<FileFault>> {
+        let mut script = Script {
+            path: path.to_owned(),
+            text: text.lines().map(str::to_owned).collect(),
+            lines: Vec::new(),
+        };
+        let mut faults = Vec::new();
+        let mut machine = machine.clone();
+        let mut last = (Base::PowerOn, 0);
+        for (number, line) in (1..).zip(text.lines()) {
+            let content = without_comment(line);
+            if content.trim().is_empty() {
+                continue;
+            }
+            match read_line(content, last, &mut machine) {
+                Ok((base, offset_us, action)) => {
+                    last = (base, offset_us);
+                    script.lines.push(Line {
+                        number,
+                        base,
+                        offset_us,
+                        action,
+                    });
+                }
+                Err(wrong) => faults.push(script.fault_at(number, &wrong)),
+            }
+        }
+        if faults.is_empty() {
+            Ok(script)
+        } else {
+            Err(faults)
+        }
+    }
+
+    fn fault_at(&self, number: u32, wrong: &Wrong) -> FileFault {
+        let count = |value: usize| u32::try_from(value).unwrap_or(1).max(1);
+        FileFault {
+            severity: Severity::Error,
+            title: "the script is wrong".to_owned(),
+            path: self.path.clone(),
+            marked: Marked {
+                line: number,
+                text: self.line_text(number),
+                columns: Some((count(wrong.column), count(wrong.length))),
+            },
+            label: wrong.message.clone(),
+            help: None,
+        }
+    }
+
+    /// A line of the file that was not as expected when its time came.
+    pub fn failure(&self, number: u32, title: &str, label: String) -> FileFault {
+        FileFault {
+            severity: Severity::Error,
+            title: title.to_owned(),
+            path: self.path.clone(),
+            marked: Marked {
+                line: number,
+                text: self.line_text(number),
+                columns: None,
+            },
+            label,
+            help: None,
+        }
+    }
+
+    pub fn line_text(&self, number: u32) -> String {
+        let index = (number as usize).saturating_sub(1);
+        self.text.get(index).cloned().unwrap_or_default()
+    }
+}
+
+/// Time, base and action of a line.
+fn read_line(line: &str, last: (Base, u64), machine: &mut Machine) -> Result<(Base, u64, Action), Wrong> {
+    let Some((time, rest)) = line.split_once(':') else {
+        return Err(wrong(
+            line,
+            line.trim(),
+            "a line is `TIME: EVENT` or `TIME: expect ..`",
+        ));
+    };
+    let (base, offset_us) =
+        read_time(time.trim(), last).map_err(|message| wrong(line, time.trim(), &message))?;
+    let rest = rest.trim();
+    let action = read_action(rest, machine).map_err(|message| wrong(line, rest, &message))?;
+    Ok((base, offset_us, action))
+}
+
+/// A fault in a part of a line.
+fn wrong(line: &str, part: &str, message: &str) -> Wrong {
+    // The part is a slice of the line.
+    let at = (part.as_ptr() as usize).saturating_sub(line.as_ptr() as usize);
+    let before = line.get(..at).unwrap_or_default();
+    Wrong {
+        column: before.chars().count() + 1,
+        length: part.chars().count(),
+        message: message.to_owned(),
+    }
+}
+
+/// `12.5` since power-on, `+2` since the line before, `start` or `start+2` since the program was started.
+fn read_time(text: &str, (base, before_us): (Base, u64)) -> Result<(Base, u64), String> {
+    let seconds = |text: &str| {
+        text.trim()
+            .parse::<f64>()
+            .ok()
+            .filter(|seconds| (0.0..=SECONDS_MAX).contains(seconds))
+            .map(|seconds| (seconds * 1e6).round() as u64)
+            .ok_or_else(|| {
+                format!("`{text}` is no time: 12.5 (s since power-on), +2 (since the line before), start+3")
+            })
+    };
+    if let Some(rest) = text.strip_prefix('+') {
+        return Ok((base, before_us + seconds(rest)?));
+    }
+    if let Some(rest) = text.strip_prefix("start") {
+        let rest = rest.trim();
+        if rest.is_empty() {
+            return Ok((Base::Start, 0));
+        }
+        let rest = rest
+            .strip_prefix('+')
+            .ok_or("behind `start` stands + and a time")?;
+        return Ok((Base::Start, seconds(rest)?));
+    }
+    Ok((Base::PowerOn, seconds(text)?))
+}
+
+fn read_action(text: &str, machine: &mut Machine) -> Result<Action, String> {
+    let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    match word {
+        "expect" => return Expectation::parse(rest.trim(), machine).map(Action::Expect),
+        "end" if rest.trim().is_empty() => return Ok(Action::End),
+        _ => {}
+    }
+    // `key 107` is a key of the keyboard, `key NC_START tap` one of the panel.
+    let is_event = Event::WORDS.contains(&word) && !(word == "key" && rest.trim().parse::<u8>().is_ok());
+    if !is_event {
+        return text.parse().map(Action::Command).map_err(|error| {
+            if error.to_string().ends_with("is no command") {
+                format!(
+                    "`{word}` is no event and no command; events are {}, expect, end; commands those of \
+                     `bahn machine list`",
+                    Event::WORDS.join(", ")
+                )
+            } else {
+                error.to_string()
+            }
+        });
+    }
+    let event = Event::parse(text).map_err(|error| error.to_string())?;
+    machine.act(&event).map_err(|error| error.to_string())?;
+    Ok(Action::Event(
+        event,
+        text.split_whitespace().collect::<Vec<_>>().join(" "),
+    ))
+}
+
+/// A line without what stands behind ; or # outside quotes and words.
+fn without_comment(line: &str) -> &str {
+    let (mut quoted, mut before) = (false, ' ');
+    let end = line.find(|character: char| {
+        quoted ^= character == '"';
+        let begins = std::mem::replace(&mut before, character).is_whitespace();
+        matches!(character, ';' | '#') && begins && !quoted
+    });
+    line.split_at(end.unwrap_or(line.len())).0
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn machine() -> Machine {
+        Machine::from_toml(
+            "name = 'one'\n[keys]\nNC_START = 'I1'\n[emergency_stop]\nacknowledgement = 'I3'\n\
+             [axis.X]\noutput = '1'\nspeed = 15000\nvolts = 9\nencoder = { input = 'X1', period_um = 20 }",
+        )
+        .unwrap()
+    }
+
+    fn read(text: &str) -> Result<Script, Vec<FileFault>> {
+        Script::read(Path::new("s.txt"), text, &machine())
+    }
+
+    #[test]
+    fn times_count_from_power_on_start_or_the_line_before() {
+        let script = read(
+            "; a comment\n1.5: ce # clear\n+0.5: key NC_START tap\nstart+3: override feed 50\n+1: key 107\n\
+             start: expect message \"; no comment\"\n12: end",
+        )
+        .unwrap();
+        let times: Vec<_> = script
+            .lines
+            .iter()
+            .map(|line| (line.base, line.offset_us))
+            .collect();
+        use Base::*;
+        assert_eq!(
+            times,
+            [
+                (PowerOn, 1_500_000),
+                (PowerOn, 2_000_000),
+                (Start, 3_000_000),
+                (Start, 4_000_000),
+                (Start, 0),
+                (PowerOn, 12_000_000)
+            ]
+        );
+        assert_eq!(script.lines[3].action, Action::Command(Command::Key(107)));
+    }
+
+    #[test]
+    fn faults_have_line_and_column() {
+        let faults = read(
+            "1: ce\nfive: ce\n2: jump\n  3: key NC_STOP tap\n4 ce\n5: override feed 200\n6: expect M4=2",
+        )
+        .unwrap_err();
+        let places: Vec<_> = faults
+            .iter()
+            .map(|fault| (fault.marked.line, fault.marked.columns.unwrap().0))
+            .collect();
+        assert_eq!(places, [(2, 1), (3, 4), (4, 6), (5, 1), (6, 4), (7, 4)]);
+        assert!(
+            faults[2].label.contains("no key `NC_STOP`; there are NC_START"),
+            "{}",
+            faults[2].label
+        );
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn any_text_is_a_script_or_faults_with_their_lines(
+            text in prop_oneof![".{0,60}", "([+0-9a-z. ]{0,6}: ?(expect )?[a-zA-Z0-9.=± \"]{0,12}\n){0,6}"],
+        ) {
+            if let Err(faults) = read(&text) {
+                let lines = text.lines().count() as u32;
+                prop_assert!(faults.iter().all(|fault| (1..=lines).contains(&fault.marked.line)));
+            }
+        }
+    }
+}

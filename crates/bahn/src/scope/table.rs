@@ -1,0 +1,206 @@
+//! A recording: signals over time.
+
+use std::path::Path;
+
+use crate::UsageError;
+use crate::files;
+
+/// What a signal is drawn as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Kind {
+    Analogue,
+    /// 0 or 1: a marker, input, output, timer or counter.
+    Logic,
+}
+
+/// A signal with its samples.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Trace {
+    pub name: String,
+    pub unit: String,
+    pub kind: Kind,
+    pub values: Vec<f64>,
+}
+
+/// A recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Table {
+    /// s, ascending.
+    pub times: Vec<f64>,
+    pub traces: Vec<Trace>,
+}
+
+impl Table {
+    /// Reads a recording.
+    pub fn load(path: &Path) -> Result<Table, UsageError> {
+        let bytes = files::read_program(path)?;
+        Table::read(&String::from_utf8_lossy(&bytes))
+            .map_err(|error| UsageError::new(format!("{}:{error}", path.display())))
+    }
+
+    /// An error begins with its line.
+    fn read(text: &str) -> Result<Table, String> {
+        let mut lines = text.trim_start_matches('\u{feff}').lines();
+        let mut columns = lines.next().unwrap_or_default().split(',');
+        if columns.next().map(str::trim) != Some("time [s]") {
+            return Err("1: no recording: its first line begins with `time [s]`".to_owned());
+        }
+        let mut table = Table {
+            times: Vec::new(),
+            traces: columns.map(Trace::named).collect(),
+        };
+        if table.traces.is_empty() {
+            return Err("1: the recording has no signal".to_owned());
+        }
+        for (number, line) in (2..).zip(lines) {
+            if !line.trim().is_empty() {
+                table.row(line).map_err(|error| format!("{number}: {error}"))?;
+            }
+        }
+        if table.times.is_empty() {
+            return Err("2: the recording has no row".to_owned());
+        }
+        Ok(table)
+    }
+
+    fn row(&mut self, line: &str) -> Result<(), String> {
+        let mut fields = line.split(',');
+        let mut next = |name: &str| {
+            let field = fields.next().ok_or_else(|| format!("{name} is missing"))?.trim();
+            field
+                .parse::<f64>()
+                .ok()
+                .filter(|value| value.is_finite())
+                .ok_or_else(|| format!("{name}: `{field}` is no number"))
+        };
+        let time = next("time")?;
+        if self.times.last().is_some_and(|last| time <= *last) {
+            return Err(format!("the time {time} does not follow the one before"));
+        }
+        for trace in &mut self.traces {
+            let value = next(&trace.name)?;
+            trace.values.push(value);
+        }
+        self.times.push(time);
+        match fields.next() {
+            Some(_) => Err("there are more values than signals".to_owned()),
+            None => Ok(()),
+        }
+    }
+
+    /// The signals of these names, in this order; all without names.
+    pub fn choose(mut self, names: &[String]) -> Result<Table, UsageError> {
+        if names.is_empty() {
+            return Ok(self);
+        }
+        let mut chosen = Vec::new();
+        for name in names {
+            let Some(trace) = self.traces.iter().find(|trace| trace.name == name.trim()) else {
+                let known: Vec<&str> = self.traces.iter().map(|trace| trace.name.as_str()).collect();
+                return Err(UsageError::new(format!(
+                    "--signals {name}: the recording has no such signal; there are {}",
+                    known.join(", ")
+                )));
+            };
+            chosen.push(trace.clone());
+        }
+        self.traces = chosen;
+        Ok(self)
+    }
+
+    /// The samples between two times.
+    pub fn between(mut self, from: Option<f64>, to: Option<f64>) -> Result<Table, UsageError> {
+        let (from, to) = (from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY));
+        let first = self.times.partition_point(|time| *time < from);
+        let end = self.times.partition_point(|time| *time <= to);
+        if first >= end {
+            let (least, greatest) = self.ends();
+            return Err(UsageError::new(format!(
+                "--from, --to: the recording runs from {least} to {greatest} s"
+            )));
+        }
+        cut(&mut self.times, first, end);
+        for trace in &mut self.traces {
+            cut(&mut trace.values, first, end);
+        }
+        Ok(self)
+    }
+
+    /// First and last time, s.
+    pub fn ends(&self) -> (f64, f64) {
+        let first = self.times.first().copied().unwrap_or(0.0);
+        (first, self.times.last().copied().unwrap_or(first))
+    }
+
+    /// The sample at a time: the last one that is not behind it.
+    pub fn at(&self, time: f64) -> usize {
+        self.times.partition_point(|own| *own <= time).saturating_sub(1)
+    }
+}
+
+fn cut(values: &mut Vec<f64>, first: usize, end: usize) {
+    values.truncate(end);
+    values.drain(..first);
+}
+
+impl Trace {
+    /// From the head of a column: `X.lag [mm]`, `M2045`.
+    fn named(head: &str) -> Trace {
+        let head = head.trim();
+        let (name, unit) = match head.split_once(" [") {
+            Some((name, unit)) => (name, unit.trim_end_matches(']')),
+            None => (head, ""),
+        };
+        let digits = name.strip_prefix(['M', 'I', 'O', 'T', 'C']).unwrap_or_default();
+        let is_bit = unit.is_empty() && !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
+        Trace {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            kind: if is_bit { Kind::Logic } else { Kind::Analogue },
+            values: Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "time [s],X.lag [mm],M2045\n0.003,0.5,0\n0.006,-1,1\n0.009,2.5,0\n";
+
+    #[test]
+    fn columns_are_signals() {
+        let table = Table::read(TEXT).unwrap();
+        assert_eq!(table.times, [0.003, 0.006, 0.009]);
+        let kinds: Vec<_> = table
+            .traces
+            .iter()
+            .map(|trace| (trace.name.as_str(), trace.unit.as_str(), trace.kind))
+            .collect();
+        assert_eq!(
+            kinds,
+            [("X.lag", "mm", Kind::Analogue), ("M2045", "", Kind::Logic)]
+        );
+        let part = table.between(Some(0.004), Some(0.006)).unwrap();
+        assert_eq!((part.times.len(), part.traces[0].values[0]), (1, -1.0));
+    }
+
+    #[test]
+    fn faults_have_their_line() {
+        let fault = |text: &str| Table::read(text).unwrap_err();
+        assert!(fault("").starts_with("1: no recording"));
+        assert!(fault("time [s]\n").starts_with("1: the recording has no signal"));
+        assert_eq!(fault("time [s],M1\n1,0\n2,x\n"), "3: M1: `x` is no number");
+        assert_eq!(
+            fault("time [s],M1\n1,0\n1,0\n"),
+            "3: the time 1 does not follow the one before"
+        );
+        assert_eq!(
+            fault("time [s],M1\n1,0,3\n"),
+            "2: there are more values than signals"
+        );
+        assert_eq!(fault("time [s],M1\n1\n"), "2: M1 is missing");
+        assert_eq!(fault("time [s],M1\n"), "2: the recording has no row");
+    }
+}

@@ -1,0 +1,53 @@
+//! The whole control in machine time: `machines/mill` with its PLC, four axes and the spindle, while a
+//! program runs. One iteration is a second of machine time: 500 times real time is 2 ms.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a bench may fail")]
+
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use divan::Bencher;
+use support::{Build, Rig};
+
+fn main() {
+    divan::main();
+}
+
+/// A zigzag of short lines in three axes that goes on for ever.
+const ZIGZAG: &str = "TOOL CALL 1 Z S1000\nL X+200 Y+100 Z+200 R0 FMAX M3\nLBL 1\nL IX+5 IY+1 IZ+1 F3000\nL IX+5 IY+1 IZ-1\n\
+                      L IX-10 IY-2\nCALL LBL 1 REP 65000";
+/// Lines of 0.1 mm at 6 m/min: 1000 blocks a second.
+const SHORT: &str = "TOOL CALL 1 Z S1000\nL X+200 Y+100 Z+200 R0 FMAX M3\nLBL 1\nL IX+0.1 IZ+0.01 F6000\nL IX+0.1 IZ-0.01\n\
+                     CALL LBL 1 REP 200\nL IX-40 F6000\nLBL 2\nCALL LBL 1\nCALL LBL 2 REP 65000";
+
+/// A mill that cuts.
+fn cutting(program: &str) -> Rig {
+    let mut rig = Build::mill().program("1.H", program).rig();
+    rig.power_on();
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    for _ in 0..60 {
+        rig.seconds(0.2);
+        if rig.bit("M60") {
+            rig.event("key CONFIRM tap");
+        }
+    }
+    rig.until(20.0, "it cuts", |rig| rig.control.snapshot().feed_mm_min > 100.0);
+    rig
+}
+
+#[divan::bench(args = [Case("zigzag", ZIGZAG), Case("short lines", SHORT)], sample_count = 20)]
+fn second_on_the_mill(bencher: Bencher, case: Case) {
+    let mut rig = cutting(case.1);
+    bencher.bench_local(|| rig.seconds(1.0));
+}
+
+/// A name and a program.
+#[derive(Clone, Copy)]
+struct Case(&'static str, &'static str);
+
+impl std::fmt::Display for Case {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0)
+    }
+}

@@ -1,0 +1,115 @@
+//! TEST RUN beside what the machine does: a program is executed without moving an axis, to find what is
+//! wrong with it [003:1514-1535]. Nothing goes to the PLC.
+
+use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, Step, Touch};
+
+use crate::control::Control;
+use crate::feeder::{Feeder, RunFault};
+use crate::message::Message;
+
+/// Elements that one call of prepare tests at most: the machine comes first.
+const BUDGET: usize = 500;
+
+/// A test run.
+pub(crate) struct TestRun {
+    program: String,
+    feeder: Box<Feeder>,
+    state: TestState,
+    block: BlockRef,
+}
+
+/// What a test run came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum TestState {
+    /// It goes on.
+    #[default]
+    Running,
+    /// The program came to its end without an error.
+    Finished,
+    /// The program is wrong.
+    Failed(Message),
+}
+
+/// A test run for the display.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestReport {
+    /// The program.
+    pub program: String,
+    /// Block that was tested last.
+    pub block: BlockRef,
+    /// Blocks executed.
+    pub blocks: u64,
+    /// What it came to.
+    pub state: TestState,
+}
+
+impl Control {
+    /// TEST RUN of a program, from its first block; the machine goes on with what it does. Errors are in
+    /// [`Control::test_report`]. `false` when there is no such program.
+    pub fn test(&mut self, name: &str) -> bool {
+        let Ok(Some(program)) = self.programs.open(name, "") else {
+            return false;
+        };
+        let machine = self.machine_position();
+        let feeder = self.new_feeder_from(program, 0, &machine, self.traverse_box());
+        self.test = Some(TestRun {
+            program: name.to_owned(),
+            feeder: Box::new(feeder),
+            state: TestState::Running,
+            block: BlockRef::default(),
+        });
+        true
+    }
+
+    /// Breaks a test run off, or clears its result.
+    pub fn end_test(&mut self) {
+        self.test = None;
+    }
+
+    /// The test run that was started last.
+    pub fn test_report(&self) -> Option<TestReport> {
+        self.test.as_ref().map(|test| TestReport {
+            program: test.program.clone(),
+            block: test.block,
+            blocks: test.feeder.interpreter().blocks_executed(),
+            state: test.state.clone(),
+        })
+    }
+
+    /// Goes on with a test run; may allocate.
+    pub(crate) fn prepare_test(&mut self) {
+        let Some(test) = self.test.as_mut().filter(|test| test.state == TestState::Running) else {
+            return;
+        };
+        for _ in 0..BUDGET {
+            match test.feeder.next() {
+                Step::Element(element) => {
+                    test.block = element.block;
+                    test.feeder.forget_before(element.sequence);
+                }
+                // Every probing touches where the block says it will.
+                Step::Barrier(Barrier::Probe { to, .. }) => test.feeder.resume(LiveData {
+                    touch: Some(Touch { position: to }),
+                    q_values: Vec::new(),
+                }),
+                Step::Barrier(_) => test.feeder.resume(LiveData::default()),
+                Step::Starved => return,
+                Step::End => {
+                    test.state = TestState::Finished;
+                    return;
+                }
+                Step::Error(fault) => {
+                    let message = match fault {
+                        RunFault::Program(error) => Message::Program(error),
+                        RunFault::Limit { axis, direction, .. } => {
+                            let unit = self.axes.iter().find(|unit| unit.axis == axis);
+                            Message::limit(unit.map_or(0, |unit| unit.index), direction)
+                        }
+                    };
+                    test.state = TestState::Failed(message);
+                    return;
+                }
+            }
+        }
+    }
+}
