@@ -416,7 +416,13 @@ fn ramp_and_zero() {
     let build = diagram(&with_gear()).mp("3410.0=0.01").mp("3240.1=0");
     let mut rig = ready(build.program("1.H", "TOOL CALL 0 Z S3000\nM3\nSTOP\nM5"));
     rig.start();
-    assert_eq!(edges(&mut rig, "M2485 M2005 M2004", 1.2), "M2485+ M2005- M2004- M2004+");
+    assert_eq!(
+        edges(&mut rig, "M2485 M2005 M2004", 1.2),
+        "M2485+ M2005- M2004- M2004+"
+    );
     rig.start();
-    assert_eq!(edges(&mut rig, "M2487 M2004 M2005", 1.2), "M2487+ M2004- M2004+ M2005+");
+    assert_eq!(
+        edges(&mut rig, "M2487 M2004 M2005", 1.2),
+        "M2487+ M2004- M2004+ M2005+"
+    );
 }
