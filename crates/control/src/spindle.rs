@@ -83,7 +83,7 @@ impl SpindleUnit {
 
     /// Takes changed machine parameters over.
     pub fn set_parameters(&mut self, parameters: SpindleParameters) {
-        self.servo.set_parameters(parameters.clone());
+        self.servo.set_parameters(parameters);
         self.parameters = parameters;
     }
 
