@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use bahn_interpreter::{Checkpoint, Interpreter, Library, ProgramError, Settings};
-use bahn_path::{Axis, Curve, ElementSource, Function, LiveData, PathElement, Position, Step};
+use bahn_path::{Axis, Barrier, Curve, ElementSource, Function, LiveData, PathElement, Position, Step};
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
 
@@ -99,6 +99,9 @@ pub(crate) struct Feeder {
     fault: Option<RunFault>,
     /// Elements that were given back: they come next.
     found: VecDeque<PathElement>,
+    /// An element outside the limits, and whether all before it is executed: a function before it may
+    /// change traverse range or datum. It comes before those that were given back.
+    refused: Option<(PathElement, bool)>,
     /// Executed elements for whoever wants to see the path.
     tap: Option<Vec<PathElement>>,
 }
@@ -120,6 +123,7 @@ impl Feeder {
             checkpoints: VecDeque::new(),
             fault: None,
             found: VecDeque::new(),
+            refused: None,
             tap: None,
         }
     }
@@ -157,7 +161,8 @@ impl Feeder {
 
     /// Gives elements back, to come again before all others.
     pub fn put_back(&mut self, elements: impl DoubleEndedIterator<Item = PathElement>) {
-        for element in elements.rev() {
+        let refused = self.refused.take().map(|(element, _)| element);
+        for element in refused.into_iter().chain(elements.rev()) {
             self.found.push_front(element);
         }
     }
@@ -214,6 +219,7 @@ impl Feeder {
     fn begin_again(&mut self, machine: &Position, offsets: Offsets, limits: Box2) {
         self.checkpoints.clear();
         self.found.clear();
+        self.refused = None;
         self.fault = None;
         self.offsets = offsets;
         self.limits = limits;
@@ -280,24 +286,35 @@ impl ElementSource for Feeder {
         if let Some(fault) = &self.fault {
             return Step::Error(fault.clone());
         }
-        let element = match self.found.pop_front() {
-            Some(found) => found,
-            None => match self.read() {
-                Step::Element(element) => element,
-                other => return other,
+        let (element, last) = match self.refused.take() {
+            Some(refused) => refused,
+            None => match self.found.pop_front() {
+                Some(found) => (found, false),
+                None => match self.read() {
+                    Step::Element(element) => (element, false),
+                    other => return other,
+                },
             },
         };
         if element.curve != Curve::Hold
             && let Some(fault) = self.outside(&element)
         {
-            self.fault = Some(fault.clone());
-            return Step::Error(fault);
+            if last {
+                self.fault = Some(fault.clone());
+                return Step::Error(fault);
+            }
+            let block = element.block;
+            self.refused = Some((element, false));
+            return Step::Barrier(Barrier::Acknowledge { block });
         }
         Step::Element(element)
     }
 
     fn resume(&mut self, live: LiveData) {
-        self.interpreter.resume(live);
+        match &mut self.refused {
+            Some((_, last)) => *last = true,
+            None => self.interpreter.resume(live),
+        }
     }
 }
 
@@ -339,6 +356,7 @@ mod tests {
         loop {
             match feeder.next() {
                 Step::Element(_) => {}
+                Step::Barrier(_) => feeder.resume(LiveData::default()),
                 step => return step,
             }
         }

@@ -157,7 +157,7 @@ impl Control {
     }
 
     /// The axes stand elsewhere than the path: the PLC has moved them, corrected the datum or changed the
-    /// tool length. The path then goes on from where they are.
+    /// tool length. The path then goes on from where they are, within the traverse range as it is now.
     pub(crate) fn regain_path(&mut self) {
         // A tool call lets the tip stand elsewhere without a movement.
         let end = match self.path.element() {
@@ -170,9 +170,11 @@ impl Control {
         let elsewhere = self.axes.iter().map(|unit| unit.axis).any(|axis| {
             differs(here[axis], at[axis]) && (differs(here[axis], end[axis]) || end[axis].is_nan())
         });
-        if !elsewhere || !self.run.waiting.is_empty() || self.path.speed_mm_s() != 0.0 {
+        let needed = elsewhere || self.upkeep.range_changed;
+        if !needed || !self.run.waiting.is_empty() || self.path.speed_mm_s() != 0.0 {
             return;
         }
+        self.upkeep.range_changed = false;
         let elements = self.path.recall(here);
         self.run.last = None;
         if let Some(feeder) = &mut self.run.feeder {

@@ -74,6 +74,7 @@ impl Control {
             [false, true] => self.select_range(2),
             [true, true] => {}
         }
+        self.upkeep.range_changed = self.run.is_active();
         self.exchange.nc_set(signal::ACTIVATE_TRAVERSE_RANGE, false);
     }
 

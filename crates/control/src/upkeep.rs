@@ -8,7 +8,9 @@ use bahn_servo::{Gantry, OffsetInterval};
 use crate::compensation::Correction;
 use crate::control::{Control, LOOK_AHEAD, path_limits};
 use crate::markers::{AXES, LUBRICATION_PULSE};
+use crate::message::Message;
 use crate::overrides::Override;
+use crate::panel::Direction;
 
 /// What is looked after.
 #[derive(Debug)]
@@ -19,6 +21,8 @@ pub(crate) struct Upkeep {
     pub corrections: Vec<Correction>,
     /// The active line of the assignment.
     pub line: Option<usize>,
+    /// The PLC chose another traverse range: the blocks that are on their way are to be looked at anew.
+    pub range_changed: bool,
     /// The limits of the path have changed; they take effect when no program runs.
     limits_changed: bool,
 }
@@ -29,6 +33,7 @@ impl Upkeep {
             interval: OffsetInterval::new(offset_interval_s),
             corrections: Vec::new(),
             line: None,
+            range_changed: false,
             limits_changed: false,
         }
     }
@@ -40,9 +45,25 @@ impl Control {
         self.lubricate();
         self.adjust_cyclically();
         self.correct_axes();
+        self.leave_limits();
         if self.upkeep.limits_changed && !self.run.is_active() {
             self.upkeep.limits_changed = false;
             self.path = Interpolator::new(&path_limits(self.link.list(), &self.axes), LOOK_AHEAD);
+        }
+    }
+
+    /// M2624 ff. of a block that was refused goes with its message, unless the axis stands at the limit.
+    fn leave_limits(&mut self) {
+        for unit in &mut self.axes {
+            let Some(direction) = unit.at_limit else { continue };
+            let limit = unit
+                .limits
+                .get(usize::from(direction == Direction::Plus))
+                .copied();
+            let message = Message::limit(unit.index, direction);
+            if limit != Some(unit.nominal) && !self.messages.contains(&message) {
+                unit.at_limit = None;
+            }
         }
     }
 

@@ -4,7 +4,6 @@
 mod support;
 
 use support::bench::*;
-use support::*;
 
 /// M2924 ff. bring up the PLC's messages; CE steps through them and the NC resets their markers; the PLC may
 /// reset them itself. They do not stop the machine [000:6625-6633].

@@ -145,3 +145,31 @@ fn after_an_emergency_stop() {
     assert_eq!(rig.messages(), [""; 0]);
     close(rig.table('V'), rig.table('X'), 0.01);
 }
+
+/// MP1350 = 2 for both, with one end position switch: the master's marker leads, each takes the first pulse
+/// behind it [000:4502-4504].
+#[test]
+fn one_end_position_switch() {
+    let mut rig = gantry("")
+        .mps("860.3=1 1350.0=2 1350.3=2 1331.0=300 960.0=-170 960.3=-170 910.0=190")
+        .plant(
+            "input = \"X1\"\nperiod_um = 20\nmark = 100",
+            "input = \"X1\"\nperiod_um = 20\nmarks_every = 10\nmarks_from = 0",
+        )
+        .plant(
+            "input = \"X4\"\nperiod_um = 20\nmark = 100",
+            "input = \"X4\"\nperiod_um = 20\nmarks_every = 10\nmarks_from = 0",
+        )
+        .plant(
+            "start = 50\nreference_cam = { range = [180, 200], input = \"I4\" }",
+            "start = 49.6\nreference_cam = { range = [180, 200], input = \"I4\" }",
+        )
+        .rig();
+    rig.power_on();
+    rig.settle();
+    assert_eq!(rig.messages(), [""; 0]);
+    for letter in ['X', 'V'] {
+        close(rig.machine_position(letter), rig.table(letter), 0.005);
+    }
+    close(rig.table('V'), rig.table('X'), 0.01);
+}
