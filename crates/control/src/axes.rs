@@ -178,6 +178,11 @@ impl AxisUnit {
         self.speed == 0.0
     }
 
+    /// Whether it is held at its place, or not held at all.
+    pub fn is_at_rest(&self) -> bool {
+        !self.servo.closed() || self.stands() && self.servo.in_position()
+    }
+
     /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag.
     fn wanted_method(&self, automatic: bool) -> Method {
         let precontrol = &self.parameters.precontrol;
@@ -200,7 +205,7 @@ impl AxisUnit {
         if self.servo.method() == wanted {
             return true;
         }
-        let rests = !self.servo.closed() || self.stands() && self.servo.in_position();
+        let rests = self.is_at_rest();
         if rests {
             self.servo.set_method(wanted);
         }

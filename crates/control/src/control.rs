@@ -347,6 +347,9 @@ impl Control {
             .publish(&mut self.exchange, operator.spindle_override_percent);
         self.publish();
         self.link.program_running = self.run.is_active();
+        self.link.orienting = self.spindle.is_orienting();
+        let angle = self.spindle.angle_deg().unwrap_or(0.0);
+        (self.link.spindle.actual, self.link.spindle.reference) = (angle, angle);
         self.plc.scans += 1;
         if let Err(error) = self.plc.machine.scan(&mut self.exchange, &mut self.link) {
             let message = Message::PlcStopped {

@@ -67,12 +67,12 @@ impl Offsets {
     }
 
     /// The axis positions of a path position.
-    pub fn to_machine(&self, path: &Position) -> Position {
+    pub fn to_machine(self, path: &Position) -> Position {
         Axis::ALL.map(|axis| path[axis] + self.of(axis)).into()
     }
 
     /// The path position of axis positions.
-    pub fn to_path(&self, machine: &Position) -> Position {
+    pub fn to_path(self, machine: &Position) -> Position {
         Axis::ALL.map(|axis| machine[axis] - self.of(axis)).into()
     }
 

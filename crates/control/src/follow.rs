@@ -58,11 +58,11 @@ impl Control {
         }
         self.output_functions(settled);
         match cycle.state {
-            State::Gate(_) => {
-                if self.run.waiting.is_empty() && self.handshakes.is_idle() && !self.is_positioning() {
-                    self.path.release();
-                    self.regain_path();
-                }
+            State::Gate(_)
+                if self.run.waiting.is_empty() && self.handshakes.is_idle() && !self.is_positioning() =>
+            {
+                self.path.release();
+                self.regain_path();
             }
             State::Clamped => self.ask_to_unclamp(drive.clamped),
             State::BlockEnd if settled && self.run.state == RunState::Running => {
@@ -220,11 +220,7 @@ impl Control {
     fn take_stop(&mut self) {
         match self.path.take_stop() {
             None => {}
-            Some(Stop::Barrier(Barrier::Stop { .. })) => {
-                if self.run.state == RunState::Running {
-                    self.run.state = RunState::Stopped;
-                }
-            }
+            Some(Stop::Barrier(Barrier::Stop { .. })) => self.run.state = RunState::Stopped,
             Some(Stop::Barrier(Barrier::Acknowledge { .. })) => {
                 self.run.answer = Some(self.run.q_transfer.answer());
             }

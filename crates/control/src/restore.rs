@@ -9,17 +9,21 @@ use std::collections::VecDeque;
 use bahn_exchange::signal;
 use bahn_motion::Aim;
 use bahn_parameters::MessageId;
-use bahn_path::{Barrier, ElementSource, PathElement, Position, Step, TechnologyFunction};
+use bahn_path::{Barrier, ElementSource, Function, PathElement, Position, Step, TechnologyFunction};
 
 use crate::axes::Mover;
 use crate::control::Control;
-use crate::feeder::Feeder;
+use crate::feeder::{Feeder, Offsets};
 use crate::functions::Target;
 use crate::message::Message;
 use crate::run::RunState;
 
 /// Elements that one call of prepare passes at most.
 const BUDGET: usize = 1000;
+
+/// Simulated tool change position, and the axes for which it counts [000:6783-6832].
+const MP_TOOL_CHANGE: u16 = 951;
+const MP_AXES: u16 = 7450;
 
 /// Where a return is.
 #[derive(Debug)]
@@ -191,6 +195,39 @@ impl Control {
             }
             functions.extend(element.functions().iter().cloned());
         }
+        self.pass_tool_change(&element);
+    }
+
+    /// MP951: where a tool change would have left the axes of MP7450, machine coordinates. The scan goes on
+    /// from there. 1 = calculate: the list says so, the section the reverse [000:6783-6832].
+    fn pass_tool_change(&mut self, element: &PathElement) {
+        let call = element
+            .functions()
+            .iter()
+            .find_map(|output| match &output.function {
+                Function::Tool(call) => Some(*call),
+                _ => None,
+            });
+        let axes = self.link.list().get(MP_AXES, 0).unwrap_or(0.0) as u32;
+        let (Some(call), Some(feeder)) = (call, &mut self.run.feeder) else {
+            return;
+        };
+        if axes == 0 {
+            return;
+        }
+        let offsets = Offsets {
+            tool_axis: call.axis,
+            tool_length: call.shape.length,
+            ..self.offsets
+        };
+        let mut position = element.end;
+        for unit in self.axes.iter().filter(|unit| axes >> unit.index & 1 != 0) {
+            let index = u8::try_from(unit.index).unwrap_or(u8::MAX);
+            if let Some(place) = self.link.list().get(MP_TOOL_CHANGE, index) {
+                position[unit.axis] = place - offsets.of(unit.axis);
+            }
+        }
+        feeder.interpreter_mut().relocate(&position);
     }
 
     /// Moves the axes to the contour: those of the working plane first, the tool axis last, unless it has

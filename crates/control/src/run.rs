@@ -9,7 +9,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{Axis, LiveData, PathElement, Position};
 use bahn_program::Program;
 
-use crate::axes::Mover;
+use crate::axes::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::control::Control;
 use crate::feeder::{Box2, Feeder};
@@ -52,6 +52,12 @@ pub(crate) struct ProgramRun {
     pub feeder: Option<Feeder>,
     /// NC start was given: the run begins with the next preparation.
     pub begin_wanted: bool,
+    /// The run has ended: its Q parameters are to be kept.
+    q_due: bool,
+    /// The program whose run was interrupted, while blocks of MDI run.
+    aside: Option<(Option<Feeder>, Option<Resume>)>,
+    /// Blocks of MDI have run: back to the program.
+    mdi_over: bool,
     /// After an internal stop or a fault: where the next start goes on.
     pub resume_from: Option<Resume>,
     /// Functions on the path that wait for the axes to be in position.
@@ -169,6 +175,7 @@ impl Control {
     /// Ends what is on its way for the run.
     fn break_off(&mut self) {
         self.run.state = RunState::Idle;
+        self.run.mdi_over = self.mode == Mode::Mdi;
         self.run.waiting.clear();
         self.run.answer = None;
         self.run.restore = None;
@@ -197,7 +204,9 @@ impl Control {
 
     /// Interprets ahead; begins a run.
     pub(crate) fn prepare_run(&mut self) {
-        if std::mem::take(&mut self.run.begin_wanted) {
+        self.close_run();
+        if self.run.begin_wanted && self.axes_stand() {
+            self.run.begin_wanted = false;
             self.begin_run();
         }
         if self.run.waiting.capacity() == 0 {
@@ -276,6 +285,34 @@ impl Control {
         limits
     }
 
+    /// Nothing moves that a run could take over in the midst of its movement.
+    fn axes_stand(&self) -> bool {
+        let moves =
+            |unit: &AxisUnit| !unit.is_at_rest() && unit.mover != Mover::Rotation && !unit.is_plc_axis();
+        !self.axes.iter().any(moves)
+    }
+
+    /// What is to be done once a run is over, outside the cycle.
+    fn close_run(&mut self) {
+        if std::mem::take(&mut self.run.q_due) {
+            self.path.clear();
+            self.q = self.q_values();
+            for (number, value) in self.run.q_transfer.take_all() {
+                self.keep_q(number, value);
+            }
+            let clearing = self.link.list().program_end_clearing();
+            if clearing.q_parameters && clearing.at_program_end {
+                self.q.clear();
+            }
+        }
+        if std::mem::take(&mut self.run.mdi_over)
+            && let Some((feeder, resume)) = self.run.aside.take()
+        {
+            self.run.feeder = feeder;
+            self.run.resume_from = resume;
+        }
+    }
+
     fn begin_run(&mut self) {
         let machine = self.machine_position();
         let limits = self.traverse_box();
@@ -283,6 +320,9 @@ impl Control {
         self.run.ended = false;
         self.run.last = None;
         self.run.answer = None;
+        if self.mode == Mode::Mdi && self.run.aside.is_none() {
+            self.run.aside = Some((self.run.feeder.take(), self.run.resume_from.take()));
+        }
         if let (Some(resume), Some(feeder)) = (self.run.resume_from.take(), &mut self.run.feeder) {
             match resume {
                 Resume::Block(sequence) => feeder.return_to(sequence, &machine, self.offsets, limits),
@@ -382,21 +422,13 @@ impl Control {
 
     /// END PGM, M2 or M30.
     pub(crate) fn end_run(&mut self) {
-        self.q = self.q_values();
-        for (number, value) in self.run.q_transfer.take_all() {
-            self.keep_q(number, value);
-        }
-        self.path.clear();
+        self.run.q_due = true;
         self.break_off();
-        self.run.resume_from = None;
-        self.run.start_block = 0;
         self.run.ended = true;
         if self.mode != Mode::Mdi {
+            self.run.resume_from = None;
+            self.run.start_block = 0;
             self.put(bahn_exchange::signal::PROGRAM_END_EXECUTED, true);
-        }
-        let clearing = self.link.list().program_end_clearing();
-        if clearing.q_parameters && clearing.at_program_end {
-            self.q.clear();
         }
     }
 
@@ -447,7 +479,7 @@ impl Control {
     }
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.
-    pub(crate) fn distance_to_go(&self, unit: &crate::axes::AxisUnit) -> f64 {
+    pub(crate) fn distance_to_go(&self, unit: &AxisUnit) -> f64 {
         match self.path.element() {
             Some(element) if self.run.is_active() => {
                 let end = element.end[unit.axis] + self.offsets.of(unit.axis);

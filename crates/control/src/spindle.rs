@@ -83,7 +83,7 @@ impl SpindleUnit {
 
     /// Takes changed machine parameters over.
     pub fn set_parameters(&mut self, parameters: SpindleParameters) {
-        self.servo.set_parameters(parameters.clone());
+        self.servo.set_parameters(parameters);
         self.parameters = parameters;
     }
 
@@ -333,6 +333,16 @@ impl SpindleUnit {
                 exchange.nc_set_number(word, value);
             }
         }
+    }
+
+    /// Angle of the spindle, degrees, once its reference mark was crossed.
+    pub fn angle_deg(&self) -> Option<f64> {
+        self.servo.angle_deg()
+    }
+
+    /// An orientation is on its way.
+    pub fn is_orienting(&self) -> bool {
+        self.orienting
     }
 
     pub fn state(&self) -> SpindleState {

@@ -112,3 +112,46 @@ fn angle_of_constant_feed() {
     assert!(slowest(4.0) > 0.0);
     assert_eq!(slowest(29.0), 0.0);
 }
+
+/// Reversal peaks (MP711, after M105 MP715) are put on the nominal position where an axis turns round on a
+/// circle, and not on straight lines [000:3663-3714]. A negative peak lies against the new direction.
+#[test]
+fn reversal_peaks() {
+    let peak = |program: &str| {
+        let build = bench(ACKNOWLEDGE)
+            .mp("1520=10")
+            .mp("711.0=0.02")
+            .mp("712.0=0.002")
+            .mp("715.0=0.05")
+            .mp("716.0=0.005")
+            .mp("7440=%01011");
+        let mut rig = ready(build.program("1.H", program));
+        rig.start();
+        rig.until(1.0, "begin", |rig| {
+            rig.control.snapshot().run == bahn_control::RunState::Running
+        });
+        let signal = "X.nominal".parse().unwrap();
+        let offset = rig.machine_position('X') - display(&rig, 'X');
+        let mut last = 0.0;
+        let mut worst: f64 = 0.0;
+        while !rig.control.snapshot().ended {
+            rig.cycle();
+            // What the loop was told for the end of the last cycle, and where the path was then.
+            let told = rig.control.observe(&signal) - offset;
+            let now = nominal(&rig, 'X');
+            if (now - last).abs() < 0.01 && rig.control.snapshot().feed_mm_min > 0.0 {
+                worst = worst.max((told - now).abs() - (now - last).abs());
+            }
+            last = now;
+        }
+        worst
+    };
+    let circle = "CC X+50 Y+30\nC X+50 Y+50 DR- R0 F600";
+    let line = "L X+60 R0 F600\nL X+50\nL X+60";
+    let first = peak(circle);
+    assert!((0.015..0.021).contains(&first), "{first}");
+    let second = peak(&format!("L Y+50 R0 F600 M105\n{circle}"));
+    assert!((0.045..0.051).contains(&second), "{second}");
+    let none = peak(line);
+    assert!(none < 0.005, "{none}");
+}

@@ -99,6 +99,26 @@ fn missing_acknowledgement() {
     assert_eq!(rig.number("W260"), 4);
 }
 
+/// NC stop while M08 waits, and START: the acknowledgement counts all the same, and the block goes on.
+#[test]
+fn stop_while_an_acknowledgement_is_missing() {
+    let mut rig = bench_with(
+        "       L     M2045\n       A     I20\n       = M2482",
+        "L X+60 R0 F6000 M8",
+    );
+    rig.start();
+    rig.seconds(0.5);
+    rig.event("key NC_STOP tap");
+    rig.seconds(0.5);
+    rig.event("key A press");
+    rig.seconds(0.5);
+    near(display(&rig, 'X'), 50.0);
+    assert!(!rig.bit("M2045"));
+    rig.start();
+    rig.until(3.0, "the end", |rig| rig.control.snapshot().ended);
+    near(display(&rig, 'X'), 60.0);
+}
+
 /// An acknowledgement that stays set blocks the next strobe, not the movement after the first
 /// [000:11750-11752].
 #[test]

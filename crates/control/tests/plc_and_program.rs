@@ -7,7 +7,6 @@ mod support;
 
 use bahn_control::RunState;
 use stand::*;
-use support::*;
 
 fn m_functions(lines: &str) -> String {
     format!("{ACKNOWLEDGE_BUT_M}{lines}")

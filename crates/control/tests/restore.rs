@@ -204,3 +204,25 @@ fn ends_of_the_scan() {
     assert!(!rig.bit("M2059"));
     assert_eq!(rig.control.snapshot().run, RunState::Idle);
 }
+
+/// MP951.2 with MP7450 bit 2: after TOOL CALL the scan takes Z as standing at the tool change position, machine
+/// 150; the block found has no Z, so Z returns there.
+#[test]
+fn tool_change_position_in_the_scan() {
+    for (axes, z) in [("%00100", 150.0), ("%00000", f64::NAN)] {
+        let build = bench(&plc())
+            .mp(&format!("7680={SCAN}"))
+            .mp("951.2=150")
+            .mp(&format!("7450={axes}"));
+        let mut rig = ready(build.program("1.H", PROGRAM));
+        let before = rig.machine_position('Z');
+        rig.command("restore-at 6");
+        rig.seconds(1.0);
+        rig.command("restore-position");
+        rig.start();
+        rig.seconds(0.3);
+        rig.until(20.0, "the contour", |rig| !rig.bit("M2019"));
+        near(rig.machine_position('Z'), if z.is_nan() { before } else { z });
+        near(display(&rig, 'X'), 30.0);
+    }
+}

@@ -210,6 +210,58 @@ fn goto_and_mdi() {
     near(display(&rig, 'Y'), 60.0);
 }
 
+/// MDI between an internal stop and the restart: the program goes on with its interrupted block.
+#[test]
+fn mdi_while_a_program_is_interrupted() {
+    let mut rig = bench_with(ACKNOWLEDGE, "L X+55 R0 F3000\nL X+70\nL X+80");
+    rig.start();
+    rig.until(3.0, "block 2", |rig| nominal(rig, 'X') > 60.0);
+    stop(&mut rig);
+    rig.command("stop");
+    rig.command("mode mdi");
+    rig.command("mdi L Y+40 R0 F3000");
+    run(&mut rig, 3.0);
+    near(display(&rig, 'Y'), 40.0);
+    rig.command("mode single");
+    start_block(&mut rig);
+    near(display(&rig, 'X'), 70.0);
+    near(display(&rig, 'Y'), 40.0);
+}
+
+/// START while an axis still brakes from manual operation waits until it stands.
+#[test]
+fn start_while_an_axis_brakes() {
+    let plc = format!(
+        "{ACKNOWLEDGE}       L     I20\n       = M2456\n       =N M2472\n       L     I14\n       = M2449\n       =N M2465"
+    );
+    let mut rig = bench_with(&plc, "L X+150 R0 F3000");
+    rig.command("mode manual");
+    rig.event("key RAPID press");
+    rig.event("key A press");
+    rig.seconds(0.5);
+    rig.command("mode full");
+    rig.start();
+    let mut before = nominal(&rig, 'X');
+    let mut speed = f64::NAN;
+    for _ in 0..3000 {
+        rig.cycle();
+        let now = (nominal(&rig, 'X') - before) / 0.003;
+        before = nominal(&rig, 'X');
+        assert!(
+            speed.is_nan() || (now - speed).abs() / 0.003 < 1001.0,
+            "{speed} {now}"
+        );
+        speed = now;
+    }
+    assert!(
+        rig.control.snapshot().ended,
+        "{:?} {:?}",
+        rig.messages(),
+        rig.control.snapshot()
+    );
+    near(display(&rig, 'X'), 150.0);
+}
+
 /// An error stops the run at the end of the block before; message with program and block; CE, START try the
 /// block again.
 #[test]

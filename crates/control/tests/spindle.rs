@@ -290,7 +290,12 @@ fn two_directions_are_a_fault() {
     rig.event("key A press");
     rig.seconds(0.2);
     assert_eq!(rig.messages(), ["ERROR IN PLC-PROGRAM 1Q"]);
-    assert!(!rig.control.command("ce".parse().unwrap()) || rig.messages()[0] == "ERROR IN PLC-PROGRAM 1Q");
+    rig.control.command("ce".parse().unwrap());
+    assert_eq!(
+        rig.messages()[0],
+        "ERROR IN PLC-PROGRAM 1Q",
+        "it flashes: CE does not clear it"
+    );
 }
 
 /// M19 orients to the angle of cycle 13 (D592 = $80000000), M20 to MP4210.47; M2482 only when the
@@ -402,4 +407,22 @@ LBL ORIENT
         assert!((angle - 30.0).abs() < 1.0, "{angle}");
         assert!(rig.control.snapshot().spindle.volts.abs() < 0.01);
     }
+}
+
+/// M2004 is 1 while the voltage is not on a ramp, M2005 while it is 0 [000:5532-5536] [000:10538]: S3000 are
+/// 8 V, at 0.01 V/ms 0.8 s.
+#[test]
+fn ramp_and_zero() {
+    let build = diagram(&with_gear()).mp("3410.0=0.01").mp("3240.1=0");
+    let mut rig = ready(build.program("1.H", "TOOL CALL 0 Z S3000\nM3\nSTOP\nM5"));
+    rig.start();
+    assert_eq!(
+        edges(&mut rig, "M2485 M2005 M2004", 1.2),
+        "M2485+ M2005- M2004- M2004+"
+    );
+    rig.start();
+    assert_eq!(
+        edges(&mut rig, "M2487 M2004 M2005", 1.2),
+        "M2487+ M2004- M2004+ M2005+"
+    );
 }
