@@ -60,6 +60,7 @@ pub(crate) fn interpreter(
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
         tool_length_mm: None,
+        machine: false,
         skip_blocks: run.skip_blocks,
         strict: run.strict,
         max_blocks_without_motion: run.max_blocks,

@@ -8,6 +8,9 @@ use bahn_servo::{Axis as Servo, Method, Timing};
 use crate::gantry::Coupling;
 use crate::panel::Direction;
 
+/// So far below 0 an axis counts as being at 0, degrees.
+const TURN_TOLERANCE_DEG: f64 = 1e-3;
+
 /// What moves an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Mover {
@@ -175,6 +178,11 @@ impl AxisUnit {
         self.speed == 0.0
     }
 
+    /// Whether it is held at its place, or not held at all.
+    pub fn is_at_rest(&self) -> bool {
+        !self.servo.closed() || self.stands() && self.servo.in_position()
+    }
+
     /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag.
     fn wanted_method(&self, automatic: bool) -> Method {
         let precontrol = &self.parameters.precontrol;
@@ -197,7 +205,7 @@ impl AxisUnit {
         if self.servo.method() == wanted {
             return true;
         }
-        let rests = !self.servo.closed() || self.stands() && self.servo.in_position();
+        let rests = self.is_at_rest();
         if rests {
             self.servo.set_method(wanted);
         }
@@ -212,6 +220,29 @@ impl AxisUnit {
         self.last_actual += shift;
         self.ptp = PointToPoint::moving(self.nominal, self.speed);
         shift
+    }
+
+    /// Counts within one turn again (MP810), after it has turned farther; nothing moves.
+    pub fn wrap(&mut self) {
+        let Some(modulo) = self.parameters.travel.modulo_deg else {
+            return;
+        };
+        let turns = ((self.nominal + TURN_TOLERANCE_DEG) / modulo).floor();
+        if turns != 0.0 {
+            let shift = -turns * modulo;
+            self.servo.shift(shift);
+            self.nominal += shift;
+            self.last_actual += shift;
+            self.ptp = PointToPoint::moving(self.nominal, self.speed);
+        }
+    }
+
+    /// A position as it is shown: within one turn where MP810 says so [000:6468-6484].
+    pub fn shown(&self, position: f64) -> f64 {
+        match self.parameters.travel.modulo_deg {
+            Some(modulo) => position.rem_euclid(modulo),
+            None => position,
+        }
     }
 
     /// Goes over to changed machine parameters, as far as they take effect without a restart.

@@ -115,6 +115,9 @@ pub enum Command {
     OffsetAdjustment(bool),
 }
 
+/// Largest coordinate, mm or degrees: 99 999.9999.
+const COORDINATE_MAX: f64 = 999_999_999.0 / 10_000.0;
+
 /// A text is no command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
@@ -158,7 +161,7 @@ impl FromStr for Command {
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
             "datum" => {
                 let (axis, rest) = axis(name, rest)?;
-                value(name, rest, -99_999.9999, 99_999.9999).map(|value| Command::Datum(axis, value))
+                value(name, rest, -COORDINATE_MAX, COORDINATE_MAX).map(|value| Command::Datum(axis, value))
             }
             "handwheel" => {
                 let (axis, rest) = axis(name, rest)?;

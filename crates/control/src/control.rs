@@ -26,6 +26,7 @@ use crate::run::ProgramRun;
 use crate::setup::{Remembered, Setup};
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
+use crate::upkeep::Upkeep;
 
 /// PLC cycles, µs [000:239] [000:10260].
 const PLC_CYCLE_US: u64 = 20_000;
@@ -35,7 +36,7 @@ const PLC_CYCLE_407_US: u64 = 24_000;
 const MILLISECOND_US: u32 = 1000;
 
 /// Elements of the path that are prepared ahead at most.
-const LOOK_AHEAD: usize = 512;
+pub(crate) const LOOK_AHEAD: usize = 512;
 
 /// A control with its PLC, axes and programs. The machine comes with every cycle.
 ///
@@ -79,6 +80,7 @@ pub struct Control {
     /// Active traverse range, 0 to 2.
     pub(crate) range: usize,
     pub(crate) tools: Tools,
+    pub(crate) upkeep: Upkeep,
     pub(crate) test: Option<crate::test_run::TestRun>,
     /// Tool changes and datums must be stored before their strobe is reset.
     keeps: bool,
@@ -127,7 +129,14 @@ impl Control {
                 AxisUnit::new(parameters.axis_parameters(index), timing)
             })
             .collect();
-        let axes = crate::gantry::couple(axes, timing);
+        let mut axes = crate::gantry::couple(axes, timing);
+        for unit in &mut axes {
+            let volts = remembered.offsets_volts.get(unit.index).copied();
+            unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
+        }
+        let parameters_interval_s = axes
+            .first()
+            .map_or(0.0, |unit| unit.parameters.output.offset_interval_s);
         let mut places = [None; AXES];
         let mut letters = ['X', 'Y', 'Z', '4', '5'];
         for (place, unit) in axes.iter().enumerate() {
@@ -190,6 +199,7 @@ impl Control {
             datums,
             correction: [0.0; AXES],
             range: 0,
+            upkeep: Upkeep::new(parameters_interval_s),
             test: None,
             keeps: false,
             unsaved: false,
@@ -207,6 +217,13 @@ impl Control {
             control.run.selected = Some(name);
         }
         control.select_range(0);
+        let active = control
+            .link
+            .files
+            .compensation
+            .as_ref()
+            .and_then(|file| file.active);
+        control.activate_compensation(active);
         control.preset_markers();
         if control.operation.power_interrupted {
             control.show(Message::Plain(MessageId::PowerInterrupted), false);
@@ -216,6 +233,17 @@ impl Control {
 
     /// Markers and words with a value at power-on.
     fn preset_markers(&mut self) {
+        // They lie among the markers that power-off keeps, but belong to the NC.
+        let of_the_nc = [
+            &signal::RISING_EDGES,
+            &signal::FALLING_EDGES,
+            &signal::DECODED_M_FUNCTIONS,
+        ];
+        for marker in of_the_nc.into_iter().flat_map(|range| range.iter()) {
+            if self.exchange.nc().bit(marker) {
+                self.exchange.nc_set(marker, false);
+            }
+        }
         for unit in &self.axes {
             if let Some(marker) = crate::markers::REFERENCE_MISSING.get(unit.index) {
                 self.exchange.nc_set(*marker, unit.parameters.controlled);
@@ -261,6 +289,7 @@ impl Control {
             unit.servo.measure(encoder);
         }
         self.spindle.measure(plant);
+        self.watch_probe(plant);
         if self.plc_runs() && self.now_us >= self.plc.due_us {
             self.scan(plant);
             self.plc.due_us += self.plc.period_us;
@@ -310,6 +339,7 @@ impl Control {
                 self.exchange.nc_set(*bit, value);
             }
         }
+        self.publish_analogue(plant);
         let operator = plant.operator();
         self.feed_override
             .publish(&mut self.exchange, operator.feed_override_percent);
@@ -317,6 +347,9 @@ impl Control {
             .publish(&mut self.exchange, operator.spindle_override_percent);
         self.publish();
         self.link.program_running = self.run.is_active();
+        self.link.orienting = self.spindle.is_orienting();
+        let angle = self.spindle.angle_deg().unwrap_or(0.0);
+        (self.link.spindle.actual, self.link.spindle.reference) = (angle, angle);
         self.plc.scans += 1;
         if let Err(error) = self.plc.machine.scan(&mut self.exchange, &mut self.link) {
             let message = Message::PlcStopped {
@@ -362,6 +395,12 @@ impl Control {
             self.start_pressed = false;
         }
         // What a tool change leads to is on the medium before the PLC sees its end.
+        if let Some(Transfer::ToolCall { more: false, .. }) = self.handshakes.acknowledged(self.exchange.nc())
+            && self.tools.is_changing()
+        {
+            self.tools.inserted(&self.exchange);
+            self.unsaved = true;
+        }
         let waits = self.keeps && self.unsaved;
         if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
             self.acknowledged(transfer);
@@ -370,20 +409,18 @@ impl Control {
         self.spindle.cycle(&mut self.exchange, percent);
         if self.spindle.take_wrong_speed() {
             self.show(Message::Plain(MessageId::WrongRpm), false);
-            self.stop_run();
+            self.refuse_block();
         }
         for unit in &mut self.axes {
             unit.count();
         }
-        self.lubricate();
+        self.look_after();
     }
 
     /// What was acknowledged has its effect now.
     fn acknowledged(&mut self, transfer: Transfer) {
-        match transfer {
-            Transfer::ToolCall { more: false, .. } => self.tools.inserted(),
-            Transfer::Gear { .. } => self.spindle.gear_changed(),
-            _ => {}
+        if let Transfer::Gear { .. } = transfer {
+            self.spindle.gear_changed();
         }
     }
 
@@ -474,7 +511,7 @@ impl Control {
 }
 
 /// The limits of the path: those of the axes by their letters.
-fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[AxisUnit]) -> PathLimits {
+pub(crate) fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[AxisUnit]) -> PathLimits {
     let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
         Axis::ALL.map(|axis| {
             axes.iter()

@@ -5,7 +5,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use bahn_interpreter::{Checkpoint, Interpreter, Library, ProgramError, Settings};
-use bahn_path::{Axis, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, Position, Step};
+use bahn_path::{Axis, Barrier, Curve, ElementSource, Function, LiveData, PathElement, Position, Step};
+use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
 
 use crate::panel::Direction;
@@ -37,7 +38,8 @@ pub(crate) enum RunFault {
     Limit {
         axis: Axis,
         direction: Direction,
-        block: BlockRef,
+        /// Which block: its place in the order of execution.
+        sequence: u64,
     },
 }
 
@@ -65,12 +67,12 @@ impl Offsets {
     }
 
     /// The axis positions of a path position.
-    pub fn to_machine(&self, path: &Position) -> Position {
+    pub fn to_machine(self, path: &Position) -> Position {
         Axis::ALL.map(|axis| path[axis] + self.of(axis)).into()
     }
 
     /// The path position of axis positions.
-    pub fn to_path(&self, machine: &Position) -> Position {
+    pub fn to_path(self, machine: &Position) -> Position {
         Axis::ALL.map(|axis| machine[axis] - self.of(axis)).into()
     }
 
@@ -92,11 +94,14 @@ pub(crate) struct Feeder {
     /// Offsets as of the last element handed out.
     offsets: Offsets,
     limits: Box2,
-    /// State before the blocks that are on their way, with the count of blocks executed before.
-    checkpoints: VecDeque<(u64, Checkpoint)>,
+    /// State before each of the blocks that are on their way.
+    checkpoints: VecDeque<Checkpoint>,
     fault: Option<RunFault>,
-    /// An element that a block scan has found: it comes next.
-    found: Option<PathElement>,
+    /// Elements that were given back: they come next.
+    found: VecDeque<PathElement>,
+    /// An element outside the limits, and whether all before it is executed: a function before it may
+    /// change traverse range or datum. It comes before those that were given back.
+    refused: Option<(PathElement, bool)>,
     /// Executed elements for whoever wants to see the path.
     tap: Option<Vec<PathElement>>,
 }
@@ -109,13 +114,16 @@ impl Feeder {
         offsets: Offsets,
         limits: Box2,
     ) -> Feeder {
+        let mut interpreter = Interpreter::new(main, settings, Box::new(Shelf(programs)));
+        interpreter.keep_checkpoints();
         Feeder {
-            interpreter: Interpreter::new(main, settings, Box::new(Shelf(programs))),
+            interpreter,
             offsets,
             limits,
             checkpoints: VecDeque::new(),
             fault: None,
-            found: None,
+            found: VecDeque::new(),
+            refused: None,
             tap: None,
         }
     }
@@ -134,14 +142,29 @@ impl Feeder {
         program.is_some_and(|program| program.unit() == bahn_program::Unit::Inch)
     }
 
-    /// The datum changed: limits count from it.
-    pub fn set_datum(&mut self, datum: Position) {
+    /// Datum and traverse range as they are now: limits and M91 count from them.
+    pub fn set_datum(&mut self, datum: Position, limits: Box2) {
+        self.limits = limits;
         self.offsets.datum = datum;
+        self.interpreter
+            .set_machine_zero(Axis::ALL.map(|axis| -datum[axis]).into());
     }
 
-    /// Gives an element back, to come again.
-    pub fn put_back(&mut self, element: PathElement) {
-        self.found = Some(element);
+    /// Inserts a TOOL CALL of module 9150 before the next block.
+    pub fn insert(&mut self, call: &ToolCallBlock) {
+        let axis = call.axis.and_then(crate::tools::inserted_axis);
+        let tool = call.tool.map(f64::from);
+        let oversize = [call.length_oversize, call.radius_oversize];
+        self.interpreter
+            .insert_tool_call(tool, axis, call.speed, oversize);
+    }
+
+    /// Gives elements back, to come again before all others.
+    pub fn put_back(&mut self, elements: impl DoubleEndedIterator<Item = PathElement>) {
+        let refused = self.refused.take().map(|(element, _)| element);
+        for element in refused.into_iter().chain(elements.rev()) {
+            self.found.push_front(element);
+        }
     }
 
     /// Keeps a copy of every element that is handed out.
@@ -154,13 +177,12 @@ impl Feeder {
         self.tap.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Forgets the checkpoints of blocks before the one that is executed; the last of them stays.
+    /// Forgets the states before blocks that come before the one that is executed.
     pub fn forget_before(&mut self, sequence: u64) {
-        while self.checkpoints.len() > 1
-            && self
-                .checkpoints
-                .get(1)
-                .is_some_and(|(before, _)| *before < sequence)
+        while self
+            .checkpoints
+            .get(1)
+            .is_some_and(|next| next.sequence() <= sequence)
         {
             self.checkpoints.pop_front();
         }
@@ -168,21 +190,65 @@ impl Feeder {
 
     /// Goes back to the state before a block, which then starts from where the axes stand.
     pub fn return_to(&mut self, sequence: u64, machine: &Position, offsets: Offsets, limits: Box2) {
-        let checkpoint = self
-            .checkpoints
-            .iter()
-            .rev()
-            .find(|(before, _)| *before < sequence)
-            .or(self.checkpoints.front());
-        if let Some((_, checkpoint)) = checkpoint {
+        let before = |checkpoint: &&Checkpoint| checkpoint.sequence() <= sequence;
+        if sequence <= self.interpreter.blocks_executed()
+            && let Some(checkpoint) = self.checkpoints.iter().rev().find(before)
+        {
             self.interpreter.restore(checkpoint);
         }
+        self.begin_again(machine, offsets, limits);
+    }
+
+    /// Goes back to the block that could not be executed.
+    pub fn retry(&mut self, machine: &Position, offsets: Offsets, limits: Box2) {
+        match self.fault.take() {
+            Some(RunFault::Limit { sequence, .. }) => {
+                return self.return_to(sequence, machine, offsets, limits);
+            }
+            Some(RunFault::Program(error)) if self.interpreter.at() != error.block => {
+                let failed = |checkpoint: &&Checkpoint| checkpoint.at() == error.block;
+                if let Some(checkpoint) = self.checkpoints.iter().rev().find(failed) {
+                    self.interpreter.restore(checkpoint);
+                }
+            }
+            _ => {}
+        }
+        self.begin_again(machine, offsets, limits);
+    }
+
+    fn begin_again(&mut self, machine: &Position, offsets: Offsets, limits: Box2) {
         self.checkpoints.clear();
-        self.found = None;
+        self.found.clear();
+        self.refused = None;
         self.fault = None;
         self.offsets = offsets;
         self.limits = limits;
+        self.interpreter.retry();
         self.interpreter.relocate(&offsets.to_path(machine));
+    }
+
+    /// The next step of the program.
+    fn read(&mut self) -> Step<RunFault> {
+        let step = self.interpreter.next();
+        self.checkpoints.extend(self.interpreter.take_checkpoints());
+        let element = match step {
+            Step::Element(element) => element,
+            Step::Barrier(barrier) => return Step::Barrier(barrier),
+            Step::Starved => return Step::Starved,
+            Step::End => return Step::End,
+            Step::Error(error) => {
+                let fault = RunFault::Program(error);
+                self.fault = Some(fault.clone());
+                return Step::Error(fault);
+            }
+        };
+        for output in element.functions() {
+            self.offsets.take(&output.function);
+        }
+        if let Some(tap) = &mut self.tap {
+            tap.push(element.clone());
+        }
+        Step::Element(element)
     }
 
     /// The first axis that would leave its range on an element.
@@ -206,7 +272,7 @@ impl Feeder {
             return Some(RunFault::Limit {
                 axis,
                 direction,
-                block: element.block,
+                sequence: element.sequence,
             });
         }
         None
@@ -220,42 +286,35 @@ impl ElementSource for Feeder {
         if let Some(fault) = &self.fault {
             return Step::Error(fault.clone());
         }
-        if let Some(found) = self.found.take() {
-            return Step::Element(found);
-        }
-        let executed = self.interpreter.blocks_executed();
-        if self
-            .checkpoints
-            .back()
-            .is_none_or(|(before, _)| *before != executed)
-        {
-            self.checkpoints
-                .push_back((executed, self.interpreter.checkpoint()));
-        }
-        let element = match self.interpreter.next() {
-            Step::Element(element) => element,
-            Step::Barrier(barrier) => return Step::Barrier(barrier),
-            Step::Starved => return Step::Starved,
-            Step::End => return Step::End,
-            Step::Error(error) => return Step::Error(RunFault::Program(error)),
+        let (element, last) = match self.refused.take() {
+            Some(refused) => refused,
+            None => match self.found.pop_front() {
+                Some(found) => (found, false),
+                None => match self.read() {
+                    Step::Element(element) => (element, false),
+                    other => return other,
+                },
+            },
         };
-        for output in element.functions() {
-            self.offsets.take(&output.function);
-        }
         if element.curve != Curve::Hold
             && let Some(fault) = self.outside(&element)
         {
-            self.fault = Some(fault.clone());
-            return Step::Error(fault);
-        }
-        if let Some(tap) = &mut self.tap {
-            tap.push(element.clone());
+            if last {
+                self.fault = Some(fault.clone());
+                return Step::Error(fault);
+            }
+            let block = element.block;
+            self.refused = Some((element, false));
+            return Step::Barrier(Barrier::Acknowledge { block });
         }
         Step::Element(element)
     }
 
     fn resume(&mut self, live: LiveData) {
-        self.interpreter.resume(live);
+        match &mut self.refused {
+            Some((_, last)) => *last = true,
+            None => self.interpreter.resume(live),
+        }
     }
 }
 
@@ -297,6 +356,7 @@ mod tests {
         loop {
             match feeder.next() {
                 Step::Element(_) => {}
+                Step::Barrier(_) => feeder.resume(LiveData::default()),
                 step => return step,
             }
         }
@@ -306,12 +366,11 @@ mod tests {
     #[test]
     fn a_block_beyond_the_limit_is_refused() {
         assert_eq!(end("L X+100 R0 FMAX"), Step::End);
-        let block = BlockRef { program: 0, block: 1 };
         let limit = |axis, direction| {
             Step::Error(RunFault::Limit {
                 axis,
                 direction,
-                block,
+                sequence: 1,
             })
         };
         assert_eq!(end("L X+100.01 R0 FMAX"), limit(Axis::X, Direction::Plus));

@@ -1,8 +1,9 @@
 //! What the functions of a program do when the path comes to them.
 
-use bahn_exchange::{Exchange, signal};
+use bahn_exchange::Exchange;
 use bahn_path::{Axis, Function, ToolCall};
 
+use crate::axes::AxisUnit;
 use crate::feeder::Offsets;
 use crate::handshake::{Handshakes, Transfer};
 use crate::markers::TOOL_AXIS;
@@ -19,6 +20,7 @@ pub(crate) struct Target<'a> {
     pub offsets: &'a mut Offsets,
     pub handshakes: &'a mut Handshakes,
     pub exchange: &'a mut Exchange,
+    pub axes: &'a mut [AxisUnit],
     /// The program is in inches.
     pub inch: bool,
 }
@@ -46,6 +48,12 @@ impl Target<'_> {
     }
 
     fn m(&mut self, code: u16) {
+        // M105 chooses the second set of kv and reversal peaks, M106 the first [000:7251-7305].
+        if matches!(code, 105 | 106) {
+            for unit in self.axes.iter_mut() {
+                unit.servo.set_second_set(code == 105);
+            }
+        }
         if code <= M_MAX
             && let Ok(code) = u8::try_from(code)
         {
@@ -55,7 +63,7 @@ impl Target<'_> {
 
     /// TOOL CALL: the tool goes to the PLC, then its speed; length and axis count from here on.
     fn tool(&mut self, call: &ToolCall) {
-        self.tools.call(call.tool, self.handshakes);
+        self.tools.call(call.tool, self.exchange, self.handshakes);
         self.offsets.tool_axis = call.axis;
         self.offsets.tool_length = call.shape.length;
         let axes = [Axis::X, Axis::Y, Axis::Z];
@@ -67,7 +75,6 @@ impl Target<'_> {
                 self.exchange.nc_set(*marker, set);
             }
         }
-        self.exchange.nc_set(signal::TOOL_0_PROGRAMMED, call.tool == 0);
         self.speed(call.speed_rpm, true);
     }
 

@@ -211,6 +211,12 @@ impl Handshakes {
         None
     }
 
+    /// The transfer that the PLC has acknowledged and whose strobe is still set.
+    pub fn acknowledged(&self, nc: &Image) -> Option<Transfer> {
+        self.active
+            .filter(|transfer| nc.bit(transfer.handshake().acknowledge))
+    }
+
     /// What is waited for.
     pub fn waiting(&self, nc: &Image) -> Option<Waiting> {
         if let Some(transfer) = self.active {

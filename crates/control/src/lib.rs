@@ -19,9 +19,11 @@
 
 mod axes;
 mod command;
+mod compensation;
 mod control;
 mod emergency;
 mod feeder;
+mod follow;
 mod functions;
 mod gantry;
 mod handshake;
@@ -35,6 +37,8 @@ mod overrides;
 mod panel;
 mod plc_link;
 mod positioning;
+mod probing;
+mod q_transfer;
 mod reference;
 mod restore;
 mod run;
@@ -46,9 +50,11 @@ mod status;
 mod strobes;
 mod test_run;
 mod tools;
+mod upkeep;
 mod watch;
 
 pub use command::{Command, CommandError, Mode};
+pub use compensation::{CompensationAssignment, CompensationError, CompensationTable};
 pub use control::Control;
 pub use feeder::Programs;
 pub use handshake::{Handshake, Transfer, Waiting};

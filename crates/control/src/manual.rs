@@ -29,6 +29,8 @@ pub(crate) struct Manual {
     pub increment_limit: Option<f64>,
     /// Positions that jogging goes to.
     jogging: [Option<f64>; AXES],
+    /// Handwheel or jog increment would lead beyond a limit.
+    pushed: [Option<Direction>; AXES],
     /// Axis index of the handwheel.
     pub handwheel_axis: usize,
     /// Interpolation factors.
@@ -54,6 +56,7 @@ impl Default for Manual {
             increment: 0.0,
             increment_limit: None,
             jogging: [None; AXES],
+            pushed: [None; AXES],
             handwheel_axis: 0,
             factors: [5; AXES],
             count: None,
@@ -76,6 +79,7 @@ impl Manual {
     pub fn stop(&mut self) {
         self.latched = [None; AXES];
         self.jogging = [None; AXES];
+        self.pushed = [None; AXES];
         self.wheel = None;
     }
 }
@@ -180,7 +184,7 @@ impl Control {
                 } else {
                     motion.rapid_mm_min
                 };
-                (Aim::Position(within(unit, target)), feed)
+                (Aim::Position(target), feed)
             }
             (None, None) => (Aim::Feed(0.0), motion.rapid_mm_min),
         };
@@ -191,7 +195,8 @@ impl Control {
         if unit.stands() && unit.mover == Mover::Manual && key.is_none() {
             unit.mover = Mover::None;
         }
-        self.note_limit(place, key);
+        let pushed = self.manual.pushed.get(index).copied().flatten();
+        self.note_limit(place, key.or(pushed));
     }
 
     /// Message and marker at a software limit switch; they go when the axis leaves it (inferred).
@@ -212,6 +217,9 @@ impl Control {
         let index = unit.index;
         if reached.is_some() {
             unit.at_limit = reached;
+            if let Some(pushed) = self.manual.pushed.get_mut(index) {
+                *pushed = None;
+            }
         } else if left.is_some() {
             unit.at_limit = None;
         }
@@ -235,12 +243,17 @@ impl Control {
             Some(limit) => self.manual.increment.min(limit),
             None => self.manual.increment,
         };
-        let (nominal, stands) = self.axes.get(place).map(|unit| (unit.nominal, unit.stands()))?;
+        let unit = self.axes.get(place)?;
+        let (nominal, stands) = (unit.nominal, unit.stands());
         let target = self.manual.jogging.get_mut(index)?;
         if let Some(direction) = started
             && stands
         {
-            *target = Some(nominal + direction.sign() * increment);
+            let (within, pushed) = within(unit, nominal + direction.sign() * increment);
+            *target = Some(within);
+            if let Some(slot) = self.manual.pushed.get_mut(index) {
+                *slot = pushed;
+            }
             if let Some(started) = self.panel.jog_started.get_mut(index) {
                 *started = None;
             }
@@ -269,7 +282,8 @@ impl Control {
             .flatten()
             .and_then(|place| self.axes.get(place));
         let there = self.mode == Mode::Handwheel && self.operation.handwheel.kind != Handwheel::None;
-        let Some(unit) = unit.filter(|_| there) else {
+        // What is turned while the feed is not enabled moves nothing later.
+        let Some(unit) = unit.filter(|unit| there && unit.enabled) else {
             self.manual.wheel = None;
             return;
         };
@@ -298,7 +312,11 @@ impl Control {
             };
             let from = self.manual.wheel.map_or(unit.nominal, |(_, target)| target);
             let target = from + sign * steps as f64 / HANDWHEEL_STEPS * travel;
-            self.manual.wheel = Some((index, within(unit, target)));
+            let (target, pushed) = within(unit, target);
+            self.manual.wheel = Some((index, target));
+            if let Some(slot) = self.manual.pushed.get_mut(index) {
+                *slot = pushed;
+            }
         }
         if self.manual.wheel == Some((index, unit.nominal)) && unit.stands() {
             self.manual.wheel = None;
@@ -327,13 +345,18 @@ fn along(unit: &AxisUnit, direction: Direction, feed: f64) -> Aim {
     }
 }
 
-/// A target inside the software limits; from outside only towards them.
-fn within(unit: &AxisUnit, target: f64) -> f64 {
-    match unit.limited() {
-        Some([least, greatest]) => target
-            .min(greatest.max(unit.nominal))
-            .max(least.min(unit.nominal)),
-        None => target,
+/// A target inside the software limits, from outside only towards them; and the limit beyond which it was.
+fn within(unit: &AxisUnit, target: f64) -> (f64, Option<Direction>) {
+    let Some([least, greatest]) = unit.limited() else {
+        return (target, None);
+    };
+    let (least, greatest) = (least.min(unit.nominal), greatest.max(unit.nominal));
+    if target > greatest {
+        (greatest, Some(Direction::Plus))
+    } else if target < least {
+        (least, Some(Direction::Minus))
+    } else {
+        (target, None)
     }
 }
 

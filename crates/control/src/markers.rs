@@ -134,6 +134,37 @@ pub(crate) const POSITIONING_FEED: [Number; AXES] = [
     POSITIONING_FEED_AXIS_4,
     POSITIONING_FEED_AXIS_5,
 ];
+/// Voltages and temperatures of the two PLC extensions [000:8449-8484].
+pub(crate) const ANALOGUE: [[[Number; 4]; 2]; 2] = [
+    [
+        [
+            ANALOGUE_0_EXTENSION_1,
+            ANALOGUE_1_EXTENSION_1,
+            ANALOGUE_2_EXTENSION_1,
+            ANALOGUE_3_EXTENSION_1,
+        ],
+        [
+            THERMISTOR_0_EXTENSION_1,
+            THERMISTOR_1_EXTENSION_1,
+            THERMISTOR_2_EXTENSION_1,
+            THERMISTOR_3_EXTENSION_1,
+        ],
+    ],
+    [
+        [
+            ANALOGUE_0_EXTENSION_2,
+            ANALOGUE_1_EXTENSION_2,
+            ANALOGUE_2_EXTENSION_2,
+            ANALOGUE_3_EXTENSION_2,
+        ],
+        [
+            THERMISTOR_0_EXTENSION_2,
+            THERMISTOR_1_EXTENSION_2,
+            THERMISTOR_2_EXTENSION_2,
+            THERMISTOR_3_EXTENSION_2,
+        ],
+    ],
+];
 /// W576 ff.: lag tracking, 1/10 µm.
 pub(crate) const LAG_TRACKING: [Number; AXES] = [
     LAG_COMPENSATION_AXIS_X,

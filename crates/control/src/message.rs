@@ -9,10 +9,6 @@ use bahn_parameters::{ControlModel, MessageId};
 
 use crate::panel::Direction;
 
-/// Axis letters by axis index, as the messages print them; the letters of the 4th and 5th axis are given
-/// by MP410.
-pub(crate) type AxisLetters = [char; 5];
-
 /// A message of the running control.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
@@ -264,7 +260,7 @@ mod tests {
     use super::*;
 
     const MODEL: ControlModel = ControlModel::Tnc415b;
-    const LETTERS: AxisLetters = ['X', 'Y', 'Z', 'C', 'V'];
+    const LETTERS: [char; 5] = ['X', 'Y', 'Z', 'C', 'V'];
 
     fn text(message: &Message) -> String {
         message.text(MODEL, &LETTERS, &["TOOL CLAMP OPEN".to_owned(), String::new()])

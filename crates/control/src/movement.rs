@@ -38,7 +38,7 @@ impl Control {
                 if self.manual_operation_is_on() {
                     self.move_manually(handwheel);
                 } else {
-                    self.move_path();
+                    self.move_path(plant);
                 }
                 self.move_restore();
             }
@@ -62,7 +62,12 @@ impl Control {
         }
         crate::gantry::command(&mut self.axes);
         if self.run.state == RunState::Idle {
-            self.axes.iter_mut().for_each(|unit| unit.left_at = None);
+            for unit in &mut self.axes {
+                unit.left_at = None;
+                if unit.mover == Mover::None && unit.stands() {
+                    unit.wrap();
+                }
+            }
         }
         self.note_deviation();
         !waits

@@ -153,6 +153,7 @@ impl Control {
             offsets: &mut self.offsets,
             handshakes: &mut self.handshakes,
             exchange: &mut self.exchange,
+            axes: &mut self.axes,
             inch,
         };
         if let Some(rpm) = self.manual.s.take() {
@@ -216,33 +217,6 @@ impl Control {
             _ => {}
         }
         true
-    }
-
-    /// Answers to code number 75 368: compensates the offsets of the axes, or switches the automatic
-    /// adjustment off [000:5014-5020].
-    fn adjust_offsets(&mut self, adjust: bool) -> bool {
-        if !std::mem::take(&mut self.manual.offsets_shown) {
-            return false;
-        }
-        for unit in &mut self.axes {
-            if adjust {
-                unit.servo.compensate_offset();
-            } else {
-                unit.servo.set_offset_compensation(0.0);
-            }
-        }
-        true
-    }
-
-    /// The compensated offsets, V.
-    pub(crate) fn offset_volts(&self) -> [f64; 5] {
-        let mut volts = [0.0; 5];
-        for unit in &self.axes {
-            if let Some(slot) = volts.get_mut(unit.index) {
-                *slot = unit.servo.offset_compensation_volts();
-            }
-        }
-        volts
     }
 
     /// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319].

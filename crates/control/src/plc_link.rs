@@ -12,6 +12,7 @@ use bahn_plc::{
     SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
+use crate::compensation::{CompensationAssignment, CompensationTable};
 use crate::markers::AXES;
 
 /// Files and tables of the NC memory that modules read.
@@ -25,10 +26,10 @@ pub struct NcFiles {
     pub tables: BTreeMap<TableKind, MemoryTable>,
     /// Machine parameter lists by name; `None` for a faulty one.
     pub parameter_lists: BTreeMap<String, Option<ParameterList>>,
-    /// The compensation assignment (.CMA): names of tables, line by line.
-    pub compensation: Option<Vec<Vec<String>>>,
-    /// Points of each compensation table (.COM).
-    pub compensation_points: BTreeMap<String, usize>,
+    /// The compensation assignment (.CMA).
+    pub compensation: Option<CompensationAssignment>,
+    /// The compensation tables (.COM) by name.
+    pub compensation_tables: BTreeMap<String, CompensationTable>,
 }
 
 /// What modules asked for since it was taken.
@@ -209,10 +210,13 @@ impl Nc for PlcLink {
     }
 
     fn compensation_line(&self, line: i32) -> Result<Vec<Option<usize>>, LineFault> {
-        let lines = self.files.compensation.as_ref().ok_or(LineFault::NoFile)?;
-        let tables = nth(lines, line).ok_or(LineFault::NoLine)?;
-        let points = |name| self.files.compensation_points.get(name).copied();
-        Ok(tables.iter().map(points).collect())
+        let file = self.files.compensation.as_ref().ok_or(LineFault::NoFile)?;
+        let tables = nth(&file.lines, line).ok_or(LineFault::NoLine)?;
+        let points = |name| {
+            let table = self.files.compensation_tables.get(name)?;
+            Some(table.points())
+        };
+        Ok(tables.iter().flatten().map(points).collect())
     }
 
     fn activate_compensation(&mut self, line: i32) {

@@ -149,6 +149,11 @@ impl Control {
         }
     }
 
+    /// The PLC positions an axis.
+    pub(crate) fn is_positioning(&self) -> bool {
+        self.positioning.targets.iter().any(Option::is_some)
+    }
+
     /// Resets the strobe of a PLC positioning.
     pub(crate) fn end_positioning(&mut self, index: usize) {
         if let Some(target) = self.positioning.targets.get_mut(index)
@@ -156,8 +161,6 @@ impl Control {
             && let Some(strobe) = PLC_POSITIONING.get(index)
         {
             self.exchange.nc_set(*strobe, false);
-            // The path does not know: the next block that moves the axis makes it up.
-            self.run.datum_changed |= self.run.is_active();
         }
     }
 

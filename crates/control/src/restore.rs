@@ -8,17 +8,22 @@ use std::collections::VecDeque;
 
 use bahn_exchange::signal;
 use bahn_motion::Aim;
-use bahn_path::{Barrier, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
+use bahn_parameters::MessageId;
+use bahn_path::{Barrier, ElementSource, Function, PathElement, Position, Step, TechnologyFunction};
 
 use crate::axes::Mover;
 use crate::control::Control;
-use crate::feeder::Feeder;
+use crate::feeder::{Feeder, Offsets};
 use crate::functions::Target;
 use crate::message::Message;
 use crate::run::RunState;
 
 /// Elements that one call of prepare passes at most.
 const BUDGET: usize = 1000;
+
+/// Simulated tool change position, and the axes for which it counts [000:6783-6832].
+const MP_TOOL_CHANGE: u16 = 951;
+const MP_AXES: u16 = 7450;
 
 /// Where a return is.
 #[derive(Debug)]
@@ -27,6 +32,8 @@ pub(crate) enum Restore {
     Scan {
         block: u32,
         functions: VecDeque<TechnologyFunction>,
+        /// A dwell time lasts until then, µs since power-on.
+        dwell_until_us: u64,
     },
     /// The scan is at a programmed stop; NC start goes on (MP7680 bit 3 = 0).
     Stopped { block: u32 },
@@ -36,6 +43,13 @@ pub(crate) enum Restore {
     Armed { target: Position },
     /// The axes move.
     Moving { target: Position },
+}
+
+impl Restore {
+    /// The block is not found yet.
+    pub fn scans(&self) -> bool {
+        matches!(self, Restore::Scan { .. } | Restore::Stopped { .. })
+    }
 }
 
 impl Control {
@@ -58,6 +72,7 @@ impl Control {
         self.run.restore = Some(Restore::Scan {
             block,
             functions: VecDeque::new(),
+            dwell_until_us: 0,
         });
         self.put(signal::BLOCK_SCAN_ACTIVE, true);
         true
@@ -100,20 +115,27 @@ impl Control {
     /// Goes on with a scan; may allocate.
     pub(crate) fn prepare_restore(&mut self) {
         for _ in 0..BUDGET {
-            let Some(Restore::Scan { block, functions }) = &mut self.run.restore else {
+            let Some(Restore::Scan {
+                block,
+                functions,
+                dwell_until_us,
+            }) = &mut self.run.restore
+            else {
                 return;
             };
-            if !self.handshakes.is_idle() || self.panel.stop {
+            if !self.handshakes.is_idle() || self.panel.stop || self.now_us < *dwell_until_us {
                 return;
             }
             let block = *block;
             if let Some(function) = functions.pop_front() {
+                self.run.q_transfer.strobe();
                 let mut target = Target {
                     spindle: &mut self.spindle,
                     tools: &mut self.tools,
                     offsets: &mut self.offsets,
                     handshakes: &mut self.handshakes,
                     exchange: &mut self.exchange,
+                    axes: &mut self.axes,
                     inch: self.run.feeder.as_ref().is_some_and(Feeder::inch),
                 };
                 target.output(&function.function);
@@ -127,14 +149,17 @@ impl Control {
                 Step::Barrier(Barrier::Stop { .. }) if !self.operation.restart.passes_stops => {
                     self.run.restore = Some(Restore::Stopped { block });
                 }
-                Step::Barrier(_) => feeder.resume(LiveData::default()),
+                Step::Barrier(_) => feeder.resume(self.run.q_transfer.answer()),
                 Step::Starved => return,
-                Step::End | Step::Error(_) => {
+                Step::End => {
                     // The block does not come: the scan ends with the program.
-                    self.show(
-                        Message::Plain(bahn_parameters::MessageId::SelectedBlockNotAddressed),
-                        false,
-                    );
+                    self.show(Message::Plain(MessageId::SelectedBlockNotAddressed), false);
+                    self.internal_stop();
+                    return;
+                }
+                Step::Error(fault) => {
+                    let message = self.fault_message(fault);
+                    self.show(message, false);
                     self.internal_stop();
                     return;
                 }
@@ -154,14 +179,55 @@ impl Control {
             }
             self.path.set_position(element.start);
             if let Some(feeder) = &mut self.run.feeder {
-                feeder.put_back(element);
+                feeder.put_back(std::iter::once(element));
             }
             self.run.restore = Some(Restore::Ready { target });
             return;
         }
-        if let Some(Restore::Scan { functions, .. }) = &mut self.run.restore {
+        if let Some(Restore::Scan {
+            functions,
+            dwell_until_us,
+            ..
+        }) = &mut self.run.restore
+        {
+            if !self.operation.restart.ignores_dwell {
+                *dwell_until_us = self.now_us + (element.dwell_s * 1e6) as u64;
+            }
             functions.extend(element.functions().iter().cloned());
         }
+        self.pass_tool_change(&element);
+    }
+
+    /// MP951: where a tool change would have left the axes of MP7450, machine coordinates. The scan goes on
+    /// from there. 1 = calculate: the list says so, the section the reverse [000:6783-6832].
+    fn pass_tool_change(&mut self, element: &PathElement) {
+        let call = element
+            .functions()
+            .iter()
+            .find_map(|output| match &output.function {
+                Function::Tool(call) => Some(*call),
+                _ => None,
+            });
+        let axes = self.link.list().get(MP_AXES, 0).unwrap_or(0.0) as u32;
+        let (Some(call), Some(feeder)) = (call, &mut self.run.feeder) else {
+            return;
+        };
+        if axes == 0 {
+            return;
+        }
+        let offsets = Offsets {
+            tool_axis: call.axis,
+            tool_length: call.shape.length,
+            ..self.offsets
+        };
+        let mut position = element.end;
+        for unit in self.axes.iter().filter(|unit| axes >> unit.index & 1 != 0) {
+            let index = u8::try_from(unit.index).unwrap_or(u8::MAX);
+            if let Some(place) = self.link.list().get(MP_TOOL_CHANGE, index) {
+                position[unit.axis] = place - offsets.of(unit.axis);
+            }
+        }
+        feeder.interpreter_mut().relocate(&position);
     }
 
     /// Moves the axes to the contour: those of the working plane first, the tool axis last, unless it has
@@ -172,11 +238,12 @@ impl Control {
             Some(Restore::Stopped { block }) if start => {
                 let block = *block;
                 if let Some(feeder) = &mut self.run.feeder {
-                    feeder.resume(LiveData::default());
+                    feeder.resume(self.run.q_transfer.answer());
                 }
                 self.run.restore = Some(Restore::Scan {
                     block,
                     functions: VecDeque::new(),
+                    dwell_until_us: 0,
                 });
                 return;
             }

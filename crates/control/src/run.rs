@@ -4,22 +4,24 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use bahn_interpreter::{Rules, Settings};
-use bahn_motion::{Drive, FunctionOutput, State, Stop};
+use bahn_motion::FunctionOutput;
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, AxisSet, Barrier, LiveData, PathElement, Position};
+use bahn_path::{Axis, LiveData, PathElement, Position};
 use bahn_program::Program;
 
-use crate::axes::Mover;
+use crate::axes::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::control::Control;
-use crate::feeder::{Box2, Feeder, RunFault};
+use crate::feeder::{Box2, Feeder};
 use crate::message::Message;
-use crate::panel::Direction;
+use crate::probing::Probing;
+use crate::q_transfer::QTransfer;
+use crate::restore::Restore;
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
 /// Outputs of functions that wait at most.
-const OUTPUTS: usize = 64;
+pub(crate) const OUTPUTS: usize = 64;
 
 /// What the run does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,17 +51,25 @@ pub(crate) struct ProgramRun {
     pub state: RunState,
     pub feeder: Option<Feeder>,
     /// NC start was given: the run begins with the next preparation.
-    begin_wanted: bool,
-    /// After an internal stop: the block that starts anew, by its sequence.
-    resume_from: Option<u64>,
+    pub begin_wanted: bool,
+    /// The run has ended: its Q parameters are to be kept.
+    q_due: bool,
+    /// The program whose run was interrupted, while blocks of MDI run.
+    aside: Option<(Option<Feeder>, Option<Resume>)>,
+    /// Blocks of MDI have run: back to the program.
+    mdi_over: bool,
+    /// After an internal stop or a fault: where the next start goes on.
+    pub resume_from: Option<Resume>,
     /// Functions on the path that wait for the axes to be in position.
-    waiting: VecDeque<FunctionOutput>,
-    /// A function of the gate waits for the spindle.
-    last: Option<Position>,
-    /// Datum or correction changed while the run has elements on their way.
-    pub datum_changed: bool,
-    /// The element to whose end the jump of the path is evened out, and what is left of it.
-    blend: Blend,
+    pub waiting: VecDeque<FunctionOutput>,
+    /// Position of the path in the last cycle.
+    pub last: Option<Position>,
+    /// The source goes on with this at the next preparation.
+    pub answer: Option<LiveData>,
+    /// A probing movement.
+    pub probing: Option<Probing>,
+    /// Q100 to Q107 as the PLC wrote them.
+    pub q_transfer: QTransfer,
     /// The control is to be restarted (module 9033).
     pub restart_wanted: bool,
     /// The program that runs came to its end since it was started (M2061).
@@ -67,20 +77,18 @@ pub(crate) struct ProgramRun {
     /// Keep the executed elements.
     pub tap: bool,
     /// Return to the contour.
-    pub restore: Option<crate::restore::Restore>,
+    pub restore: Option<Restore>,
     /// The path speed, mm/s.
     pub speed: f64,
-    /// Feed without override of the element that is executed, mm/min; `None` for rapid traverse.
-    pub programmed_feed: Option<f64>,
 }
 
-/// The way between where the path says the axes are and where they are, after a change of the datum: each
-/// axis makes it up on the next element that moves it.
-#[derive(Clone, Copy, Debug, Default)]
-struct Blend {
-    rest: [f64; Axis::COUNT],
-    sequence: u64,
-    active: bool,
+/// Where a run goes on that was broken off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Resume {
+    /// At a block, by its place in the order of execution.
+    Block(u64),
+    /// At the block that could not be executed.
+    Fault,
 }
 
 impl ProgramRun {
@@ -99,7 +107,7 @@ impl ProgramRun {
         self.resume_from = None;
     }
 
-    pub fn restoring(&self) -> Option<&crate::restore::Restore> {
+    pub fn restoring(&self) -> Option<&Restore> {
         self.restore.as_ref()
     }
 }
@@ -107,30 +115,24 @@ impl ProgramRun {
 impl Control {
     /// NC start in an automatic mode.
     pub(crate) fn start_run(&mut self) {
-        if self.run.restore.is_some() {
+        if self.run.restore.is_some() || self.is_positioning() {
             return;
         }
         match self.run.state {
             RunState::Idle => self.run.begin_wanted = true,
-            RunState::Interrupted => {
-                self.return_to_path();
-                self.run.state = RunState::Running;
-            }
-            RunState::BlockEnd => {
-                self.path.go_on();
-                self.run.state = RunState::Running;
-            }
-            RunState::Stopped => {
-                let live = LiveData {
-                    touch: None,
-                    q_values: Vec::new(),
-                };
-                if let Some(feeder) = &mut self.run.feeder {
-                    self.path.resume(feeder, live);
+            RunState::Running => {}
+            state => {
+                match state {
+                    RunState::BlockEnd => self.path.go_on(),
+                    RunState::Stopped => self.run.answer = Some(self.run.q_transfer.answer()),
+                    _ => {}
                 }
                 self.run.state = RunState::Running;
+                self.return_to_path();
+                if self.run.restore.is_none() {
+                    self.regain_path();
+                }
             }
-            RunState::Running => {}
         }
     }
 
@@ -154,11 +156,18 @@ impl Control {
         if self.run.state == RunState::Idle && self.run.restore.is_none() {
             return false;
         }
-        self.run.resume_from = self.path.clear().map(|cut| cut.sequence).or(self
+        let cut = self.path.clear().map(|cut| cut.sequence);
+        let next = self
             .run
             .feeder
             .as_ref()
-            .map(|feeder| feeder.interpreter().blocks_executed()));
+            .map(|feeder| feeder.interpreter().blocks_executed() + 1);
+        self.run.resume_from = match self.run.probing {
+            // The block that probes is executed as far as its path goes.
+            Some(_) => next.map(|next| next - 1),
+            None => cut.or(next),
+        }
+        .map(Resume::Block);
         self.break_off();
         true
     }
@@ -166,9 +175,12 @@ impl Control {
     /// Ends what is on its way for the run.
     fn break_off(&mut self) {
         self.run.state = RunState::Idle;
+        self.run.mdi_over = self.mode == Mode::Mdi;
         self.run.waiting.clear();
+        self.run.answer = None;
         self.run.restore = None;
         self.run.speed = 0.0;
+        self.end_probing();
         self.handshakes.abort(&mut self.exchange);
         for index in 0..crate::markers::AXES {
             self.end_positioning(index);
@@ -192,19 +204,59 @@ impl Control {
 
     /// Interprets ahead; begins a run.
     pub(crate) fn prepare_run(&mut self) {
-        if std::mem::take(&mut self.run.begin_wanted) {
+        self.close_run();
+        if self.run.begin_wanted && self.axes_stand() {
+            self.run.begin_wanted = false;
             self.begin_run();
         }
         if self.run.waiting.capacity() == 0 {
             self.run.waiting.reserve(OUTPUTS);
         }
+        if !self.run.is_active() && self.handshakes.is_idle() {
+            self.call_inserted_tool();
+        }
+        let limits = self.traverse_box();
+        // A block scan reads the blocks itself.
+        let scans = self.run.restore.as_ref().is_some_and(Restore::scans);
         if let Some(feeder) = &mut self.run.feeder
             && self.run.state != RunState::Idle
+            && !scans
         {
+            feeder.set_datum(self.offsets.datum, limits);
+            if let Some(answer) = self.run.answer.take() {
+                self.path.resume(feeder, answer);
+                if let Some(call) = self.tools.inserted_call.take() {
+                    feeder.insert(&call);
+                }
+            }
             if let Some(element) = self.path.element() {
                 feeder.forget_before(element.sequence);
             }
             self.path.prepare(feeder, BUDGET);
+        }
+    }
+
+    /// Module 9150 without a program: the TOOL CALL is executed at once [000:16063-16067].
+    fn call_inserted_tool(&mut self) {
+        let Some(inserted) = self.tools.inserted_call.take() else {
+            return;
+        };
+        let Some(call) = self.tools.tool_call(&inserted, self.offsets.tool_axis) else {
+            return;
+        };
+        let mut target = crate::functions::Target {
+            spindle: &mut self.spindle,
+            tools: &mut self.tools,
+            offsets: &mut self.offsets,
+            handshakes: &mut self.handshakes,
+            exchange: &mut self.exchange,
+            axes: &mut self.axes,
+            inch: false,
+        };
+        match inserted.tool {
+            Some(_) => target.output(&bahn_path::Function::Tool(call)),
+            None if inserted.speed.is_some() => target.speed(call.speed_rpm, false),
+            None => {}
         }
     }
 
@@ -233,15 +285,49 @@ impl Control {
         limits
     }
 
+    /// Nothing moves that a run could take over in the midst of its movement.
+    fn axes_stand(&self) -> bool {
+        let moves =
+            |unit: &AxisUnit| !unit.is_at_rest() && unit.mover != Mover::Rotation && !unit.is_plc_axis();
+        !self.axes.iter().any(moves)
+    }
+
+    /// What is to be done once a run is over, outside the cycle.
+    fn close_run(&mut self) {
+        if std::mem::take(&mut self.run.q_due) {
+            self.path.clear();
+            self.q = self.q_values();
+            for (number, value) in self.run.q_transfer.take_all() {
+                self.keep_q(number, value);
+            }
+            let clearing = self.link.list().program_end_clearing();
+            if clearing.q_parameters && clearing.at_program_end {
+                self.q.clear();
+            }
+        }
+        if std::mem::take(&mut self.run.mdi_over)
+            && let Some((feeder, resume)) = self.run.aside.take()
+        {
+            self.run.feeder = feeder;
+            self.run.resume_from = resume;
+        }
+    }
+
     fn begin_run(&mut self) {
         let machine = self.machine_position();
         let limits = self.traverse_box();
         self.put(bahn_exchange::signal::PROGRAM_END_EXECUTED, false);
         self.run.ended = false;
         self.run.last = None;
-        self.run.blend = Blend::default();
-        if let (Some(sequence), Some(feeder)) = (self.run.resume_from.take(), &mut self.run.feeder) {
-            feeder.return_to(sequence, &machine, self.offsets, limits);
+        self.run.answer = None;
+        if self.mode == Mode::Mdi && self.run.aside.is_none() {
+            self.run.aside = Some((self.run.feeder.take(), self.run.resume_from.take()));
+        }
+        if let (Some(resume), Some(feeder)) = (self.run.resume_from.take(), &mut self.run.feeder) {
+            match resume {
+                Resume::Block(sequence) => feeder.return_to(sequence, &machine, self.offsets, limits),
+                Resume::Fault => feeder.retry(&machine, self.offsets, limits),
+            }
         } else {
             match self.open_program() {
                 Ok(program) => {
@@ -287,6 +373,7 @@ impl Control {
             q_values: self.q.clone(),
             start: self.offsets.to_path(machine),
             tool_length_mm: Some(self.offsets.tool_length),
+            machine: true,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);
@@ -316,294 +403,32 @@ impl Control {
         }
     }
 
-    /// Moves the axes along the path for a cycle.
-    pub(crate) fn move_path(&mut self) {
-        if self.stop_given() {
-            self.stop_run();
-        } else if self.start_pressed && self.mode.is_automatic() {
-            self.start_run();
-        }
-        if self.run.state == RunState::Idle || self.run.restore.is_some() {
-            return;
-        }
-        if !self.path_axes_able() {
-            // Without feed enable the axes stand at once [000:5352].
-            self.path.halt();
-            return;
-        }
-        let percent = self.feed_override.percent();
-        let settled = self.path_in_position();
-        let drive = Drive {
-            feed_override_percent: percent,
-            rapid_override_percent: percent,
-            hold: self.run.state != RunState::Running,
-            single_block: self.mode == Mode::SingleBlock,
-            in_position: settled,
-            clamped: self.clamped_axes(),
-            clamping: self.clamping_axes(),
-        };
-        let cycle = self.path.cycle(&drive);
-        self.run.speed = cycle.speed_mm_s;
-        self.follow_path(&cycle.position);
-        while let Some(output) = self.path.next_output() {
-            if self.run.waiting.len() < OUTPUTS {
-                self.run.waiting.push_back(output);
-            }
-        }
-        self.output_functions(settled);
-        match cycle.state {
-            State::Gate(_) => {
-                if self.run.waiting.is_empty() && self.handshakes.is_idle() {
-                    self.path.release();
-                }
-            }
-            State::Clamped => self.ask_to_unclamp(drive.clamped),
-            State::BlockEnd if settled && self.run.state == RunState::Running => {
-                self.run.state = RunState::BlockEnd;
-            }
-            State::Stopped if settled && self.run.waiting.is_empty() && self.handshakes.is_idle() => {
-                self.take_stop();
-            }
-            _ => {}
-        }
-    }
-
-    /// The axes that the current element moves are held in their loops and have feed enable. An element
-    /// that waits for a clamped axis may do so.
-    fn path_axes_able(&self) -> bool {
-        let Some(element) = self.path.element() else {
-            return true;
-        };
-        let stands = self.path.speed_mm_s() == 0.0;
-        self.axes
-            .iter()
-            .filter(|unit| moves(element, unit.axis))
-            .all(|unit| unit.enabled && (unit.servo.closed() || stands))
-    }
-
-    /// Axes whose loop is open: no block may move them.
-    fn clamped_axes(&self) -> AxisSet {
-        let open = self
-            .axes
-            .iter()
-            .filter(|unit| unit.parameters.controlled && !unit.servo.closed());
-        open.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
-    }
-
-    /// Axes that the PLC wants to clamp after their block (M2492 ff.), and whose loop is still closed.
-    fn clamping_axes(&self) -> AxisSet {
-        let nc = self.exchange.nc();
-        let wanted = self.axes.iter().filter(|unit| {
-            let marker = crate::markers::WAIT_OPEN_LOOP.get(unit.index);
-            unit.servo.closed() && marker.is_some_and(|marker| nc.bit(*marker))
-        });
-        wanted.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
-    }
-
-    /// A block wants a clamped axis: its marker M2008 ff. falls, and the PLC unclamps it [000:5407].
-    fn ask_to_unclamp(&mut self, clamped: AxisSet) {
-        let Some(element) = self.path.element() else {
-            return;
-        };
-        for unit in &mut self.axes {
-            if clamped.contains(unit.axis) && moves(element, unit.axis) {
-                unit.in_position = false;
-            }
-        }
-    }
-
-    fn path_in_position(&self) -> bool {
-        self.axes
-            .iter()
-            .filter(|unit| unit.mover == Mover::Path && unit.servo.closed())
-            .all(|unit| unit.stands() && unit.servo.in_position())
-    }
-
-    /// The nominal positions of the axes from that of the path.
-    fn follow_path(&mut self, position: &Position) {
-        let time = self.cycle_s();
-        let moved = self.run.last != Some(*position);
-        self.run.last = Some(*position);
-        if self.run.datum_changed {
-            self.run.datum_changed = false;
-            self.begin_blend(position);
-        }
-        let fraction = self.blend_fraction();
-        let element = self.path.element();
-        for unit in &mut self.axes {
-            let value = position[unit.axis];
-            if value.is_nan() || !matches!(unit.mover, Mover::None | Mover::Path) || unit.is_plc_axis() {
-                continue;
-            }
-            if !moved {
-                unit.follow(unit.nominal, time);
-                continue;
-            }
-            unit.mover = Mover::Path;
-            let mut target = value + self.offsets.of(unit.axis);
-            if self.run.blend.active
-                && let Some(rest) = self.run.blend.rest.get(unit.axis.index())
-            {
-                let moves = element.is_some_and(|element| moves(element, unit.axis));
-                target += if moves { rest * fraction } else { *rest };
-            }
-            unit.follow(target, time);
-        }
-    }
-
-    /// The datum changed under the path: from now on the nominal position of the path differs from where
-    /// the axes stand.
-    fn begin_blend(&mut self, position: &Position) {
-        let mut blend = Blend {
-            active: true,
-            sequence: self.path.element().map_or(0, |element| element.sequence),
-            ..Blend::default()
-        };
-        for unit in &self.axes {
-            let value = position[unit.axis] + self.offsets.of(unit.axis);
-            if let Some(rest) = blend.rest.get_mut(unit.axis.index())
-                && value.is_finite()
-            {
-                *rest = unit.nominal - value;
-            }
-        }
-        self.run.blend = blend;
-        if let Some(feeder) = &mut self.run.feeder {
-            feeder.set_datum(self.offsets.datum);
-        }
-    }
-
-    /// What is left of the jump on the current element, 1 at its start and 0 at its end; the axes that an
-    /// element moved have made it up after it.
-    fn blend_fraction(&mut self) -> f64 {
-        if !self.run.blend.active {
-            return 0.0;
-        }
-        let Some(element) = self.path.element() else {
-            return 1.0;
-        };
-        let length = element.length();
-        if element.sequence != self.run.blend.sequence {
-            self.run.blend.sequence = element.sequence;
-        }
-        let fraction = if length > 0.0 {
-            (self.path.rest_mm() / length).clamp(0.0, 1.0)
-        } else {
-            1.0
-        };
-        if fraction == 0.0 {
-            for axis in Axis::ALL {
-                if moves(element, axis)
-                    && let Some(rest) = self.run.blend.rest.get_mut(axis.index())
-                {
-                    *rest = 0.0;
-                }
-            }
-            self.run.blend.active = self.run.blend.rest.iter().any(|rest| *rest != 0.0);
-        }
-        fraction
-    }
-
-    /// Outputs the functions of the path in their order, once the axes are in position.
-    fn output_functions(&mut self, settled: bool) {
-        while let Some(output) = self.run.waiting.front().copied() {
-            if output.waits && !settled {
-                return;
-            }
-            self.run.waiting.pop_front();
-            self.unsaved |= path_changes_tool(self.path.functions(&output));
-            let Control {
-                path,
-                spindle,
-                tools,
-                offsets,
-                handshakes,
-                exchange,
-                run,
-                ..
-            } = self;
-            let mut target = crate::functions::Target {
-                spindle,
-                tools,
-                offsets,
-                handshakes,
-                exchange,
-                inch: run.feeder.as_ref().is_some_and(Feeder::inch),
-            };
-            for function in path.functions(&output) {
-                target.output(&function.function);
-            }
-        }
-    }
-
-    /// The path came to what the source said after it.
-    fn take_stop(&mut self) {
-        match self.path.take_stop() {
-            None => {}
-            Some(Stop::Barrier(Barrier::Stop { .. })) => {
-                if self.run.state == RunState::Running {
-                    self.run.state = RunState::Stopped;
-                }
-            }
-            Some(Stop::Barrier(Barrier::Acknowledge { .. })) => {
-                if let Some(feeder) = &mut self.run.feeder {
-                    self.path.resume(feeder, LiveData::default());
-                }
-            }
-            Some(Stop::Barrier(Barrier::Probe { .. })) => {
-                self.show(Message::Plain(MessageId::ProbeSystemNotReady), false);
-                self.abort_run();
-            }
-            Some(Stop::End) => self.end_run(),
-            Some(Stop::Error(fault)) => {
-                let message = match fault {
-                    RunFault::Program(error) => Message::Program(error),
-                    RunFault::Limit { axis, direction, .. } => self.limit_message(axis, direction),
-                };
-                self.show(message, false);
-                self.abort_run();
-            }
-        }
-    }
-
-    fn limit_message(&mut self, axis: Axis, direction: Direction) -> Message {
-        let index = self
-            .axes
-            .iter_mut()
-            .find(|unit| unit.axis == axis)
-            .map_or(0, |unit| {
-                unit.at_limit = Some(direction);
-                unit.index
-            });
-        Message::limit(index, direction)
-    }
-
     /// A fault ends the run; the next start begins with the block that was not executed.
-    fn abort_run(&mut self) {
-        let sequence = self
-            .run
-            .feeder
-            .as_ref()
-            .map(|feeder| feeder.interpreter().blocks_executed());
+    pub(crate) fn abort_run(&mut self, resume: Resume) {
         self.path.clear();
-        self.run.resume_from = sequence;
+        self.run.resume_from = Some(resume);
         self.break_off();
+    }
+
+    /// What the block at the gate of the path asks for is refused: the run ends before it.
+    pub(crate) fn refuse_block(&mut self) {
+        match self.path.element().map(|element| element.sequence) {
+            Some(sequence) if self.path_stands() && self.run.is_active() => {
+                self.abort_run(Resume::Block(sequence));
+            }
+            _ => self.stop_run(),
+        }
     }
 
     /// END PGM, M2 or M30.
-    fn end_run(&mut self) {
-        self.q = self.q_values();
-        self.path.clear();
+    pub(crate) fn end_run(&mut self) {
+        self.run.q_due = true;
         self.break_off();
-        self.run.resume_from = None;
-        self.run.start_block = 0;
         self.run.ended = true;
         if self.mode != Mode::Mdi {
+            self.run.resume_from = None;
+            self.run.start_block = 0;
             self.put(bahn_exchange::signal::PROGRAM_END_EXECUTED, true);
-        }
-        let clearing = self.link.list().program_end_clearing();
-        if clearing.q_parameters && clearing.at_program_end {
-            self.q.clear();
         }
     }
 
@@ -619,15 +444,22 @@ impl Control {
             .collect()
     }
 
-    /// The PLC writes a Q parameter.
+    /// The PLC writes a Q parameter: for a program that runs with the next M, S or T strobe
+    /// [000:11657-11663].
     pub(crate) fn set_q(&mut self, number: u16, value: f64) {
-        match &mut self.run.feeder {
-            Some(feeder) => feeder.interpreter_mut().set_q(number, value),
-            None => {
-                self.q.retain(|(known, _)| *known != number);
-                self.q.push((number, value));
+        if self.run.is_active() {
+            self.run.q_transfer.write(number, value);
+        } else {
+            if let Some(feeder) = &mut self.run.feeder {
+                feeder.interpreter_mut().set_q(number, value);
             }
+            self.keep_q(number, value);
         }
+    }
+
+    fn keep_q(&mut self, number: u16, value: f64) {
+        self.q.retain(|(known, _)| *known != number);
+        self.q.push((number, value));
     }
 
     /// Selects a program.
@@ -647,7 +479,7 @@ impl Control {
     }
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.
-    pub(crate) fn distance_to_go(&self, unit: &crate::axes::AxisUnit) -> f64 {
+    pub(crate) fn distance_to_go(&self, unit: &AxisUnit) -> f64 {
         match self.path.element() {
             Some(element) if self.run.is_active() => {
                 let end = element.end[unit.axis] + self.offsets.of(unit.axis);
@@ -656,11 +488,6 @@ impl Control {
             _ => 0.0,
         }
     }
-}
-
-/// Whether a tool is called.
-fn path_changes_tool<'a>(mut functions: impl Iterator<Item = &'a bahn_path::TechnologyFunction>) -> bool {
-    functions.any(|output| matches!(output.function, bahn_path::Function::Tool(_)))
 }
 
 /// Whether an element moves an axis.

@@ -96,9 +96,9 @@ impl Control {
                     AxisState {
                         letter: unit.axis.letter(),
                         index: unit.index,
-                        actual: unit.servo.actual_mm() - offset,
-                        nominal: unit.nominal - offset,
-                        machine: unit.servo.actual_mm(),
+                        actual: unit.shown(unit.servo.actual_mm() - offset),
+                        nominal: unit.shown(unit.nominal - offset),
+                        machine: unit.shown(unit.servo.actual_mm()),
                         lag: unit.lag_mm(),
                         max_lag: unit.max_lag,
                         distance_to_go: self.distance_to_go(unit),

@@ -81,6 +81,12 @@ impl SpindleUnit {
         }
     }
 
+    /// Takes changed machine parameters over.
+    pub fn set_parameters(&mut self, parameters: SpindleParameters) {
+        self.servo.set_parameters(parameters);
+        self.parameters = parameters;
+    }
+
     fn is_analogue(&self) -> bool {
         matches!(self.parameters.output, SpindleOutput::Analogue { .. })
     }
@@ -329,6 +335,16 @@ impl SpindleUnit {
         }
     }
 
+    /// Angle of the spindle, degrees, once its reference mark was crossed.
+    pub fn angle_deg(&self) -> Option<f64> {
+        self.servo.angle_deg()
+    }
+
+    /// An orientation is on its way.
+    pub fn is_orienting(&self) -> bool {
+        self.orienting
+    }
+
     pub fn state(&self) -> SpindleState {
         SpindleState {
             programmed_rpm: self.programmed_rpm,
@@ -338,14 +354,5 @@ impl SpindleUnit {
             gear: self.servo.gear_range() + 1,
             rotation: self.rotation,
         }
-    }
-
-    /// Angle of the spindle, degrees, once its reference mark was crossed.
-    pub fn angle_deg(&self) -> Option<f64> {
-        self.servo.angle_deg()
-    }
-
-    pub fn orienting(&self) -> bool {
-        self.orienting
     }
 }

@@ -2,11 +2,14 @@
 
 use bahn_exchange::signal;
 use bahn_plc::StatusItem;
+use bahn_servo::Plant;
 
 use crate::axes::Mover;
 use crate::command::Mode;
 use crate::control::Control;
-use crate::markers::{ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING};
+use crate::markers::{
+    ANALOGUE, ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING,
+};
 use crate::panel::Direction;
 use crate::run::RunState;
 
@@ -45,6 +48,24 @@ impl Control {
         self.spindle.publish(&mut self.exchange);
         self.publish_coordinates();
         self.publish_status();
+    }
+
+    /// Analogue inputs of the extensions that MP4410 names: voltages in 0.1 V, temperatures in 0.5 degrees
+    /// [000:8449-8484].
+    pub(crate) fn publish_analogue(&mut self, plant: &mut dyn Plant) {
+        let extensions = self.plc_parameters.analogue_inputs;
+        let mut input = 0;
+        for ([voltages, temperatures], there) in ANALOGUE.iter().zip(extensions) {
+            for (voltage, temperature) in voltages.iter().zip(temperatures) {
+                if there {
+                    let volts = (plant.analogue_input(input) * 10.0).round();
+                    self.put_number(*voltage, volts.clamp(-100.0, 100.0) as i32);
+                    let celsius = (plant.temperature_input(input) * 2.0).round();
+                    self.put_number(*temperature, celsius.clamp(0.0, 200.0) as i32);
+                }
+                input += 1;
+            }
+        }
     }
 
     fn publish_mode(&mut self) {

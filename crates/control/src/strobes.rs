@@ -11,11 +11,10 @@ use crate::markers::LUBRICATION_PULSE;
 use crate::markers::{ACTUAL_TO_NOMINAL, AXES, LAG_TRACKING, LUBRICATED, PLC_POSITIONING, TRANSFER};
 use crate::message::Message;
 use crate::positioning::PER_MM;
+use crate::q_transfer::Q_FROM_PLC;
 
 /// W576 ff. count in 1/10 µm [000:10950].
 const PER_MM_TRACKING: f64 = 10_000.0;
-/// First of the Q parameters that the PLC writes: Q100 to Q107 [000:6997-7008].
-const Q_FROM_PLC: u16 = 100;
 
 impl Control {
     /// Takes the strobes that the PLC set in a scan, and resets them.
@@ -75,6 +74,7 @@ impl Control {
             [false, true] => self.select_range(2),
             [true, true] => {}
         }
+        self.upkeep.range_changed = self.run.is_active();
         self.exchange.nc_set(signal::ACTIVATE_TRAVERSE_RANGE, false);
     }
 
@@ -119,7 +119,6 @@ impl Control {
                 *value = f64::from(self.exchange.nc().number(number)) / PER_MM;
             }
             self.offsets.datum = self.active_datum();
-            self.run.datum_changed = true;
         }
         self.exchange.nc_set(signal::CORRECT_DATUM, false);
     }
@@ -188,21 +187,6 @@ impl Control {
         }
     }
 
-    /// Counts the way of each axis; beyond MP4060 it asks for lubrication.
-    pub(crate) fn lubricate(&mut self) {
-        for unit in &self.axes {
-            let Some(limit) = unit.parameters.travel.lubrication_mm else {
-                continue;
-            };
-            if unit.travelled > limit
-                && let Some(pulse) = LUBRICATION_PULSE.get(unit.index)
-                && !self.exchange.nc().bit(*pulse)
-            {
-                self.exchange.nc_set(*pulse, true);
-            }
-        }
-    }
-
     /// W576 ff.: thermal lag tracking, once in each PLC cycle [000:3902-3912].
     fn take_lag_tracking(&mut self) {
         let step = self.plc_parameters.tracking_step_mm;
@@ -249,6 +233,10 @@ impl Control {
         if std::mem::take(&mut self.link.requests.restart) {
             self.run.restart_wanted = true;
         }
+        if let Some(line) = self.link.requests.compensation_line.take() {
+            self.activate_compensation(usize::try_from(line).ok());
+        }
+        self.take_changed_parameters();
         self.link.requests.geometry = false;
     }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use bahn_exchange::{Exchange, signal};
 use bahn_parameters::{ToolOutput, ToolOutputKind, ToolParameters};
+use bahn_path::{Axis, ToolCall};
 use bahn_plc::ToolCallBlock;
 
 use crate::feeder::Offsets;
@@ -111,44 +112,124 @@ impl Tools {
     }
 
     /// TOOL CALL: one or two codes, by the kinds of the old and the new tool [000:9287-9410].
-    pub fn call(&mut self, number: u32, handshakes: &mut Handshakes) {
+    pub fn call(&mut self, number: u32, exchange: &mut Exchange, handshakes: &mut Handshakes) {
         let output = self.parameters.call;
         let (old, changed) = (self.called, self.called != number);
         self.called = number;
-        self.number = number;
+        self.mark(number, exchange);
         if output.what == ToolOutputKind::None || !(changed || output.always) {
+            self.number = number;
             return;
         }
-        let (w262, w264) = self.code(output, number);
-        let returned = (self.pocket(old), 0);
-        // With tool numbers, and with fixed pockets between tools of the magazine, one code does
-        // (inferred for what the table of variable coding does not say).
-        let two = output.what != ToolOutputKind::Tool
-            && changed
-            && old != 0
-            && match (self.kind(old), self.kind(number)) {
-                (Kind::Normal, Kind::Normal) | (Kind::Manual, Kind::Manual) => false,
-                (Kind::Special, Kind::Special) => self.parameters.call.what == ToolOutputKind::FixedPocket,
-                _ => true,
-            };
-        if two {
-            let (pocket, tool) = returned;
+        let own_pocket = exchange.nc().bit(signal::SPECIAL_TOOL_TO_OWN_POCKET)
+            || output.what == ToolOutputKind::FixedPocket;
+        let two = output.what != ToolOutputKind::Tool && changed && self.needs_two(old, number, own_pocket);
+        let (w262, w264) = if number == 0 && output.what != ToolOutputKind::Tool {
+            // The old tool goes to its pocket, or the operator takes it out.
+            (self.pocket(old), 0)
+        } else {
+            self.code(output, number)
+        };
+        if !two {
             handshakes.push(Transfer::ToolCall {
-                w262: pocket,
-                w264: tool,
-                more: true,
+                w262,
+                w264,
+                more: false,
             });
+            return;
         }
-        handshakes.push(Transfer::ToolCall {
-            w262,
-            w264,
-            more: false,
-        });
+        let by_hand = self.kind(old) == Kind::Manual || self.kind(number) == Kind::Manual;
+        let new_first = exchange.nc().bit(signal::TOOL_NUMBER_ORDER) && !by_hand;
+        let mut codes = [(self.pocket(old), 0), (w262, w264)];
+        if new_first {
+            codes.reverse();
+        }
+        for ((w262, w264), more) in codes.into_iter().zip([true, false]) {
+            handshakes.push(Transfer::ToolCall { w262, w264, more });
+        }
     }
 
-    /// The last code of a TOOL CALL was acknowledged.
-    pub fn inserted(&mut self) {
-        self.number = self.called;
+    /// Whether the old tool has a code of its own: it does not go where the new one comes from.
+    fn needs_two(&self, old: u32, new: u32, own_pocket: bool) -> bool {
+        if old == 0 || new == 0 {
+            return false;
+        }
+        match (self.kind(old), self.kind(new)) {
+            (Kind::Normal, Kind::Normal) | (Kind::Manual, Kind::Manual) => false,
+            (Kind::Special, Kind::Special) => own_pocket,
+            _ => true,
+        }
+    }
+
+    /// The TOOL CALL of module 9150; `None` when it is none that can be executed. What is not given stays.
+    pub fn tool_call(&self, block: &ToolCallBlock, axis: Axis) -> Option<ToolCall> {
+        let tool = block
+            .tool
+            .map_or(Some(self.called), |tool| u32::try_from(tool).ok())?;
+        let axis = match block.axis {
+            None => axis,
+            Some(number) => inserted_axis(number)?,
+        };
+        let mut shape = self.tool(tool).shape;
+        shape.length += block.length_oversize;
+        Some(ToolCall {
+            tool,
+            axis,
+            speed_rpm: block.speed.unwrap_or(0.0),
+            shape,
+        })
+    }
+
+    /// M2400 to M2404 [000:9229] [000:9294-9297].
+    fn mark(&self, number: u32, exchange: &mut Exchange) {
+        let by_pocket = self.parameters.call.what == ToolOutputKind::Pocket && number != 0;
+        let has_pocket = self.tool(number).pocket.is_some();
+        for (marker, value) in [
+            (signal::TOOL_0_PROGRAMMED, number == 0),
+            (signal::ACTIVE_TOOL_HAS_POCKET, by_pocket && has_pocket),
+            (signal::ACTIVE_TOOL_HAS_NO_POCKET, by_pocket && !has_pocket),
+            (signal::ACTIVE_TOOL_IS_SPECIAL, self.tool(number).special),
+            // Replacement at the end of tool life is not built.
+            (signal::TOOL_CALL_ORIGIN, false),
+        ] {
+            if exchange.nc().bit(marker) != value {
+                exchange.nc_set(marker, value);
+            }
+        }
+    }
+
+    /// A tool is called that is not yet in the spindle.
+    pub fn is_changing(&self) -> bool {
+        self.number != self.called
+    }
+
+    /// The last code of a TOOL CALL was acknowledged: the tool is in the spindle. With variable pocket
+    /// coding the old tool has taken the pocket of the new one, unless it went to its own (inferred), and
+    /// M2612 = 0 [000:9281].
+    pub fn inserted(&mut self, exchange: &Exchange) {
+        let (old, new) = (self.number, self.called);
+        self.number = new;
+        let nc = exchange.nc();
+        let own_pocket = nc.bit(signal::SPECIAL_TOOL_TO_OWN_POCKET);
+        if self.parameters.call.what != ToolOutputKind::Pocket
+            || nc.bit(signal::KEEP_POCKET_NUMBERS)
+            || [old, new].contains(&0)
+            || self.needs_two(old, new, own_pocket)
+        {
+            return;
+        }
+        if let Some(table) = &mut self.table {
+            let pocket = |tool| table.get(&tool).and_then(|tool: &Tool| tool.pocket);
+            let pockets = [(old, pocket(new)), (new, pocket(old))];
+            for (number, pocket) in pockets {
+                if let Some(tool) = table.get_mut(&number)
+                    && tool.pocket.is_some()
+                    && pocket.is_some()
+                {
+                    tool.pocket = pocket;
+                }
+            }
+        }
     }
 
     /// M2717: the geometry of the tool in W264 is active [000:9217-9219].
@@ -163,6 +244,16 @@ impl Tools {
             offsets.tool_length = self.tool(number).shape.length;
         }
         exchange.nc_set(signal::ACTIVATE_TOOL_GEOMETRY, false);
+    }
+}
+
+/// Tool axis by its number in module 9150: 0 to 2 are X, Y, Z [000:16100-16113].
+pub(crate) fn inserted_axis(number: i32) -> Option<Axis> {
+    match number {
+        0 => Some(Axis::X),
+        1 => Some(Axis::Y),
+        2 => Some(Axis::Z),
+        _ => None,
     }
 }
 
@@ -182,6 +273,7 @@ mod tests {
             (3, tool(None, false)),
             (4, tool(Some(14), true)),
             (5, tool(None, false)),
+            (6, tool(Some(16), true)),
         ];
         let output = ToolOutput { what, always: false };
         let parameters = ToolParameters {
@@ -198,32 +290,44 @@ mod tests {
         )
     }
 
-    /// The codes (W262, W264, M2093) of a row of calls.
-    fn codes(tools: &mut Tools, calls: &[u32]) -> Vec<(i16, i16, bool)> {
-        let mut handshakes = Handshakes::default();
-        for call in calls {
-            tools.call(*call, &mut handshakes);
-        }
-        let mut exchange = Exchange::default();
+    /// The codes (W262, W264, M2093) of a row of calls; what the PLC has set, it has set before.
+    fn codes_with(tools: &mut Tools, exchange: &mut Exchange, calls: &[u32]) -> Vec<(i16, i16, bool)> {
         let mut codes = Vec::new();
-        while !handshakes.is_idle() {
-            handshakes.cycle(&mut exchange, true);
-            let nc = exchange.nc();
-            let code = |number| i16::try_from(nc.number(number)).unwrap_or_default();
-            codes.push((
-                code(signal::T_CODE),
-                code(signal::TOOL_NUMBER),
-                nc.bit(signal::TOOL_CALL_ANOTHER_T_FOLLOWS),
-            ));
-            exchange.begin_scan();
-            exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, true);
-            exchange.end_scan();
-            handshakes.cycle(&mut exchange, true);
-            exchange.begin_scan();
-            exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, false);
-            exchange.end_scan();
+        for call in calls {
+            let mut handshakes = Handshakes::default();
+            tools.call(*call, exchange, &mut handshakes);
+            while !handshakes.is_idle() {
+                handshakes.cycle(exchange, true);
+                let nc = exchange.nc();
+                let code = |number| i16::try_from(nc.number(number)).unwrap_or_default();
+                codes.push((
+                    code(signal::T_CODE),
+                    code(signal::TOOL_NUMBER),
+                    nc.bit(signal::TOOL_CALL_ANOTHER_T_FOLLOWS),
+                ));
+                exchange.begin_scan();
+                exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, true);
+                exchange.end_scan();
+                handshakes.cycle(exchange, true);
+                exchange.begin_scan();
+                exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, false);
+                exchange.end_scan();
+            }
+            tools.inserted(exchange);
         }
         codes
+    }
+
+    fn codes(tools: &mut Tools, calls: &[u32]) -> Vec<(i16, i16, bool)> {
+        codes_with(tools, &mut Exchange::default(), calls)
+    }
+
+    fn plc_sets(marker: bahn_exchange::Bit) -> Exchange {
+        let mut exchange = Exchange::default();
+        exchange.begin_scan();
+        exchange.plc_mut().set_bit(marker, true);
+        exchange.end_scan();
+        exchange
     }
 
     /// MP7480.0 = 1: the tool number in W262, on change only [000:9221-9263].
@@ -243,6 +347,86 @@ mod tests {
         assert_eq!(codes(&mut tools, &[5]), [(255, 5, false)]);
         assert_eq!(codes(&mut tools, &[1]), [(255, 0, true), (11, 1, false)]);
         assert_eq!(codes(&mut tools, &[4]), [(11, 0, true), (14, 4, false)]);
+    }
+
+    /// The nine transitions of variable pocket coding, MP7480.0 = 3: N are tools 1 and 2 (pockets 11, 12), M
+    /// 3 and 5, S 4 and 6 (pockets 14, 16). Single arm (M2600 = 0): the old tool first; double arm: the new
+    /// one first, unless one of them is changed by hand [000:9287-9410].
+    #[test]
+    fn nine_transitions() {
+        type Codes<'a> = &'a [(i16, i16, bool)];
+        let both: [(u32, u32, Codes); 9] = [
+            (1, 2, &[(12, 2, false)]),
+            (3, 5, &[(255, 5, false)]),
+            (4, 6, &[(16, 6, false)]),
+            (4, 1, &[(14, 0, true), (11, 1, false)]),
+            (1, 4, &[(11, 0, true), (14, 4, false)]),
+            (3, 1, &[(255, 0, true), (11, 1, false)]),
+            (3, 4, &[(255, 0, true), (14, 4, false)]),
+            (1, 3, &[(11, 0, true), (255, 3, false)]),
+            (4, 3, &[(14, 0, true), (255, 3, false)]),
+        ];
+        for (old, new, expected) in both {
+            let mut tools = tools(ToolOutputKind::Pocket);
+            (tools.number, tools.called) = (old, old);
+            assert_eq!(codes(&mut tools, &[new]), expected, "{old} -> {new}, single arm");
+            let mut tools = super::tests::tools(ToolOutputKind::Pocket);
+            (tools.number, tools.called) = (old, old);
+            let swapped: Vec<_> = match (old, new, expected) {
+                (1 | 4, 1 | 4, [(p, t, _), (q, u, _)]) => vec![(*q, *u, true), (*p, *t, false)],
+                _ => expected.to_vec(),
+            };
+            let mut double_arm = plc_sets(signal::TOOL_NUMBER_ORDER);
+            let codes = codes_with(&mut tools, &mut double_arm, &[new]);
+            assert_eq!(codes, swapped, "{old} -> {new}, double arm");
+        }
+        // M2601: a special tool goes back to its own pocket.
+        let mut tools = tools(ToolOutputKind::Pocket);
+        (tools.number, tools.called) = (4, 4);
+        let mut own = plc_sets(signal::SPECIAL_TOOL_TO_OWN_POCKET);
+        assert_eq!(
+            codes_with(&mut tools, &mut own, &[6]),
+            [(14, 0, true), (16, 6, false)]
+        );
+    }
+
+    /// Variable coding: tool 1 takes pocket 12, from which tool 2 came; tool 2 would go to 11, which is free.
+    /// M2612 keeps the table; T0 empties the spindle.
+    #[test]
+    fn pockets_change_with_the_tools() {
+        let mut tools = tools(ToolOutputKind::Pocket);
+        assert_eq!(
+            codes(&mut tools, &[1, 2, 1, 0]),
+            [(11, 1, false), (12, 2, false), (12, 1, false), (11, 0, false)]
+        );
+        let mut tools = super::tests::tools(ToolOutputKind::Pocket);
+        let mut keep = plc_sets(signal::KEEP_POCKET_NUMBERS);
+        assert_eq!(
+            codes_with(&mut tools, &mut keep, &[1, 2, 1]),
+            [(11, 1, false), (12, 2, false), (11, 1, false)]
+        );
+    }
+
+    /// M2400 stays until another tool is called; M2401 and M2402 with MP7480 = 3 or 4 only; M2403 for a
+    /// special tool [000:9229] [000:9294-9296].
+    #[test]
+    fn markers_of_the_called_tool() {
+        let marks = |what, call| {
+            let mut exchange = Exchange::default();
+            tools(what).call(call, &mut exchange, &mut Handshakes::default());
+            [
+                signal::TOOL_0_PROGRAMMED,
+                signal::ACTIVE_TOOL_HAS_POCKET,
+                signal::ACTIVE_TOOL_HAS_NO_POCKET,
+                signal::ACTIVE_TOOL_IS_SPECIAL,
+            ]
+            .map(|marker| exchange.nc().bit(marker))
+        };
+        assert_eq!(marks(ToolOutputKind::Pocket, 0), [true, false, false, false]);
+        assert_eq!(marks(ToolOutputKind::Pocket, 1), [false, true, false, false]);
+        assert_eq!(marks(ToolOutputKind::Pocket, 3), [false, false, true, false]);
+        assert_eq!(marks(ToolOutputKind::Pocket, 4), [false, true, false, true]);
+        assert_eq!(marks(ToolOutputKind::Tool, 4), [false, false, false, true]);
     }
 
     /// TOOL DEF of a tool without pocket means nothing to the PLC [000:9285].

@@ -102,7 +102,23 @@ fn the_wheel_stops_at_the_limit() {
     rig.command("handwheel X 0");
     turn(&mut rig, 'X', 5.0 * HANDWHEEL_STEPS);
     close(rig.table('X'), 170.0, 0.005);
+    assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
+    assert!(rig.bit("M2624"));
     close(turn(&mut rig, 'X', -HANDWHEEL_STEPS), -20.0, 0.005);
+    assert_eq!(rig.messages(), [""; 0]);
+    assert!(!rig.bit("M2624"));
+}
+
+/// What is turned without feed enable is lost.
+#[test]
+fn the_wheel_without_feed_enable() {
+    let mut rig = wheel("");
+    rig.event("key NO_FEED press");
+    rig.seconds(0.1);
+    close(turn(&mut rig, 'X', HANDWHEEL_STEPS), 0.0, 0.001);
+    rig.event("key NO_FEED release");
+    rig.seconds(1.0);
+    close(turn(&mut rig, 'X', 0.0), 0.0, 0.001);
 }
 
 /// The jog increment of the manual: enabled in the mode Handwheel, started by the markers of keys that have
@@ -157,6 +173,19 @@ fn jog_increment() {
     close(rig.table('X') - from, 12.5, 0.005);
 }
 
+/// An increment beyond the limit ends at it, with the message.
+#[test]
+fn the_increment_ends_at_the_limit() {
+    let mut rig = wheel(JOG);
+    rig.command("jog 50");
+    for _ in 0..2 {
+        rig.event("key X+ tap");
+        rig.seconds(4.0);
+    }
+    close(rig.table('X'), 170.0, 0.005);
+    assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
+}
+
 /// NC STOP ends the increment.
 #[test]
 fn nc_stop_ends_the_increment() {
@@ -207,7 +236,7 @@ LBL 12
     );
     let mut rig = wheel(&program);
     rig.command("jog 4");
-    let mut step = |rig: &mut Rig, input: Option<&str>| {
+    let step = |rig: &mut Rig, input: Option<&str>| {
         if let Some(input) = input {
             rig.input(input, true);
             rig.seconds(0.1);

@@ -4,7 +4,6 @@
 mod support;
 
 use support::bench::*;
-use support::*;
 
 /// The axis runs as long as its key is pressed, with MP1020 = 1200 mm/min; two axes at once [003:1031-1041].
 /// Both keys of one axis stop it.
@@ -331,4 +330,69 @@ fn actual_to_nominal_transfer() {
         };
         close(rig.table('X'), expected, 0.012);
     }
+}
+
+/// An M function of a program changes the range: blocks behind it that the range before would have refused
+/// are executed, and blocks outside the new one are refused.
+#[test]
+fn a_program_changes_the_range() {
+    let program = "
+       L M2180
+       S M2496
+       L M2045
+       AN M80
+       IFT
+       L M1921
+       = M2816
+       ENDI
+       L M2045
+       AN M80
+       = M81
+       L M1921
+       O M1922
+       A M81
+       S M2824
+       L M2045
+       = M80
+       L M2045
+       AN M2824
+       = M2482
+";
+    let mut rig = bench(program)
+        .mps("910.0=110 911.0=170")
+        .program(
+            "1.H",
+            "L X+100 R0 F3000\nL M21\nL X+150\nL X+100\nL M22\nL X+105\nL X+150",
+        )
+        .ready();
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(20.0, "beyond 110 in the second range", |rig| {
+        rig.table('X') > 149.9
+    });
+    rig.until(20.0, "back in the first range", |rig| rig.table('X') < 100.1);
+    rig.until(20.0, "the last block is refused", |rig| {
+        !rig.messages().is_empty()
+    });
+    assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
+    rig.settle();
+    close(rig.table('X'), 105.0, 0.01);
+}
+
+/// A block beyond the limit is refused: message, marker, no movement; CE takes both away.
+#[test]
+fn a_block_beyond_the_limit() {
+    let mut rig = bench("").program("1.H", "L X+120 R0 F3000\nL X+180").ready();
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(10.0, "it is refused", |rig| !rig.messages().is_empty());
+    assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
+    rig.scan();
+    assert!(rig.bit("M2624"));
+    close(rig.table('X'), 120.0, 0.02);
+    rig.command("ce");
+    rig.scan();
+    assert!(!rig.bit("M2624"));
 }

@@ -421,4 +421,48 @@ fn free_rotation() {
     rig.seconds(1.0);
     close(rig.speed('C'), 0.0, 1.0);
     assert_eq!(rig.messages(), [""; 0]);
+    // The display runs from 0 to 360, and a program goes on within the turn.
+    let shown = rig.axis('C').actual;
+    close(shown, rig.table('C').rem_euclid(360.0), 0.01);
+    rig.command("mode mdi");
+    rig.command(&format!("mdi L C{:+.3} R0 F3600", shown - 1.0));
+    let before = rig.table('C');
+    rig.start();
+    rig.seconds(2.0);
+    close(rig.table('C') - before, -1.0, 0.01);
+}
+
+/// EMERGENCY STOP ends the rotation and what a PLC axis does; they do not go on by themselves.
+#[test]
+fn emergency_stop_ends_what_the_plc_moves() {
+    let more = "
+       L I28
+       AN M80
+       CMT 50
+       L I28
+       = M80
+LBL 50
+       PS K+3
+       PS K+3000000
+       PS K+600
+       PS K+0
+       CM 9120
+       PL B237
+       EM
+";
+    let mut rig = chain(more);
+    rig.input("I28", true);
+    rig.seconds(1.0);
+    assert!(rig.speed('C').abs() > 500.0);
+    rig.event("emergency press");
+    rig.seconds(0.5);
+    rig.event("emergency release");
+    rig.seconds(0.2);
+    rig.command("ce");
+    rig.seconds(0.1);
+    let stands = rig.table('C');
+    rig.seconds(1.0);
+    close(rig.table('C'), stands, 0.01);
+    assert_eq!(rig.number("B236") & 0b111, 0b011, "not positioning");
+    assert_eq!(rig.messages(), [""; 0]);
 }

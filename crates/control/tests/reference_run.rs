@@ -291,3 +291,44 @@ fn an_axis_without_place_in_mp1340() {
     done(&mut rig);
     assert!(rig.axis('Y').referenced && !rig.axis('Z').referenced);
 }
+
+/// Leaving the mode early stops the axis on its ramp; PASS OVER REFERENCE goes on later [000:4581].
+#[test]
+fn leaving_the_run_early() {
+    let mut rig = asked(bench(""));
+    rig.start();
+    rig.seconds(0.5);
+    rig.command("mode manual");
+    rig.seconds(0.5);
+    close(rig.speed('Z'), 0.0, 1.0);
+    assert!(rig.bit("M2138"));
+    rig.command("mode reference");
+    rig.seconds(0.5);
+    close(rig.speed('Z'), 0.0, 1.0);
+    rig.start();
+    done(&mut rig);
+    assert_eq!(rig.messages(), [""; 0]);
+    assert!(
+        !rig.control.command("mode reference".parse().unwrap()),
+        "nothing is missing"
+    );
+}
+
+/// EMERGENCY STOP during the run: the axis stops; after CE START goes on.
+#[test]
+fn emergency_stop_during_the_run() {
+    let mut rig = asked(bench(""));
+    rig.start();
+    rig.seconds(0.5);
+    rig.event("emergency press");
+    rig.seconds(0.5);
+    rig.event("emergency release");
+    rig.seconds(0.1);
+    rig.command("ce");
+    rig.seconds(0.5);
+    close(rig.speed('Z'), 0.0, 1.0);
+    assert_eq!(rig.number("W272"), 7);
+    rig.start();
+    done(&mut rig);
+    close(rig.machine_position('Z'), rig.table('Z'), 0.001);
+}

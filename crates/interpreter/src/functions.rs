@@ -51,7 +51,8 @@ pub(crate) fn acts_at_end(m: u16) -> bool {
     matches!(m, 0..=2 | 5 | 6 | 9 | 10 | 12 | 19 | 30 | 32..=35 | 52..=54 | 60 | 63..=70 | 95..=99)
 }
 
-/// M functions that act inside the control and are not output [000:7080-7186].
+/// M functions that act inside the control and are not output [000:7080-7186]. M105 and M106 go out all the
+/// same, for the position loops.
 fn is_internal(m: u16) -> bool {
     matches!(m, 90..=99) || m > M_PLC_MAX
 }
@@ -166,6 +167,11 @@ impl Run {
                 });
             }
             113 => self.modal.corner_arcs = None,
+            105 | 106 if rules.m105_enabled => block.output.push(TechnologyFunction {
+                function: Function::M(code),
+                at: At::Start,
+                synchronisation: Synchronisation::Mos,
+            }),
             _ => {}
         }
         if matches!(code, 13 | 14) {

@@ -33,8 +33,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_parameters::MessageId;
-use bahn_path::{AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
-use bahn_program::{Block, MotionKind, Operation, Program};
+use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
+use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
 pub use code::{Library, NoLibrary};
 pub use error::{Message, ProgramError, Warning, WarningKind};
@@ -73,6 +73,8 @@ pub struct Interpreter {
     ended: Option<Ended>,
     waiting: Option<Barrier>,
     interrupt: Option<Arc<AtomicBool>>,
+    /// States before blocks, kept for whoever asked for them.
+    kept: Option<Vec<Checkpoint>>,
     /// End of the last element that was handed out.
     position: Position,
 }
@@ -95,6 +97,18 @@ pub struct Checkpoint {
     position: Position,
 }
 
+impl Checkpoint {
+    /// Count of executed blocks up to and with the block that is executed next: the sequence of its elements.
+    pub fn sequence(&self) -> u64 {
+        self.run.sequence + 1
+    }
+
+    /// The block that is executed next.
+    pub fn at(&self) -> BlockRef {
+        self.run.at.block_ref()
+    }
+}
+
 impl Interpreter {
     /// Prepares the run of a main program.
     pub fn new(main: Arc<Program>, settings: Settings, library: Box<dyn Library + Send>) -> Interpreter {
@@ -108,6 +122,7 @@ impl Interpreter {
             ended: None,
             waiting: None,
             interrupt: None,
+            kept: None,
             position,
         }
     }
@@ -144,6 +159,23 @@ impl Interpreter {
         std::mem::take(&mut self.run.warnings)
     }
 
+    /// Keeps the state before each block that can move or output something, for
+    /// [`Interpreter::take_checkpoints`].
+    pub fn keep_checkpoints(&mut self) {
+        self.kept = Some(Vec::new());
+    }
+
+    /// The states kept since the last call, in the order of execution.
+    pub fn take_checkpoints(&mut self) -> impl Iterator<Item = Checkpoint> + '_ {
+        self.kept.iter_mut().flat_map(|kept| kept.drain(..))
+    }
+
+    /// After an error: the run goes on with the block that failed.
+    pub fn retry(&mut self) {
+        self.ended = None;
+        self.waiting = None;
+    }
+
     /// The state as of the next block to be executed.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
@@ -156,17 +188,21 @@ impl Interpreter {
 
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
+        let warnings = std::mem::take(&mut self.run.warnings);
         self.run = (*checkpoint.run).clone();
+        self.run.warnings = warnings;
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;
     }
 
     /// Says where the axes really stand, workpiece coordinates: after a stop inside a block, or after they
-    /// were moved. What was on its way is dropped; radius compensation begins anew with the next block.
+    /// were moved. What was on its way is dropped; radius compensation begins anew with the next block, whose
+    /// incremental coordinates count from where it would have begun.
     pub fn relocate(&mut self, position: &Position) {
         self.run.contour = Contour::default();
         self.run.out = Output::default();
+        self.run.increments_from = Some(self.run.modal.nominal);
         self.run.modal.nominal = *position;
         self.run.modal.actual = *position;
         self.run.modal.last_move = None;
@@ -182,9 +218,38 @@ impl Interpreter {
         self.enter_unit();
     }
 
+    /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
+    pub fn set_machine_zero(&mut self, zero: Position) {
+        self.settings.rules.machine_zero = zero;
+    }
+
     /// Sets a Q parameter from outside: the PLC, or the operator.
     pub fn set_q(&mut self, number: u16, value: f64) {
         self.run.q.preassign(number, value);
+    }
+
+    /// Executes a TOOL CALL that is in no program before the next block: tool number, tool axis, spindle speed
+    /// in rpm, and DL and DR in mm; what is `None` stays as it is.
+    pub fn insert_tool_call(
+        &mut self,
+        tool: Option<f64>,
+        axis: Option<Axis>,
+        speed_rpm: Option<f64>,
+        oversize_mm: [f64; 2],
+    ) {
+        let at = self.run.at.block_ref();
+        let current = self.run.modal.tool.map(|tool| f64::from(tool.number));
+        let unit = self.run.unit_mm;
+        let result = self.run.tool_call(
+            tool.or(current).map(Value::Number),
+            axis,
+            speed_rpm.map(Value::Number),
+            oversize_mm.map(|mm| Some(Value::Number(mm / unit))),
+            &self.settings,
+        );
+        if let Err(fault) = result {
+            self.fail(fault, at);
+        }
     }
 
     /// The block that is executed next.
@@ -222,6 +287,26 @@ impl Interpreter {
         if block.skip && self.settings.skip_blocks {
             self.run.at.block += 1;
             return Ok(());
+        }
+        self.run.join_follows = next.is_some_and(|next| {
+            matches!(
+                next.operation,
+                Operation::Rounding { .. } | Operation::Chamfer { .. }
+            )
+        });
+        if self.kept.is_some() && self.run.recording.is_none() && acts(&block.operation) {
+            // Warnings are no state to go back to.
+            let warnings = std::mem::take(&mut self.run.warnings);
+            let checkpoint = Checkpoint {
+                run: Box::new(self.run.clone()),
+                ended: None,
+                waiting: None,
+                position: self.position,
+            };
+            self.run.warnings = warnings;
+            if let Some(kept) = &mut self.kept {
+                kept.push(checkpoint);
+            }
         }
         self.run.block = at;
         if !matches!(
@@ -431,6 +516,22 @@ impl Interpreter {
         }
         job.ok_or_else(|| MessageId::CyclIncomplete.into())
     }
+}
+
+/// Whether a block can move or output something.
+fn acts(operation: &Operation) -> bool {
+    !matches!(
+        operation,
+        Operation::Calculate { .. }
+            | Operation::Formula { .. }
+            | Operation::Jump { .. }
+            | Operation::Label(_)
+            | Operation::CallLabel { .. }
+            | Operation::Comment(_)
+            | Operation::Begin(_)
+            | Operation::End(_)
+            | Operation::CircleCentre(_)
+    )
 }
 
 /// Whether a block certainly moves on a straight line.

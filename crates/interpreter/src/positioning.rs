@@ -92,6 +92,7 @@ impl Run {
             self.modal.take_contour_axes(axes);
         }
         self.modal.last_move = None;
+        self.increments_from = None;
         self.since_motion = 0;
         self.contour.release(&mut self.out);
         let element = self.element(Curve::Line, start, self.modal.actual, feed);
@@ -132,6 +133,7 @@ impl Run {
         if programmed.axes.is_empty() {
             return self.hold(functions);
         }
+        self.increments_from = None;
         let Some(feed) = feed else {
             return Err(MessageId::FeedRateIsMissing.into());
         };
@@ -164,7 +166,7 @@ impl Run {
         for axis in axes.iter() {
             let value = numbers[axis.index()] * self.axis_unit(axis);
             to[axis] = if coordinates.incremental().contains(axis) {
-                known(from[axis]) + value
+                known(self.increments_from.unwrap_or(from)[axis]) + value
             } else {
                 value
             };
@@ -206,10 +208,14 @@ impl Run {
 
     /// Cartesian words into the end point.
     pub(crate) fn coordinates(&self, coordinates: &Coordinates, p: &mut Programmed) -> Result<(), Fault> {
+        let from = match &self.increments_from {
+            Some(nominal) => self.modal.frame.to_programmed(nominal),
+            None => p.from,
+        };
         for (axis, word) in coordinates.iter() {
             let value = self.q.value(word.value)? * self.axis_unit(axis);
             p.to[axis] = if word.incremental {
-                known(p.from[axis]) + value
+                known(from[axis]) + value
             } else {
                 value
             };

@@ -197,10 +197,12 @@ impl Run {
         // To the surface and back to the pre-position.
         let feed = FeedRate::Programmed(settings.rules.probe.feed_mm_min);
         let back = FeedRate::Programmed(settings.rules.probe.rapid_mm_min);
-        for (start, end, feed) in [
+        let ways = [
             (probing.before, touch.position, feed),
             (touch.position, probing.before, back),
-        ] {
+        ];
+        // On a machine the axes stand at the touch already.
+        for (start, end, feed) in ways.into_iter().skip(usize::from(settings.machine)) {
             let element = self.element(Curve::Line, start, end, feed);
             self.out.push(element, None);
         }

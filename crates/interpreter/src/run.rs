@@ -45,6 +45,13 @@ pub(crate) struct Run {
     /// The next block is a straight line with coordinates: neither a rounding nor a tangential arc can refer
     /// to the movement of this block, so nothing needs to be held back for it.
     pub line_follows: bool,
+    /// The next block is a rounding or chamfer: it refers to the movement of this block.
+    pub join_follows: bool,
+    /// After an interruption within a block: where the block began. Its incremental coordinates count from
+    /// there, so that it ends where it was programmed to (inferred).
+    pub increments_from: Option<Position>,
+    /// See [`Settings::machine`].
+    pub machine: bool,
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
     /// A contour subprogram is being recorded for an SL cycle: M functions, feeds and cycle calls in it
@@ -78,6 +85,9 @@ impl Run {
             warnings: Vec::new(),
             blank_given: false,
             line_follows: false,
+            join_follows: false,
+            increments_from: None,
+            machine: settings.machine,
             probing: None,
             recording: None,
         }
@@ -202,7 +212,8 @@ impl Run {
             Operation::CycleCall(m) => {
                 // CYCL CALL ends M89 [003:4875-4881].
                 self.modal.cycle_after_each_block = false;
-                let functions = self.take_m_functions(m, settings)?;
+                let mut functions = self.take_m_functions(m, settings)?;
+                functions.cycle_call = true;
                 self.hold(functions)?;
                 return self.call_cycle(settings);
             }
@@ -359,6 +370,9 @@ impl Run {
                 synchronisation: Synchronisation::MnsSns,
             });
             barrier = Some(Barrier::Stop { block: self.block });
+        } else if self.machine && !functions.cycle_call && self.may_wait_for_plc(&element, &functions.output)
+        {
+            barrier = Some(Barrier::Acknowledge { block: self.block });
         }
         if !functions.output.is_empty() {
             element.functions = Some(functions.output.into_boxed_slice());
@@ -389,6 +403,17 @@ impl Run {
             self.contour.flush(&mut self.out).map_err(Fault::found_ahead)?;
         }
         Ok(if functions.end { Flow::EndOfRun } else { Flow::Next })
+    }
+
+    /// Whether the path stands until the PLC has acknowledged, so that nothing is lost when the next block is
+    /// read only then. A block that goes on moving after its functions is not cut off from the next one, nor
+    /// from its rounding or its cycle.
+    fn may_wait_for_plc(&self, element: &PathElement, functions: &[TechnologyFunction]) -> bool {
+        let stands = |function: &TechnologyFunction| {
+            function.synchronisation != Synchronisation::Mos
+                && (function.at == At::End || element.curve == Curve::Hold)
+        };
+        functions.iter().any(stands) && !self.join_follows && !self.contour.has_join()
     }
 
     /// An element of the current block.

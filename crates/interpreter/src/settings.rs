@@ -25,6 +25,9 @@ pub struct Settings {
     pub skip_blocks: bool,
     /// Refuse what is otherwise accepted with a warning (sign of cycle parameters, tools without data).
     pub strict: bool,
+    /// A control runs the program on a machine: it waits for the PLC, which may write what the next block
+    /// reads, and probing movements are executed outside.
+    pub machine: bool,
     /// Blocks that may be executed without a movement before the run is taken for an endless loop.
     pub max_blocks_without_motion: u64,
 }
@@ -40,6 +43,7 @@ impl Default for Settings {
             tool_length_mm: None,
             skip_blocks: false,
             strict: false,
+            machine: false,
             max_blocks_without_motion: 10_000_000,
         }
     }
@@ -108,6 +112,8 @@ impl Rules {
                 m6_stops: m.m6_stops,
                 m89_calls_cycle: m.m89_calls_cycle,
                 axes_wait: m.axes_wait,
+                axes_wait_for_speed: m.axes_wait_for_speed,
+                m105_enabled: m.m105_works,
                 m103_enabled: m.m103_works,
             },
             tapping_override_percent: (least, greatest),
@@ -187,6 +193,10 @@ pub struct MFunctionRules {
     pub m89_calls_cycle: bool,
     /// Bit 2 clear: axes wait for the acknowledgement of M functions.
     pub axes_wait: bool,
+    /// MP3030 = 0: axes wait for a spindle speed without a tool [000:5645-5651].
+    pub axes_wait_for_speed: bool,
+    /// Bit 3: M105 and M106 choose the second and first set of kv [000:7251-7305].
+    pub m105_enabled: bool,
     /// Bit 4: M103 reduces the plunging feed.
     pub m103_enabled: bool,
 }
@@ -197,6 +207,8 @@ impl Default for MFunctionRules {
             m6_stops: true,
             m89_calls_cycle: true,
             axes_wait: true,
+            axes_wait_for_speed: true,
+            m105_enabled: true,
             m103_enabled: true,
         }
     }
@@ -209,6 +221,8 @@ impl MFunctionRules {
             m6_stops: bits & 1 == 0,
             m89_calls_cycle: bits & 2 != 0,
             axes_wait: bits & 4 == 0,
+            axes_wait_for_speed: true,
+            m105_enabled: bits & 8 != 0,
             m103_enabled: bits & 16 != 0,
         }
     }

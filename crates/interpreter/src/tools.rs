@@ -24,7 +24,7 @@ impl Run {
     ) -> Result<(), Fault> {
         let number = self.tool_number(tool, settings)?;
         if length.is_none() && radius.is_none() {
-            return self.output_function(Function::NextTool(number), false);
+            return self.output_function(Function::NextTool(number), true);
         }
         let length = length
             .map(|length| self.length(length))
@@ -77,7 +77,8 @@ impl Run {
                 self.finish_contour()?;
                 self.set_tool_axis(axis)?;
             }
-            return self.output_function(Function::SpindleSpeed(self.modal.speed_rpm), true);
+            let waits = settings.rules.m_functions.axes_wait_for_speed;
+            return self.output_function(Function::SpindleSpeed(self.modal.speed_rpm), waits);
         };
         self.finish_contour()?;
         let number = self.tool_number(tool, settings)?;

@@ -11,6 +11,8 @@ pub struct Drive {
     pub feed_override_percent: f64,
     /// Override of rapid traverse, %; more than 100 % is without effect as MP1010 limits.
     pub rapid_override_percent: f64,
+    /// No axis is faster than this, mm/min, nor than its rapid traverse MP1010 [000:4812-4814].
+    pub rapid_limit_mm_min: f64,
     /// NC stop: the path brakes to a standstill, wherever that is, and goes on when this ends.
     pub hold: bool,
     /// The path stops at the end of each block and waits for [`Interpolator::go_on`](crate::Interpolator::go_on).
@@ -30,6 +32,7 @@ impl Default for Drive {
         Drive {
             feed_override_percent: 100.0,
             rapid_override_percent: 100.0,
+            rapid_limit_mm_min: f64::INFINITY,
             hold: false,
             single_block: false,
             in_position: true,

@@ -20,10 +20,15 @@ pub enum Gate {
 
 impl Gates {
     /// A block without movement and a dwell stop the path; so do functions that wait for their
-    /// acknowledgement, at the end where they do.
+    /// acknowledgement, at the end where they do. A block of nothing but functions that do not wait is passed
+    /// (MP3030 = 1) [000:5645-5651].
     #[inline]
     pub(crate) fn of(element: &PathElement) -> Gates {
-        let hold = matches!(element.curve, Curve::Hold);
+        let passes = || {
+            let functions = element.functions();
+            !functions.is_empty() && functions.iter().all(|function| wait(function).is_none())
+        };
+        let hold = matches!(element.curve, Curve::Hold) && !passes();
         let mut gates = Gates {
             start: hold,
             end: hold || element.dwell_s > 0.0,

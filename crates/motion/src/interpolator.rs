@@ -1,5 +1,7 @@
 //! The path in contour cycles, with overrides and stops that come at any moment.
 
+mod recall;
+
 use std::collections::VecDeque;
 
 use bahn_path::{
@@ -26,6 +28,7 @@ pub struct Interpolator<E> {
     after: After<E>,
     feed_override_percent: f64,
     rapid_override_percent: f64,
+    rapid_limit_mm_min: f64,
     phase: Phase,
     /// Path speed, mm/s.
     speed: f64,
@@ -84,6 +87,7 @@ impl<E> Interpolator<E> {
             after: After::Open,
             feed_override_percent: 100.0,
             rapid_override_percent: 100.0,
+            rapid_limit_mm_min: f64::INFINITY,
             phase: Phase::Done,
             speed: 0.0,
             rest: 0.0,
@@ -183,6 +187,10 @@ impl<E> Interpolator<E> {
         if (feed, rapid) != (self.feed_override_percent, self.rapid_override_percent) {
             (self.feed_override_percent, self.rapid_override_percent) = (feed, rapid);
             self.ring.set_overrides(feed, rapid);
+        }
+        if drive.rapid_limit_mm_min != self.rapid_limit_mm_min {
+            self.rapid_limit_mm_min = drive.rapid_limit_mm_min;
+            self.ring.set_rapid_limit(drive.rapid_limit_mm_min);
         }
         if drive.single_block != self.single_block {
             self.single_block = drive.single_block;

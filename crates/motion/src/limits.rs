@@ -64,6 +64,8 @@ pub(crate) struct Dynamics {
     pub(crate) cycle: f64,
     feed_override: f64,
     rapid_override: f64,
+    /// Slowness of each axis as the machine has it.
+    machine_slowness: [f64; Axis::COUNT],
 }
 
 impl Dynamics {
@@ -71,10 +73,10 @@ impl Dynamics {
         let acceleration = limits.acceleration_m_s2.map(mm_s2);
         let radial = mm_s2(limits.radial_acceleration_m_s2);
         let corner = limits.corner_angle_deg.clamp(TANGENTIAL_DEG, 180.0);
+        let machine_slowness = limits.max_feed_mm_min.map(slowness);
         Dynamics {
-            slowness: limits
-                .max_feed_mm_min
-                .map(|feed| 60.0 / feed.clamp(NO_FEED_MM_MIN, FASTEST_MM_MIN).max(NO_FEED_MM_MIN)),
+            slowness: machine_slowness,
+            machine_slowness,
             acceleration,
             bound: acceleration.map(|a| a.hypot(radial)),
             radial,
@@ -91,6 +93,12 @@ impl Dynamics {
     /// Other overrides, %.
     pub(crate) fn set_overrides(&mut self, feed_percent: f64, rapid_percent: f64) {
         (self.feed_override, self.rapid_override) = (feed_percent, rapid_percent);
+    }
+
+    /// No axis is faster than this, mm/min.
+    pub(crate) fn set_rapid_limit(&mut self, limit_mm_min: f64) {
+        let least = slowness(limit_mm_min);
+        self.slowness = self.machine_slowness.map(|slowness| slowness.max(least));
     }
 
     /// Greatest path speed, mm/s, of a movement: the programmed feed with its override, and no axis
@@ -111,6 +119,13 @@ impl Dynamics {
         };
         if speed > STANDSTILL_MM_S { speed } else { 0.0 }
     }
+}
+
+/// Time that an axis takes for a mm at a feed, s/mm.
+fn slowness(feed_mm_min: f64) -> f64 {
+    60.0 / feed_mm_min
+        .clamp(NO_FEED_MM_MIN, FASTEST_MM_MIN)
+        .max(NO_FEED_MM_MIN)
 }
 
 /// The effective override as a factor [000:6094-6098] [003:5106].

@@ -141,6 +141,12 @@ impl Ring {
         self.items.range(self.current.min(self.items.len())..)
     }
 
+    /// Takes out the item that is executed and those after it.
+    pub(crate) fn take_ahead(&mut self) -> impl Iterator<Item = PathElement> + '_ {
+        let from = self.current.min(self.items.len());
+        self.items.drain(from..).map(|item| item.element)
+    }
+
     /// Drops the executed items.
     pub(crate) fn discard(&mut self) {
         self.first += self.current as u64;
@@ -293,6 +299,20 @@ impl Ring {
         self.envelope(0);
     }
 
+    /// No axis is faster than this from now on, mm/min.
+    pub(crate) fn set_rapid_limit(&mut self, limit_mm_min: f64) {
+        self.dynamics.set_rapid_limit(limit_mm_min);
+        let dynamics = &self.dynamics;
+        let current = self.current.min(self.items.len());
+        for item in self.items.range_mut(current..) {
+            if let Some(motion) = Motion::of(&item.element, dynamics) {
+                item.slowest = motion.slowest;
+            }
+            item.set_feed(dynamics);
+        }
+        self.envelope(0);
+    }
+
     /// The envelope ends in a stop at the end of an item.
     pub(crate) fn set_stop(&mut self, number: Option<u64>) {
         if self.stop_at != number {
@@ -406,7 +426,12 @@ fn connect(at: &Position, element: &mut PathElement) -> Option<PathElement> {
             continue;
         }
         element.start[axis] = at[axis];
-        if element.end[axis].is_nan() || matches!(element.curve, Curve::Hold) {
+        // What the element does not move stays where it is.
+        let stays = match &element.curve {
+            Curve::Arc(arc) if axis == arc.plane.first || axis == arc.plane.second => false,
+            _ => element.end[axis] == from_source[axis],
+        };
+        if stays || element.end[axis].is_nan() || matches!(element.curve, Curve::Hold) {
             element.end[axis] = at[axis];
         }
     }

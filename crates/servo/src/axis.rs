@@ -432,6 +432,18 @@ impl Axis {
     pub fn set_datum(&mut self, count: i64, position_mm: f64) -> f64 {
         self.measuring.set_datum(count, position_mm);
         let shift = self.measuring.actual_mm() - self.actual_mm;
+        self.shift_positions(shift);
+        shift
+    }
+
+    /// Counts from elsewhere: nominal and actual position shift by a way, mm, and nothing moves. A rotary
+    /// axis that has turned goes on within one turn.
+    pub fn shift(&mut self, way_mm: f64) {
+        self.measuring.shift(way_mm);
+        self.shift_positions(way_mm);
+    }
+
+    fn shift_positions(&mut self, shift: f64) {
         self.actual_mm += shift;
         self.cycle_actual_mm += shift;
         self.nominal_mm += shift;
@@ -441,7 +453,6 @@ impl Axis {
         self.interpolation.shift(shift);
         self.transient.shift(shift);
         self.monitor.shift(shift);
-        shift
     }
 
     /// The error of the axis at the present position after the error tables, mm: positive where the table

@@ -20,6 +20,7 @@ pub struct Gantry {
     part_mm: f64,
     limit_mm: Option<f64>,
     from_marks: bool,
+    referenced: bool,
     synchronized: bool,
     difference_mm: f64,
 }
@@ -34,6 +35,7 @@ impl Gantry {
             part_mm: master.reference.feed_mm_min * timing.contour_min(),
             limit_mm: slave.synchronization.difference_mm,
             from_marks: slave.synchronization.from_reference_marks,
+            referenced: false,
             synchronized: false,
             difference_mm: 0.0,
         }
@@ -63,6 +65,7 @@ impl Gantry {
         self.shift(master_shift_mm, slave_shift_mm);
         if self.from_marks {
             self.goal_mm = 0.0;
+            self.referenced = true;
         }
     }
 
@@ -77,11 +80,15 @@ impl Gantry {
     pub fn command(&mut self, nominal_mm: f64, master: &Axis, slave: &mut Axis) {
         let way = self.goal_mm - self.offset_mm;
         self.offset_mm += way.clamp(-self.part_mm, self.part_mm);
-        if self.from_marks && self.goal_mm == 0.0 && self.offset_mm == 0.0 {
-            self.synchronized = true;
-        }
         slave.command(nominal_mm + self.offset_mm);
         self.difference_mm = master.actual_mm() + self.offset_mm - slave.actual_mm();
+        // Monitoring begins when the slave, with its lag, has come to the side of its master.
+        let beside = self
+            .limit_mm
+            .is_none_or(|limit| self.difference_mm.abs() <= limit);
+        if self.referenced && self.offset_mm == self.goal_mm && beside {
+            self.synchronized = true;
+        }
         let monitored = self.synchronized && slave.closed();
         if monitored
             && self

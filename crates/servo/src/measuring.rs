@@ -182,6 +182,11 @@ impl MeasuringSystem {
         self.scale_zero = None;
     }
 
+    /// Every count is a position farther on by a way, mm.
+    pub(crate) fn shift(&mut self, way_mm: f64) {
+        self.datum_mm += way_mm / self.linear_factor;
+    }
+
     /// A count is a position from now on.
     pub(crate) fn set_datum(&mut self, count: i64, position_mm: f64) {
         self.datum_count = count;

@@ -140,6 +140,11 @@ impl Contour {
         self.rounding.has_no_join() && self.compensation.is_idle()
     }
 
+    /// Whether a rounding or chamfer waits for the movement after it.
+    pub fn has_join(&self) -> bool {
+        self.rounding.has_join()
+    }
+
     /// Hands out the movement held back for a rounding that does not come. Only when idle.
     #[inline]
     pub fn release(&mut self, out: &mut Output) {

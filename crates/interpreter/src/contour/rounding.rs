@@ -95,6 +95,10 @@ impl RoundingStage {
         Ok(())
     }
 
+    pub fn has_join(&self) -> bool {
+        self.join.is_some()
+    }
+
     #[inline]
     pub fn has_no_join(&self) -> bool {
         self.join.is_none() && self.held.as_ref().is_none_or(|held| held.side == Side::Off)

@@ -1,0 +1,256 @@
+//! Data between program and PLC: FN14, FN15, FN19, Q100 to Q107, datum correction, PLC positioning, module
+//! 9150, inch programs.
+
+#[path = "support/stand.rs"]
+mod stand;
+mod support;
+
+use bahn_control::RunState;
+use stand::*;
+
+fn m_functions(lines: &str) -> String {
+    format!("{ACKNOWLEDGE_BUT_M}{lines}")
+}
+
+/// FN14 ends the run with its text, program and block; after CE the start executes the block again.
+#[test]
+fn fn14() {
+    let mut rig = bench_with(ACKNOWLEDGE, "L X+55 R0 F6000\nFN 14: ERROR = 100\nL X+60");
+    rig.start();
+    rig.seconds(1.0);
+    let messages = rig.messages();
+    assert!(
+        messages.len() == 1 && messages[0].ends_with("program 1.H block 2"),
+        "{messages:?}"
+    );
+    assert_eq!(rig.control.snapshot().run, RunState::Idle);
+    near(display(&rig, 'X'), 55.0);
+    rig.command("ce");
+    rig.start();
+    rig.seconds(0.5);
+    assert_eq!(rig.messages(), messages);
+}
+
+/// FN15: PRINT halts nothing but its block.
+#[test]
+fn fn15() {
+    let mut rig = bench_with(ACKNOWLEDGE, "FN 0: Q1 = +5\nFN 15: PRINT Q1\nL X+60 R0 F6000");
+    run(&mut rig, 3.0);
+    near(display(&rig, 'X'), 60.0);
+}
+
+/// FN19: PLC =+20.25/+100: D280 = 202 500, D284 = 1 000 000 with M2149; M2150 says the unit; the program goes
+/// on after M2611 [000:11595-11655].
+#[test]
+fn fn19() {
+    let mut rig = bench_with(
+        "       L     M2149\n       A     I20\n       = M2611",
+        "FN 19: PLC=+20.25/+100\nL X+60 R0 F6000",
+    );
+    rig.start();
+    rig.seconds(1.0);
+    assert!(rig.bit("M2149") && !rig.bit("M2150"));
+    assert_eq!((rig.number("D280"), rig.number("D284")), (202_500, 1_000_000));
+    near(display(&rig, 'X'), 50.0);
+    rig.event("key A press");
+    assert_eq!(edges(&mut rig, "M2149 M2611", 0.3), "M2611+ M2149- M2611-");
+    rig.until(3.0, "the end", |rig| rig.control.snapshot().ended);
+    near(display(&rig, 'X'), 60.0);
+}
+
+/// In a program in inches M2150 is 1, X+3 is 76.2 mm and the display of the Q parameter counts in inches.
+#[test]
+fn inch_program() {
+    let mut build = bench(ACKNOWLEDGE);
+    let text = "BEGIN PGM 1 INCH\nFN 19: PLC=+1/+2\nL X+3 R0 F200\nL IY+0.5\nEND PGM 1 INCH\n";
+    build.programs.0.insert("1.H".into(), text.into());
+    let mut rig = ready(build);
+    run(&mut rig, 5.0);
+    assert!(rig.bit("M2150"));
+    near(display(&rig, 'X'), 76.2);
+    near(display(&rig, 'Y'), 62.7);
+}
+
+/// The PLC writes 12.5 to Q102 during M50. It counts with the next strobe, M51: the block before it still
+/// reads 0 [000:11657-11663].
+#[test]
+fn q_parameters_from_the_plc() {
+    let plc = m_functions(
+        "
+       L     M2045
+       AN    M0
+       = M1
+       L     M2045
+       = M0
+       L     W260
+       == K+50
+       A     M1
+       IFT
+         L     K+125000
+         = D528
+         L     K+2
+         = W516
+       ENDI
+       L     W260
+       == K+50
+       A     M1
+       S     M2713
+       L     M2045
+       AN    M2713
+       = M2482
+",
+    );
+    let mut rig = bench_with(&plc, "M50\nL X+50 IY+Q102 R0 F6000\nM51\nL IY+Q102");
+    rig.start();
+    assert_eq!(
+        edges(&mut rig, "M2045 M2713 M2482", 0.2),
+        "M2045+ M2713+ M2713- M2482+ M2045- M2482- M2045+ M2482+ M2045- M2482-"
+    );
+    rig.until(3.0, "the end", |rig| rig.control.snapshot().ended);
+    near(display(&rig, 'Y'), 62.5);
+    assert_eq!(
+        rig.control.remember().q.iter().find(|(number, _)| *number == 102),
+        Some(&(102, 12.5))
+    );
+}
+
+/// M20 corrects the datum by +20: X shows 70 instead of 50, nothing moves; the path goes straight on from where
+/// the axes stand to the new target [000:8910-8991].
+#[test]
+fn datum_correction() {
+    let plc = m_functions(
+        "
+       L     M2045
+       AN    M0
+       = M1
+       L     M2045
+       = M0
+       L     W260
+       == K+20
+       A     M1
+       IFT
+         L     K+200000
+         = D528
+         L     K+0
+         = D532
+         = D536
+       ENDI
+       L     W260
+       == K+20
+       A     M1
+       S     M2716
+       L     M2045
+       AN    M2716
+       A     I20
+       = M2482
+",
+    );
+    for program in [
+        "M20\nL X+100 Y+70 R0 F6000\nL X+50",
+        "L X+100 Y+70 R0 F6000 M20\nL X+50",
+    ] {
+        let mut rig = bench_with(&plc, program);
+        let machine = rig.machine_position('X');
+        rig.start();
+        rig.until(2.0, "the correction", |rig| rig.bit("M2045") && !rig.bit("M2716"));
+        rig.seconds(0.2);
+        near(display(&rig, 'X'), 70.0);
+        near(rig.machine_position('X'), machine);
+        rig.event("key A press");
+        // A straight line: Y goes 20 mm while X goes 30, in proportion all the time.
+        rig.until(3.0, "X+100", |rig| {
+            let (x, y) = (nominal(rig, 'X'), nominal(rig, 'Y'));
+            assert!(((x - 70.0) * 2.0 - (y - 50.0) * 3.0).abs() < 0.02, "{x} {y}");
+            x == 100.0
+        });
+        rig.until(3.0, "the end", |rig| {
+            assert!(rig.control.snapshot().feed_mm_min < 6000.1);
+            rig.control.snapshot().ended
+        });
+        near(display(&rig, 'X'), 50.0);
+        near(rig.machine_position('X'), machine - 20.0);
+    }
+}
+
+/// An M function lets the PLC take Z to a position from the machine datum; after it the program goes on from
+/// there without a jump, and axes that it does not name stay [000:4005-4088].
+#[test]
+fn plc_positioning_in_a_strobe() {
+    let plc = m_functions(
+        "
+       L     M2045
+       AN    M0
+       = M1
+       L     M2045
+       = M0
+       L     M1
+       IFT
+         L     K+800000
+         = D536
+         L     K+6000
+         = W564
+       ENDI
+       L     M1
+       S     M2706
+       L     M2045
+       AN    M2706
+       = M2482
+",
+    );
+    let mut rig = bench_with(&plc, "L X+60 R0 F6000 M70\nL X+70\nL Z+40");
+    rig.start();
+    rig.until(3.0, "M70", |rig| rig.bit("M2706"));
+    rig.until(3.0, "the position", |rig| !rig.bit("M2706"));
+    near(rig.machine_position('Z'), 80.0);
+    rig.until(3.0, "X+70", |rig| {
+        assert!(nominal(rig, 'X') == 70.0 || (rig.machine_position('Z') - 80.0).abs() < 0.006);
+        nominal(rig, 'X') == 70.0
+    });
+    rig.until(3.0, "the end", |rig| {
+        assert!(rig.control.snapshot().feed_mm_min < 6000.1);
+        rig.control.snapshot().ended
+    });
+    near(display(&rig, 'Z'), 40.0);
+}
+
+/// Module 9150 inserts TOOL CALL 2 during M60: it is executed when M60 is acknowledged, before the next block,
+/// which then counts with the length of tool 2 (95 mm instead of 0).
+#[test]
+fn inserted_tool_call() {
+    let plc = m_functions(
+        "
+       L     M2045
+       AN    M0
+       = M1
+       L     M2045
+       = M0
+       L     W260
+       == K+60
+       A     M1
+       CMT   INSERT
+       L     M2045
+       = M2482
+       EM
+LBL INSERT
+       L     K+1
+       = B200
+       L     K+2
+       = W202
+       PS    K+0
+       PS    K+200
+       CM    9150
+       PL    B204
+",
+    );
+    let mut rig = bench_with(&plc, "TOOL CALL 0 Z S0\nM60\nL Z+50 R0 F6000");
+    let z = rig.machine_position('Z');
+    rig.start();
+    assert_eq!(
+        edges(&mut rig, "M2045 W262 M2046", 0.4),
+        "M2045+ M2045- W262=2 M2046+ M2046-"
+    );
+    rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+    assert_eq!(rig.control.snapshot().tool, 2);
+    near(display(&rig, 'Z'), 50.0);
+    near(rig.machine_position('Z'), z + 95.0);
+}

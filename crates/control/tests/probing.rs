@@ -1,0 +1,145 @@
+//! TCH PROBE in the program on the machine [000:7613-7718].
+
+#[path = "support/stand.rs"]
+mod stand;
+mod support;
+
+use bahn_control::RunState;
+use stand::*;
+use support::*;
+
+/// PLC: the probing is enabled while contact A is open, as in the manual's example [000:7696-7704].
+fn plc() -> String {
+    format!("{ACKNOWLEDGE}       L     M2503\n       AN    I20\n       R     M2503")
+}
+
+/// The solid begins at machine X 80; ball radius 2; touching in +X the ball's centre stands at 78. MP6140 = 5
+/// keeps the centre at 75 before.
+const PROGRAM: &str = "TCH PROBE 0.0 REF. PLANE Q5 X+\nTCH PROBE 0.1 X+80 Y+50 Z-20\nL X+50 R0 F6000";
+
+fn rig(program: &str) -> Rig {
+    let mut rig = bench(&plc()).mp("6140=5").program("1.H", program).rig();
+    rig.power_on();
+    rig.seconds(0.3);
+    // The spindle is 100 above the end of the ball: with the tip at Z -20 the nose is at machine Z 80.
+    let z = rig.machine_position('Z');
+    rig.command(&format!("datum Z {}", z - 100.0));
+    for axis in ['X', 'Y'] {
+        let at = rig.machine_position(axis);
+        rig.command(&format!("datum {axis} {at}"));
+    }
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.event("probe insert");
+    rig
+}
+
+/// M2503 waits for the PLC; then the stylus touches the side at X 80: Q5 is 80 within what the feed of
+/// 250 mm/min covers in a servo step (2.5 µm), and the axes go back to the pre-position.
+#[test]
+fn a_side_is_measured() {
+    let mut rig = rig(PROGRAM);
+    rig.event("key A press");
+    rig.start();
+    rig.until(5.0, "the enable", |rig| rig.bit("M2503"));
+    rig.seconds(1.0);
+    let x = nominal(&rig, 'X');
+    assert!(rig.bit("M2503") && !rig.bit("M2025") && !rig.bit("M2026"));
+    rig.event("key A release");
+    rig.until(5.0, "the touch", |rig| rig.bit("M2025"));
+    rig.until(5.0, "the end of probing", |rig| rig.bit("M2026"));
+    rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+    let q5 = rig
+        .control
+        .remember()
+        .q
+        .iter()
+        .find(|(number, _)| *number == 5)
+        .unwrap()
+        .1;
+    assert!((q5 - 80.0).abs() < 0.004, "{q5}");
+    assert!(x < 78.0);
+    near(display(&rig, 'X'), 50.0);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// Nothing there within MP6130: TOUCH POINT INACCESSIBLE with program and block; after CE the start probes
+/// again.
+#[test]
+fn nothing_to_touch() {
+    let mut rig = rig(&PROGRAM.replace("X+80", "X-60"));
+    for _ in 0..2 {
+        rig.start();
+        rig.until(30.0, "the message", |rig| !rig.messages().is_empty());
+        assert_eq!(rig.messages(), ["TOUCH POINT INACCESSIBLE program 1.H block 2"]);
+        assert_eq!(rig.control.snapshot().run, RunState::Idle);
+        rig.command("ce");
+        rig.seconds(0.3);
+    }
+}
+
+/// The stylus is deflected at the pre-position already.
+#[test]
+fn stylus_in_contact() {
+    let mut rig = rig(&PROGRAM.replace("X+80", "X+83"));
+    rig.start();
+    rig.until(10.0, "the message", |rig| !rig.messages().is_empty());
+    assert!(
+        rig.messages()[0].starts_with("STYLUS ALREADY IN CONTACT"),
+        "{:?}",
+        rig.messages()
+    );
+    rig.seconds(0.1);
+    assert!(rig.bit("M2023"));
+}
+
+/// A probe that is not ready refuses (inferred), and after repair the start goes on with the block.
+#[test]
+fn probe_not_ready() {
+    let mut rig = rig(PROGRAM);
+    rig.event("fault probe not-ready");
+    rig.start();
+    rig.until(10.0, "the message", |rig| !rig.messages().is_empty());
+    assert_eq!(rig.messages(), ["PROBE SYSTEM NOT READY"]);
+    rig.seconds(0.1);
+    assert!(rig.bit("M2022") && !rig.bit("M2503"));
+    rig.event("repair probe");
+    rig.command("ce");
+    run(&mut rig, 20.0);
+    assert!(!rig.bit("M2022"));
+    near(display(&rig, 'X'), 50.0);
+}
+
+/// NC stop on the way to the touch: the axes brake, START probes on; internal stop and START probe anew.
+#[test]
+fn stop_while_probing() {
+    for internal in [false, true] {
+        let mut rig = rig(PROGRAM);
+        rig.start();
+        rig.until(5.0, "probing", |rig| {
+            nominal(rig, 'X') > 76.5 && rig.control.snapshot().run == RunState::Running
+        });
+        rig.event("key NC_STOP tap");
+        rig.seconds(0.4);
+        let x = nominal(&rig, 'X');
+        rig.seconds(0.2);
+        assert_eq!(
+            (nominal(&rig, 'X'), rig.control.snapshot().run),
+            (x, RunState::Interrupted)
+        );
+        if internal {
+            rig.command("stop");
+        }
+        rig.start();
+        rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
+        let q5 = rig
+            .control
+            .remember()
+            .q
+            .iter()
+            .find(|(number, _)| *number == 5)
+            .unwrap()
+            .1;
+        assert!((q5 - 80.0).abs() < 0.004, "{q5}");
+    }
+}

@@ -1,0 +1,56 @@
+//! The small mill with a TNC 360: power-on, reference run, by hand, EMERGENCY STOP, a program.
+
+mod support;
+
+use bahn_parameters::ControlModel;
+use support::bench::*;
+use support::*;
+
+fn small_mill() -> Build {
+    let folder = folder("mill-tnc360");
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap_or_default();
+    Build {
+        model: ControlModel::Tnc360,
+        plant: read("plant.toml"),
+        plc: read("plc/MAIN.PLC"),
+        list: Some(read("parameters.mp")),
+        ..Build::mill()
+    }
+}
+
+#[test]
+fn the_small_mill_works() {
+    let mut rig = small_mill()
+        .program(
+            "1.H",
+            "TOOL CALL 1 Z S800\nL X+60 Y+60 R0 FMAX M3\nL X+90 F500\nL M5",
+        )
+        .rig();
+    rig.power_on();
+    assert_eq!(rig.messages(), [""; 0]);
+    // Positions count from the scale datum: X 374, Y 227, the first pulses outside the cams at 380 and 235.
+    for (letter, mark) in [('X', 374.0), ('Y', 227.0)] {
+        close(rig.machine_position(letter), rig.table(letter) - mark, 0.03);
+    }
+    for axis in ["X", "Y", "Z"] {
+        rig.command(&format!("datum {axis} 100"));
+    }
+    let from = rig.table('X');
+    rig.event("key X- press");
+    rig.seconds(0.5);
+    rig.event("key X- release");
+    rig.seconds(0.5);
+    assert!(rig.table('X') < from - 1.0);
+    rig.event("emergency press");
+    rig.seconds(0.3);
+    assert!(rig.bit("M2190") && !rig.bit("M2000"));
+    rig.event("emergency release");
+    rig.seconds(0.3);
+    rig.command("ce");
+    rig.seconds(0.3);
+    assert_eq!(rig.messages(), [""; 0]);
+    rig.run("1.H", 120.0);
+    rig.settle();
+    assert_eq!(rig.messages(), [""; 0]);
+    close(rig.axis('X').actual, 90.0, 0.02);
+}
