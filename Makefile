@@ -16,9 +16,10 @@ run:
 		--view 3d --image $(OUT)/housing.png --path $(OUT)/housing.svg --mesh $(OUT)/housing.stl
 	@for program in BRACKET INDEX SADDLE; do \
 		echo; \
+		image=; \
+		if grep -q "BLK FORM" machines/mill/programs/$$program.H; then image="--image $(OUT)/$$program.png"; fi; \
 		$(CARGO) run --quiet --release -p bahn -- run $$program.H --machine machines/mill --fresh \
-			--view 3d --image $(OUT)/$$program.png --record $(OUT)/$$program.csv \
-			--signals $(SIGNALS) || exit 1; \
+			$$image --record $(OUT)/$$program.csv --signals $(SIGNALS) || exit 1; \
 		echo; \
 		$(CARGO) run --quiet --release -p bahn -- scope $(OUT)/$$program.csv -o $(OUT)/$$program-scope.png \
 			--title "$$program.H on machines/mill" || exit 1; \
