@@ -21,7 +21,10 @@ fn small_mill() -> Build {
 #[test]
 fn the_small_mill_works() {
     let mut rig = small_mill()
-        .program("1.H", "TOOL CALL 1 Z S800\nL X+60 Y+60 R0 FMAX M3\nL X+90 F500\nL M5")
+        .program(
+            "1.H",
+            "TOOL CALL 1 Z S800\nL X+60 Y+60 R0 FMAX M3\nL X+90 F500\nL M5",
+        )
         .rig();
     rig.power_on();
     assert_eq!(rig.messages(), [""; 0]);
