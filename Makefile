@@ -3,15 +3,29 @@ CARGO ?= cargo
 OUT := out
 # Random tests draw from this seed, so that a run can be repeated; try others: make test SEED=2
 SEED ?= 1
+# What `make run` records.
+SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
 .PHONY: run test bench doc pictures tools clean
 
-# The main job on a shipped example: report on the screen, picture and mesh beside it.
+# The main job: a program without a machine, then the programs of a machine on it, in closed loop with its
+# PLC; reports on the screen, pictures beside them.
 run:
 	@mkdir -p $(OUT)
 	$(CARGO) run --quiet --release -p bahn -- test examples/housing.H \
 		--view 3d --image $(OUT)/housing.png --path $(OUT)/housing.svg --mesh $(OUT)/housing.stl
-	@echo "Picture: $(OUT)/housing.png   tool path: $(OUT)/housing.svg   part: $(OUT)/housing.stl"
+	@for program in BRACKET INDEX SADDLE; do \
+		echo; \
+		image=; \
+		if grep -q "BLK FORM" machines/mill/programs/$$program.H; then image="--image $(OUT)/$$program.png"; fi; \
+		$(CARGO) run --quiet --release -p bahn -- run $$program.H --machine machines/mill --fresh \
+			$$image --record $(OUT)/$$program.csv --signals $(SIGNALS) || exit 1; \
+		echo; \
+		$(CARGO) run --quiet --release -p bahn -- scope $(OUT)/$$program.csv -o $(OUT)/$$program-scope.png \
+			--title "$$program.H on machines/mill" || exit 1; \
+	done
+	@echo
+	@echo "Pictures: $(OUT)/*.png   tool path: $(OUT)/housing.svg   part: $(OUT)/housing.stl   recordings: $(OUT)/*.csv"
 
 # Everything that must hold: format, lints, documentation, tests.
 test: tools

@@ -15,3 +15,11 @@ done
 "$bahn" test examples/housing.H --view plan --image "$out/housing-plan.png" >/dev/null
 "$bahn" test examples/pockets.H --view three-planes --image "$out/pockets-planes.png" >/dev/null
 "$bahn" test examples/dial.H --path "$out/dial.svg" >/dev/null
+# A hole of machines/mill/programs/INDEX.H with the table clamped for it, on the machine.
+recording=$(mktemp -d)
+trap 'rm -rf "$recording"' EXIT
+"$bahn" run INDEX.H --machine machines/mill --fresh --record "$recording/index.csv" \
+    --signals Z.actual,Z.lag,C.actual,C.lag,path.speed,M2045,M2482,O17 >/dev/null
+"$bahn" scope "$recording/index.csv" --from 20 --to 36 --title "INDEX.H: drilling, rotary table clamped with M10" \
+    -o "$out/scope.png" >/dev/null
+echo "$out/scope.png"

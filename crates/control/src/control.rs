@@ -233,6 +233,17 @@ impl Control {
 
     /// Markers and words with a value at power-on.
     fn preset_markers(&mut self) {
+        // They lie among the markers that power-off keeps, but belong to the NC.
+        let of_the_nc = [
+            &signal::RISING_EDGES,
+            &signal::FALLING_EDGES,
+            &signal::DECODED_M_FUNCTIONS,
+        ];
+        for marker in of_the_nc.into_iter().flat_map(|range| range.iter()) {
+            if self.exchange.nc().bit(marker) {
+                self.exchange.nc_set(marker, false);
+            }
+        }
         for unit in &self.axes {
             if let Some(marker) = crate::markers::REFERENCE_MISSING.get(unit.index) {
                 self.exchange.nc_set(*marker, unit.parameters.controlled);

@@ -67,7 +67,7 @@ enum State {
     /// missing from a time on.
     Waiting {
         tested: u8,
-        missing_from: u64,
+        missing_from: Option<u64>,
         missing: bool,
     },
     /// The voltage is seen; the output drops at a time.
@@ -94,8 +94,8 @@ enum State {
 /// Waiting for the voltage from power-on.
 const WAITING: State = State::Waiting {
     tested: 0,
-    missing_from: 0,
-    missing: true,
+    missing_from: None,
+    missing: false,
 };
 
 impl EmergencyStop {
@@ -147,11 +147,15 @@ impl EmergencyStop {
             },
             State::Waiting {
                 tested, missing_from, ..
-            } => State::Waiting {
-                tested,
-                missing_from,
-                missing: now_us >= missing_from,
-            },
+            } => {
+                // The relay needs its time to come (inferred: as long as it may take to fall).
+                let from = missing_from.unwrap_or(now_us + test.fall_us);
+                State::Waiting {
+                    tested,
+                    missing_from: Some(from),
+                    missing: now_us >= from,
+                }
+            }
             State::Recognised { tested, until } if now_us >= until => State::Dropped {
                 tested,
                 until: now_us + test.fall_us,
@@ -163,8 +167,7 @@ impl EmergencyStop {
             State::Dropped { until, .. } if now_us > until => State::Defective,
             State::Fallen { tested, until } if now_us >= until => State::Waiting {
                 tested: tested + 1,
-                // The relay needs its time to come back (inferred: as long as it may take to fall).
-                missing_from: now_us + test.fall_us,
+                missing_from: None,
                 missing: false,
             },
             State::Ready if !acknowledged => State::Lost,

@@ -209,3 +209,21 @@ fn contradicting_marks() {
     rig.until(8.0, "a wrong mark", |rig| !rig.messages().is_empty());
     assert_eq!(rig.messages(), ["MEASURING SYSTEM X DEFECTIVE C"]);
 }
+
+/// POSITIONING ERROR leaves a residual voltage; MP1150 later, here 1 s, it is 0 V and the actual position is
+/// the nominal one [000:5240-5242].
+#[test]
+fn residual_voltage() {
+    let mut rig = braked().mps("1140.0=10 1110.0=30 1720.0=20 1150=1").ready();
+    rig.event("key RAPID press");
+    rig.event("key X- press");
+    rig.seconds(0.3);
+    rig.event("fault drive X dead");
+    rig.until(1.0, "the error", |rig| !rig.messages().is_empty());
+    let volts = |rig: &Rig| rig.control.observe(&"X.volts".parse().unwrap());
+    rig.seconds(0.9);
+    assert!(volts(&rig) < -1.0, "{}", volts(&rig));
+    rig.seconds(0.2);
+    assert_eq!(volts(&rig), 0.0);
+    assert_eq!(rig.messages(), ["POSITIONING ERROR X"]);
+}

@@ -1,6 +1,5 @@
 //! Power-on, EMERGENCY STOP, reference run.
-
-#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod support;
 
@@ -82,4 +81,23 @@ fn by_hand_on_the_mill() {
     assert!((table - 410.0).abs() < 0.02, "{table}");
     assert_eq!(rig.messages(), ["LIMIT SWITCH Y+"]);
     assert!(rig.machine.control_voltage());
+}
+
+/// M1500 to M1999 lie among the markers that power-off keeps, but input edges and decoded M functions are
+/// the NC's: they begin at 0, so that the first M13 after power-on is an edge again.
+#[test]
+fn markers_of_the_nc_are_not_kept() {
+    let (mut setup, mut machine) = Build::mill().setup();
+    for marker in ["M1503", "M1703", "M1913", "M1100"] {
+        setup.exchange.nc_set(marker.parse().unwrap(), true);
+    }
+    let mut control = bahn_control::Control::new(setup);
+    control.command("ce".parse().unwrap());
+    for _ in 0..30 {
+        control.prepare();
+        control.cycle(&mut machine);
+    }
+    let plc = control.exchange().plc();
+    let bits = ["M1503", "M1703", "M1913", "M1100"].map(|marker| plc.bit(marker.parse().unwrap()));
+    assert_eq!(bits, [false, false, false, true]);
 }

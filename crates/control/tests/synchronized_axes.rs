@@ -173,3 +173,88 @@ fn one_end_position_switch() {
     }
     close(rig.table('V'), rig.table('X'), 0.01);
 }
+
+/// Whatever keys, overrides, stops and EMERGENCY STOPs come in whatever order: master and slave stay
+/// together, and at the end the master can be moved with its slave.
+#[test]
+fn together_whatever_comes() {
+    const EVENTS: [&str; 16] = [
+        "key X- press",
+        "key X- release",
+        "key X+ press",
+        "key X+ release",
+        "key RAPID press",
+        "key RAPID release",
+        "key NC_STOP tap",
+        "key NC_START tap",
+        "key NO_FEED press",
+        "key NO_FEED release",
+        "key IV+ press",
+        "key IV+ release",
+        "emergency press",
+        "emergency release",
+        "override feed 30",
+        "override feed 120",
+    ];
+    const COMMANDS: [&str; 7] = [
+        "ce",
+        "mode manual",
+        "mode handwheel",
+        "mode full",
+        "mode mdi",
+        "stop",
+        "mdi L X+60 F3000",
+    ];
+    for seed in 1..=8u64 {
+        let mut rig = gantry("")
+            .plant("[axis.X]", "[axis.X]\nbrake = 1")
+            .plant("[axis.V]", "[axis.V]\nbrake = 1")
+            .ready();
+        let mut dice = seed;
+        let mut next = |below: u64| {
+            dice = dice
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (dice >> 33) % below
+        };
+        for _ in 0..150 {
+            if next(4) == 0 {
+                let command = COMMANDS[next(COMMANDS.len() as u64) as usize];
+                rig.control.command(command.parse().unwrap());
+            } else {
+                rig.event(EVENTS[next(EVENTS.len() as u64) as usize]);
+            }
+            rig.seconds(next(20) as f64 / 40.0);
+            let apart = (rig.table('X') - rig.table('V')).abs();
+            assert!(apart < 0.3, "seed {seed}: {apart} {:?}", rig.messages());
+            assert!(
+                !rig.control.snapshot().messages.iter().any(|shown| shown.flashing),
+                "seed {seed}: {:?}",
+                rig.messages()
+            );
+        }
+        for event in EVENTS.iter().filter(|event| event.ends_with("release")) {
+            rig.event(event);
+        }
+        rig.settle();
+        for _ in 0..6 {
+            rig.control.command("ce".parse().unwrap());
+            rig.seconds(0.1);
+        }
+        rig.control.command("stop".parse().unwrap());
+        rig.control.command("mode manual".parse().unwrap());
+        rig.control.command("ce".parse().unwrap());
+        rig.control.command("ce".parse().unwrap());
+        rig.settle();
+        let key = if rig.table('X') > 100.0 { "X-" } else { "X+" };
+        rig.event(&format!("key {key} press"));
+        rig.seconds(0.5);
+        assert!(
+            rig.speed('X').abs() > 300.0,
+            "seed {seed}: {:?} {:?}",
+            rig.messages(),
+            rig.control.snapshot()
+        );
+        close(rig.speed('V'), rig.speed('X'), 5.0);
+    }
+}

@@ -42,7 +42,7 @@ use crate::{Outcome, UsageError, console, report_text};
 use log::Log;
 use operator::{Attendance, Job, Operator};
 use recording::Recording;
-use report::RunReport;
+use report::{ProgramReport, RunReport};
 use script::Script;
 use session::{Ended, Parts, Session, Writers};
 
@@ -237,9 +237,9 @@ fn finish(
     let removed_mm3 = part.as_ref().map(|part| part.removed_mm3());
     let end = match &ended {
         Ended::Completed => End::Completed,
-        Ended::Stopped(_) => End::Stopped,
+        Ended::Stopped => End::Stopped,
         Ended::Interrupted => End::Interrupted,
-        Ended::Broken(_) | Ended::Hangs(_) => End::Failed(Box::new(error(&session, &ended))),
+        Ended::TooLong | Ended::Broken(_) | Ended::Hangs(_) => End::Failed(Box::new(error(&session, &ended))),
     };
     let failure = match &end {
         End::Failed(error) => Some(error.clone()),
@@ -251,17 +251,20 @@ fn finish(
         .control
         .interpreter()
         .filter(|_| programs.main().is_some());
-    let report = run.map(|run| record.report(run, end, removed_mm3, model));
+    let program = match run {
+        Some(run) => ProgramReport::Ran(Box::new(record.report(run, end, removed_mm3, model))),
+        None => ProgramReport::Bare {
+            completed: ended == Ended::Completed,
+            error: failure.as_deref().cloned(),
+        },
+    };
     if let Some(error) = &failure {
         say_failure(error, &session, programs);
     }
-    let mut report = RunReport::new(&session, report, &machine.folder.name, model);
+    let mut report = RunReport::new(&session, program, &machine.folder.name, model);
     let outcome = match &ended {
         Ended::Completed if session.failed.is_empty() => Outcome::Fine,
-        Ended::Stopped(why) if session.failed.is_empty() => {
-            diagnostics::print_line(&format!("the run ended: {why}"));
-            Outcome::Fine
-        }
+        Ended::Stopped if session.failed.is_empty() => Outcome::Fine,
         Ended::Interrupted => {
             diagnostics::print_line("interrupted: the report so far");
             Outcome::Interrupted
@@ -301,6 +304,10 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
                 other => (text, other.place().unwrap_or_default()),
             }
         }
+        Ended::TooLong => (
+            "the time allowed is over".to_owned(),
+            "--max-time allows more".to_owned(),
+        ),
         Ended::Hangs(what) => ("nothing moves any more".to_owned(), what.clone()),
         _ => ("the run was broken off".to_owned(), String::new()),
     };

@@ -8,8 +8,8 @@ use bahn_parameters::MessageId;
 
 /// Between two things that he does, µs.
 const PAUSE_US: u64 = 500_000;
-/// NC start between two blocks of single block, µs.
-const BLOCK_US: u64 = 100_000;
+/// NC start between two blocks of single block, µs: a key must have been released.
+const BLOCK_US: u64 = 300_000;
 /// So long a tool change may take without him, µs.
 const PATIENCE_US: u64 = 5_000_000;
 /// Between the keys of a tool change, µs.
@@ -76,6 +76,8 @@ pub(super) struct Operator {
     chosen: u8,
     /// NC start was pressed for the program.
     pub started: bool,
+    /// The state of the run, and since when.
+    state: (RunState, u64),
     /// Since when a tool change waits, and how many of its keys were pressed.
     change: Option<(u64, usize)>,
 }
@@ -90,6 +92,7 @@ impl Operator {
             acted_us: 0,
             chosen: 0,
             started: false,
+            state: (RunState::Idle, 0),
             change: None,
         }
     }
@@ -130,8 +133,12 @@ impl Operator {
             self.phase = phase;
             self.acted_us = control.time_us();
         }
-        if self.phase == Phase::Program && control.run_state() == RunState::Running {
+        let state = control.run_state();
+        if self.phase == Phase::Program && state == RunState::Running {
             self.started = true;
+        }
+        if self.state.0 != state {
+            self.state = (state, control.time_us());
         }
     }
 
@@ -172,9 +179,11 @@ impl Operator {
 
     fn stand_by(&mut self, control: &Control, now: u64, waited: u64) -> Option<Deed> {
         let start = |why| Some(Deed::Key(self.keys.start.clone(), why));
-        match control.run_state() {
+        let (state, since) = self.state;
+        let waited = waited.min(now.saturating_sub(since));
+        match state {
             RunState::Stopped if waited >= PAUSE_US => return start(Why::Stop),
-            RunState::BlockEnd if waited >= 2 * BLOCK_US => return start(Why::Routine),
+            RunState::BlockEnd if waited >= BLOCK_US => return start(Why::Routine),
             _ => {}
         }
         let changes = matches!(

@@ -18,7 +18,7 @@ Examples:
       What happens at which time, and what is expected, stands in a script.
   bahn run part.h --machine mill --log run.log
   bahn run part.h --machine mill --replay run.log
-      The second run repeats the first one, bit by bit, when both have --fresh.
+      The second run repeats the first one, bit by bit, when both have --fresh and the same --mp.
   bahn run --machine mill --script jog.txt
       Without a program: power-up, reference run, then the script.
 
@@ -43,14 +43,14 @@ State: what survives power-off is read from the state folder of the machine and 
 without it and leaves no trace.
 
 JSON report (--format json): the fields of `bahn test`; machining_time_s is that of the machine with all
-waits. machine, model, power_up_s, reference_s; times (what, count, time_s); axes by letter (max_lag,
+waits. Without a program, or when its run did not begin, only completed and error. machine, model, power_up_s, reference_s; times (what, count, time_s); axes by letter (max_lag,
 lag_block, max_deviation, deviation_block; mm, degrees; null where there is none), contour_deviation_mm;
-plc (max_percent, mean_percent of the nominal time, scans); messages (time_s, text, place, flashing,
+plc (max_percent, mean_percent of the nominal time); messages (time_s, text, place, flashing,
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
 failed_expectations (line, text, actual); realtime (null, or cycles, late_cycles, worst_lateness_ms).
 
-Exit codes: 0 fine, 1 the program or the machine has an error, the run hangs or an expectation fails,
-2 wrong use, 130 ended by Ctrl-C.";
+Exit codes: 0 fine, 1 the program or the machine has an error, the run hangs or takes longer than allowed,
+or an expectation fails, 2 wrong use, 130 ended by Ctrl-C.";
 
 /// Options of `bahn run`.
 #[derive(Args, Debug)]

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::pace::Lateness;
 use super::session::Session;
 use super::times::Share;
-use crate::report::{Report, tidy};
+use crate::report::{ErrorReport, Report, tidy};
 use crate::report_text::{self, LABEL, clock, list};
 
 /// A message of the control.
@@ -57,11 +57,24 @@ struct PlcReport {
     mean_percent: f64,
 }
 
+/// What became of the program.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub(super) enum ProgramReport {
+    /// It ran, to its end or not.
+    Ran(Box<Report>),
+    /// There was none, or its run did not begin.
+    Bare {
+        completed: bool,
+        error: Option<ErrorReport>,
+    },
+}
+
 /// The report as JSON has it.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RunReport {
     #[serde(flatten)]
-    pub report: Option<Report>,
+    pub program: ProgramReport,
     machine: String,
     model: &'static str,
     power_up_s: f64,
@@ -78,7 +91,7 @@ pub(super) struct RunReport {
 }
 
 impl RunReport {
-    pub fn new(session: &Session, report: Option<Report>, machine: &str, model: ControlModel) -> RunReport {
+    pub fn new(session: &Session, program: ProgramReport, machine: &str, model: ControlModel) -> RunReport {
         let seconds = |us: u64| us as f64 * 1e-6;
         let (sum, count, longest) = session.plc_percent;
         let axes = session.deviation.axes.iter().map(|axis| {
@@ -108,7 +121,7 @@ impl RunReport {
             waits_for: None,
             failed_expectations: session.failed.clone(),
             realtime: session.pace.as_ref().map(|pace| pace.lateness),
-            report,
+            program,
         }
     }
 
@@ -122,9 +135,9 @@ impl RunReport {
             "Machine",
             &format!("{}, {}", self.machine, model.to_string().to_uppercase()),
         );
-        match &self.report {
-            Some(report) => report_text::head(&mut row, report, model),
-            None => row("Result", result),
+        match &self.program {
+            ProgramReport::Ran(report) => report_text::head(&mut row, report, model),
+            ProgramReport::Bare { .. } => row("Result", result),
         }
         row(
             "Before",
@@ -165,11 +178,11 @@ impl RunReport {
             ),
         );
         list(&mut row, "Messages", &self.messages, |said| {
-            let place = match (&said.place, said.block) {
-                (Some(place), _) => format!(", {place}"),
-                (None, Some(block)) => format!(", {} block {block}", said.program),
-                (None, None) => String::new(),
-            };
+            let block = said
+                .block
+                .map(|block| format!(", {} block {block}", said.program));
+            let place = said.place.as_ref().map(|place| format!(": {place}"));
+            let place = block.unwrap_or_default() + &place.unwrap_or_default();
             format!("{} {}{place}", clock(said.time_s), said.text)
         });
         list(&mut row, "Confirmed", &self.confirmed, |confirmed| {
@@ -181,7 +194,7 @@ impl RunReport {
                 confirmed.block
             )
         });
-        if let Some(report) = &self.report {
+        if let ProgramReport::Ran(report) = &self.program {
             report_text::body(&mut row, report);
         }
         if let Some(lateness) = &self.realtime {

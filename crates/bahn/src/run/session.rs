@@ -35,8 +35,10 @@ const MESSAGES_MAX: usize = 1000;
 pub(super) enum Ended {
     /// The program came to its end, or the script when there is no program.
     Completed,
-    /// By `end` of the script or the time allowed.
-    Stopped(&'static str),
+    /// By `end` of the script.
+    Stopped,
+    /// The time allowed is over.
+    TooLong,
     /// By Ctrl-C.
     Interrupted,
     /// A message broke the run off.
@@ -214,11 +216,7 @@ impl Session {
         match line.action {
             Action::End => {
                 let done = self.control.has_ended() && self.control.run_state() == RunState::Idle;
-                self.ended = Some(if done {
-                    Ended::Completed
-                } else {
-                    Ended::Stopped("the script ends the run")
-                });
+                self.ended = Some(if done { Ended::Completed } else { Ended::Stopped });
             }
             Action::Command(command) => {
                 self.note(&command.to_string())?;
@@ -335,9 +333,14 @@ impl Session {
 
     /// A message came up.
     fn say(&mut self, shown: &Shown) {
-        let block = self.block().unwrap_or_default();
-        let ends = self.control.run_state() == RunState::Idle && self.start_us.is_some();
-        if ends || shown.flashing {
+        let (block, place) = match &shown.message {
+            Message::Program(error) => (error.block, Some(error.detail.clone()).filter(|d| !d.is_empty())),
+            other => (self.block().unwrap_or_default(), other.place()),
+        };
+        let idle = self.control.run_state() == RunState::Idle;
+        // A message of the PLC does not break a run off that has not begun.
+        let refused = self.operator.started && !matches!(shown.message, Message::Plc(_));
+        if shown.flashing || idle && (self.start_us.is_some() || refused) {
             self.broken_by = Some(Box::new(shown.message.clone()));
         }
         if self.messages.len() < MESSAGES_MAX {
@@ -345,7 +348,7 @@ impl Session {
             self.messages.push(Said {
                 time_s: shown.time_us as f64 * 1e-6,
                 text: self.control.message_text(&shown.message),
-                place: shown.message.place(),
+                place,
                 flashing: shown.flashing,
                 block: (!program.is_empty()).then_some(block.block),
                 program,
@@ -416,7 +419,7 @@ impl Session {
         let script_done = self.waiting.iter().all(VecDeque::is_empty)
             || self.start_us.is_none() && self.waiting.first().is_none_or(VecDeque::is_empty);
         if now >= self.max_time_us {
-            return Some(Ended::Stopped("the time allowed is over (--max-time)"));
+            return Some(Ended::TooLong);
         }
         let fatal = self.control.shown().iter().find(|shown| shown.flashing);
         if let Some(fatal) = fatal.filter(|_| script_done && self.control.stands()) {
@@ -430,6 +433,9 @@ impl Session {
                 } else {
                     Ended::Broken(self.broken_by.take())
                 });
+            }
+            Phase::Program if idle && script_done && self.broken_by.is_some() => {
+                return Some(Ended::Broken(self.broken_by.take()));
             }
             Phase::Ready if script_done && idle && self.control.stands() => return Some(Ended::Completed),
             _ => {}
@@ -445,10 +451,10 @@ impl Session {
         if let Some(waiting) = self.control.waiting() {
             reasons.push(waiting.to_string());
         }
+        if self.control.feed_override_percent() == 0.0 {
+            reasons.push("the feed override is 0 %".to_owned());
+        }
         match self.control.run_state() {
-            RunState::Running if self.control.feed_override_percent() == 0.0 => {
-                reasons.push("the feed override is 0 %".to_owned());
-            }
             RunState::Running | RunState::Idle => {}
             state => reasons.push(format!("the run is {}: NC start goes on", run_name(state))),
         }

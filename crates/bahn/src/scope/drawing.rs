@@ -134,7 +134,7 @@ impl Drawing<'_> {
 
     fn lane(&self, svg: &mut String, lane: &Lane, trace: &Trace, colour: &str) {
         let width = f64::from(self.size.0) - LEFT - RIGHT;
-        let (least, greatest) = range(&trace.values);
+        let (least, greatest) = range(&trace.values, &trace.unit);
         let y = |value: f64| lane.top + lane.height * (greatest - value) / (greatest - least);
         let _ = writeln!(
             svg,
@@ -250,8 +250,9 @@ fn push_column(points: &mut String, samples: &[(f64, f64)], y: &impl Fn(f64) -> 
     }
 }
 
-/// The range of a lane: all values with a little room; never without height.
-fn range(values: &[f64]) -> (f64, f64) {
+/// The range of a lane: all values with a little room; never without height. The ripple of a constant speed
+/// does not fill a lane; positions are shown as finely as they are.
+fn range(values: &[f64], unit: &str) -> (f64, f64) {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if !least.is_finite() || !greatest.is_finite() {
@@ -268,8 +269,14 @@ fn range(values: &[f64]) -> (f64, f64) {
             greatest
         },
     );
+    let is_speed = matches!(unit, "rpm" | "mm/min" | "deg/min");
+    let least_span = if is_speed {
+        0.01 * greatest.abs().max(least.abs())
+    } else {
+        1e-9
+    };
     let room = match greatest - least {
-        span if span > 1e-9 => 0.06 * span,
+        span if span > least_span => 0.06 * span,
         _ => (0.1 * greatest.abs()).max(1e-3),
     };
     (least - room, greatest + room)
@@ -329,12 +336,14 @@ mod tests {
 
     #[test]
     fn a_lane_has_room_and_its_zero_line() {
-        let (least, greatest) = range(&[0.1, 1.0]);
+        let (least, greatest) = range(&[0.1, 1.0], "mm");
         assert!(least < 0.0 && greatest > 1.0);
-        let (least, greatest) = range(&[500.0, 501.0]);
+        let (least, greatest) = range(&[500.0, 501.0], "mm");
         assert!(least > 499.0 && greatest < 502.0, "far from zero it is left out");
-        let (least, greatest) = range(&[3.0, 3.0]);
+        let (least, greatest) = range(&[3.0, 3.0], "V");
         assert!(least < 3.0 && greatest > 3.0);
+        let (least, greatest) = range(&[1800.02, 1800.04], "rpm");
+        assert!(least < 1700.0 && greatest > 1900.0, "{least} {greatest}");
     }
 
     /// 10 000 samples on about a thousand pixels: a spike of one sample is still there.

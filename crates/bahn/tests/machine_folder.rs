@@ -1,0 +1,183 @@
+//! `bahn machine`: folders of machines, whole and broken.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
+
+mod support;
+
+use support::Folder;
+
+const MODELS: [&str; 6] = ["tnc151", "tnc155", "tnc360", "tnc407", "tnc415b", "tnc425"];
+
+/// A folder with a new machine `m`.
+fn new(model: &str) -> Folder {
+    let folder = Folder::new();
+    let run = folder.bahn(&format!("machine new m --model {model} --name Test"));
+    assert_eq!(run.code(), 0, "{}", run.err());
+    folder
+}
+
+#[test]
+fn a_new_machine_of_each_model_is_whole_and_runs() {
+    for model in MODELS {
+        let folder = new(model);
+        let check = folder.bahn("machine check m --format json");
+        assert_eq!(check.code(), 0, "{model}: {}", check.err());
+        let report = &check.json()[0];
+        assert_eq!(
+            (&report["name"], &report["model"]),
+            (&"Test".into(), &model.into())
+        );
+        let program = match folder.path("m/programs/INDEX.H").exists() {
+            true => "INDEX.H",
+            false => "COVER.H",
+        };
+        let run = folder.bahn(&format!("run {program} --machine m --no-graphics --fresh"));
+        assert_eq!(run.code(), 0, "{model}: {}{}", run.err(), run.out());
+    }
+}
+
+#[test]
+fn nothing_is_overwritten() {
+    let folder = new("tnc360");
+    folder.write("m/machine.toml", "mine");
+    let run = folder.bahn("machine new m --model tnc360");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("not empty"), "{}", run.err());
+    assert_eq!(folder.read("m/machine.toml"), "mine");
+}
+
+/// Replaces a text in a file.
+fn edit(folder: &Folder, file: &str, from: &str, to: &str) {
+    let text = folder.read(file);
+    assert!(text.contains(from), "{file} has no `{from}`");
+    folder.write(file, text.replacen(from, to, 1));
+}
+
+/// The line of a text in a file, from 1.
+fn line(folder: &Folder, file: &str, part: &str) -> usize {
+    folder
+        .read(file)
+        .lines()
+        .position(|line| line.contains(part))
+        .unwrap()
+        + 1
+}
+
+/// Every file is broken in its way: all of them are named in one go, with file and line, by `check` and by
+/// `run`.
+#[test]
+fn all_faults_of_all_files_are_named() {
+    let folder = new("tnc415b");
+    edit(&folder, "m/parameters.mp", "MP1010.0 : 15000", "MP1010.0 : fast");
+    edit(
+        &folder,
+        "m/plant.toml",
+        "[axis.Y]\noutput = \"2\"",
+        "[axis.Y]\noutput = \"1\"",
+    );
+    edit(
+        &folder,
+        "m/plc/MAIN.PLC",
+        "\n       EM",
+        "\n       L     Q5\n       EM",
+    );
+    edit(&folder, "m/tools.tsv", "\n3\t85", "\nthree\t85");
+    edit(&folder, "m/machine.toml", "X = 200", "V = 200");
+    edit(&folder, "m/machine.toml", "\"CONFIRM\"]", "\"KONFIRM\"]");
+    let lines = [
+        (
+            "parameters.mp",
+            line(&folder, "m/parameters.mp", "fast"),
+            "`fast` is no number",
+        ),
+        ("plc/MAIN.PLC", line(&folder, "m/plc/MAIN.PLC", "L     Q5"), ""),
+        (
+            "tools.tsv",
+            line(&folder, "m/tools.tsv", "three"),
+            "`three` is no tool number",
+        ),
+    ];
+    for command in ["machine check m", "run INDEX.H --machine m --fresh"] {
+        let run = folder.bahn(command);
+        assert_eq!(run.code(), 1, "{command}: {}", run.err());
+        let said = run.err();
+        for (file, line, what) in lines {
+            assert!(said.contains(&format!("{file}:{line}:")), "{file}:{line}\n{said}");
+            assert!(said.contains(what), "{what}\n{said}");
+        }
+        assert!(said.contains("X and Y share an output"), "{said}");
+    }
+    // What must fit between the files shows when the files can be read.
+    edit(
+        &folder,
+        "m/plant.toml",
+        "[axis.Y]\noutput = \"1\"",
+        "[axis.Y]\noutput = \"2\"",
+    );
+    let said = folder.bahn("machine check m").err();
+    assert!(said.contains("parameters.mp:"), "{said}");
+    let report = folder.bahn("machine check m --format json").json();
+    assert_eq!(report[0]["ok"], false);
+    assert!(report[0]["faults"].as_array().unwrap().len() >= 3);
+}
+
+#[test]
+fn the_files_of_a_machine_fit_together() {
+    let folder = new("tnc415b");
+    edit(&folder, "m/machine.toml", "X = 200", "V = 200");
+    edit(&folder, "m/machine.toml", "\"CONFIRM\"]", "\"KONFIRM\"]");
+    let said = folder.bahn("machine check m").err();
+    let datum = line(&folder, "m/machine.toml", "V = 200");
+    let keys = line(&folder, "m/machine.toml", "tool_change");
+    assert!(
+        said.contains(&format!("machine.toml:{datum}:")) && said.contains("no axis V"),
+        "{said}"
+    );
+    assert!(
+        said.contains(&format!("machine.toml:{keys}:")) && said.contains("no key `KONFIRM`"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_description_is_read_strictly() {
+    let folder = new("tnc360");
+    edit(&folder, "m/machine.toml", "plant = ", "plantt = ");
+    edit(
+        &folder,
+        "m/machine.toml",
+        "model = \"tnc360\"",
+        "model = \"tnc999\"",
+    );
+    let run = folder.bahn("machine check m");
+    assert_eq!(run.code(), 1);
+    let said = run.err();
+    assert!(said.contains("the machine needs plant"), "{said}");
+    assert!(said.contains("unknown key `plantt`"), "{said}");
+    assert!(
+        said.contains("`tnc999` is no control model; there are tnc151"),
+        "{said}"
+    );
+    std::fs::remove_file(folder.path("m/tools.tsv")).unwrap();
+    let said = folder.bahn("machine check m").err();
+    let tools = line(&folder, "m/machine.toml", "tools = ");
+    assert!(
+        said.contains(&format!("machine.toml:{tools}:")) && said.contains("cannot read"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_list_names_what_scripts_can_speak_of() {
+    let folder = new("tnc415b");
+    let text = folder.bahn("machine list m").out();
+    for part in [
+        "axes      X Y Z C",
+        "NC_START",
+        "table_clamp",
+        "override feed|spindle",
+        "restore-at N",
+        "expect tool=3",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+}

@@ -1,0 +1,417 @@
+//! `bahn run`: programs on the shipped machines.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
+
+mod support;
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use support::{Folder, Run, number, rows};
+
+/// A pocket corner with a programmed stop: 40 mm in X, 20 mm deep arc, up again.
+const CORNER: &str = "
+BLK FORM 0.1 Z X-10 Y-10 Z-20
+BLK FORM 0.2 X+60 Y+60 Z+0
+TOOL CALL 3 Z S1500
+L Z+50 R0 FMAX M3
+L X+0 Y+0 FMAX
+L Z-5 F500
+L X+40 F1000
+M0
+CC X+40 Y+20
+C X+40 Y+40 DR+ F1000
+L Z+50 FMAX M2";
+
+fn machines() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines")
+}
+
+/// `bahn run main.H` on the mill as it was delivered, with further arguments.
+fn run(folder: &Folder, arguments: &str) -> Run {
+    let mill = machines().join("mill");
+    folder.bahn(&format!(
+        "run main.H --machine {} --fresh {arguments}",
+        mill.display()
+    ))
+}
+
+fn report(folder: &Folder, arguments: &str) -> (i32, Value) {
+    let run = run(folder, &format!("--format json {arguments}"));
+    (run.code(), run.json())
+}
+
+/// The time that the report gives for something, s.
+fn time_for(report: &Value, what: &str) -> f64 {
+    let times = report["times"].as_array().unwrap();
+    let share = times.iter().find(|share| share["what"] == what);
+    share.map_or(0.0, |share| share["time_s"].as_f64().unwrap())
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        match path.is_dir() {
+            true if path.ends_with("state") => {}
+            true => copy(&path, &target),
+            false => {
+                std::fs::copy(&path, target).unwrap();
+            }
+        }
+    }
+}
+
+/// A folder with the mill in `mill` and the program `main.H`.
+fn with_mill(blocks: &str) -> Folder {
+    let folder = Folder::with_program(blocks);
+    copy(&machines().join("mill"), &folder.path("mill"));
+    folder
+}
+
+#[test]
+fn the_report_is_that_of_a_test_run_and_of_the_machine() {
+    let folder = Folder::with_program(CORNER);
+    let (code, run) = report(&folder, "");
+    assert_eq!(code, 0, "{run}");
+    let tools = machines().join("mill/tools.tsv");
+    let (_, test) = folder.test(&format!("--tools {}", tools.display()));
+    assert_eq!(run["completed"], true);
+    for field in [
+        "program",
+        "unit",
+        "error",
+        "tool_calls",
+        "removed_mm3",
+        "warnings",
+        "stops",
+        "blocks_executed",
+    ] {
+        assert_eq!(run[field], test[field], "{field}");
+    }
+    // Feed: Z from 50 to -5, X 40, half a circle of radius 20.
+    let feed = 55.0 + 40.0 + 20.0 * std::f64::consts::PI;
+    assert!((number(&run, "/path_mm/feed") - feed).abs() < 1e-6);
+    assert_eq!(run["final_position"]["Z"], 50.0);
+    assert_eq!(run["model"], "tnc415b");
+    // The machine waits for spindle, tool and operator beside the way: the sum of it is the machining time.
+    let times = run["times"].as_array().unwrap();
+    let sum: f64 = times.iter().map(|share| share["time_s"].as_f64().unwrap()).sum();
+    assert!((sum - number(&run, "/machining_time_s")).abs() < 1e-6);
+    // 55 mm at 500 mm/min, 40 + 62.8 mm at 1000 mm/min.
+    let path = 55.0 / 500.0 * 60.0 + (feed - 55.0) / 1000.0 * 60.0;
+    assert!(
+        (time_for(&run, "feed") - path).abs() < 0.2,
+        "{}",
+        time_for(&run, "feed")
+    );
+    assert!(
+        time_for(&run, "tool change") > 0.9,
+        "the clamp takes 0.5 s each way"
+    );
+    assert!(time_for(&run, "M3") > 0.3, "until the spindle is at speed");
+    assert!(number(&run, "/power_up_s") > 0.5 && number(&run, "/reference_s") > 2.0);
+    // M0 was confirmed half a second after it.
+    let confirmed = run["confirmed"].as_array().unwrap();
+    assert_eq!(confirmed.len(), 1);
+    assert_eq!(
+        (&confirmed[0]["key"], &confirmed[0]["why"]),
+        (&json!("NC_START"), &json!("M0"))
+    );
+    assert!((time_for(&run, "programmed stop") - 0.5).abs() < 0.1);
+    assert_eq!(run["messages"][0]["text"], "POWER INTERRUPTED");
+    for axis in ["X", "Y", "Z"] {
+        let lag = number(&run, &format!("/axes/{axis}/max_lag"));
+        let deviation = number(&run, &format!("/axes/{axis}/max_deviation"));
+        assert!(
+            lag > 0.0 && lag < 1.0 && deviation < lag,
+            "{axis} {lag} {deviation}"
+        );
+    }
+    assert_eq!(
+        run["axes"]["C"]["max_deviation"],
+        Value::Null,
+        "it has no part in the contour"
+    );
+    let plc = number(&run, "/plc/max_percent");
+    assert!(plc >= number(&run, "/plc/mean_percent") && plc < 100.0);
+}
+
+/// The lag of the small mill is speed / kv: 10 000 mm/min and kv 1.5 are 6.667 mm.
+#[test]
+fn the_small_mill_runs_with_lag() {
+    let folder = Folder::new();
+    let small = machines().join("mill-tnc360");
+    let run = folder.bahn(&format!(
+        "run COVER.H --machine {} --fresh --no-graphics --format json",
+        small.display()
+    ));
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let lag = number(&run.json(), "/axes/X/max_lag");
+    assert!((lag - 10_000.0 / 1.5e3).abs() < 0.01 * lag, "{lag}");
+}
+
+#[test]
+fn the_same_run_gives_the_same_bits() {
+    let folder = Folder::with_program(CORNER);
+    let record = "--record {}.csv --log {}.log --format json";
+    let first = run(&folder, &record.replace("{}", "a"));
+    let second = run(&folder, &record.replace("{}", "b"));
+    assert_eq!(first.out(), second.out());
+    assert_eq!(folder.read("a.csv"), folder.read("b.csv"));
+    // The log does everything again that operator and script did.
+    let third = run(&folder, &format!("{} --replay a.log", record.replace("{}", "c")));
+    assert_eq!(third.code(), 0, "{}", third.err());
+    assert_eq!(folder.read("a.csv"), folder.read("c.csv"));
+    assert_eq!(folder.read("a.log"), folder.read("c.log"));
+    let head = "time [s],path.speed [mm/min],S.rpm [rpm],X.actual [mm],X.lag [mm],";
+    assert!(folder.read("a.csv").starts_with(head));
+}
+
+#[test]
+fn a_replay_repeats_what_a_script_did() {
+    let folder = Folder::with_program(CORNER);
+    folder.write(
+        "s.txt",
+        "start+4: key NC_STOP tap\n+1: expect run interrupted\n+0: override feed 50\n+0.5: key NC_START tap\n\
+         +3: expect run running\nstart+40: expect run stopped\n+0: key NC_START tap\n",
+    );
+    let first = run(&folder, "--script s.txt --record a.csv --log a.log --every 20");
+    assert_eq!(first.code(), 0, "{}", first.err());
+    let again = run(&folder, "--replay a.log --record b.csv --every 20");
+    assert_eq!(again.code(), 0, "{}", again.err());
+    assert_eq!(folder.read("a.csv"), folder.read("b.csv"));
+}
+
+#[test]
+fn recordings_have_the_signals_that_were_asked_for() {
+    let folder = Folder::with_program(CORNER);
+    run(
+        &folder,
+        "--record r.csv --every 10 --signals X.nominal,X.actual,C.speed,M2045,W260",
+    );
+    let text = folder.read("r.csv");
+    assert!(text.starts_with("time [s],X.nominal [mm],X.actual [mm],C.speed [deg/min],M2045,W260\n"));
+    let rows = rows(&text);
+    let times: Vec<f64> = rows.iter().map(|row| row[0].parse().unwrap()).collect();
+    // Every 10 ms, at the first contour cycle of 3 ms at or after it.
+    assert!(
+        times
+            .windows(2)
+            .all(|pair| (0.008..0.0131).contains(&(pair[1] - pair[0])))
+    );
+    // M3 was handed over: its code while its strobe was set.
+    assert!(rows.iter().any(|row| row[4] == "1" && row[5] == "3"));
+    let wrong = run(&folder, "--record r.csv --signals Q.lag");
+    assert_eq!(wrong.code(), 2);
+    assert!(wrong.err().contains("is no signal"), "{}", wrong.err());
+    let none = run(&folder, "--record r.csv --signals V.lag");
+    assert!(
+        none.err().contains("no axis V; there are X, Y, Z, C"),
+        "{}",
+        none.err()
+    );
+}
+
+#[test]
+fn expectations_of_a_script_fail_the_run() {
+    let folder = Folder::with_program(CORNER);
+    folder.write(
+        "s.txt",
+        "0.2: expect message \"POWER INTERRUPTED\"\n0.3: expect no message\nstart+5: expect X.actual=999±1\n\
+         +0: expect tool=3\n+15: expect run stopped\n+0: key NC_START tap\n",
+    );
+    let (code, report) = report(&folder, "--script s.txt");
+    assert_eq!(code, 1);
+    let failed: Vec<_> = report["failed_expectations"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|failed| failed["line"].as_u64().unwrap())
+        .collect();
+    assert_eq!(failed, [2, 3]);
+    assert_eq!(report["completed"], true, "it runs on");
+    let text = run(&folder, "--script s.txt").err();
+    assert!(
+        text.contains("error: not as expected at 0.300 s\n --> s.txt:2:1"),
+        "{text}"
+    );
+    assert!(text.contains("shown is POWER INTERRUPTED"), "{text}");
+}
+
+#[test]
+fn faults_of_a_script_have_line_and_column() {
+    let folder = Folder::with_program(CORNER);
+    folder.write(
+        "s.txt",
+        "1: jump\n\n2: key NC_HALT tap\nx: ce\n3: expect lamp NO=1\n",
+    );
+    let run = run(&folder, "--script s.txt");
+    assert_eq!(run.code(), 1);
+    let said = run.err();
+    for (place, what) in [
+        ("s.txt:1:4", "`jump` is no event and no command"),
+        ("s.txt:3:4", "no key `NC_HALT`"),
+        ("s.txt:4:1", "`x` is no time"),
+        ("s.txt:5:4", "no lamp `NO`"),
+    ] {
+        assert!(
+            said.contains(place) && said.contains(what),
+            "{place} {what}\n{said}"
+        );
+    }
+    assert!(run.out().is_empty(), "nothing was run");
+}
+
+/// With a script nobody confirms M0; without movement the run hangs and says why.
+#[test]
+fn a_run_that_hangs_says_what_it_waits_for() {
+    let folder = Folder::with_program(CORNER);
+    let (code, stopped) = report(&folder, "--operator start --max-wait 20");
+    assert_eq!(code, 1);
+    assert_eq!(stopped["waits_for"], "the run is stopped: NC start goes on");
+    assert_eq!(stopped["error"]["block"], 8);
+    // The tool change waits for somebody who confirms it.
+    let (code, change) = report(&folder, "--mp 4310.0=0 --operator start");
+    assert_eq!(code, 1);
+    let waits = change["waits_for"].as_str().unwrap();
+    assert!(waits.contains("strobe M2046: the PLC must set M2483"), "{waits}");
+    assert!(waits.contains("CHANGE TOOL, THEN CONFIRM"), "{waits}");
+    let (_, stands) = report(&folder, "--override 0 --max-wait 5");
+    assert!(
+        stands["waits_for"]
+            .as_str()
+            .unwrap()
+            .contains("the feed override is 0 %"),
+        "{stands}"
+    );
+}
+
+#[test]
+fn the_operator_changes_tools() {
+    let folder = Folder::with_program(CORNER);
+    let (code, report) = report(&folder, "--mp 4310.0=0");
+    assert_eq!(code, 0, "{report}");
+    let keys: Vec<_> = report["confirmed"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|confirmed| confirmed["key"].as_str().unwrap())
+        .collect();
+    assert_eq!(keys, ["TOOL_RELEASE", "TOOL_RELEASE", "CONFIRM", "NC_START"]);
+}
+
+#[test]
+fn single_block_and_start_block() {
+    let folder =
+        Folder::with_program("TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX\nL X+10 F1000\nL X+20 F1000\nL X+30");
+    let (code, single) = report(&folder, "--single-block");
+    assert_eq!(code, 0, "{single}");
+    assert!(time_for(&single, "single block") > 0.5);
+    let (code, part) = report(&folder, "--start-block 4");
+    assert_eq!(code, 0, "{part}");
+    assert_eq!(part["blocks_executed"], 2);
+}
+
+#[test]
+fn an_error_of_the_program_is_shown_at_its_block() {
+    let folder = Folder::with_program("L Z+50 R0 FMAX\nL X+10 F1000\nCALL LBL 9\nL X+20");
+    let run = run(&folder, "");
+    assert_eq!(run.code(), 1);
+    assert!(
+        run.err().contains("error: LABEL NUMBER NOT ALLOCATED"),
+        "{}",
+        run.err()
+    );
+    assert!(run.err().contains("main.H:4:1"), "{}", run.err());
+    assert!(
+        run.out()
+            .contains("LABEL NUMBER NOT ALLOCATED at block 3 (line 4)"),
+        "{}",
+        run.out()
+    );
+}
+
+#[test]
+fn the_part_can_be_seen() {
+    let folder = Folder::with_program(CORNER);
+    let run = run(&folder, "--image part.png --path path.csv --size 400x300");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert!(
+        std::fs::read(folder.path("part.png"))
+            .unwrap()
+            .starts_with(b"\x89PNG")
+    );
+    assert!(folder.read("path.csv").lines().count() > 5);
+}
+
+#[test]
+fn what_survives_power_off_is_kept_in_the_folder() {
+    let folder = with_mill("TOOL CALL 3 Z S1500\nFN 0: Q5 = +7.5\nL Z+50 R0 FMAX");
+    let first = folder.bahn("run main.H --machine mill");
+    assert_eq!(first.code(), 0, "{}", first.err());
+    let state = folder.read("mill/state/control.toml");
+    assert!(
+        state.contains("tool = 3\n") && state.contains("\n5 = 7.5\n"),
+        "{state}"
+    );
+    assert!(state.contains("{ X = 200.0, Y = 120.0, Z = 120.0,"), "{state}");
+    // The tool is in the spindle already.
+    folder.write("s.txt", "0.1: expect tool=3\n");
+    let second = folder.bahn("run main.H --machine mill --script s.txt --format json");
+    assert_eq!(second.code(), 0, "{}", second.err());
+    assert_eq!(time_for(&second.json(), "tool change"), 0.0);
+    // Another datum stays.
+    folder.write("d.txt", "20: datum X 100\n+0.1: end\n");
+    let datum = folder.bahn("run --machine mill --script d.txt");
+    assert_eq!(datum.code(), 0, "{}", datum.err());
+    assert!(
+        !folder
+            .read("mill/state/control.toml")
+            .contains("datum = [{ X = 200.0")
+    );
+    // A damaged file is said; the machine runs with the datum of machine.toml.
+    folder.write("mill/state/control.toml", "tool = 3\ntool_length = ");
+    let damaged = folder.bahn("run main.H --machine mill");
+    assert_eq!(damaged.code(), 0, "{}", damaged.err());
+    assert!(
+        damaged.err().contains("control.toml: line 2"),
+        "{}",
+        damaged.err()
+    );
+    assert!(
+        folder
+            .read("mill/state/control.toml")
+            .contains("datum = [{ X = 200.0")
+    );
+    // --fresh leaves no trace.
+    std::fs::remove_dir_all(folder.path("mill/state")).unwrap();
+    assert_eq!(folder.bahn("run main.H --machine mill --fresh").code(), 0);
+    assert!(!folder.path("mill/state").exists());
+}
+
+#[test]
+fn real_time_is_kept_and_lateness_reported() {
+    let folder = Folder::with_program("L Z+50 R0 FMAX");
+    let started = std::time::Instant::now();
+    let (code, report) = report(&folder, "--realtime --max-time 1");
+    assert_eq!(code, 1, "{report}");
+    assert_eq!(report["error"]["message"], "the time allowed is over");
+    assert!(started.elapsed().as_secs_f64() >= 0.99);
+    assert!(number(&report, "/realtime/cycles") >= 333.0);
+    assert!(report["realtime"]["worst_lateness_ms"].is_number());
+}
+
+#[test]
+fn wrong_use() {
+    let folder = Folder::with_program(CORNER);
+    let none = folder.bahn("run main.H --machine nowhere");
+    assert_eq!(none.code(), 2);
+    assert!(none.err().contains("nowhere/machine.toml") && none.err().contains("bahn machine new"));
+    let missing = run(&folder, "--script no.txt");
+    assert_eq!(missing.code(), 2);
+    let mill = machines().join("mill");
+    let program = folder.bahn(&format!("run no.H --machine {} --fresh", mill.display()));
+    assert_eq!(program.code(), 2, "{}", program.err());
+    assert_eq!(run(&folder, "--mp 99999=1").code(), 2);
+}

@@ -1,0 +1,100 @@
+//! `bahn scope`: summaries and drawings of recordings.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
+
+mod support;
+
+use support::{Folder, number};
+
+/// A ramp of 100 mm/s for a second, then still; the marker is set from 0.4 to 0.7 s.
+fn recording() -> Folder {
+    let mut text = "time [s],X.actual [mm],X.lag [mm],M2045\n".to_owned();
+    for step in 0..2000 {
+        let time = f64::from(step) * 0.001;
+        let moved = 100.0 * time.min(1.0);
+        let lag = if time < 1.0 { 2.5 } else { -0.5 };
+        let marker = u8::from((400..700).contains(&step));
+        text += &format!("{time:.3},{moved:.5},{lag:.5},{marker}\n");
+    }
+    let folder = Folder::new();
+    folder.write("r.csv", text);
+    folder
+}
+
+#[test]
+fn the_summary_has_extremes_means_and_edges() {
+    let folder = recording();
+    let run = folder.bahn("scope r.csv --format json --cursor 0.5,1.5");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let json = run.json();
+    assert_eq!(json["signals"][0]["name"], "X.actual");
+    assert_eq!(json["signals"][0]["unit"], "mm");
+    assert_eq!(number(&json, "/signals/1/min"), -0.5);
+    assert_eq!(number(&json, "/signals/1/max"), 2.5);
+    // 2.5 for 1.000 s, -0.5 for 0.999 s.
+    assert!((number(&json, "/signals/1/mean") - (2.5 - 0.5 * 0.999) / 1.999).abs() < 1e-6);
+    assert_eq!(json["signals"][2]["kind"], "logic");
+    assert_eq!(
+        (
+            number(&json, "/signals/2/rising"),
+            number(&json, "/signals/2/falling")
+        ),
+        (1.0, 1.0)
+    );
+    assert!((number(&json, "/signals/2/on_s") - 0.3).abs() < 1e-9);
+    assert_eq!(number(&json, "/cursors/0/values/X.actual"), 50.0);
+    assert_eq!(number(&json, "/difference_s"), 1.0);
+    let part = folder.bahn("scope r.csv --from 1.2 --to 1.5 --signals X.lag");
+    assert!(
+        part.out().contains("1.200 to 1.500 s, 301 samples"),
+        "{}",
+        part.out()
+    );
+}
+
+#[test]
+fn drawings_are_svg_or_png() {
+    let folder = recording();
+    assert_eq!(folder.bahn("scope r.csv -o r.svg --cursor 0.5").code(), 0);
+    let svg = folder.read("r.svg");
+    for part in [
+        "X.actual",
+        "X.lag",
+        "M2045",
+        ">mm<",
+        "time, s",
+        "stroke-dasharray",
+        "viewBox=\"0 0 1200 800\"",
+    ] {
+        assert!(svg.contains(part), "{part}");
+    }
+    assert_eq!(svg.matches("<polyline").count(), 3, "a trace for each signal");
+    let run = folder.bahn("scope r.csv -o r.png --size 600x400 --title Ramp");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let png = std::fs::read(folder.path("r.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG"));
+    // Width and height in the header.
+    assert_eq!(png.get(16..24), Some([0, 0, 2, 88, 0, 0, 1, 144].as_slice()));
+}
+
+#[test]
+fn wrong_recordings_are_refused_with_their_line() {
+    let folder = recording();
+    folder.write("bad.csv", "time [s],M1\n1,0\n2,up\n");
+    let bad = folder.bahn("scope bad.csv");
+    assert_eq!(bad.code(), 2);
+    assert!(
+        bad.err().contains("bad.csv:3: M1: `up` is no number"),
+        "{}",
+        bad.err()
+    );
+    let none = folder.bahn("scope r.csv --signals Y.lag");
+    assert!(
+        none.err().contains("there are X.actual, X.lag, M2045"),
+        "{}",
+        none.err()
+    );
+    let early = folder.bahn("scope r.csv --from 9");
+    assert!(early.err().contains("from 0 to 1.999 s"), "{}", early.err());
+    assert_eq!(folder.bahn("scope r.csv -o r.gif").code(), 2);
+    assert_eq!(folder.bahn("scope r.csv --cursor 1,2,3").code(), 2);
+}
