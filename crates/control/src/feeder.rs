@@ -312,7 +312,12 @@ impl ElementSource for Feeder {
 
     fn resume(&mut self, live: LiveData) {
         match &mut self.refused {
-            Some((_, last)) => *last = true,
+            Some((_, last)) => {
+                *last = true;
+                for (number, value) in live.q_values {
+                    self.interpreter.set_q(number, value);
+                }
+            }
             None => self.interpreter.resume(live),
         }
     }
