@@ -59,8 +59,6 @@ pub(crate) struct AxisUnit {
     last_actual: f64,
     /// Largest lag since power-on, mm.
     pub max_lag: f64,
-    /// Largest distance from the nominal path in this axis, mm.
-    pub max_deviation: f64,
     /// Status marker M2008 ff.: in position after a movement.
     pub in_position: bool,
     /// Software limits of the active traverse range with the AXIS LIMIT of MOD, least and greatest.
@@ -92,7 +90,6 @@ impl AxisUnit {
             travelled: 0.0,
             last_actual: 0.0,
             max_lag: 0.0,
-            max_deviation: 0.0,
             in_position: true,
             limits: [f64::NEG_INFINITY, f64::INFINITY],
             at_limit: None,

@@ -10,7 +10,7 @@ use crate::control::Control;
 use crate::feeder::{Feeder, RunFault};
 use crate::message::Message;
 use crate::panel::Direction;
-use crate::run::{OUTPUTS, Resume, RunState, moves};
+use crate::run::{OUTPUTS, Resume, RunState};
 
 /// So near is no other place, mm or degrees.
 const SAME_MM: f64 = 1e-6;
@@ -84,7 +84,7 @@ impl Control {
         let stands = self.path.speed_mm_s() == 0.0;
         self.axes
             .iter()
-            .filter(|unit| moves(element, unit.axis))
+            .filter(|unit| element.moves(unit.axis))
             .all(|unit| unit.enabled && (unit.servo.closed() || stands))
     }
 
@@ -113,7 +113,7 @@ impl Control {
             return;
         };
         for unit in &mut self.axes {
-            if clamped.contains(unit.axis) && moves(element, unit.axis) {
+            if clamped.contains(unit.axis) && element.moves(unit.axis) {
                 unit.in_position = false;
             }
         }

@@ -69,7 +69,6 @@ impl Control {
                 }
             }
         }
-        self.note_deviation();
         !waits
     }
 
@@ -86,25 +85,6 @@ impl Control {
         }
         if away && self.run.restore.is_none() {
             self.run.restore = Some(Restore::Moving { target });
-        }
-    }
-
-    /// The distance of the actual position from the nominal path: the part of the lag that is across the
-    /// direction of travel, axis by axis. Along the path the lag is no error of the contour.
-    fn note_deviation(&mut self) {
-        let path = |unit: &&crate::axes::AxisUnit| unit.mover == Mover::Path && !unit.axis.is_rotary();
-        let (mut along, mut square) = (0.0, 0.0);
-        for unit in self.axes.iter().filter(path) {
-            along += unit.servo.lag_mm() * unit.speed;
-            square += unit.speed * unit.speed;
-        }
-        if square <= 0.0 {
-            return;
-        }
-        let factor = along / square;
-        for unit in self.axes.iter_mut().filter(|unit| path(&&**unit)) {
-            let across = unit.servo.lag_mm() - factor * unit.speed;
-            unit.max_deviation = unit.max_deviation.max(across.abs());
         }
     }
 }

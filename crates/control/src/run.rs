@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bahn_interpreter::{Rules, Settings};
 use bahn_motion::FunctionOutput;
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, LiveData, PathElement, Position};
+use bahn_path::{Axis, LiveData, Position};
 use bahn_program::Program;
 
 use crate::axes::{AxisUnit, Mover};
@@ -486,18 +486,6 @@ impl Control {
                 if end.is_finite() { end - unit.nominal } else { 0.0 }
             }
             _ => 0.0,
-        }
-    }
-}
-
-/// Whether an element moves an axis.
-pub(crate) fn moves(element: &PathElement, axis: Axis) -> bool {
-    let (from, to) = (element.start[axis], element.end[axis]);
-    match &element.curve {
-        bahn_path::Curve::Hold => false,
-        bahn_path::Curve::Line => to.is_finite() && from != to,
-        bahn_path::Curve::Arc(arc) => {
-            to.is_finite() && (from != to || axis == arc.plane.first || axis == arc.plane.second)
         }
     }
 }

@@ -36,8 +36,6 @@ pub struct AxisState {
     pub enabled: bool,
     /// In position.
     pub in_position: bool,
-    /// Largest distance of the actual position from the nominal path in this axis, mm or degrees.
-    pub max_deviation: f64,
 }
 
 /// The state of the control.
@@ -106,7 +104,6 @@ impl Control {
                         closed: unit.servo.closed(),
                         enabled: unit.enabled,
                         in_position: unit.in_position,
-                        max_deviation: unit.max_deviation,
                     }
                 })
                 .collect(),

@@ -4,9 +4,7 @@ mod recall;
 
 use std::collections::VecDeque;
 
-use bahn_path::{
-    At, Axis, AxisSet, Curve, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction,
-};
+use bahn_path::{At, AxisSet, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
 
 use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
 use crate::gate::{Gate, place};
@@ -556,15 +554,5 @@ fn position(item: &Item, rest: f64) -> Position {
 
 /// Whether an element moves one of the axes.
 fn moves(element: &PathElement, axes: AxisSet) -> bool {
-    if axes.is_empty() {
-        return false;
-    }
-    let turns = |axis: Axis| match &element.curve {
-        Curve::Hold => false,
-        Curve::Line => element.start[axis] != element.end[axis] && !element.end[axis].is_nan(),
-        Curve::Arc(arc) => {
-            axis == arc.plane.first || axis == arc.plane.second || element.start[axis] != element.end[axis]
-        }
-    };
-    axes.iter().any(turns)
+    axes.iter().any(|axis| element.moves(axis))
 }

@@ -73,6 +73,18 @@ impl PathElement {
         self.curve.length(&self.start, &self.end)
     }
 
+    /// Whether an axis moves.
+    pub fn moves(&self, axis: Axis) -> bool {
+        let (from, to) = (self.start[axis], self.end[axis]);
+        match &self.curve {
+            Curve::Hold => false,
+            Curve::Line => to.is_finite() && from != to,
+            Curve::Arc(arc) => {
+                to.is_finite() && (from != to || axis == arc.plane.first || axis == arc.plane.second)
+            }
+        }
+    }
+
     /// The functions that go out with the element.
     pub fn functions(&self) -> &[TechnologyFunction] {
         self.functions.as_deref().unwrap_or_default()
