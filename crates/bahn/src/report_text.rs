@@ -159,12 +159,13 @@ pub(crate) fn list<T>(
     }
 }
 
-/// The files that the output options name.
-pub(crate) fn written(output: &OutputOptions) -> Vec<String> {
+/// The files that the output options name; picture and mesh when the `part` was drawn.
+pub(crate) fn written(output: &OutputOptions, part: bool) -> Vec<String> {
     let paths = output.path.iter().map(|file| match file {
         PathFile::Csv(path) | PathFile::Svg(path) => path,
     });
-    let all = paths.chain(&output.image).chain(&output.mesh);
+    let of_the_part = output.image.iter().chain(&output.mesh).filter(|_| part);
+    let all = paths.chain(of_the_part);
     all.map(|path| path.display().to_string()).collect()
 }
 

@@ -232,18 +232,19 @@ impl TestRun {
         if outcome == Outcome::Interrupted {
             diagnostics::print_line("interrupted: the report so far");
         }
-        print_report(&report, options)?;
         let projection = if list.graphics().third_angle {
             Projection::ThirdAngle
         } else {
             Projection::FirstAngle
         };
-        cutting::write(
+        let drawn = cutting::write(
             part.as_ref(),
             &options.output,
             &format!("PGM {}", report.program),
             projection,
-        )?;
+        );
+        print_report(&report, options, drawn.is_ok())?;
+        drawn?;
         Ok(outcome)
     }
 }
@@ -287,12 +288,12 @@ pub(crate) fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
     });
 }
 
-fn print_report(report: &Report, options: &TestOptions) -> Result<(), UsageError> {
+fn print_report(report: &Report, options: &TestOptions, drawn: bool) -> Result<(), UsageError> {
     match options.format {
         Format::Text => console::print(&report_text::render(
             report,
             options.model,
-            &report_text::written(&options.output),
+            &report_text::written(&options.output, drawn),
         )),
         Format::Json => {
             let json = serde_json::to_string_pretty(report)

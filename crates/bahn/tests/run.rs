@@ -415,3 +415,18 @@ fn wrong_use() {
     assert_eq!(program.code(), 2, "{}", program.err());
     assert_eq!(run(&folder, "--mp 99999=1").code(), 2);
 }
+
+/// Without BLK FORM there is no part: the report comes, does not say that the picture is written, and wrong
+/// use it is.
+#[test]
+fn no_picture_without_a_blank() {
+    let folder = Folder::with_program("TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX M3\nL X+0 Y+0 FMAX M2");
+    let run = run(&folder, "--image part.png");
+    assert_eq!(run.code(), 2);
+    assert!(
+        run.out().contains("completed") && !run.out().contains("part.png"),
+        "{}",
+        run.out()
+    );
+    assert!(run.err().contains("no BLK FORM"), "{}", run.err());
+}

@@ -277,14 +277,15 @@ fn finish(
     let result = failure
         .as_ref()
         .map_or("completed", |error| error.message.as_str());
-    print_report(&report, result, model, options)?;
     let projection = if machine.parameters.graphics().third_angle {
         Projection::ThirdAngle
     } else {
         Projection::FirstAngle
     };
     let title = format!("PGM {}", programs.main_name().unwrap_or_default());
-    cutting::write(part.as_ref(), &options.output, &title, projection)?;
+    let drawn = cutting::write(part.as_ref(), &options.output, &title, projection);
+    print_report(&report, result, model, options, drawn.is_ok())?;
+    drawn?;
     Ok(outcome)
 }
 
@@ -351,13 +352,14 @@ fn print_report(
     result: &str,
     model: bahn_parameters::ControlModel,
     options: &RunMachineOptions,
+    drawn: bool,
 ) -> Result<(), UsageError> {
     if options.format == Format::Json {
         let json = serde_json::to_string_pretty(report)
             .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
         return console::print(&(json + "\n"));
     }
-    let mut written = report_text::written(&options.output);
+    let mut written = report_text::written(&options.output, drawn);
     let files = options.recording.record.iter().chain(&options.run.log);
     written.extend(files.map(|path| path.display().to_string()));
     console::print(&report.text(model, result, &written))
