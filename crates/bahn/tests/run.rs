@@ -430,3 +430,41 @@ fn no_picture_without_a_blank() {
     );
     assert!(run.err().contains("no BLK FORM"), "{}", run.err());
 }
+
+/// A machine with an axis-error compensation: a table that is not there, or wrong, is refused with its line;
+/// with a right one the machine runs.
+#[test]
+fn compensation_tables_lie_in_the_folder() {
+    let folder = with_mill("TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX\nL X+100 Y+0 FMAX M2");
+    let machine = folder.path("mill/machine.toml");
+    let text = std::fs::read_to_string(&machine).unwrap();
+    std::fs::write(
+        &machine,
+        text.replace("plant =", "compensation = \"AXES.CMA\"\nplant ="),
+    )
+    .unwrap();
+    std::fs::write(folder.path("mill/AXES.CMA"), "0 X=SCREW\nACTIVE 0\n").unwrap();
+    let run = |mp: &str| {
+        folder.bahn(&format!(
+            "run main.H --machine mill --fresh {mp} --record o.csv --signals X.actual,X.nominal,X.lag"
+        ))
+    };
+    let missing = run("");
+    assert_eq!(missing.code(), 1);
+    assert!(missing.err().contains("SCREW.COM"), "{}", missing.err());
+    std::fs::write(
+        folder.path("mill/SCREW.COM"),
+        "SCREW MM DATUM 0 DIST 16 X\n0 X=0\n1 X=nonsense\n",
+    )
+    .unwrap();
+    let wrong = run("");
+    assert_eq!(wrong.code(), 1);
+    assert!(wrong.err().contains("SCREW.COM:3"), "{}", wrong.err());
+    std::fs::write(
+        folder.path("mill/SCREW.COM"),
+        "SCREW MM DATUM 0 DIST 16 X\n0 X=0\n1 X=0.05\n",
+    )
+    .unwrap();
+    let right = run("--mp 730=%00001");
+    assert_eq!(right.code(), 0, "{}", right.err());
+}

@@ -25,6 +25,9 @@ pub struct MachineFolder {
     pub plc_messages: Option<String>,
     /// Texts of the PLC dialogues.
     pub plc_dialogues: Option<String>,
+    /// Assignment of the axis-error compensation (.CMA); its tables NAME.COM lie beside it
+    /// [000:3770-3869].
+    pub compensation: Option<String>,
     /// Description of the simulated machine.
     pub plant: String,
     /// Tool table.
@@ -99,6 +102,7 @@ impl MachineFolder {
             plc: needed("plc"),
             plc_messages: optional("plc_messages"),
             plc_dialogues: optional("plc_dialogues"),
+            compensation: optional("compensation"),
             plant: needed("plant"),
             tools: optional("tools"),
             programs: optional("programs").unwrap_or_else(|| "programs".to_owned()),

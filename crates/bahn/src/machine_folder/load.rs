@@ -1,10 +1,10 @@
 //! Everything that belongs to a machine, from its folder; all faults of all files at once.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::Tool;
+use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, NcFiles, Tool};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::{Axis, Position};
@@ -30,6 +30,8 @@ pub(crate) struct LoadedMachine {
     pub plant: Machine,
     /// `None` when tools come from TOOL DEF.
     pub tools: Option<BTreeMap<u32, Tool>>,
+    /// Files that PLC modules and compensation read.
+    pub files: NcFiles,
     /// What is accepted, but looks wrong.
     pub warnings: Vec<FileFault>,
 }
@@ -105,6 +107,7 @@ impl Loader<'_> {
         let tools = self.tools(&folder);
         let plc_messages = self.texts("plc_messages", folder.plc_messages.as_deref(), MESSAGES);
         let plc_dialogues = self.texts("plc_dialogues", folder.plc_dialogues.as_deref(), 4096);
+        let files = self.compensation(&folder);
         let parameters = self.parameters(&folder, model?);
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
@@ -117,6 +120,7 @@ impl Loader<'_> {
             plc_dialogues: plc_dialogues?,
             plant,
             tools: tools?,
+            files: files?,
             warnings: Vec::new(),
             folder,
         })
@@ -225,6 +229,57 @@ impl Loader<'_> {
                 None
             }
         }
+    }
+
+    /// The assignment of the axis-error compensation with its tables.
+    fn compensation(&mut self, folder: &MachineFolder) -> Option<NcFiles> {
+        let mut files = NcFiles::default();
+        let Some(name) = &folder.compensation else {
+            return Some(files);
+        };
+        let (path, bytes) = self.read("compensation", name)?;
+        let text = decode(&bytes);
+        let assignment = CompensationAssignment::read(&text);
+        let assignment = self.compensation_read(&path, &text, assignment)?;
+        let names: BTreeSet<String> = assignment.lines.iter().flatten().flatten().cloned().collect();
+        let beside = Path::new(name).parent().unwrap_or(Path::new(""));
+        let mut complete = true;
+        for table in names {
+            let file = beside.join(format!("{table}.COM"));
+            let table_read = self.read("compensation", &file.display().to_string());
+            let table_read = table_read.and_then(|(path, bytes)| {
+                let text = decode(&bytes);
+                let read = CompensationTable::read(&text);
+                self.compensation_read(&path, &text, read)
+            });
+            match table_read {
+                Some(read) => drop(files.compensation_tables.insert(table, read)),
+                None => complete = false,
+            }
+        }
+        files.compensation = Some(assignment);
+        complete.then_some(files)
+    }
+
+    fn compensation_read<T>(
+        &mut self,
+        path: &Path,
+        text: &str,
+        read: Result<T, CompensationError>,
+    ) -> Option<T> {
+        let fault = match read {
+            Ok(read) => return Some(read),
+            Err(fault) => fault,
+        };
+        let place = (fault.line, None);
+        self.faults.push(file_fault(
+            path,
+            text,
+            place,
+            "the compensation is wrong",
+            fault.what,
+        ));
+        None
     }
 
     fn texts(&mut self, key: &str, name: Option<&str>, most: usize) -> Option<Vec<String>> {

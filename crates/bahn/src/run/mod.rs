@@ -25,7 +25,7 @@ pub(crate) use options::{EXAMPLES, RunMachineOptions};
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_control::{Control, Mode, NcFiles, Position0, Remembered, Setup, Signal};
+use bahn_control::{Control, Mode, Position0, Remembered, Setup, Signal};
 use bahn_exchange::Exchange;
 use bahn_machine::Machine;
 use bahn_workpiece::Projection;
@@ -95,7 +95,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         plc_dialogues: machine.plc_dialogues.clone(),
         tools: machine.tools.clone(),
         programs: Arc::clone(&programs) as Arc<dyn bahn_control::Programs>,
-        files: NcFiles::default(),
+        files: machine.files.clone(),
         remembered,
         exchange,
     });
