@@ -265,6 +265,15 @@ fn spindle(spindle: &SpindleParameters, axes: &[AxisParameters], report: &mut Re
             "000:5522-5524",
             || format!("{speeds:?} rpm"),
         );
+        let [least, greatest] = spindle.tapping.override_percent;
+        let rule = "the feed override stops every tapping cycle";
+        report.check(
+            greatest > 0.0,
+            (7110, Some(1), 183),
+            rule,
+            "000:6094-6098",
+            || format!("{least} to {greatest} %"),
+        );
         let taken = axes.iter().find(|axis| axis.output.output == 5);
         let rule = "an axis has the output of the spindle";
         report.check(

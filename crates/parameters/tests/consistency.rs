@@ -25,7 +25,11 @@ fn the_reference_lists_go_together() {
 
 #[test]
 fn every_rule_finds_what_breaks_it() {
-    let rules: [(&[&str], &str); 16] = [
+    let rules: [(&[&str], &str); 17] = [
+        (
+            &["7110.0=0", "7110.1=0"],
+            "MP7110.1 the feed override stops every tapping cycle",
+        ),
         (
             &["910.1=-500"],
             "MP910.1 the axis cannot move between its software limits",
