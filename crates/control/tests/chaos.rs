@@ -1,6 +1,6 @@
 //! Deterministic simulation with faults: random keys, commands, overrides and faults of the machine in any
-//! order. Whatever comes, nothing panics, nothing drives into a hard stop unhurt by the monitoring, voltages
-//! stay within 10 V, and where the control gives up the axes come to rest.
+//! order. Whatever comes, nothing panics, positions stay numbers, voltages stay within 10 V; without faults no
+//! axis passes its software limits, and after EMERGENCY STOP all comes to rest.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 mod support;

@@ -1,41 +1,11 @@
 //! Nothing is allocated in the servo cycle.
-#![allow(unsafe_code, reason = "an allocator that counts is what the test is about")]
 
 mod common;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
+use allocation_counter::measure;
 use bahn_parameters::{ControlModel::Tnc415b, ParameterList};
 use bahn_servo::{Encoder, Method, Rotation, Spindle, Timing, Way};
 use common::Bench;
-
-thread_local! {
-    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: every call goes to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller's promises are the system allocator's.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promises are the system allocator's.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-fn allocations() -> usize {
-    ALLOCATIONS.with(Cell::get)
-}
 
 #[test]
 fn the_cycle_of_an_axis_does_not_allocate() {
@@ -43,25 +13,27 @@ fn the_cycle_of_an_axis_does_not_allocate() {
         Tnc415b,
         &["711.0=0.003", "712.0=0.001", "1511.0=6000", "1350.0=3"],
     );
-    assert!(allocations() > 0, "the counter counts");
-    let before = allocations();
-    bench.axis.set_circular(true);
-    for method in [Method::Lag, Method::Precontrol] {
-        bench.axis.set_method(method);
-        for feed in [3000.0, -5000.0, 0.0] {
-            bench.run(feed, 0.3);
-            bench.encoder.mark = Some(bench.encoder.count);
-            bench.axis.compensate_offset();
-            bench.axis.adjust_offset();
+    let counts = measure(|| drop(std::hint::black_box(Box::new(1))));
+    assert_eq!(counts.count_total, 1, "the allocator counts");
+    let allocated = measure(|| {
+        bench.axis.set_circular(true);
+        for method in [Method::Lag, Method::Precontrol] {
+            bench.axis.set_method(method);
+            for feed in [3000.0, -5000.0, 0.0] {
+                bench.run(feed, 0.3);
+                bench.encoder.mark = Some(bench.encoder.count);
+                bench.axis.compensate_offset();
+                bench.axis.adjust_offset();
+            }
         }
-    }
-    // Into a fault and out of it.
-    bench.blocked = true;
-    bench.run(9000.0, 0.2);
-    bench.axis.acknowledge();
-    bench.run(9000.0, 1.0);
+        // Into a fault and out of it.
+        bench.blocked = true;
+        bench.run(9000.0, 0.2);
+        bench.axis.acknowledge();
+        bench.run(9000.0, 1.0);
+    });
     assert!(bench.axis.fault().is_some());
-    assert_eq!(allocations() - before, 0);
+    assert_eq!(allocated.count_total, 0);
 }
 
 #[test]
@@ -69,19 +41,20 @@ fn the_cycle_of_the_spindle_does_not_allocate() {
     let parameters = ParameterList::reference(Tnc415b).spindle_parameters();
     let mut spindle = Spindle::new(parameters, Timing::of(Tnc415b));
     let mut encoder = Encoder::default();
-    let before = allocations();
-    for round in 0..4 {
-        let gear = spindle.gear_for(1000.0).unwrap();
-        spindle.set_speed(1000.0, gear);
-        spindle.rotate(Rotation::M3);
-        for step in 0..2000 {
-            if step == 1000 {
-                spindle.orient(f64::from(round), 0.0, Way::Shortest);
+    let allocated = measure(|| {
+        for round in 0..4 {
+            let gear = spindle.gear_for(1000.0).unwrap();
+            spindle.set_speed(1000.0, gear);
+            spindle.rotate(Rotation::M3);
+            for step in 0..2000 {
+                if step == 1000 {
+                    spindle.orient(f64::from(round), 0.0, Way::Shortest);
+                }
+                encoder.count += (spindle.step() * 1000.0) as i64;
+                encoder.mark = (step % 100 == 0).then_some(encoder.count);
+                spindle.measure(encoder);
             }
-            encoder.count += (spindle.step() * 1000.0) as i64;
-            encoder.mark = (step % 100 == 0).then_some(encoder.count);
-            spindle.measure(encoder);
         }
-    }
-    assert_eq!(allocations() - before, 0);
+    });
+    assert_eq!(allocated.count_total, 0);
 }
