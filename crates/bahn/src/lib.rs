@@ -13,6 +13,7 @@
 //! - `check`, `format`, `explain`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
 //!   `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
+//! - `paragraph`: labelled text in 80 columns;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
@@ -28,6 +29,7 @@ mod format;
 mod interrupt;
 mod machine_folder;
 mod mp;
+mod paragraph;
 mod path_csv;
 mod path_svg;
 mod plc;
