@@ -47,7 +47,11 @@ mod tests {
         assert_eq!(labelled("note:", ""), "");
         let long = labelled("note:", &"word ".repeat(30));
         assert!(long.lines().all(|line| line.chars().count() <= WIDTH));
-        assert!(long.lines().skip(1).all(|line| line.starts_with(&" ".repeat(INDENT))));
+        assert!(
+            long.lines()
+                .skip(1)
+                .all(|line| line.starts_with(&" ".repeat(INDENT)))
+        );
         assert_eq!(long.split_whitespace().count(), 31, "nothing is lost");
         let wide = labelled("", &"x".repeat(200));
         assert_eq!(wide.trim().len(), 200, "a word is never broken");

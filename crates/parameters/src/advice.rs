@@ -111,14 +111,20 @@ mod tests {
             for row in Definition::all(model) {
                 let advice = Advice::of(model, row.id.number);
                 let does = advice.map_or("", |advice| advice.does);
-                assert!(does.len() > 20 && does.ends_with('.'), "{} of {model}: {does}", row.id);
+                assert!(
+                    does.len() > 20 && does.ends_with('.'),
+                    "{} of {model}: {does}",
+                    row.id
+                );
             }
         }
         for (table, _) in TABLES {
             for advice in rows(table) {
-                let known = ControlModel::ALL
-                    .iter()
-                    .any(|model| Definition::all(*model).iter().any(|row| row.id.number == advice.number));
+                let known = ControlModel::ALL.iter().any(|model| {
+                    Definition::all(*model)
+                        .iter()
+                        .any(|row| row.id.number == advice.number)
+                });
                 assert!(known, "MP{}", advice.number);
             }
         }
@@ -187,16 +193,26 @@ mod tests {
                 .filter(quantity);
             for row in servo {
                 let advice = Advice::of(model, row.id.number);
-                assert!(advice.is_some_and(|advice| !advice.too_small.is_empty()), "{}", row.id);
+                assert!(
+                    advice.is_some_and(|advice| !advice.too_small.is_empty()),
+                    "{}",
+                    row.id
+                );
             }
         }
         let servo = Definition::all(ControlModel::Tnc155).iter().filter(|row| {
-            let named = ["m/min", "m/s^2", "V", "mm"].iter().any(|unit| row.unit.starts_with(unit));
+            let named = ["m/min", "m/s^2", "V", "mm"]
+                .iter()
+                .any(|unit| row.unit.starts_with(unit));
             named && !(126..=156).contains(&row.id.number) && !(186..=189).contains(&row.id.number)
         });
         for row in servo.filter(quantity) {
             let advice = Advice::of(ControlModel::Tnc155, row.id.number);
-            assert!(advice.is_some_and(|advice| !advice.too_small.is_empty()), "{}", row.id);
+            assert!(
+                advice.is_some_and(|advice| !advice.too_small.is_empty()),
+                "{}",
+                row.id
+            );
         }
     }
 
@@ -206,7 +222,10 @@ mod tests {
         use ControlModel::{Tnc155, Tnc360, Tnc415b, Tnc425};
         let related = |model, number| Advice::of(model, number).unwrap().related.clone();
         assert!(related(Tnc425, 210).contains(&1950) && !related(Tnc415b, 210).contains(&1950));
-        assert!(!related(Tnc415b, 330).contains(&340), "MP340 is one of the TNC 407");
+        assert!(
+            !related(Tnc415b, 330).contains(&340),
+            "MP340 is one of the TNC 407"
+        );
         assert!(Advice::of(Tnc360, 1060).is_some() && Advice::of(Tnc360, 5010).is_some());
         assert!(Advice::of(Tnc155, 54).is_some() && Advice::of(Tnc155, 1060).is_none());
         assert_ne!(Advice::of(Tnc155, 10), Advice::of(Tnc415b, 10));

@@ -139,7 +139,9 @@ mod tests {
     fn lines_are_found_in_their_chapters() {
         assert_eq!(
             chapters("000:4930"),
-            ["Technical manual TNC 407/415/425, chapter 4 Machine integration, 3.2 Servo positioning in TNC controls"]
+            [
+                "Technical manual TNC 407/415/425, chapter 4 Machine integration, 3.2 Servo positioning in TNC controls"
+            ]
         );
         assert_eq!(
             chapters("[003:4930-4960]"),

@@ -42,7 +42,7 @@ pub use error::{ListError, ParameterError};
 pub use fn14::error_text;
 pub use limits::{Limits, MachineZero};
 pub use list::ParameterList;
-pub use message::MessageId;
+pub use message::{MessageCode, MessageId};
 pub use model::{ControlModel, UnknownModel};
 pub use settings::{
     AxisParameters, CompensationParameters, ContourPocket, DatumParameters, Decimal, DigitalSpeedParameters,

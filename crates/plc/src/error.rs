@@ -253,6 +253,8 @@ pub struct Diagnostic {
     pub column: u32,
     /// What is wrong here; begins with the text of the error.
     pub message: String,
+    /// Line and column of the bracket, structure or table that is still open, where that is what is wrong.
+    pub opened: Option<(u32, u32)>,
 }
 
 impl fmt::Display for Diagnostic {
@@ -280,7 +282,10 @@ mod tests {
         assert_eq!(numbers, expected);
         for error in PlcError::ALL {
             for sentence in [error.cause(), error.cure()] {
-                assert!(sentence.ends_with('.') && sentence.len() > 10, "{error}: {sentence}");
+                assert!(
+                    sentence.ends_with('.') && sentence.len() > 10,
+                    "{error}: {sentence}"
+                );
             }
             assert_eq!(
                 error.number() >= 50,

@@ -53,8 +53,15 @@ impl Source {
 
     /// Prints errors and warnings as rustc does.
     pub fn print_faults(&self) {
-        for fault in self.errors().into_iter().chain(self.warnings()) {
-            fault.print();
+        let errors = self
+            .compilation
+            .errors
+            .iter()
+            .map(|fault| (Severity::Error, fault));
+        let warnings = self.compilation.warnings.iter();
+        for (severity, fault) in errors.chain(warnings.map(|fault| (Severity::Warning, fault))) {
+            let opened = fault.opened.map(|place| self.marked(&fault.file, place));
+            self.fault(severity, fault).print_with(opened.as_ref());
         }
     }
 
@@ -79,18 +86,6 @@ impl Source {
     }
 
     fn fault(&self, severity: Severity, fault: &Fault) -> FileFault {
-        let file = self.compilation.files.iter().find(|file| file.name == fault.file);
-        let line = (fault.line as usize).saturating_sub(1);
-        let text = file
-            .and_then(|file| file.lines.get(line))
-            .cloned()
-            .unwrap_or_default();
-        let start = fault.column.saturating_sub(1) as usize;
-        let length = text
-            .chars()
-            .skip(start)
-            .take_while(|c| !c.is_whitespace())
-            .count();
         let detail = fault
             .message
             .strip_prefix(fault.error.text())
@@ -99,13 +94,25 @@ impl Source {
             severity,
             title: format!("{} {}", fault.error.number(), fault.error.text()),
             path: self.folder.path(&fault.file),
-            marked: Marked {
-                line: fault.line,
-                text,
-                columns: Some((fault.column.max(1), u32::try_from(length).unwrap_or(1).max(1))),
-            },
+            marked: self.marked(&fault.file, (fault.line, fault.column)),
             label: detail.trim_start_matches(':').trim().to_owned(),
-            help: None,
+            help: Some(format!("{} {}", fault.error.cause(), fault.error.cure())),
+        }
+    }
+
+    /// The word of a file that begins at line and column.
+    fn marked(&self, file: &str, (line, column): (u32, u32)) -> Marked {
+        let file = self.compilation.files.iter().find(|own| own.name == file);
+        let index = (line as usize).saturating_sub(1);
+        let text = file.and_then(|file| file.lines.get(index)).cloned();
+        let text = text.unwrap_or_default();
+        let start = column.saturating_sub(1) as usize;
+        let word = text.chars().skip(start).take_while(|c| !c.is_whitespace());
+        let length = u32::try_from(word.count()).unwrap_or(1).max(1);
+        Marked {
+            line,
+            text,
+            columns: Some((column.max(1), length)),
         }
     }
 }

@@ -80,6 +80,9 @@ pub(crate) struct RunControl {
     /// Events at times, and expectations.
     #[arg(long, value_name = "SCRIPT", value_hint = ValueHint::FilePath)]
     pub script: Option<PathBuf>,
+    /// Write the expectations of the script as JUnit XML, for build servers.
+    #[arg(long, value_name = "OUT.xml", value_hint = ValueHint::FilePath, requires = "script")]
+    pub junit: Option<PathBuf>,
     /// Write what was done to control and machine, to be repeated with --replay.
     #[arg(long, value_name = "LOG", value_hint = ValueHint::FilePath)]
     pub log: Option<PathBuf>,
