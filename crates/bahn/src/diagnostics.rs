@@ -234,6 +234,8 @@ mod tests {
                 (format!("{c}{c}L {c}X"), Some((2, 2))),
                 (format!("L {c}"), Some((5, 9))),
                 (format!("{c} {c}"), None),
+                (format!("{c}").repeat(200), Some((150, 40))),
+                (format!("{c}L ").repeat(60), Some((190, 3))),
             ] {
                 let marked = Marked {
                     line: u32::MAX,

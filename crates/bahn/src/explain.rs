@@ -78,6 +78,7 @@ impl Found {
         for word in words(text) {
             if word == "#" {
                 axis = rest.next_if(|word| is_axis(word)).cloned();
+                let _ = rest.next_if(|word| *word == "#");
             } else if rest.next()? != &word {
                 return None;
             }
@@ -161,7 +162,7 @@ fn words(text: &str) -> Vec<String> {
     let words = upper.split(|c: char| c.is_whitespace() || matches!(c, '.' | ',' | ':' | '/' | '\''));
     let parts = words.flat_map(|word| match word.strip_suffix('-') {
         // The sign of a limit switch.
-        Some(letter) if letter.chars().count() == 1 => vec![word],
+        Some(letter) if letter.chars().count() <= 2 => vec![word],
         _ => word.split('-').collect(),
     });
     parts.filter(|word| !word.is_empty()).map(str::to_owned).collect()

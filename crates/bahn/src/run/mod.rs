@@ -7,6 +7,7 @@
 //!   clock on the wall;
 //! - `report`: what is said in the end.
 
+mod cause;
 mod deviation;
 mod expectation;
 mod log;

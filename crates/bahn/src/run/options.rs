@@ -44,7 +44,8 @@ without it and leaves no trace.
 
 JSON report (--format json): the fields of `bahn test`; machining_time_s is that of the machine with all
 waits. Without a program, or when its run did not begin, only completed and error. machine, model, power_up_s, reference_s; times (what, count, time_s); axes by letter (max_lag,
-lag_block, max_deviation, deviation_block; mm, degrees; null where there is none), contour_deviation_mm;
+lag_block, max_deviation, deviation_block; mm, degrees; null where there is none), contour_deviation_mm,
+contour_deviation_cause (in words), contour_deviation_block;
 plc (max_percent, mean_percent of the nominal time); messages (time_s, text, place, flashing,
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
 failed_expectations (line, text, actual); realtime (null, or cycles, late_cycles, worst_lateness_ms).
