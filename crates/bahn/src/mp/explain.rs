@@ -1,6 +1,6 @@
 //! `bahn mp explain`: what a parameter means.
 
-use bahn_parameters::{Definition, chapters};
+use bahn_parameters::{Definition, chapters, with_chapters};
 
 use super::list::Row;
 use super::options::ExplainOptions;
@@ -74,7 +74,7 @@ fn text(first: &Row, rows: &[Row], list: &str, style: Style) -> String {
     );
     line("needs:", reaction(first.reaction));
     line("versions:", first.versions);
-    line("note:", first.notes);
+    line("note:", &with_chapters(first.notes));
     text += &labelled_lines("source:", &chapters(first.source));
     text += &format!("  in the {list}:\n");
     let index_width = rows

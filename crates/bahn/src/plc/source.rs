@@ -22,7 +22,7 @@ impl Source {
     /// Compiles the main file and what it links.
     pub fn compile(options: &ProgramOptions) -> Result<Source, UsageError> {
         // An unreadable main file is wrong use; a linked one is an error of the program.
-        files::read_table(&options.file)?;
+        let bytes = files::read_table(&options.file)?;
         let parameters = settings::parameter_list(options.model, options.parameters.as_deref())?;
         // Only the list of a machine says that it has an EPROM.
         let memory = match (&options.parameters, parameters.get(4010, 0)) {
@@ -31,16 +31,32 @@ impl Source {
         };
         let mut compile_options = Options::for_model(options.model).stored_in(memory);
         compile_options.strict = options.strict;
-        Ok(Source::compile_for(&options.file, parameters, compile_options))
+        Ok(Source::compile_bytes(
+            &options.file,
+            Some(bytes),
+            parameters,
+            compile_options,
+        ))
     }
 
     /// Compiles the main file for a machine.
     pub fn compile_for(file: &Path, parameters: ParameterList, options: Options) -> Source {
+        Source::compile_bytes(file, None, parameters, options)
+    }
+
+    /// Compiles a main file that was read already: a pipe can be read only once.
+    fn compile_bytes(
+        file: &Path,
+        bytes: Option<Vec<u8>>,
+        parameters: ParameterList,
+        options: Options,
+    ) -> Source {
         let main = file.file_name().unwrap_or_default().to_string_lossy();
         let memory = options.memory;
         let folder = Folder {
             folder: file.parent().map(Path::to_owned).unwrap_or_default(),
             main: main.to_string(),
+            bytes,
             memory,
         };
         let compilation = Compilation::compile(&folder, &main, options);
@@ -121,6 +137,8 @@ impl Source {
 struct Folder {
     folder: PathBuf,
     main: String,
+    /// Of the main file, where it was read before.
+    bytes: Option<Vec<u8>>,
     memory: ProgramMemory,
 }
 
@@ -138,7 +156,8 @@ const EPROM: &str = "EPROM";
 
 impl SourceFiles for Folder {
     fn read(&self, name: &str) -> Option<Vec<u8>> {
-        read_in(&self.folder, name)
+        let main = self.bytes.as_ref().filter(|_| name == self.main);
+        main.cloned().or_else(|| read_in(&self.folder, name))
     }
 
     /// The main file runs from wherever it is.

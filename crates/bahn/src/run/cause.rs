@@ -17,6 +17,8 @@ const ACCELERATION_PART: f64 = 0.05;
 const KV_RATIO: f64 = 1.03;
 /// Part of the path speed from which an axis takes part in the movement.
 const MOVING_PART: f64 = 0.1;
+/// Contour cycles before the nearest point whose bends still show in the lags.
+const NEAR: usize = 32;
 /// Largest radius that counts as a curve, mm.
 const RADIUS_MAX: f64 = 5000.0;
 
@@ -25,6 +27,8 @@ pub(super) struct Moment<'a> {
     pub letters: &'a [char],
     /// Nominal points of the contour cycles before and after the nearest one, the newest last, mm.
     pub path: &'a [[f64; 3]],
+    /// Index of the nearest of them.
+    pub nearest: usize,
     /// From the nearest point to the actual position, mm.
     pub across: [f64; 3],
     /// Nominal less actual position, mm.
@@ -91,10 +95,16 @@ impl Moment<'_> {
         }
     }
 
-    /// The sharpest corner of the window, degrees.
+    /// The path that shapes the lags of the moment.
+    fn near(&self) -> &[[f64; 3]] {
+        let from = self.nearest.saturating_sub(NEAR);
+        self.path.get(from..).unwrap_or_default()
+    }
+
+    /// The sharpest corner nearby, degrees.
     fn corner(&self) -> Option<f64> {
         let ways: Vec<[f64; 3]> = self
-            .path
+            .near()
             .windows(2)
             .filter_map(|pair| match pair {
                 [from, to] => Some(difference(*to, *from)),
@@ -109,21 +119,24 @@ impl Moment<'_> {
                 _ => 0.0,
             })
             .collect();
-        let turn = |at: usize| turns.get(at).copied().unwrap_or(0.0);
-        let sharp = (0..turns.len()).filter(|at| {
-            let beside = turn(at.wrapping_sub(1)).min(turn(at + 1));
-            let own = turn(*at);
-            own >= CORNER_DEGREES && own <= REVERSAL_DEGREES && own > CORNER_RATIO * beside
+        // A corner lies between two points of the path: its turn is that of one or of two neighbours.
+        let sharp = turns.windows(2).enumerate().filter_map(|(at, pair)| {
+            let own: f64 = pair.iter().sum();
+            let beside = [at.checked_sub(1), Some(at + 2)].into_iter().flatten();
+            let beside = beside.filter_map(|at| turns.get(at)).copied().reduce(f64::max)?;
+            let is_corner = (CORNER_DEGREES..=REVERSAL_DEGREES).contains(&own) && own > CORNER_RATIO * beside;
+            is_corner.then_some(own)
         });
-        sharp.map(turn).max_by(f64::total_cmp)
+        sharp.max_by(f64::total_cmp)
     }
 
     /// Radius of the path about the nearest point, infinite on a line.
     fn radius(&self) -> f64 {
-        let (Some(first), Some(last)) = (self.path.first(), self.path.last()) else {
+        let path = self.near();
+        let (Some(first), Some(last)) = (path.first(), path.last()) else {
             return f64::INFINITY;
         };
-        let middle = self.path.get(self.path.len() / 2).unwrap_or(first);
+        let middle = path.get(path.len() / 2).unwrap_or(first);
         let (one, other) = (difference(*middle, *first), difference(*last, *middle));
         let turn = angle(one, other).to_radians();
         if turn < 1e-4 {
@@ -139,18 +152,29 @@ impl Moment<'_> {
         worst.map_or(0, |(axis, _)| axis)
     }
 
-    /// Whether an axis went both ways in the window.
+    /// Whether an axis turned round and has not followed yet: since then its nominal position went no farther
+    /// than its lag and the deviation show.
     fn reverses(&self, axis: usize) -> bool {
-        let ways = self.path.windows(2).filter_map(|pair| match pair {
-            [from, to] => Some(to.get(axis)? - from.get(axis)?),
-            _ => None,
+        let mut values = self
+            .path
+            .iter()
+            .rev()
+            .filter_map(|point| point.get(axis).copied());
+        let Some(now) = values.next() else {
+            return false;
+        };
+        // Backwards from now to the turn, and past it.
+        let mut farthest = now;
+        let turned = values.any(|value| {
+            let is_farther = (value - now).abs() > (farthest - now).abs();
+            let comes_back = (value - now).abs() + 1e-7 < (farthest - now).abs();
+            if is_farther {
+                farthest = value;
+            }
+            comes_back
         });
-        let (mut plus, mut minus) = (false, false);
-        for way in ways {
-            plus |= way > 1e-7;
-            minus |= way < -1e-7;
-        }
-        plus && minus
+        let of = |vector: &[f64; 3]| vector.get(axis).copied().unwrap_or_default().abs();
+        turned && (farthest - now).abs() <= 2.0 * of(&self.lag).max(of(&self.across))
     }
 
     /// The axes with the largest and the smallest kv factor, if these differ.
@@ -234,6 +258,7 @@ mod tests {
         Moment {
             letters: &['X', 'Y', 'Z'],
             path,
+            nearest: 0,
             across,
             lag,
             speed,
@@ -244,7 +269,13 @@ mod tests {
     /// A corner bends at one point, an arc everywhere.
     #[test]
     fn corners_are_told_from_arcs() {
-        let corner = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0]];
+        let corner = [
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [3.0, 0.0, 0.0],
+            [3.0, 1.0, 0.0],
+        ];
         let cause = moment(&corner, [-0.1, 0.1, 0.0], [0.5, 0.0, 0.0], [0.0; 3]).cause();
         assert!(
             matches!(cause, Cause::Corner { degrees, .. } if (degrees - 90.0).abs() < 1e-9),
@@ -291,8 +322,12 @@ mod tests {
     /// X goes 1 mm on and back again while Y goes on: no corner beyond 170 degrees is one.
     #[test]
     fn a_way_back_is_a_reversal() {
+        let path = [[0.0; 3], [1.0, 0.01, 0.0], [0.99, 0.02, 0.0]];
+        let stuck = moment(&path, [0.01, 0.0, 0.0], [-0.01, 0.0, 0.0], [1000.0, 10.0, 0.0]);
+        assert_eq!(stuck.cause(), Cause::Reversal { axis: 'X' });
+        // 1 mm after the turn an axis that lags by 0.01 mm has followed.
         let path = [[0.0; 3], [1.0, 0.01, 0.0], [0.0, 0.02, 0.0]];
-        let cause = moment(&path, [0.02, 0.0, 0.0], [0.0; 3], [1000.0, 10.0, 0.0]).cause();
-        assert_eq!(cause, Cause::Reversal { axis: 'X' });
+        let moved = moment(&path, [0.01, 0.0, 0.0], [-0.01, 0.0, 0.0], [1000.0, 10.0, 0.0]);
+        assert_ne!(moved.cause(), Cause::Reversal { axis: 'X' });
     }
 }

@@ -12,8 +12,10 @@ use super::cause::{Cause, Moment};
 
 /// Contour cycles that are remembered; the lag of the slowest axis is far shorter.
 const POINTS: usize = 2048;
-/// Contour cycles before the nearest point that are kept: what they bend still shows in the lags *(inferred)*.
-const BEFORE: usize = 32;
+/// Contour cycles before the nearest point that are kept: an axis that sticks breaks away late *(inferred)*.
+const BEFORE: usize = 256;
+/// Contour cycles over which the speed along the path is compared *(inferred)*.
+const SPEEDS: usize = 32;
 
 /// The largest values of an axis.
 #[derive(Clone, Debug)]
@@ -71,7 +73,7 @@ impl Deviation {
             linear,
             path: VecDeque::with_capacity(POINTS),
             passed: 0,
-            speeds: VecDeque::with_capacity(BEFORE),
+            speeds: VecDeque::with_capacity(SPEEDS),
             max_mm: 0.0,
             cause: None,
         }
@@ -102,7 +104,7 @@ impl Deviation {
             }
             self.path.push_back(nominal);
         }
-        if self.speeds.len() == BEFORE {
+        if self.speeds.len() == SPEEDS {
             self.speeds.pop_front();
         }
         let path_speed = control.observe(&Signal::PathSpeed);
@@ -118,6 +120,7 @@ impl Deviation {
             let moment = Moment {
                 letters: &self.linear,
                 path: self.path.make_contiguous(),
+                nearest: self.passed,
                 across,
                 lag: difference(nominal, actual),
                 speed,

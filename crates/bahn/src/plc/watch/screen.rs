@@ -1,7 +1,7 @@
 //! What the view looks like.
 
 use bahn_exchange::Size;
-use bahn_exchange::signal::{self, SignalOperand};
+use bahn_exchange::signal::{self, Signal, SignalOperand};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout};
 use ratatui::style::{Modifier, Style};
@@ -61,7 +61,8 @@ pub(super) fn draw(frame: &mut Frame, watch: &Watch) {
         } else {
             ""
         };
-        let cells = [name + mark, decimal, hex, binary, signal_name(*operand)];
+        let called = signal_of(*operand).map_or(String::new(), |signal| signal.name.to_lowercase());
+        let cells = [name + mark, decimal, hex, binary, called];
         Row::new(cells.map(Cell::from))
     });
     let widths = [
@@ -78,7 +79,7 @@ pub(super) fn draw(frame: &mut Frame, watch: &Watch) {
                 .style(Style::new().add_modifier(Modifier::BOLD)),
         )
         .row_highlight_style(Style::new().add_modifier(Modifier::REVERSED))
-        .block(Block::bordered().title("TABLE"));
+        .block(Block::bordered().title(table_title(watch)));
     let mut chosen = TableState::new().with_selected(watch.chosen);
     frame.render_stateful_widget(table, body, &mut chosen);
     if program_rows > 0 {
@@ -157,15 +158,22 @@ fn program_lines(watch: &Watch, rows: usize) -> (String, Vec<Line<'static>>) {
     (text.name.clone(), lines.collect())
 }
 
-/// What a fixed marker or word is called; empty for the others.
-fn signal_name(operand: Operand) -> String {
-    let operand = match operand {
+/// The meaning of the chosen operand, if it is a fixed marker or word: the column has no room for it.
+fn table_title(watch: &Watch) -> String {
+    let chosen = watch.operands.get(watch.chosen).copied();
+    let signal = chosen.and_then(|operand| Some((operand, signal_of(operand)?)));
+    signal.map_or("TABLE".to_owned(), |(operand, signal)| {
+        format!("TABLE  {operand} {}", signal.function)
+    })
+}
+
+/// The fixed marker or word that an operand is.
+fn signal_of(operand: Operand) -> Option<&'static Signal> {
+    signal::named(match operand {
         Operand::Bit(bit) => SignalOperand::Bit(bit),
         Operand::Number(number) => SignalOperand::Number(number),
-        Operand::Text(_) => return String::new(),
-    };
-    let name = signal::named(operand).map_or("", |signal| signal.name);
-    name.to_lowercase().replace('_', " ")
+        Operand::Text(_) => return None,
+    })
 }
 
 /// Operand, decimal, hexadecimal, binary.

@@ -172,7 +172,16 @@ fn a_change_of_an_operand_stops() {
 fn names_trend_and_a_large_program() {
     let program = "L I4\n".to_owned() + &"= O2\n".repeat(60) + "INC W8\nEM\n";
     let mut watch = watch(&program, "M2045,W8");
-    assert!(shows(&watch, "m function strobe"));
+    // The meaning of the chosen one in words, the names as far as the screen has room.
+    let row = screen(&watch)
+        .into_iter()
+        .find(|line| line.contains("TABLE  M2045"))
+        .unwrap();
+    let meaning = bahn_exchange::signal::all()
+        .iter()
+        .find(|signal| signal.name == "M_FUNCTION_STROBE");
+    assert!(row.contains(meaning.unwrap().function), "{row}");
+    assert!(shows(&watch, " m_functi"));
     let lines = screen(&watch)
         .iter()
         .filter(|line| line.contains("  = O2"))
