@@ -259,6 +259,34 @@ mod tests {
         }
     }
 
+    proptest::proptest! {
+        #![proptest_config(proptest::prelude::ProptestConfig { failure_persistence: None, cases: 2000, ..Default::default() })]
+
+        /// Whatever stands in a file, wherever the mark is, under whatever name.
+        #[test]
+        fn anything_is_shown(
+            text in "([L= ;\\[\\]\u{0}\u{ad}\u{300}\u{200b}\u{3000}\u{feff}\u{1f600}]|\\PC|[\u{80}-\u{ff}]){0,250}",
+            label in "\\PC{0,40}",
+            line in 0_u32..,
+            opened in 0_u32..,
+            columns in proptest::option::of((0_u32..300, 0_u32..300)),
+            help in proptest::option::of("\\PC{0,60}"),
+        ) {
+            let marked = |line, columns| Marked { line, text: text.clone(), columns };
+            let diagnostic = Diagnostic {
+                severity: Severity::Warning,
+                title: &label,
+                path: &text,
+                marked: marked(line, columns),
+                label: label.clone(),
+                help: help.as_deref(),
+            };
+            for opened in [None, Some(marked(opened, None)), Some(marked(line, Some((3, 1))))] {
+                proptest::prop_assert!(!diagnostic.render_with(opened.as_ref(), false).is_empty());
+            }
+        }
+    }
+
     /// What is open is marked where it was opened, on another line or on the same.
     #[test]
     fn what_was_opened_is_marked_too() {

@@ -166,9 +166,9 @@ impl Moment<'_> {
         // Backwards from now to the turn, and past it.
         let mut farthest = now;
         let turned = values.any(|value| {
-            let is_farther = (value - now).abs() > (farthest - now).abs();
-            let comes_back = (value - now).abs() + 1e-7 < (farthest - now).abs();
-            if is_farther {
+            let side = (farthest - now).signum();
+            let comes_back = farthest != now && (farthest - value) * side > 1e-7;
+            if !comes_back && (value - now).abs() > (farthest - now).abs() {
                 farthest = value;
             }
             comes_back
