@@ -51,7 +51,7 @@ pub(crate) enum Command {
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
-    /// Say what a message of the control means and what to do about it.
+    /// Say what a message or PLC error means and what to do about it; search by word.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainOptions),
     /// Print the completions of a shell.
@@ -108,8 +108,14 @@ Examples:
 const EXPLAIN_EXAMPLES: &str = "\
 Examples:
   bahn explain TOOL RADIUS TOO LARGE
-  bahn explain CyclIncomplete
-  bahn explain               list all messages";
+  bahn explain GROSS POSITIONING ERROR X A
+      With axis, sign and code as the control shows it.
+  bahn explain plc error 16
+      An error of the PLC program, found by the compiler or while it runs.
+  bahn explain tapping
+      Everything that mentions the word: messages, PLC errors, machine parameters.
+  bahn explain
+      List all messages.";
 
 /// Options of the test run.
 #[derive(Args, Debug)]
@@ -267,7 +273,7 @@ pub(crate) struct FmtOptions {
 /// Options of `bahn explain`.
 #[derive(Args, Debug)]
 pub(crate) struct ExplainOptions {
-    /// Text of the message, or its name; nothing lists all.
+    /// Text of the message as it is shown, its name, or words to search; nothing lists all.
     #[arg(value_name = "MESSAGE")]
     pub message: Vec<String>,
     /// Control model whose texts are listed.

@@ -39,14 +39,20 @@ pub(crate) struct FileFault {
 impl FileFault {
     /// Prints it as rustc does, with an empty line behind it.
     pub fn print(&self) {
-        print(&Diagnostic {
+        self.print_with(None);
+    }
+
+    /// The same with the place where that was opened which is meant.
+    pub fn print_with(&self, opened: Option<&Marked>) {
+        let diagnostic = Diagnostic {
             severity: self.severity,
             title: &self.title,
             path: &self.path.to_string_lossy(),
             marked: self.marked.clone(),
             label: self.label.clone(),
             help: self.help.as_deref(),
-        });
+        };
+        print_line(&diagnostic.render_with(opened, is_styled()));
         print_line("");
     }
 }
@@ -114,16 +120,35 @@ pub(crate) enum Severity {
 impl Diagnostic<'_> {
     /// The text for people.
     pub fn render(&self, styled: bool) -> String {
+        self.render_with(None, styled)
+    }
+
+    /// The text for people, with another place of the file where that was opened which is meant.
+    pub fn render_with(&self, opened: Option<&Marked>, styled: bool) -> String {
         let level = match self.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
         let (source, range) = self.marked.shown();
-        let snippet = Snippet::source(source)
+        let mut snippet = Snippet::source(source)
             .line_start(self.marked.line as usize)
             .path(self.path)
             .annotation(AnnotationKind::Primary.span(range).label(printable(&self.label)));
+        let mut other = None;
+        if let Some(opened) = opened {
+            let (source, range) = opened.shown();
+            let mark = AnnotationKind::Context.span(range).label("opened here");
+            if opened.line == self.marked.line {
+                snippet = snippet.annotation(mark);
+            } else {
+                let place = Snippet::source(source).line_start(opened.line as usize);
+                other = Some(place.path(self.path).annotation(mark));
+            }
+        }
         let mut group = level.primary_title(printable(self.title)).element(snippet);
+        if let Some(other) = other {
+            group = group.element(other);
+        }
         if let Some(help) = self.help {
             group = group.element(Level::HELP.message(help));
         }
@@ -197,6 +222,95 @@ mod tests {
         assert_eq!(marked("L\x1b[31m\tX", None).0, "L [31m X");
         assert_eq!(marked(&"\0".repeat(1_000_000), None).0, "");
         assert_eq!(marked(&"X".repeat(1_000_000), None).0.len(), MAX_COLUMNS);
+    }
+
+    /// Characters of no width, of two columns, of UTF-16 that was read as Latin: nothing panics.
+    #[test]
+    fn any_character_is_shown() {
+        let characters = (0..0x3100).chain(0xfe00..0x10000).chain(0x1f300..0x1f700);
+        for c in characters.filter_map(char::from_u32) {
+            for (text, columns) in [
+                (format!("{c}"), Some((1, 1))),
+                (format!("{c}{c}L {c}X"), Some((2, 2))),
+                (format!("L {c}"), Some((5, 9))),
+                (format!("{c} {c}"), None),
+                (format!("{c}").repeat(200), Some((150, 40))),
+                (format!("{c}L ").repeat(60), Some((190, 3))),
+            ] {
+                let marked = Marked {
+                    line: u32::MAX,
+                    text,
+                    columns,
+                };
+                let diagnostic = Diagnostic {
+                    severity: Severity::Error,
+                    title: "0 not a valid command",
+                    path: "A",
+                    marked: marked.clone(),
+                    label: format!("{c}"),
+                    help: Some("help"),
+                };
+                assert!(
+                    diagnostic
+                        .render_with(Some(&marked), true)
+                        .contains("not a valid")
+                );
+            }
+        }
+    }
+
+    proptest::proptest! {
+        #![proptest_config(proptest::prelude::ProptestConfig { failure_persistence: None, cases: 2000, ..Default::default() })]
+
+        /// Whatever stands in a file, wherever the mark is, under whatever name.
+        #[test]
+        fn anything_is_shown(
+            text in "([L= ;\\[\\]\u{0}\u{ad}\u{300}\u{200b}\u{3000}\u{feff}\u{1f600}]|\\PC|[\u{80}-\u{ff}]){0,250}",
+            label in "\\PC{0,40}",
+            line in 0_u32..,
+            opened in 0_u32..,
+            columns in proptest::option::of((0_u32..300, 0_u32..300)),
+            help in proptest::option::of("\\PC{0,60}"),
+        ) {
+            let marked = |line, columns| Marked { line, text: text.clone(), columns };
+            let diagnostic = Diagnostic {
+                severity: Severity::Warning,
+                title: &label,
+                path: &text,
+                marked: marked(line, columns),
+                label: label.clone(),
+                help: help.as_deref(),
+            };
+            for opened in [None, Some(marked(opened, None)), Some(marked(line, Some((3, 1))))] {
+                proptest::prop_assert!(!diagnostic.render_with(opened.as_ref(), false).is_empty());
+            }
+        }
+    }
+
+    /// What is open is marked where it was opened, on another line or on the same.
+    #[test]
+    fn what_was_opened_is_marked_too() {
+        let marked = |line, text: &str, columns| Marked {
+            line,
+            text: text.to_owned(),
+            columns: Some(columns),
+        };
+        let diagnostic = Diagnostic {
+            severity: Severity::Error,
+            title: "16 jump within a parenthesis",
+            path: "M.PLC",
+            marked: marked(12, "  JP 5", (3, 2)),
+            label: String::new(),
+            help: None,
+        };
+        let text = diagnostic.render_with(Some(&marked(9, "A[", (1, 2))), false);
+        assert!(
+            text.contains(":12:3") && text.contains("9 | A[") && text.contains("opened here"),
+            "{text}"
+        );
+        let same = diagnostic.render_with(Some(&marked(12, "  JP 5", (6, 1))), false);
+        assert_eq!(same.matches("JP 5").count(), 1, "{same}");
+        assert!(same.contains("opened here"), "{same}");
     }
 
     #[test]

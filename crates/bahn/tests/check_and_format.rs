@@ -119,6 +119,29 @@ fn messages_are_explained() {
     assert_eq!(folder.bahn("explain WRONG RPM").code(), 0);
     assert!(folder.bahn("explain").out().lines().count() > 40);
     assert_eq!(folder.bahn("explain COFFEE IS READY").code(), 2);
+    for (wanted, expected) in [
+        (
+            "GROSS POSITIONING ERROR A",
+            "GROSS POSITIONING ERROR A\n  cause:       The lag is above",
+        ),
+        (
+            "limit switch x+",
+            "LIMIT SWITCH X+\n  which:       positive end of axis X: MP910.0",
+        ),
+        (
+            "ERROR IN PLC-PROGRAM 1Q",
+            "ERROR IN PLC-PROGRAM 1Q\n  cause:       More than one",
+        ),
+        (
+            "plc error 16",
+            "PLC error 16 jump within a parenthesis\n  found:       when",
+        ),
+        ("tapping", "Machine parameters (bahn mp explain N)\n"),
+    ] {
+        let out = folder.bahn(&format!("explain {wanted}")).out();
+        assert!(out.contains(expected), "{wanted}: {out}");
+        assert!(out.lines().all(|line| line.chars().count() <= 80), "{out}");
+    }
 }
 
 #[test]
