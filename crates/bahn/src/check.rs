@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use bahn_parameters::{ControlModel, MessageId};
-use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Severity};
+use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Reading, Severity};
 
 use crate::cli::{CheckOptions, Format};
 use crate::diagnostics::{self, Diagnostic, Marked};
@@ -61,7 +61,7 @@ struct Entry {
 fn check(path: &Path, options: &CheckOptions) -> Result<CheckReport, UsageError> {
     let program = files::load_program(path)?;
     let found = match &program {
-        Loaded::Program(program) => program.diagnostics(Some(options.model.limits())),
+        Loaded::Program(program) => program.diagnostics(Some(reading(options))),
         Loaded::Empty(_) => vec![whole_file(MessageId::EndOfProgramMissing, files::EMPTY)],
         Loaded::TooLarge => vec![whole_file(
             MessageId::FurtherProgramEntryImpossible,
@@ -85,6 +85,15 @@ fn check(path: &Path, options: &CheckOptions) -> Result<CheckReport, UsageError>
         summary(&report);
     }
     Ok(report)
+}
+
+/// What programs are read for.
+fn reading(options: &CheckOptions) -> Reading<'static> {
+    let limits = options.model.limits();
+    Reading {
+        limits,
+        inch_feed: options.inch_feed.map_or(limits.inch_feed, Into::into),
+    }
 }
 
 fn entry(fault: &Fault, model: ControlModel) -> Entry {

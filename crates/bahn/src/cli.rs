@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use bahn_parameters::ControlModel;
+use bahn_parameters::{ControlModel, InchFeed};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
 use crate::machine_folder::MachineFolderOptions;
@@ -182,6 +182,9 @@ pub(crate) struct RunOptions {
     /// Pass over optional blocks (/).
     #[arg(long)]
     pub skip_blocks: bool,
+    /// What F counts in a program in inches, instead of what it counts on the model.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub inch_feed: Option<InchFeedOption>,
     /// End at the first programmed stop (STOP, M0, M1) instead of passing over it.
     #[arg(long)]
     pub stop: bool,
@@ -244,6 +247,9 @@ pub(crate) struct CheckOptions {
     /// Control model whose limits apply.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
+    /// What F counts in a program in inches, instead of what it counts on the model.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub inch_feed: Option<InchFeedOption>,
     /// How errors are written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
@@ -283,6 +289,24 @@ pub(crate) struct CompletionsOptions {
     /// The shell.
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
+}
+
+/// What F counts in a program in inches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum InchFeedOption {
+    /// Inches per minute.
+    Whole,
+    /// Tenths of an inch per minute.
+    Tenths,
+}
+
+impl From<InchFeedOption> for InchFeed {
+    fn from(option: InchFeedOption) -> InchFeed {
+        match option {
+            InchFeedOption::Whole => InchFeed::Whole,
+            InchFeedOption::Tenths => InchFeed::Tenths,
+        }
+    }
 }
 
 /// How a report is written.

@@ -62,6 +62,7 @@ pub(crate) fn interpreter(
         tool_length_mm: None,
         machine: false,
         skip_blocks: run.skip_blocks,
+        inch_feed: run.inch_feed.map(Into::into),
         strict: run.strict,
         max_blocks_without_motion: run.max_blocks,
     })

@@ -1,6 +1,6 @@
 //! What ends a run and what is only worth saying.
 
-use bahn_parameters::{ControlModel, MessageId};
+use bahn_parameters::{ControlModel, InchFeed, MessageId};
 use bahn_path::BlockRef;
 
 /// An error of the program, with the control's message and the block that causes it.
@@ -103,6 +103,13 @@ pub enum WarningKind {
     BlankInCalledProgram,
     /// M2 or M30 stands in a called program, where it must not [003:3870-3902].
     EndInCalledProgram,
+    /// The feeds of a program in inches look ten times too small or too great.
+    InchFeed {
+        /// What F is taken to count.
+        reading: InchFeed,
+        /// The greatest feed if all are too small, the least if all are too great, mm/min.
+        feed_mm_min: u32,
+    },
 }
 
 impl std::fmt::Display for WarningKind {
@@ -130,6 +137,22 @@ impl std::fmt::Display for WarningKind {
                     "a called program must not contain M2 or M30: the whole run ends here"
                 )
             }
+            WarningKind::InchFeed {
+                reading: InchFeed::Tenths,
+                feed_mm_min,
+            } => write!(
+                f,
+                "F counts tenths of an inch/min: no feed of the program is above {feed_mm_min} mm/min; \
+                 --inch-feed whole if inch/min are meant"
+            ),
+            WarningKind::InchFeed {
+                reading: InchFeed::Whole,
+                feed_mm_min,
+            } => write!(
+                f,
+                "F counts inch/min: no feed of the program is below {feed_mm_min} mm/min; \
+                 --inch-feed tenths if tenths of an inch/min are meant"
+            ),
         }
     }
 }

@@ -114,7 +114,7 @@ impl Interpreter {
     pub fn new(main: Arc<Program>, settings: Settings, library: Box<dyn Library + Send>) -> Interpreter {
         let run = Run::new(&settings, main.unit());
         let position = settings.start;
-        Interpreter {
+        let mut interpreter = Interpreter {
             settings,
             library,
             code: Code::new(main),
@@ -124,6 +124,30 @@ impl Interpreter {
             interrupt: None,
             kept: None,
             position,
+        };
+        interpreter.look_at_feeds(0);
+        interpreter
+    }
+
+    /// Warns when the feeds of a program in inches speak against what F is taken to count.
+    fn look_at_feeds(&mut self, program: u16) {
+        let reading = self.settings.inch_feed();
+        let doubt = self
+            .code
+            .program(program)
+            .and_then(|program| program.feed_doubt(reading));
+        if let Some(doubt) = doubt {
+            self.run.warnings.push(Warning {
+                block: BlockRef {
+                    program,
+                    block: doubt.block,
+                },
+                kind: WarningKind::InchFeed {
+                    reading,
+                    feed_mm_min: doubt.feed_mm_min.round() as u32,
+                },
+                count: 1,
+            });
         }
     }
 
@@ -419,13 +443,17 @@ impl Interpreter {
         };
         self.run.at.call_program(index, self.settings.model.limits())?;
         self.enter_unit();
+        if self.code.is_new(index) {
+            self.look_at_feeds(index);
+        }
         Ok(())
     }
 
     /// Each program has its own unit; Q113 keeps that of the main program (inferred).
     fn enter_unit(&mut self) {
         if let Some(program) = self.code.program(self.run.at.program) {
-            self.run.unit_mm = modal::unit_mm(program.unit());
+            self.run.unit = program.unit();
+            self.run.unit_mm = program.unit().mm();
         }
     }
 

@@ -1,7 +1,7 @@
 //! Modal data: what stays in force from block to block.
 
 use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position, ToolShape};
-use bahn_program::{Compensation, Unit};
+use bahn_program::Compensation;
 
 use crate::contour::{CornerArcs, FeedLaw};
 use crate::cycles::CycleData;
@@ -150,13 +150,5 @@ impl Modal {
     /// Radius of the tool in use, mm; 0 without a tool.
     pub fn tool_radius(&self) -> f64 {
         self.tool.map_or(0.0, |tool| tool.radius)
-    }
-}
-
-/// Millimetres of a length unit.
-pub(crate) fn unit_mm(unit: Unit) -> f64 {
-    match unit {
-        Unit::Inch => 25.4,
-        Unit::Mm => 1.0,
     }
 }

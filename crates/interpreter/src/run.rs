@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bahn_parameters::MessageId;
+use bahn_parameters::{InchFeed, MessageId};
 use bahn_path::{
     At, Axis, AxisSet, Barrier, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Position,
     Synchronisation, TechnologyFunction, ToolShape,
@@ -14,7 +14,7 @@ use crate::contour::{Contour, ContourMove, Side};
 use crate::error::{Fault, Message, Warning, WarningKind};
 use crate::flow::{self, Flow};
 use crate::functions::BlockFunctions;
-use crate::modal::{Modal, unit_mm};
+use crate::modal::Modal;
 use crate::output::Output;
 use crate::probe::Probing;
 use crate::q_parameters::{QTable, preassigned};
@@ -30,7 +30,9 @@ pub(crate) struct Run {
     pub out: Output,
     /// Tools defined by TOOL DEF.
     pub tools: BTreeMap<u32, ToolShape>,
-    /// Millimetres of the length unit of the running program.
+    /// Unit of the running program.
+    pub unit: Unit,
+    /// Millimetres of its length unit.
     pub unit_mm: f64,
     /// Unit of the main program.
     pub main_unit: Unit,
@@ -77,7 +79,8 @@ impl Run {
             contour: Contour::default(),
             out: Output::default(),
             tools: BTreeMap::new(),
-            unit_mm: unit_mm(unit),
+            unit,
+            unit_mm: unit.mm(),
             main_unit: unit,
             sequence: 0,
             since_motion: 0,
@@ -474,15 +477,22 @@ impl Run {
 
     /// A feed in mm/min, checked against the range of the control [003:2142-2144].
     pub fn feed(&self, value: Value, settings: &Settings) -> Result<f64, Fault> {
-        let feed = self.q.value(value)? * self.unit_mm;
-        let max = settings.model.limits().feed_max_mm_min;
+        let feed = self.q.value(value)?;
+        let inch_feed = settings.inch_feed();
+        let max_mm_min = settings.model.limits().feed_max_mm_min;
+        let max = self.unit.feed_max(inch_feed, max_mm_min);
         if !(0.0..=max).contains(&feed) {
+            let unit = match (self.unit, inch_feed) {
+                (Unit::Mm, _) => "mm/min",
+                (Unit::Inch, InchFeed::Whole) => "inch/min",
+                (Unit::Inch, InchFeed::Tenths) => "tenths of an inch/min",
+            };
             return Err(Fault::new(
                 MessageId::EntryValueIncorrect,
-                format!("F takes 0 to {max} mm/min"),
+                format!("F takes 0 to {max} {unit}"),
             ));
         }
-        Ok(feed)
+        Ok((feed * self.unit.feed_mm_min(inch_feed)).min(max_mm_min))
     }
 
     /// Millimetres or degrees of a value for an axis.

@@ -212,7 +212,7 @@ impl Run {
 
     /// Millimetres of the unit of the main program, in which the control shows lengths.
     pub(crate) fn main_unit_mm(&self) -> f64 {
-        crate::modal::unit_mm(self.main_unit)
+        self.main_unit.mm()
     }
 
     // Blank.

@@ -1,16 +1,16 @@
 //! All faults of a program in one pass.
 
-use bahn_parameters::Limits;
 use bahn_parameters::MessageId::{
-    self, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted, LabelNumberAllocated,
-    LabelNumberNotAllocated, UnexpectedText,
+    self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted,
+    LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
 };
 
 use crate::lines::line_at;
+use crate::parse::whole_program;
 use crate::program::text_start;
 use crate::sequence::{Sequence, SequenceFault};
 use crate::text::trim_continuation;
-use crate::{CycleWord, NumberedBlock, Operation, Program, check_limits};
+use crate::{CycleWord, Header, NumberedBlock, Operation, Program, Reading, check_limits};
 
 /// Most diagnostics of one program; with more it is not a program at all.
 pub const MAX_DIAGNOSTICS: usize = 1000;
@@ -58,13 +58,18 @@ impl Program {
     /// assert_eq!(faults[0].message, MessageId::LabelNumberNotAllocated);
     /// assert_eq!((faults[0].block, faults[0].line, faults[0].column, faults[0].length), (1, 2, 12, 1));
     /// ```
-    pub fn diagnostics(&self, limits: Option<&Limits>) -> Vec<Diagnostic> {
+    pub fn diagnostics(&self, reading: Option<Reading<'_>>) -> Vec<Diagnostic> {
         let mut pass = Pass {
             program: self,
-            limits,
+            reading,
             sequence: Sequence::default(),
             found: Vec::new(),
         };
+        if self.is_din_iso() {
+            // One line says all.
+            pass.error(BlockNotSupported, 1, "", &whole_program());
+            return pass.found;
+        }
         pass.around_the_front();
         for numbered in self.blocks() {
             if pass.found.len() >= MAX_DIAGNOSTICS {
@@ -95,7 +100,7 @@ impl Program {
 
 struct Pass<'a> {
     program: &'a Program,
-    limits: Option<&'a Limits>,
+    reading: Option<Reading<'a>>,
     sequence: Sequence,
     found: Vec<Diagnostic>,
 }
@@ -104,6 +109,10 @@ impl Pass<'_> {
     fn around_the_front(&mut self) {
         if let Some((_, line)) = self.program.index().leading {
             self.at_line(0, line, "text before BEGIN PGM is no part of the program");
+        }
+        if let Some(unit) = self.program.begin().and_then(Header::unknown_unit) {
+            let detail = format!("{unit} is no unit: the program is taken to be in mm");
+            self.at_word(UnexpectedText, Severity::Warning, 0, "", &detail);
         }
         if self.program.begin().is_none() {
             self.at_line(0, 1, "the program does not begin with BEGIN PGM");
@@ -171,8 +180,10 @@ impl Pass<'_> {
             }
             _ => {}
         }
-        let limits = self.limits;
-        let fault = limits.and_then(|limits| check_limits(&block.operation, self.program.unit(), limits));
+        let unit = self.program.unit();
+        let fault = self
+            .reading
+            .and_then(|reading| check_limits(&block.operation, unit, reading));
         if let Some(fault) = fault {
             self.error(fault.message, *number, &fault.address, &fault.detail);
         }

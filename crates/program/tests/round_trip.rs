@@ -54,7 +54,7 @@ fn check_laws(bytes: &[u8]) {
         joined += program.decode(chunk).blocks.len();
     }
     assert_eq!(joined, all.len());
-    for diagnostic in program.diagnostics(Some(ControlModel::Tnc360.limits())) {
+    for diagnostic in program.diagnostics(Some(ControlModel::Tnc360.limits().into())) {
         let line = program.text_of_line(diagnostic.line);
         let end = diagnostic.column + diagnostic.length - 1;
         let inside = diagnostic.column >= 1 && end as usize <= line.chars().count() + 1;

@@ -6,6 +6,7 @@ use bahn_program::{CycleBlock, CycleWord, Direction, Feed, Value};
 
 use crate::error::Fault;
 use crate::run::Run;
+use crate::settings::Settings;
 
 /// The definitions in force: the machining cycle for the call, and the one that acts at definition.
 #[derive(Clone, Debug, Default)]
@@ -69,6 +70,7 @@ pub(crate) enum Resolved {
     },
     Axis(Axis),
     AxisDirection(Axis, Direction),
+    /// mm/min; `None` for FMAX.
     Feed(Option<f64>),
     Direction(Direction),
     Labels(Box<[u16]>),
@@ -133,7 +135,7 @@ impl Definition {
         if feed <= 0.0 {
             return Err(MessageId::FeedRateIsMissing.into());
         }
-        Ok(feed * self.unit_mm)
+        Ok(feed)
     }
 
     /// The axis word of a block, mm.
@@ -169,7 +171,7 @@ fn in_range(length_mm: f64) -> Result<f64, Fault> {
 
 impl Run {
     /// Gives every word of a cycle block its value.
-    pub(crate) fn resolve(&self, block: &CycleBlock) -> Result<Vec<Resolved>, Fault> {
+    pub(crate) fn resolve(&self, block: &CycleBlock, settings: &Settings) -> Result<Vec<Resolved>, Fault> {
         let value = |value: Value| self.q.value(value);
         let mut words = Vec::with_capacity(block.words.len());
         for word in &block.words {
@@ -184,7 +186,7 @@ impl Run {
                 CycleWord::Axis(axis) => Resolved::Axis(*axis),
                 CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
                 CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
-                CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(value(*feed)?)),
+                CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(self.feed(*feed, settings)?)),
                 CycleWord::Direction(direction) => Resolved::Direction(*direction),
                 CycleWord::Labels(labels) => Resolved::Labels(labels.clone()),
                 CycleWord::Target(number) => Resolved::Target(*number),

@@ -27,7 +27,7 @@ impl Run {
             let detail = format!("this control has no cycle {}", block.number);
             return Err(Fault::new(MessageId::BlockNotKnown, detail));
         }
-        let words = self.resolve(block)?;
+        let words = self.resolve(block, settings)?;
         if is_effective_at_definition(block.number) {
             return self.define_effective(block, words, settings);
         }

@@ -56,6 +56,15 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.position + offset).copied().unwrap_or(b' ')
     }
 
+    /// Whether a digit stands directly before the position.
+    pub(crate) fn touches_digit(&self) -> bool {
+        let before = self
+            .position
+            .checked_sub(1)
+            .and_then(|before| self.bytes.get(before));
+        before.is_some_and(u8::is_ascii_digit)
+    }
+
     /// Whether there is a byte `offset` behind the next one.
     #[inline]
     pub(crate) fn remains(&self, offset: usize) -> bool {
