@@ -99,6 +99,8 @@ pub enum WarningKind {
     },
     /// BLK FORM 0.1 stands without 0.2: there is no blank.
     BlankIncomplete,
+    /// All sides of BLK FORM are zero: there is no blank.
+    BlankEmpty,
     /// A blank was given in a called program only [003:7908-7912].
     BlankInCalledProgram,
     /// M2 or M30 stands in a called program, where it must not [003:3870-3902].
@@ -125,6 +127,7 @@ impl std::fmt::Display for WarningKind {
                 write!(f, "tool {tool} is not defined: length 0 and radius 0 are taken")
             }
             WarningKind::BlankIncomplete => write!(f, "BLK FORM 0.2 is missing: there is no blank"),
+            WarningKind::BlankEmpty => write!(f, "BLK FORM has no size: there is no blank"),
             WarningKind::BlankInCalledProgram => {
                 write!(
                     f,

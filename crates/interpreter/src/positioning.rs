@@ -402,6 +402,9 @@ impl Run {
                 "no tool is called before",
             ));
         }
+        if contour || paraxial {
+            self.used_radius()?;
+        }
         self.modal.compensation = if contour { word } else { Compensation::Off };
         self.modal.paraxial = if paraxial { word } else { Compensation::Off };
         let q123 = match word {

@@ -98,8 +98,12 @@ impl Run {
 
     /// Notes a warning; the same one at the same block is counted, so that loops do not pile them up.
     pub fn warn(&mut self, kind: WarningKind) {
+        self.warn_at(self.block, kind);
+    }
+
+    /// [`Run::warn`] at another block than the one being executed.
+    pub fn warn_at(&mut self, block: BlockRef, kind: WarningKind) {
         const LOOKED_BACK: usize = 64;
-        let block = self.block;
         let mut recent = self.warnings.iter_mut().rev().take(LOOKED_BACK);
         match recent.find(|warning| warning.block == block && warning.kind == kind) {
             Some(warning) => warning.count += 1,

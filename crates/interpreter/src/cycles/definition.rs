@@ -1,7 +1,7 @@
 //! Cycle definitions as they are read, block by block.
 
 use bahn_parameters::MessageId;
-use bahn_path::Axis;
+use bahn_path::{Axis, BlockRef};
 use bahn_program::{CycleBlock, CycleWord, Direction, Feed, Value};
 
 use crate::error::Fault;
@@ -20,13 +20,18 @@ pub(crate) struct CycleData {
 pub(crate) struct Collector {
     definition: Option<Definition>,
     broken: bool,
+    /// The signs of the definition were warned of.
+    sign_reported: bool,
 }
 
 impl Collector {
-    pub fn take(&mut self, number: u16, sub: u16, words: Vec<Resolved>, unit_mm: f64) {
+    /// Takes block `number.sub`, which stands at `at`.
+    pub fn take(&mut self, number: u16, sub: u16, words: Vec<Resolved>, unit_mm: f64, at: BlockRef) {
         if sub == 0 {
+            self.sign_reported = false;
             self.definition = Some(Definition {
                 number,
+                at,
                 blocks: vec![words],
                 unit_mm,
             });
@@ -44,6 +49,11 @@ impl Collector {
         }
     }
 
+    /// Whether the signs of the definition are to be warned of now: once, however often it is called.
+    pub fn report_sign(&mut self) -> bool {
+        !std::mem::replace(&mut self.sign_reported, true)
+    }
+
     /// The definition, when its blocks came complete and in order so far.
     pub fn ready(&self) -> Option<&Definition> {
         self.definition.as_ref().filter(|_| !self.broken)
@@ -54,6 +64,8 @@ impl Collector {
 #[derive(Clone, Debug)]
 pub(crate) struct Definition {
     pub number: u16,
+    /// The block n.0.
+    pub at: BlockRef,
     blocks: Vec<Vec<Resolved>>,
     unit_mm: f64,
 }

@@ -51,9 +51,10 @@ impl Run {
                 let detail = "setup clearance, depth and pecking depth must have the same sign";
                 return Err(Fault::new(MessageId::WrongSignProgrammed, detail));
             }
-            self.warn(WarningKind::CycleSign {
-                cycle: definition.number,
-            });
+            if self.modal.cycle.machining.report_sign() {
+                let cycle = definition.number;
+                self.warn_at(definition.at, WarningKind::CycleSign { cycle });
+            }
         }
         let scale = self.modal.frame.factor[self.modal.plane.normal].abs();
         let clearance = crate::positioning::known(self.tool_centre()[self.modal.plane.normal]);

@@ -38,7 +38,7 @@ impl Run {
         self.modal
             .cycle
             .machining
-            .take(block.number, block.sub, words, self.unit_mm);
+            .take(block.number, block.sub, words, self.unit_mm, self.block);
         Ok(())
     }
 
@@ -51,7 +51,7 @@ impl Run {
         self.modal
             .cycle
             .effective
-            .take(block.number, block.sub, words, self.unit_mm);
+            .take(block.number, block.sub, words, self.unit_mm, self.block);
         if block.sub == 0 {
             return Ok(());
         }
