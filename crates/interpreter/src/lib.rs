@@ -25,6 +25,7 @@ mod path_functions;
 mod positioning;
 mod probe;
 mod q_parameters;
+mod rehearsal;
 mod run;
 mod settings;
 mod tools;
@@ -37,7 +38,9 @@ use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Posit
 use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
 pub use code::{Library, NoLibrary};
-pub use error::{Message, ProgramError, Warning, WarningKind};
+pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
+pub use q_parameters::Q_VALUE_MAX;
+pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolTable, tool_key};
 
 use crate::code::Code;
@@ -380,6 +383,7 @@ impl Interpreter {
             Flow::CallProgram(name) => self.call_program(&name)?,
             Flow::EndOfProgram => return self.end_of_program(),
             Flow::EndOfRun => return self.end_of_run(),
+            Flow::ContourCycle if self.run.rehearsal => self.rehearse_contours()?,
             Flow::ContourCycle => {
                 let job = self.record_contours()?;
                 self.run.contour_cycle(&job, &self.settings)?;
@@ -493,6 +497,7 @@ impl Interpreter {
             program,
             block,
             detail: fault.detail,
+            cause: fault.cause,
         })));
     }
 
@@ -501,10 +506,7 @@ impl Interpreter {
     fn record_contours(&mut self) -> Result<ContourJob, Fault> {
         let labels = self.run.modal.contour_labels.clone();
         if labels.is_empty() {
-            return Err(Fault::new(
-                MessageId::CyclIncomplete,
-                "cycle 14 CONTOUR GEOMETRY is not defined",
-            ));
+            return Err(no_contours());
         }
         let mut recorder = self.run.clone();
         recorder.contour = Contour::recorder();
@@ -514,6 +516,20 @@ impl Interpreter {
         let job = self.record_labels(&labels);
         std::mem::swap(&mut self.run, &mut recorder);
         job
+    }
+
+    /// Looks whether the contours of cycle 14 are there.
+    fn rehearse_contours(&mut self) -> Result<(), Fault> {
+        let labels = std::mem::take(&mut self.run.modal.contour_labels);
+        let found = labels.iter().try_for_each(|&label| self.label(label).map(drop));
+        let defined = !labels.is_empty();
+        self.run.modal.contour_labels = labels;
+        found?;
+        if !defined {
+            return Err(no_contours());
+        }
+        self.run.at.block += 1;
+        Ok(())
     }
 
     fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Fault> {
@@ -544,6 +560,13 @@ impl Interpreter {
         }
         job.ok_or_else(|| MessageId::CyclIncomplete.into())
     }
+}
+
+fn no_contours() -> Fault {
+    Fault::new(
+        MessageId::CyclIncomplete,
+        "cycle 14 CONTOUR GEOMETRY is not defined",
+    )
 }
 
 /// Whether a block can move or output something.

@@ -11,7 +11,7 @@ use bahn_program::{Block, Compensation, Operation, Unit, Value};
 
 use crate::contour::rounding::{Join, JoinKind};
 use crate::contour::{Contour, ContourMove, Side};
-use crate::error::{Fault, Message, Warning, WarningKind};
+use crate::error::{Cause, Fault, Message, Warning, WarningKind};
 use crate::flow::{self, Flow};
 use crate::functions::BlockFunctions;
 use crate::modal::Modal;
@@ -54,6 +54,8 @@ pub(crate) struct Run {
     pub increments_from: Option<Position>,
     /// See [`Settings::machine`].
     pub machine: bool,
+    /// Nothing is moved: cycles are looked at but make no path, and the tool has no radius.
+    pub rehearsal: bool,
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
     /// A contour subprogram is being recorded for an SL cycle: M functions, feeds and cycle calls in it
@@ -91,6 +93,7 @@ impl Run {
             join_follows: false,
             increments_from: None,
             machine: settings.machine,
+            rehearsal: false,
             probing: None,
             recording: None,
         }
@@ -227,10 +230,9 @@ impl Run {
             Operation::Probe(block) => self.probe(block, settings)?,
             Operation::Dialog(_) => {}
             Operation::Invalid(invalid) => {
-                return Err(Fault::new(
-                    invalid.error.message,
-                    invalid.error.detail.to_string(),
-                ));
+                let error = &invalid.error;
+                let cause = error.help.map_or(Cause::Message, Cause::Written);
+                return Err(Fault::new(error.message, error.detail.to_string()).because(cause));
             }
             Operation::Motion(_)
             | Operation::Calculate { .. }
@@ -286,6 +288,7 @@ impl Run {
                 detail: String::new(),
                 block: None,
                 ahead: false,
+                cause: Cause::Message,
             },
             None => Fault::from(MessageId::EntryValueIncorrect),
         }
@@ -392,7 +395,11 @@ impl Run {
             element,
             plane: self.modal.contour_plane,
             side: self.side(),
-            radius: self.modal.tool_radius(),
+            radius: if self.rehearsal {
+                0.0
+            } else {
+                self.modal.tool_radius()
+            },
             corner: functions.corner,
             feed_law: self.modal.feed_law,
             in_plane,

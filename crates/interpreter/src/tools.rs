@@ -4,7 +4,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{At, Axis, Blank, Function, Plane, Synchronisation, TechnologyFunction, ToolCall, ToolShape};
 use bahn_program::{Coordinates, Value};
 
-use crate::error::{Fault, WarningKind};
+use crate::error::{Cause, Fault, WarningKind};
 use crate::functions::BlockFunctions;
 use crate::modal::Tool;
 use crate::positioning::known;
@@ -222,7 +222,7 @@ impl Run {
             Some(tool) => format!("the radius of tool {} is 0", tool.number),
             None => "no tool is called, so the radius is 0".to_owned(),
         };
-        Fault::new(MessageId::ToolRadiusTooLarge, format!("{what}: {why}"))
+        Fault::new(MessageId::ToolRadiusTooLarge, format!("{what}: {why}")).because(Cause::NoToolRadius)
     }
 
     fn speed(&self, speed: Value, settings: &Settings) -> Result<f64, Fault> {
@@ -291,7 +291,7 @@ impl Run {
     pub(crate) fn blank_max(&mut self, coordinates: &Coordinates, settings: &Settings) -> Result<(), Fault> {
         let wrong = |detail: String| Fault::new(MessageId::BlkFormDefinitionIncorrect, detail);
         let Some((plane, min)) = self.modal.blank_min.take() else {
-            return Err(wrong("BLK FORM 0.1 is missing".into()));
+            return Err(wrong("BLK FORM 0.1 is missing".into()).because(Cause::NoBlankMin));
         };
         let max = self.corner(coordinates, min)?;
         let limits = settings.model.limits();

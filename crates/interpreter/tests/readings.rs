@@ -81,3 +81,127 @@ fn a_radius_of_zero_names_the_undefined_tool() {
     assert!(detail("TOOL CALL 7 Z S100").ends_with("tool 7 is not defined, so its radius is 0"));
     assert!(detail("TOOL DEF 7 L+0 R 0\nTOOL CALL 7 Z S100").ends_with("the radius of tool 7 is 0"));
 }
+
+/// The first approach on an arc needs a position to come from [003:7984-7987].
+#[test]
+fn a_rounded_approach_from_nowhere() {
+    let tool = "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S100";
+    for (blocks, at) in [
+        ("L X+50 Y+0 RL F100\nRND R2\nL X+50 Y+50\nL X+0", 3),
+        ("L X+50 Y+0 RL F100", 3),
+        ("L X+50 RL F100\nL Y+50\nL X+0", 3),
+    ] {
+        let run = Job::new(program(&format!("{tool}\n{blocks}"))).run();
+        if let Some(found) = run.message() {
+            assert_eq!(found, (MessageId::ProgramStartUndefined, at), "{blocks}");
+        }
+        assert_sound(&run);
+    }
+    let rounded = Job::new(program(&format!(
+        "{tool}\nL X+50 Y+0 RL F100\nRND R2\nL X+50 Y+50\nL X+0"
+    )))
+    .run();
+    assert_eq!(rounded.message(), Some((MessageId::ProgramStartUndefined, 3)));
+}
+
+/// No element has an end or a centre that is no number, but for axes that were never programmed.
+fn assert_sound(run: &Run) {
+    let mut known = [false; 9];
+    for element in &run.elements {
+        for (axis, known) in bahn_path::Axis::ALL.into_iter().zip(&mut known) {
+            let end = element.end[axis];
+            assert!(
+                end.is_finite() || (end.is_nan() && !*known),
+                "{axis}: {element:?}"
+            );
+            *known |= end.is_finite();
+        }
+        if let bahn_path::Curve::Arc(arc) = element.curve {
+            assert!(arc.centre.iter().all(|value| value.is_finite()), "{element:?}");
+            assert!(arc.sweep_deg.is_finite(), "{element:?}");
+        }
+        let length = element.curve.linear_length(&element.start, &element.end);
+        assert!(length.is_finite(), "{element:?}");
+        if let bahn_path::FeedRate::Programmed(feed) = element.feed {
+            assert!(feed.is_finite(), "{element:?}");
+        }
+    }
+}
+
+const BLOCKS: &[&str] = &[
+    "L X+50 Y+0 RL F100",
+    "L X+5",
+    "L Y-5",
+    "L Z-2",
+    "L X+0 Y+0 R0 F200",
+    "L IX+3 IY-2",
+    "L X+Q1 Y+Q2",
+    "RND R2",
+    "RND R0.5",
+    "L5",
+    "CC X+10 Y+10",
+    "CC",
+    "C X+20 Y+10 DR+",
+    "CR X+9 Y+9 R+20 DR-",
+    "CT X+7 Y+30",
+    "LP PR+10 PA+30",
+    "LP IPR+5 PA+Q1",
+    "CP IPA+90 DR+",
+    "CTP PR+3 PA+10",
+    "CP IPA+720 DR+ IZ-5",
+    "X+5 R+",
+    "Y-5 R-",
+    "L X+5 RR",
+    "L X+1 M91",
+    "L Y+1 M93",
+    "L C+90",
+    "L M112 T0.1",
+    "M109",
+    "M97",
+    "TOOL CALL 2 Y S50",
+    "TOOL CALL 1 Z S100",
+    "CYCL DEF 7.0 D\nCYCL DEF 7.1 X+Q1",
+    "CYCL DEF 8.0 M\nCYCL DEF 8.1 X",
+    "CYCL DEF 10.0 R\nCYCL DEF 10.1 ROT+30",
+    "CYCL DEF 11.0 S\nCYCL DEF 11.1 SCL Q3",
+    "FN0: Q1 = +1000000000000000",
+    "FN3: Q1 = +Q1 * +Q1",
+    "FN4: Q2 = +Q1 DIV +Q2",
+    "FN8: Q1 = +Q1 LEN +Q2",
+    "FN6: Q2 = SIN +Q1",
+    "FN0: Q3 = +0.5",
+    "Q2 = EXP 600",
+    "Q1 = Q2 ^ Q1",
+    "CYCL DEF 1.0 P\nCYCL DEF 1.1 S-2\nCYCL DEF 1.2 D-Q1\nCYCL DEF 1.3 P-5\nCYCL DEF 1.4 V Q1\nCYCL DEF 1.5 FQ1",
+    "CYCL DEF 5.0 P\nCYCL DEF 5.1 S-2\nCYCL DEF 5.2 D-5\nCYCL DEF 5.3 P-5 F9\nCYCL DEF 5.4 R 20\nCYCL DEF 5.5 F9",
+    "CYCL CALL",
+    "L X+20 M99",
+    "TCH PROBE 0.0 R Q5 X-\nTCH PROBE 0.1 X+5 Y+0 Z-5",
+];
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(400))]
+
+    /// Whatever blocks follow each other, no element holds what is no number.
+    #[test]
+    fn random_programs_have_sound_paths(
+        blocks in proptest::collection::vec(proptest::sample::select(BLOCKS), 1..14)
+    ) {
+        let mut text = "TOOL DEF 1 L+0 R+2\nTOOL DEF 2 L+10 R+0.5\nTOOL CALL 1 Z S100\n".to_owned();
+        for block in blocks {
+            text.push_str(block);
+            text.push('\n');
+        }
+        let run = Job::new(program(&text)).surfaces(&[1.0, 2.0]).run();
+        assert_sound(&run);
+        assert!(run.q.iter().all(|value| value.is_finite()));
+        // A rehearsal ends whatever it is given.
+        let program = std::sync::Arc::new(bahn_program::Program::from_bytes("T", program(&text).into_bytes()));
+        bahn_interpreter::rehearse(
+            program,
+            bahn_interpreter::Settings::default(),
+            Box::new(bahn_interpreter::NoLibrary),
+            &std::sync::atomic::AtomicBool::new(false),
+        );
+    }
+}

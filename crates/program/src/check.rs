@@ -318,8 +318,8 @@ fn function_number(operation: &Operation) -> Option<u32> {
     })
 }
 
-/// Calls a function with the number of each Q parameter in a block.
-fn each_parameter(operation: &Operation, found: &mut impl FnMut(u16)) {
+/// Calls a function with the number of each Q parameter in a block, those that it sets included.
+pub fn each_parameter(operation: &Operation, found: &mut impl FnMut(u16)) {
     let mut value = |value: Value| {
         if let Value::Q { number, .. } = value {
             found(number);

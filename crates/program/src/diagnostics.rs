@@ -41,6 +41,17 @@ pub struct Diagnostic {
     pub length: u32,
     /// What exactly, in a few words for people.
     pub detail: Box<str>,
+    /// What to do about it.
+    pub help: &'static str,
+}
+
+/// Faults that were counted only, beyond [`MAX_DIAGNOSTICS`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Uncounted {
+    /// Errors.
+    pub errors: usize,
+    /// Warnings.
+    pub warnings: usize,
 }
 
 impl Program {
@@ -59,28 +70,54 @@ impl Program {
     /// assert_eq!((faults[0].block, faults[0].line, faults[0].column, faults[0].length), (1, 2, 12, 1));
     /// ```
     pub fn diagnostics(&self, reading: Option<Reading<'_>>) -> Vec<Diagnostic> {
+        self.counted_diagnostics(reading).0
+    }
+
+    /// [`Program::diagnostics`], and how many more there are.
+    pub fn counted_diagnostics(&self, reading: Option<Reading<'_>>) -> (Vec<Diagnostic>, Uncounted) {
         let mut pass = Pass {
             program: self,
             reading,
             sequence: Sequence::default(),
             found: Vec::new(),
+            more: Uncounted::default(),
         };
         if self.is_din_iso() {
             // One line says all.
             pass.error(BlockNotSupported, 1, "", &whole_program());
-            return pass.found;
+            return (pass.found, pass.more);
         }
         pass.around_the_front();
         for numbered in self.blocks() {
-            if pass.found.len() >= MAX_DIAGNOSTICS {
-                break;
-            }
             pass.block(&numbered);
         }
         pass.around_the_end();
-        pass.found.truncate(MAX_DIAGNOSTICS);
         pass.found.sort_by_key(|diagnostic| diagnostic.block);
-        pass.found
+        (pass.found, pass.more)
+    }
+
+    /// A fault of a block that was found elsewhere, with its place: the value behind an address, or the whole
+    /// block without one.
+    pub fn diagnostic(
+        &self,
+        message: MessageId,
+        severity: Severity,
+        block: u32,
+        address: &str,
+        detail: &str,
+    ) -> Diagnostic {
+        let text = self.text_of(block);
+        let (line, column, length) = locate(&text, address);
+        Diagnostic {
+            message,
+            severity,
+            block,
+            line: self.line_of(block).saturating_add(line),
+            column,
+            length,
+            detail: detail.into(),
+            help: message.remedy(),
+        }
     }
 
     /// A line of the file without its line end, numbered from 1.
@@ -103,6 +140,7 @@ struct Pass<'a> {
     reading: Option<Reading<'a>>,
     sequence: Sequence,
     found: Vec<Diagnostic>,
+    more: Uncounted,
 }
 
 impl Pass<'_> {
@@ -149,6 +187,9 @@ impl Pass<'_> {
         match &block.operation {
             Operation::Invalid(invalid) => {
                 let error = &invalid.error;
+                if self.is_full(Severity::Error) {
+                    return;
+                }
                 self.found.push(Diagnostic {
                     message: error.message,
                     severity: Severity::Error,
@@ -157,6 +198,7 @@ impl Pass<'_> {
                     column: error.column,
                     length: error.length,
                     detail: error.detail.clone(),
+                    help: error.help.unwrap_or(error.message.remedy()),
                 });
                 return;
             }
@@ -218,21 +260,28 @@ impl Pass<'_> {
 
     /// A diagnostic at the value behind an address in a block; without it at the whole block.
     fn at_word(&mut self, message: MessageId, severity: Severity, block: u32, address: &str, detail: &str) {
-        let text = self.program.text_of(block);
-        let (line, column, length) = locate(&text, address);
-        self.found.push(Diagnostic {
-            message,
-            severity,
-            block,
-            line: self.program.line_of(block).saturating_add(line),
-            column,
-            length,
-            detail: detail.into(),
-        });
+        if !self.is_full(severity) {
+            let found = self.program.diagnostic(message, severity, block, address, detail);
+            self.found.push(found);
+        }
+    }
+
+    /// Whether there is no room for another fault, which then is counted.
+    fn is_full(&mut self, severity: Severity) -> bool {
+        let full = self.found.len() >= MAX_DIAGNOSTICS;
+        match severity {
+            _ if !full => {}
+            Severity::Error => self.more.errors += 1,
+            Severity::Warning => self.more.warnings += 1,
+        }
+        full
     }
 
     /// A warning about the text that begins in a line.
     fn at_line(&mut self, block: u32, line: u32, detail: &str) {
+        if self.is_full(Severity::Warning) {
+            return;
+        }
         let text = self.program.text_of_line(line);
         let (_, column, length) = locate(&text, "");
         self.found.push(Diagnostic {
@@ -243,6 +292,7 @@ impl Pass<'_> {
             column,
             length,
             detail: detail.into(),
+            help: UnexpectedText.remedy(),
         });
     }
 }

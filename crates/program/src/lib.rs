@@ -22,8 +22,8 @@ mod program;
 mod sequence;
 mod text;
 
-pub use check::{LimitFault, Reading, check_limits};
-pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity};
+pub use check::{LimitFault, Reading, check_limits, each_parameter};
+pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity, Uncounted};
 pub use error::BlockError;
 pub use format::{FormatOptions, format_block, format_program};
 pub use inch_feed::FeedDoubt;

@@ -1,7 +1,7 @@
 //! A part program as a file: its bytes, a light index, and blocks decoded on demand.
 
 use crate::index::{CHUNK_SIZE, ChunkStart, Index};
-use crate::lines::{RawBlock, RawBlocks};
+use crate::lines::{RawBlock, RawBlocks, stands_alone};
 use crate::parse::{EMPTY_BLOCK, parse_block, parse_block_into};
 use crate::text::{BYTE_ORDER_MARK, blank_lone_returns, to_text, without_utf16};
 use crate::{Block, Header, Operation, Unit};
@@ -82,6 +82,17 @@ impl Program {
     /// The BEGIN PGM block, if the file has one.
     pub fn begin(&self) -> Option<&Header> {
         self.index.begin.as_ref()
+    }
+
+    /// Whether the file begins with BEGIN PGM, comments apart: that of a file which is no program does not,
+    /// even if it quotes one.
+    pub fn begins_with_header(&self) -> bool {
+        let Some(begin) = self.index.chunks.first().filter(|_| self.begin().is_some()) else {
+            return false;
+        };
+        RawBlocks::from(&self.file, text_start(&self.file), 1)
+            .take_while(|raw| raw.start < begin.byte as usize)
+            .all(|raw| stands_alone(raw.bytes(&self.file)))
     }
 
     /// The END PGM block, if the file has one.

@@ -54,6 +54,11 @@ impl Collector {
         !std::mem::replace(&mut self.sign_reported, true)
     }
 
+    /// Whether no definition was begun.
+    pub fn is_empty(&self) -> bool {
+        self.definition.is_none()
+    }
+
     /// The definition, when its blocks came complete and in order so far.
     pub fn ready(&self) -> Option<&Definition> {
         self.definition.as_ref().filter(|_| !self.broken)
@@ -117,6 +122,17 @@ impl Definition {
     /// The `index`th number of a block.
     pub fn number(&self, sub: u16, index: usize, what: &str) -> Result<f64, Fault> {
         self.optional_number(sub, index).ok_or_else(|| self.missing(what))
+    }
+
+    /// A dwell time, s.
+    pub fn dwell(&self, sub: u16, settings: &Settings) -> Result<f64, Fault> {
+        let max = settings.model.limits().dwell_max_s;
+        let dwell = self.number(sub, 0, "DWELL")?;
+        if dwell <= max {
+            return Ok(dwell);
+        }
+        let detail = format!("a dwell time is at most {max} s");
+        Err(Fault::new(MessageId::EntryValueIncorrect, detail))
     }
 
     pub fn optional_number(&self, sub: u16, index: usize) -> Option<f64> {

@@ -15,7 +15,7 @@ use bahn_program::{CycleBlock, CycleWord, Value};
 
 pub(crate) use self::contour_pocket::{ContourJob, contour_plane};
 pub(crate) use self::definition::{CycleData, Definition, Resolved};
-use crate::error::Fault;
+use crate::error::{Cause, Fault};
 use crate::flow::Flow;
 use crate::run::Run;
 use crate::settings::Settings;
@@ -76,10 +76,11 @@ impl Run {
     /// CYCL CALL, M99 or M89: runs the last defined machining cycle [003:4857-4881].
     pub(crate) fn call_cycle(&mut self, settings: &Settings) -> Result<Flow, Fault> {
         let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
-            return Err(Fault::new(
-                MessageId::CyclIncomplete,
-                "no complete cycle is defined",
-            ));
+            let cause = match self.modal.cycle.machining.is_empty() {
+                true => Cause::NoCycle,
+                false => Cause::Message,
+            };
+            return Err(Fault::new(MessageId::CyclIncomplete, "no complete cycle is defined").because(cause));
         };
         if definition.number == 12 {
             return self.called_program(&definition);

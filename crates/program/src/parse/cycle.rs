@@ -4,7 +4,7 @@
 use bahn_parameters::MessageId::{AxisDoubleProgrammed, CyclIncomplete, EntryValueIncorrect};
 use bahn_path::{Axis, AxisSet};
 
-use super::cursor::{Cursor, Parsed};
+use super::cursor::{Cursor, Parsed, WRITE_A_NUMBER, with_help};
 use super::m_function::m_functions;
 use super::path::{direction, feed_word};
 use crate::check::ANY_LABEL_MAX;
@@ -139,7 +139,8 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
         let Some(word) = address(c, scope)? else {
             let datum_shift = scope == Scope::Cycle(DATUM_SHIFT) && c.peek() != b'#';
             if datum_shift || is_broken_number(c) {
-                return c.fault_at_word(EntryValueIncorrect, "this is no number");
+                let fault = c.fault_at_word(EntryValueIncorrect, "this is no number");
+                return with_help(fault, WRITE_A_NUMBER);
             }
             decoration(c, &mut text);
             continue;

@@ -20,7 +20,7 @@ use bahn_parameters::MessageId;
 use crate::lines::{RawBlock, lines, stands_alone};
 use crate::text::{character_count, to_text, trim, trim_continuation};
 use crate::{Block, BlockError, InvalidBlock, Operation};
-use cursor::{Cursor, Fault, Parsed, code_length};
+use cursor::{Cursor, Fault, Parsed, code_length, with_help};
 pub(crate) use cycle::FIRST_PARAMETER_CYCLE;
 pub(crate) use foreign::{is_din_iso, whole_program};
 pub(crate) use formula::FUNCTIONS;
@@ -136,10 +136,18 @@ fn complete_operation(c: &mut Cursor, may_begin: bool) -> Parsed<Operation> {
     let start = c.position();
     let operation = operation(c)?;
     if !may_begin && matches!(operation, Operation::Begin(_)) {
-        return c.fault_from(start, MessageId::UnexpectedText, "the program has begun already");
+        let fault = c.fault_from(start, MessageId::UnexpectedText, "the program has begun already");
+        return with_help(
+            fault,
+            "Keep one BEGIN PGM; put a second program into a file of its own.",
+        );
     }
     if c.at_end() { Ok(operation) } else { c.unexpected() }
 }
+
+/// What to do about a block that nobody knows.
+const CORRECT_THE_WORD: &str =
+    "Correct the spelling, or write the block with functions of the controls here if a later one wrote it.";
 
 /// Reads a function by its first letters.
 fn operation(c: &mut Cursor) -> Parsed<Operation> {
@@ -176,7 +184,8 @@ fn operation(c: &mut Cursor) -> Parsed<Operation> {
             c.fault_at_word(MessageId::BlockNotSupported, foreign::not_supported(what))
         }
         None if c.peek().is_ascii_alphabetic() || c.peek() == b'%' => {
-            c.fault_at_word(MessageId::BlockNotKnown, "no control here knows this block")
+            let fault = c.fault_at_word(MessageId::BlockNotKnown, "no control here knows this block");
+            with_help(fault, CORRECT_THE_WORD)
         }
         None => c.fault_at_word(MessageId::UnexpectedText, "a block cannot begin like this"),
     }
@@ -201,6 +210,7 @@ fn located(fault: &Fault, line_in_block: u32, line: &[u8], start: usize, end: us
         column: character_count(line.get(..start).unwrap_or_default()).saturating_add(1),
         length: character_count(trim(covered)).max(1),
         detail: fault.detail.as_ref().into(),
+        help: fault.help,
     }
 }
 
