@@ -113,7 +113,7 @@ impl Doubts {
         self.0 & other.0 != 0
     }
 
-    fn without(self, other: Doubts) -> Doubts {
+    const fn without(self, other: Doubts) -> Doubts {
         Doubts(self.0 & !other.0)
     }
 }
@@ -338,7 +338,9 @@ fn sets(operation: &Operation) -> Doubts {
         Operation::BlankMin(..) => Doubts::BLANK,
         Operation::Cycle(_) => Doubts::CYCLE,
         Operation::CycleCall(_) | Operation::Probe(_) => Doubts::POSITION,
-        Operation::CallLabel { .. } | Operation::CallProgram(_) | Operation::Jump { .. } => Doubts::ALL,
+        Operation::CallLabel { .. } | Operation::CallProgram(_) | Operation::Jump { .. } => {
+            Doubts::ALL.without(Doubts::FLOW)
+        }
         Operation::Invalid(invalid) => meant(&invalid.text),
         _ => Doubts::NONE,
     }

@@ -75,7 +75,7 @@ fn consequences_are_not_reported() {
         ),
         (
             "TOOL CALL 1 Z Sx\nL X+0 Y+0 RL F100\nL X+9",
-            vec![error(1, EntryValueIncorrect)],
+            vec![error(1, UnexpectedText)],
         ),
         (
             "CC X+1O Y+0\nL X+0 Y+0 R0 F100\nC X+9 Y+5 DR+",
