@@ -11,7 +11,7 @@ use bahn_path::BlockRef;
 use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Reading, Severity, Uncounted};
 
 use crate::cli::{CheckOptions, Format};
-use crate::diagnostics::{self, Diagnostic, Marked, printable};
+use crate::diagnostics::{self, Diagnostic, Marked};
 use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, console};
@@ -332,9 +332,9 @@ fn summary(report: &CheckReport, complete: Complete) {
         Complete::No => "; loops were not followed to their end",
         Complete::Yes | Complete::NotBegun => "",
     };
-    diagnostics::print_line(&format!(
+    diagnostics::print_text(&format!(
         "{}: {} blocks, {}, {}{more}{followed}",
-        printable(&report.file),
+        report.file,
         report.blocks,
         count(report.errors, "error"),
         count(report.warnings, "warning"),

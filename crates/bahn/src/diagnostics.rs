@@ -174,6 +174,11 @@ pub(crate) fn print_usage_error(text: &str) {
     print_line(&format!("{level}: {}", text.join("\n  ")));
 }
 
+/// Prints a line to standard error, with nothing in it that would steer the terminal.
+pub(crate) fn print_text(text: &str) {
+    print_line(&printable(text));
+}
+
 /// Prints a line to standard error; nobody can be told when that fails.
 pub(crate) fn print_line(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");

@@ -43,7 +43,7 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
                 continue;
             }
             write(path, &listing)?;
-            diagnostics::print_line(&format!("formatted {}", printable(&path.to_string_lossy())));
+            diagnostics::print_text(&format!("formatted {}", path.display()));
         }
     }
     Ok(outcome)

@@ -5,6 +5,7 @@
 //! - [`Settings`]: control model, machine parameters, tools and options of a run;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it;
 //! - [`Library`]: where called programs come from;
+//! - [`rehearse`]: all faults of a program, found without moving anything;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
 //! A block is executed by `run`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.

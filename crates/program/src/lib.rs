@@ -5,6 +5,7 @@
 //! - [`Block`] and [`Operation`]: what a block does, the same whatever language or spelling it came from;
 //! - [`BlockError`]: what is wrong with a block that cannot be read, and where;
 //! - [`Program::diagnostics`]: all faults of a program in one pass; [`check_limits`] for one block;
+//! - [`FeedDoubt`]: feeds of programs in inches that look ten times off;
 //! - [`format_program`]: the normalised listing.
 //!
 //! Reading never fails: a block that cannot be read is [`Operation::Invalid`], an error when it is executed.
