@@ -93,8 +93,11 @@ impl Marked {
 
     /// The text as it is shown, and the bytes of it that are marked.
     fn shown(&self) -> (String, std::ops::Range<usize>) {
-        let text = printable(&self.text.chars().take(MAX_COLUMNS).collect::<String>());
-        let text = text.trim_end();
+        let text = self
+            .text
+            .trim_end_matches(|c: char| c.is_whitespace() || c.is_control());
+        let text = printable(&text.chars().take(MAX_COLUMNS).collect::<String>());
+        let text = text.as_str();
         let byte_of = |character: usize| {
             text.char_indices()
                 .nth(character)
@@ -132,7 +135,7 @@ impl Diagnostic<'_> {
         let (source, range) = self.marked.shown();
         let mut snippet = Snippet::source(source)
             .line_start(self.marked.line as usize)
-            .path(self.path)
+            .path(printable(self.path))
             .annotation(AnnotationKind::Primary.span(range).label(printable(&self.label)));
         let mut other = None;
         if let Some(opened) = opened {
@@ -161,10 +164,22 @@ impl Diagnostic<'_> {
     }
 }
 
-/// Text without characters that would steer the terminal, one for one.
+/// Text in which every character that would steer the terminal is shown by a picture of it, one for one: the
+/// start of an escape sequence as \u{241b}. A tab is a blank.
 pub(crate) fn printable(text: &str) -> String {
+    const PICTURES: u32 = 0x2400;
+    let picture = |c: char| char::from_u32(PICTURES + u32::from(c)).unwrap_or(char::REPLACEMENT_CHARACTER);
     text.chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
+        .map(|c| match c {
+            '\t' => ' ',
+            '\0'..='\x1f' => picture(c),
+            '\x7f' => '\u{2421}',
+            // What turns the direction of writing can hide what a line says.
+            '\u{80}'..='\u{9f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+                char::REPLACEMENT_CHARACTER
+            }
+            c => c,
+        })
         .collect()
 }
 
@@ -182,6 +197,11 @@ pub(crate) fn print_usage_error(text: &str) {
     };
     let text: Vec<String> = text.lines().map(printable).collect();
     print_line(&format!("{level}: {}", text.join("\n  ")));
+}
+
+/// Prints a line to standard error, with nothing in it that would steer the terminal.
+pub(crate) fn print_text(text: &str) {
+    print_line(&printable(text));
 }
 
 /// Prints a line to standard error; nobody can be told when that fails.
@@ -219,7 +239,7 @@ mod tests {
 
     #[test]
     fn lines_are_short_and_do_not_steer_the_terminal() {
-        assert_eq!(marked("L\x1b[31m\tX", None).0, "L [31m X");
+        assert_eq!(marked("L\x1b[31m\tX\u{202e}", None).0, "L\u{241b}[31m X\u{fffd}");
         assert_eq!(marked(&"\0".repeat(1_000_000), None).0, "");
         assert_eq!(marked(&"X".repeat(1_000_000), None).0.len(), MAX_COLUMNS);
     }

@@ -96,6 +96,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         plc_messages: machine.plc_messages.clone(),
         plc_dialogues: machine.plc_dialogues.clone(),
         tools: machine.tools.clone(),
+        inch_feed: options.run.inch_feed.map(Into::into),
         programs: Arc::clone(&programs) as Arc<dyn bahn_control::Programs>,
         files: machine.files.clone(),
         remembered,

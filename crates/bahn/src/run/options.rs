@@ -6,7 +6,7 @@ use bahn_control::Signal;
 use clap::{Args, ValueHint};
 
 use super::operator::Attendance;
-use crate::cli::{Format, OutputOptions, override_percent, seconds};
+use crate::cli::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -102,6 +102,9 @@ pub(crate) struct RunControl {
     /// Start with this block instead of the first.
     #[arg(long, value_name = "N")]
     pub start_block: Option<u32>,
+    /// What F counts in a program in inches, instead of what it counts on the model.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub inch_feed: Option<InchFeedOption>,
     /// Begin without what survives power-off, and keep nothing.
     #[arg(long)]
     pub fresh: bool,
