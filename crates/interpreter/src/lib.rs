@@ -46,7 +46,7 @@ pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settin
 
 use crate::code::Code;
 use crate::contour::Contour;
-use crate::cycles::{ContourJob, contour_plane};
+use crate::cycles::{ContourJob, Halt, Watch, contour_plane};
 use crate::error::Fault;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
@@ -292,7 +292,9 @@ impl Interpreter {
             if let Err(fault) = self.step() {
                 self.fail(fault, at);
             }
-            if self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD) && self.is_interrupted() {
+            // A contour that was broken off leaves its block where it is.
+            let stays = self.run.at.block_ref() == at;
+            if (stays || self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD)) && self.is_interrupted() {
                 return;
             }
         }
@@ -387,8 +389,12 @@ impl Interpreter {
             Flow::ContourCycle if self.run.rehearsal => self.rehearse_contours()?,
             Flow::ContourCycle => {
                 let job = self.record_contours()?;
-                self.run.contour_cycle(&job, &self.settings)?;
-                self.run.at.block += 1;
+                let watch = Watch::new(self.interrupt.as_deref());
+                match self.run.contour_cycle(&job, &self.settings, &watch) {
+                    Ok(()) => self.run.at.block += 1,
+                    Err(Halt::Fault(fault)) => return Err(fault),
+                    Err(Halt::Interrupted) => {}
+                }
             }
         }
         Ok(())

@@ -13,7 +13,7 @@ mod transformation;
 use bahn_parameters::MessageId;
 use bahn_program::{CycleBlock, CycleWord, Value};
 
-pub(crate) use self::contour_pocket::{ContourJob, contour_plane};
+pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
 pub(crate) use self::definition::{CycleData, Definition, Resolved};
 use crate::error::{Cause, Fault};
 use crate::flow::Flow;
