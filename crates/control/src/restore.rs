@@ -114,6 +114,9 @@ impl Control {
 
     /// Goes on with a scan; may allocate.
     pub(crate) fn prepare_restore(&mut self) {
+        if let Some(feeder) = &mut self.run.feeder {
+            feeder.allow_work();
+        }
         for _ in 0..BUDGET {
             let Some(Restore::Scan {
                 block,

@@ -20,6 +20,9 @@ use crate::restore::Restore;
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
+/// Blocks that take no time after which a program is taken for an endless loop (inferred): at 4 ms for a
+/// block the control would have stood for 400 s.
+const BLOCKS_WITHOUT_MOTION: u64 = 100_000;
 /// Outputs of functions that wait at most.
 pub(crate) const OUTPUTS: usize = 64;
 
@@ -232,6 +235,7 @@ impl Control {
             if let Some(element) = self.path.element() {
                 feeder.forget_before(element.sequence);
             }
+            feeder.allow_work();
             self.path.prepare(feeder, BUDGET);
         }
     }
@@ -374,6 +378,7 @@ impl Control {
             start: self.offsets.to_path(machine),
             tool_length_mm: Some(self.offsets.tool_length),
             machine: true,
+            max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);

@@ -81,6 +81,7 @@ impl Control {
         let Some(test) = self.test.as_mut().filter(|test| test.state == TestState::Running) else {
             return;
         };
+        test.feeder.allow_work();
         for _ in 0..BUDGET {
             match test.feeder.next() {
                 Step::Element(element) => {

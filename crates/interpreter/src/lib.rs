@@ -13,6 +13,7 @@
 //! Nothing here knows of time or of the machine's axes.
 
 mod arc;
+mod checkpoints;
 mod code;
 mod contour;
 mod cycles;
@@ -36,10 +37,12 @@ use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
 use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
+pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Message, ProgramError, Warning, WarningKind};
 pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolTable};
 
+use crate::checkpoints::Kept;
 use crate::code::Code;
 use crate::contour::Contour;
 use crate::cycles::{ContourJob, contour_plane};
@@ -74,7 +77,9 @@ pub struct Interpreter {
     waiting: Option<Barrier>,
     interrupt: Option<Arc<AtomicBool>>,
     /// States before blocks, kept for whoever asked for them.
-    kept: Option<Vec<Checkpoint>>,
+    kept: Option<Kept>,
+    /// Work that may still be done before [`Step::Starved`]; `None` for any amount.
+    work: Option<u32>,
     /// End of the last element that was handed out.
     position: Position,
 }
@@ -82,31 +87,13 @@ pub struct Interpreter {
 /// Blocks without a step between two looks at the interrupt flag.
 const INTERRUPT_PERIOD: u64 = 1 << 14;
 
+/// What a block costs whose state is kept: the copy takes most of its time.
+pub const STATE_COST: u32 = 16;
+
 #[derive(Clone, Debug)]
 enum Ended {
     Finished,
     Failed(Box<ProgramError>),
-}
-
-/// The state of a run at a block: Q parameters, calls, repeats, pole, transformations, tool.
-#[derive(Clone)]
-pub struct Checkpoint {
-    run: Box<Run>,
-    ended: Option<Ended>,
-    waiting: Option<Barrier>,
-    position: Position,
-}
-
-impl Checkpoint {
-    /// Count of executed blocks up to and with the block that is executed next: the sequence of its elements.
-    pub fn sequence(&self) -> u64 {
-        self.run.sequence + 1
-    }
-
-    /// The block that is executed next.
-    pub fn at(&self) -> BlockRef {
-        self.run.at.block_ref()
-    }
 }
 
 impl Interpreter {
@@ -123,6 +110,7 @@ impl Interpreter {
             waiting: None,
             interrupt: None,
             kept: None,
+            work: None,
             position,
         }
     }
@@ -159,15 +147,36 @@ impl Interpreter {
         std::mem::take(&mut self.run.warnings)
     }
 
-    /// Keeps the state before each block that can move or output something, for
-    /// [`Interpreter::take_checkpoints`].
+    /// Keeps the state before each block whose elements are on their way, for [`Interpreter::go_back`].
     pub fn keep_checkpoints(&mut self) {
-        self.kept = Some(Vec::new());
+        self.kept = Some(Kept::default());
     }
 
-    /// The states kept since the last call, in the order of execution.
-    pub fn take_checkpoints(&mut self) -> impl Iterator<Item = Checkpoint> + '_ {
-        self.kept.iter_mut().flat_map(|kept| kept.drain(..))
+    /// Forgets the states before blocks that come before the one with a sequence: it is executed.
+    pub fn forget_before(&mut self, sequence: u64) {
+        if let Some(kept) = &mut self.kept {
+            kept.forget_before(sequence);
+        }
+    }
+
+    /// Goes back to the latest kept state of which something is so, if there is one; the kept states are
+    /// forgotten.
+    pub fn go_back(&mut self, so: impl Fn(&Checkpoint) -> bool) {
+        if let Some(state) = self.kept.as_mut().and_then(|kept| kept.take(so)) {
+            self.restore(&state);
+        }
+    }
+
+    /// States that are kept, to be seen that they do not pile up.
+    pub fn checkpoints(&self) -> usize {
+        self.kept.as_ref().map_or(0, Kept::count)
+    }
+
+    /// Allows an amount of work, as [`Interpreter::next`] counts it, until the next call: a control has
+    /// other things to do, too. When it is done, the next step is [`Step::Starved`]. A block costs 1, each
+    /// further element of a block, too; a block whose state is kept costs [`STATE_COST`].
+    pub fn allow(&mut self, work: u32) {
+        self.work = Some(work);
     }
 
     /// After an error: the run goes on with the block that failed.
@@ -194,6 +203,9 @@ impl Interpreter {
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;
+        if let Some(kept) = &mut self.kept {
+            kept.handed(self.run.sequence);
+        }
     }
 
     /// Says where the axes really stand, workpiece coordinates: after a stop inside a block, or after they
@@ -260,6 +272,9 @@ impl Interpreter {
     /// Executes blocks until a step is finished or the run ends.
     fn advance(&mut self) {
         while self.run.out.queue.is_empty() && self.ended.is_none() {
+            if !self.spend(1) {
+                return;
+            }
             let at = self.run.at.block_ref();
             if let Err(fault) = self.step() {
                 self.fail(fault, at);
@@ -268,6 +283,17 @@ impl Interpreter {
                 return;
             }
         }
+    }
+
+    /// Takes work from what is allowed; `false` when nothing is left.
+    #[inline]
+    fn spend(&mut self, cost: u32) -> bool {
+        match &mut self.work {
+            Some(0) => return false,
+            Some(work) => *work = work.saturating_sub(cost),
+            None => {}
+        }
+        true
     }
 
     fn is_interrupted(&self) -> bool {
@@ -294,19 +320,12 @@ impl Interpreter {
                 Operation::Rounding { .. } | Operation::Chamfer { .. }
             )
         });
-        if self.kept.is_some() && self.run.recording.is_none() && acts(&block.operation) {
-            // Warnings are no state to go back to.
-            let warnings = std::mem::take(&mut self.run.warnings);
-            let checkpoint = Checkpoint {
-                run: Box::new(self.run.clone()),
-                ended: None,
-                waiting: None,
-                position: self.position,
-            };
-            self.run.warnings = warnings;
-            if let Some(kept) = &mut self.kept {
-                kept.push(checkpoint);
-            }
+        if let Some(kept) = &mut self.kept
+            && self.run.recording.is_none()
+            && acts(&block.operation)
+        {
+            kept.keep(&mut self.run, self.position);
+            self.work = self.work.map(|work| work.saturating_sub(STATE_COST - 1));
         }
         self.run.block = at;
         if !matches!(
@@ -552,10 +571,15 @@ impl ElementSource for Interpreter {
         }
         if self.run.out.queue.is_empty() {
             self.advance();
+        } else if !self.spend(1) {
+            return Step::Starved;
         }
         match self.run.out.queue.pop_front() {
             Some(Item::Element(element)) => {
                 self.position = element.end;
+                if let Some(kept) = &mut self.kept {
+                    kept.handed(element.sequence);
+                }
                 Step::Element(element)
             }
             Some(Item::Barrier(barrier)) => {

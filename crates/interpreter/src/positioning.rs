@@ -93,8 +93,9 @@ impl Run {
         }
         self.modal.last_move = None;
         self.increments_from = None;
-        self.since_motion = 0;
         self.contour.release(&mut self.out);
+        let end = self.modal.actual;
+        self.note_motion(Curve::Line, &start, &end);
         let element = self.element(Curve::Line, start, self.modal.actual, feed);
         self.out.push(element, None);
         Ok(Flow::Next)

@@ -378,8 +378,9 @@ impl Run {
             element.functions = Some(functions.output.into_boxed_slice());
         }
         element.constant_speed = functions.constant_speed;
-        if element.curve != Curve::Hold {
-            self.since_motion = 0;
+        self.note_motion(element.curve, &element.start, &element.end);
+        if self.machine && barrier.is_some() {
+            self.note_time();
         }
         let item = ContourMove {
             element,
@@ -403,6 +404,26 @@ impl Run {
             self.contour.flush(&mut self.out).map_err(Fault::found_ahead)?;
         }
         Ok(if functions.end { Flow::EndOfRun } else { Flow::Next })
+    }
+
+    /// A block that leads somewhere else is a movement; `L IX+0` is none.
+    #[inline]
+    pub fn note_motion(&mut self, curve: Curve, start: &Position, end: &Position) {
+        // An axis without a position gets one.
+        let moves = |axis: Axis| start[axis] != end[axis] && !end[axis].is_nan();
+        let moved = match curve {
+            Curve::Hold => false,
+            Curve::Line => Axis::ALL.into_iter().any(moves),
+            Curve::Arc(_) => curve.length(start, end) > 0.0,
+        };
+        if moved {
+            self.since_motion = 0;
+        }
+    }
+
+    /// What waits on a machine takes time: a loop of it, such as for a Q parameter of the PLC, may go on.
+    pub fn note_time(&mut self) {
+        self.since_motion = 0;
     }
 
     /// Whether the path stands until the PLC has acknowledged, so that nothing is lost when the next block is

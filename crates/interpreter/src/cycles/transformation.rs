@@ -150,6 +150,9 @@ impl Run {
         let centre = self.tool_centre();
         let mut element = self.element(Curve::Hold, centre, centre, FeedRate::Rapid);
         element.dwell_s = seconds;
+        if self.machine && seconds > 0.0 {
+            self.note_time();
+        }
         self.out.push(element, None);
         Ok(())
     }
