@@ -5,7 +5,9 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use bahn_interpreter::{Interpreter, Library, ProgramError, Settings};
-use bahn_path::{Axis, Barrier, Curve, ElementSource, Function, LiveData, PathElement, Position, Step};
+use bahn_path::{
+    Axis, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, Position, Step,
+};
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
 
@@ -41,7 +43,8 @@ pub(crate) enum RunFault {
     Limit {
         axis: Axis,
         direction: Direction,
-        /// Which block: its place in the order of execution.
+        /// Which block, and its place in the order of execution.
+        block: BlockRef,
         sequence: u64,
     },
 }
@@ -103,6 +106,8 @@ pub(crate) struct Feeder {
     /// An element outside the limits, and whether all before it is executed: a function before it may
     /// change traverse range or datum. It comes before those that were given back.
     refused: Option<(PathElement, bool)>,
+    /// Elements read from the interpreter.
+    read: u64,
     /// Executed elements for whoever wants to see the path.
     tap: Option<Vec<PathElement>>,
 }
@@ -124,6 +129,7 @@ impl Feeder {
             fault: None,
             found: VecDeque::new(),
             refused: None,
+            read: 0,
             tap: None,
         }
     }
@@ -142,12 +148,11 @@ impl Feeder {
         program.is_some_and(|program| program.unit() == bahn_program::Unit::Inch)
     }
 
-    /// Datum and traverse range as they are now: limits and M91 count from them.
-    pub fn set_datum(&mut self, datum: Position, limits: Box2) {
+    /// Datum, machine zero in workpiece coordinates and traverse range as they are now.
+    pub fn set_datum(&mut self, datum: Position, machine_zero: Position, limits: Box2) {
         self.limits = limits;
         self.offsets.datum = datum;
-        self.interpreter
-            .set_machine_zero(Axis::ALL.map(|axis| -datum[axis]).into());
+        self.interpreter.set_machine_zero(machine_zero);
     }
 
     /// Inserts a TOOL CALL of module 9150 before the next block.
@@ -165,6 +170,11 @@ impl Feeder {
         for element in refused.into_iter().chain(elements.rev()) {
             self.found.push_front(element);
         }
+    }
+
+    /// Elements that were read so far.
+    pub fn elements_read(&self) -> u64 {
+        self.read
     }
 
     /// Keeps a copy of every element that is handed out.
@@ -234,6 +244,7 @@ impl Feeder {
                 return Step::Error(fault);
             }
         };
+        self.read += 1;
         for output in element.functions() {
             self.offsets.take(&output.function);
         }
@@ -264,6 +275,7 @@ impl Feeder {
             return Some(RunFault::Limit {
                 axis,
                 direction,
+                block: element.block,
                 sequence: element.sequence,
             });
         }
@@ -367,6 +379,7 @@ mod tests {
             Step::Error(RunFault::Limit {
                 axis,
                 direction,
+                block: BlockRef { program: 0, block: 1 },
                 sequence: 1,
             })
         };

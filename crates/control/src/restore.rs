@@ -69,6 +69,7 @@ impl Control {
         let feeder = self.new_feeder(program, &machine, self.traverse_box());
         self.run.feeder = Some(feeder);
         self.run.state = RunState::Interrupted;
+        self.run.broken = false;
         self.run.restore = Some(Restore::Scan {
             block,
             functions: VecDeque::new(),
@@ -161,8 +162,7 @@ impl Control {
                     return;
                 }
                 Step::Error(fault) => {
-                    let message = self.fault_message(fault);
-                    self.show(message, false);
+                    self.show_fault(fault);
                     self.internal_stop();
                     return;
                 }

@@ -18,6 +18,12 @@ pub(crate) struct TestRun {
     block: BlockRef,
 }
 
+impl TestRun {
+    pub fn feeder(&mut self) -> &mut Feeder {
+        &mut self.feeder
+    }
+}
+
 /// What a test run came to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum TestState {

@@ -29,6 +29,7 @@ mod q_parameters;
 mod run;
 mod settings;
 mod tools;
+mod work;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -40,7 +41,10 @@ use bahn_program::{Block, MotionKind, Operation, Program, Value};
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Message, ProgramError, Warning, WarningKind};
-pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolTable};
+pub use settings::{
+    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, ToolTable,
+};
+pub use work::{Done, Work};
 
 use crate::checkpoints::Kept;
 use crate::code::Code;
@@ -50,6 +54,7 @@ use crate::error::Fault;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
 use crate::run::Run;
+use crate::work::Pending;
 
 /// Runs a program and hands out its path element by element.
 ///
@@ -80,6 +85,9 @@ pub struct Interpreter {
     kept: Option<Kept>,
     /// Work that may still be done before [`Step::Starved`]; `None` for any amount.
     work: Option<u32>,
+    /// Long computations are left to whoever drives, and the one that is pending.
+    defers: bool,
+    pending: Pending,
     /// End of the last element that was handed out.
     position: Position,
 }
@@ -111,6 +119,8 @@ impl Interpreter {
             interrupt: None,
             kept: None,
             work: None,
+            defers: false,
+            pending: Pending::None,
             position,
         }
     }
@@ -179,8 +189,34 @@ impl Interpreter {
         self.work = Some(work);
     }
 
+    /// Leaves long computations to whoever drives: while one is pending the next step is
+    /// [`Step::Starved`], see [`Interpreter::take_work`].
+    pub fn defer_work(&mut self) {
+        self.defers = true;
+    }
+
+    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to.
+    pub fn take_work(&mut self) -> Option<Work> {
+        self.pending.take(&mut self.run, &self.settings)
+    }
+
+    /// Whether this computation is what the run waits for.
+    pub fn waits_for(&self, done: &Done) -> bool {
+        self.pending.is_of(done)
+    }
+
+    /// Goes on with what a computation came to; without effect when it was given up meanwhile.
+    pub fn finish_work(&mut self, done: Done) {
+        match self.pending.finish(done, &mut self.run) {
+            Some(Ok(())) => self.run.at.block += 1,
+            Some(Err(fault)) => self.fail(fault, self.run.block),
+            None => {}
+        }
+    }
+
     /// After an error: the run goes on with the block that failed.
     pub fn retry(&mut self) {
+        self.pending = Pending::None;
         self.ended = None;
         self.waiting = None;
     }
@@ -198,6 +234,7 @@ impl Interpreter {
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
         let warnings = std::mem::take(&mut self.run.warnings);
+        self.pending = Pending::None;
         self.run = (*checkpoint.run).clone();
         self.run.warnings = warnings;
         self.ended = checkpoint.ended.clone();
@@ -222,10 +259,30 @@ impl Interpreter {
         self.position = *position;
     }
 
+    /// The axes were moved while the run waited: the PLC positioned them, or corrected the datum. The next
+    /// block starts where they stand now, workpiece coordinates. Without effect while a contour is on its
+    /// way; axes whose place is unknown stay.
+    pub fn stand_at(&mut self, position: &Position) {
+        if !self.run.contour.is_empty() || !self.run.out.queue.is_empty() {
+            return;
+        }
+        for axis in Axis::ALL.into_iter().filter(|axis| !position[*axis].is_nan()) {
+            for place in [
+                &mut self.run.modal.nominal,
+                &mut self.run.modal.actual,
+                &mut self.position,
+            ] {
+                place[axis] = position[axis];
+            }
+        }
+        self.run.modal.last_move = None;
+    }
+
     /// Goes on at a block of the main program, with everything else as it is; calls and repeats that are
     /// open are left.
     pub fn goto(&mut self, block: u32) {
         self.run.at = flow::Position::at(0, block);
+        self.pending = Pending::None;
         self.ended = None;
         self.enter_unit();
     }
@@ -271,7 +328,7 @@ impl Interpreter {
 
     /// Executes blocks until a step is finished or the run ends.
     fn advance(&mut self) {
-        while self.run.out.queue.is_empty() && self.ended.is_none() {
+        while self.run.out.queue.is_empty() && self.ended.is_none() && self.pending.is_none() {
             if !self.spend(1) {
                 return;
             }
@@ -377,6 +434,10 @@ impl Interpreter {
             Flow::EndOfRun => return self.end_of_run(),
             Flow::ContourCycle => {
                 let job = self.record_contours()?;
+                if self.defers {
+                    self.pending = Pending::Waiting(Box::new(job));
+                    return Ok(());
+                }
                 self.run.contour_cycle(&job, &self.settings)?;
                 self.run.at.block += 1;
             }

@@ -273,7 +273,7 @@ impl Run {
         if !(0.0..=f64::from(max)).contains(&number) {
             return Fault::new(MessageId::EntryValueIncorrect, format!("FN14 takes 0 to {max}"));
         }
-        match bahn_parameters::error_text(number as u16, settings.model) {
+        match settings.texts.text(number as u16, settings.model) {
             Some(text) => Fault {
                 message: Message::Numbered(text),
                 detail: String::new(),
@@ -300,9 +300,10 @@ impl Run {
         let mut line = Vec::new();
         for item in items {
             line.push(match item {
-                Value::Number(number) if (0.0..=TEXT_NUMBER_MAX).contains(number) => {
-                    bahn_parameters::error_text(*number as u16, settings.model).unwrap_or_default()
-                }
+                Value::Number(number) if (0.0..=TEXT_NUMBER_MAX).contains(number) => settings
+                    .texts
+                    .text(*number as u16, settings.model)
+                    .unwrap_or_default(),
                 Value::Number(_) => {
                     return Err(Fault::new(
                         MessageId::EntryValueIncorrect,

@@ -157,7 +157,8 @@ impl Run {
         Ok(())
     }
 
-    /// Cycle 13: angle of the oriented spindle stop, used by M19 [003:6500-6528].
+    /// Cycle 13: angle of the oriented spindle stop, for M19 or another M function [003:6500-6528]; the PLC
+    /// is told of it when the cycle is executed [000:5853-5865].
     pub(super) fn spindle_orientation(&mut self, words: &[Resolved]) -> Result<(), Fault> {
         let Some(angle) = first_number(words) else {
             return Err(Fault::new(MessageId::CyclIncomplete, "the angle is missing"));
@@ -169,7 +170,7 @@ impl Run {
             ));
         }
         self.modal.orientation_deg = Some(angle);
-        Ok(())
+        self.output_function(Function::OrientationAngle(angle), false)
     }
 
     /// Cycle 14 CONTOUR GEOMETRY: the labels of the subcontours [003:5460-5470].
