@@ -56,6 +56,7 @@ pub(crate) fn interpreter(
     Ok(bahn_interpreter::Settings {
         model,
         rules: Rules::of(list),
+        texts: bahn_interpreter::MachineTexts::default(),
         tools: machine.tools.as_deref().map(tool_table::load).transpose()?,
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
