@@ -511,7 +511,7 @@ fn rapid_cuts_are_reported() {
         all,
         [
             (&json!(6), &json!("material is removed in rapid traverse")),
-            (&json!(7), &json!("the tool is below the blank"))
+            (&json!(7), &json!("tool 1 is below the blank"))
         ]
     );
     // Without graphics nothing is removed, and nothing known of it.

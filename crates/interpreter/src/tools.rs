@@ -56,6 +56,7 @@ impl Run {
                 length,
                 radius,
                 corner_radius: 0.0,
+                ..ToolShape::default()
             },
         );
         Ok(())

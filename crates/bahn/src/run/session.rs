@@ -155,6 +155,7 @@ impl Session {
                 self.execute(deed)?;
             }
             if let Some(ended) = self.ended.take() {
+                self.take_last()?;
                 self.note("end")?;
                 return Ok(ended);
             }
@@ -369,18 +370,51 @@ impl Session {
             if !all && current.is_none_or(|current| element.sequence >= current) {
                 break;
             }
-            self.record.path(element);
-            if let Some(cutting) = &mut self.cutting {
-                cutting.element(element, &mut self.record)?;
+            self.take_front()?;
+        }
+        Ok(())
+    }
+
+    /// Of a run that was broken off in a block: what was executed to the end counts, too.
+    fn take_last(&mut self) -> Result<(), UsageError> {
+        /// Way that may be left when an element is done.
+        const DONE_MM: f64 = 1e-6;
+        let Some(current) = self.control.element().cloned() else {
+            return Ok(());
+        };
+        while let Some(element) = self.ahead.front() {
+            // Axes without a position are equal, too, bit by bit.
+            let bits = |element: &PathElement| {
+                [element.start, element.end].map(|position| position.values().map(f64::to_bits))
+            };
+            let is_current = bits(element) == bits(&current);
+            let is_done = !is_current || self.control.rest_mm() <= DONE_MM;
+            if element.sequence > current.sequence || !is_done {
+                break;
             }
-            if let Some(run) = self
-                .control
-                .interpreter()
-                .filter(|_| !self.writers.outputs.is_empty())
-            {
-                self.writers.outputs.element(element, run, &mut self.record)?;
+            self.take_front()?;
+            if is_current {
+                break;
             }
-            self.ahead.pop_front();
+        }
+        Ok(())
+    }
+
+    /// Hands on the next element.
+    fn take_front(&mut self) -> Result<(), UsageError> {
+        let Some(element) = self.ahead.pop_front() else {
+            return Ok(());
+        };
+        self.record.path(&element);
+        if let Some(cutting) = &mut self.cutting {
+            cutting.element(&element, &mut self.record)?;
+        }
+        if let Some(run) = self
+            .control
+            .interpreter()
+            .filter(|_| !self.writers.outputs.is_empty())
+        {
+            self.writers.outputs.element(&element, run, &mut self.record)?;
         }
         Ok(())
     }

@@ -26,6 +26,9 @@ pub(crate) fn command(options: &ScopeOptions) -> Result<Outcome, UsageError> {
     if options.cursor.len() > 2 {
         return Err(UsageError::new("--cursor: there are two cursors at most"));
     }
+    if let Some(Picture::Svg(path) | Picture::Png(path)) = &options.output {
+        files::keep_inputs(&[options.file.as_path()], &[("--output", path.as_path())])?;
+    }
     let table = Table::load(&options.file)?
         .choose(&options.signals)?
         .between(options.from, options.to)?;
