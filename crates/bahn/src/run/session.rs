@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bahn_control::{Command, Control, Message, RunState, Shown};
 use bahn_machine::{Event, KeyAction, Machine};
-use bahn_path::{BlockRef, FeedRate, PathElement};
+use bahn_path::{Axis, BlockRef, FeedRate, PathElement};
 
 use super::deviation::Deviation;
 use super::expectation::run_name;
@@ -83,6 +83,8 @@ pub(super) struct Session {
     start_us: Option<u64>,
     /// Elements that were prepared and not yet executed.
     ahead: VecDeque<PathElement>,
+    /// The element that was executed last, with the way that was left of it.
+    last_seen: Option<(ElementId, f64)>,
     moved_us: u64,
     last_stop: bool,
     broken_by: Option<Box<Message>>,
@@ -100,6 +102,22 @@ pub(super) struct Parts {
     pub realtime: bool,
     pub max_time_s: f64,
     pub max_wait_s: f64,
+}
+
+/// What tells an element from all others of its run. Axes without a position are equal, too, bit by bit.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct ElementId {
+    sequence: u64,
+    ends: [[u64; Axis::COUNT]; 2],
+}
+
+impl ElementId {
+    fn of(element: &PathElement) -> ElementId {
+        ElementId {
+            sequence: element.sequence,
+            ends: [element.start, element.end].map(|position| position.values().map(f64::to_bits)),
+        }
+    }
 }
 
 impl Session {
@@ -140,6 +158,7 @@ impl Session {
             plc_percent: (0.0, 0, 0.0),
             start_us: None,
             ahead: VecDeque::new(),
+            last_seen: None,
             moved_us: 0,
             last_stop: false,
             broken_by: None,
@@ -365,6 +384,9 @@ impl Session {
                 .warn(warning.block, Notice::Program(warning.kind), warning.count);
         }
         let all = self.control.has_ended();
+        if let Some(element) = self.control.element() {
+            self.last_seen = Some((ElementId::of(element), self.control.rest_mm()));
+        }
         let current = self.control.element().map(|element| element.sequence);
         while let Some(element) = self.ahead.front() {
             if !all && current.is_none_or(|current| element.sequence >= current) {
@@ -379,17 +401,12 @@ impl Session {
     fn take_last(&mut self) -> Result<(), UsageError> {
         /// Way that may be left when an element is done.
         const DONE_MM: f64 = 1e-6;
-        let Some(current) = self.control.element().cloned() else {
+        let Some((current, rest_mm)) = self.last_seen else {
             return Ok(());
         };
         while let Some(element) = self.ahead.front() {
-            // Axes without a position are equal, too, bit by bit.
-            let bits = |element: &PathElement| {
-                [element.start, element.end].map(|position| position.values().map(f64::to_bits))
-            };
-            let is_current = bits(element) == bits(&current);
-            let is_done = !is_current || self.control.rest_mm() <= DONE_MM;
-            if element.sequence > current.sequence || !is_done {
+            let is_current = ElementId::of(element) == current;
+            if element.sequence > current.sequence || is_current && rest_mm > DONE_MM {
                 break;
             }
             self.take_front()?;

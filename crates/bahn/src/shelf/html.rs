@@ -92,7 +92,7 @@ fn program(out: &mut impl Write, done: &Done) -> io::Result<()> {
     if let Some(png) = &done.picture {
         write!(
             out,
-            "<img loading=\"lazy\" width=\"240\" height=\"180\" alt=\"the finished part\" \
+            "<img loading=\"lazy\" width=\"200\" height=\"150\" alt=\"the finished part\" \
              src=\"data:image/png;base64,{}\">",
             base64(png)
         )?;

@@ -31,7 +31,7 @@ use against::Other;
 use crew::{Done, Work};
 use row::Verdict;
 
-/// Columns that a part of the table is made of: its volume is exact to about a thousandth.
+/// Columns that a part of the table is made of: its volume is exact to some tenths of a percent.
 const COLUMNS: Columns = Columns::About(100_000.0);
 /// Time of a program unless the options say otherwise.
 const TIME_LIMIT: Duration = Duration::from_secs(300);
