@@ -6,8 +6,9 @@ use std::path::Path;
 use bahn_path::{
     At, Axis, Blank, BlockRef, Curve, Function, OverrideLaw, PathElement, Position, ToolShape, Touch,
 };
+use bahn_picture::Image;
 use bahn_workpiece::{
-    EventKind, Image, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
+    EventKind, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
 };
 
 use crate::cli::{OutputOptions, View};

@@ -10,7 +10,7 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
 //!   makes folders of machines;
-//! - `check`, `format`, `explain`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
+//! - `check`, `format`, `explain`, `manual`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
 //!   `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
@@ -27,6 +27,7 @@ mod files;
 mod format;
 mod interrupt;
 mod machine_folder;
+mod manual;
 mod mp;
 mod path_csv;
 mod path_svg;
@@ -66,7 +67,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Plc(options) => plc::command(options),
         cli::Command::Mp(options) => mp::command(options),
         cli::Command::Explain(options) => explain::command(options),
-        cli::Command::Completions(options) => cli::completions(options),
+        cli::Command::Completions(options) => manual::completions(options),
+        cli::Command::Man(options) => manual::man(options),
     };
     match result {
         Ok(outcome) => outcome.into(),

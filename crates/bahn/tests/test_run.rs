@@ -665,7 +665,6 @@ fn wrong_use_has_exit_code_2() {
         "frobnicate",
         "test",
         "test nothing.H",
-        "test .",
         "test main.H --format xml",
         "test main.H --path out.txt",
         "test main.H --path nowhere/out.csv",

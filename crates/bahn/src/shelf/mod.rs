@@ -32,7 +32,7 @@ use crew::{Done, Work};
 use row::Verdict;
 
 /// Columns that a part of the table is made of: its volume is exact to some tenths of a percent.
-const COLUMNS: Columns = Columns::About(100_000.0);
+const COLUMNS: Columns = Columns::About(250_000.0);
 /// Time of a program unless the options say otherwise.
 const TIME_LIMIT: Duration = Duration::from_secs(300);
 /// Pictures in the page, pixels.

@@ -29,7 +29,7 @@ Examples:
 Tables: several files, a folder, - (names on standard input, one a line), --report, --against or --density
 give a table in place of the report. Every file is a program of its own. One that fails alone, but is called
 by CALL PGM from another one of the table, is marked `called` and is no error. Parts are made of about
-100,000 columns there unless --resolution says otherwise. Exit code 1 when a program has an error, cannot be
+250,000 columns there unless --resolution says otherwise. Exit code 1 when a program has an error, cannot be
 read or takes longer than --time-limit; the others run all the same.
 
 Comparison (--against): a list of machine parameters, a tool table, a folder of a machine, or the report of
