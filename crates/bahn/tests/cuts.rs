@@ -162,3 +162,18 @@ fn the_drawing_shows_a_path_that_leaves() {
     let drawing = folder.read("path.svg");
     assert!(drawing.contains("M20 25L90 25L105 25"), "{drawing}");
 }
+
+#[test]
+fn the_machine_says_so_too() {
+    let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/mill");
+    let folder = Folder::with_program(
+        "BLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+100 Y+50 Z+0\nTOOL CALL 1 Z S1000\n\
+         L X+20 Y+25 Z+50 R0 FMAX\nL Z-2 F1000\nL X+40\nL Z+50 FMAX",
+    );
+    let run = folder.bahn(&format!("run main.H --machine {machine} --fresh --format json"));
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert_eq!(
+        of(&run.json()),
+        [(5, "tool 1 cuts while the spindle stands still".to_owned())]
+    );
+}

@@ -43,9 +43,10 @@ Tool table (--tools): a text file with a line of column names and one line for e
   1  80.5  10   0   END MILL D20
   2  62    4    4   BALL D8
 T is the number, L the length, R the radius, R2 the corner radius (0 flat end, as great as R ball
-end), in mm; DL, DR, DR2 are added to them; DIRECT is - (M3) or + (M4); other columns are ignored. Columns are separated by
-blanks, tabs, commas or semicolons. TOOL.T files of later controls (first line BEGIN TOOL .T MM or
-INCH, fixed columns) load too.
+end), in mm; DL, DR, DR2 are added to them; T-ANGLE is the angle of a drill's point in degrees, DIRECT
+is - for M3, + for M4; other columns are ignored. Columns are separated by blanks, tabs, commas or
+semicolons. TOOL.T files of later controls (first line BEGIN TOOL .T MM or INCH, fixed columns) load
+too.
 
 Machine parameters (--parameters): a text file with lines like `MP7430 : 1.2 ;overlap`. They replace
 values of the reference list of the model; --mp replaces single ones after that.
