@@ -56,6 +56,10 @@ line, detail, or null), machining_time_s (null when the feed is 0), path_mm (fee
 blocks_executed, tool_calls (block, tool, speed_rpm), final_position, q, removed_mm3 (null without a
 blank), warnings (message, program, block, line, count), stops (block, function, program, line).
 
+JSON of a table: model, totals, programs (path, result, error, unit, machining_time_s, feed_mm, rapid_mm,
+blocks_executed, tools, blank_mm, finished_mm, removed_mm3, removed_kg, finished_kg, travel by axis with
+the limits of the machine and whether it fits, warnings, calls, changes).
+
 Ctrl-C ends the run with the report or the table so far and exit code 130.";
 
 /// Options of the test run.
