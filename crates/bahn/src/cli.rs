@@ -80,7 +80,6 @@ Examples:
   bahn explain CyclIncomplete
   bahn explain               list all messages";
 
-
 /// What the program runs on.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Machine")]

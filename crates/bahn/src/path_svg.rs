@@ -121,7 +121,12 @@ impl PathDrawing {
         let Some([min, max]) = self.bounds else { return };
         let beyond = BEYOND * (max[0] - min[0]).max(max[1] - min[1]);
         for from in std::mem::take(&mut self.leaving) {
-            let sides = [from[0] - min[0], max[0] - from[0], from[1] - min[1], max[1] - from[1]];
+            let sides = [
+                from[0] - min[0],
+                max[0] - from[0],
+                from[1] - min[1],
+                max[1] - from[1],
+            ];
             let nearest = sides.iter().copied().fold(f64::INFINITY, f64::min);
             let to = match sides.iter().position(|side| *side == nearest) {
                 Some(0) => [min[0] - beyond, from[1]],
