@@ -49,7 +49,11 @@ fn ends(rig: &mut Rig) -> Vec<[u64; 2]> {
             rig.control.finish_work(work.compute());
         }
         let path = rig.control.take_path().into_iter();
-        ends.extend(path.map(|element| [bahn_path::Axis::X, bahn_path::Axis::Y].map(|axis| element.end[axis].to_bits())));
+        ends.extend(
+            path.map(|element| {
+                [bahn_path::Axis::X, bahn_path::Axis::Y].map(|axis| element.end[axis].to_bits())
+            }),
+        );
         if rig.control.has_ended() {
             return ends;
         }
