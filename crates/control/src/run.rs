@@ -204,6 +204,9 @@ impl Control {
         self.run.answer = None;
         self.run.restore = None;
         self.run.speed = 0.0;
+        if let Some(feeder) = &mut self.run.feeder {
+            feeder.interpreter_mut().give_up_work();
+        }
         self.end_probing();
         self.handshakes.abort(&mut self.exchange);
         for index in 0..crate::markers::AXES {

@@ -76,7 +76,7 @@ fn nothing_to_touch() {
         rig.start();
         rig.until(30.0, "the message", |rig| !rig.messages().is_empty());
         assert_eq!(rig.messages(), ["TOUCH POINT INACCESSIBLE program 1.H block 2"]);
-        assert_eq!(rig.control.snapshot().run, RunState::Idle);
+        assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
         rig.command("ce");
         rig.seconds(0.3);
     }
@@ -177,7 +177,9 @@ fn a_deflected_stylus_stops_the_machine() {
     let mut rig = rig_of(guarded(), program);
     rig.event("key B press");
     rig.start();
-    rig.until(20.0, "the stop", |rig| rig.control.run_state() == RunState::Interrupted);
+    rig.until(20.0, "the stop", |rig| {
+        rig.control.run_state() == RunState::Interrupted
+    });
     rig.seconds(0.5);
     let x = nominal(&rig, 'X');
     // The ball of 2 mm touches at 78; from 600 mm/min the axis brakes within 0.1 mm.

@@ -1,4 +1,5 @@
 //! A contour that takes long to compute does not hold the machine: whoever drives it computes beside.
+#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
 
 mod support;
 
@@ -49,7 +50,11 @@ fn ends(rig: &mut Rig) -> Vec<[u64; 2]> {
             rig.control.finish_work(work.compute());
         }
         let path = rig.control.take_path().into_iter();
-        ends.extend(path.map(|element| [bahn_path::Axis::X, bahn_path::Axis::Y].map(|axis| element.end[axis].to_bits())));
+        ends.extend(
+            path.map(|element| {
+                [bahn_path::Axis::X, bahn_path::Axis::Y].map(|axis| element.end[axis].to_bits())
+            }),
+        );
         if rig.control.has_ended() {
             return ends;
         }

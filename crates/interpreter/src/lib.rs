@@ -200,6 +200,11 @@ impl Interpreter {
         self.pending.take(&mut self.run, &self.settings)
     }
 
+    /// Gives a computation up that is pending: its block is executed anew when the run goes on.
+    pub fn give_up_work(&mut self) {
+        self.pending = Pending::None;
+    }
+
     /// Whether this computation is what the run waits for.
     pub fn waits_for(&self, done: &Done) -> bool {
         self.pending.is_of(done)
