@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, Message, ProgramError};
+use bahn_interpreter::{Interpreter, ProgramError};
 use bahn_motion::{PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{Barrier, BlockRef, Function, LiveData, PathElement};
@@ -188,10 +188,7 @@ impl TestRun {
         let line = run
             .program(error.block.program)
             .map_or(0, |program| Marked::of_block(program, block).line);
-        let remedy = match &error.message {
-            Message::Control(id) => Some(id.remedy()),
-            Message::Numbered(_) => None,
-        };
+        let remedy = error.remedy();
         ErrorReport {
             message: error.message.text(self.model).to_owned(),
             program,

@@ -415,6 +415,7 @@ impl Control {
             tool_length_mm: Some(self.offsets.tool_length),
             machine: true,
             max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
+            inch_feed: self.inch_feed,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);

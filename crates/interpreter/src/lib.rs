@@ -5,6 +5,7 @@
 //! - [`Settings`]: control model, machine parameters, tools and options of a run;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it;
 //! - [`Library`]: where called programs come from;
+//! - [`rehearse`]: all faults of a program, found without moving anything;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
 //! A block is executed by `run`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
@@ -26,6 +27,7 @@ mod path_functions;
 mod positioning;
 mod probe;
 mod q_parameters;
+mod rehearsal;
 mod run;
 mod settings;
 mod tools;
@@ -40,16 +42,18 @@ use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
-pub use error::{Message, ProgramError, Warning, WarningKind};
+pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
+pub use q_parameters::Q_VALUE_MAX;
+pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, ToolTable,
+    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, ToolTable, tool_key,
 };
 pub use work::{Done, Work};
 
 use crate::checkpoints::Kept;
 use crate::code::Code;
 use crate::contour::Contour;
-use crate::cycles::{ContourJob, contour_plane};
+use crate::cycles::{ContourJob, Halt, Watch, contour_plane};
 use crate::error::Fault;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
@@ -109,7 +113,7 @@ impl Interpreter {
     pub fn new(main: Arc<Program>, settings: Settings, library: Box<dyn Library + Send>) -> Interpreter {
         let run = Run::new(&settings, main.unit());
         let position = settings.start;
-        Interpreter {
+        let mut interpreter = Interpreter {
             settings,
             library,
             code: Code::new(main),
@@ -122,6 +126,30 @@ impl Interpreter {
             defers: false,
             pending: Pending::None,
             position,
+        };
+        interpreter.look_at_feeds(0);
+        interpreter
+    }
+
+    /// Warns when the feeds of a program in inches speak against what F is taken to count.
+    fn look_at_feeds(&mut self, program: u16) {
+        let reading = self.settings.inch_feed();
+        let doubt = self
+            .code
+            .program(program)
+            .and_then(|program| program.feed_doubt(reading));
+        if let Some(doubt) = doubt {
+            self.run.warnings.push(Warning {
+                block: BlockRef {
+                    program,
+                    block: doubt.block,
+                },
+                kind: WarningKind::InchFeed {
+                    reading,
+                    feed_mm_min: doubt.feed_mm_min.round() as u32,
+                },
+                count: 1,
+            });
         }
     }
 
@@ -157,66 +185,11 @@ impl Interpreter {
         std::mem::take(&mut self.run.warnings)
     }
 
-    /// Keeps the state before each block whose elements are on their way, for [`Interpreter::go_back`].
-    pub fn keep_checkpoints(&mut self) {
-        self.kept = Some(Kept::default());
-    }
-
-    /// Forgets the states before blocks that come before the one with a sequence: it is executed.
-    pub fn forget_before(&mut self, sequence: u64) {
-        if let Some(kept) = &mut self.kept {
-            kept.forget_before(sequence);
-        }
-    }
-
-    /// Goes back to the latest kept state of which something is so, if there is one; the kept states are
-    /// forgotten.
-    pub fn go_back(&mut self, so: impl Fn(&Checkpoint) -> bool) {
-        if let Some(state) = self.kept.as_mut().and_then(|kept| kept.take(so)) {
-            self.restore(&state);
-        }
-    }
-
-    /// States that are kept, to be seen that they do not pile up.
-    pub fn checkpoints(&self) -> usize {
-        self.kept.as_ref().map_or(0, Kept::count)
-    }
-
     /// Allows an amount of work, as [`Interpreter::next`] counts it, until the next call: a control has
     /// other things to do, too. When it is done, the next step is [`Step::Starved`]. A block costs 1, each
     /// further element of a block, too; a block whose state is kept costs [`STATE_COST`].
     pub fn allow(&mut self, work: u32) {
         self.work = Some(work);
-    }
-
-    /// Leaves long computations to whoever drives: while one is pending the next step is
-    /// [`Step::Starved`], see [`Interpreter::take_work`].
-    pub fn defer_work(&mut self) {
-        self.defers = true;
-    }
-
-    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to.
-    pub fn take_work(&mut self) -> Option<Work> {
-        self.pending.take(&mut self.run, &self.settings)
-    }
-
-    /// Gives a computation up that is pending: its block is executed anew when the run goes on.
-    pub fn give_up_work(&mut self) {
-        self.pending = Pending::None;
-    }
-
-    /// Whether this computation is what the run waits for.
-    pub fn waits_for(&self, done: &Done) -> bool {
-        self.pending.is_of(done)
-    }
-
-    /// Goes on with what a computation came to; without effect when it was given up meanwhile.
-    pub fn finish_work(&mut self, done: Done) {
-        match self.pending.finish(done, &mut self.run) {
-            Some(Ok(())) => self.run.at.block += 1,
-            Some(Err(fault)) => self.fail(fault, self.run.block),
-            None => {}
-        }
     }
 
     /// After an error: the run goes on with the block that failed.
@@ -341,7 +314,9 @@ impl Interpreter {
             if let Err(fault) = self.step() {
                 self.fail(fault, at);
             }
-            if self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD) && self.is_interrupted() {
+            // A contour that was broken off leaves its block where it is.
+            let stays = self.run.at.block_ref() == at;
+            if (stays || self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD)) && self.is_interrupted() {
                 return;
             }
         }
@@ -437,14 +412,19 @@ impl Interpreter {
             Flow::CallProgram(name) => self.call_program(&name)?,
             Flow::EndOfProgram => return self.end_of_program(),
             Flow::EndOfRun => return self.end_of_run(),
+            Flow::ContourCycle if self.run.rehearsal => self.rehearse_contours()?,
             Flow::ContourCycle => {
                 let job = self.record_contours()?;
                 if self.defers {
                     self.pending = Pending::Waiting(Box::new(job));
                     return Ok(());
                 }
-                self.run.contour_cycle(&job, &self.settings)?;
-                self.run.at.block += 1;
+                let watch = Watch::new(self.interrupt.as_deref());
+                match self.run.contour_cycle(&job, &self.settings, &watch) {
+                    Ok(()) => self.run.at.block += 1,
+                    Err(Halt::Fault(fault)) => return Err(fault),
+                    Err(Halt::Interrupted) => {}
+                }
             }
         }
         Ok(())
@@ -504,13 +484,17 @@ impl Interpreter {
         };
         self.run.at.call_program(index, self.settings.model.limits())?;
         self.enter_unit();
+        if self.code.is_new(index) {
+            self.look_at_feeds(index);
+        }
         Ok(())
     }
 
     /// Each program has its own unit; Q113 keeps that of the main program (inferred).
     fn enter_unit(&mut self) {
         if let Some(program) = self.code.program(self.run.at.program) {
-            self.run.unit_mm = modal::unit_mm(program.unit());
+            self.run.unit = program.unit();
+            self.run.unit_mm = program.unit().mm();
         }
     }
 
@@ -550,6 +534,7 @@ impl Interpreter {
             program,
             block,
             detail: fault.detail,
+            cause: fault.cause,
         })));
     }
 
@@ -558,10 +543,7 @@ impl Interpreter {
     fn record_contours(&mut self) -> Result<ContourJob, Fault> {
         let labels = self.run.modal.contour_labels.clone();
         if labels.is_empty() {
-            return Err(Fault::new(
-                MessageId::CyclIncomplete,
-                "cycle 14 CONTOUR GEOMETRY is not defined",
-            ));
+            return Err(no_contours());
         }
         let mut recorder = self.run.clone();
         recorder.contour = Contour::recorder();
@@ -571,6 +553,20 @@ impl Interpreter {
         let job = self.record_labels(&labels);
         std::mem::swap(&mut self.run, &mut recorder);
         job
+    }
+
+    /// Looks whether the contours of cycle 14 are there.
+    fn rehearse_contours(&mut self) -> Result<(), Fault> {
+        let labels = std::mem::take(&mut self.run.modal.contour_labels);
+        let found = labels.iter().try_for_each(|&label| self.label(label).map(drop));
+        let defined = !labels.is_empty();
+        self.run.modal.contour_labels = labels;
+        found?;
+        if !defined {
+            return Err(no_contours());
+        }
+        self.run.at.block += 1;
+        Ok(())
     }
 
     fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Fault> {
@@ -601,6 +597,13 @@ impl Interpreter {
         }
         job.ok_or_else(|| MessageId::CyclIncomplete.into())
     }
+}
+
+fn no_contours() -> Fault {
+    Fault::new(
+        MessageId::CyclIncomplete,
+        "cycle 14 CONTOUR GEOMETRY is not defined",
+    )
 }
 
 /// Whether a block can move or output something.

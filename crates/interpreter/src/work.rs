@@ -1,9 +1,10 @@
 //! Computations that take long: they can be done beside, on a thread of whoever drives the interpreter.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use crate::cycles::ContourJob;
-use crate::error::Fault;
+use crate::Interpreter;
+use crate::cycles::{ContourJob, Halt, Watch};
 use crate::run::Run;
 use crate::settings::Settings;
 
@@ -23,13 +24,14 @@ pub struct Work {
     run: Box<Run>,
     settings: Settings,
     job: Box<ContourJob>,
+    interrupt: Option<Arc<AtomicBool>>,
     mark: Arc<()>,
 }
 
 /// What a [`Work`] came to, for the interpreter that it is of.
 pub struct Done {
     run: Box<Run>,
-    result: Result<(), Fault>,
+    result: Result<(), Halt>,
     mark: Arc<()>,
 }
 
@@ -40,9 +42,10 @@ impl Work {
             mut run,
             settings,
             job,
+            interrupt,
             mark,
         } = self;
-        let result = run.contour_cycle(&job, &settings);
+        let result = run.contour_cycle(&job, &settings, &Watch::new(interrupt.as_deref()));
         Done { run, result, mark }
     }
 }
@@ -57,7 +60,12 @@ impl Pending {
     }
 
     /// Hands the computation out.
-    pub fn take(&mut self, run: &mut Run, settings: &Settings) -> Option<Work> {
+    pub fn take(
+        &mut self,
+        run: &mut Run,
+        settings: &Settings,
+        interrupt: Option<&Arc<AtomicBool>>,
+    ) -> Option<Work> {
         let Pending::Waiting(job) = std::mem::take(self) else {
             return None;
         };
@@ -70,12 +78,13 @@ impl Pending {
             run: copy,
             settings: settings.clone(),
             job,
+            interrupt: interrupt.cloned(),
             mark,
         })
     }
 
     /// Takes what it came to. `None` when it was given up meanwhile.
-    pub fn finish(&mut self, done: Done, run: &mut Run) -> Option<Result<(), Fault>> {
+    pub fn finish(&mut self, done: Done, run: &mut Run) -> Option<Result<(), Halt>> {
         if !self.is_of(&done) {
             return None;
         }
@@ -85,5 +94,39 @@ impl Pending {
         warnings.append(&mut run.warnings);
         run.warnings = warnings;
         Some(done.result)
+    }
+}
+
+impl Interpreter {
+    /// Leaves long computations to whoever drives: while one is pending the next step is
+    /// [`Step::Starved`], see [`Interpreter::take_work`].
+    pub fn defer_work(&mut self) {
+        self.defers = true;
+    }
+
+    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to.
+    pub fn take_work(&mut self) -> Option<Work> {
+        self.pending
+            .take(&mut self.run, &self.settings, self.interrupt.as_ref())
+    }
+
+    /// Gives a computation up that is pending: its block is executed anew when the run goes on.
+    pub fn give_up_work(&mut self) {
+        self.pending = Pending::None;
+    }
+
+    /// Whether this computation is what the run waits for.
+    pub fn waits_for(&self, done: &Done) -> bool {
+        self.pending.is_of(done)
+    }
+
+    /// Goes on with what a computation came to; without effect when it was given up meanwhile.
+    pub fn finish_work(&mut self, done: Done) {
+        match self.pending.finish(done, &mut self.run) {
+            Some(Ok(())) => self.run.at.block += 1,
+            Some(Err(Halt::Fault(fault))) => self.fail(fault, self.run.block),
+            // Its block is executed anew when the run goes on.
+            Some(Err(Halt::Interrupted)) | None => {}
+        }
     }
 }
