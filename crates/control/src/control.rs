@@ -526,6 +526,8 @@ pub(crate) fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[A
         corner_angle_deg: parameters.corner_angle_deg(),
         servo_lag: !parameters.feed_precontrol(),
         cycle_s: f64::from(Timing::of(parameters.model()).contour_us()) * 1e-6,
+        servo_window_s: bahn_motion::SERVO_WINDOW_S,
+        spindle: Default::default(),
         feed_override_percent: 100.0,
         rapid_override_percent: 100.0,
     }

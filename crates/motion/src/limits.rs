@@ -22,10 +22,28 @@ pub struct Limits {
     /// Contour cycle: the time from one nominal position to the next, s. 0.003 for TNC 415 and 425,
     /// 0.006 for TNC 407 and 360 [000:4749].
     pub cycle_s: f64,
+    /// Time over which the servo spreads a step of velocity at a corner, s:
+    /// [`SERVO_WINDOW_S`](crate::SERVO_WINDOW_S).
+    pub servo_window_s: f64,
+    /// Gear ranges of the spindle, slowest first, for paths that follow it; those without speed are not
+    /// used.
+    pub spindle: [SpindleGear; GEARS],
     /// Feed override, 0 to 150 % [003:1135-1145].
     pub feed_override_percent: f64,
     /// Override of rapid traverse, 0 to 150 %; more than 100 % is without effect as MP1010 limits.
     pub rapid_override_percent: f64,
+}
+
+/// Gear ranges of the spindle at most [000:5522].
+pub const GEARS: usize = 8;
+
+/// A gear range of the spindle as paths need it that follow the spindle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpindleGear {
+    /// Greatest speed that is programmed in it, rpm: MP3510; 0 is no gear range.
+    pub rated_rpm: f64,
+    /// Change of speed in rigid tapping, rpm/s: MP3410.3 in the voltage of the gear; 0 is no ramp.
+    pub ramp_rpm_s: f64,
 }
 
 /// Least entry of MP1060 and MP1070, m/s².
@@ -62,6 +80,8 @@ pub(crate) struct Dynamics {
     pub(crate) servo_lag: bool,
     /// Contour cycle, s.
     pub(crate) cycle: f64,
+    /// The servo's window, s.
+    pub(crate) servo_window: f64,
     feed_override: f64,
     rapid_override: f64,
     /// Slowness of each axis as the machine has it.
@@ -85,6 +105,7 @@ impl Dynamics {
                 .cos(),
             servo_lag: limits.servo_lag,
             cycle: limits.cycle_s.clamp(LEAST_CYCLE_S, 1.0).max(LEAST_CYCLE_S),
+            servo_window: limits.servo_window_s.clamp(LEAST_CYCLE_S, 1.0).max(LEAST_CYCLE_S),
             feed_override: limits.feed_override_percent,
             rapid_override: limits.rapid_override_percent,
         }
