@@ -62,7 +62,12 @@ impl Control {
             self.end_positioning(index);
         }
         self.positioning.stop();
-        if self.loops_closed && self.axes.iter().all(|unit| unit.stands()) {
+        let stands = if self.path.is_coupled() {
+            self.thread_stands()
+        } else {
+            self.axes.iter().all(|unit| unit.stands())
+        };
+        if self.loops_closed && stands {
             self.open_loops();
         }
     }
@@ -82,6 +87,7 @@ impl Control {
 
     pub(crate) fn open_loops(&mut self) {
         self.loops_closed = false;
+        self.part_thread();
         self.spindle.open();
         self.manual.stop();
         self.reference.abort();
@@ -137,6 +143,7 @@ impl Control {
             unit.servo.set_monitored(!(suppressed || monitoring_off));
         }
         if all_open {
+            self.part_thread();
             self.spindle.open();
             self.stop_run();
         }
@@ -169,6 +176,7 @@ impl Control {
                 continue;
             }
             self.show(message, !fault.cancellable());
+            self.part_thread();
             self.stop_run();
             // An error with stop ends what the PLC positions [000:4013-4019].
             for index in 0..AXES {

@@ -38,7 +38,9 @@ use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
 pub use code::{Library, NoLibrary};
 pub use error::{Message, ProgramError, Warning, WarningKind};
-pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolTable};
+pub use settings::{
+    ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, TappingRules, ToolTable,
+};
 
 use crate::code::Code;
 use crate::contour::Contour;

@@ -19,6 +19,7 @@
 //! - corners up to MP7460, and with M90 in operation with servo lag all corners, are passed at constant
 //!   speed, as far as the servo follows the step of velocity ([`SERVO_WINDOW_S`]); the path stops at all
 //!   others [000:5094-5114] [003:3421-3461];
+//! - a path that follows the spindle accelerates no faster than the spindle (MP3410.3) and stops at both ends;
 //! - every axis stays below `sqrt(MP1060² + MP1070²)`, seen in contour cycles; at corners that are passed
 //!   its steps of velocity do so, seen in the servo's window.
 //!
@@ -69,6 +70,7 @@ mod drive;
 mod gate;
 mod interpolator;
 mod limits;
+
 mod motion;
 mod planner;
 mod point_to_point;
@@ -80,7 +82,7 @@ mod times;
 mod window;
 
 pub use corner::SERVO_WINDOW_S;
-pub use drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
+pub use drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Master, Place, Prepared, State, Stop};
 pub use gate::Gate;
 pub use interpolator::Interpolator;
 pub use limits::{GEARS, Limits, SpindleGear};

@@ -74,7 +74,7 @@ impl Motion {
             speed: dynamics.speed(element.feed, element.override_law, slowest),
             slowest,
             radial_speed: f64::INFINITY,
-            acceleration: acceleration(share, dynamics),
+            acceleration: acceleration(share, dynamics).min(dynamics.spindle_acceleration(element)),
             rotary,
             main_axes,
             direction,

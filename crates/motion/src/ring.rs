@@ -283,9 +283,9 @@ impl Ring {
         }
     }
 
-    /// Other overrides, %.
-    pub(crate) fn set_overrides(&mut self, feed_percent: f64, rapid_percent: f64) {
-        self.dynamics.set_overrides(feed_percent, rapid_percent);
+    /// Other overrides, %: feed, rapid traverse, spindle.
+    pub(crate) fn set_overrides(&mut self, percent: [f64; 3]) {
+        self.dynamics.set_overrides(percent);
         let dynamics = &self.dynamics;
         let current = self.current.min(self.items.len());
         self.items

@@ -77,6 +77,13 @@ impl Stopwatch {
             before: 0.0,
             after: element.dwell_s.max(0.0),
         };
+        if element
+            .thread()
+            .is_some_and(|thread| thread.orientation_deg.is_some())
+        {
+            self.spindle = Spindle::Stopped;
+            waiting.before += self.times.spindle_orientation_s;
+        }
         for function in element.functions() {
             let time = self.time(&function.function).max(0.0);
             match wait(function) {

@@ -325,7 +325,7 @@ fn override_laws() {
         .profile
         .peak_mm_s
     };
-    let limited = OverrideLaw::Limited {
+    let limited = OverrideLaw::Tapping {
         from_percent: 90.0,
         to_percent: 110.0,
     };

@@ -8,6 +8,8 @@ const GEARS: u8 = 8;
 const OLD_GEARS: usize = 4;
 /// One increment of the spindle encoder, degrees: 1024 lines, 4-fold [000:5901-5907].
 const INCREMENT_DEG: f64 = 360.0 / 4096.0;
+/// Shortest lead of the spindle's switching off before the depth, s [000:6072-6077].
+const TAPPING_LEAD_MIN_S: f64 = 0.030;
 /// Greatest voltage of the output, V.
 const OUTPUT_VOLTS: f64 = 10.0;
 
@@ -185,6 +187,53 @@ pub struct TappingParameters {
     pub orientation: bool,
 }
 
+impl SpindleParameters {
+    /// The gear range for a programmed speed, rpm: the smallest that reaches it.
+    fn gear_for(&self, rpm: f64) -> Option<&Gear> {
+        self.gears
+            .iter()
+            .find(|gear| gear.rated_rpm > 0.0 && rpm <= gear.rated_rpm)
+    }
+
+    /// For each gear range its rated speed, rpm, and how fast the spindle changes its speed in rigid tapping,
+    /// rpm/s: MP3410.3 in the voltage of the gear; 0 where there is no ramp or no gear.
+    pub fn rigid_ramps(&self) -> [[f64; 2]; GEARS as usize] {
+        self.gears.map(|gear| {
+            let rpm_v = if gear.rated_volts > 0.0 {
+                gear.rated_rpm / gear.rated_volts
+            } else {
+                0.0
+            };
+            [gear.rated_rpm, self.ramps.rigid_v_ms * 1000.0 * rpm_v]
+        })
+    }
+
+    /// How long before the depth cycle 2 switches the spindle off, s. With analogue output it is the time of the
+    /// ramp MP3410.2 from the voltage of the speed, less the run-on MP7120.2, but 30 ms where the ramp lasts
+    /// longer than that [000:6072-6077]; with coded output MP7120.1 [000:6111-6116].
+    pub fn tapping_lead_s(&self, rpm: f64) -> f64 {
+        match self.output {
+            SpindleOutput::None => 0.0,
+            SpindleOutput::Coded { .. } => self.tapping.coded_lead_s,
+            SpindleOutput::Analogue { .. } => {
+                let volts = self
+                    .gear_for(rpm)
+                    .map_or(0.0, |gear| rpm * gear.rated_volts / gear.rated_rpm);
+                lead_s(volts, self.ramps.tapping_v_ms, self.tapping.run_on_s)
+            }
+        }
+    }
+}
+
+/// The time of a ramp (V/ms) from a voltage less the run-on, see [`SpindleParameters::tapping_lead_s`].
+fn lead_s(volts: f64, ramp_v_ms: f64, run_on_s: f64) -> f64 {
+    if ramp_v_ms <= 0.0 {
+        return 0.0;
+    }
+    let ramp_s = volts.abs() / ramp_v_ms * 1e-3;
+    ramp_s - run_on_s.min(ramp_s - TAPPING_LEAD_MIN_S).max(0.0)
+}
+
 impl ParameterList {
     /// The parameters of the spindle.
     pub fn spindle_parameters(&self) -> SpindleParameters {
@@ -343,6 +392,19 @@ fn codes(value: f64) -> SpeedCodes {
 mod tests {
     use super::*;
     use crate::ControlModel;
+
+    #[test]
+    fn the_lead_of_tapping_is_at_least_30_ms() {
+        // 1.8 V at 0.05 V/ms: 36 ms; a run-on of 6 ms or more leaves 30 ms [000:6072-6077].
+        let lead_ms = |run_on| (lead_s(1.8, 0.05, run_on) * 1e6).round() / 1e3;
+        assert_eq!(lead_ms(0.0), 36.0);
+        assert_eq!(lead_ms(0.002), 34.0);
+        assert_eq!(lead_ms(0.006), 30.0);
+        assert_eq!(lead_ms(5.0), 30.0);
+        // A ramp shorter than 30 ms is not delayed.
+        assert_eq!((lead_s(1.0, 0.05, 1.0) * 1e6).round(), 20_000.0);
+        assert_eq!(lead_s(1.8, 0.0, 0.0), 0.0);
+    }
 
     #[test]
     fn the_code_range_reads_as_the_manual_says() {
