@@ -9,7 +9,7 @@ use crate::command::Mode;
 use crate::control::Control;
 use crate::emergency::Circuit;
 use crate::markers::{AXES, MONITORING_OFF, OPEN_LOOP};
-use crate::message::Message;
+use crate::message::{Message, SPINDLE_INDEX};
 
 const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
 const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop);
@@ -162,16 +162,17 @@ impl Control {
             .is_some_and(|high| *high == input.active_high)
     }
 
-    /// Faults of the loops: message and machine stop [000:5162].
+    /// Faults of the loops and of the spindle's encoder: message and machine stop [000:5162].
     pub(crate) fn take_faults(&mut self) {
-        for place in 0..self.axes.len() {
-            let Some(unit) = self.axes.get(place) else {
+        for place in 0..=self.axes.len() {
+            let (index, fault) = match self.axes.get(place) {
+                Some(unit) => (unit.index, unit.servo.fault()),
+                None => (SPINDLE_INDEX, self.spindle.fault()),
+            };
+            let Some(fault) = fault else {
                 continue;
             };
-            let Some(fault) = unit.servo.fault() else {
-                continue;
-            };
-            let message = Message::axis(fault.message(), unit.index, fault.letter());
+            let message = Message::axis(fault.message(), index, fault.letter());
             if self.messages.contains(&message) {
                 continue;
             }

@@ -4,7 +4,7 @@
 use bahn_exchange::{Bit, Exchange, signal};
 use bahn_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
 use bahn_plc::{OrientationDirection, SpindleOrientation};
-use bahn_servo::{Plant, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
+use bahn_servo::{Fault, Plant, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 
 use crate::handshake::Transfer;
 use crate::panel::PlcFaultCode;
@@ -213,6 +213,11 @@ impl SpindleUnit {
         self.led = false;
         self.servo.rotate(Rotation::M5);
         self.servo.set_enabled(false);
+    }
+
+    /// A fault of its encoder.
+    pub fn fault(&self) -> Option<Fault> {
+        self.servo.fault()
     }
 
     /// It can be led by a path: analogue output and an encoder [000:6056] [000:5444-5472].

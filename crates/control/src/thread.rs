@@ -203,6 +203,7 @@ impl Control {
         self.put(signal::RIGID_TAPPING_ACTIVE, rigid);
         if !rigid {
             self.tapping = Tapping::default();
+            self.spindle.lead(None);
         }
         let window = rigid.then(|| self.thread_window());
         let element = self.path.element();

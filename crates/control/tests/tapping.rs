@@ -290,6 +290,11 @@ fn emergency_stop_in_the_thread() {
             rig.command("stop");
             rig.seconds(0.05);
             assert!(!rig.bit("M2095"));
+            // The spindle is free again.
+            rig.command("mode manual");
+            rig.command("m 3");
+            rig.start();
+            rig.until(5.0, "M3", |rig| observe(rig, "S.rpm") > 0.9 * RPM);
         } else {
             rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
         }

@@ -1,6 +1,6 @@
 //! Time that is no movement: dwell, tool changes, the spindle, M functions.
 
-use bahn_path::{Function, PathElement};
+use bahn_path::{Function, OverrideLaw, PathElement};
 
 use crate::gate::{Gate, wait};
 
@@ -84,8 +84,14 @@ impl Stopwatch {
             self.spindle = Spindle::Stopped;
             waiting.before += self.times.spindle_orientation_s;
         }
+        // In a thread the spindle turns on its ramps, and nothing waits for its speed.
+        let tapping = matches!(element.override_law, OverrideLaw::Tapping { .. });
         for function in element.functions() {
-            let time = self.time(&function.function).max(0.0);
+            let time = match (&function.function, self.time(&function.function)) {
+                (Function::M(_), _) if tapping => self.times.m_function_s,
+                (_, time) => time,
+            }
+            .max(0.0);
             match wait(function) {
                 Some(Gate::Start) => waiting.before += time,
                 Some(Gate::End) => waiting.after += time,

@@ -3,7 +3,9 @@
 mod common;
 
 use bahn_motion::{Cycle, Drive, Interpolator, Limits, Master, SpindleGear, State};
-use bahn_path::{Axis, OverrideLaw, Position, Step, Thread};
+use bahn_path::{
+    At, Axis, Curve, Function, OverrideLaw, Position, Step, Synchronisation, TechnologyFunction, Thread,
+};
 use common::{List, Path, list, plan, time_s};
 
 const PITCH: f64 = 1.5;
@@ -276,4 +278,72 @@ fn the_path_waits_for_the_spindle() {
     }
     bench.drive.master.ready = true;
     bench.until(|_, cycle| cycle.position[Axis::Z] < -1.0);
+}
+
+fn with_m(path: &mut Path, code: u16, at: At, synchronisation: Synchronisation, law: OverrideLaw) {
+    let element = path.last();
+    element.override_law = law;
+    element.functions = Some(Box::new([TechnologyFunction {
+        function: Function::M(code),
+        at,
+        synchronisation,
+    }]));
+}
+
+/// In and out with a floating holder; M05 goes out so long before the depth.
+fn floating(lead_s: f64) -> Path {
+    let law = OverrideLaw::Tapping {
+        from_percent: 90.0,
+        to_percent: 110.0,
+    };
+    let mut path = Path::new(FEED);
+    path.line(&[(Axis::Z, -DEPTH)]);
+    with_m(&mut path, 5, At::BeforeEnd(lead_s), Synchronisation::Mos, law);
+    let wait = Synchronisation::MvsSvs;
+    path.to(Curve::Hold, path.at);
+    with_m(&mut path, 4, At::Start, wait, law);
+    path.line(&[(Axis::Z, 0.0)]).last().override_law = law;
+    for code in [5, 3] {
+        path.to(Curve::Hold, path.at);
+        with_m(&mut path, code, At::Start, wait, OverrideLaw::Free);
+    }
+    path
+}
+
+/// M05 comes the lead before the end: 15 mm/s, braking 15 ms with 1 m/s². A lead shorter than braking is braking:
+/// the spindle follows the flatter ramp [000:6070].
+#[test]
+fn a_function_before_the_end_of_a_movement() {
+    for (lead, way) in [
+        (0.5, 15.0 * (0.5 - 0.0075)),
+        (0.1, 15.0 * (0.1 - 0.0075)),
+        (0.0, 15.0 * 0.0075),
+        (100.0, DEPTH),
+    ] {
+        let mut bench = Bench::new(&floating(lead), 0);
+        let at = (0..20_000).find_map(|_| {
+            let cycle = bench.cycle();
+            let output = bench.path.next_output()?;
+            let mut functions = bench.path.functions(&output);
+            let is_m5 = functions.any(|function| function.function == Function::M(5));
+            assert!(is_m5 && !output.waits);
+            Some(cycle.position[Axis::Z] + DEPTH)
+        });
+        // It goes out at the end of the cycle in which the path passes its place.
+        let early = way - at.unwrap_or(f64::NAN);
+        assert!((-1e-9..=15.0 * 0.003 + 1e-9).contains(&early), "{lead}: {early}");
+    }
+}
+
+/// In the thread nothing waits for the speed of the spindle; above M05 and M03 do, 1 s each.
+#[test]
+fn a_floating_holder_waits_for_no_speed() {
+    let planned = plan(&floating(0.1).elements, &limits());
+    let moving = 2.0 * (DEPTH / 15.0 + 0.015);
+    // Before M04 the spindle was stopped by M05 on the way, and turns when it comes to the one above.
+    assert!(
+        (time_s(&planned) - moving - 2.0).abs() < 1e-9,
+        "{}",
+        time_s(&planned)
+    );
 }

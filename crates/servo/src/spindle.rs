@@ -9,6 +9,7 @@ mod speed_code;
 use bahn_parameters::{Gear, SpindleParameters};
 
 use crate::characteristic::KV_PER_MIN;
+use crate::fault::Fault;
 use crate::plant::Encoder;
 use crate::timing::{OUTPUT_VOLTS, Timing};
 use encoder::SpindleEncoder;
@@ -102,6 +103,7 @@ pub struct Spindle {
     goal_volts: f64,
     offset_volts: f64,
     volts: f64,
+    fault: Option<Fault>,
 }
 
 impl Spindle {
@@ -124,6 +126,7 @@ impl Spindle {
             goal_volts: 0.0,
             offset_volts: 0.0,
             volts: 0.0,
+            fault: None,
         }
     }
 
@@ -259,8 +262,8 @@ impl Spindle {
 
     /// Takes an encoder reading; once in each servo step, before [`Spindle::step`].
     pub fn measure(&mut self, encoder: Encoder) {
-        self.encoder
-            .read(encoder, self.parameters.counts_negative, &self.timing);
+        let fault = self.encoder.read(encoder, &self.parameters, &self.timing);
+        self.fault = self.fault.or(fault.map(Fault::MeasuringSystem));
     }
 
     /// One servo step: the voltage for output S, V.
@@ -467,6 +470,12 @@ impl Spindle {
     /// Speed over the last contour cycle, rpm; negative as M04. W322 is its amount.
     pub fn actual_rpm(&self) -> f64 {
         self.encoder.rpm()
+    }
+
+    /// What the monitoring of the encoder has found: amplitude (MP31 bit 5) or edges (MP32 bit 5) of its signals
+    /// [000:3290-3328].
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
     }
 
     /// Angle from the zero of the spindle, 0 up to 360 degrees: the reference mark stands at MP3430. `None`

@@ -1,7 +1,10 @@
 //! Everything that spindle, gear change, orientation and tapping need.
 
+use super::bit_of;
 use crate::ParameterList;
 
+/// Bit of the spindle in MP31 and MP32.
+const ENCODER_BIT: u32 = 5;
 /// Gear ranges of the spindle.
 const GEARS: u8 = 8;
 /// Gear ranges that the TNC 151/155 have beside comparator speeds [001:1514-1536].
@@ -34,6 +37,10 @@ pub struct SpindleParameters {
     pub polarity: SpindlePolarity,
     /// The encoder counts negative with M03: MP3140 (old MP239) [000:5508-5511].
     pub counts_negative: bool,
+    /// Check of the encoder's signal amplitude, letter A: MP31 bit 5; old: none [000:3310-3318].
+    pub check_amplitude: bool,
+    /// Check of the encoder's edge separation, letter B: MP32 bit 5; old: none [000:3320-3328].
+    pub check_edges: bool,
     /// The gear ranges, speeds ascending; those that are not used have rated speed 0 [000:5522-5564].
     pub gears: [Gear; GEARS as usize],
     /// Speeds that M2504 compares with, rpm; TNC 151/155 only, when MP78 to MP85 do not ascend
@@ -240,6 +247,7 @@ impl ParameterList {
         let kind = self.value((3010, 0), (62, 0)) as u8;
         let (gears, comparator_rpm) = self.gears();
         let old = self.has_old_numbers();
+        let encoder_bit = |number| bit_of(self.get_new(number, 0).unwrap_or_default(), ENCODER_BIT);
         SpindleParameters {
             output: output(kind),
             controlled: if old {
@@ -253,6 +261,8 @@ impl ParameterList {
             zero_permitted: self.spindle_zero_permitted(),
             polarity: polarity(self.value((3130, 0), (172, 0))),
             counts_negative: self.value((3140, 0), (239, 0)) == 1.0,
+            check_amplitude: encoder_bit(31),
+            check_edges: encoder_bit(32),
             gears,
             comparator_rpm,
             min_volts: self.value((3240, 1), (184, 0)),
