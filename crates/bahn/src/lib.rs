@@ -10,13 +10,15 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
 //!   makes folders of machines;
-//! - `check`, `format`, `explain`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
+//! - `check`, `format`, `explain`, `manual`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
 //!   `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
+//! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 
+mod called;
 mod check;
 mod cli;
 mod console;
@@ -26,8 +28,11 @@ mod explain;
 mod files;
 mod format;
 mod interrupt;
+mod junit;
 mod machine_folder;
+mod manual;
 mod mp;
+mod paragraph;
 mod path_csv;
 mod path_svg;
 mod plc;
@@ -65,7 +70,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Plc(options) => plc::command(options),
         cli::Command::Mp(options) => mp::command(options),
         cli::Command::Explain(options) => explain::command(options),
-        cli::Command::Completions(options) => cli::completions(options),
+        cli::Command::Completions(options) => manual::completions(options),
+        cli::Command::Man(options) => manual::man(options),
     };
     match result {
         Ok(outcome) => outcome.into(),

@@ -201,12 +201,27 @@ fn explain_says_everything_of_a_parameter() {
             "MP1030  Positioning window",
             "0.0001 .. 2 mm or deg",
             "recommended: 0.01",
-            "source:      000:",
+            "  does:        How near an axis must be",
+            "  too small:   ",
+            "  too large:   ",
+            "MP1110 Standstill monitoring",
+            "  source:      Technical manual TNC 407/415/425, chapter 5 Machine",
             "MP1030.4  0.01",
         ] {
             assert!(out.contains(expected), "{written}: {expected} is not in {out}");
         }
     }
+    for line in folder.bahn("mp explain 1060").out().lines() {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+    let json = folder.bahn("mp explain 1060 --format json").json();
+    assert_eq!(json[0]["related"][0], 1070);
+    assert!(
+        json[0]["too_large"]
+            .as_str()
+            .is_some_and(|text| text.contains("overshoot")),
+        "{json}"
+    );
     let out = folder.bahn("mp explain 1030.2").out();
     assert!(
         out.contains("MP1030.2  Positioning window, Z axis") && !out.contains("MP1030.1"),
@@ -311,4 +326,22 @@ MP1390  Feed precontrol in MDI, single block, full sequence
     assert_eq!((run.code(), run.out().as_str()), (0, "no difference\n"));
     folder.write("bad.mp", "MP1390 : x\n");
     assert_eq!(folder.bahn("mp diff mill.mp bad.mp").code(), 2);
+}
+
+/// A list of a TNC 155 without any comment: in the folder of its machine it is checked as such.
+#[test]
+fn a_list_in_the_folder_of_a_machine_is_for_its_control() {
+    let folder = Folder::new();
+    assert_eq!(folder.bahn("machine new m --model tnc155").code(), 0);
+    let list = folder.read("m/parameters.mp");
+    let bare: String = list
+        .lines()
+        .filter(|line| !line.trim_start().starts_with([';', '*']))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    folder.write("m/parameters.mp", &bare).write("alone.mp", &bare);
+    let inside = folder.bahn("mp check m/parameters.mp --format json");
+    assert_eq!(inside.json()[0]["model"], "tnc155", "{}", inside.err());
+    let alone = folder.bahn("mp check alone.mp --format json");
+    assert_eq!(alone.json()[0]["model"], "tnc415b");
 }

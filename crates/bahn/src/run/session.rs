@@ -20,6 +20,7 @@ use crate::cutting::Cutting;
 use crate::diagnostics::FileFault;
 use crate::files::short_name;
 use crate::interrupt::Interrupt;
+use crate::junit::{Case, Verdict};
 use crate::machine_folder::State;
 use crate::progress::Progress;
 use crate::report::{Notice, Record};
@@ -326,7 +327,7 @@ impl Session {
             self.moved_us = self.control.time_us();
         }
         match &mut self.writers.recording {
-            Some(recording) => recording.cycle(&self.control),
+            Some(recording) => recording.cycle(&self.control, self.start_us.is_some()),
             None => Ok(()),
         }
     }
@@ -342,6 +343,9 @@ impl Session {
         let refused = self.operator.started && !matches!(shown.message, Message::Plc(_));
         if shown.flashing || idle && (self.start_us.is_some() || refused) {
             self.broken_by = Some(Box::new(shown.message.clone()));
+        }
+        if let Some(recording) = &mut self.writers.recording {
+            recording.message(&self.control.message_text(&shown.message));
         }
         if self.messages.len() < MESSAGES_MAX {
             let program = self.program_name(block);
@@ -472,6 +476,23 @@ impl Session {
             });
         }
         reasons.join("; ")
+    }
+
+    /// All expectations of the script with what became of them.
+    pub fn expectations(&self) -> Vec<Case> {
+        let expectations = self.script.lines.iter();
+        let expectations = expectations.filter(|line| matches!(line.action, Action::Expect(_)));
+        let waits = |number| self.waiting.iter().flatten().any(|line| line.number == number);
+        let cases = expectations.map(|line| Case {
+            place: self.script.place(line.number),
+            name: self.script.line_text(line.number).trim().to_owned(),
+            verdict: match self.failed.iter().find(|failed| failed.line == line.number) {
+                Some(failed) => Verdict::Failed(failed.actual.clone()),
+                None if waits(line.number) => Verdict::NotReached,
+                None => Verdict::Held,
+            },
+        });
+        cases.collect()
     }
 
     /// Expectations that failed, at their lines.

@@ -233,12 +233,9 @@ impl Run {
 
     /// The areas of the tool centre at a finishing allowance.
     fn areas(&self, job: &ContourJob, allowance: f64, settings: &Settings) -> Result<Vec<PocketArea>, Fault> {
-        let radius = self.modal.tool_radius();
+        let radius = self.used_radius()?;
         if radius <= 0.0 {
-            return Err(Fault::new(
-                MessageId::ToolRadiusTooLarge,
-                "a contour pocket cannot be milled with tool radius 0",
-            ));
+            return Err(self.no_radius("a contour pocket cannot be milled"));
         }
         let rules = settings.rules.contour_pocket;
         let merge = if rules.merge_programmed {
