@@ -144,6 +144,11 @@ impl Control {
                 match state {
                     RunState::BlockEnd => self.path.go_on(),
                     RunState::Stopped => self.run.answer = Some(self.run.q_transfer.answer()),
+                    _ if self.path.is_coupled() => {
+                        // Led out of a thread by hand.
+                        self.path.go_on();
+                        self.put(bahn_exchange::signal::MANUAL_OPERATION_PRESSED, false);
+                    }
                     _ => {}
                 }
                 self.run.state = RunState::Running;
