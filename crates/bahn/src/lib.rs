@@ -13,6 +13,7 @@
 //! - `check`, `format`, `explain`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
 //!   `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
+//!   `kept`: files that survive power-off;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
@@ -26,6 +27,7 @@ mod explain;
 mod files;
 mod format;
 mod interrupt;
+mod kept;
 mod machine_folder;
 mod mp;
 mod path_csv;

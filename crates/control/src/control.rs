@@ -38,6 +38,9 @@ const MILLISECOND_US: u32 = 1000;
 /// Elements of the path that are prepared ahead at most.
 pub(crate) const LOOK_AHEAD: usize = 512;
 
+/// Commands that are kept at most until they are taken.
+const LOG_MAX: usize = 100_000;
+
 /// A control with its PLC, axes and programs. The machine comes with every cycle.
 ///
 /// [`Control::prepare`] interprets and plans ahead and may allocate; [`Control::cycle`] spends one contour
@@ -89,7 +92,8 @@ pub struct Control {
     pub(crate) programs: Arc<dyn Programs>,
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
-    log: Vec<(u64, Command)>,
+    /// The commands, when somebody wants them.
+    log: Option<Vec<(u64, Command)>>,
     pub(crate) inputs: [bool; INPUTS],
     outputs: [bool; OUTPUTS],
     output_bits: Vec<(usize, Bit)>,
@@ -205,7 +209,7 @@ impl Control {
             unsaved: false,
             programs,
             q: remembered.q,
-            log: Vec::new(),
+            log: None,
             inputs: [false; INPUTS],
             outputs: [false; OUTPUTS],
             output_bits: bits(BitArea::O, OUTPUTS),
@@ -348,8 +352,7 @@ impl Control {
         self.publish();
         self.link.program_running = self.run.is_active();
         self.link.orienting = self.spindle.is_orienting();
-        let angle = self.spindle.angle_deg().unwrap_or(0.0);
-        (self.link.spindle.actual, self.link.spindle.reference) = (angle, angle);
+        self.link.spindle = self.spindle.position();
         self.plc.scans += 1;
         if let Err(error) = self.plc.machine.scan(&mut self.exchange, &mut self.link) {
             let message = Message::PlcStopped {
@@ -399,12 +402,16 @@ impl Control {
             && self.tools.is_changing()
         {
             self.tools.inserted(&self.exchange);
-            self.unsaved = true;
         }
+        self.unsaved |= std::mem::take(&mut self.tools.changed);
         let waits = self.keeps && self.unsaved;
+        if !waits {
+            self.tools.end_geometry_strobe(&mut self.exchange);
+        }
         if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
             self.acknowledged(transfer);
         }
+        self.spindle.set_feed(self.run.speed * 60.0);
         let percent = self.spindle_override.percent();
         self.spindle.cycle(&mut self.exchange, percent);
         if self.spindle.take_wrong_speed() {
@@ -431,9 +438,11 @@ impl Control {
         self.prepare_test();
     }
 
-    /// Gives a command of the operator; it is logged with the time. `false` when it is not possible now.
+    /// Gives a command of the operator; it is logged with the time when a log is kept. `false` when it is not possible now.
     pub fn command(&mut self, command: Command) -> bool {
-        self.log.push((self.now_us, command.clone()));
+        if let Some(log) = self.log.as_mut().filter(|log| log.len() < LOG_MAX) {
+            log.push((self.now_us, command.clone()));
+        }
         let done = self.execute(command);
         if !done {
             self.show(Message::Plain(MessageId::KeyNonFunctional), false);
@@ -441,9 +450,16 @@ impl Control {
         done
     }
 
-    /// The commands since power-on with their times, µs: given again at these times they repeat the run.
-    pub fn command_log(&self) -> &[(u64, Command)] {
-        &self.log
+    /// Keeps the commands from now on, for [`Control::take_command_log`].
+    pub fn keep_command_log(&mut self) {
+        self.log = Some(Vec::new());
+    }
+
+    /// The commands since the last call with their times, µs: given again at these times they repeat the run.
+    /// `None` when they were not kept, or were more than fit before they were taken.
+    pub fn take_command_log(&mut self) -> Option<Vec<(u64, Command)>> {
+        let log = std::mem::take(self.log.as_mut()?);
+        (log.len() < LOG_MAX).then_some(log)
     }
 
     pub(crate) fn show(&mut self, message: Message, flashing: bool) {
@@ -493,11 +509,14 @@ impl Control {
 
     /// What survives power-off, as of now.
     pub fn remember(&self) -> Remembered {
+        let offsets = (self.offsets.tool_length, self.offsets.tool_axis);
+        let (tool_length, tool_axis) = self.tools.held_geometry().unwrap_or(offsets);
         Remembered {
             datums: self.datums.map(crate::setup::Position0),
             tool: self.tools.number,
-            tool_length: self.offsets.tool_length,
-            tool_axis: Some(self.offsets.tool_axis),
+            tool_length,
+            tool_axis: Some(tool_axis),
+            pockets: self.tools.moved(),
             q: self.q_values(),
             offsets_volts: self.offset_volts(),
             program: self.run.selected.clone(),

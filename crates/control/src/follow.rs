@@ -42,8 +42,9 @@ impl Control {
             feed_override_percent: percent,
             rapid_override_percent: percent,
             rapid_limit_mm_min: self.rapid_limit_mm_min(),
-            hold: self.run.state != RunState::Running,
-            single_block: self.mode == Mode::SingleBlock,
+            // Functions at which the axes do not stop (MP7440 bit 2) may come faster than the PLC takes them.
+            hold: self.run.state != RunState::Running || self.handshakes.is_crowded(),
+            single_block: self.mode == Mode::SingleBlock || self.handshakes.inhibit_read_in(),
             in_position: settled,
             clamped: self.clamped_axes(),
             clamping: self.clamping_axes(),
@@ -52,9 +53,10 @@ impl Control {
         self.run.speed = cycle.speed_mm_s;
         self.follow_path(&cycle.position);
         while let Some(output) = self.path.next_output() {
-            if self.run.waiting.len() < OUTPUTS {
-                self.run.waiting.push_back(output);
-            }
+            // Behind a function that waits there is none before it is acknowledged.
+            debug_assert!(self.run.waiting.len() < OUTPUTS, "the path waits at its gate");
+            self.run.waiting.push_back(output);
+            self.output_functions(settled);
         }
         self.output_functions(settled);
         match cycle.state {
@@ -66,9 +68,18 @@ impl Control {
             }
             State::Clamped => self.ask_to_unclamp(drive.clamped),
             State::BlockEnd if settled && self.run.state == RunState::Running => {
-                self.run.state = RunState::BlockEnd;
+                if self.mode == Mode::SingleBlock {
+                    self.run.state = RunState::BlockEnd;
+                } else if !self.handshakes.inhibit_read_in() {
+                    self.path.go_on();
+                }
             }
-            State::Stopped if settled && self.run.waiting.is_empty() && self.handshakes.is_idle() => {
+            State::Stopped
+                if settled
+                    && self.run.waiting.is_empty()
+                    && self.handshakes.is_idle()
+                    && !self.handshakes.inhibit_read_in() =>
+            {
                 self.take_stop();
             }
             _ => {}

@@ -56,12 +56,40 @@ pub struct Remembered {
     pub tool_length: f64,
     /// Axis of the tool.
     pub tool_axis: Option<Axis>,
+    /// Pockets that tools have taken by variable pocket coding [000:9281].
+    pub pockets: Vec<MovedTool>,
     /// Q parameters by number.
     pub q: Vec<(u16, f64)>,
     /// Offsets of the axes as adjusted with code number 75 368, V.
     pub offsets_volts: [f64; 5],
     /// Name of the selected program.
     pub program: Option<String>,
+}
+
+/// A tool that is not in the pocket of the tool table any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MovedTool {
+    /// Its number.
+    pub tool: u32,
+    /// Its pocket now.
+    pub pocket: u16,
+    /// Its pocket in the tool table. Where the table says another one, the magazine was loaded anew.
+    pub table: u16,
+}
+
+impl Remembered {
+    /// Forgets the pockets when the tool table has changed since: it counts then. Whether they were kept.
+    pub fn fit_pockets(&mut self, tools: Option<&BTreeMap<u32, Tool>>) -> bool {
+        let pocket = |tool: u32| tools?.get(&tool)?.pocket;
+        let fits = self
+            .pockets
+            .iter()
+            .all(|moved| pocket(moved.tool) == Some(moved.table));
+        if !fits {
+            self.pockets.clear();
+        }
+        fits
+    }
 }
 
 /// A position that is 0 by default.

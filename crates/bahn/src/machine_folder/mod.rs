@@ -1,7 +1,7 @@
 //! `bahn machine`: the folder of a machine.
 //!
 //! - `load`: everything in it, all faults at once; `programs`: its part programs; `state`: what survives
-//!   power-off;
+//!   power-off, `remembered` as a file;
 //! - `options`, `new`, `check`, `list`: the subcommands.
 
 mod check;
@@ -10,6 +10,7 @@ mod load;
 mod new;
 mod options;
 mod programs;
+mod remembered;
 mod state;
 
 pub(crate) use load::{LoadedMachine, decode, load};

@@ -88,7 +88,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             log.note(0, &event)?;
         }
     }
-    let control = Control::new(Setup {
+    let mut control = Control::new(Setup {
         parameters: machine.parameters.clone(),
         plc: Arc::clone(&machine.plc),
         plc_messages: machine.plc_messages.clone(),
@@ -99,6 +99,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         remembered,
         exchange,
     });
+    control.keep_state(state.is_some());
     let writers = Writers {
         recording: recording(options, &control)?,
         log,
@@ -120,10 +121,13 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let mut progress = Progress::new(blocks);
     let ended = session.run(&Interrupt::on_ctrl_c(), &mut progress);
     drop(progress);
-    if let Some(state) = &mut session.writers.state {
-        state.flush(&session.control)?;
-    }
-    finish(session, ended?, &machine, &programs, options)
+    let switched_off = match &mut session.writers.state {
+        Some(state) => state.flush(&session.control),
+        None => Ok(()),
+    };
+    // What could not be stored loses no report.
+    let outcome = finish(session, ended?, &machine, &programs, options)?;
+    switched_off.map(|()| outcome)
 }
 
 /// Prints the faults of files that keep a machine from being switched on.
@@ -155,16 +159,14 @@ fn power_on(
         return Ok((None, begin(), Exchange::default()));
     }
     let found = State::open(&machine.root.join(&machine.folder.state))?;
-    if let Some(damage) = &found.damage {
-        diagnostics::print_line(&format!(
-            "warning: {damage}\n  what the control remembered is lost; the datum is that of machine.toml"
-        ));
+    let mut remembered = found.remembered.unwrap_or_else(begin);
+    if !remembered.fit_pockets(machine.tools.as_ref()) {
+        diagnostics::print_line(
+            "warning: the pockets of the tool table have changed since the last run: they count, not those that the \
+             control remembered",
+        );
     }
-    Ok((
-        Some(found.state),
-        found.remembered.unwrap_or_else(begin),
-        found.exchange,
-    ))
+    Ok((Some(found.state), remembered, found.exchange))
 }
 
 fn operator(options: &RunMachineOptions, machine: &LoadedMachine, programs: &FolderPrograms) -> Operator {
@@ -239,7 +241,9 @@ fn finish(
         Ended::Completed => End::Completed,
         Ended::Stopped => End::Stopped,
         Ended::Interrupted => End::Interrupted,
-        Ended::TooLong | Ended::Broken(_) | Ended::Hangs(_) => End::Failed(Box::new(error(&session, &ended))),
+        Ended::TooLong | Ended::Broken(_) | Ended::Hangs(_) | Ended::NotStored(_) => {
+            End::Failed(Box::new(error(&session, &ended)))
+        }
     };
     let failure = match &end {
         End::Failed(error) => Some(error.clone()),
@@ -310,6 +314,10 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
             "--max-time allows more".to_owned(),
         ),
         Ended::Hangs(what) => ("nothing moves any more".to_owned(), what.clone()),
+        Ended::NotStored(what) => (
+            "what survives power-off cannot be stored".to_owned(),
+            what.clone(),
+        ),
         _ => ("the run was broken off".to_owned(), String::new()),
     };
     let place = run.map(|run| Place::of(run, at));

@@ -45,6 +45,8 @@ pub(super) enum Ended {
     Broken(Option<Box<Message>>),
     /// Nothing moves any more; what it waits for.
     Hangs(String),
+    /// What survives power-off cannot be stored; why.
+    NotStored(String),
 }
 
 /// What the session writes while it goes on.
@@ -161,8 +163,10 @@ impl Session {
             self.control.prepare();
             self.control.cycle(&mut self.machine);
             self.watch()?;
-            if let Some(state) = &mut self.writers.state {
-                state.tick(&self.control)?;
+            if let Some(state) = &mut self.writers.state
+                && let Err(error) = state.keep(&mut self.control)
+            {
+                return Ok(Ended::NotStored(error.to_string()));
             }
             if let Some(pace) = &mut self.pace {
                 pace.cycle(self.control.time_us());
