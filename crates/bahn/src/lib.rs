@@ -43,7 +43,18 @@ mod test_run;
 mod tool_table;
 
 #[doc(hidden)]
+pub use machine_folder::check_state;
+#[doc(hidden)]
 pub use plc::check_script;
+#[doc(hidden)]
+pub use scope::check_recording;
+
+/// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
+#[doc(hidden)]
+pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
+    let faults = |faults: Vec<tool_table::TableFault>| faults.iter().map(|fault| fault.line).collect();
+    tool_table::parse(text).map(drop).map_err(faults)
+}
 
 use std::ffi::OsString;
 use std::fmt;

@@ -196,8 +196,15 @@ fn wires_end_at_inputs_and_outputs_that_are_there() {
     folder.write("m/plant.toml", plant);
     let run = folder.bahn("machine check m");
     assert_eq!(run.code(), 1);
-    for (wire, said) in [("\"I63\"", "no input I63; there are I0-I31"), ("\"O127\"", "no output O127; there are O0-O30")] {
+    for (wire, said) in [
+        ("\"I63\"", "no input I63; there are I0-I31"),
+        ("\"O127\"", "no output O127; there are O0-O30"),
+    ] {
         let place = format!("plant.toml:{}:", line(&folder, "m/plant.toml", wire));
-        assert!(run.err().contains(&place) && run.err().contains(said), "{}", run.err());
+        assert!(
+            run.err().contains(&place) && run.err().contains(said),
+            "{}",
+            run.err()
+        );
     }
 }

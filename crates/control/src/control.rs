@@ -92,6 +92,7 @@ pub struct Control {
     pub(crate) programs: Arc<dyn Programs>,
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
+    pub(crate) loaded_tables: crate::tables::LoadedTables,
     /// The commands, when somebody wants them.
     log: Option<Vec<(u64, Command)>>,
     pub(crate) inputs: [bool; INPUTS],
@@ -209,6 +210,7 @@ impl Control {
             unsaved: false,
             programs,
             q: remembered.q,
+            loaded_tables: crate::tables::LoadedTables::default(),
             log: None,
             inputs: [false; INPUTS],
             outputs: [false; OUTPUTS],
@@ -220,6 +222,7 @@ impl Control {
         if let Some(name) = remembered.program {
             control.run.selected = Some(name);
         }
+        control.set_up_tables(&remembered.written);
         control.select_range(0);
         let active = control
             .link
@@ -403,7 +406,10 @@ impl Control {
         {
             self.tools.inserted(&self.exchange);
         }
-        self.unsaved |= std::mem::take(&mut self.tools.changed);
+        if std::mem::take(&mut self.tools.changed) {
+            self.mirror_pockets();
+            self.unsaved = true;
+        }
         let waits = self.keeps && self.unsaved;
         if !waits {
             self.tools.end_geometry_strobe(&mut self.exchange);
@@ -517,6 +523,7 @@ impl Control {
             tool_length,
             tool_axis: Some(tool_axis),
             pockets: self.tools.moved(),
+            written: self.written_elements(),
             q: self.q_values(),
             offsets_volts: self.offset_volts(),
             program: self.run.selected.clone(),

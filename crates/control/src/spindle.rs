@@ -123,7 +123,11 @@ impl SpindleUnit {
     pub fn set_feed(&mut self, mm_min: f64) {
         if let FreeOutput::Feed { full_mm_min } = self.parameters.free_output {
             let volts = mm_min / full_mm_min * OUTPUT_VOLTS;
-            self.feed_volts = if volts.is_finite() { volts.clamp(0.0, OUTPUT_VOLTS) } else { 0.0 };
+            self.feed_volts = if volts.is_finite() {
+                volts.clamp(0.0, OUTPUT_VOLTS)
+            } else {
+                0.0
+            };
         }
     }
 

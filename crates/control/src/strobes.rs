@@ -235,7 +235,10 @@ impl Control {
             self.activate_compensation(usize::try_from(line).ok());
         }
         self.take_changed_parameters();
-        self.link.requests.geometry = false;
+        if std::mem::take(&mut self.link.requests.geometry) {
+            self.initialise_geometry();
+            self.unsaved = true;
+        }
     }
 
     /// Module 9036.

@@ -19,7 +19,7 @@ const NO_POCKET: i16 = 255;
 pub(crate) struct Tools {
     table: Option<BTreeMap<u32, Tool>>,
     /// The pockets as the tool table has them.
-    pockets: BTreeMap<u32, u16>,
+    pockets: BTreeMap<u32, Option<u16>>,
     parameters: ToolParameters,
     /// Tool in the spindle.
     pub number: u32,
@@ -58,7 +58,7 @@ impl Tools {
             pockets: table
                 .iter()
                 .flatten()
-                .filter_map(|(number, tool)| Some((*number, tool.pocket?)))
+                .map(|(number, tool)| (*number, tool.pocket))
                 .collect(),
             table,
             parameters,
@@ -72,7 +72,7 @@ impl Tools {
         };
         for moved in &remembered.pockets {
             if let Some(tool) = tools.table.as_mut().and_then(|table| table.get_mut(&moved.tool)) {
-                tool.pocket = Some(moved.pocket);
+                tool.pocket = moved.pocket;
             }
         }
         tools
@@ -80,8 +80,8 @@ impl Tools {
 
     /// The tools that are elsewhere than in the pocket of the tool table.
     pub fn moved(&self) -> Vec<MovedTool> {
-        let moved = |(tool, table): (&u32, &u16)| {
-            let pocket = self.tool(*tool).pocket?;
+        let moved = |(tool, table): (&u32, &Option<u16>)| {
+            let pocket = self.tool(*tool).pocket;
             (pocket != *table).then_some(MovedTool {
                 tool: *tool,
                 pocket,
@@ -95,6 +95,48 @@ impl Tools {
     pub fn shapes(&self) -> Option<bahn_interpreter::ToolTable> {
         let table = self.table.as_ref()?;
         Some(table.iter().map(|(number, tool)| (*number, tool.shape)).collect())
+    }
+
+    /// All tools of the table.
+    pub fn all(&self) -> Option<impl Iterator<Item = (u32, &Tool)> + Clone> {
+        let table = self.table.as_ref()?;
+        Some(table.iter().map(|(number, tool)| (*number, tool)))
+    }
+
+    /// Length of a tool in the table, mm.
+    pub fn length(&self, number: u32) -> f64 {
+        self.tool(number).shape.length
+    }
+
+    /// Takes the shapes of the tools as a table has them.
+    pub fn take(&mut self, shape: impl Fn(u32) -> Option<bahn_path::ToolShape>) {
+        for (number, tool) in self.table.iter_mut().flatten() {
+            tool.shape = shape(*number).unwrap_or(tool.shape);
+        }
+    }
+
+    /// No tool has a pocket, until it is put into one.
+    pub fn empty_magazine(&mut self) {
+        for tool in self.table.iter_mut().flatten().map(|(_, tool)| tool) {
+            tool.pocket = None;
+        }
+    }
+
+    /// A tool is in a pocket.
+    pub fn put(&mut self, number: u32, pocket: i32, special: bool) {
+        if let Some(tool) = self.table.as_mut().and_then(|table| table.get_mut(&number)) {
+            tool.pocket = u16::try_from(pocket).ok();
+            tool.special = special;
+        }
+    }
+
+    /// The tool in the spindle is longer while another one is called; `false` when none is.
+    pub fn lengthen_held(&mut self, longer: f64) -> bool {
+        match &mut self.held {
+            Some((length, _)) => *length += longer,
+            None => return false,
+        }
+        true
     }
 
     fn tool(&self, number: u32) -> Tool {

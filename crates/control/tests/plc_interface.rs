@@ -102,7 +102,9 @@ fn analogue_output_by_feed() {
     );
     assert_eq!(volts(&rig), 0.0);
     rig.start();
-    rig.until(2.0, "the feed", |rig| (rig.control.snapshot().feed_mm_min - 6000.0).abs() < 1e-6);
+    rig.until(2.0, "the feed", |rig| {
+        (rig.control.snapshot().feed_mm_min - 6000.0).abs() < 1e-6
+    });
     rig.cycle();
     assert!((volts(&rig) - 7.5).abs() < 1e-9, "{}", volts(&rig));
     rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
@@ -122,12 +124,17 @@ fn the_last_change_of_status_holds() {
         "       L     I20\n       AN    M0\n       CMT   CHANGE\n       L     I20\n       = M0\n       EM\nLBL CHANGE\n{}",
         changes.concat()
     );
-    let read = |item: u8, to: u16| {
-        format!("       PS    K+{item}\n       CM    9035\n       PL    W{to}\n")
-    };
-    let reads = [(9, 100), (11, 102), (12, 104)].map(|(item, to)| read(item, to)).concat();
+    let read = |item: u8, to: u16| format!("       PS    K+{item}\n       CM    9035\n       PL    W{to}\n");
+    let reads = [(9, 100), (11, 102), (12, 104)]
+        .map(|(item, to)| read(item, to))
+        .concat();
     let plc = format!("{reads}{plc}");
-    let mut rig = ready(bench(&plc).mp("7641=1").mp("7640=2").program("1.H", "L X+60 R0 F6000"));
+    let mut rig = ready(
+        bench(&plc)
+            .mp("7641=1")
+            .mp("7640=2")
+            .program("1.H", "L X+60 R0 F6000"),
+    );
     rig.event("key A press");
     rig.seconds(0.3);
     assert_eq!(rig.number("B200"), 0);
@@ -148,7 +155,9 @@ fn a_change_that_is_broken_off_did_not_happen() {
     rig.start();
     rig.until(2.0, "tool 1", |rig| rig.control.snapshot().tool == 1);
     rig.event("key A release");
-    rig.until(2.0, "the call of tool 2", |rig| rig.bit("M2046") && rig.number("W262") == 2);
+    rig.until(2.0, "the call of tool 2", |rig| {
+        rig.bit("M2046") && rig.number("W262") == 2
+    });
     let kept = rig.control.remember();
     assert_eq!((kept.tool, kept.tool_length), (1, 70.0), "if power fails now");
     rig.event("key NC_STOP tap");
@@ -160,7 +169,9 @@ fn a_change_that_is_broken_off_did_not_happen() {
     assert!(!rig.bit("M2046"));
     rig.event("key A press");
     rig.start();
-    rig.until(2.0, "the strobe again", |rig| rig.bit("M2046") && rig.number("W262") == 2);
+    rig.until(2.0, "the strobe again", |rig| {
+        rig.bit("M2046") && rig.number("W262") == 2
+    });
     rig.until(2.0, "tool 2", |rig| rig.control.snapshot().tool == 2);
     let kept = rig.control.remember();
     assert_eq!((kept.tool, kept.tool_length), (2, 95.0));
@@ -180,7 +191,88 @@ fn a_broken_wire_of_the_acknowledgement_stops_the_axes() {
     rig.seconds(0.5);
     assert!(!rig.bit("I3"));
     let messages = rig.messages();
-    assert!(messages.iter().any(|text| text.contains("EMERGENCY STOP") || text.contains("EXT")), "{messages:?}");
+    assert!(
+        messages
+            .iter()
+            .any(|text| text.contains("EMERGENCY STOP") || text.contains("EXT")),
+        "{messages:?}"
+    );
     assert_eq!(rig.control.snapshot().feed_mm_min, 0.0);
     assert!(display(&rig, 'X') < 100.0);
+}
+
+/// Modules 9092 to 9094 on the running control: tool 2 lies in pocket 12 and is 95 mm long; written to 90.5 it
+/// counts at once, is stored, and is there after power-off. A tool table that says something else since counts.
+#[test]
+fn tables_of_the_control() {
+    let call = |arguments: &[i32], module: u16, results: &[&str]| {
+        let push: String = arguments
+            .iter()
+            .map(|value| format!("       PS    K{value:+}\n"))
+            .collect();
+        let pull: String = results
+            .iter()
+            .map(|operand| format!("       PL    {operand}\n"))
+            .collect();
+        format!("{push}       CM    {module}\n{pull}")
+    };
+    // Pocket table: the line with tool 2; tool table: its length, then written 90.5 mm and the tool life 30 min.
+    let job = [
+        call(&[2, 2, 0, 0], 9092, &["W100", "W102"]),
+        call(&[0, 2, 0], 9093, &["D104", "W108"]),
+        call(&[0, 2, 0, 905_000], 9094, &["W110"]),
+        call(&[0, 2, 7, 30], 9094, &["W112"]),
+        call(&[1, 0, 0], 9093, &["D116", "W114"]),
+    ];
+    let plc = format!(
+        "{ACKNOWLEDGE}       L     I20\n       AN    M0\n       CMT   ASK\n       L     I20\n       = M0\n       EM\nLBL ASK\n       SUBM  JOB\n       = B90\n       EM\nLBL JOB\n{}",
+        job.concat()
+    );
+    let with_pocket = |length: f64| {
+        let mut tool = bahn_control::Tool::default();
+        tool.shape.length = length;
+        tool.pocket = Some(12);
+        tool
+    };
+    let build = |length, remembered| {
+        let mut build = bench(&plc)
+            .mp("7480.0=3")
+            .program("1.H", "TOOL CALL 2 Z S0\nL X+60 R0 F6000");
+        build.tools = Some([(2, with_pocket(length))].into());
+        build.remembered = remembered;
+        build
+    };
+    let mut rig = ready(build(95.0, bahn_control::Remembered::default()));
+    rig.control.keep_state(true);
+    rig.start();
+    while !rig.control.snapshot().ended {
+        assert!(rig.control.time_us() < 30_000_000, "the tool is in");
+        rig.control.stored();
+        rig.seconds(0.1);
+    }
+    let z = display(&rig, 'Z');
+    rig.event("key A press");
+    rig.until(1.0, "what was written is to be stored", |rig| {
+        rig.control.unsaved().is_some()
+    });
+    rig.seconds(0.2);
+    assert_eq!(
+        (rig.number("W100"), rig.number("W102")),
+        (12, 0),
+        "pocket of tool 2"
+    );
+    assert_eq!((rig.number("D104"), rig.number("W108")), (950_000, 0));
+    assert_eq!((rig.number("W110"), rig.number("W112")), (0, 0));
+    assert_eq!(rig.number("W114"), 3, "there is no datum table");
+    near(display(&rig, 'Z'), z + 4.5);
+    let remembered = rig.control.remember();
+    assert_eq!(remembered.tool_length, 90.5);
+    // After power-off the PLC finds what it wrote, and the tool in the spindle is as long as it was.
+    for (length, expected) in [(95.0, 905_000), (97.0, 970_000)] {
+        let mut rig = ready(build(length, remembered.clone()));
+        assert_eq!(rig.control.remember().tool_length, 90.5);
+        rig.event("key A press");
+        rig.seconds(0.2);
+        assert_eq!(rig.number("D104"), expected);
+    }
 }

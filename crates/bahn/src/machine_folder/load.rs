@@ -225,7 +225,9 @@ impl Loader<'_> {
     /// Every wire ends at an input or output that the control has [000:11556-11567].
     fn wiring(&mut self, path: &Path, text: &str, machine: &Machine) {
         for wire in machine.wires() {
-            let Ok(bit) = wire.operand.parse::<Bit>() else { continue };
+            let Ok(bit) = wire.operand.parse::<Bit>() else {
+                continue;
+            };
             if bit.is_listed() {
                 continue;
             }
@@ -234,10 +236,17 @@ impl Loader<'_> {
                 _ => ("input", "I"),
             };
             let ranges = bit.area().ranges().iter();
-            let there: Vec<String> = ranges.map(|(first, last)| format!("{area}{first}-{area}{last}")).collect();
-            let message = format!("the control has no {what} {}; there are {}", wire.operand, there.join(", "));
+            let there: Vec<String> = ranges
+                .map(|(first, last)| format!("{area}{first}-{area}{last}"))
+                .collect();
+            let message = format!(
+                "the control has no {what} {}; there are {}",
+                wire.operand,
+                there.join(", ")
+            );
             let place = (wire.line, Some(wire.column));
-            self.faults.push(file_fault(path, text, place, "the wiring is wrong", &message));
+            self.faults
+                .push(file_fault(path, text, place, "the wiring is wrong", &message));
         }
     }
 

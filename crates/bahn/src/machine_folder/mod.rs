@@ -21,6 +21,14 @@ pub(crate) use state::State;
 use crate::{Outcome, UsageError};
 use options::MachineCommand;
 
+/// Reads what a control remembers and writes it again, for fuzzing: `None` when it is damaged, else whether the
+/// second reading is the first.
+#[doc(hidden)]
+pub fn check_state(file: &[u8]) -> Option<bool> {
+    let read = remembered::read(file).ok()?;
+    Some(remembered::read(remembered::write(&read).as_bytes()).as_ref() == Ok(&read))
+}
+
 /// Executes a subcommand of `bahn machine`.
 pub(crate) fn command(options: &MachineFolderOptions) -> Result<Outcome, UsageError> {
     match &options.command {

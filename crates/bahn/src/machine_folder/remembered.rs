@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use bahn_control::{MovedTool, Position0, Remembered};
+use bahn_control::{MovedTool, Position0, Remembered, WrittenElement};
 use bahn_path::{Axis, Position};
+use bahn_plc::TableKind;
 use serde::Deserialize;
 
 /// The form of the file.
@@ -17,9 +18,12 @@ struct Form {
     program: Option<String>,
     offsets_volts: [f64; 5],
     datum: [BTreeMap<char, f64>; 3],
-    /// Pocket now and pocket in the tool table, by tool.
+    /// Pocket now and pocket in the tool table, by tool; -1 is none.
     #[serde(default)]
-    pockets: BTreeMap<String, [u16; 2]>,
+    pockets: BTreeMap<String, [i32; 2]>,
+    /// Table (T tools, P pockets), line, element, value, value in the file.
+    #[serde(default)]
+    written: Vec<(char, i32, usize, f64, f64)>,
     #[serde(default)]
     q: BTreeMap<String, f64>,
 }
@@ -74,6 +78,20 @@ fn text(remembered: &Remembered) -> String {
     if let Some(program) = &remembered.program {
         line("program", toml::Value::from(program.as_str()).to_string());
     }
+    if !remembered.written.is_empty() {
+        let rows = remembered.written.iter().map(|row| {
+            let letter = letter_of(row.table);
+            let (value, file) = (number(row.value), number(row.file));
+            format!(
+                "\n  [\"{letter}\", {}, {}, {value}, {file}],",
+                row.line, row.element
+            )
+        });
+        line(
+            "# Elements of tool (T) and pocket (P) table that the PLC wrote: line, element, value, value in the file\nwritten",
+            format!("[{}\n]", rows.collect::<String>()),
+        );
+    }
     line("offsets_volts", list(remembered.offsets_volts.map(number)));
     let datum = |Position0(datum): &Position0| {
         let known = Axis::ALL.into_iter().filter_map(|axis| {
@@ -89,7 +107,8 @@ fn text(remembered: &Remembered) -> String {
     if !remembered.pockets.is_empty() {
         text.push_str("\n# Tools that are elsewhere than in the pocket of the tool table: pocket now, pocket there\n[pockets]\n");
         for moved in &remembered.pockets {
-            let _ = writeln!(text, "{} = [{}, {}]", moved.tool, moved.pocket, moved.table);
+            let [pocket, table] = [moved.pocket, moved.table].map(|pocket| pocket.map_or(-1, i32::from));
+            let _ = writeln!(text, "{} = [{pocket}, {table}]", moved.tool);
         }
     }
     if !remembered.q.is_empty() {
@@ -99,6 +118,20 @@ fn text(remembered: &Remembered) -> String {
         }
     }
     text
+}
+
+/// The tables by their letters.
+const TABLES: [(TableKind, char); 3] = [
+    (TableKind::Tool, 'T'),
+    (TableKind::Datum, 'D'),
+    (TableKind::Pocket, 'P'),
+];
+
+fn letter_of(table: TableKind) -> char {
+    TABLES
+        .into_iter()
+        .find(|(known, _)| *known == table)
+        .map_or('T', |(_, letter)| letter)
 }
 
 fn list<const N: usize>(values: [String; N]) -> String {
@@ -135,9 +168,29 @@ fn content_of(text: &str) -> Result<Remembered, String> {
     let mut pockets = Vec::new();
     for (name, [pocket, table]) in form.pockets {
         let tool = name.parse().map_err(|_| format!("`{name}` is no tool number"))?;
+        let place = |number: i32| match number {
+            -1 => Ok(None),
+            _ => u16::try_from(number)
+                .map(Some)
+                .map_err(|_| format!("{number} is no pocket")),
+        };
+        let (pocket, table) = (place(pocket)?, place(table)?);
         pockets.push(MovedTool { tool, pocket, table });
     }
     pockets.sort_by_key(|moved| moved.tool);
+    let mut written = Vec::new();
+    for (letter, line, element, value, file) in form.written {
+        let table = TABLES.into_iter().find(|(_, known)| *known == letter);
+        let (table, _) = table.ok_or_else(|| format!("`{letter}` is no table"))?;
+        let (value, file) = (finite(value)?, finite(file)?);
+        written.push(WrittenElement {
+            table,
+            line,
+            element,
+            value,
+            file,
+        });
+    }
     let mut q = Vec::new();
     for (name, value) in &form.q {
         let number = name.parse().map_err(|_| format!("`{name}` is no Q parameter"))?;
@@ -153,6 +206,7 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         tool_length: finite(form.tool_length)?,
         tool_axis: form.tool_axis.map(axis).transpose()?,
         pockets,
+        written,
         q,
         offsets_volts: form.offsets_volts,
         program: form.program,
@@ -186,13 +240,29 @@ mod tests {
             pockets: vec![
                 MovedTool {
                     tool: 3,
-                    pocket: 14,
-                    table: 3,
+                    pocket: Some(14),
+                    table: Some(3),
                 },
                 MovedTool {
                     tool: 12,
-                    pocket: 3,
-                    table: 14,
+                    pocket: None,
+                    table: Some(14),
+                },
+            ],
+            written: vec![
+                WrittenElement {
+                    table: TableKind::Tool,
+                    line: 12,
+                    element: 7,
+                    value: 31.0,
+                    file: 0.0,
+                },
+                WrittenElement {
+                    table: TableKind::Pocket,
+                    line: 3,
+                    element: 3,
+                    value: 1.0,
+                    file: -0.5,
                 },
             ],
             q: vec![(1, 0.5), (107, -1e-4)],
@@ -210,7 +280,7 @@ mod tests {
             values in prop::array::uniform5(-1e5..1e5f64),
             axis in prop::option::of(0..Axis::COUNT),
             program in prop::option::of(".{0,12}"),
-            pockets in prop::collection::btree_map(0..300u32, any::<(u16, u16)>(), 0..5),
+            pockets in prop::collection::btree_map(0..300u32, any::<(Option<u16>, Option<u16>)>(), 0..5),
             q in prop::collection::btree_map(0..300u16, -1e9..1e9f64, 0..5),
         ) {
             let moved = |(tool, (pocket, table))| MovedTool { tool, pocket, table };

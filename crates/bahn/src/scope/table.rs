@@ -40,7 +40,7 @@ impl Table {
     }
 
     /// An error begins with its line.
-    fn read(text: &str) -> Result<Table, String> {
+    pub fn read(text: &str) -> Result<Table, String> {
         let mut lines = text.trim_start_matches('\u{feff}').lines();
         let mut columns = lines.next().unwrap_or_default().split(',');
         if columns.next().map(str::trim) != Some("time [s]") {
