@@ -10,7 +10,7 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
 //!   makes folders of machines;
-//! - `check`, `format`, `explain`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
+//! - `check`, `format`, `explain`, `manual`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
 //!   `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
 //!   `kept`: files that survive power-off;
@@ -29,6 +29,7 @@ mod format;
 mod interrupt;
 mod kept;
 mod machine_folder;
+mod manual;
 mod mp;
 mod path_csv;
 mod path_svg;
@@ -78,7 +79,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Plc(options) => plc::command(options),
         cli::Command::Mp(options) => mp::command(options),
         cli::Command::Explain(options) => explain::command(options),
-        cli::Command::Completions(options) => cli::completions(options),
+        cli::Command::Completions(options) => manual::completions(options),
+        cli::Command::Man(options) => manual::man(options),
     };
     match result {
         Ok(outcome) => outcome.into(),

@@ -339,6 +339,58 @@ fn names_do_not_lead_out_of_the_folder() {
     );
 }
 
+/// Module 9033 selects the list OTHER.MP of the folder: the control resets, and begins with it from then on. A
+/// faulty or missing one is refused with its code 3 or 2.
+#[test]
+fn another_list_of_machine_parameters() {
+    let folder = machine();
+    let plc = folder.read("m/plc/MAIN.PLC");
+    let select = "       L     M2046\n       CMT   SELECT\n       L     M2046\n       = M2483\n       EM\n\
+         LBL SELECT\n       LN    M61\n       CMT   ONCE\n       S     M61\n       EM\n\
+         LBL ONCE\n       SUBM  JOB\n       = B90\n       EM\n\
+         LBL JOB\n       L     S\"BAD.MP\"\n       = S1\n       PS    K+1\n       CM    9033\n       PL    B120\n\
+       L     S\"GONE.MP\"\n       = S1\n       PS    K+1\n       CM    9033\n       PL    B121\n\
+       L     S\"OTHER.MP\"\n       = S1\n       PS    K+1\n       CM    9033\n       PL    B122\n       EM\n\n";
+    folder.write(
+        "m/plc/MAIN.PLC",
+        plc.replace(TOOL_CHANGER, &format!("LBL TOOL\n{select}")),
+    );
+    let list = folder.read("m/parameters.mp");
+    folder.write("m/OTHER.MP", list.replace("MP7480.0 : 3", "MP7480.0 : 0"));
+    folder.write("m/BAD.MP", list.replace("MP7480.0 : 3", "MP7480.0 : 99"));
+    let run = folder.bahn("run CHANGES.H --machine m --no-graphics");
+    assert_eq!(run.code(), 1);
+    assert!(
+        run.err().contains("module 9033 has selected OTHER.MP"),
+        "{}",
+        run.err()
+    );
+    assert!(
+        folder
+            .read("m/state/control.toml")
+            .contains("parameter_list = \"OTHER.MP\"")
+    );
+    let run =
+        folder.bahn("plc run COUNT.PLC --retain m/state/plc.mem --cycles 1 --show B120,B121 --format json");
+    assert_eq!(
+        (&run.json()["values"]["B120"], &run.json()["values"]["B121"]),
+        (&3.into(), &2.into())
+    );
+    // With MP7480.0 = 0 no tool call comes to the PLC.
+    let run = folder.bahn("run CHANGES.H --machine m --no-graphics");
+    assert_eq!((run.code(), run.err().as_str()), (0, ""));
+    fs::remove_file(folder.path("m/OTHER.MP")).unwrap();
+    let run = folder.bahn("run CHANGES.H --machine m --no-graphics");
+    assert!(
+        run.code() == 2
+            && run
+                .err()
+                .contains("OTHER.MP, which module 9033 selected, is missing"),
+        "{}",
+        run.err()
+    );
+}
+
 /// A process that runs in real time until it is killed.
 struct Running(Child);
 

@@ -219,6 +219,7 @@ impl Control {
             letters,
             axes,
         };
+        control.link.selected_list = remembered.parameter_list;
         if let Some(name) = remembered.program {
             control.run.selected = Some(name);
         }
@@ -507,10 +508,10 @@ impl Control {
         self.unsaved = false;
     }
 
-    /// The list of machine parameters that module 9033 has selected: the control is to be started anew with
-    /// it.
-    pub fn take_restart(&mut self) -> Option<bahn_parameters::ParameterList> {
-        std::mem::take(&mut self.run.restart_wanted).then(|| self.link.list().clone())
+    /// The name of the list of machine parameters that module 9033 has selected: the control is to be started
+    /// anew with it.
+    pub fn take_restart(&mut self) -> Option<String> {
+        std::mem::take(&mut self.run.restart_wanted).then(|| self.link.selected_list.clone())?
     }
 
     /// What survives power-off, as of now.
@@ -526,6 +527,7 @@ impl Control {
             written: self.written_elements(),
             q: self.q_values(),
             offsets_volts: self.offset_volts(),
+            parameter_list: self.link.selected_list.clone(),
             program: self.run.selected.clone(),
         }
     }

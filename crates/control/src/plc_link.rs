@@ -101,7 +101,8 @@ pub(crate) struct PlcLink {
     pub plc_axes: [PlcAxisStatus; AXES],
     pub orienting: bool,
     pub requests: Requests,
-    selected_list: String,
+    /// The list that module 9033 has selected.
+    pub selected_list: Option<String>,
 }
 
 impl PlcLink {
@@ -128,7 +129,7 @@ impl PlcLink {
             plc_axes: [PlcAxisStatus::default(); AXES],
             orienting: false,
             requests: Requests::default(),
-            selected_list: String::new(),
+            selected_list: None,
         }
     }
 
@@ -178,8 +179,8 @@ impl Nc for PlcLink {
             .get(name)
             .ok_or(ParameterFileFault::NotFound)?;
         let list = list.clone().ok_or(ParameterFileFault::Faulty)?;
-        if self.selected_list != name {
-            name.clone_into(&mut self.selected_list);
+        if self.selected_list.as_deref() != Some(name) {
+            self.selected_list = Some(name.to_owned());
             self.edited = list.clone();
             self.parameters = list;
             self.requests.restart = true;

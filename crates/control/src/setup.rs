@@ -64,6 +64,8 @@ pub struct Remembered {
     pub q: Vec<(u16, f64)>,
     /// Offsets of the axes as adjusted with code number 75 368, V.
     pub offsets_volts: [f64; 5],
+    /// Name of the list of machine parameters that module 9033 has selected.
+    pub parameter_list: Option<String>,
     /// Name of the selected program.
     pub program: Option<String>,
 }

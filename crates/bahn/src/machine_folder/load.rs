@@ -113,6 +113,8 @@ impl Loader<'_> {
         let parameters = self.parameters(&folder, model?);
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
+        let mut files = files?;
+        self.further_lists(&mut files, model?);
         self.agree(&folder, &plant);
         Some(LoadedMachine {
             root: self.root.to_owned(),
@@ -122,7 +124,7 @@ impl Loader<'_> {
             plc_dialogues: plc_dialogues?,
             plant,
             tools: tools?,
-            files: files?,
+            files,
             warnings: Vec::new(),
             folder,
         })
@@ -175,6 +177,26 @@ impl Loader<'_> {
         list.take(&text);
         let found = mp::machine_list(&text, &list, &path);
         self.sort(found).then_some(list)
+    }
+
+    /// The lists of machine parameters that module 9033 can select: files `NAME.MP` of the folder, in capitals
+    /// [000:14894-14896]. A faulty one is refused when it is selected.
+    fn further_lists(&mut self, files: &mut NcFiles, model: ControlModel) {
+        for entry in std::fs::read_dir(self.root).into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if !name.ends_with(".MP") || name.bytes().any(|byte| byte.is_ascii_lowercase()) {
+                continue;
+            }
+            let list = files::read_table(&entry.path()).ok().and_then(|bytes| {
+                let text = ListText::from_bytes(model, &bytes);
+                let mut list = ParameterList::reference(model);
+                list.take(&text);
+                let found = mp::machine_list(&text, &list, &entry.path());
+                let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
+                (!faulty).then_some(list)
+            });
+            files.parameter_lists.insert(name, list);
+        }
     }
 
     fn plc(

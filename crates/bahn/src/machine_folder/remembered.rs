@@ -15,6 +15,7 @@ struct Form {
     tool: u32,
     tool_length: f64,
     tool_axis: Option<char>,
+    parameter_list: Option<String>,
     program: Option<String>,
     offsets_volts: [f64; 5],
     datum: [BTreeMap<char, f64>; 3],
@@ -74,6 +75,9 @@ fn text(remembered: &Remembered) -> String {
     line("tool_length", number(remembered.tool_length));
     if let Some(axis) = remembered.tool_axis {
         line("tool_axis", format!("\"{}\"", axis.letter()));
+    }
+    if let Some(list) = &remembered.parameter_list {
+        line("parameter_list", toml::Value::from(list.as_str()).to_string());
     }
     if let Some(program) = &remembered.program {
         line("program", toml::Value::from(program.as_str()).to_string());
@@ -209,6 +213,7 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         written,
         q,
         offsets_volts: form.offsets_volts,
+        parameter_list: form.parameter_list,
         program: form.program,
     })
 }
@@ -267,6 +272,7 @@ mod tests {
             ],
             q: vec![(1, 0.5), (107, -1e-4)],
             offsets_volts: [0.0, 0.0015, 0.0, 0.0, 0.0],
+            parameter_list: Some("LATHE.MP".to_owned()),
             program: Some("7432.H".to_owned()),
         }
     }

@@ -52,10 +52,6 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         Ok(machine) => machine,
         Err(faults) => return Ok(refused(&faults)),
     };
-    for assignment in &options.run.mp {
-        let changed = machine.parameters.assign(assignment);
-        changed.map_err(|error| UsageError::new(format!("--mp {assignment}: {error}")))?;
-    }
     let folder = machine.root.join(&machine.folder.programs);
     let programs = Arc::new(FolderPrograms::new(&folder, options.file.as_deref())?);
     let script = match load_script(options, &machine.plant)? {
@@ -63,6 +59,19 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         Err(faults) => return Ok(refused(&faults)),
     };
     let (state, remembered, exchange) = power_on(options, &machine)?;
+    if let Some(name) = &remembered.parameter_list {
+        let list = machine.files.parameter_lists.get(name).cloned().flatten();
+        machine.parameters = list.ok_or_else(|| {
+            UsageError::new(format!(
+                "{name}, which module 9033 selected, is missing or faulty in {}",
+                machine.root.display()
+            ))
+        })?;
+    }
+    for assignment in &options.run.mp {
+        let changed = machine.parameters.assign(assignment);
+        changed.map_err(|error| UsageError::new(format!("--mp {assignment}: {error}")))?;
+    }
     let mut plant = machine.plant.clone();
     let mut log = options
         .run
@@ -241,7 +250,7 @@ fn finish(
         Ended::Completed => End::Completed,
         Ended::Stopped => End::Stopped,
         Ended::Interrupted => End::Interrupted,
-        Ended::TooLong | Ended::Broken(_) | Ended::Hangs(_) | Ended::NotStored(_) => {
+        Ended::TooLong | Ended::Broken(_) | Ended::Hangs(_) | Ended::NotStored(_) | Ended::Restart(_) => {
             End::Failed(Box::new(error(&session, &ended)))
         }
     };
@@ -314,6 +323,10 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
             "--max-time allows more".to_owned(),
         ),
         Ended::Hangs(what) => ("nothing moves any more".to_owned(), what.clone()),
+        Ended::Restart(list) => (
+            "the control restarts with other machine parameters".to_owned(),
+            format!("module 9033 has selected {list}; the next run begins with it"),
+        ),
         Ended::NotStored(what) => (
             "what survives power-off cannot be stored".to_owned(),
             what.clone(),

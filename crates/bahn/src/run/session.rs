@@ -45,6 +45,8 @@ pub(super) enum Ended {
     Broken(Option<Box<Message>>),
     /// Nothing moves any more; what it waits for.
     Hangs(String),
+    /// Module 9033 selected a list of machine parameters: the control resets.
+    Restart(String),
     /// What survives power-off cannot be stored; why.
     NotStored(String),
 }
@@ -163,6 +165,9 @@ impl Session {
             self.control.prepare();
             self.control.cycle(&mut self.machine);
             self.watch()?;
+            if let Some(list) = self.control.take_restart() {
+                return Ok(Ended::Restart(list));
+            }
             if let Some(state) = &mut self.writers.state
                 && let Err(error) = state.keep(&mut self.control)
             {
@@ -330,7 +335,7 @@ impl Session {
             self.moved_us = self.control.time_us();
         }
         match &mut self.writers.recording {
-            Some(recording) => recording.cycle(&self.control),
+            Some(recording) => recording.cycle(&self.control, self.start_us.is_some()),
             None => Ok(()),
         }
     }
@@ -346,6 +351,9 @@ impl Session {
         let refused = self.operator.started && !matches!(shown.message, Message::Plc(_));
         if shown.flashing || idle && (self.start_us.is_some() || refused) {
             self.broken_by = Some(Box::new(shown.message.clone()));
+        }
+        if let Some(recording) = &mut self.writers.recording {
+            recording.message(&self.control.message_text(&shown.message));
         }
         if self.messages.len() < MESSAGES_MAX {
             let program = self.program_name(block);
