@@ -31,12 +31,14 @@ impl Interrupt {
                 0 => {}
                 1 => {
                     let noticed = handled.noticed.clone();
-                    std::thread::spawn(move || {
+                    let watch = std::thread::Builder::new().spawn(move || {
                         std::thread::sleep(PATIENCE);
                         if !noticed.load(Ordering::Relaxed) {
                             exit();
                         }
                     });
+                    // Without a thread the third one ends it.
+                    drop(watch);
                 }
                 _ => exit(),
             }
