@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_exchange::Exchange;
-use bahn_parameters::ParameterList;
+use bahn_parameters::{InchFeed, ParameterList};
 use bahn_path::{Axis, Position, ToolShape};
 use bahn_plc::{PlcProgram, TableKind};
 
@@ -35,6 +35,8 @@ pub struct Setup {
     pub plc_dialogues: Vec<String>,
     /// Tools by number; `None` when tools are defined in the programs.
     pub tools: Option<BTreeMap<u32, Tool>>,
+    /// What F counts in a program in inches; `None` for what it counts on the model.
+    pub inch_feed: Option<InchFeed>,
     /// Where programs come from.
     pub programs: Arc<dyn Programs>,
     /// Files and tables that PLC modules read.

@@ -38,7 +38,7 @@ impl Run {
             let detail = format!("TCH PROBE {} is not executed in a test run", block.number);
             return Err(Fault::new(MessageId::BlockNotKnown, detail));
         }
-        let words = self.resolve(block)?;
+        let words = self.resolve(block, settings)?;
         match block.sub {
             0 => self.reference_plane(&words),
             1 => self.start_probing(&words, settings),

@@ -130,6 +130,7 @@ impl Build {
             plc_messages: Vec::new(),
             plc_dialogues: Vec::new(),
             tools: self.tools,
+            inch_feed: None,
             programs: Arc::new(self.programs),
             files: NcFiles::default(),
             remembered: self.remembered,
