@@ -48,9 +48,12 @@ impl Control {
             master: self.master(),
             back,
             rapid_limit_mm_min: self.rapid_limit_mm_min(),
-            // Without spindle enable nothing is led.
-            hold: stopped || self.path.is_coupled() && !self.spindle.is_enabled(),
-            single_block: self.mode == Mode::SingleBlock || on,
+            // Without spindle enable nothing is led. Functions at which the axes do not stop (MP7440 bit 2) may
+            // come faster than the PLC takes them.
+            hold: stopped
+                || self.handshakes.is_crowded()
+                || self.path.is_coupled() && !self.spindle.is_enabled(),
+            single_block: self.mode == Mode::SingleBlock || on || self.handshakes.inhibit_read_in(),
             in_position: settled,
             clamped: self.clamped_axes(),
             clamping: self.clamping_axes(),
@@ -60,9 +63,10 @@ impl Control {
         self.lead_spindle(cycle.lead);
         self.follow_path(&cycle.position);
         while let Some(output) = self.path.next_output() {
-            if self.run.waiting.len() < OUTPUTS {
-                self.run.waiting.push_back(output);
-            }
+            // Behind a function that waits there is none before it is acknowledged.
+            debug_assert!(self.run.waiting.len() < OUTPUTS, "the path waits at its gate");
+            self.run.waiting.push_back(output);
+            self.output_functions(settled);
         }
         self.output_functions(settled);
         match cycle.state {
@@ -75,9 +79,18 @@ impl Control {
             State::Master => self.prepare_thread(),
             State::Clamped => self.ask_to_unclamp(drive.clamped),
             State::BlockEnd if settled && self.run.state == RunState::Running => {
-                self.run.state = RunState::BlockEnd;
+                if self.mode == Mode::SingleBlock {
+                    self.run.state = RunState::BlockEnd;
+                } else if !self.handshakes.inhibit_read_in() {
+                    self.path.go_on();
+                }
             }
-            State::Stopped if settled && self.run.waiting.is_empty() && self.handshakes.is_idle() => {
+            State::Stopped
+                if settled
+                    && self.run.waiting.is_empty()
+                    && self.handshakes.is_idle()
+                    && !self.handshakes.inhibit_read_in() =>
+            {
                 self.take_stop();
             }
             _ => {}

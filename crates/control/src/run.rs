@@ -214,6 +214,7 @@ impl Control {
         }
         self.end_probing();
         self.handshakes.abort(&mut self.exchange);
+        self.tools.take_back(&mut self.offsets);
         for index in 0..crate::markers::AXES {
             self.end_positioning(index);
         }

@@ -3,7 +3,7 @@
 
 use bahn_exchange::{Bit, Exchange, signal};
 use bahn_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
-use bahn_plc::{OrientationDirection, SpindleOrientation};
+use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
 use bahn_servo::{Fault, Plant, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 
 use crate::handshake::Transfer;
@@ -13,6 +13,8 @@ use crate::panel::PlcFaultCode;
 const OUTPUT_S: usize = 5;
 /// Encoder input of the spindle, X6 [000:3376].
 const INPUT_X6: usize = 5;
+/// Range of the analogue outputs, V.
+const OUTPUT_VOLTS: f64 = 10.0;
 /// D356, D756 and module 9171 count in 1/1000 rpm.
 const PER_RPM: f64 = 1000.0;
 /// Degrees per second of one rpm.
@@ -63,6 +65,7 @@ pub(crate) struct SpindleUnit {
     /// The path of a thread leads it.
     led: bool,
     plc_volts: f64,
+    feed_volts: f64,
 }
 
 impl SpindleUnit {
@@ -83,6 +86,7 @@ impl SpindleUnit {
             orienting: false,
             led: false,
             plc_volts: 0.0,
+            feed_volts: 0.0,
         }
     }
 
@@ -111,8 +115,24 @@ impl SpindleUnit {
         let volts = self.servo.step();
         if self.is_analogue() {
             plant.set_nominal(OUTPUT_S, volts);
-        } else if self.parameters.free_output == FreeOutput::Plc {
-            plant.set_nominal(OUTPUT_S, self.plc_volts);
+        } else {
+            match self.parameters.free_output {
+                FreeOutput::Plc => plant.set_nominal(OUTPUT_S, self.plc_volts),
+                FreeOutput::Feed { .. } => plant.set_nominal(OUTPUT_S, self.feed_volts),
+                FreeOutput::None | FreeOutput::MFunctions => {}
+            }
+        }
+    }
+
+    /// MP3011 = 1: a voltage in proportion to the contour feed, 10 V at MP3012 [000:9835-9839].
+    pub fn set_feed(&mut self, mm_min: f64) {
+        if let FreeOutput::Feed { full_mm_min } = self.parameters.free_output {
+            let volts = mm_min / full_mm_min * OUTPUT_VOLTS;
+            self.feed_volts = if volts.is_finite() {
+                volts.clamp(0.0, OUTPUT_VOLTS)
+            } else {
+                0.0
+            };
         }
     }
 
@@ -436,6 +456,20 @@ impl SpindleUnit {
     /// Angle since power-on with all turns, degrees.
     pub fn turned_deg(&self) -> f64 {
         self.servo.turned_deg()
+    }
+
+    /// What module 9042 reads, in degrees.
+    pub fn position(&self) -> SpindlePosition {
+        let angle = self.angle_deg().unwrap_or(0.0);
+        SpindlePosition {
+            actual: angle,
+            reference: angle,
+            closed_loop: self.servo.lag_and_way_deg().map(|[lag, way]| ControlledSpindle {
+                nominal: angle + lag,
+                trailing_error: lag,
+                distance_to_go: way,
+            }),
+        }
     }
 
     /// An orientation is on its way.

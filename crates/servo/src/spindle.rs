@@ -436,6 +436,22 @@ impl Spindle {
         matches!(orientation.phase, Phase::Controlled { .. }) && !(self.opens && orientation.reached)
     }
 
+    /// Lag and distance to go of an orientation in its loop, degrees; `None` with open loop. The nominal value
+    /// runs ahead by the lag that belongs to the speed.
+    pub fn lag_and_way_deg(&self) -> Option<[f64; 2]> {
+        match self.mode {
+            Mode::Orientation(orientation) if self.is_controlled() => {
+                let Phase::Controlled { target_deg } = orientation.phase else {
+                    return None;
+                };
+                let way = target_deg - self.encoder.turned_deg();
+                let lag = self.dynamics(orientation.rpm).velocity(way) / self.slope();
+                Some([lag, way - lag])
+            }
+            _ => None,
+        }
+    }
+
     /// Voltage of the output, V.
     pub fn volts(&self) -> f64 {
         self.volts
