@@ -5,26 +5,21 @@ use std::fmt;
 use std::path::Path;
 
 use bahn_control::Tool;
-use bahn_interpreter::{ToolTable, tool_key};
+use bahn_interpreter::tool_key;
 use bahn_path::ToolShape;
 
 use crate::{UsageError, files};
 
 /// Reads the tool table of a file.
-pub(crate) fn load(path: &Path) -> Result<ToolTable, UsageError> {
+pub(crate) fn load(path: &Path) -> Result<BTreeMap<u32, Tool>, UsageError> {
     let bytes = files::read_table(path)?;
-    let tools = parse(&String::from_utf8_lossy(&bytes));
-    match tools {
-        Ok(tools) => Ok(tools
-            .into_iter()
-            .map(|(number, tool)| (number, tool.shape))
-            .collect()),
-        Err(faults) => Err(UsageError::new(format!(
+    parse(&String::from_utf8_lossy(&bytes)).map_err(|faults| {
+        UsageError::new(format!(
             "{}: {}",
             path.display(),
             faults.first().map(TableFault::to_string).unwrap_or_default()
-        ))),
-    }
+        ))
+    })
 }
 
 /// What is wrong in a line of a table, from 1; 0 is the table as a whole.
@@ -145,6 +140,7 @@ impl Columns {
             length: length("L")? + length("DL")?,
             radius: length("R")? + length("DR")?,
             corner_radius: length("R2")? + length("DR2")?,
+            point_angle_deg: self.point_angle_deg(&fields)?,
         };
         if shape.corner_radius < 0.0 || length("R")? < 0.0 {
             return Err("a radius is negative".into());
@@ -165,12 +161,33 @@ impl Columns {
             "1" | "Y" | "J" | "S" | "ST" => true,
             text => return Err(format!("ST: `{text}` is neither empty nor S")),
         };
+        // Tables of later controls write `DIRECT.` and `DIR.`; blank and - are M3 [000:15449].
+        let direct = ["DIRECT", "DIRECT.", "DIR."].map(|name| self.field(&fields, name));
+        let left_hand = match direct.into_iter().find(|text| !text.is_empty()) {
+            None | Some("-") | Some("0") => false,
+            Some("+") | Some("1") => true,
+            Some(text) => return Err(format!("DIRECT: `{text}` is neither - (M3) nor + (M4)")),
+        };
         let tool_data = Tool {
             shape,
             pocket,
             special,
+            left_hand,
         };
         Ok((tool, tool_data))
+    }
+
+    /// T-ANGLE (later controls): the angle of a drill's point; missing, 0 and 180 are a flat end.
+    fn point_angle_deg(&self, fields: &[String]) -> Result<f64, String> {
+        let angle = self.length(fields, "T-ANGLE")?;
+        if angle == 0.0 || angle == 180.0 {
+            return Ok(0.0);
+        }
+        if !(ToolShape::POINT_ANGLE_MIN_DEG..180.0).contains(&angle) {
+            let least = ToolShape::POINT_ANGLE_MIN_DEG;
+            return Err(format!("T-ANGLE: a point has {least} to 180 degrees"));
+        }
+        Ok(angle)
     }
 
     fn fields(&self, line: &str) -> Result<Vec<String>, String> {
@@ -264,6 +281,7 @@ mod tests {
                 length,
                 radius,
                 corner_radius,
+                point_angle_deg: 0.0,
             },
             ..Tool::default()
         }
@@ -313,6 +331,22 @@ mod tests {
         );
         let all = parse("T R ST\n1 x\n2 5 ?\n3 1\n3 1").unwrap_err();
         assert_eq!(all.iter().map(|fault| fault.line).collect::<Vec<_>>(), [2, 3, 5]);
+    }
+
+    #[test]
+    fn points_of_drills_have_an_angle() {
+        let table = parse("T;R;T-ANGLE\n1;5;118\n2;5;\n3;5;180\n").unwrap();
+        let angles: Vec<f64> = table.values().map(|tool| tool.shape.point_angle_deg).collect();
+        assert_eq!(angles, [118.0, 0.0, 0.0]);
+        assert!(parse("T;R;T-ANGLE\n1;5;181").is_err() && parse("T;R;T-ANGLE\n1;5;-5").is_err());
+    }
+
+    #[test]
+    fn left_hand_tools_are_marked_by_direct() {
+        let table = parse("T;R;DIRECT\n1;5;-\n2;5;\n3;5;+\n").unwrap();
+        let left: Vec<bool> = table.values().map(|tool| tool.left_hand).collect();
+        assert_eq!(left, [false, false, true]);
+        assert!(parse("T;R;DIRECT\n1;5;x").is_err());
     }
 
     #[test]

@@ -414,8 +414,8 @@ impl Control {
             start: self.offsets.to_path(machine),
             tool_length_mm: Some(self.offsets.tool_length),
             machine: true,
-            max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
             inch_feed: self.inch_feed,
+            max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);

@@ -4,7 +4,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Position};
 use bahn_program::{Compensation, Coordinates, Feed, Motion, MotionKind};
 
-use crate::error::{Cause, Fault};
+use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
 use crate::functions::{BlockFunctions, Reference};
 use crate::modal::LastMove;
@@ -271,9 +271,36 @@ impl Run {
         let Some(feed) = feed else {
             return Err(MessageId::FeedRateIsMissing.into());
         };
-        self.check_range(&nominal, axes, settings)?;
         self.modal.last_move = None;
+        let placed = nominal.known().intersection(axes);
+        self.check_range(&nominal, placed, settings)?;
+        if placed != axes {
+            return self.leave_workpiece(nominal, axes, feed, functions);
+        }
         self.emit_movement(Curve::Line, nominal, axes, Compensation::Off, feed, functions)
+    }
+
+    /// A movement to a place of the machine when nobody has said where the workpiece lies in it: the axes have
+    /// no position until they are programmed again (inferred).
+    fn leave_workpiece(
+        &mut self,
+        nominal: Position,
+        axes: AxisSet,
+        feed: FeedRate,
+        functions: BlockFunctions,
+    ) -> Result<Flow, Fault> {
+        if !std::mem::replace(&mut self.machine_zero_missed, true) {
+            self.warn(WarningKind::MachineZeroUnknown);
+        }
+        self.finish_contour()?;
+        let start = self.tool_centre();
+        let mut end = start;
+        for axis in axes.iter() {
+            end[axis] = nominal[axis];
+        }
+        (self.modal.nominal, self.modal.actual) = (nominal, end);
+        let element = self.element(Curve::Line, start, end, feed);
+        self.push(element, functions, false)
     }
 
     /// Transforms a movement into workpiece coordinates. Axes that are neither programmed nor turned by
