@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::Interpreter;
-use crate::Interpreter;
 use crate::cycles::{ContourJob, Halt, Watch};
 use crate::run::Run;
 use crate::settings::Settings;
@@ -128,38 +127,6 @@ impl Interpreter {
             Some(Err(Halt::Fault(fault))) => self.fail(fault, self.run.block),
             // Its block is executed anew when the run goes on.
             Some(Err(Halt::Interrupted)) | None => {}
-        }
-    }
-}
-
-impl Interpreter {
-    /// Leaves long computations to whoever drives: while one is pending the next step is
-    /// [`Step::Starved`](bahn_path::Step::Starved), see [`Interpreter::take_work`].
-    pub fn defer_work(&mut self) {
-        self.defers = true;
-    }
-
-    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to.
-    pub fn take_work(&mut self) -> Option<Work> {
-        self.pending.take(&mut self.run, &self.settings)
-    }
-
-    /// Gives a computation up that is pending: its block is executed anew when the run goes on.
-    pub fn give_up_work(&mut self) {
-        self.pending = Pending::None;
-    }
-
-    /// Whether this computation is what the run waits for.
-    pub fn waits_for(&self, done: &Done) -> bool {
-        self.pending.is_of(done)
-    }
-
-    /// Goes on with what a computation came to; without effect when it was given up meanwhile.
-    pub fn finish_work(&mut self, done: Done) {
-        match self.pending.finish(done, &mut self.run) {
-            Some(Ok(())) => self.run.at.block += 1,
-            Some(Err(fault)) => self.fail(fault, self.run.block),
-            None => {}
         }
     }
 }
