@@ -26,6 +26,7 @@ use crate::reference::ReferenceRun;
 use crate::run::ProgramRun;
 use crate::setup::{Remembered, Setup};
 use crate::spindle::SpindleUnit;
+use crate::thread::Tapping;
 use crate::tools::Tools;
 use crate::upkeep::Upkeep;
 
@@ -83,6 +84,7 @@ pub struct Control {
     pub(crate) tools: Tools,
     pub(crate) upkeep: Upkeep,
     pub(crate) stylus: crate::probing::Stylus,
+    pub(crate) tapping: Tapping,
     pub(crate) test: Option<crate::test_run::TestRun>,
     /// Tool changes and datums must be stored before their strobe is reset.
     keeps: bool,
@@ -206,6 +208,7 @@ impl Control {
             range: 0,
             upkeep: Upkeep::new(parameters_interval_s),
             stylus: crate::probing::Stylus::default(),
+            tapping: Tapping::default(),
             test: None,
             keeps: false,
             unsaved: false,
@@ -413,7 +416,13 @@ impl Control {
         if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
             self.acknowledged(transfer);
         }
-        let percent = self.spindle_override.percent();
+        self.follow_tapping();
+        // In cycle 2 the override of the spindle is off [003:5032].
+        let percent = if self.taps_floating() {
+            100.0
+        } else {
+            self.spindle_override.percent()
+        };
         self.spindle.cycle(&mut self.exchange, percent);
         if self.spindle.take_wrong_speed() {
             self.show(Message::Plain(MessageId::WrongRpm), false);
@@ -583,6 +592,8 @@ pub(crate) fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[A
         corner_angle_deg: parameters.corner_angle_deg(),
         servo_lag: !parameters.feed_precontrol(),
         cycle_s: f64::from(Timing::of(parameters.model()).contour_us()) * 1e-6,
+        servo_window_s: bahn_motion::SERVO_WINDOW_S,
+        spindle: parameters.spindle_parameters().rigid_ramps().map(Into::into),
         feed_override_percent: 100.0,
         rapid_override_percent: 100.0,
     }

@@ -50,6 +50,7 @@ mod spindle;
 mod status;
 mod strobes;
 mod test_run;
+mod thread;
 mod tools;
 mod upkeep;
 mod watch;

@@ -144,6 +144,11 @@ impl Control {
                 match state {
                     RunState::BlockEnd => self.path.go_on(),
                     RunState::Stopped => self.run.answer = Some(self.run.q_transfer.answer()),
+                    _ if self.path.is_coupled() => {
+                        // Led out of a thread by hand.
+                        self.path.go_on();
+                        self.put(bahn_exchange::signal::MANUAL_OPERATION_PRESSED, false);
+                    }
                     _ => {}
                 }
                 self.run.state = RunState::Running;
@@ -414,8 +419,8 @@ impl Control {
             start: self.offsets.to_path(machine),
             tool_length_mm: Some(self.offsets.tool_length),
             machine: true,
-            inch_feed: self.inch_feed,
             max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
+            inch_feed: self.inch_feed,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);

@@ -46,7 +46,8 @@ pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, ToolTable, tool_key,
+    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules, ToolTable,
+    tool_key,
 };
 pub use work::{Done, Work};
 

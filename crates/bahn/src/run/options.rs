@@ -152,7 +152,7 @@ pub(crate) struct RecordingOptions {
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub record: Option<PathBuf>,
     /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, path.speed,
-    /// path.block, S.rpm, S.volts, operands of the PLC like M2045, I4, W260; by default speeds, positions,
+    /// path.block, S.rpm, S.volts, S.angle, operands of the PLC like M2045, I4, W260; by default speeds, positions,
     /// lags, and the handshake of M functions.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
     pub signals: Vec<Signal>,
