@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use bahn_interpreter::Judgement;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Severity};
 
 use crate::cli::{CheckOptions, Format};
 use crate::diagnostics::{self, Diagnostic, Marked};
 use crate::files::{self, Loaded};
-use crate::{Outcome, UsageError, console};
+use crate::{Outcome, UsageError, conformance, console};
 
 /// Checks files and prints what is wrong.
 pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
@@ -60,7 +61,7 @@ struct Entry {
 
 fn check(path: &Path, options: &CheckOptions) -> Result<CheckReport, UsageError> {
     let program = files::load_program(path)?;
-    let found = match &program {
+    let mut found = match &program {
         Loaded::Program(program) => program.diagnostics(Some(options.model.limits())),
         Loaded::Empty(_) => vec![whole_file(MessageId::EndOfProgramMissing, files::EMPTY)],
         Loaded::TooLarge => vec![whole_file(
@@ -68,6 +69,10 @@ fn check(path: &Path, options: &CheckOptions) -> Result<CheckReport, UsageError>
             files::TOO_LARGE,
         )],
     };
+    if let Loaded::Program(program) = &program {
+        found.extend(functions(program, &found, options));
+        found.sort_by_key(|fault| (fault.block, fault.severity == Severity::Warning));
+    }
     let count = |severity| found.iter().filter(|fault| fault.severity == severity).count();
     let report = CheckReport {
         file: path.to_string_lossy().into_owned(),
@@ -85,6 +90,41 @@ fn check(path: &Path, options: &CheckOptions) -> Result<CheckReport, UsageError>
         summary(&report);
     }
     Ok(report)
+}
+
+/// Functions that are not executed here, or not wholly, each at its first block; where that has an error
+/// already, it is said.
+fn functions(program: &Program, found: &[Fault], options: &CheckOptions) -> Vec<Fault> {
+    let has_error = |block| {
+        let mut errors = found.iter().filter(|fault| fault.severity == Severity::Error);
+        errors.any(|fault| fault.block == block)
+    };
+    let mut faults = Vec::new();
+    for (block, feature, judgement) in conformance::remarks(program, options.model, options.strict) {
+        let (is_error, detail) = match judgement {
+            Judgement::Executed => continue,
+            Judgement::Remarked(text) | Judgement::PassedOver(text) => (false, text),
+            Judgement::Refused(text) => (!options.skip_unknown, text),
+        };
+        if has_error(block) {
+            continue;
+        }
+        let line = program.line_of(block);
+        let text = program.text_of_line(line);
+        let word = feature.to_string();
+        let at = text.to_ascii_uppercase().find(&word).unwrap_or(0);
+        let column = text.get(..at).unwrap_or_default().chars().count() + 1;
+        faults.push(Fault {
+            message: MessageId::BlockNotKnown,
+            severity: if is_error { Severity::Error } else { Severity::Warning },
+            block,
+            line,
+            column: u32::try_from(column).unwrap_or(u32::MAX),
+            length: u32::try_from(word.len().min(text.chars().count())).unwrap_or(u32::MAX),
+            detail: detail.into(),
+        });
+    }
+    faults
 }
 
 fn entry(fault: &Fault, model: ControlModel) -> Entry {

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use bahn_parameters::ControlModel;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
+use crate::conformance::ConformanceOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::mp::MpOptions;
 use crate::plc::PlcOptions;
@@ -50,6 +51,9 @@ pub(crate) enum Command {
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// List what each function of a control does here: M functions, cycles, words, machine parameters and so on.
+    #[command(after_help = crate::conformance::EXAMPLES)]
+    Conformance(ConformanceOptions),
     /// Say what a message of the control means and what to do about it.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainOptions),
@@ -76,7 +80,8 @@ Tool table (--tools): a text file with a line of column names and one line for e
   1  80.5  10   0   END MILL D20
   2  62    4    4   BALL D8
 T is the number, L the length, R the radius, R2 the corner radius (0 flat end, as great as R ball
-end), in mm; DL, DR, DR2 are added to them; other columns are ignored. Columns are separated by
+end), in mm; DL, DR, DR2 are added to them. A tool that is locked (TL) or whose life is over (CUR.TIME
+greater than TIME2) must not be called; other columns are ignored. Columns are separated by
 blanks, tabs, commas or semicolons. TOOL.T files of later controls (first line BEGIN TOOL .T MM or
 INCH, fixed columns) load too.
 
@@ -185,9 +190,14 @@ pub(crate) struct RunOptions {
     /// End at the first programmed stop (STOP, M0, M1) instead of passing over it.
     #[arg(long)]
     pub stop: bool,
-    /// Refuse what is otherwise accepted with a warning, such as signs of cycle parameters that disagree.
+    /// Refuse what is otherwise accepted with a warning, such as functions that have no effect here or signs
+    /// of cycle parameters that disagree.
     #[arg(long)]
     pub strict: bool,
+    /// Pass over words and blocks that nothing here knows, and functions without which the control would
+    /// move differently, each with a warning, instead of ending with an error.
+    #[arg(long, conflicts_with = "strict")]
+    pub skip_unknown: bool,
     /// Blocks that may be executed without a movement; more are taken for an endless loop.
     #[arg(long, value_name = "N", default_value_t = 10_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     pub max_blocks: u64,
@@ -244,6 +254,12 @@ pub(crate) struct CheckOptions {
     /// Control model whose limits apply.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
+    /// Refuse functions that have no effect here, or only part of it.
+    #[arg(long)]
+    pub strict: bool,
+    /// Warn of functions without which the control would move differently, instead of refusing them.
+    #[arg(long, conflicts_with = "strict")]
+    pub skip_unknown: bool,
     /// How errors are written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,

@@ -10,7 +10,7 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
 //!   makes folders of machines;
-//! - `check`, `format`, `explain`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
+//! - `check`, `format`, `explain`, `conformance`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
 //!   `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
@@ -19,6 +19,7 @@
 
 mod check;
 mod cli;
+mod conformance;
 mod console;
 mod cutting;
 mod diagnostics;
@@ -64,6 +65,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Fmt(options) => format::command(options),
         cli::Command::Plc(options) => plc::command(options),
         cli::Command::Mp(options) => mp::command(options),
+        cli::Command::Conformance(options) => conformance::command(options),
         cli::Command::Explain(options) => explain::command(options),
         cli::Command::Completions(options) => cli::completions(options),
     };

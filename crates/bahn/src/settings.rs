@@ -53,16 +53,19 @@ pub(crate) fn interpreter(
     run: &RunOptions,
 ) -> Result<bahn_interpreter::Settings, UsageError> {
     let model = list.model();
+    let table = machine.tools.as_deref().map(tool_table::load).transpose()?;
     Ok(bahn_interpreter::Settings {
         model,
         rules: Rules::of(list),
-        tools: machine.tools.as_deref().map(tool_table::load).transpose()?,
+        barred_tools: tool_table::barred(table.iter().flatten()),
+        tools: table.map(tool_table::shapes),
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
         tool_length_mm: None,
         machine: false,
         skip_blocks: run.skip_blocks,
         strict: run.strict,
+        skip_unknown: run.skip_unknown,
         max_blocks_without_motion: run.max_blocks,
     })
 }

@@ -23,7 +23,7 @@ use crate::plc_link::PlcLink;
 use crate::positioning::Positioning;
 use crate::reference::ReferenceRun;
 use crate::run::ProgramRun;
-use crate::setup::{Remembered, Setup};
+use crate::setup::{Checking, Remembered, Setup};
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
 use crate::upkeep::Upkeep;
@@ -80,6 +80,7 @@ pub struct Control {
     /// Active traverse range, 0 to 2.
     pub(crate) range: usize,
     pub(crate) tools: Tools,
+    pub(crate) checking: Checking,
     pub(crate) upkeep: Upkeep,
     pub(crate) test: Option<crate::test_run::TestRun>,
     /// Tool changes and datums must be stored before their strobe is reset.
@@ -115,6 +116,7 @@ impl Control {
             plc_messages,
             plc_dialogues,
             tools,
+            checking,
             programs,
             files,
             remembered,
@@ -165,6 +167,7 @@ impl Control {
             exchange,
             spindle: SpindleUnit::new(parameters.spindle_parameters(), timing),
             tools: Tools::new(tools, operation.tools, &remembered),
+            checking,
             link: PlcLink::new(parameters, plc_messages, plc_dialogues, files),
             plc: PlcUnit {
                 machine: Machine::new(plc, Start::PowerOn),

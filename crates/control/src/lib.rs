@@ -62,7 +62,7 @@ pub use manual::HANDWHEEL_STEPS;
 pub use message::{Message, Shown};
 pub use plc_link::NcFiles;
 pub use run::RunState;
-pub use setup::{Position0, Remembered, Setup, Tool};
+pub use setup::{Checking, Position0, Remembered, Setup, Tool};
 pub use signal::{AxisSignal, Signal, SignalError};
 pub use snapshot::{AxisState, Snapshot};
 pub use spindle::SpindleState;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_exchange::Exchange;
+use bahn_interpreter::ToolState;
 use bahn_parameters::ParameterList;
 use bahn_path::{Axis, Position, ToolShape};
 use bahn_plc::PlcProgram;
@@ -20,6 +21,17 @@ pub struct Tool {
     pub pocket: Option<u16>,
     /// A special tool, which takes more than one pocket.
     pub special: bool,
+    /// Whether it may be called.
+    pub state: ToolState,
+}
+
+/// How programs are taken that use what is not executed here.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Checking {
+    /// Refuse what is otherwise accepted with a warning.
+    pub strict: bool,
+    /// Pass over unknown words and blocks, and functions that would move differently, with a warning.
+    pub skip_unknown: bool,
 }
 
 /// Everything a [`Control`](crate::Control) starts with.
@@ -35,6 +47,8 @@ pub struct Setup {
     pub plc_dialogues: Vec<String>,
     /// Tools by number; `None` when tools are defined in the programs.
     pub tools: Option<BTreeMap<u32, Tool>>,
+    /// How programs are taken that use what is not executed here.
+    pub checking: Checking,
     /// Where programs come from.
     pub programs: Arc<dyn Programs>,
     /// Files and tables that PLC modules read.

@@ -22,6 +22,7 @@ fn build(parameters: &[&str], plc: &str, program: &str) -> Rig {
         },
         pocket,
         special,
+        ..Tool::default()
     };
     build.tools = Some(
         [
@@ -135,4 +136,18 @@ fn length_of_the_tool() {
     rig.seconds(0.2);
     assert_eq!(rig.control.snapshot().tool, 1);
     near(display(&rig, 'Z'), 10.0 + 95.0 - 70.0);
+}
+
+/// M2100 to M2103 say which axis is the tool axis [000:3410-3416].
+#[test]
+fn markers_of_the_tool_axis() {
+    let markers = ["M2100", "M2101", "M2102", "M2103"];
+    for (axis, place) in [("Y", 1), ("Z", 2), ("X", 0)] {
+        let mut rig = build(&[], ACKNOWLEDGE, &format!("TOOL CALL 1 {axis} S0"));
+        rig.start();
+        rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+        rig.cycle();
+        let set: Vec<usize> = (0..4).filter(|at| rig.bit(markers[*at])).collect();
+        assert_eq!(set, [place], "{axis}");
+    }
 }

@@ -4,6 +4,7 @@
 //! - [`Interpreter`]: an [`ElementSource`] over a main program and the programs it calls;
 //! - [`Settings`]: control model, machine parameters, tools and options of a run;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it;
+//! - [`Feature`]: what a block asks for, and whether it is executed here;
 //! - [`Library`]: where called programs come from;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
@@ -13,6 +14,7 @@
 //! Nothing here knows of time or of the machine's axes.
 
 mod arc;
+mod availability;
 mod code;
 mod contour;
 mod cycles;
@@ -36,9 +38,10 @@ use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
 use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
+pub use availability::{Feature, Judgement, words};
 pub use code::{Library, NoLibrary};
 pub use error::{Message, ProgramError, Warning, WarningKind};
-pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolTable};
+pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolState, ToolTable};
 
 use crate::code::Code;
 use crate::contour::Contour;
@@ -189,8 +192,10 @@ impl Interpreter {
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
         let warnings = std::mem::take(&mut self.run.warnings);
+        let said = std::mem::take(&mut self.run.said);
         self.run = (*checkpoint.run).clone();
         self.run.warnings = warnings;
+        self.run.said = said;
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;
@@ -297,6 +302,7 @@ impl Interpreter {
         if self.kept.is_some() && self.run.recording.is_none() && acts(&block.operation) {
             // Warnings are no state to go back to.
             let warnings = std::mem::take(&mut self.run.warnings);
+            let said = std::mem::take(&mut self.run.said);
             let checkpoint = Checkpoint {
                 run: Box::new(self.run.clone()),
                 ended: None,
@@ -304,6 +310,7 @@ impl Interpreter {
                 position: self.position,
             };
             self.run.warnings = warnings;
+            self.run.said = said;
             if let Some(kept) = &mut self.kept {
                 kept.push(checkpoint);
             }

@@ -4,13 +4,14 @@ use bahn_parameters::MessageId;
 use bahn_path::{At, Axis, Blank, Function, Plane, Synchronisation, TechnologyFunction, ToolCall, ToolShape};
 use bahn_program::{Coordinates, Value};
 
+use crate::availability::{Feature, words};
 use crate::error::{Fault, WarningKind};
 use crate::functions::BlockFunctions;
 use crate::modal::Tool;
 use crate::positioning::known;
 use crate::q_parameters::preassigned;
 use crate::run::Run;
-use crate::settings::Settings;
+use crate::settings::{Settings, ToolState};
 
 impl Run {
     /// TOOL DEF: tool data, or with a tool table and without data the pre-selection of the next tool
@@ -82,8 +83,11 @@ impl Run {
         };
         self.finish_contour()?;
         let number = self.tool_number(tool, settings)?;
+        check_state(number, settings)?;
         let mut shape = self.tool_shape(number, settings)?;
-        let [delta_length, delta_radius] = oversize;
+        let has_oversize = oversize.iter().any(Option::is_some);
+        let executed = !has_oversize || self.executes(Feature::Word(words::OVERSIZE), settings)?;
+        let [delta_length, delta_radius] = if executed { oversize } else { [None; 2] };
         shape.length += delta_length
             .map(|value| self.length(value))
             .transpose()?
@@ -283,5 +287,21 @@ impl Run {
             *slot = if word.incremental { *slot + value } else { value };
         }
         Ok(corner)
+    }
+}
+
+/// Refuses a tool that the table locks, and one whose life is over [000:9168-9172].
+fn check_state(number: u32, settings: &Settings) -> Result<(), Fault> {
+    let state = settings.barred_tools.get(&number).copied().unwrap_or_default();
+    let fault = |message, what: &str| Err(Fault::new(message, format!("tool {number}: {what}")));
+    match state {
+        ToolState::Usable => Ok(()),
+        ToolState::Locked => fault(MessageId::ToolLocked, "column TL of the tool table locks it"),
+        ToolState::Expired => fault(MessageId::MaxToolLifeExpired, "CUR.TIME is greater than TIME2"),
+        ToolState::Replaced if settings.skip_unknown => Ok(()),
+        ToolState::Replaced => fault(
+            MessageId::BlockNotKnown,
+            "CUR.TIME is greater than TIME2, and the replacement tool of column RT is not called here",
+        ),
     }
 }

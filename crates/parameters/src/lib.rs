@@ -7,7 +7,8 @@
 //! - [`Definition`]: what the manual's list says of each machine parameter;
 //! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
 //!   model: [`ParameterList::axis_parameters`], [`ParameterList::spindle_parameters`] and so on;
-//! - [`ListText`]: the text of a list, whose values change in their places.
+//! - [`ListText`]: the text of a list, whose values change in their places;
+//! - [`conformance`]: what each function of a control does here, and what it does not.
 //!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
@@ -19,6 +20,7 @@
     reason = "citations as [003:7868] look like links"
 )]
 
+pub mod conformance;
 mod consistency;
 mod definition;
 mod error;

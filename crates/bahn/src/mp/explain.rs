@@ -72,6 +72,9 @@ fn text(first: &Row, rows: &[Row], list: &str, style: Style) -> String {
         },
     );
     line("needs:", reaction(first.reaction));
+    for remark in remarks(rows) {
+        line("effect:", &remark);
+    }
     line("versions:", first.versions);
     line("note:", first.notes);
     line("source:", &first.source.replace(';', ", "));
@@ -100,6 +103,19 @@ fn text(first: &Row, rows: &[Row], list: &str, style: Style) -> String {
         );
     }
     text
+}
+
+/// What has no effect here, or only part of it: said once when it is the same for all indices.
+fn remarks(rows: &[Row]) -> Vec<String> {
+    let runs = rows.chunk_by(|a, b| a.remark() == b.remark());
+    let runs = runs.filter_map(|run| Some((run.first()?, run.last()?)));
+    let said = runs.map(|(first, last)| match first.remark() {
+        remark if remark.is_empty() => remark,
+        remark if rows.len() == 1 || rows.iter().all(|row| row.remark() == remark) => remark,
+        remark if first.parameter == last.parameter => format!("{}: {remark}", first.parameter),
+        remark => format!("{} to {}: {remark}", first.parameter, last.parameter),
+    });
+    said.collect()
 }
 
 /// The values of the list that the control makes by itself.

@@ -130,6 +130,7 @@ impl Build {
             plc_messages: Vec::new(),
             plc_dialogues: Vec::new(),
             tools: self.tools,
+            checking: Default::default(),
             programs: Arc::new(self.programs),
             files: NcFiles::default(),
             remembered: self.remembered,
