@@ -116,7 +116,11 @@ fn functions(program: &Program, found: &[Fault], options: &CheckOptions) -> Vec<
         let column = text.get(..at).unwrap_or_default().chars().count() + 1;
         faults.push(Fault {
             message: MessageId::BlockNotKnown,
-            severity: if is_error { Severity::Error } else { Severity::Warning },
+            severity: if is_error {
+                Severity::Error
+            } else {
+                Severity::Warning
+            },
             block,
             line,
             column: u32::try_from(column).unwrap_or(u32::MAX),

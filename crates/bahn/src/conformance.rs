@@ -83,7 +83,11 @@ pub(crate) fn command(options: &ConformanceOptions) -> Result<Outcome, UsageErro
 
 /// The functions of a program that this control does not execute, or not wholly: the first block of each with
 /// what is to be said, in the order of the program.
-pub(crate) fn remarks(program: &Program, model: ControlModel, strict: bool) -> Vec<(u32, Feature, Judgement)> {
+pub(crate) fn remarks(
+    program: &Program,
+    model: ControlModel,
+    strict: bool,
+) -> Vec<(u32, Feature, Judgement)> {
     let mut said = std::collections::BTreeSet::new();
     let mut remarks = Vec::new();
     for block in program.blocks() {
@@ -203,7 +207,10 @@ impl Table {
             }
             text += "\n";
         }
-        text += &format!("{:<9}{:<11}{:>6}{:>8}{:>6}\n", "control", "kind", "acts", "partly", "none");
+        text += &format!(
+            "{:<9}{:<11}{:>6}{:>8}{:>6}\n",
+            "control", "kind", "acts", "partly", "none"
+        );
         for [model, kind, acts, partly, none] in self.total_lines() {
             text += &format!("{model:<9}{kind:<11}{acts:>6}{partly:>8}{none:>6}\n");
         }

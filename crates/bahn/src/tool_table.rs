@@ -334,7 +334,8 @@ mod tests {
 
     #[test]
     fn locks_and_lives() {
-        let text = "T;R;TL;TIME2;CUR.TIME;RT\n1;5;L;;;\n2;5;;20;20;\n3;5;-;20;20.1;-\n4;5;;20;21;7\n5;5;;0;99;\n";
+        let text =
+            "T;R;TL;TIME2;CUR.TIME;RT\n1;5;L;;;\n2;5;;20;20;\n3;5;-;20;20.1;-\n4;5;;20;21;7\n5;5;;0;99;\n";
         let table = parse(text).unwrap();
         let states: Vec<_> = table.values().map(|tool| tool.state).collect();
         use ToolState::{Expired, Locked, Replaced, Usable};

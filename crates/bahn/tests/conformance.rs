@@ -72,16 +72,28 @@ fn compare(kind: Kind, names: impl IntoIterator<Item = String>) {
     assert_eq!(unique.len(), rows.len(), "a row stands twice");
     let missing: Vec<_> = names.difference(&unique).collect();
     let idle: Vec<_> = unique.difference(&names).collect();
-    assert!(missing.is_empty() && idle.is_empty(), "no row: {missing:?}; no object: {idle:?}");
+    assert!(
+        missing.is_empty() && idle.is_empty(),
+        "no row: {missing:?}; no object: {idle:?}"
+    );
 }
 
 #[test]
 fn every_marker_module_and_message_has_its_row() {
     let markers = bahn_exchange::signal::all();
-    compare(Kind::Marker, markers.iter().map(|signal| signal.operand.to_string()));
+    compare(
+        Kind::Marker,
+        markers.iter().map(|signal| signal.operand.to_string()),
+    );
     let modules = bahn_plc::modules();
-    compare(Kind::Module, modules.iter().map(|module| module.number.to_string()));
-    compare(Kind::Message, MessageId::ALL.iter().map(|id| id.name().to_owned()));
+    compare(
+        Kind::Module,
+        modules.iter().map(|module| module.number.to_string()),
+    );
+    compare(
+        Kind::Message,
+        MessageId::ALL.iter().map(|id| id.name().to_owned()),
+    );
 }
 
 /// M0 to M99 on every model; beyond, what the manuals name, once on each model.
@@ -118,7 +130,11 @@ fn the_document_is_the_table() {
 fn the_table_can_be_narrowed() {
     let folder = Folder::new();
     let run = folder.bahn("conformance --model tnc360 --kind m");
-    assert!(run.out().contains("M103") == false && run.out().contains("M90 "), "{}", run.out());
+    assert!(
+        run.out().contains("M103") == false && run.out().contains("M90 "),
+        "{}",
+        run.out()
+    );
     let json = folder.bahn("conformance --model tnc425 --kind parameter --effect none --format json");
     let table: serde_json::Value = serde_json::from_str(&json.out()).unwrap();
     let entries = table["entries"].as_array().unwrap();
@@ -136,14 +152,26 @@ fn the_commands_say_what_is_not_done() {
     let folder = Folder::with_program("L X+1 R0 FMAX\nL X+2 R0 FMAX M107\nL X+3 R0 FMAX M114");
     let check = folder.bahn("check main.H");
     assert_eq!(check.code(), 1);
-    assert!(check.err().contains("block 2: M107 has no effect here"), "{}", check.err());
+    assert!(
+        check.err().contains("block 2: M107 has no effect here"),
+        "{}",
+        check.err()
+    );
     assert!(check.err().ends_with("1 error, 1 warning\n"), "{}", check.err());
-    assert!(folder.bahn("check main.H --strict").err().ends_with("2 errors, 0 warnings\n"));
+    assert!(
+        folder
+            .bahn("check main.H --strict")
+            .err()
+            .ends_with("2 errors, 0 warnings\n")
+    );
     assert_eq!(folder.bahn("check main.H --skip-unknown").code(), 0);
     let test = folder.bahn("test main.H --format json");
     assert_eq!(test.code(), 1);
     let report = test.json();
-    assert_eq!(report["error"]["message"], "FUNCTION NOT AVAILABLE ON THIS CONTROL");
+    assert_eq!(
+        report["error"]["message"],
+        "FUNCTION NOT AVAILABLE ON THIS CONTROL"
+    );
     assert_eq!(report["error"]["block"], 3);
     assert_eq!(report["warnings"][0]["block"], 2);
     let skipped = folder.bahn("test main.H --skip-unknown --format json");
@@ -158,14 +186,19 @@ fn the_machine_says_it_too() {
     let mill = root().join("machines/mill");
     let run = |options: &str| {
         let mill = mill.display();
-        folder.bahn(&format!("run main.H --machine {mill} --fresh --format json {options}"))
+        folder.bahn(&format!(
+            "run main.H --machine {mill} --fresh --format json {options}"
+        ))
     };
     let refused = run("");
     assert_eq!(refused.code(), 1, "{}", refused.err());
     let skipped = run("--skip-unknown");
     assert_eq!(skipped.code(), 0, "{}", skipped.err());
     let text = skipped.out();
-    assert!(text.contains("M107 has no effect here") && text.contains("passed over: M114"), "{text}");
+    assert!(
+        text.contains("M107 has no effect here") && text.contains("passed over: M114"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -174,7 +207,10 @@ fn barred_tools_are_refused() {
     folder.write("tool.t", "T;R;TL;TIME2;CUR.TIME;RT\n1;5;;20;19;\n2;5;L;;;\n");
     let message = |folder: &Folder| {
         let run = folder.bahn("test main.H --tools tool.t --format json");
-        run.json()["error"]["message"].as_str().unwrap_or_default().to_owned()
+        run.json()["error"]["message"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned()
     };
     assert_eq!(message(&folder), "TOOL LOCKED");
     folder.write("tool.t", "T;R;TL;TIME2;CUR.TIME;RT\n1;5;;20;19;\n2;5;;20;21;\n");
@@ -185,8 +221,16 @@ fn barred_tools_are_refused() {
 fn parameters_say_that_they_have_no_effect() {
     let folder = Folder::new();
     let explained = folder.bahn("mp explain 7350").out();
-    assert!(explained.contains("no effect here (colours of the screen)"), "{explained}");
-    assert!(folder.bahn("mp explain 7680").out().contains("acts in part here: "));
+    assert!(
+        explained.contains("no effect here (colours of the screen)"),
+        "{explained}"
+    );
+    assert!(
+        folder
+            .bahn("mp explain 7680")
+            .out()
+            .contains("acts in part here: ")
+    );
     assert!(!folder.bahn("mp explain 1060").out().contains("effect"));
     let listed = folder.bahn("mp list 7350 1060").out();
     assert_eq!(listed.matches("(no effect here)").count(), 1, "{listed}");
@@ -194,7 +238,10 @@ fn parameters_say_that_they_have_no_effect() {
     assert!(!without.contains("\"acts\"") && without.contains("MP7350"));
     folder.write("a.mp", "MP7350 : 5\n").write("b.mp", "MP7350 : 6\n");
     let difference = folder.bahn("mp diff a.mp b.mp").out();
-    assert!(difference.contains("no effect here (colours of the screen)"), "{difference}");
+    assert!(
+        difference.contains("no effect here (colours of the screen)"),
+        "{difference}"
+    );
     folder.bahn("mp new -o mill.mp");
     let check = folder.bahn("mp check mill.mp").err();
     assert!(check.contains(" without effect here, "), "{check}");

@@ -451,7 +451,10 @@ impl Run {
         if axes.len() <= max {
             return Ok(());
         }
-        let detail = format!("{} axes in a block: this control moves {max} together", axes.len());
+        let detail = format!(
+            "{} axes in a block: this control moves {max} together",
+            axes.len()
+        );
         if settings.skip_unknown {
             self.warn(WarningKind::Function { text: detail });
             return Ok(());

@@ -80,11 +80,16 @@ fn what_would_move_differently_is_refused() {
     for blocks in MOVES {
         let text = format!("L X+1 FMAX\n{blocks}\nL X+2 FMAX");
         let refused = with(&text, |_| {});
-        assert_eq!(refused.message().map(|(id, _)| id), Some(BlockNotKnown), "{blocks}");
+        assert_eq!(
+            refused.message().map(|(id, _)| id),
+            Some(BlockNotKnown),
+            "{blocks}"
+        );
         let passed = with(&text, |settings| settings.skip_unknown = true);
         passed.assert_completed();
         let said = &passed.warnings;
-        let is_passed = matches!(said.as_slice(), [one] if matches!(one.kind, WarningKind::PassedOver { .. }));
+        let is_passed =
+            matches!(said.as_slice(), [one] if matches!(one.kind, WarningKind::PassedOver { .. }));
         assert!(is_passed, "{blocks}: {said:?}");
         // No word of the function is taken for a movement.
         assert_eq!(passed.position[bahn_path::Axis::X], 2.0, "{blocks}");
@@ -185,7 +190,10 @@ fn inhibited_by_the_machine_builder() {
     let with_list = |assignment: &str, blocks: &str| {
         let mut list = ParameterList::reference(Tnc415b);
         list.assign(assignment).unwrap();
-        with(blocks, |settings| settings.rules = bahn_interpreter::Rules::of(&list)).message()
+        with(blocks, |settings| {
+            settings.rules = bahn_interpreter::Rules::of(&list)
+        })
+        .message()
     };
     let dwell = "L X+1 FMAX\nCYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1";
     assert_eq!(with_list("7245.0=$200", dwell), Some((BlockNotKnown, 2)));

@@ -159,7 +159,7 @@ impl Entry {
 
     /// Whether the row is about an object: `M20-M88` is about `M25`.
     pub fn covers(&self, object: &str) -> bool {
-        Range::read(object).is_some_and(|object| self.range.contains(&object))
+        self.range.contains(&Range::read(object))
     }
 
     /// How many functions of a model the row stands for.
@@ -190,7 +190,12 @@ impl Entry {
 /// The whole registry: kinds in their order, rows as the tables have them.
 pub fn all() -> &'static [Entry] {
     static ALL: LazyLock<Vec<Entry>> = LazyLock::new(|| {
-        let rows = |kind: Kind| kind.table().lines().skip(1).filter_map(move |line| row(kind, line));
+        let rows = |kind: Kind| {
+            kind.table()
+                .lines()
+                .skip(1)
+                .filter_map(move |line| row(kind, line))
+        };
         Kind::ALL.into_iter().flat_map(rows).collect()
     });
     &ALL
@@ -204,7 +209,7 @@ pub fn entries(model: ControlModel) -> impl Iterator<Item = &'static Entry> {
 /// The row that is about an object of a model, `M114` or `MP1060.2`; `None` when the model has no such
 /// function.
 pub fn find(model: ControlModel, kind: Kind, object: &str) -> Option<&'static Entry> {
-    let object = Range::read(object)?;
+    let object = Range::read(object);
     entries(model).find(|entry| entry.kind == kind && entry.range.contains(&object))
 }
 
@@ -237,7 +242,7 @@ fn row(kind: Kind, line: &'static str) -> Option<Entry> {
         missing: next()?,
         source: next()?,
         proof: next()?,
-        range: Range::read(name)?,
+        range: Range::read(name),
     })
 }
 
@@ -265,15 +270,18 @@ struct Range<'a> {
 }
 
 impl<'a> Range<'a> {
-    /// Reads `M114`, `M20-M88`, `MP1060` with all its indices, `MP3410.2`, `MP3410.0-.1`, or letters alone.
-    fn read(text: &'a str) -> Option<Range<'a>> {
-        let Some(digits) = text.find(|c: char| c.is_ascii_digit()) else {
-            return Some(Range {
-                letters: text,
-                first: (0, 0),
-                last: (u32::MAX, u32::MAX),
-            });
-        };
+    /// Reads `M114`, `M20-M88`, `MP1060` with all its indices, `MP3410.2`, `MP3410.0-.1`; anything else stands
+    /// for itself.
+    fn read(text: &'a str) -> Range<'a> {
+        Range::numbered(text).unwrap_or(Range {
+            letters: text,
+            first: (0, 0),
+            last: (u32::MAX, u32::MAX),
+        })
+    }
+
+    fn numbered(text: &'a str) -> Option<Range<'a>> {
+        let digits = text.find(|c: char| c.is_ascii_digit())?;
         let (letters, numbers) = text.split_at_checked(digits)?;
         let (first, last) = match numbers.split_once('-') {
             Some((first, last)) => (first, Some(last)),

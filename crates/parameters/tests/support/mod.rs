@@ -17,7 +17,11 @@ pub fn readings(list: &ParameterList) -> Readings {
     }
     for axis in Axis::ALL {
         note(&mut all, "axis_index", &list.axis_index(axis));
-        note(&mut all, "rapid_traverse_mm_min", &list.rapid_traverse_mm_min(axis));
+        note(
+            &mut all,
+            "rapid_traverse_mm_min",
+            &list.rapid_traverse_mm_min(axis),
+        );
         note(&mut all, "manual_feed_mm_min", &list.manual_feed_mm_min(axis));
         note(&mut all, "acceleration_m_s2", &list.acceleration_m_s2(axis));
         note(&mut all, "machine_datum", &list.machine_datum(axis));
@@ -31,15 +35,27 @@ pub fn readings(list: &ParameterList) -> Readings {
         note(&mut all, "cycle_inhibited", &list.cycle_inhibited(cycle));
     }
     for index in 0..16 {
-        note(&mut all, "plc_number", &[0, 1].map(|place| list.plc_number(place, index)));
+        note(
+            &mut all,
+            "plc_number",
+            &[0, 1].map(|place| list.plc_number(place, index)),
+        );
     }
     note(&mut all, "axes", &list.axes());
-    note(&mut all, "radial_acceleration_m_s2", &list.radial_acceleration_m_s2());
+    note(
+        &mut all,
+        "radial_acceleration_m_s2",
+        &list.radial_acceleration_m_s2(),
+    );
     note(&mut all, "corner_angle_deg", &list.corner_angle_deg());
     note(&mut all, "feed_precontrol", &list.feed_precontrol());
     note(&mut all, "spindle_speed_max_rpm", &list.spindle_speed_max_rpm());
     note(&mut all, "spindle_zero_permitted", &list.spindle_zero_permitted());
-    note(&mut all, "spindle_override_percent", &list.spindle_override_percent());
+    note(
+        &mut all,
+        "spindle_override_percent",
+        &list.spindle_override_percent(),
+    );
     note(&mut all, "tapping", &list.tapping());
     note(&mut all, "spindle_parameters", &list.spindle_parameters());
     note(&mut all, "laser_characteristics", &list.laser_characteristics());

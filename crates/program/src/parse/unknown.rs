@@ -2,8 +2,8 @@
 
 use bahn_parameters::MessageId::{BlockNotKnown, UnexpectedText};
 
-use super::cursor::Cursor;
 use super::complete_operation;
+use super::cursor::Cursor;
 use crate::{InvalidBlock, Operation};
 
 /// Unknown words that are left out of one block; a block with more is passed over as a whole.
