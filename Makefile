@@ -33,6 +33,7 @@ test: tools
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked --quiet
 	PROPTEST_RNG_SEED=$(SEED) $(CARGO) test --workspace --locked --quiet
+	$(CARGO) package --workspace --locked --no-verify --allow-dirty --quiet
 	@mkdir -p $(OUT)
 	BAHN_TRAIL=$(CURDIR)/$(OUT)/debug.trail $(CARGO) test -p bahn-control --locked --quiet --test reproducible twice
 	BAHN_TRAIL=$(CURDIR)/$(OUT)/release.trail $(CARGO) test -p bahn-control --locked --quiet --release --test reproducible twice

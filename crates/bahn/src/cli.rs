@@ -6,13 +6,14 @@ use std::path::PathBuf;
 use bahn_parameters::ControlModel;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
+use crate::Outcome;
 use crate::conformance::ConformanceOptions;
 use crate::machine_folder::MachineFolderOptions;
+use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
 use crate::plc::PlcOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
-use crate::{Outcome, UsageError, console};
 
 /// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
 /// shows every tool movement, the machining time and the finished part.
@@ -58,8 +59,11 @@ pub(crate) enum Command {
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainOptions),
     /// Print the completions of a shell.
-    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    #[command(after_help = crate::manual::COMPLETIONS_EXAMPLES)]
     Completions(CompletionsOptions),
+    /// Write the manual pages.
+    #[command(after_help = crate::manual::MAN_EXAMPLES)]
+    Man(ManOptions),
 }
 
 const TEST_EXAMPLES: &str = "\
@@ -111,12 +115,6 @@ Examples:
   bahn explain TOOL RADIUS TOO LARGE
   bahn explain CyclIncomplete
   bahn explain               list all messages";
-
-const COMPLETIONS_EXAMPLES: &str = "\
-Examples:
-  bahn completions bash > ~/.local/share/bash-completion/completions/bahn
-  bahn completions zsh > ~/.zfunc/_bahn
-  bahn completions fish > ~/.config/fish/completions/bahn.fish";
 
 /// Options of the test run.
 #[derive(Args, Debug)]
@@ -293,14 +291,6 @@ pub(crate) struct ExplainOptions {
     pub model: ControlModel,
 }
 
-/// Options of `bahn completions`.
-#[derive(Args, Debug)]
-pub(crate) struct CompletionsOptions {
-    /// The shell.
-    #[arg(value_enum)]
-    pub shell: clap_complete::Shell,
-}
-
 /// How a report is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
@@ -347,12 +337,9 @@ pub(crate) fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Com
     }
 }
 
-/// `bahn completions`.
-pub(crate) fn completions(options: &CompletionsOptions) -> Result<Outcome, UsageError> {
-    let mut script = Vec::new();
-    clap_complete::generate(options.shell, &mut Cli::command(), "bahn", &mut script);
-    console::print_bytes(&script)?;
-    Ok(Outcome::Fine)
+/// The command with all subcommands, for what is made of it.
+pub(crate) fn whole_command() -> clap::Command {
+    Cli::command()
 }
 
 pub(crate) fn model_parser() -> impl clap::builder::TypedValueParser<Value = ControlModel> {

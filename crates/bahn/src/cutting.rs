@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use bahn_path::{Axis, Blank, BlockRef, Curve, Function, PathElement, Position, ToolShape, Touch};
-use bahn_workpiece::{Image, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece};
+use bahn_picture::Image;
+use bahn_workpiece::{Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece};
 
 use crate::cli::{OutputOptions, View};
 use crate::files::NewFile;

@@ -10,8 +10,8 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
 //!   makes folders of machines;
-//! - `check`, `format`, `explain`, `conformance`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
-//!   `bahn mp`;
+//! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
+//!   `bahn plc`, `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
@@ -28,6 +28,7 @@ mod files;
 mod format;
 mod interrupt;
 mod machine_folder;
+mod manual;
 mod mp;
 mod path_csv;
 mod path_svg;
@@ -67,7 +68,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Mp(options) => mp::command(options),
         cli::Command::Conformance(options) => conformance::command(options),
         cli::Command::Explain(options) => explain::command(options),
-        cli::Command::Completions(options) => cli::completions(options),
+        cli::Command::Completions(options) => manual::completions(options),
+        cli::Command::Man(options) => manual::man(options),
     };
     match result {
         Ok(outcome) => outcome.into(),

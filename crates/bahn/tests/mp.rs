@@ -312,3 +312,21 @@ MP1390  Feed precontrol in MDI, single block, full sequence
     folder.write("bad.mp", "MP1390 : x\n");
     assert_eq!(folder.bahn("mp diff mill.mp bad.mp").code(), 2);
 }
+
+/// A list of a TNC 155 without any comment: in the folder of its machine it is checked as such.
+#[test]
+fn a_list_in_the_folder_of_a_machine_is_for_its_control() {
+    let folder = Folder::new();
+    assert_eq!(folder.bahn("machine new m --model tnc155").code(), 0);
+    let list = folder.read("m/parameters.mp");
+    let bare: String = list
+        .lines()
+        .filter(|line| !line.trim_start().starts_with([';', '*']))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    folder.write("m/parameters.mp", &bare).write("alone.mp", &bare);
+    let inside = folder.bahn("mp check m/parameters.mp --format json");
+    assert_eq!(inside.json()[0]["model"], "tnc155", "{}", inside.err());
+    let alone = folder.bahn("mp check alone.mp --format json");
+    assert_eq!(alone.json()[0]["model"], "tnc415b");
+}

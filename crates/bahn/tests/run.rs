@@ -191,7 +191,7 @@ fn recordings_have_the_signals_that_were_asked_for() {
         "--record r.csv --every 10 --signals X.nominal,X.actual,C.speed,M2045,W260",
     );
     let text = folder.read("r.csv");
-    assert!(text.starts_with("time [s],X.nominal [mm],X.actual [mm],C.speed [deg/min],M2045,W260\n"));
+    assert!(text.starts_with("time [s],X.nominal [mm],X.actual [mm],C.speed [deg/min],M2045,W260,event\n"));
     let rows = rows(&text);
     let times: Vec<f64> = rows.iter().map(|row| row[0].parse().unwrap()).collect();
     // Every 10 ms, at the first contour cycle of 3 ms at or after it.

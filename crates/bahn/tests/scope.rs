@@ -67,7 +67,9 @@ fn drawings_are_svg_or_png() {
     ] {
         assert!(svg.contains(part), "{part}");
     }
-    assert_eq!(svg.matches("<polyline").count(), 3, "a trace for each signal");
+    let analogue = svg.matches("stroke-width=\"1.4\"").count();
+    let logic = svg.matches("stroke-width=\"1.6\"").count();
+    assert_eq!((analogue, logic), (2, 1), "a trace for each signal");
     let run = folder.bahn("scope r.csv -o r.png --size 600x400 --title Ramp");
     assert_eq!(run.code(), 0, "{}", run.err());
     let png = std::fs::read(folder.path("r.png")).unwrap();
@@ -97,4 +99,75 @@ fn wrong_recordings_are_refused_with_their_line() {
     assert!(early.err().contains("from 0 to 1.999 s"), "{}", early.err());
     assert_eq!(folder.bahn("scope r.csv -o r.gif").code(), 2);
     assert_eq!(folder.bahn("scope r.csv --cursor 1,2,3").code(), 2);
+    let circle = folder.bahn("scope r.csv --circle X,Y");
+    assert!(
+        circle.err().contains("needs X.actual, Y.actual"),
+        "{}",
+        circle.err()
+    );
+    assert_eq!(folder.bahn("scope r.csv --xy X,Y -o r.png").code(), 2);
+    assert_eq!(folder.bahn("scope r.csv --xy X,X -o r.png").code(), 2);
+    let step = folder.bahn("scope r.csv --step X");
+    assert!(
+        step.err().contains("needs X.nominal and X.actual"),
+        "{}",
+        step.err()
+    );
+}
+
+/// Power-up for 10 s, then the program with a message in its block 3.
+#[test]
+fn the_picture_begins_at_the_start_of_the_program() {
+    let folder = Folder::new();
+    let mut text = "time [s],X.lag [mm],event\n".to_owned();
+    for second in 0..20 {
+        let event = match second {
+            10 => "start; block 1",
+            14 => "block 3; message LIMIT SWITCH X+",
+            _ => "",
+        };
+        text += &format!("{second},{}.5,{event}\n", second % 3);
+    }
+    folder.write("r.csv", text);
+    let run = folder.bahn("scope r.csv -o r.svg");
+    assert!(run.out().contains("10.000 to 19.000 s"), "{}", run.out());
+    let svg = folder.read("r.svg");
+    for part in [">block<", ">1<", ">3<", ">LIMIT SWITCH X+<"] {
+        assert!(svg.contains(part), "{part}");
+    }
+    assert!(
+        folder
+            .bahn("scope r.csv --all")
+            .out()
+            .contains("0.000 to 19.000 s")
+    );
+    assert!(
+        folder
+            .bahn("scope r.csv --from 3")
+            .out()
+            .contains("3.000 to 19.000 s")
+    );
+}
+
+/// The same ramp a second later after its start, with 0.2 mm more lag.
+#[test]
+fn two_recordings_are_compared_from_their_starts() {
+    let folder = Folder::new();
+    let record = |start: i32, lag: f64| {
+        let rows = (0..6).map(|second| {
+            let event = if second == start { "start" } else { "" };
+            let lag = if second > start { lag } else { 0.0 };
+            format!("{second},{lag},{event}\n")
+        });
+        "time [s],X.lag [mm],event\n".to_owned() + &rows.collect::<String>()
+    };
+    folder.write("before.csv", record(1, 2.0));
+    folder.write("after.csv", record(2, 2.2));
+    let run = folder.bahn("scope after.csv --against before.csv -o c.svg --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let json = run.json();
+    assert_eq!(json["against"][0]["name"], "X.lag");
+    assert!((number(&json, "/against/0/difference") - 0.2).abs() < 1e-9);
+    assert_eq!(number(&json, "/against/0/at_s"), 3.0);
+    assert!(folder.read("c.svg").contains("compared with"));
 }

@@ -14,7 +14,10 @@ fn main() {
     divan::main();
 }
 
-const MILL: &str = include_str!("../../../machines/mill/plant.toml");
+/// The plant of the shipped mill.
+fn mill() -> &'static str {
+    bahn_machines::MILL.file("plant.toml").unwrap()
+}
 
 /// The mill with everything switched on; without the rotary table it has three axes.
 fn running(text: &str) -> Machine {
@@ -46,26 +49,26 @@ fn advance(bencher: Bencher, text: &str) {
 
 #[divan::bench]
 fn advance_600_us_four_axes(bencher: Bencher) {
-    advance(bencher, MILL);
+    advance(bencher, mill());
 }
 
 #[divan::bench]
 fn advance_600_us_three_axes(bencher: Bencher) {
-    let table = MILL.find("[axis.C]").unwrap();
-    let behind = table + MILL[table..].find("[spindle]").unwrap();
-    let text = format!("{}{}", &MILL[..table], &MILL[behind..]).replace("clamps = \"C\"", "");
+    let table = mill().find("[axis.C]").unwrap();
+    let behind = table + mill()[table..].find("[spindle]").unwrap();
+    let text = format!("{}{}", &mill()[..table], &mill()[behind..]).replace("clamps = \"C\"", "");
     advance(bencher, &text);
 }
 
 #[divan::bench]
 fn read_inputs(bencher: Bencher) {
-    let mut machine = running(MILL);
+    let mut machine = running(mill());
     let mut inputs = [false; INPUTS];
     bencher.bench_local(|| machine.inputs(&mut inputs));
 }
 
 #[divan::bench]
 fn read_encoder(bencher: Bencher) {
-    let mut machine = running(MILL);
+    let mut machine = running(mill());
     bencher.bench_local(|| machine.encoder(2));
 }

@@ -6,7 +6,7 @@ use bahn_servo::{INPUTS, OUTPUTS, Plant};
 
 #[test]
 fn a_second_of_the_mill_allocates_nothing() {
-    let mut machine = Machine::from_toml(include_str!("../../../machines/mill/plant.toml")).unwrap();
+    let mut machine = Machine::from_toml(bahn_machines::MILL.file("plant.toml").unwrap()).unwrap();
     machine.set_control_ready(true);
     let mut inputs = [false; INPUTS];
     let mut outputs = [false; OUTPUTS];

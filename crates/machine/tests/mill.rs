@@ -19,15 +19,20 @@ struct Mill {
     cycle: u32,
 }
 
+/// A file of the shipped mill.
+fn file(path: &str) -> &'static str {
+    bahn_machines::MILL.file(path).unwrap()
+}
+
 impl Mill {
     fn new() -> Mill {
-        let files = MemoryFiles::from([("MAIN.PLC", include_str!("../../../machines/mill/plc/MAIN.PLC"))]);
+        let files = MemoryFiles::from([("MAIN.PLC", file("plc/MAIN.PLC"))]);
         let compilation = Compilation::compile(&files, "MAIN.PLC", Options::default());
         assert_eq!(compilation.errors, []);
         let mut parameters = ParameterList::reference(ControlModel::Tnc415b);
-        let faults = parameters.read(include_bytes!("../../../machines/mill/parameters.mp"));
+        let faults = parameters.read(file("parameters.mp").as_bytes());
         assert!(faults.is_empty(), "{faults:?}");
-        let plant = include_str!("../../../machines/mill/plant.toml");
+        let plant = file("plant.toml");
         let mut mill = Mill {
             machine: Machine::from_toml(plant).unwrap(),
             plc: bahn_plc::Machine::new(compilation.program.unwrap().into(), Start::PowerOn),

@@ -43,6 +43,18 @@ impl ControlModel {
             ControlModel::Tnc425 => "tnc425",
         }
     }
+
+    /// The name for people: `TNC 415 B`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            ControlModel::Tnc151 => "TNC 151",
+            ControlModel::Tnc155 => "TNC 155",
+            ControlModel::Tnc360 => "TNC 360",
+            ControlModel::Tnc407 => "TNC 407",
+            ControlModel::Tnc415b => "TNC 415 B",
+            ControlModel::Tnc425 => "TNC 425",
+        }
+    }
 }
 
 impl fmt::Display for ControlModel {

@@ -12,7 +12,8 @@ use std::path::PathBuf;
 use bahn_path::{
     Arc, Axis, Blank, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Plane, Position, ToolShape,
 };
-use bahn_workpiece::{Image, Page, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece};
+use bahn_picture::Image;
+use bahn_workpiece::{Page, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "out".to_owned()));

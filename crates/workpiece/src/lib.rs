@@ -25,7 +25,6 @@
 //! Lengths are millimetres in workpiece coordinates, volumes mm³, angles degrees.
 
 mod batch;
-mod canvas;
 mod chords;
 mod event;
 mod grid;
@@ -33,13 +32,11 @@ mod part;
 mod setup;
 mod stl;
 mod sweep;
-mod text;
 mod tool;
 mod touch;
 mod view;
 mod workpiece;
 
-pub use canvas::{Image, ImageError};
 pub use event::{Event, EventKind};
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;

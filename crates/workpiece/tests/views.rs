@@ -7,7 +7,8 @@ mod common;
 use std::collections::HashSet;
 
 use bahn_path::{Axis, Blank, Plane};
-use bahn_workpiece::{Image, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece};
+use bahn_picture::Image;
+use bahn_workpiece::{Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece};
 use common::*;
 
 fn page() -> Page {

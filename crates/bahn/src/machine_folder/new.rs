@@ -10,25 +10,6 @@ use super::options::NewOptions;
 use crate::files::{self, NewFile};
 use crate::{Outcome, UsageError, diagnostics};
 
-/// The files of a shipped machine.
-macro_rules! machine {
-    ($folder:literal: $($file:literal),* $(,)?) => {
-        &[$(($file, include_str!(concat!("../../../../machines/", $folder, "/", $file)))),*]
-    };
-}
-
-type Files = &'static [(&'static str, &'static str)];
-
-const MILL: Files = machine!("mill":
-    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
-    "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "programs/BRACKET.H",
-    "programs/INDEX.H", "programs/SADDLE.H",
-);
-const SMALL_MILL: Files = machine!("mill-tnc360":
-    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
-    "plc/run.txt", "programs/COVER.H",
-);
-
 /// Writes the folder.
 pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
     let folder = &options.folder;
@@ -45,23 +26,35 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         .into_owned();
     let name = options.name.clone().unwrap_or(own_name);
     let model = options.model;
-    let files = match model {
-        ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425 => MILL,
-        ControlModel::Tnc151 | ControlModel::Tnc155 | ControlModel::Tnc360 => SMALL_MILL,
+    let (shipped, shipped_model) = match model {
+        ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425 => {
+            (bahn_machines::MILL, ControlModel::Tnc415b)
+        }
+        ControlModel::Tnc151 | ControlModel::Tnc155 | ControlModel::Tnc360 => {
+            (bahn_machines::MILL_TNC360, ControlModel::Tnc360)
+        }
     };
+    let files = shipped
+        .files
+        .iter()
+        .chain([&("FOLDER.md", bahn_machines::FOLDER)]);
     for (file, text) in files {
+        let text = text
+            .replace(shipped_model.name(), model.name())
+            .replace("../FOLDER.md", "FOLDER.md");
         let content = match *file {
-            "machine.toml" => description(text, &name, model),
-            "parameters.mp" => parameters(text, model),
-            "plant.toml" => plant(text, model),
-            _ => (*text).to_owned(),
+            "machine.toml" => description(&text, &name, model),
+            "parameters.mp" => parameters(&text, model),
+            "plant.toml" => plant(&text.replace(shipped_model.id(), model.id()), model),
+            "README.md" => text.replace(shipped_model.id(), model.id()),
+            _ => text,
         };
         write(&folder.join(file), &content)?;
     }
     diagnostics::print_line(&format!(
         "{}: {name}, {model}, {} files; README.md explains them",
         folder.display(),
-        files.len()
+        shipped.files.len() + 1
     ));
     Ok(Outcome::Fine)
 }

@@ -46,8 +46,9 @@ start with ; or * are comments. Faults have the numbers of the control's editor:
   0 No MP number found      1 Invalid MP number    2 No separator \";\" found
   3 Entry value incorrect   4 MP doubly defined    5 MP not defined   6 MP can not be stored
 The control refuses a list that has faults. A list without any entry is that which the control makes by
-itself. The control model is that of --model, otherwise the one named in the comments at the beginning of
-the list (`TNC 415 B`), otherwise tnc415b.
+itself. The control model is that of --model, otherwise that of the machine in whose folder the list lies
+(machine.toml), otherwise the one named in the comments at the beginning of the list (`TNC 415 B`),
+otherwise tnc415b.
 
 JSON: for each file file, model, entries, without_effect, acting_partly, errors and warnings (number,
 text, parameter, line, column, length, detail). Exit codes: 0 no error, 1 errors, 2 wrong use.";

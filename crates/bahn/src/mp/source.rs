@@ -2,17 +2,31 @@
 
 use std::path::Path;
 
+use bahn_machine::MachineFolder;
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 
 use super::count;
 use super::options::ValueOptions;
 use crate::{UsageError, files};
 
-/// Reads a list for the given control, otherwise for the one that it names.
+/// Reads a list for the given control, otherwise for that of the machine in whose folder it lies, otherwise for
+/// the one that it names.
 pub(super) fn read(path: &Path, model: Option<ControlModel>) -> Result<ListText, UsageError> {
     let bytes = files::read_table(path)?;
-    let model = model.or_else(|| named_model(&bytes)).unwrap_or_default();
+    let model = model
+        .or_else(|| model_of_folder(path))
+        .or_else(|| named_model(&bytes))
+        .unwrap_or_default();
     Ok(ListText::from_bytes(model, &bytes))
+}
+
+/// The control of the machine whose list this is: `machine.toml` beside it names both.
+fn model_of_folder(list: &Path) -> Option<ControlModel> {
+    let text = std::fs::read_to_string(list.with_file_name(MachineFolder::FILE)).ok()?;
+    let folder = MachineFolder::from_toml(&text).ok()?;
+    (list.file_name()? == folder.parameters.as_str())
+        .then(|| folder.model.parse().ok())
+        .flatten()
 }
 
 /// The control that the comments at the beginning of a list name, as `TNC 415 B` or `tnc415b`.

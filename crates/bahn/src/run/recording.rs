@@ -1,10 +1,10 @@
-//! Signals over time, as a table.
+//! Signals over time, as a table whose last column says what happened.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use bahn_control::{AxisSignal, Control, Signal};
+use bahn_control::{AxisSignal, Control, RunState, Signal};
 
 use crate::UsageError;
 use crate::files::{self, NewFile};
@@ -17,6 +17,12 @@ pub(super) struct Recording {
     every_us: u64,
     due_us: u64,
     row: String,
+    /// What happened since the last row.
+    events: String,
+    /// The program was started.
+    started: bool,
+    /// The block of the main program that is executed.
+    block: Option<u32>,
 }
 
 impl Recording {
@@ -29,6 +35,9 @@ impl Recording {
             every_us,
             due_us: 0,
             row: String::with_capacity(256),
+            events: String::with_capacity(64),
+            started: false,
+            block: None,
         };
         recording.row.push_str("time [s]");
         for signal in &recording.signals {
@@ -38,12 +47,46 @@ impl Recording {
             }
             .unwrap_or_default();
         }
+        recording.row.push_str(",event");
         recording.write_row()?;
         Ok(recording)
     }
 
+    /// A message came up.
+    pub fn message(&mut self, text: &str) {
+        self.event(&format!("message {text}"));
+    }
+
+    fn event(&mut self, event: &str) {
+        if !self.events.is_empty() {
+            self.events.push_str("; ");
+        }
+        self.events
+            .extend(event.chars().map(|c| if c.is_control() { ' ' } else { c }));
+    }
+
+    /// Notes when the program `started` and which of its blocks is executed.
+    fn watch(&mut self, control: &Control, started: bool) {
+        if started && !self.started {
+            self.started = true;
+            self.event("start");
+        }
+        let element = control
+            .element()
+            .filter(|_| control.run_state() != RunState::Idle);
+        let block = element
+            .map(|element| element.block)
+            .filter(|block| block.program == 0);
+        if let Some(block) = block.map(|block| block.block)
+            && self.block.replace(block) != Some(block)
+        {
+            self.event(&format!("block {block}"));
+        }
+    }
+
     /// Takes a row when it is time.
-    pub fn cycle(&mut self, control: &Control) -> Result<(), UsageError> {
+    pub fn cycle(&mut self, control: &Control, started: bool) -> Result<(), UsageError> {
+        self.watch(control, started);
         let now = control.time_us();
         if now < self.due_us {
             return Ok(());
@@ -56,6 +99,12 @@ impl Recording {
         for signal in &self.signals {
             let _ = write!(self.row, ",{}", value(signal, control.observe(signal)));
         }
+        if self.events.contains([',', '"']) {
+            let _ = write!(self.row, ",\"{}\"", self.events.replace('"', "\"\""));
+        } else {
+            let _ = write!(self.row, ",{}", self.events);
+        }
+        self.events.clear();
         self.write_row()
     }
 

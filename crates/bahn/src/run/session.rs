@@ -326,7 +326,7 @@ impl Session {
             self.moved_us = self.control.time_us();
         }
         match &mut self.writers.recording {
-            Some(recording) => recording.cycle(&self.control),
+            Some(recording) => recording.cycle(&self.control, self.start_us.is_some()),
             None => Ok(()),
         }
     }
@@ -342,6 +342,9 @@ impl Session {
         let refused = self.operator.started && !matches!(shown.message, Message::Plc(_));
         if shown.flashing || idle && (self.start_us.is_some() || refused) {
             self.broken_by = Some(Box::new(shown.message.clone()));
+        }
+        if let Some(recording) = &mut self.writers.recording {
+            recording.message(&self.control.message_text(&shown.message));
         }
         if self.messages.len() < MESSAGES_MAX {
             let program = self.program_name(block);

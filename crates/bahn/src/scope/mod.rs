@@ -1,11 +1,16 @@
 //! `bahn scope`: draws recorded signals as the control's oscilloscope does.
 //!
 //! - `options`: options and help text; `table`: the recording;
-//! - `drawing`: the picture as SVG, `png` as PNG; `summary`: what the signals did, in numbers.
+//! - `lanes`: signals over time, `plane`: the way of two axes and the circle test, both on a `sheet` that is
+//!   written as SVG or PNG;
+//! - `summary`: what the signals did, in numbers; `circle` and `step` what a circle and a start tell of the axes.
 
-mod drawing;
+mod circle;
+mod lanes;
 mod options;
-mod png;
+mod plane;
+mod sheet;
+mod step;
 mod summary;
 mod table;
 
@@ -16,8 +21,9 @@ use std::io::Write;
 use crate::cli::Format;
 use crate::files::{self, NewFile};
 use crate::{Outcome, UsageError, console, diagnostics};
-use drawing::Drawing;
+use lanes::Drawing;
 use options::Picture;
+use sheet::Sheet;
 use summary::Summary;
 use table::Table;
 
@@ -26,13 +32,24 @@ pub(crate) fn command(options: &ScopeOptions) -> Result<Outcome, UsageError> {
     if options.cursor.len() > 2 {
         return Err(UsageError::new("--cursor: there are two cursors at most"));
     }
-    let table = Table::load(&options.file)?
-        .choose(&options.signals)?
-        .between(options.from, options.to)?;
+    let recording = Recordings::load(options)?;
+    let in_file = |error: String| UsageError::new(format!("{}: {error}", options.file.display()));
+    let circle = options
+        .circle
+        .map(|axes| circle::test(&recording.table, names(&axes).each_ref().map(String::as_str)))
+        .transpose()
+        .map_err(in_file)?;
+    let step = options
+        .step
+        .map(|axis| step::response(&recording.table, &axis.to_ascii_uppercase().to_string()))
+        .transpose()
+        .map_err(in_file)?;
+    let against = recording.other.as_ref();
+    let against = against.map(|other| summary::differences(&recording.table, other));
+    let summary = Summary::new(&recording.chosen, &options.cursor).with(circle, step, against);
     if let Some(picture) = &options.output {
-        draw(&table, picture, options)?;
+        write(&recording.sheet(&summary, options)?, picture)?;
     }
-    let summary = Summary::new(&table, &options.cursor);
     match options.format {
         Format::Text => console::print(&summary.text())?,
         Format::Json => {
@@ -44,34 +61,90 @@ pub(crate) fn command(options: &ScopeOptions) -> Result<Outcome, UsageError> {
     Ok(Outcome::Fine)
 }
 
-fn draw(table: &Table, picture: &Picture, options: &ScopeOptions) -> Result<(), UsageError> {
-    let name = options.file.file_name().unwrap_or_default().to_string_lossy();
-    let drawing = Drawing {
-        table,
-        title: options.title.as_deref().unwrap_or(&name),
-        cursors: &options.cursor,
-        size: options.size,
-    };
-    let hidden = table.traces.len() - drawing.shown();
-    if hidden > 0 {
-        diagnostics::print_line(&format!(
-            "{hidden} signals have no place in the drawing ({} analogue ones and {} logic ones have): choose with \
-             --signals",
-            drawing::ANALOGUE,
-            drawing::LOGIC
-        ));
+/// The recording, what is asked of it, and the one that it is compared with.
+struct Recordings {
+    /// All signals in the time shown.
+    table: Table,
+    /// The signals that were asked for.
+    chosen: Table,
+    /// Names of the signals that share lanes.
+    shared: Vec<Vec<String>>,
+    other: Option<Table>,
+}
+
+impl Recordings {
+    fn load(options: &ScopeOptions) -> Result<Recordings, UsageError> {
+        let whole = Table::load(&options.file)?;
+        let start = whole.start();
+        let other = match &options.against {
+            None => None,
+            Some(path) => {
+                let mut other = Table::load(path)?;
+                let shift = start.zip(other.start()).map_or(0.0, |(own, its)| own - its);
+                other.shift(shift);
+                Some(other)
+            }
+        };
+        let from = options.from.or(start.filter(|_| !options.all));
+        let table = whole.between(from, options.to)?;
+        let lanes = options.signals.iter().map(|lane| lane.split('+').map(str::trim));
+        let chosen = table.clone().choose(lanes.clone().flatten())?;
+        Ok(Recordings {
+            shared: lanes.map(|lane| lane.map(str::to_owned).collect()).collect(),
+            table,
+            chosen,
+            other,
+        })
     }
-    let svg = drawing.svg();
-    let (path, bytes) = match picture {
-        Picture::Svg(path) => (path, svg.into_bytes()),
-        Picture::Png(path) => {
-            let png = png::png(&svg);
-            (
-                path,
-                png.map_err(|error| UsageError::new(format!("{}: {error}", path.display())))?,
-            )
+
+    fn sheet(&self, summary: &Summary, options: &ScopeOptions) -> Result<Sheet, UsageError> {
+        let name = options.file.file_name().unwrap_or_default().to_string_lossy();
+        let title = options.title.as_deref().unwrap_or(&name);
+        if let Some(test) = summary.circle() {
+            return Ok(plane::circle(test, options.division, title, options.size));
         }
-    };
+        if let Some(axes) = options.xy {
+            let [x, y] = names(&axes);
+            let sheet = plane::way(&self.table, self.other.as_ref(), [&x, &y], title, options.size);
+            return sheet.ok_or_else(|| {
+                UsageError::new(format!("--xy: the recording has no {x}.actual and {y}.actual"))
+            });
+        }
+        let drawing = Drawing {
+            table: &self.chosen,
+            other: self.other.as_ref(),
+            shared: &self.shared,
+            title,
+            cursors: &options.cursor,
+            size: options.size,
+        };
+        let hidden = self.chosen.traces.len() - drawing.shown();
+        if hidden > 0 {
+            diagnostics::print_line(&format!(
+                "{hidden} signals have no place in the drawing ({} lanes and {} logic signals have): choose with \
+                 --signals",
+                lanes::ANALOGUE,
+                lanes::LOGIC
+            ));
+        }
+        Ok(drawing.sheet())
+    }
+}
+
+fn names(axes: &[char; 2]) -> [String; 2] {
+    axes.map(|letter| letter.to_string())
+}
+
+fn write(sheet: &Sheet, picture: &Picture) -> Result<(), UsageError> {
+    let (Picture::Svg(path) | Picture::Png(path)) = picture;
+    let mut bytes = Vec::new();
+    match picture {
+        Picture::Svg(_) => bytes = sheet.svg().into_bytes(),
+        Picture::Png(_) => sheet
+            .image()
+            .write_png(&mut bytes)
+            .map_err(|error| UsageError::new(format!("{}: {error}", path.display())))?,
+    }
     let mut file = NewFile::create(path)?;
     file.write_all(&bytes)
         .map_err(|error| files::cannot("write", path, &error))?;

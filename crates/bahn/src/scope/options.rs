@@ -10,16 +10,28 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   bahn run part.h --machine mill --record run.csv --signals X.actual,X.lag,path.speed,M2045,M2482
   bahn scope run.csv -o run.svg
-      All signals over the whole time.
-  bahn scope run.csv --signals X.lag,M2045 --from 12 --to 14 -o lag.png
-      Two signals, two seconds.
+      All signals from the start of the program to its end, with its blocks and messages.
+  bahn scope run.csv --signals X.nominal+X.actual,M2045 --from 12 --to 14 -o lag.png
+      Two seconds; the nominal and the actual position in one lane.
   bahn scope run.csv --cursor 12.5,12.8 --format json
       Least, greatest and mean values, edges, and the values at two times.
+  bahn scope run.csv --xy X,Y -o path.png
+      The way of two axes (X.actual, Y.actual; with X.nominal, Y.nominal what it should be).
+  bahn scope run.csv --circle X,Y --division 0.002 -o round.png
+      The circle test (X and Y, .nominal and .actual): roundness, deviations along the radius, one ring 2 µm.
+  bahn scope run.csv --step X
+      kv, delay, rise time and overshoot of the first start of X (X.nominal, X.actual).
+  bahn scope after.csv --against before.csv -o change.png
+      Two recordings over each other, their starts of the program at the same place, with the differences.
 
-Six analogue signals at most have a lane each with its own scale, below them 16 markers, inputs and outputs.
+Six lanes at most have a scale each, below them 16 markers, inputs and outputs. Time counts from power-on; what
+is shown begins at the start of the program unless --from or --all say otherwise.
 
 JSON: from_s, to_s, samples; signals (name, unit, kind `analogue` or `logic`, min, max, mean, first, last; for
-logic also rising, falling and on_s); cursors (time_s, values by name); with two cursors difference_s.";
+logic also rising, falling and on_s); cursors (time_s, values by name); with two cursors difference_s; circle
+(signals, centre_mm, radius_mm, outside_mm, outside_deg, inside_mm, inside_deg, mean_mm, roundness_mm, samples);
+step (axis, start_s, speed_mm_min, kv, delay_ms, reaction_ms, rise_ms, overshoot_percent); against (name,
+difference, at_s: the greatest difference of each signal).";
 
 /// Options of `bahn scope`.
 #[derive(Args, Debug)]
@@ -27,7 +39,8 @@ pub(crate) struct ScopeOptions {
     /// The recording of `bahn run --record`.
     #[arg(value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// The signals, by their names in the first line of the recording; all without it.
+    /// The signals, by their names in the first line of the recording, `+` between those that share a lane; all
+    /// without it.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',')]
     pub signals: Vec<String>,
     /// Begin of the time shown, s.
@@ -36,9 +49,27 @@ pub(crate) struct ScopeOptions {
     /// End of the time shown, s.
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub to: Option<f64>,
+    /// The whole recording, with what came before the start of the program.
+    #[arg(long, conflicts_with = "from")]
+    pub all: bool,
     /// One or two times at which values are read, s.
     #[arg(long, value_name = "S,S", value_delimiter = ',', value_parser = seconds)]
     pub cursor: Vec<f64>,
+    /// Draw the way of two axes instead of signals over time.
+    #[arg(long, value_name = "AXIS,AXIS", value_parser = two_axes, requires = "output", conflicts_with = "circle")]
+    pub xy: Option<[char; 2]>,
+    /// Test the roundness of a circle in the plane of two axes; drawn as a ballbar shows it.
+    #[arg(long, value_name = "AXIS,AXIS", value_parser = two_axes)]
+    pub circle: Option<[char; 2]>,
+    /// Deviation of one ring of the circle test, mm; chosen to fit without it.
+    #[arg(long, value_name = "MM", requires = "circle", value_parser = positive)]
+    pub division: Option<f64>,
+    /// Measure the step response of an axis.
+    #[arg(long, value_name = "AXIS")]
+    pub step: Option<char>,
+    /// Another recording to compare with.
+    #[arg(long, value_name = "OTHER.csv", value_hint = ValueHint::FilePath)]
+    pub against: Option<PathBuf>,
     /// The drawing: .svg or .png.
     #[arg(long, short, value_name = "FILE.svg|FILE.png", value_parser = picture, value_hint = ValueHint::FilePath)]
     pub output: Option<Picture>,
@@ -51,6 +82,24 @@ pub(crate) struct ScopeOptions {
     /// How the summary is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
+}
+
+/// `X,Y`.
+fn two_axes(text: &str) -> Result<[char; 2], String> {
+    let letters: Vec<char> = text.split(',').flat_map(|part| part.trim().chars()).collect();
+    match letters.as_slice() {
+        [x, y] if x != y && x.is_ascii_alphabetic() && y.is_ascii_alphabetic() => {
+            Ok([*x, *y].map(|letter| letter.to_ascii_uppercase()))
+        }
+        _ => Err("two axes like X,Y".to_owned()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    value
+        .filter(|value| value.is_finite() && *value > 0.0)
+        .ok_or_else(|| "a length greater than 0, mm".to_owned())
 }
 
 /// A drawing by the end of its name.

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::circle::CircleTest;
+use super::step::StepResponse;
 use super::table::{Kind, Table, Trace};
 use crate::report::tidy;
 
@@ -17,6 +19,21 @@ pub(super) struct Summary {
     cursors: Vec<Cursor>,
     #[serde(skip_serializing_if = "Option::is_none")]
     difference_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    circle: Option<CircleTest>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step: Option<StepResponse>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    against: Option<Vec<Difference>>,
+}
+
+/// The greatest difference of a signal from another recording, and when.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Difference {
+    name: String,
+    unit: String,
+    difference: f64,
+    at_s: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -77,7 +94,30 @@ impl Summary {
                 [first, second] => Some(tidy(second - first)),
                 _ => None,
             },
+            circle: None,
+            step: None,
+            against: None,
         }
+    }
+
+    /// Adds what was measured besides.
+    pub fn with(
+        self,
+        circle: Option<CircleTest>,
+        step: Option<StepResponse>,
+        against: Option<Vec<Difference>>,
+    ) -> Summary {
+        Summary {
+            circle,
+            step,
+            against,
+            ..self
+        }
+    }
+
+    /// The circle test.
+    pub fn circle(&self) -> Option<&CircleTest> {
+        self.circle.as_ref()
     }
 
     /// For people.
@@ -118,8 +158,85 @@ impl Summary {
         if !self.cursors.is_empty() {
             text.push('\n');
         }
+        text + &self.measured()
+    }
+
+    /// Circle, step response and comparison in words.
+    fn measured(&self) -> String {
+        let mut text = String::new();
+        if let Some(circle) = &self.circle {
+            let [x, y] = circle.centre_mm.map(short);
+            text += &format!(
+                "\ncircle: radius {} mm around {x} / {y}, roundness {} mm\n  outside {} mm at {:.1}°, inside {} mm at \
+                 {:.1}°, mean {} mm ({} samples)\n",
+                short(circle.radius_mm),
+                short(circle.roundness_mm),
+                short(circle.outside_mm),
+                circle.outside_deg,
+                short(circle.inside_mm),
+                circle.inside_deg,
+                short(circle.mean_mm),
+                circle.samples
+            );
+        }
+        if let Some(step) = &self.step {
+            let kv = step
+                .kv
+                .map_or("no lag".to_owned(), |kv| format!("kv {kv:.3} (m/min)/mm"));
+            text += &format!(
+                "\nstep response of {} at {:.3} s to {:.0} mm/min: {kv}, delay {:.1} ms\n  reaction {:.1} ms, rise from 10 \
+                 to 90 % {:.1} ms, overshoot {:.1} %\n",
+                step.axis,
+                step.start_s,
+                step.speed_mm_min,
+                step.delay_ms,
+                step.reaction_ms,
+                step.rise_ms,
+                step.overshoot_percent
+            );
+        }
+        if let Some(differences) = &self.against {
+            text += "\ngreatest differences from the recording compared with\n";
+            for one in differences {
+                let name = format!("{} {}", one.name, one.unit);
+                text += &format!("{name:<16}{:>14}  at {:.3} s\n", short(one.difference), one.at_s);
+            }
+        }
         text
     }
+}
+
+/// The greatest difference of each signal that both recordings have, each sample against the one that holds in
+/// the other at its time.
+pub(super) fn differences(table: &Table, other: &Table) -> Vec<Difference> {
+    let (from, to) = other.ends();
+    let pairs = table
+        .traces
+        .iter()
+        .filter_map(|trace| Some((trace, other.trace(&trace.name)?)));
+    pairs
+        .map(|(trace, compared)| {
+            let samples = table.times.iter().zip(&trace.values);
+            let within = samples.filter(|(time, _)| (from..=to).contains(*time));
+            let difference = |(time, value): (&f64, &f64)| {
+                let there = compared.values.get(other.at(*time)).copied().unwrap_or(*value);
+                (value - there, *time)
+            };
+            let greatest = within.map(difference).fold((0.0_f64, from), |greatest, one| {
+                if one.0.abs() > greatest.0.abs() {
+                    one
+                } else {
+                    greatest
+                }
+            });
+            Difference {
+                name: trace.name.clone(),
+                unit: trace.unit.clone(),
+                difference: tidy(greatest.0),
+                at_s: greatest.1,
+            }
+        })
+        .collect()
 }
 
 /// At most five decimals, without zeros at the end.
@@ -186,6 +303,7 @@ mod tests {
                 trace("X.lag", Kind::Analogue, [0.5, 2.0, -1.0]),
                 trace("M1", Kind::Logic, [0.0, 1.0, 0.0]),
             ],
+            ..Table::default()
         };
         let summary = Summary::new(&table, &[2.5, 4.0]);
         let [lag, marker] = summary.signals.as_slice() else {

@@ -1,4 +1,4 @@
-//! A recording: signals over time.
+//! A recording: signals over time, and what happened.
 
 use std::path::Path;
 
@@ -23,12 +23,25 @@ pub(super) struct Trace {
     pub values: Vec<f64>,
 }
 
+/// What the column `event` says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Event {
+    /// The program was started.
+    Start,
+    /// A block of the main program began.
+    Block(u32),
+    /// A message came up.
+    Message(String),
+}
+
 /// A recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Table {
     /// s, ascending.
     pub times: Vec<f64>,
     pub traces: Vec<Trace>,
+    /// What happened, with its time, s.
+    pub events: Vec<(f64, Event)>,
 }
 
 impl Table {
@@ -40,22 +53,30 @@ impl Table {
     }
 
     /// An error begins with its line.
-    fn read(text: &str) -> Result<Table, String> {
+    pub fn read(text: &str) -> Result<Table, String> {
         let mut lines = text.trim_start_matches('\u{feff}').lines();
-        let mut columns = lines.next().unwrap_or_default().split(',');
-        if columns.next().map(str::trim) != Some("time [s]") {
+        let mut columns: Vec<&str> = lines
+            .next()
+            .unwrap_or_default()
+            .split(',')
+            .map(str::trim)
+            .collect();
+        if columns.first() != Some(&"time [s]") {
             return Err("1: no recording: its first line begins with `time [s]`".to_owned());
         }
+        let has_events = columns.pop_if(|last| *last == "event").is_some();
         let mut table = Table {
-            times: Vec::new(),
-            traces: columns.map(Trace::named).collect(),
+            traces: columns.iter().skip(1).map(|head| Trace::named(head)).collect(),
+            ..Table::default()
         };
         if table.traces.is_empty() {
             return Err("1: the recording has no signal".to_owned());
         }
         for (number, line) in (2..).zip(lines) {
             if !line.trim().is_empty() {
-                table.row(line).map_err(|error| format!("{number}: {error}"))?;
+                table
+                    .row(line, has_events)
+                    .map_err(|error| format!("{number}: {error}"))?;
             }
         }
         if table.times.is_empty() {
@@ -64,8 +85,8 @@ impl Table {
         Ok(table)
     }
 
-    fn row(&mut self, line: &str) -> Result<(), String> {
-        let mut fields = line.split(',');
+    fn row(&mut self, line: &str, has_events: bool) -> Result<(), String> {
+        let mut fields = line.splitn(self.traces.len() + 2, ',');
         let mut next = |name: &str| {
             let field = fields.next().ok_or_else(|| format!("{name} is missing"))?.trim();
             field
@@ -84,28 +105,63 @@ impl Table {
         }
         self.times.push(time);
         match fields.next() {
-            Some(_) => Err("there are more values than signals".to_owned()),
-            None => Ok(()),
+            Some(field) if has_events => self.events(time, field),
+            Some(_) => return Err("there are more values than signals".to_owned()),
+            None => {}
+        }
+        Ok(())
+    }
+
+    /// `start; block 5; message LIMIT SWITCH X+`, in quotes where it holds a comma.
+    fn events(&mut self, time: f64, field: &str) {
+        let field = field.trim();
+        let field = match field.strip_prefix('"').and_then(|field| field.strip_suffix('"')) {
+            Some(quoted) => quoted.replace("\"\"", "\""),
+            None => field.to_owned(),
+        };
+        for event in field.split("; ").map(str::trim) {
+            let event = match event.split_once(' ') {
+                None if event == "start" => Event::Start,
+                Some(("block", number)) => match number.parse() {
+                    Ok(number) => Event::Block(number),
+                    Err(_) => continue,
+                },
+                Some(("message", text)) => Event::Message(text.to_owned()),
+                _ => continue,
+            };
+            self.events.push((time, event));
         }
     }
 
+    /// When the program was started, s.
+    pub fn start(&self) -> Option<f64> {
+        let start = self.events.iter().find(|(_, event)| *event == Event::Start);
+        start.map(|(time, _)| *time)
+    }
+
+    /// The signal of a name.
+    pub fn trace(&self, name: &str) -> Option<&Trace> {
+        self.traces.iter().find(|trace| trace.name == name)
+    }
+
     /// The signals of these names, in this order; all without names.
-    pub fn choose(mut self, names: &[String]) -> Result<Table, UsageError> {
-        if names.is_empty() {
-            return Ok(self);
-        }
-        let mut chosen = Vec::new();
+    pub fn choose<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Result<Table, UsageError> {
+        let mut chosen: Vec<Trace> = Vec::new();
         for name in names {
-            let Some(trace) = self.traces.iter().find(|trace| trace.name == name.trim()) else {
+            let Some(trace) = self.trace(name) else {
                 let known: Vec<&str> = self.traces.iter().map(|trace| trace.name.as_str()).collect();
                 return Err(UsageError::new(format!(
                     "--signals {name}: the recording has no such signal; there are {}",
                     known.join(", ")
                 )));
             };
-            chosen.push(trace.clone());
+            if chosen.iter().all(|known| known.name != name) {
+                chosen.push(trace.clone());
+            }
         }
-        self.traces = chosen;
+        if !chosen.is_empty() {
+            self.traces = chosen;
+        }
         Ok(self)
     }
 
@@ -124,7 +180,16 @@ impl Table {
         for trace in &mut self.traces {
             cut(&mut trace.values, first, end);
         }
+        self.events.retain(|(time, _)| (from..=to).contains(time));
         Ok(self)
+    }
+
+    /// Moves the recording in time, s.
+    pub fn shift(&mut self, by: f64) {
+        let times = self.times.iter_mut();
+        for time in times.chain(self.events.iter_mut().map(|(time, _)| time)) {
+            *time += by;
+        }
     }
 
     /// First and last time, s.
@@ -187,10 +252,27 @@ mod tests {
     }
 
     #[test]
+    fn the_last_column_says_what_happened() {
+        let text = "time [s],X.lag [mm],event\n1,0,\n2,0,start; block 1\n3,0,\"message A, \"\"B\"\"\"\n4,0\n";
+        let table = Table::read(text).unwrap();
+        assert_eq!(
+            table.events,
+            [
+                (2.0, Event::Start),
+                (2.0, Event::Block(1)),
+                (3.0, Event::Message("A, \"B\"".into()))
+            ]
+        );
+        assert_eq!(table.start(), Some(2.0));
+        assert_eq!(table.traces.len(), 1, "it is no signal");
+    }
+
+    #[test]
     fn faults_have_their_line() {
         let fault = |text: &str| Table::read(text).unwrap_err();
         assert!(fault("").starts_with("1: no recording"));
         assert!(fault("time [s]\n").starts_with("1: the recording has no signal"));
+        assert!(fault("time [s],event\n").starts_with("1: the recording has no signal"));
         assert_eq!(fault("time [s],M1\n1,0\n2,x\n"), "3: M1: `x` is no number");
         assert_eq!(
             fault("time [s],M1\n1,0\n1,0\n"),

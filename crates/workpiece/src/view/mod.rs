@@ -13,8 +13,8 @@ pub use three_planes::{Projection, ThreePlanes};
 
 use thiserror::Error;
 
-use crate::canvas::{Colour, Image};
-use crate::text::Anchor;
+use bahn_picture::Anchor;
+use bahn_picture::{Colour, Image};
 
 /// The sheet that a view is drawn on: its size and what its title line says.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl Page {
         image.rectangle([0.0, 0.0], [width, bar], TITLE_BACKGROUND);
         let inner = width - 2.0 * size;
         let note = Image::fitting(&self.note, size, 0.6 * inner);
-        let note_width = crate::text::text_width(&note, size);
+        let note_width = bahn_picture::text_width(&note, size);
         let title = Image::fitting(&self.title, 1.15 * size, inner - note_width - size);
         image.text([size, 0.5 * bar], Anchor::Left, 1.15 * size, TITLE_TEXT, &title);
         image.text([width - size, 0.5 * bar], Anchor::Right, size, TITLE_NOTE, &note);

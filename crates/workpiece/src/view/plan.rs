@@ -2,9 +2,9 @@
 
 use super::scale::{Ruler, number, round_step};
 use super::{Area, FAINT, INK, Page};
-use crate::canvas::{Colour, Image, mix};
 use crate::part::Part;
-use crate::text::Anchor;
+use bahn_picture::Anchor;
+use bahn_picture::{Colour, Image, mix};
 
 /// Options of the plan view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

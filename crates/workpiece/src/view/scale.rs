@@ -1,8 +1,8 @@
 //! Rulers along a drawing, and lengths in words.
 
 use super::{FAINT, INK};
-use crate::canvas::Image;
-use crate::text::{Anchor, text_width};
+use bahn_picture::Image;
+use bahn_picture::{Anchor, text_width};
 
 /// A round step (1, 2, 5 times a power of ten) of at least `least`.
 pub(super) fn round_step(least: f64) -> f64 {

@@ -1,8 +1,8 @@
 //! Light on the part: normals, ambient occlusion, colours.
 
 use super::raycast::{Caster, Face, Hit, Vector};
-use crate::canvas::Colour;
 use crate::part::Part;
+use bahn_picture::Colour;
 
 /// Reach of the window that smooths the normals of walls, columns: a round wall on square columns has
 /// to look round.

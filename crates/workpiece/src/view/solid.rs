@@ -7,9 +7,9 @@ use super::raycast::{Caster, Vector};
 use super::scale::{number, round_step};
 use super::shade::{SAMPLES, Seen, Shader, cross, dot, screen, to_linear, unit};
 use super::{Area, INK, Page};
-use crate::canvas::{Colour, Image, mix};
 use crate::part::Part;
-use crate::text::Anchor;
+use bahn_picture::Anchor;
+use bahn_picture::{Colour, Image, mix};
 
 /// Options of the 3D view.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,9 +3,9 @@
 use super::plan::{DepthShade, draw_plan, frame};
 use super::scale::{Ruler, number};
 use super::{Area, FAINT, INK, Page};
-use crate::canvas::{Colour, Image, mix};
 use crate::part::Part;
-use crate::text::Anchor;
+use bahn_picture::Anchor;
+use bahn_picture::{Colour, Image, mix};
 
 /// How the views are arranged (ISO 6433) [003:891-892].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

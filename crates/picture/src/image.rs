@@ -5,7 +5,7 @@ use std::io::Write;
 use thiserror::Error;
 
 /// Red, green, blue.
-pub(crate) type Colour = [u8; 3];
+pub type Colour = [u8; 3];
 
 /// A finished picture, 8 bits each of red, green, blue.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,7 +51,8 @@ impl Image {
         Ok(())
     }
 
-    pub(crate) fn new(width: u32, height: u32, colour: Colour) -> Image {
+    /// A picture of one colour; sizes in pixels.
+    pub fn new(width: u32, height: u32, colour: Colour) -> Image {
         Image {
             width,
             height,
@@ -60,12 +61,12 @@ impl Image {
     }
 
     /// Rows of pixels, for those who compute them.
-    pub(crate) fn rows_mut(&mut self) -> std::slice::ChunksExactMut<'_, Colour> {
+    pub fn rows_mut(&mut self) -> std::slice::ChunksExactMut<'_, Colour> {
         self.pixels.chunks_exact_mut((self.width as usize).max(1))
     }
 
     /// Mixes a colour into a pixel; outside the picture nothing happens.
-    pub(crate) fn blend(&mut self, x: i64, y: i64, colour: Colour, share: f64) {
+    pub fn blend(&mut self, x: i64, y: i64, colour: Colour, share: f64) {
         if x < 0 || y < 0 || x >= i64::from(self.width) || y >= i64::from(self.height) {
             return;
         }
@@ -75,7 +76,7 @@ impl Image {
     }
 
     /// Fills a rectangle; its borders count to fractions of a pixel.
-    pub(crate) fn rectangle(&mut self, min: [f64; 2], max: [f64; 2], colour: Colour) {
+    pub fn rectangle(&mut self, min: [f64; 2], max: [f64; 2], colour: Colour) {
         let cover =
             |pixel: i64, low: f64, high: f64| ((pixel + 1) as f64).min(high) - (pixel as f64).max(low);
         for y in self.span(min[1], max[1], self.height) {
@@ -87,7 +88,7 @@ impl Image {
     }
 
     /// Draws a straight line with round ends.
-    pub(crate) fn line(&mut self, a: [f64; 2], b: [f64; 2], width: f64, colour: Colour) {
+    pub fn line(&mut self, a: [f64; 2], b: [f64; 2], width: f64, colour: Colour) {
         let reach = 0.5 * width + 1.0;
         let delta = [b[0] - a[0], b[1] - a[1]];
         let square = delta[0] * delta[0] + delta[1] * delta[1];
@@ -107,7 +108,7 @@ impl Image {
     }
 
     /// Draws a line of dashes, as centre lines and section lines are.
-    pub(crate) fn dashed(&mut self, a: [f64; 2], b: [f64; 2], pattern: &[f64], width: f64, colour: Colour) {
+    pub fn dashed(&mut self, a: [f64; 2], b: [f64; 2], pattern: &[f64], width: f64, colour: Colour) {
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         let at = |s: f64| [0, 1].map(|k| a[k] + (b[k] - a[k]) * (s / length).min(1.0));
         let mut s = 0.0;
@@ -123,7 +124,7 @@ impl Image {
     }
 
     /// Draws the outline through points.
-    pub(crate) fn outline(&mut self, points: &[[f64; 2]], width: f64, colour: Colour) {
+    pub fn outline(&mut self, points: &[[f64; 2]], width: f64, colour: Colour) {
         for pair in points.windows(2) {
             if let [a, b] = pair {
                 self.line(*a, *b, width, colour);
@@ -131,7 +132,8 @@ impl Image {
         }
     }
 
-    pub(crate) fn circle(&mut self, centre: [f64; 2], radius: f64, width: f64, colour: Colour) {
+    /// Draws a circle.
+    pub fn circle(&mut self, centre: [f64; 2], radius: f64, width: f64, colour: Colour) {
         let points: Vec<[f64; 2]> = (0..=64)
             .map(|k| {
                 let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 64.0).sin_cos();
@@ -149,7 +151,7 @@ impl Image {
 }
 
 /// A colour between two.
-pub(crate) fn mix(a: Colour, b: Colour, share: f64) -> Colour {
+pub fn mix(a: Colour, b: Colour, share: f64) -> Colour {
     let mut mixed = [0; 3];
     for ((m, a), b) in mixed.iter_mut().zip(a).zip(b) {
         *m = (f64::from(a) + (f64::from(b) - f64::from(a)) * share).round() as u8;

@@ -2,13 +2,16 @@
 
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 
-use crate::canvas::{Colour, Image};
+use crate::image::{Colour, Image};
 
 /// Where a text lies from its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Anchor {
+pub enum Anchor {
+    /// It begins there.
     Left,
+    /// Its middle is there.
     Centre,
+    /// It ends there.
     Right,
 }
 
@@ -17,7 +20,7 @@ fn font() -> Option<FontRef<'static>> {
 }
 
 /// Width of a text, pixels.
-pub(crate) fn text_width(text: &str, size: f64) -> f64 {
+pub fn text_width(text: &str, size: f64) -> f64 {
     let Some(font) = font() else { return 0.0 };
     let scaled = font.as_scaled(PxScale::from(size as f32));
     text.chars()
@@ -27,7 +30,7 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
 
 impl Image {
     /// Writes a text of a height in pixels; `at` is on its middle line.
-    pub(crate) fn text(&mut self, at: [f64; 2], anchor: Anchor, size: f64, colour: Colour, text: &str) {
+    pub fn text(&mut self, at: [f64; 2], anchor: Anchor, size: f64, colour: Colour, text: &str) {
         let Some(font) = font() else { return };
         let scale = PxScale::from(size as f32);
         let scaled = font.as_scaled(scale);
@@ -57,7 +60,7 @@ impl Image {
     }
 
     /// The longest beginning of a text that fits a width, with an ellipsis when it had to be cut.
-    pub(crate) fn fitting(text: &str, size: f64, width: f64) -> String {
+    pub fn fitting(text: &str, size: f64, width: f64) -> String {
         if text_width(text, size) <= width {
             return text.to_owned();
         }

@@ -1,0 +1,205 @@
+//! Every command that README, help texts and the READMEs of machines show is run as it stands there.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
+
+mod support;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use support::Folder;
+
+/// What is shown as an error, or cannot be shown without a terminal: part of the command and its exit code.
+const EXCEPTIONS: &[(&str, i32)] = &[
+    ("fmt --check", 1),
+    // Wrong use: there is no terminal here.
+    ("plc watch", 2),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The commands in a text: lines that begin with `bahn`, without what explains them behind.
+fn commands(text: &str) -> Vec<String> {
+    let lines = text
+        .lines()
+        .map(str::trim)
+        .filter(|line| line.starts_with("bahn "));
+    let without_comment = |line: &str| {
+        let line = line.split(" # ").next().unwrap_or(line);
+        line.split("   ").next().unwrap_or(line).trim().to_owned()
+    };
+    lines.map(without_comment).collect()
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        match path.is_dir() {
+            true if path.ends_with("state") => {}
+            true => copy(&path, &target),
+            false => drop(fs::copy(&path, &target).unwrap()),
+        }
+    }
+}
+
+/// Everything that the texts name: the shipped files, and files of the user's own.
+fn desk() -> Folder {
+    let folder = Folder::new();
+    for shipped in ["examples", "machines"] {
+        copy(&root().join(shipped), &folder.path(shipped));
+    }
+    copy(&root().join("machines/mill"), &folder.path("mill"));
+    let part = "BEGIN PGM PART MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+60 Y+40 Z+0\nTOOL DEF 1 L+0 R+5\n\
+                TOOL CALL 1 Z S1000\nL Z+20 R0 F MAX M3\nL X-10 Y+10 F MAX\nL Z-4 F MAX\nL X+70 F400\nL Z+20 F MAX M2\n\
+                END PGM PART MM\n";
+    for name in ["part.h", "PART.H"] {
+        folder.write(name, part);
+    }
+    let list = fs::read_to_string(root().join("machines/mill/parameters.mp")).unwrap();
+    for name in ["mill.mp", "old.mp", "new.mp", "machine.MP"] {
+        folder.write(name, &list);
+    }
+    folder.write("changes.mp", "MP1010.0 : 12000\n");
+    folder.write("tool.t", "T L R R2 NAME\n1 80.5 10 0 END MILL\n2 62 4 4 BALL\n");
+    folder.write("MAIN.PLC", "       L     I4\n       =     O2\n       EM\n");
+    folder.write("door.txt", "1 I4=1\n5 I4=0\n8 end\n");
+    folder.write(
+        "stop.txt",
+        "start + 0.5 key NC_STOP tap\nstart + 1.5 key NC_START tap\n",
+    );
+    folder.write("jog.txt", "0.5 end\n");
+    folder
+}
+
+/// Runs each command in a shell, in this order.
+fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
+    assert!(!commands.is_empty());
+    let own = Path::new(env!("CARGO_BIN_EXE_bahn")).parent().unwrap();
+    let path = format!("{}:{}", own.display(), std::env::var("PATH").unwrap());
+    for below in [
+        ".local/share/bash-completion/completions",
+        ".zfunc",
+        ".config/fish/completions",
+    ] {
+        fs::create_dir_all(folder.path(below)).unwrap();
+    }
+    for command in commands {
+        let output = Command::new("sh")
+            .args(["-c", command])
+            .current_dir(place)
+            .env("PATH", &path)
+            .env("HOME", folder.path(""))
+            .env("XDG_DATA_HOME", folder.path(".local/share"))
+            .stdin(std::process::Stdio::null())
+            .output()
+            .unwrap();
+        let exception = EXCEPTIONS.iter().find(|(part, _)| command.contains(part));
+        let expected = exception.map_or(0, |(_, code)| *code);
+        assert_eq!(
+            output.status.code(),
+            Some(expected),
+            "{command}\n{}\n{}",
+            String::from_utf8_lossy(&output.stdout),
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
+}
+
+#[test]
+fn of_the_readmes() {
+    for file in ["README.md", "examples/README.md", "examples/plc/README.md"] {
+        let folder = desk();
+        let text = fs::read_to_string(root().join(file)).unwrap();
+        run_all(&folder, folder.as_ref(), &commands(&text));
+    }
+}
+
+/// Help texts of a command and of all below it.
+fn helps(folder: &Folder, command: &str, found: &mut Vec<String>) {
+    let help = folder.bahn(&format!("{command} --help")).out();
+    found.extend(commands(&help));
+    let listed = help.split("\nCommands:\n").nth(1).unwrap_or_default();
+    let names = listed.lines().take_while(|line| !line.is_empty());
+    for line in names.filter(|line| line.starts_with("  ") && !line.starts_with("   ")) {
+        let name = line.split_whitespace().next().unwrap();
+        if name != "help" {
+            helps(folder, &format!("{command} {name}"), found);
+        }
+    }
+}
+
+#[test]
+fn of_the_help_texts() {
+    let folder = desk();
+    let mut shown = Vec::new();
+    helps(&folder, "", &mut shown);
+    assert!(shown.len() > 50, "{}", shown.len());
+    run_all(&folder, folder.as_ref(), &shown);
+}
+
+#[test]
+fn of_the_readmes_of_machines() {
+    let folder = desk();
+    for machine in ["mill", "mill-tnc360"] {
+        let place = folder.path(&format!("machines/{machine}"));
+        let text = fs::read_to_string(place.join("README.md")).unwrap();
+        run_all(&folder, &place, &commands(&text));
+    }
+}
+
+/// A new machine of each model: its texts name that model, no link is dead, every command runs.
+#[test]
+fn of_new_machines_of_each_model() {
+    let models = [
+        ("tnc151", "TNC 151"),
+        ("tnc155", "TNC 155"),
+        ("tnc360", "TNC 360"),
+        ("tnc407", "TNC 407"),
+        ("tnc415b", "TNC 415 B"),
+        ("tnc425", "TNC 425"),
+    ];
+    for (model, name) in models {
+        let folder = Folder::new();
+        let made = folder.bahn(&format!("machine new m --model {model}"));
+        assert_eq!(made.code(), 0, "{}", made.err());
+        let place = folder.path("m");
+        let readme = folder.read("m/README.md");
+        assert!(readme.contains(name), "{model}: {readme}");
+        for (other, its_name) in models.iter().filter(|(other, _)| *other != model) {
+            for file in ["README.md", "machine.toml", "parameters.mp"] {
+                let text = folder.read(&format!("m/{file}"));
+                let names = |line: &&str| line.contains(its_name) && !line.contains('[');
+                assert_eq!(text.lines().find(names), None, "{model}/{file} names {other}");
+            }
+        }
+        for link in readme
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
+            assert!(place.join(link).exists(), "{model}: {link}");
+        }
+        run_all(&folder, &place, &commands(&readme));
+    }
+}
+
+/// A page for each command, each with its examples.
+#[test]
+fn manual_pages() {
+    let folder = Folder::new();
+    let run = folder.bahn("man pages");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let run = folder.read("pages/bahn-plc-run.1");
+    assert!(
+        run.contains(".TH bahn-plc-run 1") && run.contains("Examples"),
+        "{run}"
+    );
+    for page in ["bahn.1", "bahn-test.1", "bahn-machine-new.1", "bahn-man.1"] {
+        assert!(folder.path(&format!("pages/{page}")).exists(), "{page}");
+    }
+    assert!(folder.bahn("man").out().contains(".TH bahn 1"));
+}

@@ -1,0 +1,79 @@
+//! The machines that are shipped, as data: each a folder with parameters, PLC program, simulated machine and part
+//! programs.
+//!
+//! ```
+//! let plant = bahn_machines::MILL.file("plant.toml");
+//! assert!(plant.is_some_and(|text| text.contains("[axis.X]")));
+//! ```
+
+/// The folder of a machine.
+#[derive(Clone, Copy, Debug)]
+pub struct ShippedMachine {
+    /// Name of the folder.
+    pub name: &'static str,
+    /// Files by their path in the folder, with `/`, and their text.
+    pub files: &'static [(&'static str, &'static str)],
+}
+
+macro_rules! machine {
+    ($folder:literal: $($file:literal),* $(,)?) => {
+        ShippedMachine {
+            name: $folder,
+            files: &[$(($file, include_str!(concat!($folder, "/", $file)))),*],
+        }
+    };
+}
+
+/// What every folder of a machine can hold, explained.
+pub const FOLDER: &str = include_str!("FOLDER.md");
+
+/// A mill with rotary table and two gear ranges; its control is a TNC 415 B.
+pub const MILL: ShippedMachine = machine!("mill":
+    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
+    "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "programs/BRACKET.H",
+    "programs/INDEX.H", "programs/SADDLE.H",
+);
+
+/// A small mill of three axes; its control is a TNC 360.
+pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360":
+    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
+    "plc/run.txt", "programs/COVER.H",
+);
+
+impl ShippedMachine {
+    /// The text of a file.
+    pub fn file(&self, path: &str) -> Option<&'static str> {
+        let file = self.files.iter().find(|(name, _)| *name == path);
+        file.map(|(_, text)| *text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nothing that lies in the folders is forgotten.
+    #[test]
+    fn every_file_is_shipped() {
+        fn files(folder: &std::path::Path, prefix: &str, found: &mut Vec<String>) {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                let name = format!("{prefix}{}", path.file_name().unwrap().to_string_lossy());
+                match path.is_dir() {
+                    true if name != "state" => files(&path, &format!("{name}/"), found),
+                    true => {}
+                    false => found.push(name),
+                }
+            }
+        }
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        for machine in [MILL, MILL_TNC360] {
+            let mut found = Vec::new();
+            files(&root.join(machine.name), "", &mut found);
+            found.sort();
+            let mut shipped: Vec<&str> = machine.files.iter().map(|(name, _)| *name).collect();
+            shipped.sort_unstable();
+            assert_eq!(found, shipped, "{}", machine.name);
+        }
+    }
+}
