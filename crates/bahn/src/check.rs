@@ -1,22 +1,31 @@
-//! `bahn check`: all errors of programs that can be found without running them.
+//! `bahn check`: all errors of programs that can be found without machining anything.
+//!
+//! Every block is read, and the program is rehearsed: executed without geometry, beyond its errors.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use bahn_interpreter::Judgement;
+use bahn_interpreter::{Cause, Message, ProgramError, Rehearsal, Settings, Warning, rehearse};
 use bahn_parameters::{ControlModel, MessageId};
-use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Severity};
+use bahn_path::BlockRef;
+use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Reading, Severity, Uncounted};
 
 use crate::cli::{CheckOptions, Format};
 use crate::diagnostics::{self, Diagnostic, Marked};
-use crate::files::{self, Loaded};
-use crate::{Outcome, UsageError, conformance, console};
+use crate::files::{self, FileLibrary, Loaded};
+use crate::interrupt::Interrupt;
+use crate::{Outcome, UsageError, console};
+
+/// Faults of a program that are printed; the others are counted. JSON has more.
+const PRINTED_MAX: usize = 100;
 
 /// Checks files and prints what is wrong.
 pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
+    let interrupt = Interrupt::on_ctrl_c();
     let mut outcome = Outcome::Fine;
     let mut reports = Vec::new();
     for path in &options.files {
-        match check(path, options) {
+        match check(path, options, &interrupt) {
             Ok(report) => {
                 if report.errors > 0 && outcome == Outcome::Fine {
                     outcome = Outcome::ProgramError;
@@ -28,6 +37,10 @@ pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
                 diagnostics::print_usage_error(&error.to_string());
                 outcome = Outcome::WrongUse;
             }
+        }
+        if interrupt.is_requested() {
+            outcome = Outcome::Interrupted;
+            break;
         }
     }
     if options.format == Format::Json {
@@ -45,6 +58,8 @@ struct CheckReport {
     blocks: u32,
     errors: usize,
     warnings: usize,
+    /// The end was reached, whatever the faults on the way.
+    complete: bool,
     diagnostics: Vec<Entry>,
 }
 
@@ -52,144 +67,275 @@ struct CheckReport {
 struct Entry {
     severity: &'static str,
     message: String,
+    program: String,
     block: u32,
     line: u32,
     column: u32,
     length: u32,
     detail: String,
+    help: String,
 }
 
-fn check(path: &Path, options: &CheckOptions) -> Result<CheckReport, UsageError> {
-    let program = files::load_program(path)?;
-    let mut found = match &program {
-        Loaded::Program(program) => program.diagnostics(Some(options.model.limits())),
-        Loaded::Empty(_) => vec![whole_file(MessageId::EndOfProgramMissing, files::EMPTY)],
-        Loaded::TooLarge => vec![whole_file(
-            MessageId::FurtherProgramEntryImpossible,
-            files::TOO_LARGE,
-        )],
+/// A fault in one of the programs of the run.
+struct Found {
+    /// Number of the program; 0 is the file itself.
+    program: usize,
+    /// The headline.
+    title: String,
+    fault: Fault,
+}
+
+fn check(path: &Path, options: &CheckOptions, interrupt: &Interrupt) -> Result<CheckReport, UsageError> {
+    let (programs, found, more, complete) = match files::load_program(path)? {
+        Loaded::Program(program) => examine(program, options, interrupt),
+        Loaded::Empty(program) => nothing(program, MessageId::EndOfProgramMissing, files::EMPTY),
+        Loaded::TooLarge => {
+            let program = Arc::new(Program::from_bytes("", Vec::new()));
+            nothing(
+                program,
+                MessageId::FurtherProgramEntryImpossible,
+                files::TOO_LARGE,
+            )
+        }
     };
-    if let Loaded::Program(program) = &program {
-        found.extend(functions(program, &found, options));
-        found.sort_by_key(|fault| (fault.block, fault.severity == Severity::Warning));
-    }
-    let count = |severity| found.iter().filter(|fault| fault.severity == severity).count();
+    let count = |severity| {
+        found
+            .iter()
+            .filter(|found| found.fault.severity == severity)
+            .count()
+    };
     let report = CheckReport {
         file: path.to_string_lossy().into_owned(),
-        blocks: program.program().map_or(0, |program| program.block_count()),
-        errors: count(Severity::Error),
-        warnings: count(Severity::Warning),
-        diagnostics: found.iter().map(|fault| entry(fault, options.model)).collect(),
+        blocks: match complete {
+            Complete::NotBegun => 0,
+            _ => programs.first().map_or(0, |program| program.block_count()),
+        },
+        errors: count(Severity::Error) + more.errors,
+        warnings: count(Severity::Warning) + more.warnings,
+        complete: complete == Complete::Yes,
+        diagnostics: found
+            .iter()
+            .map(|found| entry(found, &programs, options.model))
+            .collect(),
     };
     if options.format == Format::Text {
-        let empty = Program::from_bytes("", Vec::new());
-        let program = program.program().map_or(&empty, |program| program);
-        for fault in &found {
-            print(fault, program, path, options.model);
+        for found in found.iter().take(PRINTED_MAX) {
+            print(found, &programs, path, options.model);
         }
-        summary(&report);
+        summary(&report, complete);
     }
     Ok(report)
 }
 
-/// Functions that are not executed here, or not wholly, each at its first block; where that has an error
-/// already, it is said.
-fn functions(program: &Program, found: &[Fault], options: &CheckOptions) -> Vec<Fault> {
-    let has_error = |block| {
-        let mut errors = found.iter().filter(|fault| fault.severity == Severity::Error);
-        errors.any(|fault| fault.block == block)
-    };
-    let mut faults = Vec::new();
-    for (block, feature, judgement) in conformance::remarks(program, options.model, options.strict) {
-        let (is_error, detail) = match judgement {
-            Judgement::Executed => continue,
-            Judgement::Remarked(text) | Judgement::PassedOver(text) => (false, text),
-            Judgement::Refused(text) => (!options.skip_unknown, text),
-        };
-        if has_error(block) {
-            continue;
-        }
-        let line = program.line_of(block);
-        let text = program.text_of_line(line);
-        let word = feature.to_string();
-        let at = text.to_ascii_uppercase().find(&word).unwrap_or(0);
-        let column = text.get(..at).unwrap_or_default().chars().count() + 1;
-        faults.push(Fault {
-            message: MessageId::BlockNotKnown,
-            severity: if is_error {
-                Severity::Error
-            } else {
-                Severity::Warning
-            },
-            block,
-            line,
-            column: u32::try_from(column).unwrap_or(u32::MAX),
-            length: u32::try_from(word.len().min(text.chars().count())).unwrap_or(u32::MAX),
-            detail: detail.into(),
-        });
-    }
-    faults
+/// Whether a program was executed to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Complete {
+    Yes,
+    No,
+    /// There is nothing to execute.
+    NotBegun,
 }
 
-fn entry(fault: &Fault, model: ControlModel) -> Entry {
+type Examined = (Vec<Arc<Program>>, Vec<Found>, Uncounted, Complete);
+
+/// Reads every block and rehearses the program.
+fn examine(program: Arc<Program>, options: &CheckOptions, interrupt: &Interrupt) -> Examined {
+    let (faults, more) = program.counted_diagnostics(Some(reading(options)));
+    if program.is_din_iso() || faults.len() >= MAX_DIAGNOSTICS {
+        // Not a program that can be executed.
+        return (
+            vec![program],
+            faults.into_iter().map(of_file).collect(),
+            more,
+            Complete::NotBegun,
+        );
+    }
+    let settings = Settings {
+        model: options.model,
+        inch_feed: options.inch_feed.map(Into::into),
+        strict: options.strict,
+        skip_unknown: options.skip_unknown,
+        ..Settings::default()
+    };
+    let library = Box::new(FileLibrary::with_main(&program));
+    let rehearsal = rehearse(program, settings, library, &interrupt.flag());
+    let found = merged(faults, &rehearsal, options.model);
+    let complete = if rehearsal.complete {
+        Complete::Yes
+    } else {
+        Complete::No
+    };
+    (rehearsal.programs, found, more, complete)
+}
+
+/// What programs are read for.
+fn reading(options: &CheckOptions) -> Reading<'static> {
+    let limits = options.model.limits();
+    Reading {
+        limits,
+        inch_feed: options.inch_feed.map_or(limits.inch_feed, Into::into),
+    }
+}
+
+/// What was read and what was rehearsed, in the order of programs and blocks. What reading has found at a
+/// block is not said again.
+fn merged(read: Vec<Fault>, rehearsal: &Rehearsal, model: ControlModel) -> Vec<Found> {
+    let is_error = |fault: &&Fault| fault.severity == Severity::Error;
+    let known = |error: &ProgramError| {
+        read.iter().filter(is_error).any(|fault| {
+            let incomplete = fault.message == MessageId::CyclIncomplete
+                && error.message == Message::Control(MessageId::CyclIncomplete)
+                && error.cause == Cause::Message;
+            incomplete || (error.block.program == 0 && error.block.block == fault.block)
+        })
+    };
+    let mut found: Vec<Found> = Vec::new();
+    for error in rehearsal.errors.iter().filter(|error| !known(error)) {
+        found.extend(rehearsed_error(error, rehearsal, model));
+    }
+    for warning in &rehearsal.warnings {
+        found.extend(rehearsed_warning(warning, rehearsal));
+    }
+    found.extend(read.into_iter().map(of_file));
+    found.sort_by_key(|found| (found.program, found.fault.block));
+    found
+}
+
+fn of_file(fault: Fault) -> Found {
+    Found {
+        program: 0,
+        title: String::new(),
+        fault,
+    }
+}
+
+fn rehearsed_error(error: &ProgramError, rehearsal: &Rehearsal, model: ControlModel) -> Option<Found> {
+    let program = program_of(rehearsal, error.block)?;
+    let message = match error.message {
+        Message::Control(id) => id,
+        Message::Numbered(_) => MessageId::ErrorBlock,
+    };
+    let mut fault = program.diagnostic(message, Severity::Error, error.block.block, "", &error.detail);
+    fault.help = error.remedy().unwrap_or_default();
+    Some(Found {
+        program: usize::from(error.block.program),
+        title: error.message.text(model).to_owned(),
+        fault,
+    })
+}
+
+fn rehearsed_warning(warning: &Warning, rehearsal: &Rehearsal) -> Option<Found> {
+    let program = program_of(rehearsal, warning.block)?;
+    let block = warning.block.block;
+    let fault = program.diagnostic(MessageId::UnexpectedText, Severity::Warning, block, "", "");
+    Some(Found {
+        program: usize::from(warning.block.program),
+        title: warning.kind.to_string(),
+        fault,
+    })
+}
+
+fn program_of(rehearsal: &Rehearsal, block: BlockRef) -> Option<&Arc<Program>> {
+    rehearsal.programs.get(usize::from(block.program))
+}
+
+impl Found {
+    fn title(&self, model: ControlModel) -> &str {
+        match self.title.as_str() {
+            "" => self.fault.message.text(model),
+            title => title,
+        }
+    }
+}
+
+fn entry(found: &Found, programs: &[Arc<Program>], model: ControlModel) -> Entry {
+    let fault = &found.fault;
+    let program = programs.get(found.program);
     Entry {
         severity: match fault.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
         },
-        message: fault.message.text(model).to_owned(),
+        message: found.title(model).to_owned(),
+        program: program.map_or(String::new(), |program| files::short_name(program).to_owned()),
         block: fault.block,
         line: fault.line,
         column: fault.column,
         length: fault.length,
         detail: fault.detail.to_string(),
+        help: help(fault).unwrap_or_default().to_owned(),
     }
 }
 
-fn print(fault: &Fault, program: &Program, path: &Path, model: ControlModel) {
+/// Warnings say themselves what to do.
+fn help(fault: &Fault) -> Option<&'static str> {
+    (fault.severity == Severity::Error && !fault.help.is_empty()).then_some(fault.help)
+}
+
+fn print(found: &Found, programs: &[Arc<Program>], path: &Path, model: ControlModel) {
+    let fault = &found.fault;
+    let Some(program) = programs.get(found.program) else {
+        return;
+    };
+    let path: PathBuf = match found.program {
+        0 => path.to_owned(),
+        // Called programs lie beside their caller.
+        _ => path.with_file_name(files::short_name(program)),
+    };
     diagnostics::print(&Diagnostic {
         severity: match fault.severity {
             Severity::Error => diagnostics::Severity::Error,
             Severity::Warning => diagnostics::Severity::Warning,
         },
-        title: fault.message.text(model),
+        title: found.title(model),
         path: &path.to_string_lossy(),
         marked: Marked {
             line: fault.line,
             text: program.text_of_line(fault.line),
             columns: Some((fault.column, fault.length)),
         },
-        label: format!("block {}: {}", fault.block, fault.detail),
-        help: (fault.severity == Severity::Error).then(|| fault.message.remedy()),
+        label: match &*fault.detail {
+            "" => format!("block {}", fault.block),
+            detail => format!("block {}: {detail}", fault.block),
+        },
+        help: help(fault),
     });
     diagnostics::print_line("");
 }
 
-/// A fault of the whole file.
-fn whole_file(message: MessageId, detail: &str) -> Fault {
-    Fault {
-        message,
-        severity: Severity::Error,
-        block: 0,
+/// A fault of the whole file, which holds nothing to be examined.
+fn nothing(program: Arc<Program>, message: MessageId, detail: &str) -> Examined {
+    let fault = Fault {
         line: 1,
         column: 1,
         length: 1,
-        detail: detail.into(),
-    }
+        ..program.diagnostic(message, Severity::Error, 0, "", detail)
+    };
+    (
+        vec![program],
+        vec![of_file(fault)],
+        Uncounted::default(),
+        Complete::NotBegun,
+    )
 }
 
-fn summary(report: &CheckReport) {
+fn summary(report: &CheckReport, complete: Complete) {
     let count = |number: usize, what: &str| match number {
         1 => format!("1 {what}"),
         _ => format!("{number} {what}s"),
     };
-    let most = if report.diagnostics.len() >= MAX_DIAGNOSTICS {
-        ", perhaps more"
-    } else {
-        ""
+    let all = report.errors + report.warnings;
+    let printed = report.diagnostics.len().min(PRINTED_MAX);
+    let more = match all - printed {
+        0 => String::new(),
+        rest => format!(", {rest} of them not shown"),
     };
-    diagnostics::print_line(&format!(
-        "{}: {} blocks, {}, {}{most}",
+    let followed = match complete {
+        Complete::No => "; loops were not followed to their end",
+        Complete::Yes | Complete::NotBegun => "",
+    };
+    diagnostics::print_text(&format!(
+        "{}: {} blocks, {}, {}{more}{followed}",
         report.file,
         report.blocks,
         count(report.errors, "error"),

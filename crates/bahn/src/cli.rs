@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use bahn_parameters::ControlModel;
+use bahn_parameters::{ControlModel, InchFeed};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
 use crate::Outcome;
@@ -55,7 +55,7 @@ pub(crate) enum Command {
     /// List what each function of a control does here: M functions, cycles, words, machine parameters and so on.
     #[command(after_help = crate::conformance::EXAMPLES)]
     Conformance(ConformanceOptions),
-    /// Say what a message of the control means and what to do about it.
+    /// Say what a message or PLC error means and what to do about it; search by word.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainOptions),
     /// Print the completions of a shell.
@@ -102,7 +102,15 @@ Ctrl-C ends the run with the report so far and exit code 130.";
 const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn check *.h
-  bahn check --model tnc360 --format json part.h";
+  bahn check --model tnc360 --format json part.h
+
+Every block is read; then the program is executed without geometry, with those that it calls, and beyond its
+errors: labels, calls, tools, feeds, poles, arcs, cycles. What only follows from an earlier error is not
+reported, nor what depends on Q parameters that the program does not set. A hundred faults of each program
+are printed, the others counted; JSON has a thousand.
+
+JSON report (--format json), one object for each file: file, blocks, errors, warnings, complete (executed to
+its end), diagnostics (severity, message, program, block, line, column, length, detail, help).";
 
 const FMT_EXAMPLES: &str = "\
 Examples:
@@ -113,8 +121,14 @@ Examples:
 const EXPLAIN_EXAMPLES: &str = "\
 Examples:
   bahn explain TOOL RADIUS TOO LARGE
-  bahn explain CyclIncomplete
-  bahn explain               list all messages";
+  bahn explain GROSS POSITIONING ERROR X A
+      With axis, sign and code as the control shows it.
+  bahn explain plc error 16
+      An error of the PLC program, found by the compiler or while it runs.
+  bahn explain tapping
+      Everything that mentions the word: messages, PLC errors, machine parameters.
+  bahn explain
+      List all messages.";
 
 /// Options of the test run.
 #[derive(Args, Debug)]
@@ -185,6 +199,9 @@ pub(crate) struct RunOptions {
     /// Pass over optional blocks (/).
     #[arg(long)]
     pub skip_blocks: bool,
+    /// What F counts in a program in inches, instead of what it counts on the model.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub inch_feed: Option<InchFeedOption>,
     /// End at the first programmed stop (STOP, M0, M1) instead of passing over it.
     #[arg(long)]
     pub stop: bool,
@@ -258,6 +275,9 @@ pub(crate) struct CheckOptions {
     /// Warn of functions without which the control would move differently, instead of refusing them.
     #[arg(long, conflicts_with = "strict")]
     pub skip_unknown: bool,
+    /// What F counts in a program in inches, instead of what it counts on the model.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub inch_feed: Option<InchFeedOption>,
     /// How errors are written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
@@ -283,12 +303,30 @@ pub(crate) struct FmtOptions {
 /// Options of `bahn explain`.
 #[derive(Args, Debug)]
 pub(crate) struct ExplainOptions {
-    /// Text of the message, or its name; nothing lists all.
+    /// Text of the message as it is shown, its name, or words to search; nothing lists all.
     #[arg(value_name = "MESSAGE")]
     pub message: Vec<String>,
     /// Control model whose texts are listed.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
+}
+
+/// What F counts in a program in inches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum InchFeedOption {
+    /// Inches per minute.
+    Whole,
+    /// Tenths of an inch per minute.
+    Tenths,
+}
+
+impl From<InchFeedOption> for InchFeed {
+    fn from(option: InchFeedOption) -> InchFeed {
+        match option {
+            InchFeedOption::Whole => InchFeed::Whole,
+            InchFeedOption::Tenths => InchFeed::Tenths,
+        }
+    }
 }
 
 /// How a report is written.

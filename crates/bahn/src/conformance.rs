@@ -1,9 +1,7 @@
 //! `bahn conformance`: what each function of a control does here, from the registry of the control models.
 
-use bahn_interpreter::{Feature, Judgement};
 use bahn_parameters::ControlModel;
 use bahn_parameters::conformance::{Effect, Entry, Kind, all};
-use bahn_program::{Operation, Program};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -79,32 +77,6 @@ pub(crate) fn command(options: &ConformanceOptions) -> Result<Outcome, UsageErro
     };
     console::print(&text)?;
     Ok(Outcome::Fine)
-}
-
-/// The functions of a program that this control does not execute, or not wholly: the first block of each with
-/// what is to be said, in the order of the program.
-pub(crate) fn remarks(
-    program: &Program,
-    model: ControlModel,
-    strict: bool,
-) -> Vec<(u32, Feature, Judgement)> {
-    let mut said = std::collections::BTreeSet::new();
-    let mut remarks = Vec::new();
-    for block in program.blocks() {
-        if matches!(block.block.operation, Operation::Comment(_)) {
-            continue;
-        }
-        Feature::each(&block.block.operation, |feature| {
-            if !said.insert(feature) {
-                return;
-            }
-            match feature.judge(model, strict) {
-                Judgement::Executed => {}
-                judgement => remarks.push((block.number, feature, judgement)),
-            }
-        });
-    }
-    remarks
 }
 
 #[derive(Serialize)]

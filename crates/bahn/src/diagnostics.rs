@@ -39,14 +39,20 @@ pub(crate) struct FileFault {
 impl FileFault {
     /// Prints it as rustc does, with an empty line behind it.
     pub fn print(&self) {
-        print(&Diagnostic {
+        self.print_with(None);
+    }
+
+    /// The same with the place where that was opened which is meant.
+    pub fn print_with(&self, opened: Option<&Marked>) {
+        let diagnostic = Diagnostic {
             severity: self.severity,
             title: &self.title,
             path: &self.path.to_string_lossy(),
             marked: self.marked.clone(),
             label: self.label.clone(),
             help: self.help.as_deref(),
-        });
+        };
+        print_line(&diagnostic.render_with(opened, is_styled()));
         print_line("");
     }
 }
@@ -87,8 +93,11 @@ impl Marked {
 
     /// The text as it is shown, and the bytes of it that are marked.
     fn shown(&self) -> (String, std::ops::Range<usize>) {
-        let text = printable(&self.text.chars().take(MAX_COLUMNS).collect::<String>());
-        let text = text.trim_end();
+        let text = self
+            .text
+            .trim_end_matches(|c: char| c.is_whitespace() || c.is_control());
+        let text = printable(&text.chars().take(MAX_COLUMNS).collect::<String>());
+        let text = text.as_str();
         let byte_of = |character: usize| {
             text.char_indices()
                 .nth(character)
@@ -114,16 +123,35 @@ pub(crate) enum Severity {
 impl Diagnostic<'_> {
     /// The text for people.
     pub fn render(&self, styled: bool) -> String {
+        self.render_with(None, styled)
+    }
+
+    /// The text for people, with another place of the file where that was opened which is meant.
+    pub fn render_with(&self, opened: Option<&Marked>, styled: bool) -> String {
         let level = match self.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
         let (source, range) = self.marked.shown();
-        let snippet = Snippet::source(source)
+        let mut snippet = Snippet::source(source)
             .line_start(self.marked.line as usize)
-            .path(self.path)
+            .path(printable(self.path))
             .annotation(AnnotationKind::Primary.span(range).label(printable(&self.label)));
+        let mut other = None;
+        if let Some(opened) = opened {
+            let (source, range) = opened.shown();
+            let mark = AnnotationKind::Context.span(range).label("opened here");
+            if opened.line == self.marked.line {
+                snippet = snippet.annotation(mark);
+            } else {
+                let place = Snippet::source(source).line_start(opened.line as usize);
+                other = Some(place.path(self.path).annotation(mark));
+            }
+        }
         let mut group = level.primary_title(printable(self.title)).element(snippet);
+        if let Some(other) = other {
+            group = group.element(other);
+        }
         if let Some(help) = self.help {
             group = group.element(Level::HELP.message(help));
         }
@@ -136,10 +164,22 @@ impl Diagnostic<'_> {
     }
 }
 
-/// Text without characters that would steer the terminal, one for one.
+/// Text in which every character that would steer the terminal is shown by a picture of it, one for one: the
+/// start of an escape sequence as \u{241b}. A tab is a blank.
 pub(crate) fn printable(text: &str) -> String {
+    const PICTURES: u32 = 0x2400;
+    let picture = |c: char| char::from_u32(PICTURES + u32::from(c)).unwrap_or(char::REPLACEMENT_CHARACTER);
     text.chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
+        .map(|c| match c {
+            '\t' => ' ',
+            '\0'..='\x1f' => picture(c),
+            '\x7f' => '\u{2421}',
+            // What turns the direction of writing can hide what a line says.
+            '\u{80}'..='\u{9f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+                char::REPLACEMENT_CHARACTER
+            }
+            c => c,
+        })
         .collect()
 }
 
@@ -157,6 +197,11 @@ pub(crate) fn print_usage_error(text: &str) {
     };
     let text: Vec<String> = text.lines().map(printable).collect();
     print_line(&format!("{level}: {}", text.join("\n  ")));
+}
+
+/// Prints a line to standard error, with nothing in it that would steer the terminal.
+pub(crate) fn print_text(text: &str) {
+    print_line(&printable(text));
 }
 
 /// Prints a line to standard error; nobody can be told when that fails.
@@ -194,9 +239,98 @@ mod tests {
 
     #[test]
     fn lines_are_short_and_do_not_steer_the_terminal() {
-        assert_eq!(marked("L\x1b[31m\tX", None).0, "L [31m X");
+        assert_eq!(marked("L\x1b[31m\tX\u{202e}", None).0, "L\u{241b}[31m X\u{fffd}");
         assert_eq!(marked(&"\0".repeat(1_000_000), None).0, "");
         assert_eq!(marked(&"X".repeat(1_000_000), None).0.len(), MAX_COLUMNS);
+    }
+
+    /// Characters of no width, of two columns, of UTF-16 that was read as Latin: nothing panics.
+    #[test]
+    fn any_character_is_shown() {
+        let characters = (0..0x3100).chain(0xfe00..0x10000).chain(0x1f300..0x1f700);
+        for c in characters.filter_map(char::from_u32) {
+            for (text, columns) in [
+                (format!("{c}"), Some((1, 1))),
+                (format!("{c}{c}L {c}X"), Some((2, 2))),
+                (format!("L {c}"), Some((5, 9))),
+                (format!("{c} {c}"), None),
+                (format!("{c}").repeat(200), Some((150, 40))),
+                (format!("{c}L ").repeat(60), Some((190, 3))),
+            ] {
+                let marked = Marked {
+                    line: u32::MAX,
+                    text,
+                    columns,
+                };
+                let diagnostic = Diagnostic {
+                    severity: Severity::Error,
+                    title: "0 not a valid command",
+                    path: "A",
+                    marked: marked.clone(),
+                    label: format!("{c}"),
+                    help: Some("help"),
+                };
+                assert!(
+                    diagnostic
+                        .render_with(Some(&marked), true)
+                        .contains("not a valid")
+                );
+            }
+        }
+    }
+
+    proptest::proptest! {
+        #![proptest_config(proptest::prelude::ProptestConfig { failure_persistence: None, cases: 2000, ..Default::default() })]
+
+        /// Whatever stands in a file, wherever the mark is, under whatever name.
+        #[test]
+        fn anything_is_shown(
+            text in "([L= ;\\[\\]\u{0}\u{ad}\u{300}\u{200b}\u{3000}\u{feff}\u{1f600}]|\\PC|[\u{80}-\u{ff}]){0,250}",
+            label in "\\PC{0,40}",
+            line in 0_u32..,
+            opened in 0_u32..,
+            columns in proptest::option::of((0_u32..300, 0_u32..300)),
+            help in proptest::option::of("\\PC{0,60}"),
+        ) {
+            let marked = |line, columns| Marked { line, text: text.clone(), columns };
+            let diagnostic = Diagnostic {
+                severity: Severity::Warning,
+                title: &label,
+                path: &text,
+                marked: marked(line, columns),
+                label: label.clone(),
+                help: help.as_deref(),
+            };
+            for opened in [None, Some(marked(opened, None)), Some(marked(line, Some((3, 1))))] {
+                proptest::prop_assert!(!diagnostic.render_with(opened.as_ref(), false).is_empty());
+            }
+        }
+    }
+
+    /// What is open is marked where it was opened, on another line or on the same.
+    #[test]
+    fn what_was_opened_is_marked_too() {
+        let marked = |line, text: &str, columns| Marked {
+            line,
+            text: text.to_owned(),
+            columns: Some(columns),
+        };
+        let diagnostic = Diagnostic {
+            severity: Severity::Error,
+            title: "16 jump within a parenthesis",
+            path: "M.PLC",
+            marked: marked(12, "  JP 5", (3, 2)),
+            label: String::new(),
+            help: None,
+        };
+        let text = diagnostic.render_with(Some(&marked(9, "A[", (1, 2))), false);
+        assert!(
+            text.contains(":12:3") && text.contains("9 | A[") && text.contains("opened here"),
+            "{text}"
+        );
+        let same = diagnostic.render_with(Some(&marked(12, "  JP 5", (6, 1))), false);
+        assert_eq!(same.matches("JP 5").count(), 1, "{same}");
+        assert!(same.contains("opened here"), "{same}");
     }
 
     #[test]

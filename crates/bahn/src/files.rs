@@ -9,7 +9,7 @@ use std::sync::Arc;
 use bahn_interpreter::Library;
 use bahn_program::Program;
 
-use crate::UsageError;
+use crate::{UsageError, called};
 
 /// Largest program file, 1 GiB. A larger one is FURTHER PROGRAM ENTRY IMPOSSIBLE: the run holds the file in
 /// memory.
@@ -32,29 +32,22 @@ pub(crate) enum Loaded {
 pub(crate) const EMPTY: &str = "the file holds no program";
 pub(crate) const TOO_LARGE: &str = "the file is larger than 1 GiB";
 
-impl Loaded {
-    /// The program, unless it is empty or too large.
-    pub fn program(&self) -> Option<&Arc<Program>> {
-        match self {
-            Loaded::Program(program) => Some(program),
-            Loaded::Empty(_) | Loaded::TooLarge => None,
-        }
-    }
-}
-
 /// Reads a program file.
 pub(crate) fn load_program(path: &Path) -> Result<Loaded, UsageError> {
-    let bytes = match read(path, MAX_PROGRAM_BYTES) {
-        Ok(Some(bytes)) => bytes,
-        Ok(None) => return Ok(Loaded::TooLarge),
-        Err(error) => return Err(cannot("read", path, &error)),
+    Ok(as_program(path, read_program(path)?))
+}
+
+/// The program of a file that was read; `None` is one that is too large.
+pub(crate) fn as_program(path: &Path, bytes: Option<Vec<u8>>) -> Loaded {
+    let Some(bytes) = bytes else {
+        return Loaded::TooLarge;
     };
     let program = Arc::new(Program::from_bytes(program_name(path), bytes));
-    Ok(if is_empty(&program) {
+    if is_empty(&program) {
         Loaded::Empty(program)
     } else {
         Loaded::Program(program)
-    })
+    }
 }
 
 fn is_empty(program: &Program) -> bool {
@@ -62,11 +55,9 @@ fn is_empty(program: &Program) -> bool {
     program.begin().is_none() && program.end().is_none() && program.block_count() <= 2
 }
 
-/// The bytes of a program file, empty when it is larger than [`MAX_PROGRAM_BYTES`].
-pub(crate) fn read_program(path: &Path) -> Result<Vec<u8>, UsageError> {
-    read(path, MAX_PROGRAM_BYTES)
-        .map(Option::unwrap_or_default)
-        .map_err(|error| cannot("read", path, &error))
+/// The bytes of a program file; `None` when it is larger than [`MAX_PROGRAM_BYTES`].
+pub(crate) fn read_program(path: &Path) -> Result<Option<Vec<u8>>, UsageError> {
+    read(path, MAX_PROGRAM_BYTES).map_err(|error| cannot("read", path, &error))
 }
 
 /// Reads a tool table or parameter list.
@@ -147,40 +138,20 @@ impl FileLibrary {
 }
 
 impl Library for FileLibrary {
-    /// Looks for the name as written, then with .H, .h, .I, beside the calling program.
+    /// Looks for the name beside the calling program; see [`called::find`].
     fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         let key = (name.to_owned(), caller.to_owned());
         if let Some(program) = self.found.get(&key) {
             return Ok(Some(program.clone()));
         }
         let folder = Path::new(caller).parent().unwrap_or(Path::new(""));
-        let Some(path) = candidates(name)
-            .map(|name| folder.join(name))
-            .find(|path| path.is_file())
-        else {
+        let Some(path) = called::find(folder, name, Path::new(caller)) else {
             return Ok(None);
         };
         let program = self.open(path)?;
         self.found.insert(key, program.clone());
         Ok(Some(program))
     }
-}
-
-/// File names of a called program. Later controls write folders (`TNC:\PARTS\7.H`): only the name counts,
-/// everything lies in one folder here.
-fn candidates(name: &str) -> impl Iterator<Item = String> {
-    let name = name
-        .trim()
-        .rsplit(['\\', '/', ':'])
-        .next()
-        .unwrap_or_default()
-        .to_owned();
-    let endings: &[&str] = if name.is_empty() || name == "." || name == ".." {
-        &[]
-    } else {
-        &["", ".H", ".h", ".I"]
-    };
-    endings.iter().map(move |ending| format!("{name}{ending}"))
 }
 
 /// A file being written: it appears under its name when it is complete, in one step. Until then, and for
@@ -274,18 +245,5 @@ pub(crate) fn sync_folder(path: &Path) {
         .unwrap_or(Path::new("."));
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn called_names_get_endings_and_lose_folders() {
-        let all = |name| candidates(name).collect::<Vec<_>>();
-        assert_eq!(all("7"), ["7", "7.H", "7.h", "7.I"]);
-        assert_eq!(all(r"TNC:\PARTS\7.H"), ["7.H", "7.H.H", "7.H.h", "7.H.I"]);
-        assert!(all("..").is_empty() && all("/").is_empty());
     }
 }

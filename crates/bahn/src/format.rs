@@ -7,6 +7,7 @@ use std::sync::Arc;
 use bahn_program::{FormatOptions, Program, format_program};
 
 use crate::cli::FmtOptions;
+use crate::diagnostics::printable;
 use crate::files::{self, Loaded, NewFile};
 use crate::{Outcome, UsageError, console, diagnostics};
 
@@ -14,7 +15,9 @@ use crate::{Outcome, UsageError, console, diagnostics};
 pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
     let mut outcome = Outcome::Fine;
     for path in &options.files {
-        let program = load(path)?;
+        // Read once: a pipe gives its bytes once.
+        let bytes = files::read_program(path)?;
+        let program = load(path, bytes.clone())?;
         let listing = format_program(
             &program,
             FormatOptions {
@@ -26,21 +29,28 @@ pub(crate) fn command(options: &FmtOptions) -> Result<Outcome, UsageError> {
             continue;
         }
         let listing = listing.to_string();
-        let differs = files::read_program(path)? != listing.as_bytes();
+        let differs = bytes.as_deref() != Some(listing.as_bytes());
         if differs && options.check {
-            console::print(&format!("{}\n", path.display()))?;
+            console::print(&format!("{}\n", printable(&path.to_string_lossy())))?;
             outcome = Outcome::ProgramError;
         }
         if differs && options.write {
+            if !program.begins_with_header() {
+                // The other files are written all the same.
+                let reason = "it does not begin with BEGIN PGM, so it may be no program";
+                diagnostics::print_usage_error(&format!("{} stays as it is: {reason}", path.display()));
+                outcome = Outcome::WrongUse;
+                continue;
+            }
             write(path, &listing)?;
-            diagnostics::print_line(&format!("formatted {}", path.display()));
+            diagnostics::print_text(&format!("formatted {}", path.display()));
         }
     }
     Ok(outcome)
 }
 
-fn load(path: &Path) -> Result<Arc<Program>, UsageError> {
-    match files::load_program(path)? {
+fn load(path: &Path, bytes: Option<Vec<u8>>) -> Result<Arc<Program>, UsageError> {
+    match files::as_program(path, bytes) {
         Loaded::Program(program) => Ok(program),
         Loaded::Empty(_) => Err(UsageError::new(format!("{}: {}", path.display(), files::EMPTY))),
         Loaded::TooLarge => Err(UsageError::new(format!(

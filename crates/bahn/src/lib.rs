@@ -13,10 +13,12 @@
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
 //!   `bahn plc`, `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
+//! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 
+mod called;
 mod check;
 mod cli;
 mod conformance;
@@ -27,9 +29,11 @@ mod explain;
 mod files;
 mod format;
 mod interrupt;
+mod junit;
 mod machine_folder;
 mod manual;
 mod mp;
+mod paragraph;
 mod path_csv;
 mod path_svg;
 mod plc;

@@ -63,7 +63,7 @@ pub(crate) fn man(options: &ManOptions) -> Result<Outcome, UsageError> {
         file.finish()?;
         written += 1;
     }
-    diagnostics::print_line(&format!("{}: {written} pages", folder.display()));
+    diagnostics::print_text(&format!("{}: {written} pages", folder.display()));
     Ok(Outcome::Fine)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bahn_interpreter::Rules;
+use bahn_interpreter::{Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, Position};
@@ -64,6 +64,7 @@ pub(crate) fn interpreter(
         tool_length_mm: None,
         machine: false,
         skip_blocks: run.skip_blocks,
+        inch_feed: run.inch_feed.map(Into::into),
         strict: run.strict,
         skip_unknown: run.skip_unknown,
         max_blocks_without_motion: run.max_blocks,
@@ -150,7 +151,7 @@ fn q_value(text: &str, model: ControlModel) -> Result<(u16, f64), UsageError> {
     };
     let value = value.trim();
     match value.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok((number, value)),
+        Ok(value) if value.abs() <= Q_VALUE_MAX => Ok((number, value)),
         _ => Err(wrong(format!("`{value}` is no number"))),
     }
 }
@@ -170,7 +171,7 @@ mod tests {
         assert_eq!(q_value("Q1=-5.25", MODEL), Ok((1, -5.25)));
         assert_eq!(q_value(" q99 = +3", MODEL), Ok((99, 3.0)));
         for wrong in [
-            "1=5", "Q1", "Q1=", "Q1=x", "Q1=inf", "Q-1=5", "Q99999=1", "Q124=1",
+            "1=5", "Q1", "Q1=", "Q1=x", "Q1=inf", "Q1=1e308", "Q-1=5", "Q99999=1", "Q124=1",
         ] {
             assert!(q_value(wrong, MODEL).is_err(), "{wrong}");
         }

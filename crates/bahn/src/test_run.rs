@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, Message, ProgramError};
+use bahn_interpreter::{Interpreter, ProgramError};
 use bahn_motion::{PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
@@ -181,10 +181,7 @@ impl TestRun {
         let line = run
             .program(error.block.program)
             .map_or(0, |program| Marked::of_block(program, block).line);
-        let remedy = match &error.message {
-            Message::Control(id) => Some(id.remedy()),
-            Message::Numbered(_) => None,
-        };
+        let remedy = error.remedy();
         ErrorReport {
             message: error.message.text(self.model).to_owned(),
             program,

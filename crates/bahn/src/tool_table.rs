@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::Path;
 
 use bahn_control::Tool;
-use bahn_interpreter::{ToolState, ToolTable};
+use bahn_interpreter::{ToolState, ToolTable, tool_key};
 use bahn_path::ToolShape;
 
 use crate::{UsageError, files};
@@ -157,13 +157,11 @@ impl Columns {
             radius: length("R")? + length("DR")?,
             corner_radius: length("R2")? + length("DR2")?,
         };
-        if shape.radius < 0.0 || shape.corner_radius < 0.0 {
+        if shape.corner_radius < 0.0 || length("R")? < 0.0 {
             return Err("a radius is negative".into());
         }
         let tool = self.field(&fields, "T");
-        let tool = tool
-            .parse::<u32>()
-            .map_err(|_| format!("T: `{tool}` is no tool number"))?;
+        let tool = key(tool).ok_or_else(|| format!("T: `{tool}` is no tool number"))?;
         let pocket = match self.field(&fields, "P") {
             "" | "-" => None,
             text => Some(
@@ -256,6 +254,19 @@ impl Columns {
         }
         Ok(value)
     }
+}
+
+/// Key of a tool number, with an index of one digit where later controls have one: 253.1.
+fn key(text: &str) -> Option<u32> {
+    let Some((number, index)) = text.split_once(['.', ',']) else {
+        return text.parse().ok();
+    };
+    let number = number
+        .parse()
+        .ok()
+        .filter(|number| *number <= u32::from(u16::MAX))?;
+    let index = index.parse().ok().filter(|index| (1..=9).contains(index))?;
+    Some(tool_key(number, index))
 }
 
 /// Character positions where the words of a line begin.

@@ -54,7 +54,8 @@ fn desk() -> Folder {
     }
     copy(&root().join("machines/mill"), &folder.path("mill"));
     let part = "BEGIN PGM PART MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+60 Y+40 Z+0\nTOOL DEF 1 L+0 R+5\n\
-                TOOL CALL 1 Z S1000\nL Z+20 R0 F MAX M3\nL X-10 Y+10 F MAX\nL Z-4 F MAX\nL X+70 F400\nL Z+20 F MAX M2\n\
+                TOOL CALL 1 Z S1000\nL Z+20 R0 F MAX M3\nL X-10 Y+10 F MAX\nL Z-4 F MAX\nL X+70 F400\n\
+                CC X+40 Y+10\nC X+70 Y+10 DR+ F3000\nL Z+20 F MAX M2\n\
                 END PGM PART MM\n";
     for name in ["part.h", "PART.H"] {
         folder.write(name, part);
@@ -69,9 +70,12 @@ fn desk() -> Folder {
     folder.write("door.txt", "1 I4=1\n5 I4=0\n8 end\n");
     folder.write(
         "stop.txt",
-        "start + 0.5 key NC_STOP tap\nstart + 1.5 key NC_START tap\n",
+        "start+0.5: key NC_STOP tap\nstart+1.5: key NC_START tap\n",
     );
-    folder.write("jog.txt", "0.5 end\n");
+    for name in ["before.csv", "after.csv"] {
+        folder.write(name, "time [s],X.lag [mm],event\n1,0.5,start\n2,0.25,\n");
+    }
+    folder.write("jog.txt", "30: end\n");
     folder
 }
 
@@ -172,7 +176,9 @@ fn of_new_machines_of_each_model() {
         for (other, its_name) in models.iter().filter(|(other, _)| *other != model) {
             for file in ["README.md", "machine.toml", "parameters.mp"] {
                 let text = folder.read(&format!("m/{file}"));
-                let names = |line: &&str| line.contains(its_name) && !line.contains('[');
+                let names = |line: &&str| {
+                    line.contains(its_name) && !line.contains(name) && !line.contains(" as the ")
+                };
                 assert_eq!(text.lines().find(names), None, "{model}/{file} names {other}");
             }
         }

@@ -201,12 +201,27 @@ fn explain_says_everything_of_a_parameter() {
             "MP1030  Positioning window",
             "0.0001 .. 2 mm or deg",
             "recommended: 0.01",
-            "source:      000:",
+            "  does:        How near an axis must be",
+            "  too small:   ",
+            "  too large:   ",
+            "MP1110 Standstill monitoring",
+            "  source:      Technical manual TNC 407/415/425, chapter 5 Machine",
             "MP1030.4  0.01",
         ] {
             assert!(out.contains(expected), "{written}: {expected} is not in {out}");
         }
     }
+    for line in folder.bahn("mp explain 1060").out().lines() {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+    let json = folder.bahn("mp explain 1060 --format json").json();
+    assert_eq!(json[0]["related"][0], 1070);
+    assert!(
+        json[0]["too_large"]
+            .as_str()
+            .is_some_and(|text| text.contains("overshoot")),
+        "{json}"
+    );
     let out = folder.bahn("mp explain 1030.2").out();
     assert!(
         out.contains("MP1030.2  Positioning window, Z axis") && !out.contains("MP1030.1"),

@@ -143,15 +143,32 @@ fn scripts_set_and_expect() {
     folder.write("bad.txt", "2: I4=1, I5=1\n2: expect O2=0\n3: expect W8=7\n");
     let run = folder.bahn("plc run MAIN.PLC --script bad.txt --format json");
     assert_eq!(run.code(), 1);
-    assert_eq!(
-        run.err(),
-        "cycle 2: O2 expected 0, found 1\ncycle 3: W8 expected 7, found 3\n"
+    let err = run.err();
+    assert!(
+        err.starts_with("error: cycle 2: O2 expected 0, found 1\n --> bad.txt:2:11\n"),
+        "{err}"
+    );
+    assert!(
+        err.contains("3 | 3: expect W8=7\n  |           ^^^^ found 3\n"),
+        "{err}"
     );
     let failed = &run.json()["failed_expectations"][1];
     assert_eq!(
         failed,
-        &json!({"cycle": 3, "operand": "W8", "expected": 7, "found": 3})
+        &json!({"cycle": 3, "line": 3, "operand": "W8", "expected": 7, "found": 3})
     );
+    folder.write("late.txt", "2: expect O2=0\n3: expect W8=7\n9: expect O2=1\n");
+    let run = folder.bahn("plc run MAIN.PLC --script late.txt --cycles 3 --junit out.xml");
+    assert_eq!(run.code(), 1);
+    let xml = folder.read("out.xml");
+    for expected in [
+        "<testsuite name=\"MAIN.PLC\" tests=\"3\" failures=\"1\" errors=\"0\" skipped=\"1\">",
+        "<testcase classname=\"late.txt:1\" name=\"cycle 2: O2 = 0\"/>",
+        "<testcase classname=\"late.txt:2\" name=\"cycle 3: W8 = 7\">\n      <failure message=\"found 3\"/>",
+        "<testcase classname=\"late.txt:3\" name=\"cycle 9: O2 = 1\">\n      <skipped",
+    ] {
+        assert!(xml.contains(expected), "{expected} is not in {xml}");
+    }
     folder.write("wrong.txt", "1: I4=1\n2: W7=1\n");
     let run = folder.bahn("plc run MAIN.PLC --script wrong.txt");
     assert_eq!(run.code(), 2);
@@ -418,5 +435,55 @@ fn signals_are_listed() {
         run.out().contains("FN19_STROBE") && !run.out().contains("M2045"),
         "{}",
         run.out()
+    );
+}
+
+/// Editors save UTF-16, scripts write to pipes: the program is the same.
+#[test]
+fn programs_come_in_utf_16_and_from_pipes() {
+    let folder = folder(DOOR);
+    let plain = folder.bahn("plc check MAIN.PLC").err();
+    let units: Vec<u8> = DOOR.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    folder.write("WIDE.PLC", [&[0xff, 0xfe], units.as_slice()].concat());
+    for model in ["tnc151", "tnc155", "tnc360", "tnc407", "tnc415b", "tnc425"] {
+        let run = folder.bahn(&format!("plc check WIDE.PLC --model {model}"));
+        assert_eq!(run.code(), 0, "{}", run.err());
+    }
+    // Bytes that are no text are refused at their place, whatever they are.
+    folder.write(
+        "BROKEN.PLC",
+        [b"L I4\n".as_slice(), &[0, 0xd8, 0, 0x85, 0xff, b'[', 0, b'\n']].concat(),
+    );
+    let run = folder.bahn("plc check BROKEN.PLC --model tnc151");
+    assert_eq!(run.code(), 1, "{}", run.err());
+    assert!(run.err().contains("BROKEN.PLC:2:"), "{}", run.err());
+
+    let mut child = folder
+        .command()
+        .args(["plc", "check", "/dev/stdin"])
+        .stdin(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::io::Write::write_all(&mut child.stdin.take().unwrap(), DOOR.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success());
+    let of_pipe = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(of_pipe.replace("/dev/stdin", "MAIN.PLC"), plain);
+}
+
+/// An error tells what is wrong, where that was opened which it does not fit, and what to do.
+#[test]
+fn compile_errors_help() {
+    let folder = folder("L I4\nA[\nL I5\nJP 7\n]\nLBL 7\nEM\n");
+    let err = folder.bahn("plc check MAIN.PLC").err();
+    assert!(
+        err.contains("error: 16 jump within a parenthesis\n --> MAIN.PLC:4:1"),
+        "{err}"
+    );
+    assert!(err.contains("2 | A[\n  | -- opened here"), "{err}");
+    assert!(
+        err.contains("= help: A jump or call leaves an open bracket"),
+        "{err}"
     );
 }

@@ -468,3 +468,26 @@ fn compensation_tables_lie_in_the_folder() {
     let right = run("--mp 730=%00001");
     assert_eq!(right.code(), 0, "{}", right.err());
 }
+
+/// Each expectation of a script is a test case for a build server.
+#[test]
+fn expectations_are_written_as_junit() {
+    let folder = Folder::with_program(CORNER);
+    folder.write(
+        "s.txt",
+        "0.2: expect message \"POWER INTERRUPTED\"\n0.3: expect no message\nstart+4: expect tool=3\nstart+5: end\n\
+         start+30: expect run stopped\n",
+    );
+    let run = run(&folder, "--script s.txt --junit out.xml");
+    assert_eq!(run.code(), 1, "{}", run.err());
+    let xml = folder.read("out.xml");
+    for expected in [
+        "failures=\"1\" errors=\"0\" skipped=\"1\"",
+        "classname=\"s.txt:1\" name=\"0.2: expect message &quot;POWER INTERRUPTED&quot;\"/>",
+        "classname=\"s.txt:2\" name=\"0.3: expect no message\">\n      <failure message=\"shown is POWER INTERRUPTED",
+        "classname=\"s.txt:3\" name=\"start+4: expect tool=3\"",
+        "classname=\"s.txt:5\" name=\"start+30: expect run stopped\">\n      <skipped",
+    ] {
+        assert!(xml.contains(expected), "{expected} is not in {xml}");
+    }
+}

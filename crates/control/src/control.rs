@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bahn_exchange::{Bit, BitArea, Exchange, Image, Number, signal};
 use bahn_motion::{Interpolator, Limits as PathLimits};
-use bahn_parameters::{ControlModel, MessageId, OperationParameters, PlcParameters, Station};
+use bahn_parameters::{ControlModel, InchFeed, MessageId, OperationParameters, PlcParameters, Station};
 use bahn_path::{Axis, Position};
 use bahn_plc::{Machine, Start, mirror_parameters};
 use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
@@ -87,6 +87,8 @@ pub struct Control {
     keeps: bool,
     /// What is to be stored has changed since [`Control::stored`].
     pub(crate) unsaved: bool,
+    /// What F counts in a program in inches, when that is not what it counts on the model.
+    pub(crate) inch_feed: Option<InchFeed>,
     pub(crate) programs: Arc<dyn Programs>,
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
@@ -117,6 +119,7 @@ impl Control {
             plc_dialogues,
             tools,
             checking,
+            inch_feed,
             programs,
             files,
             remembered,
@@ -206,6 +209,7 @@ impl Control {
             test: None,
             keeps: false,
             unsaved: false,
+            inch_feed,
             programs,
             q: remembered.q,
             log: Vec::new(),

@@ -377,6 +377,7 @@ impl Control {
             start: self.offsets.to_path(machine),
             tool_length_mm: Some(self.offsets.tool_length),
             machine: true,
+            inch_feed: self.inch_feed,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use bahn_exchange::Exchange;
 use bahn_interpreter::ToolState;
-use bahn_parameters::ParameterList;
+use bahn_parameters::{InchFeed, ParameterList};
 use bahn_path::{Axis, Position, ToolShape};
 use bahn_plc::PlcProgram;
 
@@ -49,6 +49,8 @@ pub struct Setup {
     pub tools: Option<BTreeMap<u32, Tool>>,
     /// How programs are taken that use what is not executed here.
     pub checking: Checking,
+    /// What F counts in a program in inches; `None` for what it counts on the model.
+    pub inch_feed: Option<InchFeed>,
     /// Where programs come from.
     pub programs: Arc<dyn Programs>,
     /// Files and tables that PLC modules read.

@@ -6,16 +6,16 @@ use std::fmt;
 
 use bahn_parameters::conformance::{Effect, Entry, Kind, find};
 use bahn_parameters::{ControlModel, MessageId};
-use bahn_program::{CycleBlock, CycleWord, InvalidBlock, MFunctions, Operation};
+use bahn_program::{CycleBlock, CycleWord, InvalidBlock};
 
-use crate::error::{Fault, WarningKind};
+use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
 use crate::run::Run;
 use crate::settings::Settings;
 
 /// A function of a block that has a row of its own in the registry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Feature {
+pub(crate) enum Feature {
     /// `M114`.
     M(u16),
     /// `CYCL DEF 19`.
@@ -29,7 +29,7 @@ pub enum Feature {
 }
 
 /// Names of [`Feature::Word`].
-pub mod words {
+pub(crate) mod words {
     /// `CYCL DEF 7.1 #n`: a line of a datum table.
     pub const DATUM_TABLE: &str = "CYCL DEF # (line of a datum table)";
     /// The dialogue block of an OEM cycle that acts at its definition [000:17732-17736].
@@ -42,7 +42,7 @@ pub mod words {
 
 impl Feature {
     /// The row of the registry; `None` when the model does not have the function.
-    pub fn entry(self, model: ControlModel) -> Option<&'static Entry> {
+    fn entry(self, model: ControlModel) -> Option<&'static Entry> {
         let kind = match self {
             Feature::M(_) => Kind::MFunction,
             Feature::Cycle(_) | Feature::Probe(_) => Kind::Cycle,
@@ -52,33 +52,8 @@ impl Feature {
         find(model, kind, &self.to_string())
     }
 
-    /// Calls `found` with what a block asks for, without executing it.
-    pub fn each(operation: &Operation, mut found: impl FnMut(Feature)) {
-        let mut codes = |m: &MFunctions| m.codes().iter().for_each(|code| found(Feature::M(*code)));
-        match operation {
-            Operation::Motion(motion) => codes(&motion.m),
-            Operation::Stop(m) | Operation::Miscellaneous(m) | Operation::CycleCall(m) => codes(m),
-            Operation::Cycle(block) => {
-                found(Feature::Cycle(block.number));
-                if names_datum_table(block) {
-                    found(Feature::Word(words::DATUM_TABLE));
-                }
-            }
-            Operation::Probe(block) => found(Feature::Probe(block.number)),
-            Operation::ToolCall {
-                delta_length,
-                delta_radius,
-                ..
-            } if delta_length.is_some() || delta_radius.is_some() => found(Feature::Word(words::OVERSIZE)),
-            Operation::Print(_) => found(Feature::Fn(15)),
-            Operation::Dialog(dialog) if dialog.call => found(Feature::Word(words::DIALOG_CALL)),
-            Operation::Dialog(_) => found(Feature::Word(words::DIALOG_DEFINITION)),
-            _ => {}
-        }
-    }
-
     /// What a model does with the function.
-    pub fn judge(self, model: ControlModel, strict: bool) -> Judgement {
+    fn judge(self, model: ControlModel, strict: bool) -> Judgement {
         let Some(entry) = self.entry(model) else {
             return Judgement::Refused(format!("this control has no {self}"));
         };
@@ -109,7 +84,7 @@ impl fmt::Display for Feature {
 
 /// What becomes of a function.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Judgement {
+enum Judgement {
     /// It is executed.
     Executed,
     /// It is executed in part; the text says what is missing.
@@ -160,7 +135,8 @@ impl Run {
     pub(crate) fn unreadable(&mut self, block: &InvalidBlock, settings: &Settings) -> Result<Flow, Fault> {
         let error = &block.error;
         if !settings.skip_unknown || !block.is_unknown() {
-            return Err(Fault::new(error.message, error.detail.to_string()));
+            let cause = error.help.map_or(Cause::Message, Cause::Written);
+            return Err(Fault::new(error.message, error.detail.to_string()).because(cause));
         }
         let (operation, words) = block.without_unknown_words();
         self.warn(WarningKind::PassedOver { what: words });

@@ -29,6 +29,8 @@ const CHUNKS_KEPT: usize = 128;
 /// The programs of a run; index 0 is the main program.
 pub(crate) struct Code {
     programs: Vec<Loaded>,
+    /// Programs that were called at least once, and the main program.
+    called: usize,
     /// Chunks in memory in the order they came: the oldest goes first.
     kept: VecDeque<(u16, usize)>,
 }
@@ -42,6 +44,7 @@ impl Code {
     pub fn new(main: Arc<Program>) -> Code {
         let mut code = Code {
             programs: Vec::new(),
+            called: 1,
             kept: VecDeque::new(),
         };
         code.add(main);
@@ -82,6 +85,13 @@ impl Code {
                 .position(|p| Arc::ptr_eq(&p.program, &program));
             known.map_or_else(|| self.add(program), |index| index as u16)
         }))
+    }
+
+    /// Whether a program is called for the first time; only once so.
+    pub fn is_new(&mut self, index: u16) -> bool {
+        let new = usize::from(index) >= self.called;
+        self.called = self.called.max(usize::from(index) + 1);
+        new
     }
 
     pub fn program(&self, index: u16) -> Option<&Arc<Program>> {

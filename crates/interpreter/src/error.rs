@@ -1,6 +1,6 @@
 //! What ends a run and what is only worth saying.
 
-use bahn_parameters::{ControlModel, MessageId};
+use bahn_parameters::{ControlModel, InchFeed, MessageId};
 use bahn_path::BlockRef;
 
 /// An error of the program, with the control's message and the block that causes it.
@@ -14,6 +14,80 @@ pub struct ProgramError {
     pub block: BlockRef,
     /// What exactly, in a few words; may be empty.
     pub detail: String,
+    /// What it is about, where the message leaves that open.
+    pub cause: Cause,
+}
+
+impl ProgramError {
+    /// What the programmer can do about it; nothing is known of a text of FN14.
+    pub fn remedy(&self) -> Option<&'static str> {
+        self.cause.remedy().or(match self.message {
+            Message::Control(id) => Some(id.remedy()),
+            Message::Numbered(_) => None,
+        })
+    }
+}
+
+/// What a fault is about, where one message of the control stands for several things.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Cause {
+    /// What the message says.
+    #[default]
+    Message,
+    /// The block cannot be read; what to do about it.
+    Written(&'static str),
+    /// No tool is called before the block that needs its radius.
+    NoTool,
+    /// No CC is programmed before the block that needs it.
+    NoPole,
+    /// An axis has no position yet.
+    NoPosition,
+    /// A cycle is called, none is defined.
+    NoCycle,
+    /// BLK FORM 0.2 stands without 0.1.
+    NoBlankMin,
+    /// The arc has no sense of rotation.
+    NoDirection,
+    /// CR has no radius.
+    NoRadius,
+    /// The polar angle is missing.
+    NoAngle,
+    /// The subprogram does not end with LBL 0.
+    NoReturn,
+    /// A label behind the block is called with REP.
+    RepeatsAhead,
+    /// A subprogram calls itself.
+    CallsItself,
+    /// The tool in use has no radius.
+    NoToolRadius,
+}
+
+impl Cause {
+    /// What the programmer can do about it, where the message's own remedy would mislead.
+    pub fn remedy(self) -> Option<&'static str> {
+        Some(match self {
+            Cause::Message => return None,
+            Cause::Written(help) => help,
+            Cause::NoTool => "Call the tool before the block: TOOL CALL with number, tool axis and S.",
+            Cause::NoPole => "Program CC with the circle centre or pole before this block.",
+            Cause::NoPosition => {
+                "Move the axes of the plane to a position with R0 before the contour begins."
+            }
+            Cause::NoCycle => "Define a cycle with CYCL DEF before it is called with CYCL CALL, M99 or M89.",
+            Cause::NoBlankMin => "Program BLK FORM 0.1 with the MIN point before BLK FORM 0.2.",
+            Cause::NoDirection => "Add DR+ (counter-clockwise) or DR- (clockwise) to the arc.",
+            Cause::NoRadius => "Add the radius R to the arc.",
+            Cause::NoAngle => "Add the polar angle PA.",
+            Cause::NoReturn => "End the subprogram with LBL 0, and put it behind the block with M2 or M30.",
+            Cause::RepeatsAhead => {
+                "Call a subprogram without REP; a section that is repeated begins before the call."
+            }
+            Cause::CallsItself => "Take the call out of the subprogram that it calls.",
+            Cause::NoToolRadius => {
+                "Give the tool its radius: TOOL DEF with L and R before the call, or a tool table."
+            }
+        })
+    }
 }
 
 /// What the control shows.
@@ -45,6 +119,7 @@ pub(crate) struct Fault {
     pub block: Option<BlockRef>,
     /// Found by the contour stages: what they hold back can no longer be finished.
     pub ahead: bool,
+    pub cause: Cause,
 }
 
 impl Fault {
@@ -54,7 +129,13 @@ impl Fault {
             detail: detail.into(),
             block: None,
             ahead: false,
+            cause: Cause::Message,
         }
+    }
+
+    /// Says what the fault is about.
+    pub fn because(self, cause: Cause) -> Fault {
+        Fault { cause, ..self }
     }
 
     pub fn found_ahead(self) -> Fault {
@@ -99,6 +180,8 @@ pub enum WarningKind {
     },
     /// BLK FORM 0.1 stands without 0.2: there is no blank.
     BlankIncomplete,
+    /// All sides of BLK FORM are zero: there is no blank.
+    BlankEmpty,
     /// A blank was given in a called program only [003:7908-7912].
     BlankInCalledProgram,
     /// M2 or M30 stands in a called program, where it must not [003:3870-3902].
@@ -113,6 +196,13 @@ pub enum WarningKind {
     PassedOver {
         /// The words, or the function and why.
         what: String,
+    },
+    /// The feeds of a program in inches look ten times too small or too great.
+    InchFeed {
+        /// What F is taken to count.
+        reading: InchFeed,
+        /// The greatest feed if all are too small, the least if all are too great, mm/min.
+        feed_mm_min: u32,
     },
 }
 
@@ -131,6 +221,7 @@ impl std::fmt::Display for WarningKind {
             WarningKind::Function { text } => f.write_str(text),
             WarningKind::PassedOver { what } => write!(f, "passed over: {what}"),
             WarningKind::BlankIncomplete => write!(f, "BLK FORM 0.2 is missing: there is no blank"),
+            WarningKind::BlankEmpty => write!(f, "BLK FORM has no size: there is no blank"),
             WarningKind::BlankInCalledProgram => {
                 write!(
                     f,
@@ -143,6 +234,22 @@ impl std::fmt::Display for WarningKind {
                     "a called program must not contain M2 or M30: the whole run ends here"
                 )
             }
+            WarningKind::InchFeed {
+                reading: InchFeed::Tenths,
+                feed_mm_min,
+            } => write!(
+                f,
+                "F counts tenths of an inch/min: no feed of the program is above {feed_mm_min} mm/min; \
+                 --inch-feed whole if inch/min are meant"
+            ),
+            WarningKind::InchFeed {
+                reading: InchFeed::Whole,
+                feed_mm_min,
+            } => write!(
+                f,
+                "F counts inch/min: no feed of the program is below {feed_mm_min} mm/min; \
+                 --inch-feed tenths if tenths of an inch/min are meant"
+            ),
         }
     }
 }

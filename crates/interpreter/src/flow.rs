@@ -3,7 +3,7 @@
 use bahn_parameters::{Limits, MessageId};
 use bahn_path::BlockRef;
 
-use crate::error::Fault;
+use crate::error::{Cause, Fault};
 
 /// What a block asks of the flow of the program.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,10 +84,10 @@ impl Position {
     pub fn call(&mut self, label: u16, target: u32, limits: &Limits) -> Result<(), Fault> {
         let open = || self.frames.iter().rev().take_while(|frame| frame.label.is_some());
         if open().any(|frame| frame.label == Some(label)) {
-            return Err(Fault::new(
-                MessageId::ExcessiveSubprogramming,
-                "a subprogram calls itself",
-            ));
+            return Err(
+                Fault::new(MessageId::ExcessiveSubprogramming, "a subprogram calls itself")
+                    .because(Cause::CallsItself),
+            );
         }
         let nested = self.frames.iter().filter(|frame| frame.label.is_some()).count();
         if nested >= usize::from(limits.subprogram_nesting_max) {
@@ -155,10 +155,10 @@ impl Position {
                 self.block = block;
                 Ok(true)
             }
-            Some(_) => Err(Fault::new(
-                MessageId::ExcessiveSubprogramming,
-                "the subprogram has no LBL 0",
-            )),
+            Some(_) => Err(
+                Fault::new(MessageId::ExcessiveSubprogramming, "the subprogram has no LBL 0")
+                    .because(Cause::NoReturn),
+            ),
         }
     }
 
@@ -170,7 +170,8 @@ impl Position {
             return Err(Fault::new(
                 MessageId::ExcessiveSubprogramming,
                 "a subprogram is called with REP",
-            ));
+            )
+            .because(Cause::RepeatsAhead));
         }
         let depth = self.frames.len();
         let here = |r: &Repeat| r.program == self.program && r.block == self.block && r.depth == depth;

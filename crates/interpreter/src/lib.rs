@@ -4,10 +4,11 @@
 //! - [`Interpreter`]: an [`ElementSource`] over a main program and the programs it calls;
 //! - [`Settings`]: control model, machine parameters, tools and options of a run;
 //! - [`ProgramError`] and [`Warning`]: what is wrong, with the block that causes it;
-//! - [`Feature`]: what a block asks for, and whether it is executed here;
 //! - [`Library`]: where called programs come from;
+//! - [`rehearse`]: all faults of a program, found without moving anything;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
+//! What is executed here, and what the user is told, `availability` asks of the registry of the control models.
 //! A block is executed by `run`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
 //! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished
 //! steps.
@@ -27,6 +28,7 @@ mod path_functions;
 mod positioning;
 mod probe;
 mod q_parameters;
+mod rehearsal;
 mod run;
 mod settings;
 mod tools;
@@ -38,14 +40,17 @@ use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
 use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
-pub use availability::{Feature, Judgement, words};
 pub use code::{Library, NoLibrary};
-pub use error::{Message, ProgramError, Warning, WarningKind};
-pub use settings::{ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolState, ToolTable};
+pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
+pub use q_parameters::Q_VALUE_MAX;
+pub use rehearsal::{Rehearsal, rehearse};
+pub use settings::{
+    ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolState, ToolTable, tool_key,
+};
 
 use crate::code::Code;
 use crate::contour::Contour;
-use crate::cycles::{ContourJob, contour_plane};
+use crate::cycles::{ContourJob, Halt, Watch, contour_plane};
 use crate::error::Fault;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
@@ -117,7 +122,7 @@ impl Interpreter {
     pub fn new(main: Arc<Program>, settings: Settings, library: Box<dyn Library + Send>) -> Interpreter {
         let run = Run::new(&settings, main.unit());
         let position = settings.start;
-        Interpreter {
+        let mut interpreter = Interpreter {
             settings,
             library,
             code: Code::new(main),
@@ -127,6 +132,30 @@ impl Interpreter {
             interrupt: None,
             kept: None,
             position,
+        };
+        interpreter.look_at_feeds(0);
+        interpreter
+    }
+
+    /// Warns when the feeds of a program in inches speak against what F is taken to count.
+    fn look_at_feeds(&mut self, program: u16) {
+        let reading = self.settings.inch_feed();
+        let doubt = self
+            .code
+            .program(program)
+            .and_then(|program| program.feed_doubt(reading));
+        if let Some(doubt) = doubt {
+            self.run.warnings.push(Warning {
+                block: BlockRef {
+                    program,
+                    block: doubt.block,
+                },
+                kind: WarningKind::InchFeed {
+                    reading,
+                    feed_mm_min: doubt.feed_mm_min.round() as u32,
+                },
+                count: 1,
+            });
         }
     }
 
@@ -269,7 +298,9 @@ impl Interpreter {
             if let Err(fault) = self.step() {
                 self.fail(fault, at);
             }
-            if self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD) && self.is_interrupted() {
+            // A contour that was broken off leaves its block where it is.
+            let stays = self.run.at.block_ref() == at;
+            if (stays || self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD)) && self.is_interrupted() {
                 return;
             }
         }
@@ -363,10 +394,15 @@ impl Interpreter {
             Flow::CallProgram(name) => self.call_program(&name)?,
             Flow::EndOfProgram => return self.end_of_program(),
             Flow::EndOfRun => return self.end_of_run(),
+            Flow::ContourCycle if self.run.rehearsal => self.rehearse_contours()?,
             Flow::ContourCycle => {
                 let job = self.record_contours()?;
-                self.run.contour_cycle(&job, &self.settings)?;
-                self.run.at.block += 1;
+                let watch = Watch::new(self.interrupt.as_deref());
+                match self.run.contour_cycle(&job, &self.settings, &watch) {
+                    Ok(()) => self.run.at.block += 1,
+                    Err(Halt::Fault(fault)) => return Err(fault),
+                    Err(Halt::Interrupted) => {}
+                }
             }
         }
         Ok(())
@@ -426,13 +462,17 @@ impl Interpreter {
         };
         self.run.at.call_program(index, self.settings.model.limits())?;
         self.enter_unit();
+        if self.code.is_new(index) {
+            self.look_at_feeds(index);
+        }
         Ok(())
     }
 
     /// Each program has its own unit; Q113 keeps that of the main program (inferred).
     fn enter_unit(&mut self) {
         if let Some(program) = self.code.program(self.run.at.program) {
-            self.run.unit_mm = modal::unit_mm(program.unit());
+            self.run.unit = program.unit();
+            self.run.unit_mm = program.unit().mm();
         }
     }
 
@@ -472,6 +512,7 @@ impl Interpreter {
             program,
             block,
             detail: fault.detail,
+            cause: fault.cause,
         })));
     }
 
@@ -480,10 +521,7 @@ impl Interpreter {
     fn record_contours(&mut self) -> Result<ContourJob, Fault> {
         let labels = self.run.modal.contour_labels.clone();
         if labels.is_empty() {
-            return Err(Fault::new(
-                MessageId::CyclIncomplete,
-                "cycle 14 CONTOUR GEOMETRY is not defined",
-            ));
+            return Err(no_contours());
         }
         let mut recorder = self.run.clone();
         recorder.contour = Contour::recorder();
@@ -493,6 +531,20 @@ impl Interpreter {
         let job = self.record_labels(&labels);
         std::mem::swap(&mut self.run, &mut recorder);
         job
+    }
+
+    /// Looks whether the contours of cycle 14 are there.
+    fn rehearse_contours(&mut self) -> Result<(), Fault> {
+        let labels = std::mem::take(&mut self.run.modal.contour_labels);
+        let found = labels.iter().try_for_each(|&label| self.label(label).map(drop));
+        let defined = !labels.is_empty();
+        self.run.modal.contour_labels = labels;
+        found?;
+        if !defined {
+            return Err(no_contours());
+        }
+        self.run.at.block += 1;
+        Ok(())
     }
 
     fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Fault> {
@@ -523,6 +575,13 @@ impl Interpreter {
         }
         job.ok_or_else(|| MessageId::CyclIncomplete.into())
     }
+}
+
+fn no_contours() -> Fault {
+    Fault::new(
+        MessageId::CyclIncomplete,
+        "cycle 14 CONTOUR GEOMETRY is not defined",
+    )
 }
 
 /// Whether a block can move or output something.

@@ -1,7 +1,7 @@
 //! Modal data: what stays in force from block to block.
 
 use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position, ToolShape};
-use bahn_program::{Compensation, Unit};
+use bahn_program::Compensation;
 
 use crate::contour::{CornerArcs, FeedLaw};
 use crate::cycles::CycleData;
@@ -65,8 +65,10 @@ pub(crate) struct Tool {
     pub number: u32,
     pub axis: Axis,
     pub shape: ToolShape,
-    /// Radius with the oversize of TOOL CALL, mm.
+    /// Radius with the oversize of TOOL CALL, mm; negative ones must not be used.
     pub radius: f64,
+    /// Its data are in the program or in the tool table.
+    pub defined: bool,
 }
 
 /// Spindle state as Q110 counts it [003:7616-7619].
@@ -149,14 +151,6 @@ impl Modal {
 
     /// Radius of the tool in use, mm; 0 without a tool.
     pub fn tool_radius(&self) -> f64 {
-        self.tool.map_or(0.0, |tool| tool.radius)
-    }
-}
-
-/// Millimetres of a length unit.
-pub(crate) fn unit_mm(unit: Unit) -> f64 {
-    match unit {
-        Unit::Inch => 25.4,
-        Unit::Mm => 1.0,
+        self.tool.map_or(0.0, |tool| tool.radius.max(0.0))
     }
 }

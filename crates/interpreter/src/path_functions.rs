@@ -5,7 +5,7 @@ use bahn_path::{Arc, Axis, AxisSet, Curve, Plane, Point2};
 use bahn_program::{Coordinates, Direction, Motion, Value, Word};
 
 use crate::arc;
-use crate::error::Fault;
+use crate::error::{Cause, Fault};
 use crate::positioning::{Programmed, known};
 use crate::q_parameters::{cos_deg, sin_deg};
 use crate::run::Run;
@@ -39,9 +39,9 @@ impl Run {
     }
 
     pub(crate) fn pole(&self) -> Result<(Plane, Point2), Fault> {
-        self.modal
-            .pole
-            .ok_or_else(|| Fault::new(MessageId::PlaneWronglyDefined, "no CC is programmed before"))
+        self.modal.pole.ok_or_else(|| {
+            Fault::new(MessageId::PlaneWronglyDefined, "no CC is programmed before").because(Cause::NoPole)
+        })
     }
 
     /// The plane of an arc from its words: two axes name it, otherwise the working plane.
@@ -95,7 +95,8 @@ impl Run {
         let plane = self.plane_of(&motion.coordinates)?;
         let counter_clockwise = direction(motion)?;
         let Some(radius) = motion.radius else {
-            return Err(MessageId::AngleReferenceMissing.into());
+            let detail = "the arc has no radius R";
+            return Err(Fault::new(MessageId::AngleReferenceMissing, detail).because(Cause::NoRadius));
         };
         let radius = self.length(radius)?;
         if radius.abs() > settings.model.limits().circle_radius_max_mm {
@@ -152,7 +153,7 @@ impl Run {
             self.modal.polar_radius = Some(radius);
         }
         let Some(word) = motion.polar_angle else {
-            return Err(MessageId::AngleReferenceMissing.into());
+            return Err(no_angle());
         };
         let angle = self.q.value(word.value)?;
         // The limit is one of typed numbers [003:3089]: hole circles by Q parameters count on beyond a turn.
@@ -205,7 +206,7 @@ impl Run {
         }
         let counter_clockwise = direction(motion)?;
         let Some(word) = motion.polar_angle else {
-            return Err(MessageId::AngleReferenceMissing.into());
+            return Err(no_angle());
         };
         let angle = self.q.value(word.value)?;
         if angle.abs() > settings.model.limits().circle_angle_max_deg {
@@ -258,9 +259,13 @@ impl Run {
 fn direction(motion: &Motion) -> Result<bool, Fault> {
     match motion.direction {
         Some(direction) => Ok(direction == Direction::CounterClockwise),
-        None => Err(Fault::new(
-            MessageId::AngleReferenceMissing,
-            "the arc has no DR+ or DR-",
-        )),
+        None => Err(
+            Fault::new(MessageId::AngleReferenceMissing, "the arc has no DR+ or DR-")
+                .because(Cause::NoDirection),
+        ),
     }
+}
+
+fn no_angle() -> Fault {
+    Fault::new(MessageId::AngleReferenceMissing, "PA is missing").because(Cause::NoAngle)
 }

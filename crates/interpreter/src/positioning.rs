@@ -4,7 +4,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Position};
 use bahn_program::{Compensation, Coordinates, Feed, Motion, MotionKind};
 
-use crate::error::{Fault, WarningKind};
+use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
 use crate::functions::{BlockFunctions, Reference};
 use crate::modal::LastMove;
@@ -404,10 +404,13 @@ impl Run {
         }
         if contour && self.modal.tool.is_none() {
             // Without a tool in the spindle there is no radius to compensate [003:7984-7986] (inferred).
-            return Err(Fault::new(
-                MessageId::ProgramStartUndefined,
-                "no tool is called before",
-            ));
+            return Err(
+                Fault::new(MessageId::ProgramStartUndefined, "no tool is called before")
+                    .because(Cause::NoTool),
+            );
+        }
+        if contour || paraxial {
+            self.used_radius()?;
         }
         self.modal.compensation = if contour { word } else { Compensation::Off };
         self.modal.paraxial = if paraxial { word } else { Compensation::Off };

@@ -37,7 +37,7 @@ impl Run {
         if !self.executes(Feature::Probe(block.number), settings)? {
             return Ok(());
         }
-        let words = self.resolve(block)?;
+        let words = self.resolve(block, settings)?;
         match block.sub {
             0 => self.reference_plane(&words),
             1 => self.start_probing(&words, settings),

@@ -31,6 +31,10 @@ pub(crate) mod preassigned {
 /// numbers of limited length, so 0.1 added ten times equals 1 there (inferred).
 const COMPARE_TOLERANCE: f64 = 1e-9;
 
+/// Greatest value of a Q parameter, either sign: that of a number in a program *(inferred)*. What is
+/// calculated with such values stays finite.
+pub const Q_VALUE_MAX: f64 = 1e15;
+
 /// The table of Q parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct QTable {
@@ -54,8 +58,11 @@ impl QTable {
 
     #[inline]
     pub fn set(&mut self, number: u16, value: f64) -> Result<(), Fault> {
-        if !value.is_finite() {
-            return Err(MessageId::ArithmeticalError.into());
+        if !in_range(value) {
+            return Err(Fault::new(
+                MessageId::ArithmeticalError,
+                "the result is too large",
+            ));
         }
         *self
             .values
@@ -66,7 +73,9 @@ impl QTable {
 
     /// Writes a preassigned parameter; models without it have no place for it.
     pub fn preassign(&mut self, number: u16, value: f64) {
-        if let Some(slot) = self.values.get_mut(usize::from(number)) {
+        if let Some(slot) = self.values.get_mut(usize::from(number))
+            && in_range(value)
+        {
             *slot = value;
         }
     }
@@ -132,6 +141,12 @@ impl QTable {
             }
         })
     }
+}
+
+#[inline]
+fn in_range(value: f64) -> bool {
+    // Written so that what is no number is refused too.
+    value.abs() <= Q_VALUE_MAX
 }
 
 fn unary(function: UnaryFunction, a: f64) -> Result<f64, Fault> {
@@ -270,6 +285,17 @@ mod tests {
             );
         }
         assert!(table.get(10).is_err());
+    }
+
+    #[test]
+    fn values_beyond_the_range_are_refused() {
+        let mut table = QTable::new(10);
+        assert_eq!(table.set(1, -Q_VALUE_MAX), Ok(()));
+        for value in [1.1e15, f64::INFINITY, f64::NAN] {
+            assert!(table.set(1, value).is_err());
+            table.preassign(1, value);
+            assert_eq!(table.get(1), Ok(-Q_VALUE_MAX));
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bahn_parameters::MessageId;
+use bahn_parameters::{InchFeed, MessageId};
 use bahn_path::{
     At, Axis, AxisSet, Barrier, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Position,
     Synchronisation, TechnologyFunction, ToolShape,
@@ -12,10 +12,10 @@ use bahn_program::{Block, Compensation, Operation, Unit, Value};
 use crate::availability::{Feature, Said, words};
 use crate::contour::rounding::{Join, JoinKind};
 use crate::contour::{Contour, ContourMove, Side};
-use crate::error::{Fault, Message, Warning, WarningKind};
+use crate::error::{Cause, Fault, Message, Warning, WarningKind};
 use crate::flow::{self, Flow};
 use crate::functions::BlockFunctions;
-use crate::modal::{Modal, unit_mm};
+use crate::modal::Modal;
 use crate::output::Output;
 use crate::probe::Probing;
 use crate::q_parameters::{QTable, preassigned};
@@ -31,7 +31,9 @@ pub(crate) struct Run {
     pub out: Output,
     /// Tools defined by TOOL DEF.
     pub tools: BTreeMap<u32, ToolShape>,
-    /// Millimetres of the length unit of the running program.
+    /// Unit of the running program.
+    pub unit: Unit,
+    /// Millimetres of its length unit.
     pub unit_mm: f64,
     /// Unit of the main program.
     pub main_unit: Unit,
@@ -55,6 +57,8 @@ pub(crate) struct Run {
     pub increments_from: Option<Position>,
     /// See [`Settings::machine`].
     pub machine: bool,
+    /// Nothing is moved: cycles are looked at but make no path, and the tool has no radius.
+    pub rehearsal: bool,
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
     /// A contour subprogram is being recorded for an SL cycle: M functions, feeds and cycle calls in it
@@ -80,7 +84,8 @@ impl Run {
             contour: Contour::default(),
             out: Output::default(),
             tools: BTreeMap::new(),
-            unit_mm: unit_mm(unit),
+            unit,
+            unit_mm: unit.mm(),
             main_unit: unit,
             sequence: 0,
             since_motion: 0,
@@ -92,6 +97,7 @@ impl Run {
             join_follows: false,
             increments_from: None,
             machine: settings.machine,
+            rehearsal: false,
             probing: None,
             recording: None,
         }
@@ -99,8 +105,12 @@ impl Run {
 
     /// Notes a warning; the same one at the same block is counted, so that loops do not pile them up.
     pub fn warn(&mut self, kind: WarningKind) {
+        self.warn_at(self.block, kind);
+    }
+
+    /// [`Run::warn`] at another block than the one being executed.
+    pub fn warn_at(&mut self, block: BlockRef, kind: WarningKind) {
         const LOOKED_BACK: usize = 64;
-        let block = self.block;
         let mut recent = self.warnings.iter_mut().rev().take(LOOKED_BACK);
         match recent.find(|warning| warning.block == block && warning.kind == kind) {
             Some(warning) => warning.count += 1,
@@ -291,6 +301,7 @@ impl Run {
                 detail: String::new(),
                 block: None,
                 ahead: false,
+                cause: Cause::Message,
             },
             None => Fault::from(MessageId::EntryValueIncorrect),
         }
@@ -397,7 +408,11 @@ impl Run {
             element,
             plane: self.modal.contour_plane,
             side: self.side(),
-            radius: self.modal.tool_radius(),
+            radius: if self.rehearsal {
+                0.0
+            } else {
+                self.modal.tool_radius()
+            },
             corner: functions.corner,
             feed_law: self.modal.feed_law,
             in_plane,
@@ -486,15 +501,22 @@ impl Run {
 
     /// A feed in mm/min, checked against the range of the control [003:2142-2144].
     pub fn feed(&self, value: Value, settings: &Settings) -> Result<f64, Fault> {
-        let feed = self.q.value(value)? * self.unit_mm;
-        let max = settings.model.limits().feed_max_mm_min;
+        let feed = self.q.value(value)?;
+        let inch_feed = settings.inch_feed();
+        let max_mm_min = settings.model.limits().feed_max_mm_min;
+        let max = self.unit.feed_max(inch_feed, max_mm_min);
         if !(0.0..=max).contains(&feed) {
+            let unit = match (self.unit, inch_feed) {
+                (Unit::Mm, _) => "mm/min",
+                (Unit::Inch, InchFeed::Whole) => "inch/min",
+                (Unit::Inch, InchFeed::Tenths) => "tenths of an inch/min",
+            };
             return Err(Fault::new(
                 MessageId::EntryValueIncorrect,
-                format!("F takes 0 to {max} mm/min"),
+                format!("F takes 0 to {max} {unit}"),
             ));
         }
-        Ok(feed)
+        Ok((feed * self.unit.feed_mm_min(inch_feed)).min(max_mm_min))
     }
 
     /// Millimetres or degrees of a value for an axis.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bahn_parameters::{ControlModel, ParameterList, ScaledAxes};
+use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes};
 use bahn_path::{Axis, Position, ToolShape};
 
 /// Everything a run depends on beside the program.
@@ -25,6 +25,8 @@ pub struct Settings {
     pub tool_length_mm: Option<f64>,
     /// Pass over blocks with `/`.
     pub skip_blocks: bool,
+    /// What F counts in a program in inches; `None` for what it counts on the model.
+    pub inch_feed: Option<InchFeed>,
     /// Refuse what is otherwise accepted with a warning (sign of cycle parameters, tools without data).
     pub strict: bool,
     /// Pass over words and blocks that nothing here knows, and functions without which the control would move
@@ -48,6 +50,7 @@ impl Default for Settings {
             start: Position::UNKNOWN,
             tool_length_mm: None,
             skip_blocks: false,
+            inch_feed: None,
             strict: false,
             skip_unknown: false,
             machine: false,
@@ -70,8 +73,21 @@ pub enum ToolState {
     Replaced,
 }
 
-/// Tools by number.
+impl Settings {
+    /// What F counts in a program in inches.
+    pub fn inch_feed(&self) -> InchFeed {
+        self.inch_feed.unwrap_or(self.model.limits().inch_feed)
+    }
+}
+
+/// Tools by their [`tool_key`].
 pub type ToolTable = BTreeMap<u32, ToolShape>;
+
+/// Key of a tool: its number; a tool with an index, 253.1 in the tables of later controls, stands far behind.
+pub const fn tool_key(number: u32, index: u8) -> u32 {
+    const INDEX_SHIFT: u32 = 16;
+    number | (index as u32) << INDEX_SHIFT
+}
 
 /// The machine parameters that change how a program runs.
 #[derive(Clone, Debug)]

@@ -5,13 +5,16 @@ use bahn_path::{At, Axis, Blank, Function, Plane, Synchronisation, TechnologyFun
 use bahn_program::{Coordinates, Value};
 
 use crate::availability::{Feature, words};
-use crate::error::{Fault, WarningKind};
+use crate::error::{Cause, Fault, WarningKind};
 use crate::functions::BlockFunctions;
 use crate::modal::Tool;
 use crate::positioning::known;
 use crate::q_parameters::preassigned;
 use crate::run::Run;
-use crate::settings::{Settings, ToolState};
+use crate::settings::{Settings, ToolState, ToolTable, tool_key};
+
+/// A tool number is meant to have an index when it is as near as this to a tenth.
+const INDEX_TOLERANCE: f64 = 1e-9;
 
 impl Run {
     /// TOOL DEF: tool data, or with a tool table and without data the pre-selection of the next tool
@@ -82,9 +85,9 @@ impl Run {
             return self.output_function(Function::SpindleSpeed(self.modal.speed_rpm), waits);
         };
         self.finish_contour()?;
-        let number = self.tool_number(tool, settings)?;
-        check_state(number, settings)?;
-        let mut shape = self.tool_shape(number, settings)?;
+        let (number, index) = self.indexed_tool_number(tool, settings)?;
+        check_state(number, index, settings)?;
+        let (mut shape, defined) = self.tool_shape(number, index, settings)?;
         let has_oversize = oversize.iter().any(Option::is_some);
         let executed = !has_oversize || self.executes(Feature::Word(words::OVERSIZE), settings)?;
         let [delta_length, delta_radius] = if executed { oversize } else { [None; 2] };
@@ -103,8 +106,11 @@ impl Run {
             number,
             axis,
             shape,
-            radius: (shape.radius + delta_radius).max(0.0),
+            radius: shape.radius + delta_radius,
+            defined,
         });
+        // The graphics take no notice of a radius that must not be used.
+        shape.radius = shape.radius.max(0.0);
         self.q.preassign(
             preassigned::TOOL_RADIUS,
             (shape.radius + delta_radius) / self.main_unit_mm(),
@@ -156,22 +162,71 @@ impl Run {
         Ok(number as u32)
     }
 
+    /// Number and index of a tool: 253.1 is the first other cutting edge of tool 253 in the tables of later
+    /// controls.
+    fn indexed_tool_number(&self, tool: Value, settings: &Settings) -> Result<(u32, u8), Fault> {
+        let number = self.q.value(tool)?;
+        let index = (number.fract() * 10.0).round();
+        let in_table = |table: &ToolTable| table.contains_key(&tool_key(number as u32, index as u8));
+        // Tenths only, and only a tool that a table has: no control here knows them otherwise.
+        let exact = ((number.trunc() + index / 10.0) - number).abs() < INDEX_TOLERANCE;
+        if index > 0.0 && exact && settings.tools.as_ref().is_some_and(in_table) {
+            return Ok((
+                self.tool_number(Value::Number(number.trunc()), settings)?,
+                index as u8,
+            ));
+        }
+        Ok((self.tool_number(tool, settings)?, 0))
+    }
+
     /// Tool data: from the program, from the table, zero for tool 0. With a table a missing tool is an
     /// error; without one old programs rely on a table that is not at hand, so zero is taken with a
     /// warning, unless checking is strict.
-    fn tool_shape(&mut self, number: u32, settings: &Settings) -> Result<ToolShape, Fault> {
-        let in_table = || settings.tools.as_ref().and_then(|table| table.get(&number));
-        if let Some(shape) = self.tools.get(&number).or_else(in_table) {
-            return Ok(*shape);
+    fn tool_shape(
+        &mut self,
+        number: u32,
+        index: u8,
+        settings: &Settings,
+    ) -> Result<(ToolShape, bool), Fault> {
+        let key = tool_key(number, index);
+        let in_table = || settings.tools.as_ref().and_then(|table| table.get(&key));
+        if let Some(shape) = self.tools.get(&key).or_else(in_table) {
+            return Ok((*shape, true));
         }
         if number == 0 {
-            return Ok(ToolShape::default());
+            return Ok((ToolShape::default(), true));
         }
         if settings.strict || settings.tools.is_some() {
             return Err(Fault::new(MessageId::ToolNotDefined, format!("tool {number}")));
         }
         self.warn(WarningKind::ToolNotDefined { tool: number });
-        Ok(ToolShape::default())
+        Ok((ToolShape::default(), false))
+    }
+
+    /// Radius of the tool in use for compensation and pockets, mm.
+    ///
+    /// # Errors
+    /// With R + DR below zero.
+    pub(crate) fn used_radius(&self) -> Result<f64, Fault> {
+        match self.modal.tool {
+            Some(tool) if tool.radius < 0.0 => {
+                let detail = format!("R + DR of tool {} is {:.4} mm", tool.number, tool.radius);
+                Err(Fault::new(MessageId::EntryValueIncorrect, detail))
+            }
+            tool => Ok(tool.map_or(0.0, |tool| tool.radius)),
+        }
+    }
+
+    /// Why the tool in use has no radius.
+    pub(crate) fn no_radius(&self, what: &str) -> Fault {
+        let why = match self.modal.tool {
+            Some(tool) if !tool.defined => {
+                format!("tool {} is not defined, so its radius is 0", tool.number)
+            }
+            Some(tool) => format!("the radius of tool {} is 0", tool.number),
+            None => "no tool is called, so the radius is 0".to_owned(),
+        };
+        Fault::new(MessageId::ToolRadiusTooLarge, format!("{what}: {why}")).because(Cause::NoToolRadius)
     }
 
     fn speed(&self, speed: Value, settings: &Settings) -> Result<f64, Fault> {
@@ -216,7 +271,7 @@ impl Run {
 
     /// Millimetres of the unit of the main program, in which the control shows lengths.
     pub(crate) fn main_unit_mm(&self) -> f64 {
-        crate::modal::unit_mm(self.main_unit)
+        self.main_unit.mm()
     }
 
     // Blank.
@@ -240,13 +295,18 @@ impl Run {
     pub(crate) fn blank_max(&mut self, coordinates: &Coordinates, settings: &Settings) -> Result<(), Fault> {
         let wrong = |detail: String| Fault::new(MessageId::BlkFormDefinitionIncorrect, detail);
         let Some((plane, min)) = self.modal.blank_min.take() else {
-            return Err(wrong("BLK FORM 0.1 is missing".into()));
+            return Err(wrong("BLK FORM 0.1 is missing".into()).because(Cause::NoBlankMin));
         };
         let max = self.corner(coordinates, min)?;
         let limits = settings.model.limits();
         let sides = [max[0] - min[0], max[1] - min[1], max[2] - min[2]];
         let longest = sides.iter().copied().fold(0.0, f64::max);
         let shortest = sides.iter().copied().fold(f64::INFINITY, f64::min);
+        if shortest == 0.0 && longest == 0.0 {
+            // Written by programs that want no graphics.
+            self.warn(WarningKind::BlankEmpty);
+            return Ok(());
+        }
         if shortest <= 0.0 {
             return Err(wrong(
                 "the MAX corner must be greater than the MIN corner on every axis".into(),
@@ -291,8 +351,12 @@ impl Run {
 }
 
 /// Refuses a tool that the table locks, and one whose life is over [000:9168-9172].
-fn check_state(number: u32, settings: &Settings) -> Result<(), Fault> {
-    let state = settings.barred_tools.get(&number).copied().unwrap_or_default();
+fn check_state(number: u32, index: u8, settings: &Settings) -> Result<(), Fault> {
+    let state = settings
+        .barred_tools
+        .get(&tool_key(number, index))
+        .copied()
+        .unwrap_or_default();
     let fault = |message, what: &str| Err(Fault::new(message, format!("tool {number}: {what}")));
     match state {
         ToolState::Usable => Ok(()),

@@ -172,3 +172,67 @@ fn tip_follows_the_length_at_a_tool_change() {
     assert_eq!(moves[2], ([5.0, 0.0, 85.0], [5.0, 0.0, 95.0]));
     assert_eq!(moves[3].1, [5.0, 0.0, -25.0]);
 }
+
+/// F of a program in inches counts tenths of an inch/min on all models [001:471] but the TNC 360 [003:2140];
+/// the setting overrides; cycles and roundings count as positioning blocks do.
+#[test]
+fn feeds_of_programs_in_inches() {
+    use bahn_parameters::{ControlModel, InchFeed};
+    let text = "\
+BEGIN PGM 1 INCH
+CYCL DEF 1.0 PECKING
+CYCL DEF 1.1 SET UP -0.1
+CYCL DEF 1.2 DEPTH -0.5
+CYCL DEF 1.3 PECKG -0.5
+CYCL DEF 1.4 DWELL 0
+CYCL DEF 1.5 F50
+L X+0 Y+0 Z+1 R0 FMAX M99
+L X+5 F300
+RND R0.2 F70
+L Y+5
+END PGM 1 INCH
+";
+    for (model, setting, f1) in [
+        (ControlModel::Tnc151, None, 2.54),
+        (ControlModel::Tnc155, None, 2.54),
+        (ControlModel::Tnc360, None, 25.4),
+        (ControlModel::Tnc407, None, 2.54),
+        (ControlModel::Tnc415b, None, 2.54),
+        (ControlModel::Tnc425, None, 2.54),
+        (ControlModel::Tnc360, Some(InchFeed::Tenths), 2.54),
+        (ControlModel::Tnc415b, Some(InchFeed::Whole), 25.4),
+    ] {
+        let run = Job::new(text)
+            .with(|settings| {
+                settings.model = model;
+                settings.inch_feed = setting;
+            })
+            .run();
+        run.assert_completed();
+        let feeds: Vec<f64> = run
+            .moves()
+            .filter_map(|element| match element.feed {
+                bahn_path::FeedRate::Programmed(feed) => Some(feed),
+                bahn_path::FeedRate::Rapid => None,
+            })
+            .collect();
+        let expected = [50.0, 300.0, 70.0, 300.0].map(|feed| feed * f1);
+        assert_eq!(feeds.len(), expected.len(), "{model}: {feeds:?}");
+        for (feed, expected) in feeds.iter().zip(expected) {
+            assert!((feed - expected).abs() < 1e-9, "{model}: {feeds:?}");
+        }
+    }
+}
+
+/// Rapid traverse of the TNC 151/155 is 6299 tenths of an inch/min [001:471].
+#[test]
+fn rapid_traverse_in_tenths_of_an_inch() {
+    let run = Job::new("BEGIN PGM 1 INCH\nL X+1 R0 F6299\nEND PGM 1 INCH\n")
+        .with(|settings| settings.model = bahn_parameters::ControlModel::Tnc155)
+        .run();
+    run.assert_completed();
+    assert!(
+        run.moves()
+            .all(|element| element.feed == bahn_path::FeedRate::Rapid)
+    );
+}

@@ -257,9 +257,16 @@ fn a_called_inch_program() {
         "{ends:?}"
     );
     assert_eq!(run.q[1], 0.0);
-    // F10 in an inch program is 10 inch/min.
+    // F10 in an inch program is one inch/min.
     let feeds: Vec<_> = run.moves().map(|e| e.feed).collect();
-    assert_eq!(feeds[1], bahn_path::FeedRate::Programmed(254.0));
+    assert_eq!(feeds[1], bahn_path::FeedRate::Programmed(25.4));
+    // That is slow for a program; it is said once for the program however often it is called.
+    let slow: Vec<_> = run
+        .warnings
+        .iter()
+        .map(|w| (w.block.program, w.block.block, w.count))
+        .collect();
+    assert_eq!(slow, [(1, 1, 1)]);
 }
 
 /// Called programs share Q parameters, transformations, tool, pole and cycle definition with their callers

@@ -4,7 +4,8 @@
 //! - [`ControlModel`]: which control is meant, and its [`Limits`];
 //! - [`MessageId`]: the control's messages with text, cause, remedy and source; [`error_text`] for the
 //!   numbered ones;
-//! - [`Definition`]: what the manual's list says of each machine parameter;
+//! - [`Definition`]: what the manual's list says of each machine parameter; [`Advice`]: what it does;
+//! - [`chapters`]: the chapters of the manuals that a citation means;
 //! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
 //!   model: [`ParameterList::axis_parameters`], [`ParameterList::spindle_parameters`] and so on;
 //! - [`ListText`]: the text of a list, whose values change in their places;
@@ -20,6 +21,8 @@
     reason = "citations as [003:7868] look like links"
 )]
 
+mod advice;
+mod citation;
 pub mod conformance;
 mod consistency;
 mod definition;
@@ -33,13 +36,15 @@ mod model;
 mod settings;
 mod text;
 
+pub use advice::Advice;
+pub use citation::{chapters, with_chapters};
 pub use consistency::Inconsistency;
 pub use definition::{Change, Definition, Format, ParameterId, Reaction};
 pub use error::{ListError, ParameterError};
 pub use fn14::error_text;
-pub use limits::{Limits, MachineZero};
+pub use limits::{InchFeed, Limits, MachineZero};
 pub use list::ParameterList;
-pub use message::MessageId;
+pub use message::{MessageCode, MessageId};
 pub use model::{ControlModel, UnknownModel};
 pub use settings::{
     AxisParameters, CompensationParameters, ContourPocket, DatumParameters, Decimal, DigitalSpeedParameters,

@@ -76,6 +76,10 @@ limits! {
     /// Feed rate that means rapid traverse where FMAX is not a word of its own [001:471].
     rapid_feed_mm_min: Option<f64> = Some(15_999.0), Some(15_999.0), None, None, None, None;
 
+    /// What F counts in a program in inches [001:471] [003:2140]; TNC 407/415/425 as the TNC 151/155, whose
+    /// programs they run (inferred).
+    inch_feed: InchFeed = TENTHS, TENTHS, WHOLE, TENTHS, TENTHS, TENTHS;
+
     // Positions.
 
     /// Greatest coordinate, mm or degrees, either sign [001:3188-3195] [003:7821] [000:577-589].
@@ -145,6 +149,33 @@ pub enum MachineZero {
     Mp960,
 }
 
+/// What F counts in a program in inches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum InchFeed {
+    /// Inches per minute [003:2140].
+    Whole,
+    /// Tenths of an inch per minute [001:471].
+    Tenths,
+}
+
+impl InchFeed {
+    /// mm/min of F1.
+    pub const fn mm_min(self) -> f64 {
+        match self {
+            InchFeed::Whole => 25.4,
+            InchFeed::Tenths => 2.54,
+        }
+    }
+
+    /// The other reading.
+    pub const fn other(self) -> InchFeed {
+        match self {
+            InchFeed::Whole => InchFeed::Tenths,
+            InchFeed::Tenths => InchFeed::Whole,
+        }
+    }
+}
+
 impl Limits {
     /// Whether the model has a standard cycle.
     pub fn has_cycle(&self, cycle: u32) -> bool {
@@ -159,6 +190,8 @@ impl Limits {
     }
 }
 
+const TENTHS: InchFeed = InchFeed::Tenths;
+const WHOLE: InchFeed = InchFeed::Whole;
 const SCALE: MachineZero = MachineZero::ScaleDatum;
 const MP960: MachineZero = MachineZero::Mp960;
 const SCALING: [f64; 2] = [0.000_001, 99.999_999];

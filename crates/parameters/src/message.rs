@@ -1,7 +1,9 @@
 //! The control's messages: one id each, with its text per control model.
 
+mod codes;
 mod table;
 
+pub use codes::MessageCode;
 pub use table::MessageId;
 
 use crate::ControlModel;

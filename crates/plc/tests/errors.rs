@@ -417,3 +417,36 @@ const LINES: &[&str] = &[
     "PS K1",
     "EMT",
 ];
+
+/// What is still open is named with its place: brackets, structures, tables.
+#[test]
+fn errors_name_what_was_opened() {
+    let opened = |program: &str, number: u8| {
+        let files = MemoryFiles::from([("MAIN.PLC", program)]);
+        let compilation = Compilation::compile(&files, "MAIN.PLC", Options::default());
+        let mut errors = compilation.errors.iter();
+        let error = errors.find(|error| error.error.number() == number);
+        error
+            .unwrap_or_else(|| panic!("no error {number}: {program}"))
+            .opened
+    };
+    assert_eq!(
+        opened("L I4\nA[\nL I5\n  O[\nL I6\n= O1\n]\n]\n= O2\nEM\n", 10),
+        Some((4, 3)),
+        "innermost"
+    );
+    assert_eq!(opened("L I4\nA[\nL I5\nLBL 7\nEM\n", 14), Some((2, 1)));
+    assert_eq!(opened("L I4\nA[\nL I5\nCM 7\nEM\nLBL 7\nEM\n", 16), Some((2, 1)));
+    assert_eq!(opened("L I4\nA[\nL I5\nEM\n", 17), Some((2, 1)));
+    assert_eq!(opened("L I4\nA[\nL W6\n]\n= O1\nEM\n", 24), Some((2, 1)));
+    assert_eq!(
+        opened("L I4\nIFT\nREPEAT\nL I5\nENDI\nUNTILT\nEM\n", 43),
+        Some((3, 1)),
+        "the inner one"
+    );
+    assert_eq!(
+        opened("CASE W6\nCM 7\nL I4\nENDC\nEM\nLBL 7\nEM\n", 27),
+        Some((1, 1))
+    );
+    assert_eq!(opened("]\nEM\n", 13), None);
+}

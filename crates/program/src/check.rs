@@ -1,7 +1,7 @@
 //! Input limits of a control model: what its dialogs would not take.
 
-use bahn_parameters::Limits;
 use bahn_parameters::MessageId::{self, BlockNotKnown, EntryValueIncorrect};
+use bahn_parameters::{InchFeed, Limits};
 
 use crate::{
     Calculation, Coordinates, CycleBlock, CycleWord, Expression, Feed, Motion, MotionKind, Operation, Unit,
@@ -14,10 +14,25 @@ pub(crate) const ANY_Q_MAX: u16 = 1999;
 pub(crate) const ANY_LABEL_MAX: u16 = 65_534;
 /// Cycles of the machine builder [003:4904-4906].
 const OEM_CYCLES: std::ops::RangeInclusive<u16> = 68..=99;
-/// Millimetres in an inch.
-const MM_PER_INCH: f64 = 25.4;
-/// Feeds of inch programs are 0.1 inch/min.
-const MM_PER_INCH_FEED: f64 = 2.54;
+
+/// What programs are read for: the limits of a control model, and what F counts in a program in inches.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading<'a> {
+    /// Limits of the control model.
+    pub limits: &'a Limits,
+    /// What F counts in a program in inches.
+    pub inch_feed: InchFeed,
+}
+
+impl<'a> From<&'a Limits> for Reading<'a> {
+    /// F counts what it counts on the model.
+    fn from(limits: &'a Limits) -> Reading<'a> {
+        Reading {
+            limits,
+            inch_feed: limits.inch_feed,
+        }
+    }
+}
 
 /// What a control model does not take.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,14 +58,24 @@ pub struct LimitFault {
 /// let fault = check_limits(&program.decode(0).blocks[1].operation, Unit::Mm, limits).unwrap();
 /// assert_eq!((fault.message, &*fault.address), (MessageId::EntryValueIncorrect, "S"));
 /// ```
-pub fn check_limits(operation: &Operation, unit: Unit, limits: &Limits) -> Option<LimitFault> {
-    let check = Check { unit, limits };
+pub fn check_limits<'a>(
+    operation: &Operation,
+    unit: Unit,
+    reading: impl Into<Reading<'a>>,
+) -> Option<LimitFault> {
+    let Reading { limits, inch_feed } = reading.into();
+    let check = Check {
+        unit,
+        limits,
+        inch_feed,
+    };
     check.parameters(operation).or_else(|| check.operation(operation))
 }
 
 struct Check<'a> {
     unit: Unit,
     limits: &'a Limits,
+    inch_feed: InchFeed,
 }
 
 impl Check<'_> {
@@ -178,12 +203,8 @@ impl Check<'_> {
         let Some(Feed::Value(value)) = feed else {
             return None;
         };
-        let scale = if self.unit == Unit::Inch {
-            MM_PER_INCH_FEED
-        } else {
-            1.0
-        };
-        self.within("F", value, 0.0, self.limits.feed_max_mm_min, scale)
+        let max = self.unit.feed_max(self.inch_feed, self.limits.feed_max_mm_min);
+        self.within("F", value, 0.0, max, 1.0)
     }
 
     fn speed(&self, speed: Option<Value>) -> Option<LimitFault> {
@@ -225,7 +246,7 @@ impl Check<'_> {
     }
 
     fn mm(&self) -> f64 {
-        if self.unit == Unit::Inch { MM_PER_INCH } else { 1.0 }
+        self.unit.mm()
     }
 
     /// Functions of Q parameters, and Q parameters anywhere.
@@ -284,8 +305,8 @@ fn function_number(operation: &Operation) -> Option<u32> {
     })
 }
 
-/// Calls a function with the number of each Q parameter in a block.
-fn each_parameter(operation: &Operation, found: &mut impl FnMut(u16)) {
+/// Calls a function with the number of each Q parameter in a block, those that it sets included.
+pub fn each_parameter(operation: &Operation, found: &mut impl FnMut(u16)) {
     let mut value = |value: Value| {
         if let Value::Q { number, .. } = value {
             found(number);

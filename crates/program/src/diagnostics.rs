@@ -1,16 +1,16 @@
 //! All faults of a program in one pass.
 
-use bahn_parameters::Limits;
 use bahn_parameters::MessageId::{
-    self, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted, LabelNumberAllocated,
-    LabelNumberNotAllocated, UnexpectedText,
+    self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted,
+    LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
 };
 
 use crate::lines::line_at;
+use crate::parse::whole_program;
 use crate::program::text_start;
 use crate::sequence::{Sequence, SequenceFault};
 use crate::text::trim_continuation;
-use crate::{CycleWord, NumberedBlock, Operation, Program, check_limits};
+use crate::{CycleWord, Header, NumberedBlock, Operation, Program, Reading, check_limits};
 
 /// Most diagnostics of one program; with more it is not a program at all.
 pub const MAX_DIAGNOSTICS: usize = 1000;
@@ -41,6 +41,17 @@ pub struct Diagnostic {
     pub length: u32,
     /// What exactly, in a few words for people.
     pub detail: Box<str>,
+    /// What to do about it.
+    pub help: &'static str,
+}
+
+/// Faults that were counted only, beyond [`MAX_DIAGNOSTICS`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Uncounted {
+    /// Errors.
+    pub errors: usize,
+    /// Warnings.
+    pub warnings: usize,
 }
 
 impl Program {
@@ -58,24 +69,55 @@ impl Program {
     /// assert_eq!(faults[0].message, MessageId::LabelNumberNotAllocated);
     /// assert_eq!((faults[0].block, faults[0].line, faults[0].column, faults[0].length), (1, 2, 12, 1));
     /// ```
-    pub fn diagnostics(&self, limits: Option<&Limits>) -> Vec<Diagnostic> {
+    pub fn diagnostics(&self, reading: Option<Reading<'_>>) -> Vec<Diagnostic> {
+        self.counted_diagnostics(reading).0
+    }
+
+    /// [`Program::diagnostics`], and how many more there are.
+    pub fn counted_diagnostics(&self, reading: Option<Reading<'_>>) -> (Vec<Diagnostic>, Uncounted) {
         let mut pass = Pass {
             program: self,
-            limits,
+            reading,
             sequence: Sequence::default(),
             found: Vec::new(),
+            more: Uncounted::default(),
         };
+        if self.is_din_iso() {
+            // One line says all.
+            pass.error(BlockNotSupported, 1, "", &whole_program());
+            return (pass.found, pass.more);
+        }
         pass.around_the_front();
         for numbered in self.blocks() {
-            if pass.found.len() >= MAX_DIAGNOSTICS {
-                break;
-            }
             pass.block(&numbered);
         }
         pass.around_the_end();
-        pass.found.truncate(MAX_DIAGNOSTICS);
         pass.found.sort_by_key(|diagnostic| diagnostic.block);
-        pass.found
+        (pass.found, pass.more)
+    }
+
+    /// A fault of a block that was found elsewhere, with its place: the value behind an address, or the whole
+    /// block without one.
+    pub fn diagnostic(
+        &self,
+        message: MessageId,
+        severity: Severity,
+        block: u32,
+        address: &str,
+        detail: &str,
+    ) -> Diagnostic {
+        let text = self.text_of(block);
+        let (line, column, length) = locate(&text, address);
+        Diagnostic {
+            message,
+            severity,
+            block,
+            line: self.line_of(block).saturating_add(line),
+            column,
+            length,
+            detail: detail.into(),
+            help: message.remedy(),
+        }
     }
 
     /// A line of the file without its line end, numbered from 1.
@@ -95,15 +137,20 @@ impl Program {
 
 struct Pass<'a> {
     program: &'a Program,
-    limits: Option<&'a Limits>,
+    reading: Option<Reading<'a>>,
     sequence: Sequence,
     found: Vec<Diagnostic>,
+    more: Uncounted,
 }
 
 impl Pass<'_> {
     fn around_the_front(&mut self) {
         if let Some((_, line)) = self.program.index().leading {
             self.at_line(0, line, "text before BEGIN PGM is no part of the program");
+        }
+        if let Some(unit) = self.program.begin().and_then(Header::unknown_unit) {
+            let detail = format!("{unit} is no unit: the program is taken to be in mm");
+            self.at_word(UnexpectedText, Severity::Warning, 0, "", &detail);
         }
         if self.program.begin().is_none() {
             self.at_line(0, 1, "the program does not begin with BEGIN PGM");
@@ -140,6 +187,9 @@ impl Pass<'_> {
         match &block.operation {
             Operation::Invalid(invalid) => {
                 let error = &invalid.error;
+                if self.is_full(Severity::Error) {
+                    return;
+                }
                 self.found.push(Diagnostic {
                     message: error.message,
                     severity: Severity::Error,
@@ -148,6 +198,7 @@ impl Pass<'_> {
                     column: error.column,
                     length: error.length,
                     detail: error.detail.clone(),
+                    help: error.help.unwrap_or(error.message.remedy()),
                 });
                 return;
             }
@@ -171,8 +222,10 @@ impl Pass<'_> {
             }
             _ => {}
         }
-        let limits = self.limits;
-        let fault = limits.and_then(|limits| check_limits(&block.operation, self.program.unit(), limits));
+        let unit = self.program.unit();
+        let fault = self
+            .reading
+            .and_then(|reading| check_limits(&block.operation, unit, reading));
         if let Some(fault) = fault {
             self.error(fault.message, *number, &fault.address, &fault.detail);
         }
@@ -207,21 +260,28 @@ impl Pass<'_> {
 
     /// A diagnostic at the value behind an address in a block; without it at the whole block.
     fn at_word(&mut self, message: MessageId, severity: Severity, block: u32, address: &str, detail: &str) {
-        let text = self.program.text_of(block);
-        let (line, column, length) = locate(&text, address);
-        self.found.push(Diagnostic {
-            message,
-            severity,
-            block,
-            line: self.program.line_of(block).saturating_add(line),
-            column,
-            length,
-            detail: detail.into(),
-        });
+        if !self.is_full(severity) {
+            let found = self.program.diagnostic(message, severity, block, address, detail);
+            self.found.push(found);
+        }
+    }
+
+    /// Whether there is no room for another fault, which then is counted.
+    fn is_full(&mut self, severity: Severity) -> bool {
+        let full = self.found.len() >= MAX_DIAGNOSTICS;
+        match severity {
+            _ if !full => {}
+            Severity::Error => self.more.errors += 1,
+            Severity::Warning => self.more.warnings += 1,
+        }
+        full
     }
 
     /// A warning about the text that begins in a line.
     fn at_line(&mut self, block: u32, line: u32, detail: &str) {
+        if self.is_full(Severity::Warning) {
+            return;
+        }
         let text = self.program.text_of_line(line);
         let (_, column, length) = locate(&text, "");
         self.found.push(Diagnostic {
@@ -232,6 +292,7 @@ impl Pass<'_> {
             column,
             length,
             detail: detail.into(),
+            help: UnexpectedText.remedy(),
         });
     }
 }

@@ -15,4 +15,6 @@ pub struct BlockError {
     pub length: u32,
     /// What exactly, in a few words for people.
     pub detail: Box<str>,
+    /// What to do about it, where the message's own remedy would mislead.
+    pub help: Option<&'static str>,
 }

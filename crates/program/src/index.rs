@@ -1,7 +1,7 @@
 //! The light index of a program: where every chunk of blocks begins, and the labels.
 
 use crate::lines::RawBlocks;
-use crate::parse::parse_block;
+use crate::parse::{is_din_iso, parse_block};
 use crate::{Header, Operation};
 
 /// Blocks in a chunk.
@@ -31,6 +31,8 @@ pub(crate) struct Index {
     labels: Vec<u32>,
     /// Further LBL blocks of a number that is set already: label and block.
     pub(crate) repeated_labels: Vec<(u16, u32)>,
+    /// The program is DIN/ISO.
+    pub(crate) din_iso: bool,
     /// First byte and line of the text that is no part of the program: before BEGIN PGM.
     pub(crate) leading: Option<(u32, u32)>,
     /// First byte and line of the text behind END PGM.
@@ -52,6 +54,9 @@ impl Index {
             if index.end.is_some() {
                 index.trailing = Some(place);
                 break;
+            }
+            if next == 1 && index.begin.is_none() {
+                index.din_iso = is_din_iso(raw.bytes(file));
             }
             let number = next;
             next += 1;
@@ -136,10 +141,15 @@ fn byte(offset: usize) -> u32 {
 /// Whether a line may be LBL, BEGIN or END by its first letters.
 #[inline]
 fn has_keyword(line: &[u8]) -> bool {
-    let first = line
-        .iter()
-        .position(|b| b.is_ascii_alphabetic())
-        .unwrap_or(line.len());
+    let letter_from = |start: usize| {
+        let rest = line.get(start..).unwrap_or_default();
+        let found = rest.iter().position(|b| b.is_ascii_alphabetic());
+        found.map_or(line.len(), |found| start + found)
+    };
+    let mut first = letter_from(0);
+    if matches!(line.get(first..), Some([b'N' | b'n', b'0'..=b'9', ..])) {
+        first = letter_from(first + 1);
+    }
     let at = |offset: usize| line.get(first + offset).map_or(b' ', u8::to_ascii_uppercase);
     match at(0) {
         b'L' => at(1) == b'B' && at(2) == b'L',

@@ -5,6 +5,7 @@
 //! - [`Block`] and [`Operation`]: what a block does, the same whatever language or spelling it came from;
 //! - [`BlockError`]: what is wrong with a block that cannot be read, and where;
 //! - [`Program::diagnostics`]: all faults of a program in one pass; [`check_limits`] for one block;
+//! - [`FeedDoubt`]: feeds of programs in inches that look ten times off;
 //! - [`format_program`]: the normalised listing.
 //!
 //! Reading never fails: a block that cannot be read is [`Operation::Invalid`], an error when it is executed.
@@ -13,6 +14,7 @@ mod check;
 mod diagnostics;
 mod error;
 mod format;
+mod inch_feed;
 mod index;
 mod lines;
 mod operation;
@@ -21,9 +23,10 @@ mod program;
 mod sequence;
 mod text;
 
-pub use check::{LimitFault, check_limits};
-pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity};
+pub use check::{LimitFault, Reading, check_limits, each_parameter};
+pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity, Uncounted};
 pub use error::BlockError;
 pub use format::{FormatOptions, format_block, format_program};
+pub use inch_feed::FeedDoubt;
 pub use operation::*;
 pub use program::{Chunk, NumberedBlock, Program};

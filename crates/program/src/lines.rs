@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::text::{is_blank, to_text, trim_continuation};
+use crate::text::{is_blank, to_text, trim, trim_continuation};
 
 /// Where the text of a block lies in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +45,30 @@ impl<'a> RawBlocks<'a> {
         }
     }
 
+    /// The extent of the next line, which is consumed, if it may go on with a comment: it has neither a block
+    /// number nor the look of a block that frames the program.
+    #[cold]
+    fn text_line(&mut self) -> Option<(usize, usize)> {
+        let before = (self.next, self.line);
+        let found = self.line().filter(|&(start, end)| {
+            let line = self.file.get(start..end).unwrap_or_default();
+            let text = trim(line);
+            let starts = |word: &str| {
+                text.get(..word.len())
+                    .is_some_and(|front| front.eq_ignore_ascii_case(word.as_bytes()))
+            };
+            let numbered = matches!(
+                text,
+                [b'0'..=b'9' | b'/' | b';' | b'*', ..] | [b'N' | b'n', b'0'..=b'9', ..]
+            );
+            !text.is_empty() && !numbered && !starts("BEGIN") && !starts("END")
+        });
+        if found.is_none() {
+            (self.next, self.line) = before;
+        }
+        found
+    }
+
     /// The extent of the next line, which is consumed.
     #[inline]
     fn line(&mut self) -> Option<(usize, usize)> {
@@ -70,7 +94,15 @@ impl Iterator for RawBlocks<'_> {
                 continue;
             };
             let mut joined = false;
-            if bytes.get(last) == Some(&b'~') && !stands_alone(bytes) {
+            let comment = bytes.get(last) == Some(&b'~') && stands_alone(bytes);
+            if comment {
+                while continues(self.file.get(start..end).unwrap_or_default())
+                    && let Some((_, next_end)) = self.text_line()
+                {
+                    joined = true;
+                    end = next_end;
+                }
+            } else if bytes.get(last) == Some(&b'~') {
                 // At the end of the file there is nothing to join.
                 end = start + trim_continuation(bytes).len();
                 while let Some((next_start, next_end)) = self.line() {
@@ -131,12 +163,23 @@ pub(crate) fn line_at(text: &[u8], offset: u32) -> String {
     to_text(line.unwrap_or_default())
 }
 
-/// Whether a line is a comment or structuring only: a rule of `~` in it joins nothing.
-fn stands_alone(line: &[u8]) -> bool {
-    let first = line
+/// Whether a line is a comment or structuring only.
+pub(crate) fn stands_alone(line: &[u8]) -> bool {
+    let mut rest = trim(line);
+    if let [b'N' | b'n', behind @ ..] = rest
+        && behind.first().is_some_and(u8::is_ascii_digit)
+    {
+        rest = behind;
+    }
+    let first = rest
         .iter()
         .find(|&&b| !is_blank(b) && b != b'/' && !b.is_ascii_digit());
     matches!(first, Some(b';' | b'*'))
+}
+
+/// Whether a comment goes on in the next line: one `~` ends it; a rule of several joins nothing.
+fn continues(comment: &[u8]) -> bool {
+    matches!(trim(comment), [.., before, b'~'] if *before != b'~')
 }
 
 #[cfg(test)]
@@ -177,6 +220,14 @@ mod tests {
             [(&b"A ~\n B ~ \n C"[..], 1, true), (b"D", 4, false)]
         );
         assert_eq!(blocks(b"A ~"), [(&b"A"[..], 1, false)]);
+        assert_eq!(
+            blocks(b"12 ; a ~\n  b ~\n c\n13 L"),
+            [(&b"12 ; a ~\n  b ~\n c"[..], 1, true), (b"13 L", 4, false)]
+        );
+        for own in ["13 L X+1", "N13 L X+1", "; b", "BEGIN PGM 1 MM", "END PGM 1 MM"] {
+            let text = format!("12 ; a ~\n{own}");
+            assert_eq!(blocks(text.as_bytes()).len(), 2, "{own}");
+        }
         assert_eq!(
             blocks(b"12 ; ~~~\nB"),
             [(&b"12 ; ~~~"[..], 1, false), (b"B", 2, false)]

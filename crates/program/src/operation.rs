@@ -1,5 +1,6 @@
 //! The canonical operations that every part-program language lowers to.
 
+use bahn_parameters::InchFeed;
 use bahn_path::{Axis, AxisSet};
 
 use crate::BlockError;
@@ -168,6 +169,14 @@ pub struct Header {
     pub protected: bool,
 }
 
+impl Header {
+    /// What stands where the unit should, if no control knows it as one: `CM` of `BEGIN PGM 7 CM`.
+    pub fn unknown_unit(&self) -> Option<&str> {
+        let (_, last) = self.name.rsplit_once(' ')?;
+        self.unit.is_none().then_some(last)
+    }
+}
+
 /// Unit of measure of a program [003:2101].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
@@ -175,6 +184,30 @@ pub enum Unit {
     Mm,
     /// Inches (25.4 mm).
     Inch,
+}
+
+impl Unit {
+    /// Millimetres of a length.
+    pub const fn mm(self) -> f64 {
+        match self {
+            Unit::Mm => 1.0,
+            Unit::Inch => 25.4,
+        }
+    }
+
+    /// mm/min of F1, with what F counts in a program in inches.
+    pub const fn feed_mm_min(self, inch_feed: InchFeed) -> f64 {
+        match self {
+            Unit::Mm => 1.0,
+            Unit::Inch => inch_feed.mm_min(),
+        }
+    }
+
+    /// Greatest F for a greatest feed in mm/min: the control shows it as a whole number, so that the
+    /// 15 999 mm/min of rapid traverse are F6299 [001:471] and 29 999 mm/min are F1181 [003:2144].
+    pub fn feed_max(self, inch_feed: InchFeed, max_mm_min: f64) -> f64 {
+        (max_mm_min / self.feed_mm_min(inch_feed)).round()
+    }
 }
 
 /// A number or a signed Q parameter [003:4066].
@@ -380,7 +413,7 @@ pub enum Compensation {
 pub enum Feed {
     /// `FMAX`: rapid traverse in this block.
     Max,
-    /// `F value`, mm/min or 0.1 inch/min.
+    /// `F value`, mm/min; in a program in inches what [`InchFeed`] says.
     Value(Value),
 }
 

@@ -1,9 +1,9 @@
 //! A part program as a file: its bytes, a light index, and blocks decoded on demand.
 
 use crate::index::{CHUNK_SIZE, ChunkStart, Index};
-use crate::lines::{RawBlock, RawBlocks};
+use crate::lines::{RawBlock, RawBlocks, stands_alone};
 use crate::parse::{EMPTY_BLOCK, parse_block, parse_block_into};
-use crate::text::{BYTE_ORDER_MARK, to_text, without_utf16};
+use crate::text::{BYTE_ORDER_MARK, blank_lone_returns, to_text, without_utf16};
 use crate::{Block, Header, Operation, Unit};
 
 /// A part program in plain language.
@@ -60,6 +60,7 @@ impl Program {
     pub fn from_bytes(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
         let mut file = without_utf16(bytes);
         file.truncate(usize::try_from(Program::MAX_BYTES).unwrap_or(usize::MAX));
+        blank_lone_returns(&mut file);
         let index = Index::new(&file, text_start(&file));
         Program {
             name: name.into(),
@@ -83,9 +84,25 @@ impl Program {
         self.index.begin.as_ref()
     }
 
+    /// Whether the file begins with BEGIN PGM, comments apart: that of a file which is no program does not,
+    /// even if it quotes one.
+    pub fn begins_with_header(&self) -> bool {
+        let Some(begin) = self.index.chunks.first().filter(|_| self.begin().is_some()) else {
+            return false;
+        };
+        RawBlocks::from(&self.file, text_start(&self.file), 1)
+            .take_while(|raw| raw.start < begin.byte as usize)
+            .all(|raw| stands_alone(raw.bytes(&self.file)))
+    }
+
     /// The END PGM block, if the file has one.
     pub fn end(&self) -> Option<&Header> {
         self.index.end.as_ref()
+    }
+
+    /// Whether the program is written in DIN/ISO, which is not read here yet: every block is invalid.
+    pub fn is_din_iso(&self) -> bool {
+        self.index.din_iso
     }
 
     /// Number of blocks, BEGIN and END included.

@@ -77,6 +77,25 @@ pub(crate) fn without_utf16(bytes: Vec<u8>) -> Vec<u8> {
         .into_bytes()
 }
 
+/// Makes a blank of every CR that stands alone in a file whose lines end otherwise: there it is no line end.
+pub(crate) fn blank_lone_returns(file: &mut [u8]) {
+    let lone = |file: &[u8], at: usize| file.get(at + 1) != Some(&b'\n');
+    let feeds = memchr::memchr_iter(b'\n', file).count();
+    let returns: Vec<usize> = memchr::memchr_iter(b'\r', file)
+        .filter(|&at| lone(file, at))
+        .take(feeds)
+        .collect();
+    // With as many of one as of the other nobody knows; both then end lines.
+    if returns.len() >= feeds {
+        return;
+    }
+    for at in returns {
+        if let Some(byte) = file.get_mut(at) {
+            *byte = b' ';
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,6 +115,19 @@ mod tests {
         assert_eq!(trim(b" \0 "), b"");
         assert_eq!(trim_continuation(b"Q200=2 ~ ~ "), b"Q200=2");
         assert_eq!(trim_continuation(b"~"), b"");
+    }
+
+    #[test]
+    fn a_lone_return_among_other_line_ends_is_a_blank() {
+        let blanked = |text: &str| {
+            let mut file = text.as_bytes().to_vec();
+            blank_lone_returns(&mut file);
+            String::from_utf8(file).unwrap()
+        };
+        assert_eq!(blanked("L X+1\rY+2\nL X+3\n"), "L X+1 Y+2\nL X+3\n");
+        assert_eq!(blanked("L X+1\r\r\nL X+3\r\n"), "L X+1 \r\nL X+3\r\n");
+        assert_eq!(blanked("A\rB\rC\r\n"), "A\rB\rC\r\n");
+        assert_eq!(blanked("A\rB\r"), "A\rB\r");
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! All faults of a program in one pass, each at its place.
 
-use bahn_parameters::ControlModel::{Tnc360, Tnc415b};
+use bahn_parameters::ControlModel::{Tnc155, Tnc360, Tnc415b};
+use bahn_parameters::InchFeed;
 use bahn_parameters::MessageId::{self, *};
-use bahn_program::{Diagnostic, MAX_DIAGNOSTICS, Program, Severity, Unit, check_limits};
+use bahn_program::{Diagnostic, MAX_DIAGNOSTICS, Program, Reading, Severity, Unit, check_limits};
 
 fn program(text: impl AsRef<[u8]>) -> Program {
     Program::from_bytes("TEST.H", text.as_ref().to_vec())
@@ -58,7 +59,7 @@ fn all_faults_in_one_pass_in_the_order_of_blocks() {
             found(EntryValueIncorrect, 1, "Xnan"),
             found(LabelNumberNotAllocated, 2, "9"),
             found(AxisDoubleProgrammed, 3, "X+6"),
-            found(BlockNotKnown, 4, "APPR"),
+            found(BlockNotSupported, 4, "APPR"),
             found(ErrorBlock, 5, "ERROR = X"),
             found(EntryValueIncorrect, 6, "+1.2.3"),
         ]
@@ -186,7 +187,7 @@ fn endless_faults_are_bounded() {
 fn limits_of_the_control_model() {
     let at = |text: &str| {
         let program = program(format!("BEGIN PGM 1 MM\nLBL 1\n{text}\nEND PGM 1 MM\n"));
-        let all = program.diagnostics(Some(Tnc360.limits()));
+        let all = program.diagnostics(Some(Tnc360.limits().into()));
         assert!(all.len() <= 1, "{text}: {all:?}");
         all.first().map(|diagnostic| {
             let (message, _, text) = underlined(&program, diagnostic);
@@ -225,13 +226,23 @@ fn limits_of_the_control_model() {
 #[test]
 fn limits_are_those_of_the_unit_and_the_model() {
     let operation = |text: &str| program(text).decode(0).blocks.swap_remove(1).operation;
-    // 30 000 mm are 1181.1 inch; 29 999 mm/min are 11 810.6 tenths of an inch per minute.
+    // 30 000 mm are 1181.1 inch; 29 999 mm/min are 1181 inch per minute [003:2144].
     let limits = Tnc360.limits();
     assert!(check_limits(&operation("L X+1181"), Unit::Inch, limits).is_none());
     assert!(check_limits(&operation("L X+1182"), Unit::Inch, limits).is_some());
     assert!(check_limits(&operation("L A+20000"), Unit::Inch, limits).is_none());
-    assert!(check_limits(&operation("L X+1 F11810"), Unit::Inch, limits).is_none());
-    assert!(check_limits(&operation("L X+1 F11811"), Unit::Inch, limits).is_some());
+    assert!(check_limits(&operation("L X+1 F1181"), Unit::Inch, limits).is_none());
+    assert!(check_limits(&operation("L X+1 F1182"), Unit::Inch, limits).is_some());
+    // On the TNC 155 rapid traverse is 6299 tenths of an inch per minute [001:471].
+    let tenths = Tnc155.limits();
+    assert!(check_limits(&operation("L X+1 F6299"), Unit::Inch, tenths).is_none());
+    assert!(check_limits(&operation("L X+1 F6300"), Unit::Inch, tenths).is_some());
+    let whole = Reading {
+        limits: tenths,
+        inch_feed: InchFeed::Whole,
+    };
+    assert!(check_limits(&operation("L X+1 F630"), Unit::Inch, whole).is_none());
+    assert!(check_limits(&operation("L X+1 F631"), Unit::Inch, whole).is_some());
     for text in [
         "Q1 = SIN 30",
         "L X+Q150",
@@ -248,4 +259,32 @@ fn limits_are_those_of_the_unit_and_the_model() {
             "{text}"
         );
     }
+}
+
+#[test]
+fn a_din_iso_program_is_one_line() {
+    for text in [
+        "%1000 G71 *\nN10 G00 G40 X+5 *\nN20 X+7 *\nN99999 %1000 G71 *\n",
+        "N10 G30 G17 X+0 *\nN20 G31 X+100 *\n",
+    ] {
+        let program = program(text);
+        let all = program.diagnostics(None);
+        assert_eq!(all.len(), 1, "{all:?}");
+        assert_eq!(
+            (all[0].message, all[0].block, all[0].line),
+            (BlockNotSupported, 1, 1)
+        );
+    }
+}
+
+#[test]
+fn an_unknown_unit_is_warned_of() {
+    let program = program("BEGIN PGM 7 CM\nEND PGM 7 CM");
+    let all = program.diagnostics(None);
+    assert_eq!(all.len(), 1, "{all:?}");
+    assert_eq!(
+        (all[0].message, all[0].severity),
+        (UnexpectedText, Severity::Warning)
+    );
+    assert!(all[0].detail.starts_with("CM is no unit"), "{}", all[0].detail);
 }

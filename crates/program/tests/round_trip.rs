@@ -54,7 +54,7 @@ fn check_laws(bytes: &[u8]) {
         joined += program.decode(chunk).blocks.len();
     }
     assert_eq!(joined, all.len());
-    for diagnostic in program.diagnostics(Some(ControlModel::Tnc360.limits())) {
+    for diagnostic in program.diagnostics(Some(ControlModel::Tnc360.limits().into())) {
         let line = program.text_of_line(diagnostic.line);
         let end = diagnostic.column + diagnostic.length - 1;
         let inside = diagnostic.column >= 1 && end as usize <= line.chars().count() + 1;
@@ -95,6 +95,12 @@ proptest! {
     #[test]
     fn any_words_keep_the_laws(words in prop::collection::vec(generate::fragment(), 0..80)) {
         check_laws(words.concat().as_bytes());
+    }
+
+    /// Cycle blocks, whose texts may look like numbers and addresses.
+    #[test]
+    fn any_cycle_words_keep_the_laws(head in "CYCL DEF (14\\.1|7\\.1|8\\.1|1\\.2|3\\.4|12\\.1|68\\.1|200) ", words in "[NaLbXIF0-9+./,:= Q~;-]{0,24}") {
+        check_laws(format!("{head}{words}").as_bytes());
     }
 
     #[test]
@@ -148,6 +154,13 @@ fn nasty_texts_keep_the_laws() {
         "\n\u{feff}\r\n \n\u{feff}x\nBEGIN PGM ",
         "CYCL DEF 1.1 X~ +5 Y~",
         "CYCL DEF 14.1 L~ 5 / 6~;",
+        "CYCL DEF 14.1 CONTOUR LABEL NaN-/2",
+        "CYCL DEF 14.1 A- 1/2",
+        "N5 ; a ~\n b ~\nL X+1",
+        "; a ~\n b ; c ~ \n\nL X+1",
+        "BEGIN PGM A B IN P\nEND PGM A B CM",
+        "L X+1\rY+2\nL X+3\nL X+4\r\n",
+        "%1000 G71\nN10 G00 X+5 *",
         "L X\u{e4} \u{85}",
         "Q1 = -(2) ^ -Q3 - (4 - -5)",
         "FN15: PRINT 0,5/-Q1",

@@ -77,7 +77,7 @@ fn check(folder: &Path, format: Format) -> Result<Report, UsageError> {
             });
         let count =
             |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
-        diagnostics::print_line(&format!(
+        diagnostics::print_text(&format!(
             "{}: {what}, {}, {}",
             folder.display(),
             count(errors, "error"),

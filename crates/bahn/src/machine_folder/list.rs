@@ -5,6 +5,7 @@ use bahn_machine::Event;
 use super::load::load;
 use super::options::ListOptions;
 use crate::diagnostics::FileFault;
+use crate::diagnostics::printable;
 use crate::run::Expectation;
 use crate::{Outcome, UsageError, console};
 
@@ -42,7 +43,11 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     let axes: Vec<String> = plant.axes().map(|axis| axis.letter.to_string()).collect();
     let things: Vec<&str> = plant.devices().map(|device| device.name).collect();
     let row = |name: &str, items: Vec<&str>| format!("{name:<10}{}\n", items.join(" "));
-    let mut text = format!("{}, {}\n\n", machine.folder.name, machine.parameters.model());
+    let mut text = format!(
+        "{}, {}\n\n",
+        printable(&machine.folder.name),
+        machine.parameters.model()
+    );
     text += &row("axes", axes.iter().map(String::as_str).collect());
     text += &row("keys", plant.keys().collect());
     text += &row("lamps", plant.lamps().collect());

@@ -51,7 +51,7 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         };
         write(&folder.join(file), &content)?;
     }
-    diagnostics::print_line(&format!(
+    diagnostics::print_text(&format!(
         "{}: {name}, {model}, {} files; README.md explains them",
         folder.display(),
         shipped.files.len() + 1

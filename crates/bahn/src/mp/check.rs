@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bahn_parameters::conformance::{Effect, Kind, find};
 use bahn_parameters::{
-    Definition, Inconsistency, ListError, ListText, ParameterError, ParameterId, ParameterList,
+    Definition, Inconsistency, ListError, ListText, ParameterError, ParameterId, ParameterList, chapters,
 };
 use serde::Serialize;
 
@@ -183,7 +183,7 @@ fn warnings_of(text: &ListText, list: &ParameterList) -> Vec<Item> {
         line: line_of(found.id),
         column: 1,
         length: 0,
-        detail: format!("{} [{}]", found.detail, found.source),
+        detail: format!("{} ({})", found.detail, chapters(found.source).join("; ")),
     };
     list.inconsistencies().into_iter().map(item).collect()
 }

@@ -1,12 +1,13 @@
 //! `bahn mp explain`: what a parameter means.
 
-use bahn_parameters::Definition;
+use bahn_parameters::{Definition, chapters, with_chapters};
 
 use super::list::Row;
 use super::options::ExplainOptions;
 use super::style::Style;
 use super::{print_json, source};
 use crate::cli::Format;
+use crate::paragraph::{labelled, labelled_lines};
 use crate::{Outcome, UsageError, console};
 
 /// Explains one parameter, or all indices of a number.
@@ -50,11 +51,11 @@ fn text(first: &Row, rows: &[Row], list: &str, style: Style) -> String {
         _ => format!("{number}  {}", first.name),
     };
     let mut text = format!("{}\n", style.bold(&title));
-    let mut line = |label: &str, content: &str| {
-        if !content.is_empty() {
-            text += &format!("  {label:<13}{content}\n");
-        }
-    };
+    let mut line = |label: &str, content: &str| text += &labelled(label, content);
+    line("does:", first.does);
+    line("too small:", first.too_small);
+    line("too large:", first.too_large);
+    line("related:", &related(first));
     line("group:", first.group.unwrap_or_default());
     line("range:", &first.range());
     for (at, choice) in first.choices.iter().enumerate() {
@@ -76,8 +77,8 @@ fn text(first: &Row, rows: &[Row], list: &str, style: Style) -> String {
         line("effect:", &remark);
     }
     line("versions:", first.versions);
-    line("note:", first.notes);
-    line("source:", &first.source.replace(';', ", "));
+    line("note:", &with_chapters(first.notes));
+    text += &labelled_lines("source:", &chapters(first.source));
     text += &format!("  in the {list}:\n");
     let index_width = rows
         .iter()
@@ -116,6 +117,16 @@ fn remarks(rows: &[Row]) -> Vec<String> {
         remark => format!("{} to {}: {remark}", first.parameter, last.parameter),
     });
     said.collect()
+}
+
+/// The related parameters with their names: `MP1070 Radial acceleration, MP1010 Rapid traverse`.
+fn related(row: &Row) -> String {
+    let all = Definition::all(row.model);
+    let named = row.related.iter().filter_map(|number| {
+        let definition = all.iter().find(|definition| definition.id.number == *number)?;
+        Some(format!("MP{number} {}", definition.name))
+    });
+    named.collect::<Vec<_>>().join("; ")
 }
 
 /// The values of the list that the control makes by itself.

@@ -1,7 +1,7 @@
 //! `bahn mp list`: parameters with value, range, unit and name.
 
 use bahn_parameters::conformance::{Kind, find};
-use bahn_parameters::{Change, Definition, ParameterList, Reaction};
+use bahn_parameters::{Advice, Change, ControlModel, Definition, ParameterList, Reaction};
 use serde::Serialize;
 
 use super::options::ListOptions;
@@ -80,6 +80,14 @@ pub(super) struct Row {
     pub versions: &'static str,
     pub notes: &'static str,
     pub source: &'static str,
+    /// What it does, and what happens when it is too small or too large.
+    pub does: &'static str,
+    pub too_small: &'static str,
+    pub too_large: &'static str,
+    /// Numbers that belong to it.
+    pub related: &'static [u16],
+    #[serde(skip)]
+    pub model: ControlModel,
 }
 
 impl Row {
@@ -87,6 +95,7 @@ impl Row {
         let id = definition.id;
         let entry = find(list.model(), Kind::MachineParameter, &id.to_string());
         let number = list.get(id.number, id.index.unwrap_or(0)).unwrap_or_default();
+        let advice = Advice::of(list.model(), id.number);
         let [min, max] = definition
             .range_text()
             .map_or([None, None], |range| range.map(Some));
@@ -120,6 +129,11 @@ impl Row {
             versions: definition.versions,
             notes: definition.notes,
             source: definition.source,
+            does: advice.map_or("", |advice| advice.does),
+            too_small: advice.map_or("", |advice| advice.too_small),
+            too_large: advice.map_or("", |advice| advice.too_large),
+            related: advice.map_or(&[], |advice| &advice.related),
+            model: list.model(),
         }
     }
 

@@ -21,7 +21,7 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
                 .map_err(|error| files::cannot("write", path, &error))?;
             file.finish()?;
             let entries = count(text.entries().len(), "parameter");
-            diagnostics::print_line(&format!("{}: {}, {entries}", path.display(), text.model()));
+            diagnostics::print_text(&format!("{}: {}, {entries}", path.display(), text.model()));
         }
     }
     Ok(Outcome::Fine)

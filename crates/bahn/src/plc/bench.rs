@@ -28,6 +28,8 @@ pub(super) struct Bench {
 #[derive(Clone, Debug, serde::Serialize)]
 pub(super) struct Failure {
     pub cycle: u64,
+    /// Line of the script.
+    pub line: u32,
     pub operand: String,
     pub expected: Content,
     pub found: Content,
@@ -154,22 +156,19 @@ impl Bench {
 
     /// The expectations of the last cycle that do not hold.
     pub fn failures(&self) -> Vec<Failure> {
-        let expected = self
-            .script
-            .cycle(self.cycle)
-            .map_or(&[][..], |cycle| &cycle.expect);
-        expected
-            .iter()
-            .filter_map(|(operand, expected)| {
-                let found = self.read(*operand);
-                (found != *expected).then(|| Failure {
-                    cycle: self.cycle,
-                    operand: operand.to_string(),
-                    expected: expected.clone(),
-                    found,
-                })
+        let cycle = self.script.cycle(self.cycle);
+        let expected = cycle.map_or(&[][..], |cycle| &cycle.expect);
+        let failed = expected.iter().filter_map(|expected| {
+            let found = self.read(expected.operand);
+            (found != expected.content).then(|| Failure {
+                cycle: self.cycle,
+                line: expected.line,
+                operand: expected.operand.to_string(),
+                expected: expected.content.clone(),
+                found,
             })
-            .collect()
+        });
+        failed.collect()
     }
 
     pub fn read(&self, operand: Operand) -> Content {

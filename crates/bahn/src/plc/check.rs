@@ -27,7 +27,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
                 1 => format!("1 {what}"),
                 _ => format!("{number} {what}s"),
             };
-            diagnostics::print_line(&format!(
+            diagnostics::print_text(&format!(
                 "{}: {}, {}, {} bytes, nominal cycle time {:.2} %",
                 options.program.file.display(),
                 count(report.errors.len(), "error"),

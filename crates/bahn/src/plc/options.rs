@@ -167,6 +167,9 @@ pub(crate) struct RunOptions {
     /// Write the operands of --show, or else those of the script, after every cycle.
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub record: Option<PathBuf>,
+    /// Write the expectations of the script as JUnit XML, for build servers.
+    #[arg(long, value_name = "OUT.xml", value_hint = ValueHint::FilePath)]
+    pub junit: Option<PathBuf>,
     /// How the result is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,

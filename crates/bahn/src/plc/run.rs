@@ -1,5 +1,7 @@
 //! `bahn plc run`: cycle by cycle, with stimuli and expectations.
 
+use std::path::Path;
+
 use bahn_exchange::Exchange;
 use bahn_plc::{PlcProgram, ProcessingTime, RuntimeError};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -15,6 +17,7 @@ use super::trace::{Line, Trace};
 use crate::cli::Format;
 use crate::diagnostics::{self, Diagnostic, Marked, Severity};
 use crate::interrupt::Interrupt;
+use crate::junit::{self, Case, Verdict};
 use crate::{Outcome, UsageError, console};
 
 /// Runs a program and shows what came out.
@@ -81,7 +84,15 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     record.map_or(Ok(()), Record::finish)?;
 
     for failure in &report.failed_expectations {
-        diagnostics::print_line(&failure.to_string());
+        let title = failure.to_string();
+        let found = format!("found {}", failure.found);
+        let fault = bench
+            .script
+            .failure(failure.line, &failure.operand, &title, found);
+        fault.print();
+    }
+    if let Some(path) = &options.junit {
+        write_junit(path, options, &bench, &report)?;
     }
     report.values = Values(
         options
@@ -104,6 +115,29 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         true => Outcome::Fine,
         false => Outcome::ProgramError,
     })
+}
+
+/// The expectations of the script for a build server.
+fn write_junit(path: &Path, options: &RunOptions, bench: &Bench, report: &Report) -> Result<(), UsageError> {
+    let cases = bench.script.expectations().map(|(cycle, expected)| {
+        let operand = expected.operand.to_string();
+        let mut failed = report.failed_expectations.iter();
+        let failed = failed.find(|failure| {
+            (failure.cycle, failure.line, &failure.operand) == (cycle, expected.line, &operand)
+        });
+        Case {
+            place: bench.script.place(expected.line),
+            name: format!("cycle {cycle}: {operand} = {}", expected.content),
+            verdict: match failed {
+                Some(failure) => Verdict::Failed(format!("found {}", failure.found)),
+                None if cycle > report.cycles => Verdict::NotReached,
+                None => Verdict::Held,
+            },
+        }
+    });
+    let stopped = report.error.as_ref().map(Stop::to_string);
+    let suite = options.program.file.to_string_lossy();
+    junit::write(path, &suite, &cases.collect::<Vec<_>>(), stopped.as_deref())
 }
 
 /// Prints a run-time error with its line.
@@ -133,7 +167,7 @@ pub(super) fn print_error(program: &PlcProgram, error: &RuntimeError) {
             Some(job) => format!("submit job {job} stopped the PLC here"),
             None => "the PLC stopped here".to_owned(),
         },
-        help: None,
+        help: Some(&format!("{} {}", error.error.cause(), error.error.cure())),
     });
     diagnostics::print_line("");
 }
@@ -165,6 +199,12 @@ struct Stop {
     number: u8,
     file: String,
     line: u32,
+}
+
+impl std::fmt::Display for Stop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}:{}: PLC error {}", self.file, self.line, self.number)
+    }
 }
 
 #[derive(Debug, Default, serde::Serialize)]

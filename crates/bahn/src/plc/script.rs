@@ -1,9 +1,10 @@
 //! Stimuli and expectations.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::operand::{Assignment, Content, Operand};
+use crate::diagnostics::{FileFault, Marked, Severity};
 use crate::{UsageError, files};
 
 /// The last cycle that a script may speak of: more than two days of a machine. A slip of the keyboard is
@@ -12,13 +13,26 @@ const CYCLES_MAX: u64 = 10_000_000;
 
 /// A script: what is set before and expected after its cycles.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Script(BTreeMap<u64, Cycle>);
+pub(super) struct Script {
+    path: PathBuf,
+    text: Vec<String>,
+    cycles: BTreeMap<u64, Cycle>,
+}
 
 /// One cycle of a script.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Cycle {
     pub set: Vec<Assignment>,
-    pub expect: Vec<(Operand, Content)>,
+    pub expect: Vec<Expected>,
+}
+
+/// A content that an operand must have after a cycle.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Expected {
+    pub operand: Operand,
+    pub content: Content,
+    /// Line of the script.
+    pub line: u32,
 }
 
 impl Script {
@@ -29,23 +43,30 @@ impl Script {
 
     /// Reads a script from the bytes of a file; an error names file and line.
     pub fn read(name: &str, bytes: &[u8]) -> Result<Script, String> {
-        Script::parse(&String::from_utf8_lossy(bytes))
-            .map_err(|(line, error)| format!("{name}:{line}: {error}"))
+        let script = Script::parse(&String::from_utf8_lossy(bytes))
+            .map_err(|(line, error)| format!("{name}:{line}: {error}"))?;
+        Ok(Script {
+            path: PathBuf::from(name),
+            ..script
+        })
     }
 
     /// Reads a script; an error comes with its line.
     fn parse(text: &str) -> Result<Script, (usize, String)> {
         let mut script = Script::default();
-        for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
+            script.text.push(line.to_owned());
             let line = without_comment(line).trim();
             if !line.is_empty() {
-                script.add(line).map_err(|error| (index + 1, error))?;
+                script
+                    .add(number, line)
+                    .map_err(|error| (number as usize, error))?;
             }
         }
         Ok(script)
     }
 
-    fn add(&mut self, line: &str) -> Result<(), String> {
+    fn add(&mut self, line_number: u32, line: &str) -> Result<(), String> {
         let (cycle, rest) = line
             .split_once(':')
             .ok_or("a line is `cycle: operand=value, ..` or `cycle: expect operand=value, ..`")?;
@@ -59,13 +80,17 @@ impl Script {
         let expected = rest.split_at_checked(6).filter(|(word, behind)| {
             word.eq_ignore_ascii_case("expect") && behind.starts_with(char::is_whitespace)
         });
-        let cycle = self.0.entry(number).or_default();
+        let cycle = self.cycles.entry(number).or_default();
         match expected {
             None => cycle.set.extend(Assignment::parse_all(rest)?),
             Some((_, rest)) => {
                 for assignment in Assignment::parse_all(rest)? {
                     match assignment {
-                        Assignment::Operand(operand, content) => cycle.expect.push((operand, content)),
+                        Assignment::Operand(operand, content) => cycle.expect.push(Expected {
+                            operand,
+                            content,
+                            line: line_number,
+                        }),
                         Assignment::Parameter(_) => return Err("machine parameters do not change".to_owned()),
                     }
                 }
@@ -75,17 +100,51 @@ impl Script {
     }
 
     pub fn cycle(&self, number: u64) -> Option<&Cycle> {
-        self.0.get(&number)
+        self.cycles.get(&number)
+    }
+
+    /// An expectation that does not hold, at its place in the file.
+    pub fn failure(&self, line: u32, operand: &str, title: &str, found: String) -> FileFault {
+        let index = (line as usize).saturating_sub(1);
+        let text = self.text.get(index).cloned().unwrap_or_default();
+        // The name as it is written, in a script of the same letters mostly.
+        let at = text.to_ascii_uppercase().find(operand);
+        let columns = at.map(|at| {
+            let before = text.get(..at).unwrap_or_default().chars().count();
+            let item = text.get(at..).unwrap_or_default();
+            let item = item.split([',', ';', '#']).next().unwrap_or_default().trim_end();
+            let count = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+            (count(before + 1), count(item.chars().count()))
+        });
+        FileFault {
+            severity: Severity::Error,
+            title: title.to_owned(),
+            path: self.path.clone(),
+            marked: Marked { line, text, columns },
+            label: found,
+            help: None,
+        }
+    }
+
+    /// Where a line stands, as `door.txt:3`.
+    pub fn place(&self, line: u32) -> String {
+        format!("{}:{line}", self.path.display())
     }
 
     /// All cycles that it speaks of.
     pub fn cycles(&self) -> impl Iterator<Item = &Cycle> {
-        self.0.values()
+        self.cycles.values()
+    }
+
+    /// All expectations with their cycles.
+    pub fn expectations(&self) -> impl Iterator<Item = (u64, &Expected)> {
+        let cycles = self.cycles.iter();
+        cycles.flat_map(|(number, cycle)| cycle.expect.iter().map(|expected| (*number, expected)))
     }
 
     /// The last cycle it speaks of, 0 when it is empty.
     pub fn last(&self) -> u64 {
-        self.0.last_key_value().map_or(0, |(number, _)| *number)
+        self.cycles.last_key_value().map_or(0, |(number, _)| *number)
     }
 
     /// All operands, in the order of their first cycle.
@@ -96,7 +155,7 @@ impl Script {
                 Assignment::Operand(operand, _) => Some(*operand),
                 Assignment::Parameter(_) => None,
             });
-            for operand in set.chain(cycle.expect.iter().map(|(operand, _)| *operand)) {
+            for operand in set.chain(cycle.expect.iter().map(|expected| expected.operand)) {
                 if !operands.contains(&operand) {
                     operands.push(operand);
                 }
@@ -182,21 +241,21 @@ mod tests {
             ),
         ) {
             let mut text = String::new();
-            let mut expected = Script::default();
-            for (cycle, is_expectation, assignments, comment) in lines {
+            let mut expected: BTreeMap<u64, Cycle> = BTreeMap::new();
+            for (line, (cycle, is_expectation, assignments, comment)) in (1..).zip(lines) {
                 let word = if is_expectation { " Expect" } else { "" };
                 let parts: Vec<&str> = assignments.iter().map(|(text, ..)| text.as_str()).collect();
                 text += &format!("{cycle}:{word}{}{}\n", parts.join(","), comment.replace(['\n', '\r'], ""));
-                let entry = expected.0.entry(cycle).or_default();
+                let entry = expected.entry(cycle).or_default();
                 for (_, operand, content) in assignments {
                     if is_expectation {
-                        entry.expect.push((operand, content));
+                        entry.expect.push(Expected { operand, content, line });
                     } else {
                         entry.set.push(Assignment::Operand(operand, content));
                     }
                 }
             }
-            prop_assert_eq!(Script::parse(&text), Ok(expected), "{}", text);
+            prop_assert_eq!(Script::parse(&text).map(|script| script.cycles), Ok(expected), "{}", text);
         }
 
         #[test]

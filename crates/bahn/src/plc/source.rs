@@ -22,7 +22,7 @@ impl Source {
     /// Compiles the main file and what it links.
     pub fn compile(options: &ProgramOptions) -> Result<Source, UsageError> {
         // An unreadable main file is wrong use; a linked one is an error of the program.
-        files::read_table(&options.file)?;
+        let bytes = files::read_table(&options.file)?;
         let parameters = settings::parameter_list(options.model, options.parameters.as_deref())?;
         // Only the list of a machine says that it has an EPROM.
         let memory = match (&options.parameters, parameters.get(4010, 0)) {
@@ -31,16 +31,32 @@ impl Source {
         };
         let mut compile_options = Options::for_model(options.model).stored_in(memory);
         compile_options.strict = options.strict;
-        Ok(Source::compile_for(&options.file, parameters, compile_options))
+        Ok(Source::compile_bytes(
+            &options.file,
+            Some(bytes),
+            parameters,
+            compile_options,
+        ))
     }
 
     /// Compiles the main file for a machine.
     pub fn compile_for(file: &Path, parameters: ParameterList, options: Options) -> Source {
+        Source::compile_bytes(file, None, parameters, options)
+    }
+
+    /// Compiles a main file that was read already: a pipe can be read only once.
+    fn compile_bytes(
+        file: &Path,
+        bytes: Option<Vec<u8>>,
+        parameters: ParameterList,
+        options: Options,
+    ) -> Source {
         let main = file.file_name().unwrap_or_default().to_string_lossy();
         let memory = options.memory;
         let folder = Folder {
             folder: file.parent().map(Path::to_owned).unwrap_or_default(),
             main: main.to_string(),
+            bytes,
             memory,
         };
         let compilation = Compilation::compile(&folder, &main, options);
@@ -53,8 +69,15 @@ impl Source {
 
     /// Prints errors and warnings as rustc does.
     pub fn print_faults(&self) {
-        for fault in self.errors().into_iter().chain(self.warnings()) {
-            fault.print();
+        let errors = self
+            .compilation
+            .errors
+            .iter()
+            .map(|fault| (Severity::Error, fault));
+        let warnings = self.compilation.warnings.iter();
+        for (severity, fault) in errors.chain(warnings.map(|fault| (Severity::Warning, fault))) {
+            let opened = fault.opened.map(|place| self.marked(&fault.file, place));
+            self.fault(severity, fault).print_with(opened.as_ref());
         }
     }
 
@@ -79,18 +102,6 @@ impl Source {
     }
 
     fn fault(&self, severity: Severity, fault: &Fault) -> FileFault {
-        let file = self.compilation.files.iter().find(|file| file.name == fault.file);
-        let line = (fault.line as usize).saturating_sub(1);
-        let text = file
-            .and_then(|file| file.lines.get(line))
-            .cloned()
-            .unwrap_or_default();
-        let start = fault.column.saturating_sub(1) as usize;
-        let length = text
-            .chars()
-            .skip(start)
-            .take_while(|c| !c.is_whitespace())
-            .count();
         let detail = fault
             .message
             .strip_prefix(fault.error.text())
@@ -99,13 +110,25 @@ impl Source {
             severity,
             title: format!("{} {}", fault.error.number(), fault.error.text()),
             path: self.folder.path(&fault.file),
-            marked: Marked {
-                line: fault.line,
-                text,
-                columns: Some((fault.column.max(1), u32::try_from(length).unwrap_or(1).max(1))),
-            },
+            marked: self.marked(&fault.file, (fault.line, fault.column)),
             label: detail.trim_start_matches(':').trim().to_owned(),
-            help: None,
+            help: Some(format!("{} {}", fault.error.cause(), fault.error.cure())),
+        }
+    }
+
+    /// The word of a file that begins at line and column.
+    fn marked(&self, file: &str, (line, column): (u32, u32)) -> Marked {
+        let file = self.compilation.files.iter().find(|own| own.name == file);
+        let index = (line as usize).saturating_sub(1);
+        let text = file.and_then(|file| file.lines.get(index)).cloned();
+        let text = text.unwrap_or_default();
+        let start = column.saturating_sub(1) as usize;
+        let word = text.chars().skip(start).take_while(|c| !c.is_whitespace());
+        let length = u32::try_from(word.count()).unwrap_or(1).max(1);
+        Marked {
+            line,
+            text,
+            columns: Some((column.max(1), length)),
         }
     }
 }
@@ -114,6 +137,8 @@ impl Source {
 struct Folder {
     folder: PathBuf,
     main: String,
+    /// Of the main file, where it was read before.
+    bytes: Option<Vec<u8>>,
     memory: ProgramMemory,
 }
 
@@ -131,7 +156,8 @@ const EPROM: &str = "EPROM";
 
 impl SourceFiles for Folder {
     fn read(&self, name: &str) -> Option<Vec<u8>> {
-        read_in(&self.folder, name)
+        let main = self.bytes.as_ref().filter(|_| name == self.main);
+        main.cloned().or_else(|| read_in(&self.folder, name))
     }
 
     /// The main file runs from wherever it is.

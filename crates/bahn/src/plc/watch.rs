@@ -1,9 +1,11 @@
 //! `bahn plc watch`: the table of operands while the program runs or is stepped [000:11436-11460].
 
+mod breakpoint;
 mod entry;
 mod screen;
 #[cfg(test)]
 mod tests;
+mod trend;
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -19,7 +21,9 @@ use super::options::WatchOptions;
 use super::retain::Retained;
 use super::source::Source;
 use crate::{Outcome, UsageError};
+use breakpoint::Breakpoints;
 use entry::Entry;
+use trend::Trend;
 
 /// Shows the table until the user ends it.
 pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
@@ -70,6 +74,10 @@ struct Watch {
     entry: Option<Entry>,
     message: String,
     last: LastInstruction,
+    breakpoints: Breakpoints,
+    /// It was stopped before the first line, so that the next cycle passes it.
+    held: bool,
+    trend: Trend,
     retained: Option<Retained>,
 }
 
@@ -93,6 +101,9 @@ impl Watch {
             entry: None,
             message: String::new(),
             last: LastInstruction::default(),
+            breakpoints: Breakpoints::default(),
+            held: false,
+            trend: Trend::default(),
             retained,
         }
     }
@@ -159,6 +170,7 @@ impl Watch {
             KeyCode::Char('n') => {
                 self.bench.restart();
                 self.last = LastInstruction::default();
+                self.trend.clear();
                 self.message = "started anew; operands keep their values".to_owned();
             }
             KeyCode::Up => self.chosen = self.chosen.saturating_sub(1),
@@ -172,6 +184,16 @@ impl Watch {
                 }
             }
             KeyCode::Char('a') => self.entry = Some(Entry::operands()),
+            KeyCode::Char('b') => self.entry = Some(Entry::breakpoint()),
+            KeyCode::Char('x') => {
+                if let Some(operand) = self.operands.get(self.chosen) {
+                    let content = self.bench.read(*operand);
+                    let stops = self.breakpoints.turn_over(*operand, content);
+                    let what = if stops { "stops" } else { "does not stop" };
+                    self.message = format!("a change of {operand} {what} the program");
+                }
+            }
+            KeyCode::Char('t') => self.trend.turn_over(),
             KeyCode::Char('d') if self.chosen < self.operands.len() => {
                 self.operands.remove(self.chosen);
                 self.chosen = self.chosen.min(self.operands.len().saturating_sub(1));
@@ -181,20 +203,49 @@ impl Watch {
         true
     }
 
-    /// Runs a cycle, or the rest of one that was begun.
+    /// Runs a cycle, or the rest of one that was begun. A breakpoint in a line ends it before that line.
     fn cycle(&mut self) {
-        let result = if self.bench.is_inside() {
-            let mut result = Ok(false);
-            while let Ok(false) = result {
-                result = self.bench.step(&mut self.last);
-            }
-            result.map(|_| ())
+        let result = if self.bench.is_inside() || self.breakpoints.has_lines() {
+            self.lines()
         } else {
             // While the program runs there is no time to look at lines.
             self.last = LastInstruction::default();
-            self.bench.scan(None)
+            self.bench.scan(None).map(|()| true)
         };
-        self.cycle_ended(result);
+        match result {
+            Ok(false) => {}
+            Ok(true) => self.cycle_ended(Ok(())),
+            Err(error) => self.cycle_ended(Err(error)),
+        }
+    }
+
+    /// Executes lines to the end of the cycle, or to a breakpoint: tells whether the cycle is over.
+    fn lines(&mut self) -> Result<bool, RuntimeError> {
+        if !self.bench.is_inside() && !self.held && self.breaks_before(0) {
+            self.held = true;
+            return Ok(false);
+        }
+        self.held = false;
+        loop {
+            if self.bench.step(&mut self.last)? {
+                return Ok(true);
+            }
+            if self.breaks_before(self.bench.machine.registers().next) {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Stops before an instruction whose line has a breakpoint.
+    fn breaks_before(&mut self, next: usize) -> bool {
+        let next = self.bench.machine.program().code.get(next);
+        let place = next.map(|next| (next.file, next.line));
+        let line = place.and_then(|place| self.breakpoints.at(place));
+        if let Some(line) = line {
+            self.running = false;
+            self.message = format!("stopped before line {line}");
+        }
+        line.is_some()
     }
 
     /// Executes one line.
@@ -213,6 +264,13 @@ impl Watch {
                 self.message = format!("{error}  (n starts anew)");
             }
             Ok(()) => {
+                let contents = self.operands.iter().map(|operand| self.bench.read(*operand));
+                self.trend.take(&self.operands, contents);
+                let bench = &self.bench;
+                if let Some(change) = self.breakpoints.changed(|operand| bench.read(operand)) {
+                    self.running = false;
+                    self.message = change;
+                }
                 if let Some(failure) = self.bench.failures().first() {
                     self.message = failure.to_string();
                 }
@@ -250,6 +308,12 @@ impl Watch {
                 Ok(entry::Accepted::Operands(operands)) => {
                     self.operands.extend(operands);
                     self.chosen = self.operands.len().saturating_sub(1);
+                    return;
+                }
+                Ok(entry::Accepted::Line(line)) => {
+                    let set = self.breakpoints.turn_over_line(line);
+                    let what = if set { "set" } else { "cleared" };
+                    self.message = format!("breakpoint at line {line} of the main file {what}");
                     return;
                 }
                 // The text stays to be corrected.

@@ -8,8 +8,14 @@ use std::collections::VecDeque;
 use bahn_control::{AxisSignal, Control, Signal};
 use bahn_path::BlockRef;
 
+use super::cause::{Cause, Moment};
+
 /// Contour cycles that are remembered; the lag of the slowest axis is far shorter.
 const POINTS: usize = 2048;
+/// Contour cycles before the nearest point that are kept: an axis that sticks breaks away late *(inferred)*.
+const BEFORE: usize = 256;
+/// Contour cycles over which the speed along the path is compared *(inferred)*.
+const SPEEDS: usize = 32;
 
 /// The largest values of an axis.
 #[derive(Clone, Debug)]
@@ -37,8 +43,14 @@ pub(super) struct Deviation {
     linear: Vec<char>,
     /// The nominal path, the oldest point first.
     path: VecDeque<[f64; 3]>,
+    /// How many points of it the axes have passed.
+    passed: usize,
+    /// Speeds along the path of the last cycles, mm/min.
+    speeds: VecDeque<f64>,
     /// Largest distance from the contour in space, mm.
     pub max_mm: f64,
+    /// Why it arose, and in which block.
+    pub cause: Option<(Cause, Option<BlockRef>)>,
 }
 
 impl Deviation {
@@ -60,7 +72,10 @@ impl Deviation {
             axes: axes.collect(),
             linear,
             path: VecDeque::with_capacity(POINTS),
+            passed: 0,
+            speeds: VecDeque::with_capacity(SPEEDS),
             max_mm: 0.0,
+            cause: None,
         }
     }
 
@@ -81,19 +96,38 @@ impl Deviation {
             point
         };
         let (nominal, actual) = (read(AxisSignal::Nominal), read(AxisSignal::Actual));
+        let speed = read(AxisSignal::NominalSpeed);
         if self.path.back() != Some(&nominal) {
             if self.path.len() == POINTS {
                 self.path.pop_front();
+                self.passed = self.passed.saturating_sub(1);
             }
             self.path.push_back(nominal);
         }
+        if self.speeds.len() == SPEEDS {
+            self.speeds.pop_front();
+        }
+        let path_speed = control.observe(&Signal::PathSpeed);
+        self.speeds.push_back(path_speed);
         let Some(across) = self.nearest(actual) else {
             return;
         };
         if !contour {
             return;
         }
-        self.max_mm = self.max_mm.max(length(across));
+        if length(across) > self.max_mm {
+            self.max_mm = length(across);
+            let moment = Moment {
+                letters: &self.linear,
+                path: self.path.make_contiguous(),
+                nearest: self.passed,
+                across,
+                lag: difference(nominal, actual),
+                speed,
+                path_speed: [self.speeds.front().copied().unwrap_or(path_speed), path_speed],
+            };
+            self.cause = Some((moment.cause(), block));
+        }
         for axis in &mut self.axes {
             let Some(value) = axis.linear.and_then(|place| across.get(place)) else {
                 continue;
@@ -107,20 +141,25 @@ impl Deviation {
     /// Forgets the path: a new one begins.
     pub fn restart(&mut self) {
         self.path.clear();
+        self.passed = 0;
+        self.speeds.clear();
     }
 
-    /// The way from the nearest point of the path to a position. What lies before that point is forgotten:
-    /// an axis does not run back.
+    /// The way from the nearest point of the path to a position. What lies before that point is not looked at
+    /// again: an axis does not run back.
     fn nearest(&mut self, actual: [f64; 3]) -> Option<[f64; 3]> {
-        let mut best = difference(actual, *self.path.front()?);
-        let mut at = 0;
-        for (index, (from, to)) in self.path.iter().zip(self.path.iter().skip(1)).enumerate() {
+        let mut best = difference(actual, *self.path.get(self.passed)?);
+        let mut at = self.passed;
+        let ahead = self.path.iter().zip(self.path.iter().skip(1)).enumerate();
+        for (index, (from, to)) in ahead.skip(self.passed) {
             let across = from_segment(actual, *from, *to);
             if length(across) < length(best) {
                 (best, at) = (across, index);
             }
         }
-        self.path.drain(..at);
+        let forgotten = at.saturating_sub(BEFORE);
+        self.path.drain(..forgotten);
+        self.passed = at - forgotten;
         Some(best)
     }
 }
@@ -159,7 +198,10 @@ mod tests {
             axes: Vec::new(),
             linear: vec!['X', 'Y', 'Z'],
             path: path.iter().copied().collect(),
+            passed: 0,
+            speeds: VecDeque::new(),
             max_mm: 0.0,
+            cause: None,
         }
     }
 
@@ -168,7 +210,12 @@ mod tests {
     fn lag_is_no_deviation() {
         let mut on_line = deviation(&[[0.0; 3], [5.0, 0.0, 0.0], [10.0, 0.0, 0.0]]);
         assert_eq!(on_line.nearest([8.0, 0.1, 0.0]), Some([0.0, 0.1, 0.0]));
-        assert_eq!(on_line.path.len(), 2, "what was passed is forgotten");
+        assert_eq!(on_line.passed, 1, "the first segment is passed");
+        assert_eq!(
+            on_line.nearest([1.0, 0.0, 0.0]),
+            Some([-4.0, 0.0, 0.0]),
+            "and not looked at again"
+        );
     }
 
     /// A corner that is cut: the nearest points are on both legs.

@@ -7,6 +7,7 @@
 //!   clock on the wall;
 //! - `report`: what is said in the end.
 
+mod cause;
 mod deviation;
 mod expectation;
 mod log;
@@ -34,6 +35,7 @@ use crate::cli::Format;
 use crate::cutting::{self, Cutting};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
+use crate::junit;
 use crate::machine_folder::{self, FolderPrograms, LoadedMachine, State};
 use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Place, Record};
@@ -98,6 +100,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             strict: options.run.strict,
             skip_unknown: options.run.skip_unknown,
         },
+        inch_feed: options.run.inch_feed.map(Into::into),
         programs: Arc::clone(&programs) as Arc<dyn bahn_control::Programs>,
         files: machine.files.clone(),
         remembered,
@@ -234,6 +237,7 @@ fn finish(
     for failure in session.failures() {
         failure.print();
     }
+    let expectations = session.expectations();
     let part = session
         .cutting
         .take()
@@ -281,6 +285,11 @@ fn finish(
     let result = failure
         .as_ref()
         .map_or("completed", |error| error.message.as_str());
+    if let Some(path) = &options.run.junit {
+        let suite = programs.main_name().unwrap_or("no program");
+        let stopped = failure.as_ref().map(|error| error.message.as_str());
+        junit::write(path, suite, &expectations, stopped)?;
+    }
     let projection = if machine.parameters.graphics().third_angle {
         Projection::ThirdAngle
     } else {

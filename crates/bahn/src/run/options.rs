@@ -6,7 +6,7 @@ use bahn_control::Signal;
 use clap::{Args, ValueHint};
 
 use super::operator::Attendance;
-use crate::cli::{Format, OutputOptions, override_percent, seconds};
+use crate::cli::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -44,7 +44,8 @@ without it and leaves no trace.
 
 JSON report (--format json): the fields of `bahn test`; machining_time_s is that of the machine with all
 waits. Without a program, or when its run did not begin, only completed and error. machine, model, power_up_s, reference_s; times (what, count, time_s); axes by letter (max_lag,
-lag_block, max_deviation, deviation_block; mm, degrees; null where there is none), contour_deviation_mm;
+lag_block, max_deviation, deviation_block; mm, degrees; null where there is none), contour_deviation_mm,
+contour_deviation_cause (in words), contour_deviation_block;
 plc (max_percent, mean_percent of the nominal time); messages (time_s, text, place, flashing,
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
 failed_expectations (line, text, actual); realtime (null, or cycles, late_cycles, worst_lateness_ms).
@@ -80,6 +81,9 @@ pub(crate) struct RunControl {
     /// Events at times, and expectations.
     #[arg(long, value_name = "SCRIPT", value_hint = ValueHint::FilePath)]
     pub script: Option<PathBuf>,
+    /// Write the expectations of the script as JUnit XML, for build servers.
+    #[arg(long, value_name = "OUT.xml", value_hint = ValueHint::FilePath, requires = "script")]
+    pub junit: Option<PathBuf>,
     /// Write what was done to control and machine, to be repeated with --replay.
     #[arg(long, value_name = "LOG", value_hint = ValueHint::FilePath)]
     pub log: Option<PathBuf>,
@@ -98,6 +102,9 @@ pub(crate) struct RunControl {
     /// Start with this block instead of the first.
     #[arg(long, value_name = "N")]
     pub start_block: Option<u32>,
+    /// What F counts in a program in inches, instead of what it counts on the model.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub inch_feed: Option<InchFeedOption>,
     /// Begin without what survives power-off, and keep nothing.
     #[arg(long)]
     pub fresh: bool,

@@ -82,6 +82,9 @@ pub(super) struct RunReport {
     times: Vec<Share>,
     axes: BTreeMap<char, AxisReport>,
     contour_deviation_mm: f64,
+    /// Why it arose, in words.
+    contour_deviation_cause: Option<String>,
+    contour_deviation_block: Option<u32>,
     plc: PlcReport,
     messages: Vec<Said>,
     confirmed: Vec<Confirmed>,
@@ -104,6 +107,7 @@ impl RunReport {
             };
             (axis.letter, report)
         });
+        let cause = session.deviation.cause;
         RunReport {
             machine: machine.to_owned(),
             model: model.id(),
@@ -112,6 +116,8 @@ impl RunReport {
             times: session.times.shares(),
             axes: axes.collect(),
             contour_deviation_mm: tidy(session.deviation.max_mm),
+            contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
+            contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
             plc: PlcReport {
                 max_percent: tidy(longest),
                 mean_percent: tidy(sum / count.max(1) as f64),
@@ -170,6 +176,16 @@ impl RunReport {
                 deviation.unwrap_or_default()
             )
         });
+        if let Some(cause) = &self.contour_deviation_cause {
+            row(
+                "Off the contour",
+                &format!(
+                    "{:.1} µm{}: {cause}",
+                    self.contour_deviation_mm * 1e3,
+                    at(self.contour_deviation_block)
+                ),
+            );
+        }
         row(
             "PLC",
             &format!(

@@ -135,6 +135,11 @@ impl Script {
         }
     }
 
+    /// Where a line stands, as `mill.txt:3`.
+    pub fn place(&self, number: u32) -> String {
+        format!("{}:{number}", self.path.display())
+    }
+
     pub fn line_text(&self, number: u32) -> String {
         let index = (number as usize).saturating_sub(1);
         self.text.get(index).cloned().unwrap_or_default()

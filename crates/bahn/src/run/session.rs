@@ -20,6 +20,7 @@ use crate::cutting::Cutting;
 use crate::diagnostics::FileFault;
 use crate::files::short_name;
 use crate::interrupt::Interrupt;
+use crate::junit::{Case, Verdict};
 use crate::machine_folder::State;
 use crate::progress::Progress;
 use crate::report::{Notice, Record};
@@ -475,6 +476,23 @@ impl Session {
             });
         }
         reasons.join("; ")
+    }
+
+    /// All expectations of the script with what became of them.
+    pub fn expectations(&self) -> Vec<Case> {
+        let expectations = self.script.lines.iter();
+        let expectations = expectations.filter(|line| matches!(line.action, Action::Expect(_)));
+        let waits = |number| self.waiting.iter().flatten().any(|line| line.number == number);
+        let cases = expectations.map(|line| Case {
+            place: self.script.place(line.number),
+            name: self.script.line_text(line.number).trim().to_owned(),
+            verdict: match self.failed.iter().find(|failed| failed.line == line.number) {
+                Some(failed) => Verdict::Failed(failed.actual.clone()),
+                None if waits(line.number) => Verdict::NotReached,
+                None => Verdict::Held,
+            },
+        });
+        cases.collect()
     }
 
     /// Expectations that failed, at their lines.

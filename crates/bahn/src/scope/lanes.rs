@@ -76,8 +76,10 @@ impl Drawing<'_> {
         let end = if empty { TOP } else { sheet.height() - BOTTOM };
         self.time_axis(&mut sheet, end);
         self.blocks(&mut sheet, end);
-        for (index, lane) in lanes.iter().enumerate() {
-            self.lane(&mut sheet, lane, index);
+        let mut drawn = 0;
+        for lane in &lanes {
+            self.lane(&mut sheet, lane, drawn);
+            drawn += lane.traces.len();
         }
         let first = sheet.height() - BOTTOM - ROW * logic.len() as f64;
         for (index, trace) in logic.iter().enumerate() {
@@ -234,7 +236,8 @@ impl Drawing<'_> {
         }
     }
 
-    fn lane(&self, sheet: &mut Sheet, lane: &Lane<'_>, index: usize) {
+    /// A lane; its colours go on from those of the `drawn` traces above it.
+    fn lane(&self, sheet: &mut Sheet, lane: &Lane<'_>, drawn: usize) {
         let width = sheet.width() - LEFT - RIGHT;
         let compared = |name: &str| self.other.and_then(|other| Some((other, other.trace(name)?)));
         let values = lane.traces.iter().flat_map(|trace| {
@@ -261,7 +264,7 @@ impl Drawing<'_> {
         let count = lane.traces.len() as f64;
         let first = lane.top + 0.5 * lane.height - 9.0 * count;
         for (place, trace) in lane.traces.iter().enumerate() {
-            let colour = COLOURS[(index + place) % COLOURS.len()];
+            let colour = COLOURS[(drawn + place) % COLOURS.len()];
             let at = first + 18.0 * place as f64;
             sheet.text([12.0, at], Anchor::Left, 15.0, colour, &trace.name);
             if let Some((other, values)) = compared(&trace.name) {

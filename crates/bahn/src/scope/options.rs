@@ -8,10 +8,10 @@ use crate::cli::{Format, image_size, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
-  bahn run part.h --machine mill --record run.csv --signals X.actual,X.lag,path.speed,M2045,M2482
+  bahn run part.h --machine mill --record run.csv --signals X.nominal,X.actual,Y.nominal,Y.actual
   bahn scope run.csv -o run.svg
       All signals from the start of the program to its end, with its blocks and messages.
-  bahn scope run.csv --signals X.nominal+X.actual,M2045 --from 12 --to 14 -o lag.png
+  bahn scope run.csv --signals X.nominal+X.actual --from 12 --to 14 -o lag.png
       Two seconds; the nominal and the actual position in one lane.
   bahn scope run.csv --cursor 12.5,12.8 --format json
       Least, greatest and mean values, edges, and the values at two times.

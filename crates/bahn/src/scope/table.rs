@@ -48,7 +48,7 @@ impl Table {
     /// Reads a recording.
     pub fn load(path: &Path) -> Result<Table, UsageError> {
         let bytes = files::read_program(path)?;
-        Table::read(&String::from_utf8_lossy(&bytes))
+        Table::read(&String::from_utf8_lossy(&bytes.unwrap_or_default()))
             .map_err(|error| UsageError::new(format!("{}:{error}", path.display())))
     }
 

@@ -6,7 +6,7 @@ use bahn_path::{Arc, Curve, FeedRate, PathElement, Plane, Point2};
 use super::corner::{Ending, corner, transition};
 use super::flat::{self, Flat, SAME_POINT_MM};
 use super::{ContourMove, FeedLaw, Side, Smooth};
-use crate::error::Fault;
+use crate::error::{Cause, Fault};
 use crate::output::Output;
 
 /// Movements outside the plane that may wait behind a held element. When more come, the contour is taken
@@ -345,6 +345,11 @@ impl CompensationStage {
             plane.set(&mut first.element.start, at);
         }
         let start = plane.point(&first.element.start);
+        if target.iter().any(|value| value.is_nan())
+            || (first.smooth.is_some() && start.iter().any(|value| value.is_nan()))
+        {
+            return Err(no_position().at(first.element.block));
+        }
         plane.set(&mut first.element.end, target);
         self.displaced = Some((plane, target));
         let Some(smooth) = first.smooth.take() else {
@@ -394,6 +399,15 @@ impl CompensationStage {
             self.emit_in_place(item, out);
         }
     }
+}
+
+/// The way to the contour begins where an axis has no position yet [003:7984-7987].
+pub(super) fn no_position() -> Fault {
+    Fault::new(
+        MessageId::ProgramStartUndefined,
+        "an axis of the plane has no position before the contour",
+    )
+    .because(Cause::NoPosition)
 }
 
 /// How the contour is left at its last point.

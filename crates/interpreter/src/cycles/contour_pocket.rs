@@ -1,8 +1,11 @@
 //! SL cycles: rough-out (6), pilot drilling (15) and contour milling (16) of superimposed subcontours.
 
 use bahn_parameters::MessageId;
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use bahn_path::region::{
-    Contour as PlaneContour, HatchPattern, Kind, Merge, PocketArea, Region, Segment, SubContour, superimpose,
+    Contour as PlaneContour, Effort, HatchPattern, Merge, PocketArea, Segment, SubContour, Superposition,
 };
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2};
 
@@ -20,6 +23,52 @@ use crate::settings::Settings;
 pub(crate) struct ContourJob {
     pub subcontours: Vec<SubContour>,
     pub plane: Plane,
+}
+
+/// Why a cycle did not come to its end.
+pub(crate) enum Halt {
+    Fault(Fault),
+    /// The operator broke it off; nothing of it is executed.
+    Interrupted,
+}
+
+impl<F: Into<Fault>> From<F> for Halt {
+    fn from(fault: F) -> Halt {
+        Halt::Fault(fault.into())
+    }
+}
+
+/// Watches what the contours of a cycle cost.
+pub(crate) struct Watch<'a> {
+    interrupt: Option<&'a AtomicBool>,
+    spent: Cell<usize>,
+}
+
+impl<'a> Watch<'a> {
+    pub fn new(interrupt: Option<&'a AtomicBool>) -> Watch<'a> {
+        Watch {
+            interrupt,
+            spent: Cell::new(0),
+        }
+    }
+}
+
+impl Effort for Watch<'_> {
+    type Stop = Halt;
+
+    fn spend(&self, steps: usize) -> Result<(), Halt> {
+        /// About a minute; a contour of 20,000 elements takes a hundredth of it.
+        const STEPS_MAX: usize = 1_000_000_000;
+        if self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return Err(Halt::Interrupted);
+        }
+        self.spent.set(self.spent.get().saturating_add(steps));
+        if self.spent.get() > STEPS_MAX {
+            let detail = "the contours of the cycle meet each other too often to be computed";
+            return Err(Fault::new(MessageId::EntryValueIncorrect, detail).into());
+        }
+        Ok(())
+    }
 }
 
 /// Farthest distance of the last point from the first one of a closed contour, mm: end points are
@@ -105,26 +154,37 @@ pub(crate) fn contour_plane(working: Plane, first_axes: AxisSet) -> Plane {
 
 impl Run {
     /// Runs cycle 6, 15 or 16 on the contours of cycle 14.
-    pub(crate) fn contour_cycle(&mut self, job: &ContourJob, settings: &Settings) -> Result<(), Fault> {
+    pub(crate) fn contour_cycle(
+        &mut self,
+        job: &ContourJob,
+        settings: &Settings,
+        watch: &Watch<'_>,
+    ) -> Result<(), Halt> {
         let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
             return Err(MessageId::CyclIncomplete.into());
         };
         match definition.number {
-            6 => self.rough_out(job, &definition, settings),
-            15 => self.pilot_drilling(job, &definition, settings),
-            _ => self.contour_milling(job, &definition, settings),
+            6 => self.rough_out(job, &definition, settings, watch),
+            15 => self.pilot_drilling(job, &definition, settings, watch),
+            _ => self.contour_milling(job, &definition, settings, watch),
         }
     }
 
     /// Cycle 6 ROUGH-OUT [003:5477-5521].
-    fn rough_out(&mut self, job: &ContourJob, d: &Definition, settings: &Settings) -> Result<(), Fault> {
+    fn rough_out(
+        &mut self,
+        job: &ContourJob,
+        d: &Definition,
+        settings: &Settings,
+        watch: &Watch<'_>,
+    ) -> Result<(), Halt> {
         let pecking = d.length(2, 0, "PECKG")?;
         let plunge_feed = d.feed(2, 0, "F for pecking")?;
         let allowance = d.length(2, 1, "ALLOW")?;
         let angle = d.number(3, 0, "ANGLE")?;
         let feed = d.feed(3, 0, "F")?;
         let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
-        let areas = self.areas(job, allowance, settings)?;
+        let areas = self.areas(job, allowance, settings, watch)?;
         let rules = settings.rules.contour_pocket;
         let mill = Milling {
             heights,
@@ -134,13 +194,12 @@ impl Run {
         };
         let direction = self.plane_direction_of(angle);
         let stepover = self.modal.tool_radius();
+        let mut clearing = Vec::with_capacity(areas.len());
         for area in &areas {
             check_passes(area, stepover)?;
+            let region = &area.region;
+            clearing.push(region.hatch_within(direction, stepover, HatchPattern::Zigzag, watch)?);
         }
-        let clearing: Vec<_> = areas
-            .iter()
-            .map(|area| area.region.hatch(direction, stepover, HatchPattern::Zigzag))
-            .collect();
         let mut trace = self.tracer();
         trace.set_plane(job.plane);
         // The depths of one operation: all of them, or one after the other in turn with the other operation.
@@ -170,23 +229,29 @@ impl Run {
                 }
             }
         }
-        finish(trace, settings)
+        Ok(finish(trace, settings)?)
     }
 
     /// Cycle 15 PILOT DRILLING: pecks as cycle 1 at each infeed point [003:5993-6014].
-    fn pilot_drilling(&mut self, job: &ContourJob, d: &Definition, settings: &Settings) -> Result<(), Fault> {
+    fn pilot_drilling(
+        &mut self,
+        job: &ContourJob,
+        d: &Definition,
+        settings: &Settings,
+        watch: &Watch<'_>,
+    ) -> Result<(), Halt> {
         let pecking = d.length(2, 0, "PECKG")?;
         let feed = d.feed(2, 0, "F")?;
         let allowance = d.length(2, 1, "ALLOW")?;
         let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
-        let areas = self.areas(job, allowance, settings)?;
+        let areas = self.areas(job, allowance, settings, watch)?;
         let mut trace = self.tracer();
         trace.set_plane(job.plane);
         for outline in areas.iter().flat_map(|area| &area.outlines) {
             trace.rapid_to(outline.infeed());
             super::drilling::peck(&mut trace, &heights, &pecks, feed, 0.0);
         }
-        finish(trace, settings)
+        Ok(finish(trace, settings)?)
     }
 
     /// Cycle 16 CONTOUR MILLING: DR+ climb, DR- up-cut with M3 [003:6028-6066].
@@ -195,13 +260,14 @@ impl Run {
         job: &ContourJob,
         d: &Definition,
         settings: &Settings,
-    ) -> Result<(), Fault> {
+        watch: &Watch<'_>,
+    ) -> Result<(), Halt> {
         let pecking = d.length(2, 0, "PECKG")?;
         let plunge_feed = d.feed(2, 0, "F for pecking")?;
         let feed = d.feed(2, 1, "F")?;
         let climb = d.counter_clockwise(2) != (self.modal.spindle == Spindle::CounterClockwise);
         let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
-        let areas = self.areas(job, 0.0, settings)?;
+        let areas = self.areas(job, 0.0, settings, watch)?;
         let mill = Milling {
             heights,
             plunge_feed,
@@ -213,7 +279,7 @@ impl Run {
         for outline in areas.iter().flat_map(|area| &area.outlines) {
             mill.outline(&mut trace, &outline.contour, &pecks);
         }
-        finish(trace, settings)
+        Ok(finish(trace, settings)?)
     }
 
     fn contour_heights(
@@ -232,13 +298,16 @@ impl Run {
     }
 
     /// The areas of the tool centre at a finishing allowance.
-    fn areas(&self, job: &ContourJob, allowance: f64, settings: &Settings) -> Result<Vec<PocketArea>, Fault> {
-        let radius = self.modal.tool_radius();
+    fn areas(
+        &self,
+        job: &ContourJob,
+        allowance: f64,
+        settings: &Settings,
+        watch: &Watch<'_>,
+    ) -> Result<Vec<PocketArea>, Halt> {
+        let radius = self.used_radius()?;
         if radius <= 0.0 {
-            return Err(Fault::new(
-                MessageId::ToolRadiusTooLarge,
-                "a contour pocket cannot be milled with tool radius 0",
-            ));
+            return Err(self.no_radius("a contour pocket cannot be milled").into());
         }
         let rules = settings.rules.contour_pocket;
         let merge = if rules.merge_programmed {
@@ -248,16 +317,12 @@ impl Run {
         };
         // The finishing allowance is a positive number [003:5508].
         let distance = radius + allowance.abs();
+        let Superposition { areas, too_narrow } =
+            Superposition::new(&job.subcontours, distance, merge, watch)?;
         // Compensated one by one, a pocket narrower than the tool would silently stay unmachined.
-        let vanishes = |sub: &SubContour| {
-            sub.kind == Kind::Pocket && Region::from_contour(&sub.contour).offset(-distance).is_empty()
-        };
-        let areas = superimpose(&job.subcontours, distance, merge);
-        if areas.is_empty() || (merge == Merge::CentrePaths && job.subcontours.iter().any(vanishes)) {
-            return Err(Fault::new(
-                MessageId::ToolRadiusTooLarge,
-                "the tool does not fit into a pocket",
-            ));
+        if areas.is_empty() || (merge == Merge::CentrePaths && !too_narrow.is_empty()) {
+            let detail = "the tool does not fit into a pocket";
+            return Err(Fault::new(MessageId::ToolRadiusTooLarge, detail).into());
         }
         Ok(areas)
     }

@@ -1,11 +1,12 @@
 //! Cycle definitions as they are read, block by block.
 
 use bahn_parameters::MessageId;
-use bahn_path::Axis;
+use bahn_path::{Axis, BlockRef};
 use bahn_program::{CycleBlock, CycleWord, Direction, Feed, Value};
 
 use crate::error::Fault;
 use crate::run::Run;
+use crate::settings::Settings;
 
 /// The definitions in force: the machining cycle for the call, and the one that acts at definition.
 #[derive(Clone, Debug, Default)]
@@ -19,13 +20,18 @@ pub(crate) struct CycleData {
 pub(crate) struct Collector {
     definition: Option<Definition>,
     broken: bool,
+    /// The signs of the definition were warned of.
+    sign_reported: bool,
 }
 
 impl Collector {
-    pub fn take(&mut self, number: u16, sub: u16, words: Vec<Resolved>, unit_mm: f64) {
+    /// Takes block `number.sub`, which stands at `at`.
+    pub fn take(&mut self, number: u16, sub: u16, words: Vec<Resolved>, unit_mm: f64, at: BlockRef) {
         if sub == 0 {
+            self.sign_reported = false;
             self.definition = Some(Definition {
                 number,
+                at,
                 blocks: vec![words],
                 unit_mm,
             });
@@ -43,6 +49,16 @@ impl Collector {
         }
     }
 
+    /// Whether the signs of the definition are to be warned of now: once, however often it is called.
+    pub fn report_sign(&mut self) -> bool {
+        !std::mem::replace(&mut self.sign_reported, true)
+    }
+
+    /// Whether no definition was begun.
+    pub fn is_empty(&self) -> bool {
+        self.definition.is_none()
+    }
+
     /// The definition, when its blocks came complete and in order so far.
     pub fn ready(&self) -> Option<&Definition> {
         self.definition.as_ref().filter(|_| !self.broken)
@@ -53,6 +69,8 @@ impl Collector {
 #[derive(Clone, Debug)]
 pub(crate) struct Definition {
     pub number: u16,
+    /// The block n.0.
+    pub at: BlockRef,
     blocks: Vec<Vec<Resolved>>,
     unit_mm: f64,
 }
@@ -69,6 +87,7 @@ pub(crate) enum Resolved {
     },
     Axis(Axis),
     AxisDirection(Axis, Direction),
+    /// mm/min; `None` for FMAX.
     Feed(Option<f64>),
     Direction(Direction),
     Labels(Box<[u16]>),
@@ -105,6 +124,17 @@ impl Definition {
         self.optional_number(sub, index).ok_or_else(|| self.missing(what))
     }
 
+    /// A dwell time, s.
+    pub fn dwell(&self, sub: u16, settings: &Settings) -> Result<f64, Fault> {
+        let max = settings.model.limits().dwell_max_s;
+        let dwell = self.number(sub, 0, "DWELL")?;
+        if dwell <= max {
+            return Ok(dwell);
+        }
+        let detail = format!("a dwell time is at most {max} s");
+        Err(Fault::new(MessageId::EntryValueIncorrect, detail))
+    }
+
     pub fn optional_number(&self, sub: u16, index: usize) -> Option<f64> {
         let numbers = self.block(sub).iter().filter_map(|word| match word {
             Resolved::Number(number) => Some(*number),
@@ -133,7 +163,7 @@ impl Definition {
         if feed <= 0.0 {
             return Err(MessageId::FeedRateIsMissing.into());
         }
-        Ok(feed * self.unit_mm)
+        Ok(feed)
     }
 
     /// The axis word of a block, mm.
@@ -169,7 +199,7 @@ fn in_range(length_mm: f64) -> Result<f64, Fault> {
 
 impl Run {
     /// Gives every word of a cycle block its value.
-    pub(crate) fn resolve(&self, block: &CycleBlock) -> Result<Vec<Resolved>, Fault> {
+    pub(crate) fn resolve(&self, block: &CycleBlock, settings: &Settings) -> Result<Vec<Resolved>, Fault> {
         let value = |value: Value| self.q.value(value);
         let mut words = Vec::with_capacity(block.words.len());
         for word in &block.words {
@@ -184,7 +214,7 @@ impl Run {
                 CycleWord::Axis(axis) => Resolved::Axis(*axis),
                 CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
                 CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
-                CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(value(*feed)?)),
+                CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(self.feed(*feed, settings)?)),
                 CycleWord::Direction(direction) => Resolved::Direction(*direction),
                 CycleWord::Labels(labels) => Resolved::Labels(labels.clone()),
                 CycleWord::Target(number) => Resolved::Target(*number),

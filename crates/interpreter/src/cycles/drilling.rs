@@ -49,7 +49,7 @@ impl Run {
         let setup = definition.length(1, 0, "SETUP")?;
         let depth = definition.length(2, 0, "DEPTH")?;
         let pecking = definition.length(3, 0, "PECKG")?;
-        let dwell = definition.number(4, 0, "DWELL")?;
+        let dwell = definition.dwell(4, settings)?;
         let feed = definition.feed(5, 0, "F")?;
         let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
         let scale = heights.depth / depth.abs();
@@ -69,7 +69,7 @@ impl Run {
     pub(super) fn tapping(&mut self, definition: &Definition, settings: &Settings) -> Result<(), Fault> {
         let setup = definition.length(1, 0, "SETUP")?;
         let depth = definition.length(2, 0, "DEPTH")?;
-        let dwell = definition.number(3, 0, "DWELL")?;
+        let dwell = definition.dwell(3, settings)?;
         let feed = definition.feed(4, 0, "F")?;
         let heights = self.heights(definition, [setup, depth], None, settings)?;
         let clockwise = !matches!(self.modal.spindle, Spindle::CounterClockwise);

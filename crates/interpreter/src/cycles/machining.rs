@@ -51,9 +51,10 @@ impl Run {
                 let detail = "setup clearance, depth and pecking depth must have the same sign";
                 return Err(Fault::new(MessageId::WrongSignProgrammed, detail));
             }
-            self.warn(WarningKind::CycleSign {
-                cycle: definition.number,
-            });
+            if self.modal.cycle.machining.report_sign() {
+                let cycle = definition.number;
+                self.warn_at(definition.at, WarningKind::CycleSign { cycle });
+            }
         }
         let scale = self.modal.frame.factor[self.modal.plane.normal].abs();
         let clearance = crate::positioning::known(self.tool_centre()[self.modal.plane.normal]);
@@ -93,6 +94,7 @@ impl Run {
         plane.set(&mut origin, point);
         let axes = [self.plane_direction([1.0, 0.0]), self.plane_direction([0.0, 1.0])];
         let reversed = self.modal.frame.reverses(plane);
+        let room = if self.rehearsal { 0 } else { MOVEMENTS_MAX };
         Tracer {
             run: self,
             at: origin,
@@ -101,7 +103,7 @@ impl Run {
             reversed,
             plane,
             override_law: OverrideLaw::Free,
-            room: MOVEMENTS_MAX,
+            room,
         }
     }
 }
@@ -243,6 +245,10 @@ impl Tracer<'_> {
 
     /// Ends the cycle: the run goes on from where the tool stands.
     pub fn finish(self) -> Result<(), Fault> {
+        if self.run.rehearsal {
+            // Cycles end where they began, more or less.
+            return Ok(());
+        }
         if self.is_full() {
             let detail = format!("the cycle needs more than {MOVEMENTS_MAX} movements");
             return Err(Fault::new(MessageId::EntryValueIncorrect, detail));

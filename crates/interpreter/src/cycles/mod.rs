@@ -13,10 +13,10 @@ mod transformation;
 use bahn_parameters::MessageId;
 use bahn_program::{CycleBlock, CycleWord, Value};
 
-pub(crate) use self::contour_pocket::{ContourJob, contour_plane};
+pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
 pub(crate) use self::definition::{CycleData, Definition, Resolved};
 use crate::availability::{Feature, names_datum_table, words};
-use crate::error::Fault;
+use crate::error::{Cause, Fault};
 use crate::flow::Flow;
 use crate::run::Run;
 use crate::settings::Settings;
@@ -38,7 +38,7 @@ impl Run {
         if names_datum_table(block) && !self.executes(Feature::Word(words::DATUM_TABLE), settings)? {
             return Ok(());
         }
-        let words = self.resolve(block)?;
+        let words = self.resolve(block, settings)?;
         if acts_here {
             return self.define_effective(block, words, settings);
         }
@@ -49,7 +49,7 @@ impl Run {
         self.modal
             .cycle
             .machining
-            .take(block.number, block.sub, words, self.unit_mm);
+            .take(block.number, block.sub, words, self.unit_mm, self.block);
         Ok(())
     }
 
@@ -62,7 +62,7 @@ impl Run {
         self.modal
             .cycle
             .effective
-            .take(block.number, block.sub, words, self.unit_mm);
+            .take(block.number, block.sub, words, self.unit_mm, self.block);
         if block.sub == 0 {
             return Ok(());
         }
@@ -87,10 +87,11 @@ impl Run {
     /// CYCL CALL, M99 or M89: runs the last defined machining cycle [003:4857-4881].
     pub(crate) fn call_cycle(&mut self, settings: &Settings) -> Result<Flow, Fault> {
         let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
-            return Err(Fault::new(
-                MessageId::CyclIncomplete,
-                "no complete cycle is defined",
-            ));
+            let cause = match self.modal.cycle.machining.is_empty() {
+                true => Cause::NoCycle,
+                false => Cause::Message,
+            };
+            return Err(Fault::new(MessageId::CyclIncomplete, "no complete cycle is defined").because(cause));
         };
         if !self.executes(Feature::Cycle(definition.number), settings)? {
             return Ok(Flow::Next);

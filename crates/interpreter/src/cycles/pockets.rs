@@ -36,7 +36,7 @@ impl Run {
         }
         let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
         let scale = self.plane_scale();
-        let radius = self.modal.tool_radius();
+        let radius = self.used_radius()?;
         let travel = length.abs() * scale - 2.0 * radius;
         let allowance = 0.5 * width.abs() * scale - radius;
         // Cutter diameter between half the slot width and the slot width [003:5130-5132].
@@ -187,12 +187,9 @@ impl Run {
 
     /// Stepover k = K · R with the overlap factor MP7430 [003:5270-5278].
     fn stepover(&self, settings: &Settings) -> Result<f64, Fault> {
-        let step = settings.rules.overlap * self.modal.tool_radius();
+        let step = settings.rules.overlap * self.used_radius()?;
         if step <= 0.0 {
-            return Err(Fault::new(
-                MessageId::ToolRadiusTooLarge,
-                "a pocket cannot be cleared with tool radius 0",
-            ));
+            return Err(self.no_radius("a pocket cannot be cleared"));
         }
         Ok(step)
     }

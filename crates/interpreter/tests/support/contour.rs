@@ -86,7 +86,8 @@ impl Contour {
             "L X{} Y{} {side} F{}",
             n(self.start[0]),
             n(self.start[1]),
-            254.0 / unit
+            // Tenths of an inch/min.
+            if spelling == Spelling::Inch { 100 } else { 254 }
         );
         let mut at = self.start;
         for piece in &self.pieces {

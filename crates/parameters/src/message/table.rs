@@ -266,6 +266,10 @@ messages! {
         cause "The block or function belongs to another control model.";
         remedy "Choose the control model it was written for, or program it with the functions of this one.";
         source "(own message of Bahn)";
+    BlockNotSupported: "FUNCTION NOT YET SUPPORTED";
+        cause "The control knows the function, but Bahn does not execute it yet.";
+        remedy "Write what it does with the functions that are supported, or take the block out.";
+        source "(own message of Bahn)";
     ProgramNotFound: "PROGRAM NOT FOUND";
         cause "The called program does not exist.";
         remedy "Put the program beside the calling one, or correct the name.";

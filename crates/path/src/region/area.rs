@@ -1,6 +1,8 @@
 //! Areas and their boolean operations.
 
 use super::arrangement::overlay;
+use super::effort::{Effort, Unlimited};
+use super::index::Index;
 use super::{Contour, Location, RESOLUTION_MM};
 use crate::Point2;
 
@@ -34,8 +36,18 @@ impl Region {
     /// The area inside a contour, whatever its sense; an open chain is closed by a line. Where a contour
     /// crosses itself, everything it goes around counts (non-zero winding rule).
     pub fn from_contour(contour: &Contour) -> Region {
+        let Ok(region) = Region::from_contour_within(contour, &Unlimited);
+        region
+    }
+
+    /// [`Region::from_contour`] with an effort that may end it.
+    ///
+    /// # Errors
+    /// When the effort ends it.
+    pub fn from_contour_within<E: Effort>(contour: &Contour, effort: &E) -> Result<Region, E::Stop> {
         let contour = contour.clone().closed();
-        Region::overlay(&[(0, &contour)], 1, &|w| w.first().is_some_and(|w| *w != 0))
+        let inside = |w: &[i32]| w.first().is_some_and(|w| *w != 0);
+        Region::from_loops(overlay(&[(0, &contour)], 1, &inside, effort)?, effort)
     }
 
     /// The contours: each outer one followed by its holes.
@@ -125,51 +137,98 @@ impl Region {
     /// The area that `rule` names, given for any point in which of the regions it lies. One step
     /// however many regions there are.
     pub fn combine(regions: &[&Region], rule: &dyn Fn(&[bool]) -> bool) -> Region {
+        let Ok(region) = Region::combine_within(regions, rule, &Unlimited);
+        region
+    }
+
+    /// [`Region::combine`] with an effort that may end it.
+    ///
+    /// # Errors
+    /// When the effort ends it.
+    pub fn combine_within<E: Effort>(
+        regions: &[&Region],
+        rule: &dyn Fn(&[bool]) -> bool,
+        effort: &E,
+    ) -> Result<Region, E::Stop> {
+        if let ([only], true, false) = (regions, rule(&[true]), rule(&[false])) {
+            return Ok((*only).clone());
+        }
         let contours: Vec<(usize, &Contour)> = regions
             .iter()
             .enumerate()
             .flat_map(|(operand, region)| region.contours.iter().map(move |c| (operand, c)))
             .collect();
-        Region::overlay(&contours, regions.len(), &|winding| {
-            rule(&winding.iter().map(|w| *w > 0).collect::<Vec<bool>>())
-        })
-    }
-
-    /// The region whose boundary [`overlay`] finds.
-    pub(super) fn overlay(
-        contours: &[(usize, &Contour)],
-        operands: usize,
-        inside: &dyn Fn(&[i32]) -> bool,
-    ) -> Region {
-        Region::from_loops(overlay(contours, operands, inside))
+        let inside = |winding: &[i32]| rule(&winding.iter().map(|w| *w > 0).collect::<Vec<bool>>());
+        Region::from_loops(overlay(&contours, regions.len(), &inside, effort)?, effort)
     }
 
     /// Puts every hole behind the outer contour that holds it.
-    fn from_loops(loops: Vec<Contour>) -> Region {
+    pub(super) fn from_loops<E: Effort>(loops: Vec<Contour>, effort: &E) -> Result<Region, E::Stop> {
         let (outer, holes): (Vec<Contour>, Vec<Contour>) =
             loops.into_iter().partition(Contour::is_counter_clockwise);
+        if holes.is_empty() {
+            return Ok(Region { contours: outer });
+        }
+        let outlines = Outlines::new(&outer);
         let mut parts: Vec<Vec<Contour>> = outer.into_iter().map(|c| vec![c]).collect();
         for hole in holes {
-            let holders = parts
-                .iter_mut()
-                .filter(|part| part.first().is_some_and(|outer| encloses(outer, &hole)));
-            let area = |part: &Vec<Contour>| part.first().map_or(0.0, Contour::area);
-            if let Some(part) = holders.min_by(|a, b| area(a).total_cmp(&area(b))) {
+            let holder = outlines.holder(&hole, effort)?;
+            if let Some(part) = holder.and_then(|holder| parts.get_mut(holder)) {
                 part.push(hole);
             }
         }
-        Region {
+        Ok(Region {
             contours: parts.into_iter().flatten().collect(),
-        }
+        })
     }
 }
 
-/// Whether a loop that does not cross `outer` lies inside it. They may touch in points.
-fn encloses(outer: &Contour, inner: &Contour) -> bool {
-    let samples = inner
-        .segments()
-        .iter()
-        .flat_map(|s| [s.point(0.5), s.point(0.25), s.point(0.75)]);
-    let mut places = samples.map(|p| outer.locate(p));
-    places.find(|place| *place != Location::Boundary) == Some(Location::Inside)
+/// Outer contours, to find which of them holds a hole.
+struct Outlines {
+    index: Index,
+    /// For each segment its contour.
+    of: Vec<usize>,
+    areas: Vec<f64>,
+}
+
+impl Outlines {
+    fn new(outer: &[Contour]) -> Outlines {
+        let numbered = outer.iter().enumerate();
+        Outlines {
+            index: Index::new(outer.iter().flat_map(Contour::segments).copied()),
+            of: numbered
+                .flat_map(|(k, c)| std::iter::repeat_n(k, c.segments().len()))
+                .collect(),
+            areas: outer.iter().map(Contour::area).collect(),
+        }
+    }
+
+    /// The smallest contour that holds a loop which crosses none; they may touch in points.
+    fn holder<E: Effort>(&self, hole: &Contour, effort: &E) -> Result<Option<usize>, E::Stop> {
+        let samples = hole
+            .segments()
+            .iter()
+            .flat_map(|s| [s.point(0.5), s.point(0.25), s.point(0.75)]);
+        for point in samples {
+            let near = self.index.nearest(point, 2.0 * RESOLUTION_MM, effort)?;
+            if near.is_some_and(|(gap, _)| gap <= RESOLUTION_MM) {
+                continue;
+            }
+            let mut turns: Vec<(usize, i32)> = Vec::new();
+            self.index
+                .windings(point, [1.0, 0.0], effort, |segment, winding| {
+                    let contour = self.of.get(segment).copied().unwrap_or(0);
+                    turns.push((contour, winding));
+                })?;
+            turns.sort_unstable();
+            let area = |contour: usize| self.areas.get(contour).copied().unwrap_or(0.0);
+            let holders = turns
+                .chunk_by(|a, b| a.0 == b.0)
+                .filter(|chunk| chunk.iter().map(|(_, winding)| winding).sum::<i32>() != 0)
+                .filter_map(|chunk| chunk.first());
+            let least = holders.min_by(|a, b| area(a.0).total_cmp(&area(b.0)));
+            return Ok(least.map(|(contour, _)| *contour));
+        }
+        Ok(None)
+    }
 }

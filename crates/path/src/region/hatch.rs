@@ -1,5 +1,7 @@
 //! Clearing paths: parallel passes over a region.
 
+use super::effort::{Effort, Unlimited};
+use super::index::{Bounds, Index};
 use super::intersect::intersections;
 use super::vector::*;
 use super::{Contour, Location, RESOLUTION_MM, Region, Segment};
@@ -59,74 +61,143 @@ impl Region {
     /// assert!(!passes[0].is_connected() && passes[1].is_connected());
     /// ```
     pub fn hatch(&self, angle_deg: f64, stepover: f64, pattern: HatchPattern) -> Vec<Pass> {
+        let Ok(passes) = self.hatch_within(angle_deg, stepover, pattern, &Unlimited);
+        passes
+    }
+
+    /// [`Region::hatch`] with an effort that may end it.
+    ///
+    /// # Errors
+    /// When the effort ends it.
+    pub fn hatch_within<E: Effort>(
+        &self,
+        angle_deg: f64,
+        stepover: f64,
+        pattern: HatchPattern,
+        effort: &E,
+    ) -> Result<Vec<Pass>, E::Stop> {
         if !(stepover >= LEAST_STEPOVER_MM && angle_deg.is_finite()) {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let (sin, cos) = sin_cos_deg(angle_deg);
-        let lines = self.spans([cos, sin], stepover);
+        let area = Area::new(self);
+        let lines = area.spans([cos, sin], stepover, effort)?;
         match pattern {
-            HatchPattern::Zigzag => self.zigzag(lines, stepover),
+            HatchPattern::Zigzag => area.zigzag(lines, stepover, effort),
             HatchPattern::OneWay => {
                 let pass = |span: Span| Pass {
                     link: None,
                     from: span.from,
                     to: span.to,
                 };
-                lines.into_iter().flatten().map(pass).collect()
+                Ok(lines.into_iter().flatten().map(pass).collect())
             }
+        }
+    }
+}
+
+/// The region that is cleared.
+struct Area<'a> {
+    contours: &'a [Contour],
+    index: Index,
+    /// For each segment of the index its contour and its place in it.
+    places: Vec<(usize, usize)>,
+}
+
+impl Area<'_> {
+    fn new(region: &Region) -> Area<'_> {
+        let contours = region.contours();
+        let numbered = contours.iter().enumerate();
+        Area {
+            contours,
+            index: Index::new(contours.iter().flat_map(Contour::segments).copied()),
+            places: numbered
+                .flat_map(|(c, contour)| (0..contour.segments().len()).map(move |k| (c, k)))
+                .collect(),
         }
     }
 
     /// The parts of the hatch lines that lie inside, line by line in the direction of the angle.
-    fn spans(&self, direction: Point2, stepover: f64) -> Vec<Vec<Span>> {
-        let segments = || self.contours().iter().flat_map(Contour::segments);
-        let extent = |direction: Point2| {
-            let extents = segments().map(|s| s.extent(direction));
-            extents.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-        };
+    fn spans<E: Effort>(
+        &self,
+        direction: Point2,
+        stepover: f64,
+        effort: &E,
+    ) -> Result<Vec<Vec<Span>>, E::Stop> {
         let across = left(direction);
-        let (Some((start, end)), Some((low, high))) = (extent(direction), extent(across)) else {
-            return Vec::new();
-        };
-        let at = |u: f64, v: f64| add(scale(direction, u), scale(across, v));
+        let mut waiting: Vec<(f64, f64, &Segment)> = self
+            .index
+            .segments()
+            .iter()
+            .map(|s| {
+                let (low, high) = s.extent(across);
+                (low, high, s)
+            })
+            .collect();
+        waiting.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let low = waiting.first().map_or(0.0, |(low, ..)| *low);
+        let high = waiting.iter().map(|(_, high, _)| *high).fold(low, f64::max);
         let count = ((high - low - RESOLUTION_MM) / stepover).floor();
         if count.is_nan() || count > MOST_LINES {
-            return Vec::new();
+            return Ok(Vec::new());
         }
-        (1..=count.max(0.0) as usize)
-            .map(|k| {
-                let v = low + k as f64 * stepover;
-                let line = Segment::line(at(start - 1.0, v), at(end + 1.0, v));
-                let mut stops: Vec<f64> = segments()
-                    .flat_map(|s| intersections(&line, s, RESOLUTION_MM))
-                    .map(|p| dot(p, direction))
-                    .collect();
-                stops.sort_by(f64::total_cmp);
-                let mut spans: Vec<(f64, f64)> = Vec::new();
-                for (a, b) in stops.iter().copied().zip(stops.iter().copied().skip(1)) {
-                    if b - a <= RESOLUTION_MM || self.locate(at(0.5 * (a + b), v)) != Location::Inside {
-                        continue;
-                    }
-                    match spans.last_mut() {
-                        // The line only touches the boundary at `a`.
-                        Some(last) if a - last.1 <= RESOLUTION_MM => last.1 = b,
-                        _ => spans.push((a, b)),
-                    }
-                }
-                spans
-                    .into_iter()
-                    .map(|(a, b)| Span {
-                        from: at(a, v),
-                        to: at(b, v),
-                        low: a,
-                        high: b,
-                    })
-                    .collect()
-            })
-            .collect()
+        let mut waiting = waiting.into_iter().peekable();
+        let mut reached: Vec<(f64, &Segment)> = Vec::new();
+        let mut lines = Vec::new();
+        for k in 1..=count.max(0.0) as usize {
+            let v = low + k as f64 * stepover;
+            while let Some((_, high, segment)) = waiting.next_if(|(low, ..)| low - RESOLUTION_MM <= v) {
+                reached.push((high, segment));
+            }
+            reached.retain(|(high, _)| high + RESOLUTION_MM >= v);
+            effort.spend(1 + reached.len())?;
+            lines.push(self.line(direction, v, &reached, effort)?);
+        }
+        Ok(lines)
     }
 
-    fn zigzag(&self, lines: Vec<Vec<Span>>, stepover: f64) -> Vec<Pass> {
+    /// The parts of one hatch line inside, which meets the segments that it has reached.
+    fn line<E: Effort>(
+        &self,
+        direction: Point2,
+        v: f64,
+        reached: &[(f64, &Segment)],
+        effort: &E,
+    ) -> Result<Vec<Span>, E::Stop> {
+        let at = |u: f64| add(scale(direction, u), scale(left(direction), v));
+        let mut stops: Vec<f64> = Vec::new();
+        for (_, segment) in reached {
+            let (start, end) = segment.extent(direction);
+            let line = Segment::line(at(start - 1.0), at(end + 1.0));
+            stops.extend(intersections(&line, segment, RESOLUTION_MM).map(|p| dot(p, direction)));
+        }
+        stops.sort_by(f64::total_cmp);
+        let mut spans: Vec<(f64, f64)> = Vec::new();
+        for (a, b) in stops.iter().copied().zip(stops.iter().copied().skip(1)) {
+            if b - a <= RESOLUTION_MM || self.index.locate(at(0.5 * (a + b)), effort)? != Location::Inside {
+                continue;
+            }
+            match spans.last_mut() {
+                // The line only touches the boundary at `a`.
+                Some(last) if a - last.1 <= RESOLUTION_MM => last.1 = b,
+                _ => spans.push((a, b)),
+            }
+        }
+        let span = |(low, high): (f64, f64)| Span {
+            from: at(low),
+            to: at(high),
+            low,
+            high,
+        };
+        Ok(spans.into_iter().map(span).collect())
+    }
+
+    fn zigzag<E: Effort>(
+        &self,
+        lines: Vec<Vec<Span>>,
+        stepover: f64,
+        effort: &E,
+    ) -> Result<Vec<Pass>, E::Stop> {
         let mut done: Vec<Vec<bool>> = lines.iter().map(|line| vec![false; line.len()]).collect();
         let mut passes: Vec<Pass> = Vec::new();
         for (first_line, first_index) in lines
@@ -146,64 +217,127 @@ impl Region {
                 let pass = span.pass(forward, link.take());
                 let end = pass.to;
                 passes.push(pass);
-                let next = lines
-                    .get(line + 1)
-                    .into_iter()
-                    .flatten()
-                    .enumerate()
-                    .filter(|(i, s)| {
-                        done.get(line + 1).and_then(|d| d.get(*i)) == Some(&false)
-                            && s.low < span.high
-                            && s.high > span.low
-                    });
-                let linked =
-                    next.filter_map(|(i, s)| Some((i, self.link(end, s.entry(!forward), stepover)?)));
-                let way = |link: &[Segment]| link.iter().map(Segment::length).sum::<f64>();
-                let Some((next, found)) = linked.min_by(|a, b| way(&a.1).total_cmp(&way(&b.1))) else {
-                    break;
-                };
-                (line, index, forward, link) = (line + 1, next, !forward, Some(found));
+                // The spans of a line lie one behind the other.
+                let next = lines.get(line + 1).map_or(&[][..], Vec::as_slice);
+                let first = next.partition_point(|s| s.high <= span.low);
+                let beside = next.iter().enumerate().skip(first);
+                let mut best: Option<(f64, usize, Vec<Segment>)> = None;
+                for (i, s) in beside.take_while(|(_, s)| s.low < span.high) {
+                    if done.get(line + 1).and_then(|d| d.get(i)) != Some(&false) {
+                        continue;
+                    }
+                    if let Some(way) = self.link(end, s.entry(!forward), stepover, effort)? {
+                        let length = way.iter().map(Segment::length).sum();
+                        if best.as_ref().is_none_or(|(least, ..)| length < *least) {
+                            best = Some((length, i, way));
+                        }
+                    }
+                }
+                let Some((_, next, way)) = best else { break };
+                (line, index, forward, link) = (line + 1, next, !forward, Some(way));
             }
         }
-        passes
+        Ok(passes)
     }
 
     /// The way between ends of neighbouring passes: straight if that stays inside, else along the boundary
     /// if that is not much longer than the stepover.
-    fn link(&self, from: Point2, to: Point2, stepover: f64) -> Option<Vec<Segment>> {
+    fn link<E: Effort>(
+        &self,
+        from: Point2,
+        to: Point2,
+        stepover: f64,
+        effort: &E,
+    ) -> Result<Option<Vec<Segment>>, E::Stop> {
         const LONGEST_DETOUR: f64 = 4.0; // (inferred) in stepovers, beyond it the tool is lifted
+        let longest = LONGEST_DETOUR * stepover;
         let straight = Segment::line(from, to);
-        if straight.length() <= LONGEST_DETOUR * stepover && self.holds_line(&straight) {
-            return Some(vec![straight]);
+        if straight.length() > longest {
+            return Ok(None);
         }
-        let holds_both = |c: &&Contour| c.distance(from) <= RESOLUTION_MM && c.distance(to) <= RESOLUTION_MM;
-        let ways = self
-            .contours()
-            .iter()
-            .filter(holds_both)
-            .flat_map(|c| [c.between(from, to), c.reversed().between(from, to)]);
-        ways.map(|way| (way.iter().map(Segment::length).sum::<f64>(), way))
-            .filter(|(length, _)| *length <= LONGEST_DETOUR * stepover)
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, way)| way)
+        if self.holds_line(&straight, effort)? {
+            return Ok(Some(vec![straight]));
+        }
+        let mut starts: Vec<(usize, usize)> = Vec::new();
+        let here = Bounds::of_point(from).grown(RESOLUTION_MM);
+        self.index.touching(&here, effort, |place, segment| {
+            if segment.distance(from) <= RESOLUTION_MM {
+                starts.extend(self.places.get(place));
+            }
+        })?;
+        let mut best: Option<(f64, Vec<Segment>)> = None;
+        for (contour, place) in starts {
+            for forward in [true, false] {
+                let segments = self.contours.get(contour).map_or(&[][..], Contour::segments);
+                let found = way_along(segments, place, [from, to], forward, longest);
+                effort.spend(found.as_ref().map_or(1, |(_, way)| way.len()))?;
+                let shorter = |(length, _): &(f64, _)| best.as_ref().is_none_or(|(least, _)| length < least);
+                if let Some(found) = found.filter(shorter) {
+                    best = Some(found);
+                }
+            }
+        }
+        Ok(best.map(|(_, way)| way))
     }
 
     /// Whether a line between two points of the region stays in it; it may run along the boundary.
-    fn holds_line(&self, line: &Segment) -> bool {
-        let segments = self.contours().iter().flat_map(Contour::segments);
-        let touched = segments
-            .flat_map(|s| intersections(line, s, RESOLUTION_MM))
-            .map(|p| line.nearest(p).0);
-        let mut stops: Vec<f64> = touched.chain([0.0, 1.0]).collect();
+    fn holds_line<E: Effort>(&self, line: &Segment, effort: &E) -> Result<bool, E::Stop> {
+        let mut stops: Vec<f64> = vec![0.0, 1.0];
+        let bounds = Bounds::of(line).grown(RESOLUTION_MM);
+        self.index.touching(&bounds, effort, |_, segment| {
+            stops.extend(intersections(line, segment, RESOLUTION_MM).map(|p| line.nearest(p).0));
+        })?;
         stops.sort_by(f64::total_cmp);
-        let pieces = stops
-            .iter()
-            .zip(stops.iter().skip(1))
-            .filter(|(a, b)| *b - *a > 1e-9);
-        pieces
-            .map(|(a, b)| 0.5 * (a + b))
-            .all(|t| self.locate(line.point(t)) != Location::Outside)
+        for (a, b) in stops.iter().zip(stops.iter().skip(1)) {
+            let middle = line.point(0.5 * (a + b));
+            if b - a > 1e-9 && self.index.locate(middle, effort)? == Location::Outside {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
+}
+
+/// The way along a closed contour between two of its points, in its sense or against it, from the segment
+/// at a place; `None` when it is longer than `longest`.
+fn way_along(
+    segments: &[Segment],
+    place: usize,
+    [from, to]: [Point2; 2],
+    forward: bool,
+    longest: f64,
+) -> Option<(f64, Vec<Segment>)> {
+    let count = segments.len();
+    let mut length = 0.0;
+    let mut way: Vec<Segment> = Vec::new();
+    // The segment of the start may be the one of the end too, and come again behind all others.
+    for step in 0..=count {
+        let at = if forward {
+            place + step
+        } else {
+            place + 2 * count - step
+        };
+        let segment = segments.get(at % count)?;
+        let segment = if forward { *segment } else { segment.reversed() };
+        let start = if step == 0 { segment.nearest(from).0 } else { 0.0 };
+        let (t, end) = segment.nearest(to);
+        let arrives = distance(end, to) <= RESOLUTION_MM && t >= start;
+        let part = segment.part(start, if arrives { t } else { 1.0 });
+        length += part.length();
+        if length > longest {
+            return None;
+        }
+        if part.is_proper() {
+            match way.last().and_then(|last| last.joined(&part)) {
+                Some(joined) => *way.last_mut()? = joined,
+                None => way.push(part),
+            }
+        }
+        if arrives {
+            return Some((length, way));
+        }
+    }
+    None
 }
 
 /// A part of a hatch line inside the region, with its coordinates along the line.
@@ -226,22 +360,5 @@ impl Span {
 
     fn entry(&self, forward: bool) -> Point2 {
         if forward { self.from } else { self.to }
-    }
-}
-
-impl Contour {
-    /// The way along a closed contour from one of its points to another one, in its sense.
-    fn between(&self, from: Point2, to: Point2) -> Vec<Segment> {
-        let contour = self.starting_near(from);
-        let mut way = Vec::new();
-        for segment in contour.segments() {
-            if segment.distance(to) <= RESOLUTION_MM {
-                let (t, _) = segment.nearest(to);
-                way.push(segment.part(0.0, t));
-                break;
-            }
-            way.push(*segment);
-        }
-        way
     }
 }

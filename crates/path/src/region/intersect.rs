@@ -6,26 +6,38 @@ use crate::Point2;
 
 /// The points where two segments cross, touch or begin and end to overlap, within `tolerance` mm.
 /// A point may be listed twice.
-pub(super) fn intersections(a: &Segment, b: &Segment, tolerance: f64) -> Vec<Point2> {
+pub(super) fn intersections(a: &Segment, b: &Segment, tolerance: f64) -> impl Iterator<Item = Point2> {
     // Ends on the other segment: they are all there is to overlaps and make T joints exact.
-    let mut points: Vec<Point2> = Vec::new();
-    points.extend(
-        [a.from(), a.to()]
-            .into_iter()
-            .filter(|p| b.distance(*p) <= tolerance),
-    );
-    points.extend(
-        [b.from(), b.to()]
-            .into_iter()
-            .filter(|p| a.distance(*p) <= tolerance),
-    );
-    points.extend(
-        carriers_cross(a, b, tolerance)
-            .into_iter()
-            .flatten()
-            .filter(|p| within(a, *p) && within(b, *p)),
-    );
-    points
+    let end = |p: Point2, other: &Segment| (other.distance(p) <= tolerance).then_some(p);
+    let [first, second] = crossings(a, b, tolerance);
+    [
+        end(a.from(), b),
+        end(a.to(), b),
+        end(b.from(), a),
+        end(b.to(), a),
+        first,
+        second,
+    ]
+    .into_iter()
+    .flatten()
+}
+
+/// The points where two segments cross, or touch between their ends within `tolerance` mm.
+pub(super) fn crossings(a: &Segment, b: &Segment, tolerance: f64) -> [Option<Point2>; 2] {
+    if beside(a, b, tolerance) || beside(b, a, tolerance) {
+        return [None, None];
+    }
+    carriers_cross(a, b, tolerance).map(|p| p.filter(|p| within(a, *p) && within(b, *p)))
+}
+
+/// Whether both ends of one line lie surely on the same side of another one: most near lines do.
+fn beside(line: &Segment, other: &Segment, tolerance: f64) -> bool {
+    let (Segment::Line { from, to }, Segment::Line { from: p, to: q }) = (*line, *other) else {
+        return false;
+    };
+    let d = sub(to, from);
+    let (a, b) = (cross(d, sub(p, from)), cross(d, sub(q, from)));
+    a * b > 0.0 && (a * a).min(b * b) > tolerance * tolerance * dot(d, d)
 }
 
 /// Whether a point of the segment's line or circle lies between its ends. Ends themselves are found
@@ -42,12 +54,12 @@ fn within(segment: &Segment, point: Point2) -> bool {
 }
 
 /// Where the straight lines and full circles that carry the segments cross.
-fn carriers_cross(a: &Segment, b: &Segment, tolerance: f64) -> [Option<Point2>; 2] {
+pub(super) fn carriers_cross(a: &Segment, b: &Segment, tolerance: f64) -> [Option<Point2>; 2] {
     match (*a, *b) {
         (Segment::Line { from: p, to: p1 }, Segment::Line { from: q, to: q1 }) => {
             let (d, e) = (sub(p1, p), sub(q1, q));
             let denominator = cross(d, e);
-            if denominator.abs() <= 1e-12 * length(d) * length(e) {
+            if denominator * denominator <= 1e-24 * dot(d, d) * dot(e, e) {
                 return [None, None];
             }
             [Some(along(p, d, cross(sub(q, p), e) / denominator)), None]

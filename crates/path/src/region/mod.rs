@@ -36,12 +36,17 @@
 //! ```
 //!
 //! Everything here works for any input that is finite: contours may touch, coincide, cross themselves or
-//! hold no area. No arc is ever replaced by lines.
+//! hold no area. No arc is ever replaced by lines. Time grows with the size of input and result, not with
+//! its square; an [`Effort`] counts it and may end every operation.
 
 mod area;
 mod arrangement;
 mod contour;
+mod edges;
+mod effort;
+mod faces;
 mod hatch;
+mod index;
 mod intersect;
 mod offset;
 mod segment;
@@ -50,9 +55,10 @@ mod vector;
 
 pub use area::Region;
 pub use contour::{Contour, Location};
+pub use effort::{Effort, Unlimited};
 pub use hatch::{HatchPattern, Pass};
 pub use segment::Segment;
-pub use superimpose::{Kind, Merge, Outline, PocketArea, SubContour, superimpose};
+pub use superimpose::{Kind, Merge, Outline, PocketArea, SubContour, Superposition, superimpose};
 
 /// Points nearer together than this are one point, mm: a thousandth of the finest input resolution
 /// (0.001 mm), and far more than rounding does to coordinates of 100 m.

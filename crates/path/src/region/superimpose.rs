@@ -1,5 +1,7 @@
 //! Superposition of the subcontours of cycle 14 CONTOUR GEOMETRY.
 
+use super::effort::{Effort, Unlimited};
+use super::index::{Bounds, Index};
 use super::vector::*;
 use super::{Contour, Location, RESOLUTION_MM, Region};
 use crate::Point2;
@@ -115,46 +117,132 @@ impl Outline {
 /// assert!((infeed[0] - 13.0).abs() < 1e-9 && (infeed[1] - 50.0).abs() < 1e-9);
 /// ```
 pub fn superimpose(subcontours: &[SubContour], distance: f64, merge: Merge) -> Vec<PocketArea> {
-    let programmed: Vec<Region> = subcontours
-        .iter()
-        .map(|s| Region::from_contour(&s.contour))
-        .collect();
-    let compensated: Vec<Region> = subcontours
-        .iter()
-        .zip(&programmed)
-        .map(|(s, region)| {
-            region.offset(if s.kind == Kind::Pocket {
-                -distance
-            } else {
-                distance
-            })
-        })
-        .collect();
-    let plan = Plan::new(subcontours, &programmed);
-    let combine = |regions: &[Region]| {
-        let regions: Vec<&Region> = regions.iter().collect();
-        Region::combine(&regions, &|inside| plan.machined(inside))
-    };
-    let result = match merge {
-        Merge::CentrePaths => combine(&compensated),
-        Merge::ProgrammedContours => combine(&programmed).offset(-distance),
-    };
-    let starts: Vec<Point2> = subcontours
-        .iter()
-        .zip(&compensated)
-        .map(|(s, region)| compensated_start(s, region, distance))
-        .collect();
-    let mut areas: Vec<PocketArea> = result
-        .parts()
-        .map(|region| {
-            let outline = |contour: &Contour| outline(contour, subcontours, &starts, distance);
-            let mut outlines: Vec<Outline> = region.contours().iter().map(outline).collect();
+    let Ok(result) = Superposition::new(subcontours, distance, merge, &Unlimited);
+    result.areas
+}
+
+/// The result of [`superimpose`], and what of the subcontours is not in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Superposition {
+    /// The areas of the tool centre.
+    pub areas: Vec<PocketArea>,
+    /// Indices of the pockets into which the tool does not fit.
+    pub too_narrow: Vec<usize>,
+}
+
+impl Superposition {
+    /// See [`superimpose`].
+    ///
+    /// # Errors
+    /// When the effort ends it.
+    pub fn new<E: Effort>(
+        subcontours: &[SubContour],
+        distance: f64,
+        merge: Merge,
+        effort: &E,
+    ) -> Result<Superposition, E::Stop> {
+        let mut programmed: Vec<Region> = Vec::with_capacity(subcontours.len());
+        let mut compensated: Vec<Region> = Vec::with_capacity(subcontours.len());
+        for subcontour in subcontours {
+            let region = Region::from_contour_within(&subcontour.contour, effort)?;
+            let shrinks = subcontour.kind == Kind::Pocket;
+            let by = if shrinks { -distance } else { distance };
+            compensated.push(region.offset_within(by, effort)?);
+            programmed.push(region);
+        }
+        let plan = Plan::new(&Relations::new(subcontours, &programmed, effort)?);
+        let combine = |regions: &[Region]| {
+            let regions: Vec<&Region> = regions.iter().collect();
+            Region::combine_within(&regions, &|inside| plan.machined(inside), effort)
+        };
+        let result = match merge {
+            Merge::CentrePaths => combine(&compensated)?,
+            Merge::ProgrammedContours => combine(&programmed)?.offset_within(-distance, effort)?,
+        };
+        let pairs = subcontours.iter().zip(&compensated);
+        let sources = Sources {
+            starts: pairs
+                .clone()
+                .map(|(s, region)| compensated_start(s, region, distance))
+                .collect(),
+            contours: subcontours
+                .iter()
+                .map(|s| Index::new(s.contour.segments().iter().copied()))
+                .collect(),
+            distance,
+        };
+        let mut areas: Vec<PocketArea> = Vec::new();
+        for region in result.parts() {
+            let mut outlines: Vec<Outline> = Vec::with_capacity(region.contours().len());
+            for contour in region.contours() {
+                outlines.push(sources.outline(contour, effort)?);
+            }
             outlines.sort_by_key(|outline| outline.leader);
-            PocketArea { region, outlines }
+            areas.push(PocketArea { region, outlines });
+        }
+        areas.sort_by_key(|area| area.outlines.first().map(|outline| outline.leader));
+        let narrow = pairs
+            .enumerate()
+            .filter(|(_, (s, region))| s.kind == Kind::Pocket && region.is_empty());
+        Ok(Superposition {
+            areas,
+            too_narrow: narrow.map(|(index, _)| index).collect(),
         })
-        .collect();
-    areas.sort_by_key(|area| area.outlines.first().map(|outline| outline.leader));
-    areas
+    }
+}
+
+/// What the start point rules ask of pairs of subcontours.
+struct Relations {
+    kinds: Vec<Kind>,
+    /// Whether the row starts inside the column.
+    starts_inside: Vec<Vec<bool>>,
+    /// Whether two of one kind overlap.
+    overlaps: Vec<Vec<bool>>,
+}
+
+impl Relations {
+    fn new<E: Effort>(
+        subcontours: &[SubContour],
+        programmed: &[Region],
+        effort: &E,
+    ) -> Result<Relations, E::Stop> {
+        let count = subcontours.len();
+        let mut relations = Relations {
+            kinds: subcontours.iter().map(|s| s.kind).collect(),
+            starts_inside: vec![vec![false; count]; count],
+            overlaps: vec![vec![false; count]; count],
+        };
+        for (b, region) in programmed.iter().enumerate() {
+            let index = Index::new(region.contours().iter().flat_map(Contour::segments).copied());
+            let rows = relations.starts_inside.iter_mut();
+            for (row, subcontour) in rows.zip(subcontours) {
+                if let Some(inside) = row.get_mut(b) {
+                    *inside = index.locate(subcontour.contour.start(), effort)? == Location::Inside;
+                }
+            }
+            let rows = relations.overlaps.iter_mut().zip(subcontours).zip(programmed);
+            for ((row, subcontour), other) in rows.skip(b + 1) {
+                if let Some(overlaps) = row.get_mut(b)
+                    && subcontours.get(b).is_some_and(|s| s.kind == subcontour.kind)
+                {
+                    *overlaps = overlap(region, other, effort)?;
+                }
+            }
+        }
+        Ok(relations)
+    }
+
+    fn is(&self, index: usize, kind: Kind) -> bool {
+        self.kinds.get(index) == Some(&kind)
+    }
+
+    fn starts_inside(&self, a: usize, b: usize) -> bool {
+        self.starts_inside.get(a).and_then(|row| row.get(b)) == Some(&true)
+    }
+
+    fn overlap(&self, a: usize, b: usize) -> bool {
+        self.overlaps.get(a.max(b)).and_then(|row| row.get(a.min(b))) == Some(&true)
+    }
 }
 
 /// How the subcontours combine, decided by the start point rules.
@@ -194,17 +282,11 @@ impl Group {
 }
 
 impl Plan {
-    fn new(subcontours: &[SubContour], programmed: &[Region]) -> Plan {
-        let indices = || 0..subcontours.len();
-        let is = |i: usize, kind: Kind| subcontours.get(i).is_some_and(|s| s.kind == kind);
-        let starts_inside = |a: usize, b: usize| match (subcontours.get(a), programmed.get(b)) {
-            (Some(a), Some(b)) => b.locate(a.contour.start()) == Location::Inside,
-            _ => false,
-        };
-        let overlap = |a: usize, b: usize| match (programmed.get(a), programmed.get(b)) {
-            (Some(a), Some(b)) => overlap(a, b),
-            _ => false,
-        };
+    fn new(relations: &Relations) -> Plan {
+        let indices = || 0..relations.kinds.len();
+        let is = |i: usize, kind: Kind| relations.is(i, kind);
+        let starts_inside = |a: usize, b: usize| relations.starts_inside(a, b);
+        let overlap = |a: usize, b: usize| relations.overlap(a, b);
         let starts_in_island = |p: usize| indices().any(|i| is(i, Kind::Island) && starts_inside(p, i));
         let (reducing, ordinary) = indices()
             .filter(|i| is(*i, Kind::Pocket))
@@ -282,10 +364,15 @@ fn groups(
 }
 
 /// Whether two areas share some area and neither contains the other.
-fn overlap(a: &Region, b: &Region) -> bool {
+fn overlap<E: Effort>(a: &Region, b: &Region, effort: &E) -> Result<bool, E::Stop> {
+    let bounds = |region: &Region| region.bounding_box().map(|(min, max)| Bounds::between(min, max));
+    if !matches!((bounds(a), bounds(b)), (Some(a), Some(b)) if a.touches(&b)) {
+        return Ok(false);
+    }
     let negligible = RESOLUTION_MM * (a.perimeter() + b.perimeter());
-    let shared = a.intersection(b).area();
-    shared > negligible && shared < a.area().min(b.area()) - negligible
+    let both = |inside: &[bool]| !inside.contains(&false);
+    let shared = Region::combine_within(&[a, b], &both, effort)?.area();
+    Ok(shared > negligible && shared < a.area().min(b.area()) - negligible)
 }
 
 /// Start point of the compensated subcontour: beside the start of the first element, or where the
@@ -309,30 +396,47 @@ fn nearest(contours: &[Contour], point: Point2) -> Option<Point2> {
 /// A point belongs to an outline when it is no farther from it than this, mm.
 const ON_OUTLINE_MM: f64 = 1e-5;
 
-/// The outline of a result contour, started at the start point of the first member that has its
-/// start point on it; if none has, nearest to the start point of the first member (inferred).
-fn outline(contour: &Contour, subcontours: &[SubContour], starts: &[Point2], distance: f64) -> Outline {
-    let follows = |s: &SubContour| {
-        let on = |p: Point2| (s.contour.distance(p) - distance).abs() <= ON_OUTLINE_MM;
-        contour
-            .segments()
+/// The subcontours as an outline sees them.
+struct Sources {
+    /// Their compensated start points.
+    starts: Vec<Point2>,
+    contours: Vec<Index>,
+    distance: f64,
+}
+
+impl Sources {
+    /// The outline of a result contour, started at the start point of the first member that has its
+    /// start point on it; if none has, nearest to the start point of the first member (inferred).
+    fn outline<E: Effort>(&self, contour: &Contour, effort: &E) -> Result<Outline, E::Stop> {
+        let mut members: Vec<usize> = Vec::new();
+        for (index, source) in self.contours.iter().enumerate() {
+            if self.follows(contour, source, effort)? {
+                members.push(index);
+            }
+        }
+        let start_of = |member: &usize| self.starts.get(*member).copied().unwrap_or(contour.start());
+        let with_start = members
             .iter()
-            .any(|segment| on(segment.point(0.5)) && on(segment.point(0.3)))
-    };
-    let members: Vec<usize> = subcontours
-        .iter()
-        .enumerate()
-        .filter(|(_, s)| follows(s))
-        .map(|(index, _)| index)
-        .collect();
-    let start_of = |member: &usize| starts.get(*member).copied().unwrap_or(contour.start());
-    let with_start = members
-        .iter()
-        .find(|member| contour.distance(start_of(member)) <= ON_OUTLINE_MM);
-    let leader = with_start.or(members.first()).copied().unwrap_or(0);
-    Outline {
-        contour: contour.starting_near(start_of(&leader)),
-        leader,
-        members,
+            .find(|member| contour.distance(start_of(member)) <= ON_OUTLINE_MM);
+        let leader = with_start.or(members.first()).copied().unwrap_or(0);
+        Ok(Outline {
+            contour: contour.starting_near(start_of(&leader)),
+            leader,
+            members,
+        })
+    }
+
+    /// Whether a contour keeps the distance to a subcontour along one of its segments.
+    fn follows<E: Effort>(&self, contour: &Contour, source: &Index, effort: &E) -> Result<bool, E::Stop> {
+        let on = |point: Point2| -> Result<bool, E::Stop> {
+            let near = source.nearest(point, self.distance + 2.0 * ON_OUTLINE_MM, effort)?;
+            Ok(near.is_some_and(|(gap, _)| (gap - self.distance).abs() <= ON_OUTLINE_MM))
+        };
+        for segment in contour.segments() {
+            if on(segment.point(0.5))? && on(segment.point(0.3))? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 }

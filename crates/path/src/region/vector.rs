@@ -29,11 +29,12 @@ pub(super) fn cross(a: Point2, b: Point2) -> f64 {
 }
 
 pub(super) fn length(a: Point2) -> f64 {
-    a[0].hypot(a[1])
+    // Faster than `hypot`, which looks after numbers that no coordinate has.
+    dot(a, a).sqrt()
 }
 
 pub(super) fn distance(a: Point2, b: Point2) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    length(sub(a, b))
 }
 
 pub(super) fn middle(a: Point2, b: Point2) -> Point2 {

@@ -248,7 +248,7 @@ impl Translator<'_> {
         };
         self.report(error, "");
         self.opened.truncate(level.into());
-        self.opened.push(command.mnemonic);
+        self.opened.push((command.mnemonic, self.place));
         let (op, class) = match accumulator {
             Accumulator::Logic => (Op::OpenLogic { level }, Class::Bit),
             Accumulator::Word => (Op::OpenWord { level }, Class::Byte),
@@ -259,8 +259,9 @@ impl Translator<'_> {
 
     fn close_bracket(&mut self, command: &Command) {
         let (result, error) = self.chains.close();
-        self.report(error, "");
-        let (Some(result), Some(opened)) = (result, self.opened.pop()) else {
+        let opened = result.and_then(|result| Some((result, self.opened.pop()?)));
+        self.report_opened(error, "", opened.map(|(_, (_, place))| place));
+        let Some((result, (opened, _))) = opened else {
             return;
         };
         let level = self.chains.level();
@@ -400,7 +401,9 @@ impl Translator<'_> {
         match closed {
             Some((structure, true)) => Some(structure),
             Some((structure, false)) => {
-                self.report(Some(PlcError::WrongStructure), "another structure is still open");
+                let inner = self.structures.last().map(|structure| structure.place);
+                let detail = "another structure is still open";
+                self.report_opened(Some(PlcError::WrongStructure), detail, inner);
                 Some(structure)
             }
             None => {

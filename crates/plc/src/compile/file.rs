@@ -92,8 +92,8 @@ pub(super) struct Translator<'a> {
     pub(super) out: FileCode,
     pub(super) chains: Chains,
     pub(super) structures: Vec<Structure>,
-    /// The commands that opened the brackets.
-    pub(super) opened: Vec<Mnemonic>,
+    /// The commands that opened the brackets, and where.
+    pub(super) opened: Vec<(Mnemonic, Place)>,
     table: Option<Table>,
     /// Where the code began that is not closed by EM or JP yet.
     block: Option<Place>,
@@ -234,6 +234,33 @@ impl Translator<'_> {
     pub(super) fn report(&mut self, error: Option<PlcError>, detail: &str) {
         if let Some(error) = error {
             self.report_at(self.place, error, detail);
+            if let Some(place) = self.opening(error) {
+                self.reports.opened_at(place);
+            }
+        }
+    }
+
+    /// Reports an error of the current line, and where that was opened which it does not fit.
+    pub(super) fn report_opened(&mut self, error: Option<PlcError>, detail: &str, opened: Option<Place>) {
+        self.report(error, detail);
+        if let (Some(_), Some(place)) = (error, opened) {
+            self.reports.opened_at(place);
+        }
+    }
+
+    /// What is open while an error of this kind is reported: a bracket or a table.
+    fn opening(&self, error: PlcError) -> Option<Place> {
+        match error {
+            PlcError::AssignmentInBracket
+            | PlcError::BracketsTooDeep
+            | PlcError::LabelInBracket
+            | PlcError::JumpInBracket
+            | PlcError::BracketOpenAtEnd
+            | PlcError::StringInBracket => self.opened.last().map(|(_, place)| *place),
+            PlcError::WrongCommandInTable => self.table.map(|table| match table {
+                Table::Case { place, .. } | Table::Field { place, .. } => place,
+            }),
+            _ => None,
         }
     }
 

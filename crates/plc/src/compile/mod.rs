@@ -125,6 +125,13 @@ impl Reports {
             .push((file.0, diagnostic(file.1, place, error, detail)));
     }
 
+    /// The last error comes from what was opened at a place.
+    fn opened_at(&mut self, place: Place) {
+        if let Some((_, error)) = self.errors.last_mut() {
+            error.opened = Some((place.line, place.column));
+        }
+    }
+
     fn warning(&mut self, file: (usize, &str), place: Place, error: PlcError, detail: &str) {
         self.warnings
             .push((file.0, diagnostic(file.1, place, error, detail)));
@@ -149,5 +156,6 @@ fn diagnostic(file: &str, place: Place, error: PlcError, detail: &str) -> Diagno
         line: place.line,
         column: place.column,
         message,
+        opened: None,
     }
 }

@@ -118,6 +118,8 @@ fn needs_separator(before: &CycleWord, word: &CycleWord) -> bool {
     match before {
         CycleWord::Axis(_) => value,
         CycleWord::AxisDirection(..) => value || matches!(word, CycleWord::AxisDirection(..)),
+        // In a list of labels a sign is text.
+        CycleWord::Text(text) if matches!(word, CycleWord::Labels(_)) => text.ends_with(['+', '-']),
         CycleWord::Text(text) => {
             let last = text.rsplit(' ').next().unwrap_or_default();
             value && (last.len() <= 2 || last.ends_with(['+', '-']))

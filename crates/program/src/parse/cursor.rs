@@ -13,7 +13,12 @@ pub(crate) struct Fault {
     pub(crate) start: usize,
     pub(crate) end: usize,
     pub(crate) detail: Cow<'static, str>,
+    /// What to do about it, where that of the message would mislead.
+    pub(crate) help: Option<&'static str>,
 }
+
+/// What to do where something stands in place of a number.
+pub(crate) const WRITE_A_NUMBER: &str = "Write a number or a Q parameter; the letter O is no zero.";
 
 /// What a parsing function gives. The fault is boxed to keep the good case small.
 pub(crate) type Parsed<T> = Result<T, Box<Fault>>;
@@ -54,6 +59,15 @@ impl<'a> Cursor<'a> {
     #[inline]
     pub(crate) fn peek_at(&self, offset: usize) -> u8 {
         self.bytes.get(self.position + offset).copied().unwrap_or(b' ')
+    }
+
+    /// Whether a digit stands directly before the position.
+    pub(crate) fn touches_digit(&self) -> bool {
+        let before = self
+            .position
+            .checked_sub(1)
+            .and_then(|before| self.bytes.get(before));
+        before.is_some_and(u8::is_ascii_digit)
     }
 
     /// Whether there is a byte `offset` behind the next one.
@@ -179,6 +193,7 @@ impl<'a> Cursor<'a> {
             start,
             end: self.position,
             detail: detail.into(),
+            help: None,
         }))
     }
 
@@ -196,6 +211,7 @@ impl<'a> Cursor<'a> {
             start: self.position,
             end,
             detail: detail.into(),
+            help: None,
         }))
     }
 
@@ -215,7 +231,10 @@ impl<'a> Cursor<'a> {
     #[cold]
     pub(crate) fn number_missing<T>(&mut self, start: usize, what: &'static str) -> Parsed<T> {
         if start >= self.position {
-            return self.fault_at_word(MessageId::EntryValueIncorrect, what);
+            return with_help(
+                self.fault_at_word(MessageId::EntryValueIncorrect, what),
+                WRITE_A_NUMBER,
+            );
         }
         let end = self.word_end();
         Err(Box::new(Fault {
@@ -223,8 +242,18 @@ impl<'a> Cursor<'a> {
             start,
             end,
             detail: what.into(),
+            help: Some(WRITE_A_NUMBER),
         }))
     }
+}
+
+/// A fault with what to do about it.
+#[cold]
+pub(crate) fn with_help<T>(parsed: Parsed<T>, help: &'static str) -> Parsed<T> {
+    parsed.map_err(|mut fault| {
+        fault.help = Some(help);
+        fault
+    })
 }
 
 /// Length of the code at the front of a line: up to `;` or three dots.

@@ -4,7 +4,7 @@
 use bahn_parameters::MessageId::{AxisDoubleProgrammed, CyclIncomplete, EntryValueIncorrect};
 use bahn_path::{Axis, AxisSet};
 
-use super::cursor::{Cursor, Parsed};
+use super::cursor::{Cursor, Parsed, WRITE_A_NUMBER, with_help};
 use super::m_function::m_functions;
 use super::path::{direction, feed_word};
 use crate::check::ANY_LABEL_MAX;
@@ -13,6 +13,8 @@ use crate::{CycleBlock, CycleWord, Dialog, Direction, Operation, Word};
 
 /// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
 pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
+/// Cycle 7: its blocks hold axes only, or the number of a datum behind `#`.
+const DATUM_SHIFT: u16 = 7;
 /// Most dialog texts of an OEM cycle, its name and 14 parameters [000:17742].
 const MAX_DIALOGS: usize = 15;
 /// Greatest number of a dialog text [000:17742].
@@ -135,6 +137,11 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
         }
         let start = c.position();
         let Some(word) = address(c, scope)? else {
+            let datum_shift = scope == Scope::Cycle(DATUM_SHIFT) && c.peek() != b'#';
+            if datum_shift || is_broken_number(c) {
+                let fault = c.fault_at_word(EntryValueIncorrect, "this is no number");
+                return with_help(fault, WRITE_A_NUMBER);
+            }
             decoration(c, &mut text);
             continue;
         };
@@ -247,6 +254,9 @@ fn axis_word(c: &mut Cursor, start: usize, axis: Axis, scope: Scope) -> Parsed<O
         _ => return Ok(None),
     };
     c.advance(2);
+    if scope != Scope::Probe {
+        return c.number_missing(start, "a number or Q parameter is missing behind the sign");
+    }
     Ok(Some(Some(CycleWord::AxisDirection(axis, direction))))
 }
 
@@ -311,6 +321,24 @@ fn ends_word(c: &Cursor, offset: usize) -> bool {
         None => true,
         Some(&byte) => is_blank(byte) || byte == b';' || is_separator(byte) || rest.starts_with(b"..."),
     }
+}
+
+/// Whether the word that begins here can only be meant as a number: the letter O of `1O`, which touches a
+/// number, or `Xnan`.
+fn is_broken_number(c: &Cursor) -> bool {
+    /// Letters that touch a number and are more than this begin the next word: `F100RADIUS0`.
+    const STRAY_LETTERS_MAX: usize = 2;
+    let rest = c.rest();
+    let letters = rest.iter().take_while(|b| b.is_ascii_alphabetic()).count();
+    if c.touches_digit() && letters <= STRAY_LETTERS_MAX {
+        return true;
+    }
+    let word = rest.get(..letters).unwrap_or_default();
+    let value = match word {
+        [b'I' | b'i', axis, value @ ..] | [axis, value @ ..] if Axis::from_letter(*axis).is_some() => value,
+        _ => return false,
+    };
+    value.eq_ignore_ascii_case(b"NAN") || value.eq_ignore_ascii_case(b"INF")
 }
 
 /// Reads one word of decoration and appends it to the text. It ends before a number that touches it:
@@ -552,6 +580,30 @@ mod tests {
         }
         assert_eq!(words_of("CYCL DEF 10.1 IROT+35"), [text("IROT"), Number(N(35.0))]);
         assert_eq!(words_of("CYCL DEF 11.1 SCL 0.8"), [text("SCL"), Number(N(0.8))]);
+    }
+
+    #[test]
+    fn what_is_meant_as_a_number_is_one() {
+        for (text, column) in [
+            ("CYCL DEF 7.1 Xnan", 14),
+            ("CYCL DEF 7.1 X+1O", 17),
+            ("CYCL DEF 7.1 X+O5", 14),
+            ("CYCL DEF 7.1 IXinf", 14),
+            ("CYCL DEF 7.1 X+5 DATUM", 18),
+            ("CYCL DEF 3.4 X+1O", 17),
+            ("CYCL DEF 3.4 Xnan F100", 14),
+            ("CYCL DEF 1.2 DEPTH -1O", 22),
+            ("CYCL DEF 1.5 F1e3", 16),
+            ("CYCL DEF 10.1 ROT+3O", 20),
+            ("CYCL DEF 11.1 SCL 0.8l", 22),
+            ("CYCL DEF 26.1 X1O", 17),
+            ("CYCL DEF 200 Q200=1O", 20),
+        ] {
+            let (message, found, _) = fault(text);
+            assert_eq!((message, found), (EntryValueIncorrect, column), "{text}");
+        }
+        assert_eq!(words_of("CYCL DEF 7.1 #3"), [text("#"), Number(N(3.0))]);
+        assert_eq!(words_of("CYCL DEF 4.6 F100RADIUS0").len(), 3);
     }
 
     #[test]

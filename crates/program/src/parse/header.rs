@@ -51,6 +51,7 @@ fn header(c: &mut Cursor, start: usize) -> Option<Header> {
     let mut name = c.name().into_string();
     let protected = name.to_ascii_uppercase().ends_with(" MM P")
         || name.to_ascii_uppercase().ends_with(" INCH P")
+        || name.to_ascii_uppercase().ends_with(" IN P")
         || ["MM P", "INCH P"]
             .iter()
             .any(|all| name.eq_ignore_ascii_case(all));
@@ -61,6 +62,8 @@ fn header(c: &mut Cursor, start: usize) -> Option<Header> {
     let unit = match last.to_ascii_uppercase().as_str() {
         "MM" => Some(Unit::Mm),
         "INCH" => Some(Unit::Inch),
+        // A name of its own it may be, a unit only behind one.
+        "IN" if last.len() < name.len() => Some(Unit::Inch),
         _ => None,
     };
     if unit.is_some() {
@@ -109,6 +112,9 @@ mod tests {
         assert_eq!(begin("BEGIN 360519 MM"), header("360519", Some(Unit::Mm), false));
         assert_eq!(begin("BEGIN PGM 360522 M"), header("360522 M", None, false));
         assert_eq!(begin("BEGIN PGM"), header("", None, false));
+        assert_eq!(begin("BEGIN PGM T IN"), header("T", Some(Unit::Inch), false));
+        assert_eq!(begin("BEGIN PGM T IN P"), header("T", Some(Unit::Inch), true));
+        assert_eq!(begin("BEGIN PGM IN"), header("IN", None, false));
         assert_eq!(begin("BEGIN PGM P"), header("P", None, false));
     }
 

@@ -4,6 +4,7 @@
 mod blank;
 mod cursor;
 mod cycle;
+mod foreign;
 mod formula;
 mod header;
 mod label;
@@ -17,11 +18,12 @@ mod unknown;
 
 use bahn_parameters::MessageId;
 
-use crate::lines::{RawBlock, lines};
+use crate::lines::{RawBlock, lines, stands_alone};
 use crate::text::{character_count, to_text, trim, trim_continuation};
 use crate::{Block, BlockError, InvalidBlock, Operation};
-use cursor::{Cursor, Fault, Parsed, code_length};
+use cursor::{Cursor, Fault, Parsed, code_length, with_help};
 pub(crate) use cycle::FIRST_PARAMETER_CYCLE;
+pub(crate) use foreign::{is_din_iso, whole_program};
 pub(crate) use formula::FUNCTIONS;
 pub(crate) use m_function::rest_of_word;
 
@@ -76,7 +78,7 @@ fn parse_line(line: &[u8], may_begin: bool, block: &mut Block) {
 
 /// Reads a block that is no positioning block up to its end, or what stands alone in a line.
 fn other_operation(c: &mut Cursor, may_begin: bool, operation: &mut Operation) -> Parsed<()> {
-    *operation = match stand_alone(c) {
+    *operation = match decoration_only(c) {
         Some(comment) => {
             c.advance(c.rest().len());
             comment
@@ -94,7 +96,7 @@ fn invalid(line: &[u8], start: usize, fault: &Fault) -> Operation {
     Operation::Invalid(Box::new(InvalidBlock { text, error }))
 }
 
-/// Reads optional block number and `/`, in either order, and the blanks behind; whether the block is
+/// Reads optional block number, perhaps behind N, and `/`, in either order, and the blanks behind; whether the block is
 /// optional.
 #[inline]
 fn prefix(c: &mut Cursor) -> bool {
@@ -104,6 +106,9 @@ fn prefix(c: &mut Cursor) -> bool {
         skip = true;
         c.advance(1);
         c.skip_blanks();
+    }
+    if c.peek_upper() == b'N' && c.peek_at(1).is_ascii_digit() {
+        c.advance(1);
     }
     while c.peek().is_ascii_digit() {
         c.advance(1);
@@ -118,7 +123,7 @@ fn prefix(c: &mut Cursor) -> bool {
 }
 
 /// Reads a block that is no function: comment, structuring, or nothing but a block number.
-fn stand_alone(c: &mut Cursor) -> Option<Operation> {
+fn decoration_only(c: &mut Cursor) -> Option<Operation> {
     let text = match c.peek() {
         b';' => c.rest().get(1..).unwrap_or_default(),
         b'*' => c.rest(),
@@ -133,10 +138,18 @@ fn complete_operation(c: &mut Cursor, may_begin: bool) -> Parsed<Operation> {
     let start = c.position();
     let operation = operation(c)?;
     if !may_begin && matches!(operation, Operation::Begin(_)) {
-        return c.fault_from(start, MessageId::UnexpectedText, "the program has begun already");
+        let fault = c.fault_from(start, MessageId::UnexpectedText, "the program has begun already");
+        return with_help(
+            fault,
+            "Keep one BEGIN PGM; put a second program into a file of its own.",
+        );
     }
     if c.at_end() { Ok(operation) } else { c.unexpected() }
 }
+
+/// What to do about a block that nobody knows.
+const CORRECT_THE_WORD: &str =
+    "Correct the spelling, or write the block with functions of the controls here if a later one wrote it.";
 
 /// Reads a function by its first letters.
 fn operation(c: &mut Cursor) -> Parsed<Operation> {
@@ -169,8 +182,12 @@ fn operation(c: &mut Cursor) -> Parsed<Operation> {
     };
     match found? {
         Some(operation) => Ok(operation),
+        None if let Some(what) = foreign::belongs_to(c) => {
+            c.fault_at_word(MessageId::BlockNotSupported, foreign::not_supported(what))
+        }
         None if c.peek().is_ascii_alphabetic() || c.peek() == b'%' => {
-            c.fault_at_word(MessageId::BlockNotKnown, "no control here knows this block")
+            let fault = c.fault_at_word(MessageId::BlockNotKnown, "no control here knows this block");
+            with_help(fault, CORRECT_THE_WORD)
         }
         None => c.fault_at_word(MessageId::UnexpectedText, "a block cannot begin like this"),
     }
@@ -195,6 +212,7 @@ fn located(fault: &Fault, line_in_block: u32, line: &[u8], start: usize, end: us
         column: character_count(line.get(..start).unwrap_or_default()).saturating_add(1),
         length: character_count(trim(covered)).max(1),
         detail: fault.detail.as_ref().into(),
+        help: fault.help,
     }
 }
 
@@ -240,6 +258,13 @@ fn parse_joined(bytes: &[u8], may_begin: bool) -> Block {
             comments.push_str(&comment);
         }
     }
+    if stands_alone(bytes) {
+        return Block {
+            skip,
+            operation: Operation::Comment(continued_comment(&pieces)),
+            comment: None,
+        };
+    }
     let mut c = Cursor::new(&joined);
     c.skip_blanks();
     if c.at_end() {
@@ -270,6 +295,24 @@ fn parse_joined(bytes: &[u8], may_begin: bool) -> Block {
                 comment: None,
             }
         }
+    }
+}
+
+/// The text of a comment of several lines, with single blanks where they met.
+fn continued_comment(pieces: &[Piece]) -> Box<str> {
+    let mut text = String::new();
+    for piece in pieces {
+        let line = trim(trim_continuation(
+            piece.line.get(piece.code_start..).unwrap_or_default(),
+        ));
+        if !text.is_empty() && !line.is_empty() {
+            text.push(' ');
+        }
+        text.push_str(&to_text(line));
+    }
+    match text.strip_prefix(';') {
+        Some(comment) => comment.trim_start().into(),
+        None => text.into(),
     }
 }
 
@@ -372,6 +415,8 @@ mod test {
             "7 L X+5",
             "  0007  L X+5",
             "7L X+5",
+            "N7 L X+5",
+            "n0070L X+5",
             "L X+5.....up",
             "L X+5 \0\0\x1a",
         ] {
@@ -379,7 +424,14 @@ mod test {
             assert_eq!((plain.skip, plain.comment), (false, None), "{text}");
             assert_eq!(plain.operation, operation("L X+5"), "{text}");
         }
-        for text in ["/L X+5", "/ 7 L X+5", "7 / L X+5", "7 /L X+5", "/7L X+5"] {
+        for text in [
+            "/L X+5",
+            "/ 7 L X+5",
+            "7 / L X+5",
+            "7 /L X+5",
+            "/7L X+5",
+            "N7 /L X+5",
+        ] {
             assert!(block(text).skip, "{text}");
             assert_eq!(block(text).operation, operation("L X+5"), "{text}");
         }
@@ -409,6 +461,10 @@ mod test {
         );
         assert_eq!(cycle.comment.as_deref(), Some("SET-UP ; DEPTH"));
         assert_eq!(operation("L X+5 ~\nY+6 ~\n"), operation("L X+5 Y+6"));
+        assert_eq!(
+            operation("12 ; all of this ~\n   is one ~\ncomment"),
+            Operation::Comment("all of this is one comment".into())
+        );
         let Operation::Invalid(invalid) = block("3 L X+5 ~\n  Y+6 oops ; c ~\n Z+1").operation else {
             panic!("oops is no word")
         };

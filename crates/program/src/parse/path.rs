@@ -248,7 +248,15 @@ pub(super) fn feed_word(c: &mut Cursor) -> Parsed<Option<Feed>> {
     if c.keyword("MAX") {
         return Ok(Some(Feed::Max));
     }
-    // `FM3` is an empty F before M3; `FU`, `FZ`, `FAUTO` are feeds of later controls.
+    if c.word("AUTO") {
+        let start = behind.saturating_sub(1);
+        return c.fault_from(
+            start,
+            BlockNotKnown,
+            "no control here takes the feed from the tool call",
+        );
+    }
+    // `FM3` is an empty F before M3; `FU`, `FZ` are feeds of later controls.
     if c.peek().is_ascii_alphabetic() && c.peek_upper() != b'M' {
         c.go_to(behind.saturating_sub(1));
         return c.not_known();
@@ -416,6 +424,12 @@ mod tests {
     }
 
     #[test]
+    fn the_feed_of_the_tool_call_is_not_known_however_it_is_written() {
+        assert_eq!(fault("L X+5 FAUTO"), (BlockNotKnown, 7, 5));
+        assert_eq!(fault("L X+5 F AUTO M3"), (BlockNotKnown, 7, 6));
+    }
+
+    #[test]
     fn lines_without_coordinates() {
         assert_eq!(motion("L M99").m, m(&[99]));
         assert_eq!(motion("L R0 F500 M3").compensation, Some(Compensation::Off));
@@ -573,24 +587,12 @@ mod tests {
     #[test]
     fn blocks_of_later_controls() {
         for text in [
-            "APPR LT X+5 Y+5 LEN10 RL F100",
-            "DEP LCT X+5 R5",
-            "FPOL X+0 Y+0",
-            "FL AN+30",
-            "FC DR+ R10",
-            "FCT DR- R5",
-            "FSELECT 2",
-            "FLT",
             "PLANE SPATIAL SPA+45 SPB+0 SPC+0 STAY",
             "FUNCTION MODE TURN",
             "SEL PGM \"A.H\"",
             "SPL X+5 Y+5",
-            "LN X+5 Y+5 Z+5 NX+0 NY+0 NZ+1",
             "PATTERN DEF POS1 (X+1 Y+2 Z+0)",
             "DECLARE STRING QS1",
-            "N10 G01 X5",
-            "%1000 G71",
-            "G00 X5",
             "CALL SELECTED PGM",
             "SECTION",
             "WMAT \"STEEL\"",

@@ -216,7 +216,10 @@ fn cycle_words(probe: bool) -> impl Strategy<Value = Vec<CycleWord>> {
         value().prop_map(unsigned_is_target),
         (axis(), word()).prop_map(|(axis, word)| CycleWord::Coordinate(axis, word)),
         axis().prop_map(CycleWord::Axis),
-        (axis(), direction.clone()).prop_map(|(axis, direction)| CycleWord::AxisDirection(axis, direction)),
+        (axis(), direction.clone()).prop_map(move |(axis, direction)| match probe {
+            true => CycleWord::AxisDirection(axis, direction),
+            false => CycleWord::Axis(axis),
+        }),
         feed().prop_map(CycleWord::Feed),
         direction.prop_map(CycleWord::Direction),
         (0..=1999_u16, value()).prop_map(|(number, value)| CycleWord::Assignment(number, value)),
@@ -253,7 +256,13 @@ fn cycle() -> impl Strategy<Value = CycleBlock> {
     let other = select(vec![1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 68, 99]);
     prop_oneof![
         (1..=99_u16, name.clone()).prop_map(move |(number, words)| block(number, 0, words)),
-        (other, 1..8_u16, cycle_words(false)).prop_map(move |(number, sub, words)| block(number, sub, words)),
+        (other, 1..8_u16, cycle_words(false)).prop_map(move |(number, sub, mut words)| {
+            if number == 7 {
+                // Axes only.
+                words.retain(|word| !matches!(word, CycleWord::Text(_)));
+            }
+            block(number, sub, words)
+        }),
         name.prop_map(move |words| block(12, 1, words)),
         labels.prop_map(move |words| block(14, 1, words)),
         (200..300_u16, cycle_words(false)).prop_map(move |(number, words)| block(number, 0, words)),

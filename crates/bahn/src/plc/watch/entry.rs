@@ -7,14 +7,25 @@ use crate::plc::operand::{Content, Operand};
 /// What is being typed.
 pub(super) struct Entry {
     text: String,
-    /// The operand that gets the value; `None` for new operands of the table.
-    operand: Option<Operand>,
+    wanted: Wanted,
+}
+
+/// What the text is read as.
+#[derive(Clone, Copy)]
+enum Wanted {
+    /// A value for an operand.
+    Value(Operand),
+    /// New operands of the table.
+    Operands,
+    /// A line of the main file.
+    Line,
 }
 
 /// What was typed.
 pub(super) enum Accepted {
     Value(Operand, Content),
     Operands(Vec<Operand>),
+    Line(u32),
 }
 
 impl Entry {
@@ -22,7 +33,7 @@ impl Entry {
     pub fn value(operand: Operand) -> Entry {
         Entry {
             text: String::new(),
-            operand: Some(operand),
+            wanted: Wanted::Value(operand),
         }
     }
 
@@ -30,7 +41,15 @@ impl Entry {
     pub fn operands() -> Entry {
         Entry {
             text: String::new(),
-            operand: None,
+            wanted: Wanted::Operands,
+        }
+    }
+
+    /// A line of the main file, for a breakpoint.
+    pub fn breakpoint() -> Entry {
+        Entry {
+            text: String::new(),
+            wanted: Wanted::Line,
         }
     }
 
@@ -46,9 +65,14 @@ impl Entry {
 
     /// Reads what was typed.
     pub fn accept(&self) -> Result<Accepted, String> {
-        match self.operand {
-            Some(operand) => Ok(Accepted::Value(operand, operand.content(&self.text)?)),
-            None => {
+        match self.wanted {
+            Wanted::Value(operand) => Ok(Accepted::Value(operand, operand.content(&self.text)?)),
+            Wanted::Line => {
+                let line = self.text.trim().parse().ok().filter(|line| *line > 0);
+                line.map(Accepted::Line)
+                    .ok_or_else(|| format!("`{}` is no line", self.text))
+            }
+            Wanted::Operands => {
                 let operands: Result<Vec<Operand>, String> = self.text.split(',').map(str::parse).collect();
                 operands.map(Accepted::Operands)
             }
@@ -57,9 +81,10 @@ impl Entry {
 
     /// As it is shown.
     pub fn prompt(&self) -> String {
-        match self.operand {
-            Some(operand) => format!("{operand} = {}_", self.text),
-            None => format!("operands: {}_", self.text),
+        match self.wanted {
+            Wanted::Value(operand) => format!("{operand} = {}_", self.text),
+            Wanted::Line => format!("breakpoint at line: {}_", self.text),
+            Wanted::Operands => format!("operands: {}_", self.text),
         }
     }
 }

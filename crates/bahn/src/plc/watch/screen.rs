@@ -1,6 +1,7 @@
 //! What the view looks like.
 
 use bahn_exchange::Size;
+use bahn_exchange::signal::{self, Signal, SignalOperand};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout};
 use ratatui::style::{Modifier, Style};
@@ -11,26 +12,36 @@ use super::Watch;
 use crate::diagnostics::printable;
 use crate::plc::operand::{Content, Operand};
 
-const KEYS: &str =
-    "r run  s stop  c cycle  l line  n anew  enter set  space turn over  a add  d remove  q end";
-/// Lines of the program that are shown, frame included, where there is room.
+const KEYS: &str = "r run  s stop  c cycle  l line  n anew  enter set  space turn over  a add  d remove  \
+     b break at line  x break on change  t trend  q end";
+/// Lines of the program that are shown at least, frame included, where there is room.
 const PROGRAM_ROWS: u16 = 9;
+/// Rows of the screen without table and program: head, message, keys.
+const OTHER_ROWS: u16 = 6;
 /// Rows of a screen on which the program is shown.
 const ROWS_WITH_PROGRAM: u16 = 20;
+/// Columns of binary numbers and bars: a doubleword.
+const TREND_WIDTH: u16 = 32;
 
 pub(super) fn draw(frame: &mut Frame, watch: &Watch) {
-    let program_rows = if frame.area().height >= ROWS_WITH_PROGRAM {
-        PROGRAM_ROWS
+    // The table takes what its operands need, at most half of the screen; the program has the rest.
+    let height = frame.area().height;
+    let table_rows = u16::try_from(watch.operands.len())
+        .unwrap_or(u16::MAX)
+        .saturating_add(3);
+    let program_rows = if height >= ROWS_WITH_PROGRAM {
+        let left = height.saturating_sub(OTHER_ROWS);
+        left.saturating_sub(table_rows.min(left / 2)).max(PROGRAM_ROWS)
     } else {
         0
     };
-    let wraps = usize::from(frame.area().width) < KEYS.len();
+    let key_rows = u16::try_from(KEYS.len()).unwrap_or(0) / frame.area().width.max(1) + 1;
     let parts = Layout::vertical([
         Constraint::Length(3),
         Constraint::Min(3),
         Constraint::Length(program_rows),
         Constraint::Length(1),
-        Constraint::Length(1 + u16::from(wraps)),
+        Constraint::Length(key_rows),
     ]);
     let [head, body, program, message, keys] = parts.areas(frame.area());
     frame.render_widget(
@@ -40,21 +51,35 @@ pub(super) fn draw(frame: &mut Frame, watch: &Watch) {
 
     let rows = watch.operands.iter().map(|operand| {
         let content = watch.bench.read(*operand);
-        Row::new(columns(*operand, &content).map(Cell::from))
+        let mut columns = columns(*operand, &content);
+        if watch.trend.is_shown() {
+            columns[3] = watch.trend.bars(*operand, TREND_WIDTH.into());
+        }
+        let [name, decimal, hex, binary] = columns;
+        let mark = if watch.breakpoints.watches(*operand) {
+            "!"
+        } else {
+            ""
+        };
+        let called = signal_of(*operand).map_or(String::new(), |signal| signal.name.to_lowercase());
+        let cells = [name + mark, decimal, hex, binary, called];
+        Row::new(cells.map(Cell::from))
     });
     let widths = [
         Constraint::Length(8),
         Constraint::Length(14),
         Constraint::Length(10),
-        Constraint::Min(32),
+        Constraint::Length(TREND_WIDTH),
+        Constraint::Min(6),
     ];
+    let fourth = if watch.trend.is_shown() { "TREND" } else { "BINARY" };
     let table = Table::new(rows, widths)
         .header(
-            Row::new(["OPERAND", "DECIMAL", "HEX", "BINARY"])
+            Row::new(["OPERAND", "DECIMAL", "HEX", fourth, "NAME"])
                 .style(Style::new().add_modifier(Modifier::BOLD)),
         )
         .row_highlight_style(Style::new().add_modifier(Modifier::REVERSED))
-        .block(Block::bordered().title("TABLE"));
+        .block(Block::bordered().title(table_title(watch)));
     let mut chosen = TableState::new().with_selected(watch.chosen);
     frame.render_stateful_widget(table, body, &mut chosen);
     if program_rows > 0 {
@@ -125,9 +150,30 @@ fn program_lines(watch: &Watch, rows: usize) -> (String, Vec<Line<'static>>) {
             (_, true) => ('*', Style::new()),
             _ => (' ', Style::new()),
         };
-        Line::styled(format!("{mark}{:>5}  {}", index + 1, printable(source)), style)
+        let number = u32::try_from(index + 1).unwrap_or(u32::MAX);
+        let breaks = file == 0 && watch.breakpoints.is_line(number);
+        let stop = if breaks { '!' } else { ' ' };
+        Line::styled(format!("{mark}{number:>5}{stop} {}", printable(source)), style)
     });
     (text.name.clone(), lines.collect())
+}
+
+/// The meaning of the chosen operand, if it is a fixed marker or word: the column has no room for it.
+fn table_title(watch: &Watch) -> String {
+    let chosen = watch.operands.get(watch.chosen).copied();
+    let signal = chosen.and_then(|operand| Some((operand, signal_of(operand)?)));
+    signal.map_or("TABLE".to_owned(), |(operand, signal)| {
+        format!("TABLE  {operand} {}", signal.function)
+    })
+}
+
+/// The fixed marker or word that an operand is.
+fn signal_of(operand: Operand) -> Option<&'static Signal> {
+    signal::named(match operand {
+        Operand::Bit(bit) => SignalOperand::Bit(bit),
+        Operand::Number(number) => SignalOperand::Number(number),
+        Operand::Text(_) => return None,
+    })
 }
 
 /// Operand, decimal, hexadecimal, binary.

@@ -123,3 +123,70 @@ fn errors_stop_until_the_program_starts_anew() {
     press(&mut watch, "n c");
     assert!(shows(&watch, "STOP   cycle 1 ") && shows(&watch, "W8       2"));
 }
+
+/// A breakpoint stops before its line, in running too; a second one at the same line clears it.
+#[test]
+fn breakpoints_stop_before_their_line() {
+    let mut watch = watch(DOOR, "I4,O2,W8");
+    press(&mut watch, "b3~");
+    assert!(shows(&watch, "breakpoint at line 3 of the main file set") && shows(&watch, "    3! INC W8"));
+    press(&mut watch, "r");
+    watch.cycle();
+    assert!(shows(&watch, "stopped before line 3") && shows(&watch, "LINE   cycle 1 "));
+    assert!(shows(&watch, ">    3! INC W8") && shows(&watch, "W8       0"));
+    // On with the rest of the cycle, then the same place of the next one.
+    press(&mut watch, "c");
+    assert!(shows(&watch, "W8       1"));
+    press(&mut watch, "c");
+    assert!(shows(&watch, "stopped before line 3") && shows(&watch, "LINE   cycle 2 "));
+    press(&mut watch, "b3~c");
+    assert!(!shows(&watch, "3! INC") && shows(&watch, "STOP   cycle 2 "));
+    // The first line stops before the cycle begins.
+    press(&mut watch, "b1~c");
+    assert!(shows(&watch, "stopped before line 1") && shows(&watch, "STOP   cycle 2 "));
+    press(&mut watch, "c");
+    assert!(shows(&watch, "STOP   cycle 3 "));
+    press(&mut watch, "bx~");
+    assert!(shows(&watch, "`x` is no line"));
+}
+
+#[test]
+fn a_change_of_an_operand_stops() {
+    let mut watch = watch(DOOR, "I4,O2");
+    press(&mut watch, "\u{2193}x");
+    assert!(shows(&watch, "a change of O2 stops the program") && shows(&watch, "O2!"));
+    press(&mut watch, "r");
+    watch.cycle();
+    assert!(shows(&watch, "RUN "), "nothing has changed");
+    watch.set("I4".parse().unwrap(), &Content::Number(1));
+    watch.cycle();
+    assert!(shows(&watch, "O2 changed from 0 to 1") && shows(&watch, "STOP "));
+    press(&mut watch, "xr");
+    watch.set("I4".parse().unwrap(), &Content::Number(0));
+    watch.cycle();
+    assert!(shows(&watch, "RUN "));
+}
+
+/// The program has the rows that the table leaves; names of fixed markers and the course of the values.
+#[test]
+fn names_trend_and_a_large_program() {
+    let program = "L I4\n".to_owned() + &"= O2\n".repeat(60) + "INC W8\nEM\n";
+    let mut watch = watch(&program, "M2045,W8");
+    // The meaning of the chosen one in words, the names as far as the screen has room.
+    let row = screen(&watch)
+        .into_iter()
+        .find(|line| line.contains("TABLE  M2045"))
+        .unwrap();
+    let meaning = bahn_exchange::signal::all()
+        .iter()
+        .find(|signal| signal.name == "M_FUNCTION_STROBE");
+    assert!(row.contains(meaning.unwrap().function), "{row}");
+    assert!(shows(&watch, " m_functi"));
+    let lines = screen(&watch)
+        .iter()
+        .filter(|line| line.contains("  = O2"))
+        .count();
+    assert!(lines >= 9, "{lines} lines of the program on 24 rows");
+    press(&mut watch, "tccc");
+    assert!(shows(&watch, "TREND") && shows(&watch, "\u{2581}\u{2585}\u{2588}"));
+}

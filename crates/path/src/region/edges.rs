@@ -1,0 +1,282 @@
+//! Segments cut into edges where they meet.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+use super::Segment;
+use super::effort::Effort;
+use super::index::{Bounds, Tree};
+use super::intersect::crossings;
+use super::vector::*;
+use crate::Point2;
+
+/// An edge between two vertices and how often each operand runs along it (backwards: negative).
+#[derive(Clone)]
+pub(super) struct Edge {
+    pub ends: [usize; 2],
+    pub segment: Segment,
+    /// The segment as it counts for directions and winding numbers: arcs flatter than what vertices
+    /// are moved by are their chords, as moved ends may turn a short chord any way.
+    pub course: Segment,
+    pub weights: Vec<(usize, i32)>,
+    /// Whether anything runs along it backwards.
+    pub both_ways: bool,
+}
+
+/// A piece of an input segment between two vertices.
+struct Piece {
+    segment: Segment,
+    operand: usize,
+    ends: [usize; 2],
+    /// Made by the last cut.
+    fresh: bool,
+}
+
+/// The edges that segments of operands make, cut where they meet; coincident ones are one.
+pub(super) fn edges<E: Effort>(
+    segments: impl Iterator<Item = (usize, Segment)>,
+    tolerance: f64,
+    effort: &E,
+) -> Result<Vec<Edge>, E::Stop> {
+    let mut vertices = Vertices {
+        tolerance,
+        points: Vec::new(),
+        cells: HashMap::default(),
+    };
+    let mut pieces: Vec<Piece> = Vec::new();
+    for (operand, segment) in segments {
+        for segment in segment.pieces() {
+            let ends = [vertices.at(segment.from()), vertices.at(segment.to())];
+            let segment = segment.with_ends(vertices.point(ends[0]), vertices.point(ends[1]));
+            pieces.push(Piece {
+                segment,
+                operand,
+                ends,
+                fresh: true,
+            });
+        }
+    }
+    // A cut moves the pieces onto the vertex, by which they may come to cross others a little beside
+    // it. Mostly the second round finds nothing more.
+    const ROUNDS: usize = 5;
+    for _ in 0..ROUNDS {
+        let count = pieces.len();
+        pieces = cut(pieces, &mut vertices, effort)?;
+        if pieces.len() == count {
+            break;
+        }
+    }
+    Ok(unite_coincident(&pieces, tolerance))
+}
+
+/// The pieces cut where they meet: first finds all common points, then cuts every piece at every vertex
+/// that it passes within the tolerance, so that no edge runs by a vertex it should end in.
+fn cut<E: Effort>(pieces: Vec<Piece>, vertices: &mut Vertices, effort: &E) -> Result<Vec<Piece>, E::Stop> {
+    let tolerance = vertices.tolerance;
+    let boxes: Vec<Bounds> = pieces.iter().map(|piece| Bounds::of(&piece.segment)).collect();
+    let tree = Tree::new(boxes.iter().copied());
+    let mut beside = Vec::new();
+    for (place, (a, bounds)) in pieces.iter().zip(&boxes).enumerate() {
+        let steps = tree.touching(&bounds.grown(tolerance), |other| {
+            if other > place {
+                beside.push(other);
+            }
+        });
+        effort.spend(steps)?;
+        for b in beside.drain(..).filter_map(|other| pieces.get(other)) {
+            // What the last cut left as it was has its common points already, and ends are vertices.
+            if a.fresh || b.fresh {
+                for point in crossings(&a.segment, &b.segment, tolerance).into_iter().flatten() {
+                    vertices.at(point);
+                }
+            }
+        }
+    }
+    // A common point is that near to the segment, and its vertex again that near to the point.
+    let reach = 2.0 * tolerance;
+    let points = Tree::new(vertices.points.iter().map(|point| Bounds::of_point(*point)));
+    let mut result = Vec::with_capacity(pieces.len());
+    let mut stops = Vec::new();
+    for (piece, bounds) in pieces.into_iter().zip(&boxes) {
+        stops.clear();
+        let steps = points.touching(&bounds.grown(reach), |vertex| {
+            if piece.ends.contains(&vertex) {
+                return;
+            }
+            let point = vertices.point(vertex);
+            let (t, nearest) = piece.segment.nearest(point);
+            if t > 0.0 && t < 1.0 && distance(nearest, point) <= reach {
+                stops.push((t, vertex));
+            }
+        });
+        effort.spend(steps)?;
+        if stops.is_empty() {
+            if piece.ends[0] != piece.ends[1] {
+                result.push(Piece {
+                    fresh: false,
+                    ..piece
+                });
+            }
+            continue;
+        }
+        stops.push((1.0, piece.ends[1]));
+        stops.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut last = (0.0, piece.ends[0]);
+        for stop in &stops {
+            let ((t0, start), (t1, end)) = (last, *stop);
+            last = *stop;
+            if start != end {
+                let (from, to) = (vertices.point(start), vertices.point(end));
+                result.push(Piece {
+                    segment: part_between(&piece.segment, t1 - t0, from, to),
+                    operand: piece.operand,
+                    ends: [start, end],
+                    fresh: true,
+                });
+            }
+        }
+    }
+    Ok(result)
+}
+
+/// The edges that the pieces make, coincident ones united; edges that cancel are left out.
+fn unite_coincident(pieces: &[Piece], tolerance: f64) -> Vec<Edge> {
+    // Edges with the same ends that bulge less than this apart are one.
+    let coincidence = 4.0 * tolerance;
+    let mut edges: Vec<Edge> = Vec::with_capacity(pieces.len());
+    // The last edge between two vertices, and for each edge the one before it between the same.
+    let mut between: HashMap<[usize; 2], usize, Mixing> = HashMap::default();
+    let mut before: Vec<Option<usize>> = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        let mut key = piece.ends;
+        key.sort_unstable();
+        let middle = piece.segment.point(0.5);
+        let last = between.get(&key).copied();
+        let mut same = last;
+        while let Some(c) = same
+            && edges
+                .get(c)
+                .is_some_and(|edge| distance(edge.segment.point(0.5), middle) > coincidence)
+        {
+            same = before.get(c).copied().flatten();
+        }
+        if let Some(edge) = same.and_then(|c| edges.get_mut(c)) {
+            let sign = if edge.ends == piece.ends { 1 } else { -1 };
+            edge.both_ways |= sign < 0;
+            match edge.weights.iter_mut().find(|(o, _)| *o == piece.operand) {
+                Some((_, weight)) => *weight += sign,
+                None => edge.weights.push((piece.operand, sign)),
+            }
+            continue;
+        }
+        between.insert(key, edges.len());
+        before.push(last);
+        let chord = Segment::line(piece.segment.from(), piece.segment.to());
+        let flat = distance(chord.point(0.5), middle) <= coincidence;
+        edges.push(Edge {
+            ends: piece.ends,
+            segment: piece.segment,
+            course: if flat { chord } else { piece.segment },
+            weights: vec![(piece.operand, 1)],
+            both_ways: false,
+        });
+    }
+    edges.retain(|edge| edge.weights.iter().any(|(_, weight)| *weight != 0));
+    edges
+}
+
+/// The part of a segment that is `share` of it, between vertices near its ends.
+fn part_between(segment: &Segment, share: f64, from: Point2, to: Point2) -> Segment {
+    if let (
+        Segment::Arc {
+            centre, sweep_deg, ..
+        },
+        Some(radius),
+    ) = (*segment, segment.radius())
+    {
+        let sweep_deg = sweep_deg * share;
+        let chord = 2.0 * radius * (0.5 * sweep_deg.abs().to_radians()).sin();
+        // Of the length of the resolution, where the vertices lie decides more than the arc does.
+        if (chord - distance(from, to)).abs() <= 0.5 * chord {
+            return Segment::Arc {
+                from,
+                to,
+                centre,
+                sweep_deg,
+            };
+        }
+    }
+    Segment::Line { from, to }
+}
+
+/// Points, those within the tolerance of each other being one.
+struct Vertices {
+    tolerance: f64,
+    points: Vec<Point2>,
+    cells: HashMap<[i64; 2], Vec<usize>, Mixing>,
+}
+
+impl Vertices {
+    /// The vertex at a point, a new one if there is none.
+    fn at(&mut self, point: Point2) -> usize {
+        let side = 4.0 * self.tolerance;
+        let cell = |v: f64| (v / side).floor() as i64;
+        let (low, high) = (
+            point.map(|v| cell(v - self.tolerance)),
+            point.map(|v| cell(v + self.tolerance)),
+        );
+        let mut nearest: Option<(f64, usize)> = None;
+        for i in low[0]..=high[0] {
+            for j in low[1]..=high[1] {
+                for vertex in self.cells.get(&[i, j]).into_iter().flatten() {
+                    let d = distance(self.point(*vertex), point);
+                    if d <= self.tolerance && nearest.is_none_or(|(least, _)| d < least) {
+                        nearest = Some((d, *vertex));
+                    }
+                }
+            }
+        }
+        if let Some((_, vertex)) = nearest {
+            return vertex;
+        }
+        let vertex = self.points.len();
+        self.points.push(point);
+        self.cells.entry(point.map(cell)).or_default().push(vertex);
+        vertex
+    }
+
+    fn point(&self, vertex: usize) -> Point2 {
+        self.points.get(vertex).copied().unwrap_or_default()
+    }
+}
+
+/// Hashes of small whole numbers that nobody chose to collide.
+type Mixing = BuildHasherDefault<Mixer>;
+
+#[derive(Default)]
+struct Mixer(u64);
+
+impl Hasher for Mixer {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u64(u64::from(*byte)));
+    }
+
+    fn write_u64(&mut self, value: u64) {
+        // Multiplication by 2^64 / golden ratio carries every bit upward, the rotation brings it down.
+        self.0 = (self.0 ^ value)
+            .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+            .rotate_left(29);
+    }
+
+    fn write_i64(&mut self, value: i64) {
+        self.write_u64(value as u64);
+    }
+
+    fn write_usize(&mut self, value: usize) {
+        self.write_u64(value as u64);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
