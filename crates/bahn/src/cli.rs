@@ -95,7 +95,8 @@ values of the reference list of the model; --mp replaces single ones after that.
 JSON report (--format json), lengths in mm: program, unit, completed, error (message, program, block,
 line, detail, or null), machining_time_s (null when the feed is 0), path_mm (feed, rapid),
 blocks_executed, tool_calls (block, tool, speed_rpm), final_position, q, removed_mm3 (null without a
-blank), warnings (message, program, block, line, count), stops (block, function, program, line).
+blank), warnings (message, program, block, line, count), stops (block, function, program, line), printed (block,
+text, program, line: FN15).
 
 Ctrl-C ends the run with the report so far and exit code 130.";
 
@@ -175,6 +176,9 @@ pub(crate) struct MachineOptions {
     /// Time for starting or stopping the spindle, s; a change of speed takes half of it.
     #[arg(long, value_name = "S", default_value = "1", value_parser = seconds)]
     pub spindle_time: f64,
+    /// Simulate the block processing time of the model: short elements take at least so long.
+    #[arg(long)]
+    pub block_time: bool,
     /// Time for every M function, s.
     #[arg(long, value_name = "S", default_value = "0", value_parser = seconds)]
     pub m_time: f64,
@@ -202,7 +206,7 @@ pub(crate) struct RunOptions {
     /// What F counts in a program in inches, instead of what it counts on the model.
     #[arg(long, value_name = "WHAT", value_enum)]
     pub inch_feed: Option<InchFeedOption>,
-    /// End at the first programmed stop (STOP, M0, M1) instead of passing over it.
+    /// End at the first programmed stop (STOP, M0) instead of passing over it.
     #[arg(long)]
     pub stop: bool,
     /// Refuse what is otherwise accepted with a warning, such as functions that have no effect here or signs
@@ -225,6 +229,9 @@ pub(crate) struct OutputOptions {
     /// Write the tool path as table (.csv) or drawing (.svg) (repeatable).
     #[arg(long, value_name = "OUT.csv|OUT.svg", value_parser = path_file, value_hint = ValueHint::FilePath)]
     pub path: Vec<PathFile>,
+    /// Write what FN15 PRINT puts out, a line each.
+    #[arg(long, value_name = "OUT.txt", value_hint = ValueHint::FilePath)]
+    pub print: Option<PathBuf>,
     /// Write a picture of the finished part (PNG).
     #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
     pub image: Option<PathBuf>,

@@ -18,6 +18,7 @@
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 
+mod block_time;
 mod called;
 mod check;
 mod cli;

@@ -15,7 +15,7 @@ use crate::files::short_name;
 
 /// Distinct warnings that are kept; a program with more has the same few in many blocks.
 const MAX_WARNINGS: usize = 1000;
-/// Tool calls and stops that are listed, each.
+/// Tool calls, stops and printed lines that are listed, each.
 const MAX_LISTED: usize = 10_000;
 
 /// What is known of a run while it runs. Its size is bounded however long the run is.
@@ -30,7 +30,9 @@ pub(crate) struct Record {
     tool: Option<u32>,
     tool_calls: Vec<(BlockRef, Option<u32>, f64)>,
     stops: Vec<(BlockRef, &'static str)>,
-    /// Tool calls and stops beyond [`MAX_LISTED`].
+    /// Lines of FN15.
+    printed: Vec<(BlockRef, String)>,
+    /// Tool calls, stops and lines beyond [`MAX_LISTED`].
     not_listed: u64,
     warnings: Vec<(BlockRef, Notice, u64)>,
     warning_index: HashMap<(BlockRef, Notice), usize>,
@@ -64,6 +66,7 @@ impl Record {
             tool: None,
             tool_calls: Vec::new(),
             stops: Vec::new(),
+            printed: Vec::new(),
             not_listed: 0,
             warnings: Vec::new(),
             warning_index: HashMap::new(),
@@ -102,6 +105,10 @@ impl Record {
                     self.tool_call(element.block, call.speed_rpm);
                 }
                 Function::SpindleSpeed(speed_rpm) => self.tool_call(element.block, *speed_rpm),
+                Function::Print(line) if self.printed.len() < MAX_LISTED => {
+                    self.printed.push((element.block, line.clone()));
+                }
+                Function::Print(_) => self.not_listed += 1,
                 _ => {}
             }
         }
@@ -178,6 +185,15 @@ impl Record {
                 line,
             }
         });
+        let printed = self.printed.into_iter().map(|(block, text)| {
+            let Place { program, block, line } = place(block);
+            PrintReport {
+                block,
+                text,
+                program,
+                line,
+            }
+        });
         let completed = end == End::Completed;
         let stopped = end == End::Stopped;
         let unit = run.program(0).map_or(Unit::Mm, |program| program.unit());
@@ -213,6 +229,7 @@ impl Record {
             removed_mm3: removed_mm3.map(tidy),
             warnings: warnings.chain(further("warnings", self.more_warnings)).collect(),
             stops: stops.collect(),
+            printed: printed.collect(),
             not_listed: self.not_listed,
         }
     }
@@ -286,7 +303,8 @@ pub(crate) struct Report {
     pub removed_mm3: Option<f64>,
     pub warnings: Vec<WarningReport>,
     pub stops: Vec<StopReport>,
-    /// Tool calls and stops that are not listed, there were too many.
+    pub printed: Vec<PrintReport>,
+    /// Tool calls, stops and printed lines that are not listed, there were too many.
     #[serde(skip)]
     pub not_listed: u64,
 }
@@ -334,6 +352,15 @@ pub(crate) struct WarningReport {
 pub(crate) struct StopReport {
     pub block: u32,
     pub function: &'static str,
+    pub program: String,
+    pub line: u32,
+}
+
+/// A line of FN15.
+#[derive(Clone, Debug, serde::Serialize)]
+pub(crate) struct PrintReport {
+    pub block: u32,
+    pub text: String,
     pub program: String,
     pub line: u32,
 }

@@ -88,6 +88,10 @@ pub(crate) fn body(row: &mut impl FnMut(&str, &str), report: &Report) {
             place(&stop.program, stop.block, stop.line, report)
         )
     });
+    list(row, "Printed", &report.printed, |printed| {
+        let place = place(&printed.program, printed.block, printed.line, report);
+        format!("{} at {place}", printed.text)
+    });
     list(row, "Warnings", &report.warnings, |warning| {
         let times = if warning.count > 1 {
             format!(" ({} times)", warning.count)
@@ -106,7 +110,10 @@ pub(crate) fn body(row: &mut impl FnMut(&str, &str), report: &Report) {
     if report.not_listed > 0 {
         row(
             "",
-            &format!("{} more tool calls and stops are not listed", report.not_listed),
+            &format!(
+                "{} more tool calls, stops and printed lines are not listed",
+                report.not_listed
+            ),
         );
     }
 }
@@ -164,6 +171,7 @@ pub(crate) fn written(output: &OutputOptions, part: bool) -> Vec<String> {
     let paths = output.path.iter().map(|file| match file {
         PathFile::Csv(path) | PathFile::Svg(path) => path,
     });
+    let paths = paths.chain(&output.print);
     let of_the_part = output.image.iter().chain(&output.mesh).filter(|_| part);
     let all = paths.chain(of_the_part);
     all.map(|path| path.display().to_string()).collect()

@@ -59,6 +59,7 @@ pub(crate) fn interpreter(
         rules: Rules::of(list),
         barred_tools: tool_table::barred(table.iter().flatten()),
         tools: table.map(tool_table::shapes),
+        texts: bahn_interpreter::MachineTexts::default(),
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
         tool_length_mm: None,

@@ -1,16 +1,18 @@
 //! `bahn test`: the driver that pulls the planned path through to the report.
 
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
 use bahn_interpreter::{Interpreter, ProgramError};
 use bahn_motion::{PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
+use bahn_path::{Barrier, BlockRef, Function, LiveData, PathElement};
 use bahn_program::{Operation, Program};
 use bahn_workpiece::Projection;
 
-use crate::cli::{Format, PathFile, TestOptions};
+use crate::block_time::BlockTime;
+use crate::cli::{Format, OutputOptions, PathFile, TestOptions};
 use crate::cutting::{self, Cutting};
 use crate::diagnostics::{self, Diagnostic, Marked, Severity};
 use crate::files::{self, FileLibrary, Loaded, NewFile};
@@ -48,10 +50,11 @@ pub(crate) fn command(options: &TestOptions) -> Result<Outcome, UsageError> {
         planner: Planner::new(interpreter, &limits, &times),
         record: Record::new(start),
         cutting: (!options.output.no_graphics).then(|| Cutting::new(options.output.resolution)),
-        outputs: Outputs::create(&options.output.path)?,
+        outputs: Outputs::create(&options.output)?,
         progress,
         interrupt,
         ends_at_stop: options.run.stop,
+        block_time: options.machine.block_time.then(|| BlockTime::of(options.model)),
         last_stop: None,
         model: options.model,
     };
@@ -72,6 +75,7 @@ struct TestRun {
     progress: Progress,
     interrupt: Interrupt,
     ends_at_stop: bool,
+    block_time: Option<BlockTime>,
     /// The block of the last stop and its function: in a loop it is the same again and again.
     last_stop: Option<(BlockRef, Option<&'static str>)>,
     model: ControlModel,
@@ -83,6 +87,9 @@ impl TestRun {
             match self.planner.next() {
                 PlannedStep::Element(planned) => {
                     self.record.element(&planned);
+                    if let Some(block_time) = &mut self.block_time {
+                        self.record.machining_time_s += block_time.wait_s(planned.duration_s());
+                    }
                     self.element(&planned.element)?;
                 }
                 PlannedStep::Barrier(barrier) => {
@@ -246,7 +253,7 @@ impl TestRun {
     }
 }
 
-/// What stops in a block: STOP, M0 or M1; `None` for M6.
+/// What stops in a block: STOP or M0; `None` for M6.
 pub(crate) fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'static str> {
     let chunk = run
         .program(block.program)?
@@ -258,9 +265,7 @@ pub(crate) fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'stat
         Operation::Miscellaneous(m) | Operation::CycleCall(m) => m,
         _ => return None,
     };
-    [(0, "M0"), (1, "M1")]
-        .into_iter()
-        .find_map(|(code, name)| m.contains(code).then_some(name))
+    m.contains(0).then_some("M0")
 }
 
 pub(crate) fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
@@ -305,14 +310,19 @@ fn print_report(report: &Report, options: &TestOptions, drawn: bool) -> Result<(
 pub(crate) struct Outputs {
     tables: Vec<(PathTable, std::path::PathBuf)>,
     drawings: Vec<(PathDrawing, NewFile)>,
+    /// What FN15 puts out.
+    print: Option<(NewFile, std::path::PathBuf)>,
     /// Short names of the programs of the run by number.
     names: Vec<String>,
 }
 
 impl Outputs {
-    pub fn create(wanted: &[PathFile]) -> Result<Outputs, UsageError> {
+    pub fn create(wanted: &OutputOptions) -> Result<Outputs, UsageError> {
         let mut outputs = Outputs::default();
-        for file in wanted {
+        if let Some(path) = &wanted.print {
+            outputs.print = Some((NewFile::create(path)?, path.clone()));
+        }
+        for file in &wanted.path {
             match file {
                 PathFile::Csv(path) => {
                     let table = PathTable::new(NewFile::create(path)?);
@@ -329,7 +339,7 @@ impl Outputs {
     }
 
     pub fn is_empty(&self) -> bool {
-        self.tables.is_empty() && self.drawings.is_empty()
+        self.tables.is_empty() && self.drawings.is_empty() && self.print.is_none()
     }
 
     pub fn element(
@@ -346,6 +356,13 @@ impl Outputs {
                     .map(|program| files::short_name(program).to_owned())
                     .unwrap_or_default(),
             );
+        }
+        if let Some((file, path)) = &mut self.print {
+            for output in element.functions() {
+                if let Function::Print(line) = &output.function {
+                    writeln!(file, "{line}").map_err(|error| files::cannot("write", path, &error))?;
+                }
+            }
         }
         let name = self.names.get(usize::from(number)).map_or("", String::as_str);
         for (table, path) in &mut self.tables {
@@ -364,6 +381,9 @@ impl Outputs {
     pub fn finish(&mut self) -> Result<(), UsageError> {
         for (table, _) in self.tables.drain(..) {
             table.into_file().finish()?;
+        }
+        if let Some((file, _)) = self.print.take() {
+            file.finish()?;
         }
         let title = self.names.first().cloned().unwrap_or_default();
         for (drawing, mut file) in self.drawings.drain(..) {

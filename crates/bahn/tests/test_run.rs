@@ -443,8 +443,7 @@ fn stops_are_listed_and_passed_over() {
         seen,
         [
             (&json!(2), &json!("STOP"), &json!(3)),
-            (&json!(4), &json!("M0"), &json!(5)),
-            (&json!(5), &json!("M1"), &json!(6))
+            (&json!(4), &json!("M0"), &json!(5))
         ]
     );
     assert_near(number(&report, "/final_position/X"), 30.0);

@@ -111,6 +111,10 @@ pub enum Command {
     Code(u32),
     /// `key CODE`: a key by its code 58 to 127 [000:7338-7404].
     Key(u8),
+    /// `test NAME`: TEST RUN of a program beside what the machine does [003:1514-1535].
+    Test(String),
+    /// `end-test`: breaks the test run off.
+    EndTest,
     /// `offset adjust`, `offset off`: answers to code number 75 368 [000:5014-5020].
     OffsetAdjustment(bool),
 }
@@ -150,6 +154,8 @@ impl FromStr for Command {
             "stop" => nothing(Command::InternalStop),
             "manual-operation" => nothing(Command::ManualOperation),
             "restore-position" => nothing(Command::RestorePosition),
+            "end-test" => nothing(Command::EndTest),
+            "test" if !rest.is_empty() => Ok(Command::Test(rest.to_owned())),
             "select" if !rest.is_empty() => Ok(Command::Select(rest.to_owned())),
             "mdi" if !rest.is_empty() => Ok(Command::Mdi(rest.replace("\\n", "\n"))),
             "goto" => number(name, rest, 0, u32::MAX).map(Command::Goto),
@@ -172,7 +178,7 @@ impl FromStr for Command {
                 "off" => Ok(Command::OffsetAdjustment(false)),
                 _ => Err(CommandError("`offset` takes `adjust` or `off`".into())),
             },
-            "select" | "mdi" => Err(CommandError(format!("`{name}` needs something behind it"))),
+            "select" | "test" | "mdi" => Err(CommandError(format!("`{name}` needs something behind it"))),
             _ => Err(CommandError(format!("`{name}` is no command"))),
         }
     }
@@ -234,6 +240,8 @@ impl fmt::Display for Command {
             Command::RestoreAt(block) => write!(f, "restore-at {block}"),
             Command::Code(code) => write!(f, "code {code}"),
             Command::Key(code) => write!(f, "key {code}"),
+            Command::Test(name) => write!(f, "test {name}"),
+            Command::EndTest => write!(f, "end-test"),
             Command::OffsetAdjustment(adjust) => {
                 write!(f, "offset {}", if *adjust { "adjust" } else { "off" })
             }
@@ -264,6 +272,8 @@ mod tests {
             "restore-at 7",
             "code 807667",
             "key 107",
+            "test PART 1.H",
+            "end-test",
             "offset off",
         ] {
             let command = text.parse::<Command>();

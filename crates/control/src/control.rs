@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use bahn_exchange::{Bit, BitArea, Exchange, Image, Number, signal};
+use bahn_interpreter::{Done, Work};
 use bahn_motion::{Interpolator, Limits as PathLimits};
 use bahn_parameters::{ControlModel, InchFeed, MessageId, OperationParameters, PlcParameters, Station};
-use bahn_path::{Axis, Position};
+use bahn_path::{Axis, BlockRef, Position};
 use bahn_plc::{Machine, Start, mirror_parameters};
 use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
 
@@ -82,6 +83,7 @@ pub struct Control {
     pub(crate) tools: Tools,
     pub(crate) checking: Checking,
     pub(crate) upkeep: Upkeep,
+    pub(crate) stylus: crate::probing::Stylus,
     pub(crate) test: Option<crate::test_run::TestRun>,
     /// Tool changes and datums must be stored before their strobe is reset.
     keeps: bool,
@@ -206,6 +208,7 @@ impl Control {
             correction: [0.0; AXES],
             range: 0,
             upkeep: Upkeep::new(parameters_interval_s),
+            stylus: crate::probing::Stylus::default(),
             test: None,
             keeps: false,
             unsaved: false,
@@ -388,7 +391,8 @@ impl Control {
             }
             Err(code) => self.show(Message::PlcMarkers(code), true),
         }
-        self.messages.follow_plc(&self.exchange, self.now_us);
+        let block = self.running_block();
+        self.messages.follow_plc(&self.exchange, self.now_us, block);
         self.take_plc_strobes();
         self.take_module_requests();
     }
@@ -438,6 +442,40 @@ impl Control {
         self.prepare_test();
     }
 
+    /// Leaves computations that take long, as those of an SL contour, to whoever drives the control: runs that
+    /// begin from now on wait for [`Control::finish_work`], while everything else goes on.
+    pub fn defer_work(&mut self) {
+        self.run.defers = true;
+    }
+
+    /// A computation to be done beside.
+    pub fn take_work(&mut self) -> Option<Work> {
+        let run = self.run.feeder.as_mut();
+        let test = self.test.as_mut().map(crate::test_run::TestRun::feeder);
+        run.into_iter()
+            .chain(test)
+            .find_map(|feeder| feeder.interpreter_mut().take_work())
+    }
+
+    /// What a computation came to. It has no effect when what needed it was given up.
+    pub fn finish_work(&mut self, done: Done) {
+        let run = self.run.feeder.as_mut();
+        let test = self.test.as_mut().map(crate::test_run::TestRun::feeder);
+        if let Some(feeder) = run
+            .into_iter()
+            .chain(test)
+            .find(|feeder| feeder.interpreter().waits_for(&done))
+        {
+            feeder.interpreter_mut().finish_work(done);
+        }
+    }
+
+    /// Simulates the block processing time: no more elements of the path are read than the control has time
+    /// for, each taking so long, µs. 0 for no time.
+    pub fn set_block_time(&mut self, time_us: u32) {
+        self.run.block_time.set(time_us);
+    }
+
     /// Gives a command of the operator; it is logged with the time. `false` when it is not possible now.
     pub fn command(&mut self, command: Command) -> bool {
         self.log.push((self.now_us, command.clone()));
@@ -454,7 +492,22 @@ impl Control {
     }
 
     pub(crate) fn show(&mut self, message: Message, flashing: bool) {
-        self.messages.show(message, flashing, self.now_us);
+        let block = match &message {
+            Message::Program(error) => Some(error.block),
+            _ => self.running_block(),
+        };
+        self.show_at(message, flashing, block);
+    }
+
+    /// Shows a message that belongs to a block.
+    pub(crate) fn show_at(&mut self, message: Message, flashing: bool, block: Option<BlockRef>) {
+        self.messages.show(message, flashing, self.now_us, block);
+    }
+
+    /// The block that is executed, while a run is on.
+    pub(crate) fn running_block(&self) -> Option<BlockRef> {
+        let element = self.path.element().filter(|_| self.run.is_active())?;
+        Some(element.block)
     }
 
     /// Sets a marker for the PLC when it changes.

@@ -27,7 +27,8 @@ pub(crate) enum Circuit {
 
 /// Times and repetitions of the test, as data of the models.
 struct Test {
-    processors: u8,
+    /// How often it is done: by each processor in turn, or by the only one again.
+    times: u8,
     /// From the voltage to the output dropped: at most 66 or 70 ms, µs.
     recognise_us: u64,
     /// In which the acknowledgement must fall, µs.
@@ -39,14 +40,21 @@ struct Test {
 fn test_of(model: ControlModel) -> Test {
     match model {
         ControlModel::Tnc415b | ControlModel::Tnc425 => Test {
-            processors: 3,
+            times: 3,
             recognise_us: 60_000,
             fall_us: 114_000,
             restore_us: 18_000,
         },
-        // The manuals of the TNC 151, 155 and 360 give no times (inferred).
-        _ => Test {
-            processors: 1,
+        // Twice within 200 ms [001:929-932]; the other times are not given (inferred).
+        ControlModel::Tnc151 | ControlModel::Tnc155 => Test {
+            times: 2,
+            recognise_us: 60_000,
+            fall_us: 200_000,
+            restore_us: 18_000,
+        },
+        // The manual of the TNC 360 gives no times (inferred).
+        ControlModel::Tnc360 | ControlModel::Tnc407 => Test {
+            times: 1,
             recognise_us: 60_000,
             fall_us: 146_000,
             restore_us: 18_000,
@@ -140,7 +148,7 @@ impl EmergencyStop {
     pub fn step(&mut self, now_us: u64, acknowledged: bool) {
         let test = &self.test;
         self.state = match self.state {
-            State::Waiting { tested, .. } if acknowledged && tested >= test.processors => State::Ready,
+            State::Waiting { tested, .. } if acknowledged && tested >= test.times => State::Ready,
             State::Waiting { tested, .. } if acknowledged => State::Recognised {
                 tested,
                 until: now_us + test.recognise_us,
@@ -217,10 +225,10 @@ mod tests {
     }
 
     /// X42/4 falling after 113 ms passes on the TNC 415, 115 ms gives EMERGENCY STOP DEFECTIVE; on the TNC
-    /// 407 it is 145 and 147 ms [000:6177-6228].
+    /// 407 it is 145 and 147 ms [000:6177-6228]; on the TNC 155 199 and 201 ms, twice [001:929-932].
     #[test]
     fn the_circuit_must_answer_in_time() {
-        use ControlModel::{Tnc407, Tnc415b};
+        use ControlModel::{Tnc155, Tnc407, Tnc415b};
         assert_eq!(
             power_on(Tnc415b, 113_000),
             (Circuit::Ready, 3),
@@ -229,6 +237,8 @@ mod tests {
         assert_eq!(power_on(Tnc415b, 115_000).0, Circuit::Defective);
         assert_eq!(power_on(Tnc407, 145_000), (Circuit::Ready, 1));
         assert_eq!(power_on(Tnc407, 147_000).0, Circuit::Defective);
+        assert_eq!(power_on(Tnc155, 199_000), (Circuit::Ready, 2));
+        assert_eq!(power_on(Tnc155, 201_000).0, Circuit::Defective);
     }
 
     #[test]

@@ -4,8 +4,10 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_interpreter::{Checkpoint, Interpreter, Library, ProgramError, Settings};
-use bahn_path::{Axis, Barrier, Curve, ElementSource, Function, LiveData, PathElement, Position, Step};
+use bahn_interpreter::{Interpreter, Library, ProgramError, Settings};
+use bahn_path::{
+    Axis, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, Position, Step,
+};
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
 
@@ -19,6 +21,9 @@ pub trait Programs: Send + Sync {
     /// Why it cannot be read.
     fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
 }
+
+/// Work of the interpreter in one preparation at most, as [`Interpreter::allow`] counts it: some ms.
+const WORK: u32 = 4096;
 
 /// Programs as a library for the interpreter.
 struct Shelf(Arc<dyn Programs>);
@@ -38,7 +43,8 @@ pub(crate) enum RunFault {
     Limit {
         axis: Axis,
         direction: Direction,
-        /// Which block: its place in the order of execution.
+        /// Which block, and its place in the order of execution.
+        block: BlockRef,
         sequence: u64,
     },
 }
@@ -94,14 +100,14 @@ pub(crate) struct Feeder {
     /// Offsets as of the last element handed out.
     offsets: Offsets,
     limits: Box2,
-    /// State before each of the blocks that are on their way.
-    checkpoints: VecDeque<Checkpoint>,
     fault: Option<RunFault>,
     /// Elements that were given back: they come next.
     found: VecDeque<PathElement>,
     /// An element outside the limits, and whether all before it is executed: a function before it may
     /// change traverse range or datum. It comes before those that were given back.
     refused: Option<(PathElement, bool)>,
+    /// Elements read from the interpreter.
+    read: u64,
     /// Executed elements for whoever wants to see the path.
     tap: Option<Vec<PathElement>>,
 }
@@ -120,10 +126,10 @@ impl Feeder {
             interpreter,
             offsets,
             limits,
-            checkpoints: VecDeque::new(),
             fault: None,
             found: VecDeque::new(),
             refused: None,
+            read: 0,
             tap: None,
         }
     }
@@ -142,12 +148,11 @@ impl Feeder {
         program.is_some_and(|program| program.unit() == bahn_program::Unit::Inch)
     }
 
-    /// Datum and traverse range as they are now: limits and M91 count from them.
-    pub fn set_datum(&mut self, datum: Position, limits: Box2) {
+    /// Datum, machine zero in workpiece coordinates and traverse range as they are now.
+    pub fn set_datum(&mut self, datum: Position, machine_zero: Position, limits: Box2) {
         self.limits = limits;
         self.offsets.datum = datum;
-        self.interpreter
-            .set_machine_zero(Axis::ALL.map(|axis| -datum[axis]).into());
+        self.interpreter.set_machine_zero(machine_zero);
     }
 
     /// Inserts a TOOL CALL of module 9150 before the next block.
@@ -167,6 +172,11 @@ impl Feeder {
         }
     }
 
+    /// Elements that were read so far.
+    pub fn elements_read(&self) -> u64 {
+        self.read
+    }
+
     /// Keeps a copy of every element that is handed out.
     pub fn set_tap(&mut self, on: bool) {
         self.tap = on.then(Vec::new);
@@ -177,24 +187,21 @@ impl Feeder {
         self.tap.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Forgets the states before blocks that come before the one that is executed.
+    /// What is executed now: nobody goes back behind it.
     pub fn forget_before(&mut self, sequence: u64) {
-        while self
-            .checkpoints
-            .get(1)
-            .is_some_and(|next| next.sequence() <= sequence)
-        {
-            self.checkpoints.pop_front();
-        }
+        self.interpreter.forget_before(sequence);
+    }
+
+    /// Allows the work of one preparation: a program that only calculates must not hold the control.
+    pub fn allow_work(&mut self) {
+        self.interpreter.allow(WORK);
     }
 
     /// Goes back to the state before a block, which then starts from where the axes stand.
     pub fn return_to(&mut self, sequence: u64, machine: &Position, offsets: Offsets, limits: Box2) {
-        let before = |checkpoint: &&Checkpoint| checkpoint.sequence() <= sequence;
-        if sequence <= self.interpreter.blocks_executed()
-            && let Some(checkpoint) = self.checkpoints.iter().rev().find(before)
-        {
-            self.interpreter.restore(checkpoint);
+        if sequence <= self.interpreter.blocks_executed() {
+            self.interpreter
+                .go_back(|checkpoint| checkpoint.sequence() <= sequence);
         }
         self.begin_again(machine, offsets, limits);
     }
@@ -206,10 +213,8 @@ impl Feeder {
                 return self.return_to(sequence, machine, offsets, limits);
             }
             Some(RunFault::Program(error)) if self.interpreter.at() != error.block => {
-                let failed = |checkpoint: &&Checkpoint| checkpoint.at() == error.block;
-                if let Some(checkpoint) = self.checkpoints.iter().rev().find(failed) {
-                    self.interpreter.restore(checkpoint);
-                }
+                self.interpreter
+                    .go_back(|checkpoint| checkpoint.at() == error.block);
             }
             _ => {}
         }
@@ -217,7 +222,6 @@ impl Feeder {
     }
 
     fn begin_again(&mut self, machine: &Position, offsets: Offsets, limits: Box2) {
-        self.checkpoints.clear();
         self.found.clear();
         self.refused = None;
         self.fault = None;
@@ -229,9 +233,7 @@ impl Feeder {
 
     /// The next step of the program.
     fn read(&mut self) -> Step<RunFault> {
-        let step = self.interpreter.next();
-        self.checkpoints.extend(self.interpreter.take_checkpoints());
-        let element = match step {
+        let element = match self.interpreter.next() {
             Step::Element(element) => element,
             Step::Barrier(barrier) => return Step::Barrier(barrier),
             Step::Starved => return Step::Starved,
@@ -242,6 +244,7 @@ impl Feeder {
                 return Step::Error(fault);
             }
         };
+        self.read += 1;
         for output in element.functions() {
             self.offsets.take(&output.function);
         }
@@ -272,6 +275,7 @@ impl Feeder {
             return Some(RunFault::Limit {
                 axis,
                 direction,
+                block: element.block,
                 sequence: element.sequence,
             });
         }
@@ -375,6 +379,7 @@ mod tests {
             Step::Error(RunFault::Limit {
                 axis,
                 direction,
+                block: BlockRef { program: 0, block: 1 },
                 sequence: 1,
             })
         };

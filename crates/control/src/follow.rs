@@ -23,7 +23,7 @@ impl Control {
         } else if self.start_pressed && self.mode.is_automatic() {
             self.start_run();
         }
-        if self.run.state == RunState::Idle || self.run.restore.is_some() {
+        if self.run.state == RunState::Idle || self.run.broken || self.run.restore.is_some() {
             return;
         }
         if !self.path_axes_able() {
@@ -36,7 +36,7 @@ impl Control {
             self.move_probe(plant);
             return;
         }
-        let percent = self.feed_override.percent();
+        let percent = self.program_override_percent();
         let settled = self.path_in_position();
         let drive = Drive {
             feed_override_percent: percent,
@@ -225,28 +225,37 @@ impl Control {
                 self.run.answer = Some(self.run.q_transfer.answer());
             }
             Some(Stop::Barrier(Barrier::Probe {
+                block,
                 from,
                 to,
                 feed_mm_min,
                 ..
-            })) => self.begin_probing(from, to, feed_mm_min),
+            })) => self.begin_probing(block, from, to, feed_mm_min),
             Some(Stop::End) => self.end_run(),
             Some(Stop::Error(fault)) => {
-                let message = self.fault_message(fault);
-                self.show(message, false);
+                self.show_fault(fault);
                 self.abort_run(Resume::Fault);
             }
         }
     }
 
-    pub(crate) fn fault_message(&mut self, fault: RunFault) -> Message {
+    /// Shows why the run cannot go on, at the block that is refused.
+    pub(crate) fn show_fault(&mut self, fault: RunFault) {
         match fault {
-            RunFault::Program(error) => Message::Program(error),
-            RunFault::Limit { axis, direction, .. } => self.limit_message(axis, direction),
+            RunFault::Program(error) => self.show(Message::Program(error), false),
+            RunFault::Limit {
+                axis,
+                direction,
+                block,
+                ..
+            } => {
+                let message = self.limit_message(axis, direction);
+                self.show_at(message, false, Some(block));
+            }
         }
     }
 
-    fn limit_message(&mut self, axis: Axis, direction: Direction) -> Message {
+    pub(crate) fn limit_message(&mut self, axis: Axis, direction: Direction) -> Message {
         let index = self
             .axes
             .iter_mut()

@@ -36,14 +36,15 @@ impl Target<'_> {
                     self.handshakes.push(transfer);
                 }
             }
-            Function::SpindleSpeed(rpm) => self.speed(*rpm, false),
-            Function::SpindleOrientation(angle) => self.spindle.set_cycle_angle(*angle, self.exchange),
+            Function::SpindleSpeed(rpm) => self.speed(*rpm, true),
+            Function::OrientationAngle(angle) => self.spindle.set_cycle_angle(*angle, self.exchange),
             Function::Plc(values) => self.handshakes.push(Transfer::Plc {
                 values: values.map(|value| value.map(|value| value.round() as i32)),
                 inch: self.inch,
             }),
-            // A stop has its barrier; printing and the blank concern nothing that moves.
-            Function::Stop | Function::Print(_) | Function::Blank(_) => {}
+            // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
+            // printing and the blank concern nothing that moves.
+            Function::Stop | Function::SpindleOrientation(_) | Function::Print(_) | Function::Blank(_) => {}
         }
     }
 
@@ -63,6 +64,10 @@ impl Target<'_> {
 
     /// TOOL CALL: the tool goes to the PLC, then its speed; length and axis count from here on.
     fn tool(&mut self, call: &ToolCall) {
+        if !self.spindle.judge(call.speed_rpm, self.exchange) {
+            // The call is refused as a whole.
+            return;
+        }
         self.tools.call(call.tool, self.exchange, self.handshakes);
         self.offsets.tool_axis = call.axis;
         self.offsets.tool_length = call.shape.length;

@@ -18,6 +18,7 @@
 )]
 
 mod axes;
+mod block_time;
 mod command;
 mod compensation;
 mod control;
@@ -53,6 +54,7 @@ mod tools;
 mod upkeep;
 mod watch;
 
+pub use bahn_interpreter::{Done, Work};
 pub use command::{Command, CommandError, Mode};
 pub use compensation::{CompensationAssignment, CompensationError, CompensationTable};
 pub use control::Control;

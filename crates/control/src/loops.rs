@@ -1,7 +1,7 @@
 //! Control voltage, EMERGENCY STOP, loops and feed enable: whether an axis may move at all.
 
 use bahn_exchange::signal;
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, Station};
 use bahn_servo::{Fault, Plant};
 
 use crate::axes::Mover;
@@ -17,6 +17,10 @@ const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop)
 impl Control {
     /// Follows the "control is ready" circuit.
     pub(crate) fn follow_circuit(&mut self) {
+        if self.operation.station != Station::Machine {
+            // A programming station has no machine: its loops stay open [000:6951].
+            return;
+        }
         if self.messages.is_fatal() {
             self.emergency.fail();
         }
@@ -180,6 +184,7 @@ impl Control {
     /// NC stop is given by the PLC, the circuit, a flashing message or a fault of an axis.
     pub(crate) fn stop_given(&self) -> bool {
         self.panel.stop
+            || self.stylus.stops
             || self.exchange.nc().bit(signal::NC_STOP_AND_OPEN_LOOPS)
             || self.emergency.circuit() != Circuit::Ready
             || self.messages.is_fatal()

@@ -323,9 +323,26 @@ impl Control {
         }
     }
 
+    /// The feed override as it acts on programs: MP7620 bit 0 = 0 takes it away while the rapid traverse key
+    /// is pressed [000:10512] [001:3262] [003:7434-7443].
+    pub(crate) fn program_override_percent(&self) -> f64 {
+        if self.panel.rapid && !self.operation.overrides.on_rapid_key {
+            100.0
+        } else {
+            self.feed_override.percent()
+        }
+    }
+
     /// D596: rapid traverse as the PLC limits it, mm/min [000:4812-4814].
     pub(crate) fn rapid_limit_mm_min(&self) -> f64 {
-        f64::from(self.exchange.nc().number(signal::RAPID_TRAVERSE_LIMIT).max(0))
+        let nc = self.exchange.nc();
+        let by_plc = f64::from(nc.number(signal::RAPID_TRAVERSE_LIMIT).max(0));
+        // With a probe in the spindle MP6150 limits it, too [000:7654].
+        if nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION) {
+            by_plc.min(self.link.list().probe().rapid_mm_min)
+        } else {
+            by_plc
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 use bahn_exchange::{Exchange, signal};
 use bahn_interpreter::ProgramError;
 use bahn_parameters::{ControlModel, MessageId};
+use bahn_path::BlockRef;
 
 use crate::panel::Direction;
 
@@ -146,6 +147,8 @@ pub struct Shown {
     pub flashing: bool,
     /// When it came up, µs since power-on.
     pub time_us: u64,
+    /// The block that was executed, or that it refuses.
+    pub block: Option<BlockRef>,
 }
 
 /// The messages that are shown, and their history.
@@ -161,7 +164,7 @@ const NEWS_MAX: usize = 10_000;
 
 impl Messages {
     /// Shows a message; the same one again changes nothing.
-    pub fn show(&mut self, message: Message, flashing: bool, time_us: u64) {
+    pub fn show(&mut self, message: Message, flashing: bool, time_us: u64, block: Option<BlockRef>) {
         if self.shown.iter().any(|shown| shown.message == message) {
             return;
         }
@@ -169,6 +172,7 @@ impl Messages {
             message,
             flashing,
             time_us,
+            block,
         };
         if self.news.len() >= NEWS_MAX {
             self.news.remove(0);
@@ -218,14 +222,14 @@ impl Messages {
 
     /// After a PLC scan: the PLC's messages by their markers. With M2815 they flash; M2815 alone is
     /// `EMERGENCY STOP PLC` [000:6625-6633].
-    pub fn follow_plc(&mut self, exchange: &Exchange, time_us: u64) {
+    pub fn follow_plc(&mut self, exchange: &Exchange, time_us: u64, block: Option<BlockRef>) {
         let nc = exchange.nc();
         let flashes = nc.bit(signal::PLC_MESSAGE_FLASHES);
         let mut any = false;
         for (number, marker) in (0..).zip(signal::PLC_MESSAGES.iter()) {
             if nc.bit(marker) {
                 any = true;
-                self.show(Message::Plc(number), flashes, time_us);
+                self.show(Message::Plc(number), flashes, time_us, block);
             }
         }
         self.shown.retain(|shown| {
@@ -236,7 +240,7 @@ impl Messages {
             shown.flashing || marker.is_none_or(|marker| nc.bit(marker))
         });
         if flashes && !any {
-            self.show(Message::Plain(MessageId::EmergencyStopPlc), true, time_us);
+            self.show(Message::Plain(MessageId::EmergencyStopPlc), true, time_us, block);
         }
     }
 
@@ -299,7 +303,7 @@ mod tests {
         for number in [5, 7] {
             plc_sets(&mut exchange, marker(number).unwrap_or(signal::NC_START), true);
         }
-        messages.follow_plc(&exchange, 0);
+        messages.follow_plc(&exchange, 0, None);
         assert_eq!(messages.shown().len(), 2);
         assert_eq!(messages.clear(&mut exchange, |_| true), Some(Message::Plc(5)));
         exchange.begin_scan();
@@ -310,7 +314,7 @@ mod tests {
         );
         exchange.end_scan();
         plc_sets(&mut exchange, marker(7).unwrap_or(signal::NC_START), false);
-        messages.follow_plc(&exchange, 0);
+        messages.follow_plc(&exchange, 0, None);
         assert!(messages.shown().is_empty());
     }
 
@@ -319,7 +323,7 @@ mod tests {
         let mut exchange = Exchange::default();
         let mut messages = Messages::default();
         plc_sets(&mut exchange, signal::PLC_MESSAGE_FLASHES, true);
-        messages.follow_plc(&exchange, 0);
+        messages.follow_plc(&exchange, 0, None);
         assert_eq!(
             messages.shown().first().map(|s| text(&s.message)).as_deref(),
             Some("EMERGENCY STOP PLC")

@@ -61,7 +61,7 @@ impl Control {
             }
         }
         crate::gantry::command(&mut self.axes);
-        if self.run.state == RunState::Idle {
+        if self.run.state == RunState::Idle || self.run.broken {
             for unit in &mut self.axes {
                 unit.left_at = None;
                 if unit.mover == Mover::None && unit.stands() {

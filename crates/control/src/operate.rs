@@ -45,6 +45,11 @@ impl Control {
             Command::RestoreAt(block) => self.restore_at(block),
             Command::Code(code) => self.enter_code(code),
             Command::Key(code) => self.press_key(code),
+            Command::Test(name) => self.test(&name),
+            Command::EndTest => {
+                self.end_test();
+                true
+            }
             Command::OffsetAdjustment(adjust) => self.adjust_offsets(adjust),
         }
     }
@@ -52,7 +57,8 @@ impl Control {
     fn choose_mode(&mut self, mode: Mode) -> bool {
         let possible = match self.run.state {
             _ if mode == self.mode => true,
-            RunState::Idle => !self.run.is_active(),
+            _ if !self.run.is_active() => true,
+            RunState::Idle => false,
             // Single block ends a full sequence at the end of its block, and back.
             _ => self.mode != Mode::Mdi && matches!(mode, Mode::SingleBlock | Mode::FullSequence),
         };

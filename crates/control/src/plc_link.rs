@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use bahn_interpreter::MachineTexts;
 use bahn_parameters::ParameterList;
 use bahn_plc::{
     CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, Nc, NotSaved, PalletLine,
@@ -62,6 +63,7 @@ pub(crate) struct PlcLink {
     edited: ParameterList,
     messages: Vec<String>,
     dialogues: Vec<String>,
+    texts: MachineTexts,
     pub files: NcFiles,
     pub window: PlcWindow,
     pub window_view: WindowView,
@@ -87,6 +89,10 @@ impl PlcLink {
         PlcLink {
             edited: parameters.clone(),
             parameters,
+            texts: MachineTexts {
+                messages: messages.as_slice().into(),
+                dialogues: dialogues.as_slice().into(),
+            },
             messages,
             dialogues,
             files,
@@ -103,6 +109,11 @@ impl PlcLink {
             requests: Requests::default(),
             selected_list: String::new(),
         }
+    }
+
+    /// The texts of the machine for FN14 and FN15.
+    pub fn machine_texts(&self) -> &MachineTexts {
+        &self.texts
     }
 
     /// Texts of the PLC messages.

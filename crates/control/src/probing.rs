@@ -3,18 +3,34 @@
 use bahn_exchange::signal;
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, LiveData, Position, Touch};
+use bahn_path::{Axis, BlockRef, LiveData, Position, Touch};
 use bahn_servo::Plant;
 
 use crate::axes::Mover;
 use crate::control::Control;
 use crate::message::Message;
+use crate::panel::Direction;
 use crate::run::{Resume, RunState};
+
+/// Touch probe [000:7654].
+const MP_PROBE: u16 = 6010;
+const TS_511: f64 = 1.0;
+
+/// What M2502 makes of the stylus.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Stylus {
+    deflected: bool,
+    /// NC stop.
+    pub stops: bool,
+}
 
 /// A probing movement on a straight line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probing {
     phase: Phase,
+    block: BlockRef,
+    /// The software limit that lies within the way: it ends there [000:3522].
+    limit: Option<(Axis, Direction)>,
     /// Start of the way and its farthest end, path coordinates.
     from: Position,
     to: Position,
@@ -41,7 +57,8 @@ enum Phase {
 
 impl Control {
     /// The path came to a probe block: asks the PLC to enable it [000:7682-7690].
-    pub(crate) fn begin_probing(&mut self, from: Position, to: Position, feed_mm_min: f64) {
+    pub(crate) fn begin_probing(&mut self, block: BlockRef, from: Position, to: Position, feed_mm_min: f64) {
+        let (to, limit) = self.within_range(&from, to);
         let way = |axis: Axis| to[axis] - from[axis];
         let moving = |axis: &Axis| way(*axis).abs() > 0.0;
         let length = Axis::ALL.into_iter().filter(moving).map(|axis| way(axis).powi(2));
@@ -53,6 +70,8 @@ impl Control {
             .fold(f64::INFINITY, f64::min);
         self.run.probing = Some(Probing {
             phase: Phase::Enable,
+            block,
+            limit,
             from,
             to,
             feed_mm_min,
@@ -65,8 +84,41 @@ impl Control {
         self.exchange.nc_set(signal::PROBING_ENABLE, true);
     }
 
+    /// The way of a probing as far as the traverse range reaches, and the limit that ends it.
+    fn within_range(&self, from: &Position, to: Position) -> (Position, Option<(Axis, Direction)>) {
+        let [least, greatest] = self.traverse_box();
+        let mut part = 1.0;
+        let mut limit = None;
+        for unit in &self.axes {
+            let axis = unit.axis;
+            let (offset, way) = (self.offsets.of(axis), to[axis] - from[axis]);
+            let (end, direction) = if way > 0.0 {
+                (greatest[axis], Direction::Plus)
+            } else {
+                (least[axis], Direction::Minus)
+            };
+            let reach = (end - offset - from[axis]) / way;
+            if way != 0.0 && reach < part {
+                (part, limit) = (reach.max(0.0), Some((axis, direction)));
+            }
+        }
+        if limit.is_none() {
+            return (to, None);
+        }
+        let end = Axis::ALL.map(|axis| {
+            let way = to[axis] - from[axis];
+            if way == 0.0 {
+                to[axis]
+            } else {
+                from[axis] + part * way
+            }
+        });
+        (end.into(), limit)
+    }
+
     /// Takes the position of the axes when the stylus is deflected; once in each servo step.
     pub(crate) fn watch_probe(&mut self, plant: &mut dyn Plant) {
+        self.watch_stylus(plant);
         let Some(probing) = &mut self.run.probing else {
             return;
         };
@@ -84,6 +136,29 @@ impl Control {
             }
         });
         probing.touch = Some(along.sum());
+    }
+
+    /// M2502: the machine stops when the stylus is deflected, in all modes, but where a probing deflects it;
+    /// not with a TS 511, which is on standby otherwise [000:7652]. The stop stays until all axes stand and
+    /// no key moves them: by hand the stylus can then be freed; a program goes on only when it is free
+    /// (inferred).
+    fn watch_stylus(&mut self, plant: &mut dyn Plant) {
+        let guards = self.exchange.nc().bit(signal::NC_STOP_ON_STYLUS_DEFLECTION)
+            && self.link.list().get(MP_PROBE, 0) != Some(TS_511);
+        if !guards && !self.stylus.stops {
+            return;
+        }
+        let probes = self
+            .run
+            .probing
+            .is_some_and(|probing| probing.phase != Phase::Enable);
+        let deflected = guards && !probes && plant.probe_deflected();
+        let rises = deflected && !self.stylus.deflected;
+        self.stylus.deflected = deflected;
+        let keys = self.panel.axis_keys.iter().any(Option::is_some);
+        let rests = !keys && self.axes.iter().all(|unit| unit.stands());
+        let stays = deflected && self.mode.is_automatic() || !rests;
+        self.stylus.stops = rises || self.stylus.stops && stays;
     }
 
     /// Moves the axes of a probing for a cycle.
@@ -138,8 +213,15 @@ impl Control {
                 unit.follow(value + self.offsets.of(unit.axis), time);
             }
         }
-        if let Some(touched) = answer.filter(|_| stands && self.path_in_position()) {
-            self.finish_probing(touched);
+        let Some(touched) = answer.filter(|_| stands && self.path_in_position()) else {
+            return;
+        };
+        match (touched, self.run.probing.and_then(|probing| probing.limit)) {
+            (None, Some((axis, direction))) => {
+                let message = self.limit_message(axis, direction);
+                self.refuse_probing(message);
+            }
+            _ => self.finish_probing(touched),
         }
     }
 
@@ -149,13 +231,7 @@ impl Control {
         self.put(signal::PROBE_NOT_READY, !ready);
         self.put(signal::PROBE_BATTERY_LOW, plant.probe_battery_low());
         if !ready {
-            let sequence = self
-                .run
-                .feeder
-                .as_ref()
-                .map_or(0, |feeder| feeder.interpreter().blocks_executed());
-            self.show(Message::Plain(MessageId::ProbeSystemNotReady), false);
-            self.abort_run(Resume::Block(sequence));
+            self.refuse_probing(Message::Plain(MessageId::ProbeSystemNotReady));
             return;
         }
         let deflected = plant.probe_deflected();
@@ -169,6 +245,15 @@ impl Control {
         } else {
             probing.phase = Phase::Search;
         }
+    }
+
+    /// The run ends at the block that probes, with a message; the next start probes again.
+    fn refuse_probing(&mut self, message: Message) {
+        let block = self.run.probing.map(|probing| probing.block);
+        let feeder = self.run.feeder.as_ref();
+        let sequence = feeder.map_or(0, |feeder| feeder.interpreter().blocks_executed());
+        self.show_at(message, false, block);
+        self.abort_run(Resume::Block(sequence));
     }
 
     /// Hands the touch to the program, or that there was none.

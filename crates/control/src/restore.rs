@@ -69,6 +69,7 @@ impl Control {
         let feeder = self.new_feeder(program, &machine, self.traverse_box());
         self.run.feeder = Some(feeder);
         self.run.state = RunState::Interrupted;
+        self.run.broken = false;
         self.run.restore = Some(Restore::Scan {
             block,
             functions: VecDeque::new(),
@@ -114,6 +115,9 @@ impl Control {
 
     /// Goes on with a scan; may allocate.
     pub(crate) fn prepare_restore(&mut self) {
+        if let Some(feeder) = &mut self.run.feeder {
+            feeder.allow_work();
+        }
         for _ in 0..BUDGET {
             let Some(Restore::Scan {
                 block,
@@ -158,8 +162,7 @@ impl Control {
                     return;
                 }
                 Step::Error(fault) => {
-                    let message = self.fault_message(fault);
-                    self.show(message, false);
+                    self.show_fault(fault);
                     self.internal_stop();
                     return;
                 }

@@ -10,6 +10,7 @@ use bahn_path::{Axis, LiveData, Position};
 use bahn_program::Program;
 
 use crate::axes::{AxisUnit, Mover};
+use crate::block_time::BlockTime;
 use crate::command::Mode;
 use crate::control::Control;
 use crate::feeder::{Box2, Feeder};
@@ -20,6 +21,9 @@ use crate::restore::Restore;
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
+/// Blocks that take no time after which a program is taken for an endless loop (inferred): at 4 ms for a
+/// block the control would have stood for 400 s.
+const BLOCKS_WITHOUT_MOTION: u64 = 100_000;
 /// Outputs of functions that wait at most.
 pub(crate) const OUTPUTS: usize = 64;
 
@@ -49,6 +53,8 @@ pub(crate) struct ProgramRun {
     /// Blocks of MDI.
     pub mdi: Option<String>,
     pub state: RunState,
+    /// A fault has interrupted it: it is not on its way, and the next start tries the block again.
+    pub broken: bool,
     pub feeder: Option<Feeder>,
     /// NC start was given: the run begins with the next preparation.
     pub begin_wanted: bool,
@@ -76,6 +82,10 @@ pub(crate) struct ProgramRun {
     pub ended: bool,
     /// Keep the executed elements.
     pub tap: bool,
+    /// Long computations are done beside.
+    pub defers: bool,
+    /// Block processing time that is simulated.
+    pub block_time: BlockTime,
     /// Return to the contour.
     pub restore: Option<Restore>,
     /// The path speed, mm/s.
@@ -94,7 +104,7 @@ pub(crate) enum Resume {
 impl ProgramRun {
     /// A run was started and not ended or broken off.
     pub fn is_active(&self) -> bool {
-        self.state != RunState::Idle || self.begin_wanted
+        self.state != RunState::Idle && !self.broken || self.begin_wanted
     }
 
     /// Blocks are executed now.
@@ -105,6 +115,14 @@ impl ProgramRun {
     /// The next start begins anew, not with the block of an interruption.
     pub fn forget_interruption(&mut self) {
         self.resume_from = None;
+        self.leave_fault();
+    }
+
+    /// Nothing is interrupted any more by a fault.
+    pub fn leave_fault(&mut self) {
+        if std::mem::take(&mut self.broken) {
+            self.state = RunState::Idle;
+        }
     }
 
     pub fn restoring(&self) -> Option<&Restore> {
@@ -120,6 +138,7 @@ impl Control {
         }
         match self.run.state {
             RunState::Idle => self.run.begin_wanted = true,
+            _ if self.run.broken => self.run.begin_wanted = true,
             RunState::Running => {}
             state => {
                 match state {
@@ -153,6 +172,10 @@ impl Control {
         if self.run.state == RunState::Running || self.run.begin_wanted || !self.path_stands() {
             return false;
         }
+        if self.run.broken {
+            self.run.leave_fault();
+            return true;
+        }
         if self.run.state == RunState::Idle && self.run.restore.is_none() {
             return false;
         }
@@ -175,6 +198,7 @@ impl Control {
     /// Ends what is on its way for the run.
     fn break_off(&mut self) {
         self.run.state = RunState::Idle;
+        self.run.broken = false;
         self.run.mdi_over = self.mode == Mode::Mdi;
         self.run.waiting.clear();
         self.run.answer = None;
@@ -216,14 +240,21 @@ impl Control {
             self.call_inserted_tool();
         }
         let limits = self.traverse_box();
+        let zero = self.machine_zero();
+        let here = self.offsets.to_path(&self.machine_position());
         // A block scan reads the blocks itself.
         let scans = self.run.restore.as_ref().is_some_and(Restore::scans);
         if let Some(feeder) = &mut self.run.feeder
             && self.run.state != RunState::Idle
+            && !self.run.broken
             && !scans
         {
-            feeder.set_datum(self.offsets.datum, limits);
+            feeder.set_datum(self.offsets.datum, zero, limits);
             if let Some(answer) = self.run.answer.take() {
+                if answer.touch.is_none() {
+                    // The PLC may have moved the axes, or corrected the datum [000:8914].
+                    feeder.interpreter_mut().stand_at(&here);
+                }
                 self.path.resume(feeder, answer);
                 if let Some(call) = self.tools.inserted_call.take() {
                     feeder.insert(&call);
@@ -232,7 +263,11 @@ impl Control {
             if let Some(element) = self.path.element() {
                 feeder.forget_before(element.sequence);
             }
-            self.path.prepare(feeder, BUDGET);
+            feeder.allow_work();
+            let before = feeder.elements_read();
+            let allowed = self.run.block_time.allow(self.now_us, BUDGET);
+            self.path.prepare(feeder, allowed);
+            self.run.block_time.spend(feeder.elements_read() - before);
         }
     }
 
@@ -255,7 +290,7 @@ impl Control {
         };
         match inserted.tool {
             Some(_) => target.output(&bahn_path::Function::Tool(call)),
-            None if inserted.speed.is_some() => target.speed(call.speed_rpm, false),
+            None if inserted.speed.is_some() => target.speed(call.speed_rpm, true),
             None => {}
         }
     }
@@ -314,6 +349,7 @@ impl Control {
     }
 
     fn begin_run(&mut self) {
+        self.run.leave_fault();
         let machine = self.machine_position();
         let limits = self.traverse_box();
         self.put(bahn_exchange::signal::PROGRAM_END_EXECUTED, false);
@@ -365,10 +401,11 @@ impl Control {
         limits: Box2,
     ) -> Feeder {
         let mut rules = Rules::of(self.link.list());
-        rules.machine_zero = Axis::ALL.map(|axis| -self.offsets.datum[axis]).into();
+        rules.machine_zero = self.machine_zero();
         let settings = Settings {
             model: self.model,
             rules,
+            texts: self.link.machine_texts().clone(),
             tools: self.tools.shapes(),
             barred_tools: self.tools.barred(),
             strict: self.checking.strict,
@@ -378,10 +415,14 @@ impl Control {
             tool_length_mm: Some(self.offsets.tool_length),
             machine: true,
             inch_feed: self.inch_feed,
+            max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);
         let mut feeder = Feeder::new(program, settings, programs, self.offsets, limits);
+        if self.run.defers {
+            feeder.interpreter_mut().defer_work();
+        }
         if block > 0 {
             feeder.interpreter_mut().goto(block);
         }
@@ -407,11 +448,29 @@ impl Control {
         }
     }
 
-    /// A fault ends the run; the next start begins with the block that was not executed.
+    /// A fault interrupts the run [003:1578]; the next start begins with the block that was not executed.
     pub(crate) fn abort_run(&mut self, resume: Resume) {
         self.path.clear();
         self.run.resume_from = Some(resume);
         self.break_off();
+        if self.mode != Mode::Mdi {
+            self.run.broken = true;
+            self.run.state = RunState::Interrupted;
+        }
+    }
+
+    /// Machine zero in workpiece coordinates; unknown for axes that have not passed their reference mark
+    /// [000:4568-4576].
+    fn machine_zero(&self) -> Position {
+        let mut zero: Position = Axis::ALL.map(|axis| -self.offsets.datum[axis]).into();
+        for unit in self
+            .axes
+            .iter()
+            .filter(|unit| !unit.referenced && !unit.is_plc_axis())
+        {
+            zero[unit.axis] = f64::NAN;
+        }
+        zero
     }
 
     /// What the block at the gate of the path asks for is refused: the run ends before it.
@@ -478,7 +537,7 @@ impl Control {
         self.run.selected = Some(name);
         self.run.start_block = 0;
         self.run.feeder = None;
-        self.run.resume_from = None;
+        self.run.forget_interruption();
         true
     }
 

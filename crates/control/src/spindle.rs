@@ -116,31 +116,43 @@ impl SpindleUnit {
         self.plc_volts = volts;
     }
 
+    /// Whether the spindle has a speed: otherwise it is refused, M2092 [000:5653-5656].
+    pub fn judge(&mut self, rpm: f64, exchange: &mut Exchange) -> bool {
+        let has = match self.parameters.output {
+            SpindleOutput::None => true,
+            SpindleOutput::Coded { .. } => self.speed_code(rpm).is_some(),
+            SpindleOutput::Analogue { .. } => self.servo.gear_for(rpm).is_some(),
+        };
+        self.wrong = !has;
+        self.wrong_speed |= !has;
+        exchange.nc_set(signal::ILLEGAL_SPINDLE_SPEED, self.wrong);
+        has
+    }
+
+    /// The S code of a speed, where MP3020 permits it.
+    fn speed_code(&self, rpm: f64) -> Option<SpeedCode> {
+        SpeedCode::nearest(rpm).filter(|code| code.permitted(&self.parameters.codes))
+    }
+
     /// A programmed speed: the gear range or the S code that goes to the PLC, when one does. A speed that
     /// the spindle does not have is refused: M2092 [000:5653-5656].
     pub fn program(&mut self, rpm: f64, tool_call: bool, exchange: &mut Exchange) -> Option<Transfer> {
-        let transfer = match self.parameters.output {
-            SpindleOutput::None => return None,
-            SpindleOutput::Coded { always } => {
-                let code = SpeedCode::nearest(rpm).filter(|code| code.permitted(&self.parameters.codes));
-                code.map(|code| {
-                    let code = code.number();
-                    let changed = self.code.replace(code) != Some(code);
-                    (changed || always && tool_call).then_some(Transfer::SCode(code))
-                })
-            }
-            SpindleOutput::Analogue { gear: when } => self
-                .servo
-                .gear_for(rpm)
-                .map(|gear| self.choose_gear(rpm, gear, when, tool_call, exchange)),
-        };
-        self.wrong = transfer.is_none();
-        self.wrong_speed |= transfer.is_none();
-        exchange.nc_set(signal::ILLEGAL_SPINDLE_SPEED, self.wrong);
-        if transfer.is_some() {
-            self.programmed_rpm = rpm;
+        if !self.judge(rpm, exchange) {
+            return None;
         }
-        transfer.flatten()
+        self.programmed_rpm = rpm;
+        match self.parameters.output {
+            SpindleOutput::None => None,
+            SpindleOutput::Coded { always } => {
+                let code = self.speed_code(rpm)?.number();
+                let changed = self.code.replace(code) != Some(code);
+                (changed || always && tool_call).then_some(Transfer::SCode(code))
+            }
+            SpindleOutput::Analogue { gear: when } => {
+                let gear = self.servo.gear_for(rpm)?;
+                self.choose_gear(rpm, gear, when, tool_call, exchange)
+            }
+        }
     }
 
     fn choose_gear(
@@ -179,7 +191,7 @@ impl SpindleUnit {
         std::mem::take(&mut self.wrong_speed)
     }
 
-    /// Cycle 13: the angle that D592 = $80000000 stands for; M2408 tells the PLC.
+    /// Cycle 13: the angle that D592 = $80000000 stands for; M2408 tells the PLC [000:5853-5865].
     pub fn set_cycle_angle(&mut self, angle_deg: f64, exchange: &mut Exchange) {
         self.cycle_deg = angle_deg;
         exchange.nc_set(signal::CYCLE_13_EXECUTED, true);

@@ -18,6 +18,12 @@ pub(crate) struct TestRun {
     block: BlockRef,
 }
 
+impl TestRun {
+    pub fn feeder(&mut self) -> &mut Feeder {
+        &mut self.feeder
+    }
+}
+
 /// What a test run came to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum TestState {
@@ -81,6 +87,7 @@ impl Control {
         let Some(test) = self.test.as_mut().filter(|test| test.state == TestState::Running) else {
             return;
         };
+        test.feeder.allow_work();
         for _ in 0..BUDGET {
             match test.feeder.next() {
                 Step::Element(element) => {

@@ -20,6 +20,11 @@ impl Control {
         self.run.state
     }
 
+    /// A fault has interrupted the run: nothing of it is on its way, and NC start tries its block again.
+    pub fn is_broken(&self) -> bool {
+        self.run.broken
+    }
+
     /// The run came to its end since it was started.
     pub fn has_ended(&self) -> bool {
         self.run.ended

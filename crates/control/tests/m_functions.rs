@@ -194,10 +194,10 @@ fn without_waiting() {
     assert!(!rig.control.snapshot().ended, "the end waits");
 }
 
-/// M0, M1, STOP and, with MP7440 bit 0 = 0, M6 stop the run at the end of the block; NC start goes on.
+/// M0, STOP and, with MP7440 bit 0 = 0, M6 stop the run at the end of the block; NC start goes on.
 #[test]
 fn programmed_stops() {
-    for stop in ["M0", "M1", "STOP", "STOP M8", "M6"] {
+    for stop in ["M0", "STOP", "STOP M8", "M6"] {
         let program = format!("L X+60 R0 F6000\n{stop}\nL X+70");
         let mut rig = ready(bench(ACKNOWLEDGE).mp("7440=%00010").program("1.H", &program));
         rig.start();

@@ -23,7 +23,7 @@ fn fn14() {
         messages.len() == 1 && messages[0].ends_with("program 1.H block 2"),
         "{messages:?}"
     );
-    assert_eq!(rig.control.snapshot().run, RunState::Idle);
+    assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
     near(display(&rig, 'X'), 55.0);
     rig.command("ce");
     rig.start();

@@ -18,7 +18,11 @@ fn plc() -> String {
 const PROGRAM: &str = "TCH PROBE 0.0 REF. PLANE Q5 X+\nTCH PROBE 0.1 X+80 Y+50 Z-20\nL X+50 R0 F6000";
 
 fn rig(program: &str) -> Rig {
-    let mut rig = bench(&plc()).mp("6140=5").program("1.H", program).rig();
+    rig_of(bench(&plc()), program)
+}
+
+fn rig_of(build: Build, program: &str) -> Rig {
+    let mut rig = build.mp("6140=5").program("1.H", program).rig();
     rig.power_on();
     rig.seconds(0.3);
     // The spindle is 100 above the end of the ball: with the tip at Z -20 the nose is at machine Z 80.
@@ -142,4 +146,58 @@ fn stop_while_probing() {
             .1;
         assert!((q5 - 80.0).abs() < 0.004, "{q5}");
     }
+}
+
+/// The software limit lies before the side: the way to the touch ends there, with its message at the block,
+/// and not 20 mm (MP6130) behind [000:3522].
+#[test]
+fn the_software_limit_holds_while_probing() {
+    let mut rig = rig_of(bench(&plc()).mp("910.0=76.5").mp("6130=20"), PROGRAM);
+    rig.start();
+    let mut farthest = f64::MIN;
+    rig.until(20.0, "the message", |rig| !rig.messages().is_empty());
+    for _ in 0..200 {
+        farthest = farthest.max(nominal(&rig, 'X'));
+        rig.cycle();
+    }
+    assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
+    let block = rig.control.shown()[0].block.map(|block| block.block);
+    assert_eq!((block, rig.control.run_state()), (Some(2), RunState::Interrupted));
+    near(farthest, 76.5);
+    rig.seconds(0.1);
+    assert!(!rig.bit("M2503") && rig.bit("M2026"), "the probing is over");
+}
+
+/// M2502: a stylus that is deflected stops the machine, also where nothing probes; the program goes on when it
+/// is free. Without M2502, and with a TS 511 (MP6010 = 1), it goes unnoticed [000:7652].
+#[test]
+fn a_deflected_stylus_stops_the_machine() {
+    let guarded = || bench(&format!("{}\n       L     I21\n       = M2502", plc()));
+    let program = "L Z-20 R0 F6000\nL X+70 R0 F6000\nL X+90 R0 F600";
+    let mut rig = rig_of(guarded(), program);
+    rig.event("key B press");
+    rig.start();
+    rig.until(20.0, "the stop", |rig| {
+        rig.control.run_state() == RunState::Interrupted
+    });
+    rig.seconds(0.5);
+    let x = nominal(&rig, 'X');
+    // The ball of 2 mm touches at 78; from 600 mm/min the axis brakes within 0.1 mm.
+    assert!((78.0..78.2).contains(&x), "{x}");
+    rig.start();
+    rig.seconds(0.5);
+    near(nominal(&rig, 'X'), x);
+    rig.event("probe remove");
+    rig.seconds(0.1);
+    rig.start();
+    rig.until(20.0, "the end", |rig| rig.control.has_ended());
+    near(nominal(&rig, 'X'), 90.0);
+
+    let mut unguarded = rig_of(guarded(), program);
+    unguarded.start();
+    unguarded.until(20.0, "the end", |rig| rig.control.has_ended());
+    let mut standby = rig_of(guarded().mp("6010=1"), program);
+    standby.event("key B press");
+    standby.start();
+    standby.until(20.0, "the end", |rig| rig.control.has_ended());
 }

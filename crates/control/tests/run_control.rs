@@ -269,7 +269,7 @@ fn error_in_the_program() {
     let mut rig = bench_with(ACKNOWLEDGE, "L X+55 R0 F3000\nFN 4: Q1 = +1 DIV +Q2\nL X+60");
     rig.start();
     rig.seconds(1.0);
-    assert_eq!(state(&rig), RunState::Idle);
+    assert_eq!(state(&rig), RunState::Interrupted);
     near(display(&rig, 'X'), 55.0);
     let messages = rig.messages();
     assert!(
@@ -292,7 +292,7 @@ fn software_limit() {
     assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
     near(display(&rig, 'X'), 55.0);
     near(display(&rig, 'Y'), 60.0);
-    assert_eq!(state(&rig), RunState::Idle);
+    assert_eq!(state(&rig), RunState::Interrupted);
     rig.command("ce");
     rig.start();
     rig.seconds(0.5);

@@ -254,7 +254,7 @@ fn coded_speed() {
         assert_eq!(rig.messages(), ["WRONG SPINDLE SPEED"], "{speed}");
         assert!(rig.bit("M2092"));
         near(display(&rig, 'X'), 50.0);
-        assert_eq!(rig.control.snapshot().run, RunState::Idle);
+        assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
         rig.command("ce");
         rig.start();
         rig.seconds(0.5);

@@ -91,8 +91,6 @@ impl Run {
                 self.stop_spindle();
                 self.set_coolant(false);
             }
-            // Optional stop: free on these controls; nothing but the stop itself is agreed on.
-            1 => block.stop = true,
             2 | 30 => {
                 block.end = true;
                 self.stop_spindle();
@@ -210,7 +208,7 @@ impl Run {
 fn output(function: Function, code: u16, axes_wait: bool) -> TechnologyFunction {
     let at = if acts_at_end(code) { At::End } else { At::Start };
     // Functions with a programmed stop always stop the axes [001:1651-1652].
-    let stops = matches!(code, 0 | 1 | 2 | 6 | 30);
+    let stops = matches!(code, 0 | 2 | 6 | 30);
     let synchronisation = match (axes_wait || stops, at) {
         (false, _) => Synchronisation::Mos,
         (true, At::End) => Synchronisation::MnsSns,

@@ -16,6 +16,7 @@
 
 mod arc;
 mod availability;
+mod checkpoints;
 mod code;
 mod contour;
 mod cycles;
@@ -32,6 +33,7 @@ mod rehearsal;
 mod run;
 mod settings;
 mod tools;
+mod work;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -40,14 +42,18 @@ use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
 use bahn_program::{Block, MotionKind, Operation, Program, Value};
 
+pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    ContourPocketRules, MFunctionRules, ProbeRules, Rules, Settings, ToolState, ToolTable, tool_key,
+    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, ToolState, ToolTable,
+    tool_key,
 };
+pub use work::{Done, Work};
 
+use crate::checkpoints::Kept;
 use crate::code::Code;
 use crate::contour::Contour;
 use crate::cycles::{ContourJob, Halt, Watch, contour_plane};
@@ -55,6 +61,7 @@ use crate::error::Fault;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
 use crate::run::Run;
+use crate::work::Pending;
 
 /// Runs a program and hands out its path element by element.
 ///
@@ -82,7 +89,12 @@ pub struct Interpreter {
     waiting: Option<Barrier>,
     interrupt: Option<Arc<AtomicBool>>,
     /// States before blocks, kept for whoever asked for them.
-    kept: Option<Vec<Checkpoint>>,
+    kept: Option<Kept>,
+    /// Work that may still be done before [`Step::Starved`]; `None` for any amount.
+    work: Option<u32>,
+    /// Long computations are left to whoever drives, and the one that is pending.
+    defers: bool,
+    pending: Pending,
     /// End of the last element that was handed out.
     position: Position,
 }
@@ -90,31 +102,13 @@ pub struct Interpreter {
 /// Blocks without a step between two looks at the interrupt flag.
 const INTERRUPT_PERIOD: u64 = 1 << 14;
 
+/// What a block costs whose state is kept: the copy takes most of its time.
+pub const STATE_COST: u32 = 16;
+
 #[derive(Clone, Debug)]
 enum Ended {
     Finished,
     Failed(Box<ProgramError>),
-}
-
-/// The state of a run at a block: Q parameters, calls, repeats, pole, transformations, tool.
-#[derive(Clone)]
-pub struct Checkpoint {
-    run: Box<Run>,
-    ended: Option<Ended>,
-    waiting: Option<Barrier>,
-    position: Position,
-}
-
-impl Checkpoint {
-    /// Count of executed blocks up to and with the block that is executed next: the sequence of its elements.
-    pub fn sequence(&self) -> u64 {
-        self.run.sequence + 1
-    }
-
-    /// The block that is executed next.
-    pub fn at(&self) -> BlockRef {
-        self.run.at.block_ref()
-    }
 }
 
 impl Interpreter {
@@ -131,6 +125,9 @@ impl Interpreter {
             waiting: None,
             interrupt: None,
             kept: None,
+            work: None,
+            defers: false,
+            pending: Pending::None,
             position,
         };
         interpreter.look_at_feeds(0);
@@ -191,19 +188,66 @@ impl Interpreter {
         std::mem::take(&mut self.run.warnings)
     }
 
-    /// Keeps the state before each block that can move or output something, for
-    /// [`Interpreter::take_checkpoints`].
+    /// Keeps the state before each block whose elements are on their way, for [`Interpreter::go_back`].
     pub fn keep_checkpoints(&mut self) {
-        self.kept = Some(Vec::new());
+        self.kept = Some(Kept::default());
     }
 
-    /// The states kept since the last call, in the order of execution.
-    pub fn take_checkpoints(&mut self) -> impl Iterator<Item = Checkpoint> + '_ {
-        self.kept.iter_mut().flat_map(|kept| kept.drain(..))
+    /// Forgets the states before blocks that come before the one with a sequence: it is executed.
+    pub fn forget_before(&mut self, sequence: u64) {
+        if let Some(kept) = &mut self.kept {
+            kept.forget_before(sequence);
+        }
+    }
+
+    /// Goes back to the latest kept state of which something is so, if there is one; the kept states are
+    /// forgotten.
+    pub fn go_back(&mut self, so: impl Fn(&Checkpoint) -> bool) {
+        if let Some(state) = self.kept.as_mut().and_then(|kept| kept.take(so)) {
+            self.restore(&state);
+        }
+    }
+
+    /// States that are kept, to be seen that they do not pile up.
+    pub fn checkpoints(&self) -> usize {
+        self.kept.as_ref().map_or(0, Kept::count)
+    }
+
+    /// Allows an amount of work, as [`Interpreter::next`] counts it, until the next call: a control has
+    /// other things to do, too. When it is done, the next step is [`Step::Starved`]. A block costs 1, each
+    /// further element of a block, too; a block whose state is kept costs [`STATE_COST`].
+    pub fn allow(&mut self, work: u32) {
+        self.work = Some(work);
+    }
+
+    /// Leaves long computations to whoever drives: while one is pending the next step is
+    /// [`Step::Starved`], see [`Interpreter::take_work`].
+    pub fn defer_work(&mut self) {
+        self.defers = true;
+    }
+
+    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to.
+    pub fn take_work(&mut self) -> Option<Work> {
+        self.pending.take(&mut self.run, &self.settings)
+    }
+
+    /// Whether this computation is what the run waits for.
+    pub fn waits_for(&self, done: &Done) -> bool {
+        self.pending.is_of(done)
+    }
+
+    /// Goes on with what a computation came to; without effect when it was given up meanwhile.
+    pub fn finish_work(&mut self, done: Done) {
+        match self.pending.finish(done, &mut self.run) {
+            Some(Ok(())) => self.run.at.block += 1,
+            Some(Err(fault)) => self.fail(fault, self.run.block),
+            None => {}
+        }
     }
 
     /// After an error: the run goes on with the block that failed.
     pub fn retry(&mut self) {
+        self.pending = Pending::None;
         self.ended = None;
         self.waiting = None;
     }
@@ -222,12 +266,16 @@ impl Interpreter {
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
         let warnings = std::mem::take(&mut self.run.warnings);
         let said = std::mem::take(&mut self.run.said);
+        self.pending = Pending::None;
         self.run = (*checkpoint.run).clone();
         self.run.warnings = warnings;
         self.run.said = said;
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;
+        if let Some(kept) = &mut self.kept {
+            kept.handed(self.run.sequence);
+        }
     }
 
     /// Says where the axes really stand, workpiece coordinates: after a stop inside a block, or after they
@@ -244,10 +292,30 @@ impl Interpreter {
         self.position = *position;
     }
 
+    /// The axes were moved while the run waited: the PLC positioned them, or corrected the datum. The next
+    /// block starts where they stand now, workpiece coordinates. Without effect while a contour is on its
+    /// way; axes whose place is unknown stay.
+    pub fn stand_at(&mut self, position: &Position) {
+        if !self.run.contour.is_empty() || !self.run.out.queue.is_empty() {
+            return;
+        }
+        for axis in Axis::ALL.into_iter().filter(|axis| !position[*axis].is_nan()) {
+            for place in [
+                &mut self.run.modal.nominal,
+                &mut self.run.modal.actual,
+                &mut self.position,
+            ] {
+                place[axis] = position[axis];
+            }
+        }
+        self.run.modal.last_move = None;
+    }
+
     /// Goes on at a block of the main program, with everything else as it is; calls and repeats that are
     /// open are left.
     pub fn goto(&mut self, block: u32) {
         self.run.at = flow::Position::at(0, block);
+        self.pending = Pending::None;
         self.ended = None;
         self.enter_unit();
     }
@@ -293,7 +361,10 @@ impl Interpreter {
 
     /// Executes blocks until a step is finished or the run ends.
     fn advance(&mut self) {
-        while self.run.out.queue.is_empty() && self.ended.is_none() {
+        while self.run.out.queue.is_empty() && self.ended.is_none() && self.pending.is_none() {
+            if !self.spend(1) {
+                return;
+            }
             let at = self.run.at.block_ref();
             if let Err(fault) = self.step() {
                 self.fail(fault, at);
@@ -304,6 +375,17 @@ impl Interpreter {
                 return;
             }
         }
+    }
+
+    /// Takes work from what is allowed; `false` when nothing is left.
+    #[inline]
+    fn spend(&mut self, cost: u32) -> bool {
+        match &mut self.work {
+            Some(0) => return false,
+            Some(work) => *work = work.saturating_sub(cost),
+            None => {}
+        }
+        true
     }
 
     fn is_interrupted(&self) -> bool {
@@ -330,21 +412,12 @@ impl Interpreter {
                 Operation::Rounding { .. } | Operation::Chamfer { .. }
             )
         });
-        if self.kept.is_some() && self.run.recording.is_none() && acts(&block.operation) {
-            // Warnings are no state to go back to.
-            let warnings = std::mem::take(&mut self.run.warnings);
-            let said = std::mem::take(&mut self.run.said);
-            let checkpoint = Checkpoint {
-                run: Box::new(self.run.clone()),
-                ended: None,
-                waiting: None,
-                position: self.position,
-            };
-            self.run.warnings = warnings;
-            self.run.said = said;
-            if let Some(kept) = &mut self.kept {
-                kept.push(checkpoint);
-            }
+        if let Some(kept) = &mut self.kept
+            && self.run.recording.is_none()
+            && acts(&block.operation)
+        {
+            kept.keep(&mut self.run, self.position);
+            self.work = self.work.map(|work| work.saturating_sub(STATE_COST - 1));
         }
         self.run.block = at;
         if !matches!(
@@ -397,6 +470,10 @@ impl Interpreter {
             Flow::ContourCycle if self.run.rehearsal => self.rehearse_contours()?,
             Flow::ContourCycle => {
                 let job = self.record_contours()?;
+                if self.defers {
+                    self.pending = Pending::Waiting(Box::new(job));
+                    return Ok(());
+                }
                 let watch = Watch::new(self.interrupt.as_deref());
                 match self.run.contour_cycle(&job, &self.settings, &watch) {
                     Ok(()) => self.run.at.block += 1,
@@ -618,10 +695,15 @@ impl ElementSource for Interpreter {
         }
         if self.run.out.queue.is_empty() {
             self.advance();
+        } else if !self.spend(1) {
+            return Step::Starved;
         }
         match self.run.out.queue.pop_front() {
             Some(Item::Element(element)) => {
                 self.position = element.end;
+                if let Some(kept) = &mut self.kept {
+                    kept.handed(element.sequence);
+                }
                 Step::Element(element)
             }
             Some(Item::Barrier(barrier)) => {

@@ -98,8 +98,9 @@ impl Run {
         }
         self.modal.last_move = None;
         self.increments_from = None;
-        self.since_motion = 0;
         self.contour.release(&mut self.out);
+        let end = self.modal.actual;
+        self.note_motion(Curve::Line, &start, &end);
         let element = self.element(Curve::Line, start, self.modal.actual, feed);
         self.out.push(element, None);
         Ok(Flow::Next)
@@ -255,6 +256,13 @@ impl Run {
                 _ => 0.0,
             };
             let zero = settings.rules.machine_zero[axis] - length;
+            if zero.is_nan() && functions.reference != Reference::Position {
+                // Only after the reference marks machine coordinates are known [000:4568-4576].
+                return Err(Fault::new(
+                    MessageId::ProgramStartUndefined,
+                    format!("{axis} has not passed its reference mark"),
+                ));
+            }
             nominal[axis] = match functions.reference {
                 _ if word.incremental => known(nominal[axis]) + value,
                 Reference::MachineZero => zero + value,

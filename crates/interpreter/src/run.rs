@@ -295,7 +295,7 @@ impl Run {
         if !(0.0..=f64::from(max)).contains(&number) {
             return Fault::new(MessageId::EntryValueIncorrect, format!("FN14 takes 0 to {max}"));
         }
-        match bahn_parameters::error_text(number as u16, settings.model) {
+        match settings.texts.text(number as u16, settings.model) {
             Some(text) => Fault {
                 message: Message::Numbered(text),
                 detail: String::new(),
@@ -323,9 +323,10 @@ impl Run {
         let mut line = Vec::new();
         for item in items {
             line.push(match item {
-                Value::Number(number) if (0.0..=TEXT_NUMBER_MAX).contains(number) => {
-                    bahn_parameters::error_text(*number as u16, settings.model).unwrap_or_default()
-                }
+                Value::Number(number) if (0.0..=TEXT_NUMBER_MAX).contains(number) => settings
+                    .texts
+                    .text(*number as u16, settings.model)
+                    .unwrap_or_default(),
                 Value::Number(_) => {
                     return Err(Fault::new(
                         MessageId::EntryValueIncorrect,
@@ -401,8 +402,9 @@ impl Run {
             element.functions = Some(functions.output.into_boxed_slice());
         }
         element.constant_speed = functions.constant_speed;
-        if element.curve != Curve::Hold {
-            self.since_motion = 0;
+        self.note_motion(element.curve, &element.start, &element.end);
+        if self.machine && barrier.is_some() {
+            self.note_time();
         }
         let item = ContourMove {
             element,
@@ -430,6 +432,26 @@ impl Run {
             self.contour.flush(&mut self.out).map_err(Fault::found_ahead)?;
         }
         Ok(if functions.end { Flow::EndOfRun } else { Flow::Next })
+    }
+
+    /// A block that leads somewhere else is a movement; `L IX+0` is none.
+    #[inline]
+    pub fn note_motion(&mut self, curve: Curve, start: &Position, end: &Position) {
+        // An axis without a position gets one.
+        let moves = |axis: Axis| start[axis] != end[axis] && !end[axis].is_nan();
+        let moved = match curve {
+            Curve::Hold => false,
+            Curve::Line => Axis::ALL.into_iter().any(moves),
+            Curve::Arc(_) => curve.length(start, end) > 0.0,
+        };
+        if moved {
+            self.since_motion = 0;
+        }
+    }
+
+    /// What waits on a machine takes time: a loop of it, such as for a Q parameter of the PLC, may go on.
+    pub fn note_time(&mut self) {
+        self.since_motion = 0;
     }
 
     /// Whether the path stands until the PLC has acknowledged, so that nothing is lost when the next block is

@@ -1,6 +1,7 @@
 //! What a run is set up with: control model, machine parameters, tools, options.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes};
 use bahn_path::{Axis, Position, ToolShape};
@@ -16,6 +17,8 @@ pub struct Settings {
     pub tools: Option<ToolTable>,
     /// Tools of the table that must not be called.
     pub barred_tools: BTreeMap<u32, ToolState>,
+    /// Texts of the machine for FN14 and FN15.
+    pub texts: MachineTexts,
     /// Q parameters set before the start: number, value.
     pub q_values: Vec<(u16, f64)>,
     /// Where the axes stand before the start, mm and degrees; axes without a position stay unknown.
@@ -46,6 +49,7 @@ impl Default for Settings {
             rules: Rules::default(),
             tools: None,
             barred_tools: BTreeMap::new(),
+            texts: MachineTexts::default(),
             q_values: Vec::new(),
             start: Position::UNKNOWN,
             tool_length_mm: None,
@@ -77,6 +81,29 @@ impl Settings {
     /// What F counts in a program in inches.
     pub fn inch_feed(&self) -> InchFeed {
         self.inch_feed.unwrap_or(self.model.limits().inch_feed)
+    }
+}
+
+/// The texts that belong to the machine: those of its PLC program.
+#[derive(Clone, Debug, Default)]
+pub struct MachineTexts {
+    /// PLC messages 0 to 99: FN14 300 to 399.
+    pub messages: Arc<[String]>,
+    /// PLC dialogues 0 to 83: FN14 400 to 483.
+    pub dialogues: Arc<[String]>,
+}
+
+impl MachineTexts {
+    /// The text of a number of FN14 [003:4352-4367]: that of the machine, or where it has none that of the
+    /// control. `None` for a number that does not exist.
+    pub fn text(&self, number: u16, model: ControlModel) -> Option<String> {
+        let of_the_machine = match number {
+            300..=399 => self.messages.get(usize::from(number - 300)),
+            400..=483 => self.dialogues.get(usize::from(number - 400)),
+            _ => None,
+        };
+        let given = of_the_machine.filter(|text| !text.is_empty()).cloned();
+        given.or_else(|| bahn_parameters::error_text(number, model))
     }
 }
 

@@ -229,12 +229,16 @@ impl Run {
         Fault::new(MessageId::ToolRadiusTooLarge, format!("{what}: {why}")).because(Cause::NoToolRadius)
     }
 
+    /// A speed within the entry range. What the spindle has is judged by the spindle itself where there is
+    /// one: it tells the PLC with M2092 [000:5653].
     fn speed(&self, speed: Value, settings: &Settings) -> Result<f64, Fault> {
         let speed = self.q.value(speed)?;
-        let max = settings
-            .rules
-            .speed_max_rpm
-            .min(settings.model.limits().spindle_speed_max_rpm);
+        let entry = settings.model.limits().spindle_speed_max_rpm;
+        let max = if settings.machine {
+            entry
+        } else {
+            entry.min(settings.rules.speed_max_rpm)
+        };
         if !(0.0..=max).contains(&speed) {
             return Err(Fault::new(MessageId::WrongRpm, format!("S takes 0 to {max} rpm")));
         }

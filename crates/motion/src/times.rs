@@ -103,6 +103,7 @@ impl Stopwatch {
                 self.times.spindle_orientation_s
             }
             Function::NextTool(_)
+            | Function::OrientationAngle(_)
             | Function::Stop
             | Function::Print(_)
             | Function::Plc(_)

@@ -135,8 +135,11 @@ pub enum Function {
     NextTool(u32),
     /// Spindle speed alone, rpm (TOOL CALL S).
     SpindleSpeed(f64),
-    /// Oriented spindle stop at an angle, degrees (cycle 13, M19) [003:6500-6528].
+    /// Oriented spindle stop at an angle, degrees (M19) [003:6500-6528].
     SpindleOrientation(f64),
+    /// Cycle 13: the angle, degrees, that the spindle is oriented to by whichever M function does so
+    /// [000:5853-5865].
+    OrientationAngle(f64),
     /// Programmed stop: STOP, M0, M1, M6 where it stops.
     Stop,
     /// FN15: PRINT, the finished output line [003:4371-4385].

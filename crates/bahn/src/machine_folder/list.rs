@@ -27,6 +27,8 @@ restore-position                    back to the contour with NC start
 restore-at N                        block scan to block N
 code N                              a code number
 key CODE                            a key of the keyboard by its code, 58 to 127
+test PROGRAM                        TEST RUN beside what the machine does
+end-test                            breaks it off
 offset adjust|off                   answers to code number 75368
 ";
 

@@ -1,6 +1,6 @@
 //! What a script expects of control and machine.
 
-use bahn_control::{Control, Mode, RunState, Signal};
+use bahn_control::{Control, Mode, RunState, Signal, TestState};
 use bahn_machine::Machine;
 
 /// So near counts as equal when a script does not say how near, for values that are no whole numbers: the
@@ -20,6 +20,8 @@ pub(crate) enum Expectation {
     Run(Run),
     /// `tool=3`: the tool in the spindle.
     Tool(u32),
+    /// `test finished`: the test run beside.
+    Test(Tested),
     /// `lamp NC_START=1`.
     Lamp(String, bool),
 }
@@ -48,6 +50,35 @@ const RUNS: [(&str, Run); 6] = [
     ("ended", Run::Ended),
 ];
 
+/// States of the test run by their names in scripts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tested {
+    Running,
+    Finished,
+    Failed,
+}
+
+const TESTS: [(&str, Tested); 3] = [
+    ("running", Tested::Running),
+    ("finished", Tested::Finished),
+    ("failed", Tested::Failed),
+];
+
+impl Tested {
+    fn of(state: &TestState) -> Tested {
+        match state {
+            TestState::Running => Tested::Running,
+            TestState::Finished => Tested::Finished,
+            TestState::Failed(_) => Tested::Failed,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        let named = TESTS.iter().find(|(_, state)| *state == self);
+        named.map_or("", |(name, _)| name)
+    }
+}
+
 /// The name of a state of the run.
 pub(super) fn run_name(state: RunState) -> &'static str {
     let named = RUNS.iter().find(|(_, run)| *run == Run::State(state));
@@ -65,6 +96,7 @@ expect no message                   none is shown; with \"TEXT\" none with this 
 expect mode full                    manual, handwheel, mdi, single, full, reference
 expect run stopped                  idle, running, interrupted, stopped, block-end, ended
 expect tool=3                       the tool in the spindle
+expect test finished                the test run beside: running, finished, failed
 expect lamp NC_START=1              a lamp of the panel
 ";
 
@@ -101,6 +133,15 @@ expect lamp NC_START=1              a lamp of the panel
                     format!(
                         "`{rest}` is no state; there are {}",
                         RUNS.map(|(name, _)| name).join(", ")
+                    )
+                });
+            }
+            "test" => {
+                let state = TESTS.iter().find(|(name, _)| *name == rest);
+                return state.map(|(_, state)| Expectation::Test(*state)).ok_or_else(|| {
+                    format!(
+                        "`{rest}` is no state; there are {}",
+                        TESTS.map(|(name, _)| name).join(", ")
                     )
                 });
             }
@@ -187,6 +228,13 @@ expect lamp NC_START=1              a lamp of the panel
             Expectation::Tool(tool) => {
                 let actual = control.tool();
                 (actual != *tool).then(|| format!("tool {actual} is in the spindle"))
+            }
+            Expectation::Test(state) => {
+                let actual = control.test_report().map(|report| Tested::of(&report.state));
+                (actual != Some(*state)).then(|| match actual {
+                    Some(actual) => format!("the test run is {}", actual.name()),
+                    None => "there is no test run".to_owned(),
+                })
             }
             Expectation::Lamp(name, on) => {
                 let actual = machine.lamp(name).unwrap_or(false);

@@ -3,10 +3,12 @@
 //! - `options`: options and help text;
 //! - `session`: control and machine, cycle after cycle; `operator` who stands by, `script` what happens at
 //!   which time, `expectation` what must be so;
+//! - `background`: computations that take long;
 //! - `deviation`, `times`: what is measured; `recording`, `log`: what is written while it runs; `pace`: the
 //!   clock on the wall;
 //! - `report`: what is said in the end.
 
+mod background;
 mod cause;
 mod deviation;
 mod expectation;
@@ -44,7 +46,7 @@ use crate::{Outcome, UsageError, console, report_text};
 use log::Log;
 use operator::{Attendance, Job, Operator};
 use recording::Recording;
-use report::{ProgramReport, RunReport};
+use report::{ProgramReport, Refusal, RunReport};
 use script::Script;
 use session::{Ended, Parts, Session, Writers};
 
@@ -52,7 +54,7 @@ use session::{Ended, Parts, Session, Writers};
 pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
     let mut machine = match machine_folder::load(&options.machine)? {
         Ok(machine) => machine,
-        Err(faults) => return Ok(refused(&faults)),
+        Err(faults) => return refused(&faults, options),
     };
     for assignment in &options.run.mp {
         let changed = machine.parameters.assign(assignment);
@@ -62,7 +64,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let programs = Arc::new(FolderPrograms::new(&folder, options.file.as_deref())?);
     let script = match load_script(options, &machine.plant)? {
         Ok(script) => script,
-        Err(faults) => return Ok(refused(&faults)),
+        Err(faults) => return refused(&faults, options),
     };
     let (state, remembered, exchange) = power_on(options, &machine)?;
     let mut plant = machine.plant.clone();
@@ -90,7 +92,8 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             log.note(0, &event)?;
         }
     }
-    let control = Control::new(Setup {
+    let block_time_ms = machine.parameters.model().limits().block_time_ms;
+    let mut control = Control::new(Setup {
         parameters: machine.parameters.clone(),
         plc: Arc::clone(&machine.plc),
         plc_messages: machine.plc_messages.clone(),
@@ -106,10 +109,13 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         remembered,
         exchange,
     });
+    if options.run.block_time {
+        control.set_block_time((block_time_ms * 1e3) as u32);
+    }
     let writers = Writers {
         recording: recording(options, &control)?,
         log,
-        outputs: Outputs::create(&options.output.path)?,
+        outputs: Outputs::create(&options.output)?,
         state,
     };
     let mut session = Session::new(Parts {
@@ -134,9 +140,12 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
 }
 
 /// Prints the faults of files that keep a machine from being switched on.
-fn refused(faults: &[FileFault]) -> Outcome {
+fn refused(faults: &[FileFault], options: &RunMachineOptions) -> Result<Outcome, UsageError> {
     faults.iter().for_each(FileFault::print);
-    Outcome::ProgramError
+    if options.format == Format::Json {
+        print_json(&Refusal::of(faults))?;
+    }
+    Ok(Outcome::ProgramError)
 }
 
 fn load_script(
@@ -245,9 +254,10 @@ fn finish(
     let removed_mm3 = part.as_ref().map(|part| part.removed_mm3());
     let end = match &ended {
         Ended::Completed => End::Completed,
-        Ended::Stopped => End::Stopped,
         Ended::Interrupted => End::Interrupted,
-        Ended::TooLong | Ended::Broken(_) | Ended::Hangs(_) => End::Failed(Box::new(error(&session, &ended))),
+        Ended::Stopped | Ended::TooLong | Ended::Broken(_) | Ended::Hangs(..) => {
+            End::Failed(Box::new(error(&session, &ended)))
+        }
     };
     let failure = match &end {
         End::Failed(error) => Some(error.clone()),
@@ -272,14 +282,13 @@ fn finish(
     let mut report = RunReport::new(&session, program, &machine.folder.name, model);
     let outcome = match &ended {
         Ended::Completed if session.failed.is_empty() => Outcome::Fine,
-        Ended::Stopped if session.failed.is_empty() => Outcome::Fine,
         Ended::Interrupted => {
             diagnostics::print_line("interrupted: the report so far");
             Outcome::Interrupted
         }
         _ => Outcome::ProgramError,
     };
-    if let Ended::Hangs(what) = &ended {
+    if let Ended::Hangs(what, _) = &ended {
         report.waits_for = Some(what.clone());
     }
     let result = failure
@@ -307,36 +316,42 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
     use bahn_control::Message;
     let run = session.control.interpreter();
     let mut at = session.block().unwrap_or_default();
+    let shown = match ended {
+        Ended::Broken(shown) | Ended::Hangs(_, shown) => shown.as_deref(),
+        _ => None,
+    };
+    if let Some(block) = shown.and_then(|shown| shown.block) {
+        at = block;
+    }
     let (message, detail) = match ended {
-        Ended::Broken(Some(message)) => {
-            let text = session.control.message_text(message);
-            match message.as_ref() {
-                Message::Program(error) => {
-                    at = error.block;
-                    (text, error.detail.clone())
-                }
+        Ended::Broken(Some(shown)) => {
+            let text = session.control.message_text(&shown.message);
+            match &shown.message {
+                Message::Program(error) => (text, error.detail.clone()),
                 other => (text, other.place().unwrap_or_default()),
             }
         }
+        Ended::Stopped => (
+            "the script ended the run before it was complete".to_owned(),
+            String::new(),
+        ),
+        Ended::Hangs(what, Some(shown)) => (session.control.message_text(&shown.message), what.clone()),
         Ended::TooLong => (
             "the time allowed is over".to_owned(),
             "--max-time allows more".to_owned(),
         ),
-        Ended::Hangs(what) => ("nothing moves any more".to_owned(), what.clone()),
+        Ended::Hangs(what, None) => ("nothing moves any more".to_owned(), what.clone()),
         _ => ("the run was broken off".to_owned(), String::new()),
     };
     let place = run.map(|run| Place::of(run, at));
-    let remedy = match ended {
-        Ended::Broken(Some(broken)) => match broken.as_ref() {
-            Message::Program(error) => match &error.message {
-                bahn_interpreter::Message::Control(id) => Some(id.remedy()),
-                bahn_interpreter::Message::Numbered(_) => None,
-            },
-            Message::Plain(id) | Message::Axis { id, .. } => Some(id.remedy()),
-            _ => None,
+    let remedy = shown.and_then(|shown| match &shown.message {
+        Message::Program(error) => match &error.message {
+            bahn_interpreter::Message::Control(id) => Some(id.remedy()),
+            bahn_interpreter::Message::Numbered(_) => None,
         },
+        Message::Plain(id) | Message::Axis { id, .. } => Some(id.remedy()),
         _ => None,
-    };
+    });
     ErrorReport {
         message,
         program: place
@@ -360,6 +375,12 @@ fn say_failure(error: &ErrorReport, session: &Session, programs: &FolderPrograms
     }
 }
 
+fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
+    let json = serde_json::to_string_pretty(report)
+        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
+    console::print(&(json + "\n"))
+}
+
 fn print_report(
     report: &RunReport,
     result: &str,
@@ -368,9 +389,7 @@ fn print_report(
     drawn: bool,
 ) -> Result<(), UsageError> {
     if options.format == Format::Json {
-        let json = serde_json::to_string_pretty(report)
-            .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-        return console::print(&(json + "\n"));
+        return print_json(report);
     }
     let mut written = report_text::written(&options.output, drawn);
     let files = options.recording.record.iter().chain(&options.run.log);

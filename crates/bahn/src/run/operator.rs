@@ -97,6 +97,11 @@ impl Operator {
         }
     }
 
+    /// There is a program to start.
+    pub fn has_job(&self) -> bool {
+        self.job.is_some()
+    }
+
     /// What he does in this cycle.
     pub fn act(&mut self, control: &Control) -> Option<Deed> {
         self.follow(control);

@@ -48,10 +48,13 @@ lag_block, max_deviation, deviation_block; mm, degrees; null where there is none
 contour_deviation_cause (in words), contour_deviation_block;
 plc (max_percent, mean_percent of the nominal time); messages (time_s, text, place, flashing,
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
-failed_expectations (line, text, actual); realtime (null, or cycles, late_cycles, worst_lateness_ms).
+failed_expectations (line, text, actual); test_run (null, or program, completed, message, place of the last
+TEST RUN of a script); realtime (null, or cycles, late_cycles, worst_lateness_ms).
 
 Exit codes: 0 fine, 1 the program or the machine has an error, the run hangs or takes longer than allowed,
-or an expectation fails, 2 wrong use, 130 ended by Ctrl-C.";
+an expectation fails, or the script ends the run before the program is complete, 2 wrong use, 130 ended by
+Ctrl-C. When files of the machine or the script are faulty, JSON has completed = false and faults (file,
+line, column, title, message).";
 
 /// Options of `bahn run`.
 #[derive(Args, Debug)]
@@ -118,6 +121,9 @@ pub(crate) struct RunControl {
     /// move differently, each with a warning, instead of ending with an error.
     #[arg(long, conflicts_with = "strict")]
     pub skip_unknown: bool,
+    /// Simulate the block processing time of the model: the path waits for blocks that are not read yet.
+    #[arg(long)]
+    pub block_time: bool,
     /// Keep pace with the clock on the wall, and report late cycles.
     #[arg(long)]
     pub realtime: bool,

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use bahn_control::{TestReport, TestState};
 use bahn_parameters::ControlModel;
 use serde::Serialize;
 
 use super::pace::Lateness;
 use super::session::Session;
 use super::times::Share;
+use crate::diagnostics::FileFault;
 use crate::report::{ErrorReport, Report, tidy};
 use crate::report_text::{self, LABEL, clock, list};
 
@@ -57,6 +59,62 @@ struct PlcReport {
     mean_percent: f64,
 }
 
+/// What a TEST RUN beside the machine came to.
+#[derive(Clone, Debug, Serialize)]
+struct TestRunReport {
+    program: String,
+    completed: bool,
+    message: Option<String>,
+    place: Option<String>,
+}
+
+impl TestRunReport {
+    fn of(session: &Session, report: TestReport) -> TestRunReport {
+        let message = match &report.state {
+            TestState::Failed(message) => Some(message),
+            TestState::Running | TestState::Finished => None,
+        };
+        TestRunReport {
+            program: report.program,
+            completed: report.state == TestState::Finished,
+            message: message.map(|message| session.control.message_text(message)),
+            place: message.and_then(|message| message.place()),
+        }
+    }
+}
+
+/// Faults of files that keep a machine from being switched on, as JSON has them.
+#[derive(Debug, Serialize)]
+pub(super) struct Refusal {
+    completed: bool,
+    faults: Vec<FaultReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct FaultReport {
+    file: String,
+    line: u32,
+    column: Option<u32>,
+    title: String,
+    message: String,
+}
+
+impl Refusal {
+    pub fn of(faults: &[FileFault]) -> Refusal {
+        let report = |fault: &FileFault| FaultReport {
+            file: fault.path.display().to_string(),
+            line: fault.marked.line,
+            column: fault.marked.columns.map(|(column, _)| column),
+            title: fault.title.clone(),
+            message: fault.label.clone(),
+        };
+        Refusal {
+            completed: false,
+            faults: faults.iter().map(report).collect(),
+        }
+    }
+}
+
 /// What became of the program.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
@@ -90,6 +148,7 @@ pub(super) struct RunReport {
     confirmed: Vec<Confirmed>,
     pub waits_for: Option<String>,
     failed_expectations: Vec<FailedExpectation>,
+    test_run: Option<TestRunReport>,
     realtime: Option<Lateness>,
 }
 
@@ -126,6 +185,10 @@ impl RunReport {
             confirmed: session.confirmed.clone(),
             waits_for: None,
             failed_expectations: session.failed.clone(),
+            test_run: session
+                .control
+                .test_report()
+                .map(|report| TestRunReport::of(session, report)),
             realtime: session.pace.as_ref().map(|pace| pace.lateness),
             program,
         }
@@ -212,6 +275,18 @@ impl RunReport {
         });
         if let ProgramReport::Ran(report) = &self.program {
             report_text::body(&mut row, report);
+        }
+        if let Some(test) = &self.test_run {
+            let result = match (&test.message, test.completed) {
+                (Some(message), _) => message.clone(),
+                (None, true) => "completed".to_owned(),
+                (None, false) => "not completed".to_owned(),
+            };
+            let place = test.place.as_ref().map(|place| format!(": {place}"));
+            row(
+                "Test run",
+                &format!("{}: {result}{}", test.program, place.unwrap_or_default()),
+            );
         }
         if let Some(lateness) = &self.realtime {
             row(

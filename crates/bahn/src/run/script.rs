@@ -209,8 +209,14 @@ fn read_action(text: &str, machine: &mut Machine) -> Result<Action, String> {
         "end" if rest.trim().is_empty() => return Ok(Action::End),
         _ => {}
     }
-    // `key 107` is a key of the keyboard, `key NC_START tap` one of the panel.
-    let is_event = Event::WORDS.contains(&word) && !(word == "key" && rest.trim().parse::<u8>().is_ok());
+    // `key 107` is a key of the keyboard, `key NC_START tap` one of the panel; `handwheel X 3` chooses the axis
+    // of the handwheel, `handwheel 500` turns it.
+    let is_command = match word {
+        "key" => rest.trim().parse::<u8>().is_ok(),
+        "handwheel" => rest.trim().starts_with(|first: char| first.is_ascii_alphabetic()),
+        _ => false,
+    };
+    let is_event = Event::WORDS.contains(&word) && !is_command;
     if !is_event {
         return text.parse().map(Action::Command).map_err(|error| {
             if error.to_string().ends_with("is no command") {
@@ -286,6 +292,23 @@ mod tests {
             ]
         );
         assert_eq!(script.lines[3].action, Action::Command(Command::Key(107)));
+    }
+
+    #[test]
+    fn the_handwheel_is_chosen_and_turned() {
+        let script = read("1: handwheel X 3\n2: handwheel -500\n3: test OTHER.H").unwrap();
+        let actions: Vec<_> = script.lines.into_iter().map(|line| line.action).collect();
+        let turn = "handwheel -500".to_owned();
+        assert_eq!(
+            actions,
+            [
+                Action::Command(Command::Handwheel(bahn_path::Axis::X, 3)),
+                Action::Event(Event::Handwheel(-500), turn),
+                Action::Command(Command::Test("OTHER.H".into()))
+            ]
+        );
+        let faults = read("1: handwheel X 11").unwrap_err();
+        assert!(faults[0].label.contains("from 0 to 10"), "{}", faults[0].label);
     }
 
     #[test]

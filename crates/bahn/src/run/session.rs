@@ -6,6 +6,7 @@ use bahn_control::{Command, Control, Message, RunState, Shown};
 use bahn_machine::{Event, KeyAction, Machine};
 use bahn_path::{BlockRef, FeedRate, PathElement};
 
+use super::background::Background;
 use super::deviation::Deviation;
 use super::expectation::run_name;
 use super::log::Log;
@@ -43,9 +44,9 @@ pub(super) enum Ended {
     /// By Ctrl-C.
     Interrupted,
     /// A message broke the run off.
-    Broken(Option<Box<Message>>),
-    /// Nothing moves any more; what it waits for.
-    Hangs(String),
+    Broken(Option<Box<Shown>>),
+    /// Nothing moves any more; what it waits for, and the message that stopped it.
+    Hangs(String, Option<Box<Shown>>),
 }
 
 /// What the session writes while it goes on.
@@ -86,7 +87,8 @@ pub(super) struct Session {
     ahead: VecDeque<PathElement>,
     moved_us: u64,
     last_stop: bool,
-    broken_by: Option<Box<Message>>,
+    broken_by: Option<Box<Shown>>,
+    background: Background,
     ended: Option<Ended>,
 }
 
@@ -107,6 +109,7 @@ impl Session {
     pub fn new(parts: Parts) -> Session {
         let mut control = parts.control;
         control.keep_path(true);
+        control.defer_work();
         let lines = |base| {
             let mut lines: Vec<Line> = parts
                 .script
@@ -144,6 +147,7 @@ impl Session {
             moved_us: 0,
             last_stop: false,
             broken_by: None,
+            background: Background::default(),
             ended: None,
         }
     }
@@ -159,7 +163,8 @@ impl Session {
                 self.note("end")?;
                 return Ok(ended);
             }
-            self.control.prepare();
+            let realtime = self.pace.is_some();
+            self.background.prepare(&mut self.control, realtime, interrupt);
             self.control.cycle(&mut self.machine);
             self.watch()?;
             if let Some(state) = &mut self.writers.state {
@@ -216,7 +221,10 @@ impl Session {
     fn execute_line(&mut self, line: Line) -> Result<(), UsageError> {
         match line.action {
             Action::End => {
-                let done = self.control.has_ended() && self.control.run_state() == RunState::Idle;
+                let done = match self.operator.has_job() {
+                    true => self.control.has_ended() && self.is_idle(),
+                    false => self.is_idle(),
+                };
                 self.ended = Some(if done { Ended::Completed } else { Ended::Stopped });
             }
             Action::Command(command) => {
@@ -249,7 +257,8 @@ impl Session {
                 self.note(&command.to_string())?;
                 let refused = !self.control.command(command.clone());
                 if refused && !matches!(command, Command::Ce) {
-                    self.ended = Some(Ended::Hangs(format!("the control refuses `{command}`")));
+                    let refusal = format!("the control refuses `{command}`");
+                    self.ended = Some(Ended::Hangs(refusal, None));
                 }
             }
             Deed::Key(key, why) => {
@@ -307,7 +316,7 @@ impl Session {
         for shown in self.control.take_messages() {
             self.say(&shown);
         }
-        let running = self.control.run_state() != RunState::Idle;
+        let running = !self.is_idle();
         if running && self.start_us.is_none() && self.operator.phase != Phase::PowerUp {
             // What the script gives from the start on counts from here.
             self.start_us = Some(self.control.time_us());
@@ -334,27 +343,33 @@ impl Session {
 
     /// A message came up.
     fn say(&mut self, shown: &Shown) {
-        let (block, place) = match &shown.message {
-            Message::Program(error) => (error.block, Some(error.detail.clone()).filter(|d| !d.is_empty())),
-            other => (self.block().unwrap_or_default(), other.place()),
+        let place = match &shown.message {
+            Message::Program(error) => Some(error.detail.clone()).filter(|d| !d.is_empty()),
+            other => other.place(),
         };
-        let idle = self.control.run_state() == RunState::Idle;
+        let idle = self.is_idle();
         // A message of the PLC does not break a run off that has not begun.
         let refused = self.operator.started && !matches!(shown.message, Message::Plc(_));
         if shown.flashing || idle && (self.start_us.is_some() || refused) {
-            self.broken_by = Some(Box::new(shown.message.clone()));
+            self.broken_by = Some(Box::new(shown.clone()));
         }
         if let Some(recording) = &mut self.writers.recording {
             recording.message(&self.control.message_text(&shown.message));
         }
         if self.messages.len() < MESSAGES_MAX {
-            let program = self.program_name(block);
+            let program = shown
+                .block
+                .map(|block| self.program_name(block))
+                .unwrap_or_default();
             self.messages.push(Said {
                 time_s: shown.time_us as f64 * 1e-6,
                 text: self.control.message_text(&shown.message),
                 place,
                 flashing: shown.flashing,
-                block: (!program.is_empty()).then_some(block.block),
+                block: shown
+                    .block
+                    .filter(|_| !program.is_empty())
+                    .map(|block| block.block),
                 program,
             });
         }
@@ -427,9 +442,9 @@ impl Session {
         }
         let fatal = self.control.shown().iter().find(|shown| shown.flashing);
         if let Some(fatal) = fatal.filter(|_| script_done && self.control.stands()) {
-            return Some(Ended::Broken(Some(Box::new(fatal.message.clone()))));
+            return Some(Ended::Broken(Some(Box::new(fatal.clone()))));
         }
-        let idle = self.control.run_state() == RunState::Idle;
+        let idle = self.is_idle();
         match self.operator.phase {
             Phase::Program if self.start_us.is_some() && idle && script_done => {
                 return Some(if self.control.has_ended() {
@@ -445,8 +460,23 @@ impl Session {
             _ => {}
         }
         let still = now.saturating_sub(self.moved_us);
-        (script_done && still > self.max_wait_us && !self.is_dwelling())
-            .then(|| Ended::Hangs(self.waits_for()))
+        if !script_done || still <= self.max_wait_us || self.is_dwelling() {
+            return None;
+        }
+        let waits_for = self.waits_for();
+        let stopped_by = self.control.shown().last().cloned();
+        if let Some(shown) = &stopped_by {
+            // Waiting after the message is no machining time.
+            let since = shown.time_us.max(self.moved_us);
+            let taken = self.times.take_back(now.saturating_sub(since));
+            self.program_us = self.program_us.saturating_sub(taken);
+        }
+        Some(Ended::Hangs(waits_for, stopped_by.map(Box::new)))
+    }
+
+    /// No run is on its way: none was started, it has ended, or a fault has interrupted it.
+    fn is_idle(&self) -> bool {
+        self.control.run_state() == RunState::Idle || self.control.is_broken()
     }
 
     /// What keeps a run from going on.

@@ -57,6 +57,17 @@ impl Times {
         }
     }
 
+    /// Takes back what the latest kind of time has had last, at most `time_us`; what was taken back, µs.
+    pub fn take_back(&mut self, time_us: u64) -> u64 {
+        let last = self.last;
+        let latest = self.sums.iter_mut().find(|(spent, ..)| Some(*spent) == last);
+        latest.map_or(0, |(_, _, sum)| {
+            let taken = time_us.min(*sum);
+            *sum -= taken;
+            taken
+        })
+    }
+
     /// The sums, the longest first.
     pub fn shares(&self) -> Vec<Share> {
         let mut sums = self.sums.clone();

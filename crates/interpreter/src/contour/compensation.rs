@@ -11,7 +11,7 @@ use crate::output::Output;
 
 /// Movements outside the plane that may wait behind a held element. When more come, the contour is taken
 /// to end here, so that an endless loop of them stays in constant memory (inferred).
-const BETWEEN_MAX: usize = 10_000;
+const BETWEEN_MAX: usize = 500;
 
 /// Elements that a contour subprogram may have.
 const RECORDED_MAX: usize = 100_000;
@@ -92,6 +92,12 @@ impl CompensationStage {
 
     pub fn displaced(&self) -> Option<(Plane, Point2)> {
         self.displaced
+    }
+
+    pub fn holds_from(&self, sequence: u64) -> bool {
+        let held = self.held.as_ref().map(|held| held.item.element.sequence);
+        let between = self.between.last().map(|item| item.element.sequence);
+        held.max(between).is_some_and(|of| of >= sequence)
     }
 
     /// Finishes the held element as if nothing followed: it ends beside its last point.

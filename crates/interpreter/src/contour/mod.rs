@@ -140,6 +140,16 @@ impl Contour {
         self.rounding.has_no_join() && self.compensation.is_idle()
     }
 
+    /// Whether nothing is held back and no contour is compensated.
+    pub fn is_empty(&self) -> bool {
+        self.is_idle() && !self.holds_from(0)
+    }
+
+    /// Whether something of a block at or behind a sequence is held back.
+    pub fn holds_from(&self, sequence: u64) -> bool {
+        self.rounding.holds_from(sequence) || self.compensation.holds_from(sequence)
+    }
+
     /// Whether a rounding or chamfer waits for the movement after it.
     pub fn has_join(&self) -> bool {
         self.rounding.has_join()

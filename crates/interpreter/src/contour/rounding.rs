@@ -27,6 +27,9 @@ pub(crate) enum JoinKind {
     Chamfer(f64),
 }
 
+/// Holds that may wait behind a rounding or chamfer for the element after it (inferred).
+const AFTER_MAX: usize = 500;
+
 /// Holds the last movement until it is known whether a rounding follows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RoundingStage {
@@ -95,6 +98,13 @@ impl RoundingStage {
         Ok(())
     }
 
+    pub fn holds_from(&self, sequence: u64) -> bool {
+        let held = self.held.iter().chain(self.after.last());
+        held.map(|item| item.element.sequence)
+            .chain(self.join.map(|join| join.sequence))
+            .any(|of| of >= sequence)
+    }
+
     pub fn has_join(&self) -> bool {
         self.join.is_some()
     }
@@ -148,6 +158,9 @@ impl RoundingStage {
         out: &mut Output,
     ) -> Result<(), Fault> {
         if item.element.curve == Curve::Hold {
+            if self.after.len() >= AFTER_MAX {
+                return Err(not_between(join));
+            }
             self.after.push(item);
             return Ok(());
         }

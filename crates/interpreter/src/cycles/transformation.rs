@@ -150,11 +150,15 @@ impl Run {
         let centre = self.tool_centre();
         let mut element = self.element(Curve::Hold, centre, centre, FeedRate::Rapid);
         element.dwell_s = seconds;
+        if self.machine && seconds > 0.0 {
+            self.note_time();
+        }
         self.out.push(element, None);
         Ok(())
     }
 
-    /// Cycle 13: angle of the oriented spindle stop, used by M19 [003:6500-6528].
+    /// Cycle 13: angle of the oriented spindle stop, for M19 or another M function [003:6500-6528]; the PLC
+    /// is told of it when the cycle is executed [000:5853-5865].
     pub(super) fn spindle_orientation(&mut self, words: &[Resolved]) -> Result<(), Fault> {
         let Some(angle) = first_number(words) else {
             return Err(Fault::new(MessageId::CyclIncomplete, "the angle is missing"));
@@ -166,7 +170,7 @@ impl Run {
             ));
         }
         self.modal.orientation_deg = Some(angle);
-        Ok(())
+        self.output_function(Function::OrientationAngle(angle), false)
     }
 
     /// Cycle 14 CONTOUR GEOMETRY: the labels of the subcontours [003:5460-5470].

@@ -1,6 +1,6 @@
 //! Settings of the spindle and of tapping.
 
-use crate::ParameterList;
+use crate::{ParameterList, SpindleOutput};
 
 /// Gear ranges of the spindle.
 const GEARS: u8 = 8;
@@ -24,8 +24,15 @@ impl ParameterList {
     ///
     /// In the old list the speeds behind the last ascending one are those of a comparator, not of a gear
     /// [001:1514-1536]; the highest value is a gear's all the same, since a comparator speed lies below
-    /// its gear's.
+    /// its gear's. A coded speed knows no gears: S codes reach 9000 rpm [000:5722]. Without output of a
+    /// speed nothing limits it.
     pub fn spindle_speed_max_rpm(&self) -> f64 {
+        const CODED_MAX_RPM: f64 = 9000.0;
+        match self.spindle_parameters().output {
+            SpindleOutput::Coded { .. } => return CODED_MAX_RPM,
+            SpindleOutput::None => return self.model().limits().spindle_speed_max_rpm,
+            SpindleOutput::Analogue { .. } => {}
+        }
         let gear_speed = |gear| {
             let rated = self.value((3510, gear), (78 + u16::from(gear), 0));
             let limit = self.get(3515, gear).filter(|_| rated > 0.0).unwrap_or_default();

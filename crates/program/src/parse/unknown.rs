@@ -1,6 +1,6 @@
 //! Blocks without the words that nothing here knows.
 
-use bahn_parameters::MessageId::{BlockNotKnown, UnexpectedText};
+use bahn_parameters::MessageId::{BlockNotKnown, BlockNotSupported, UnexpectedText};
 
 use super::complete_operation;
 use super::cursor::Cursor;
@@ -12,7 +12,10 @@ const WORDS_MAX: usize = 16;
 impl InvalidBlock {
     /// Whether the block has a word that nothing here knows, or that has no place in it.
     pub fn is_unknown(&self) -> bool {
-        matches!(self.error.message, BlockNotKnown | UnexpectedText)
+        matches!(
+            self.error.message,
+            BlockNotKnown | BlockNotSupported | UnexpectedText
+        )
     }
 
     /// The block without its unknown words, and those words. Without an operation the whole block is to be
@@ -27,7 +30,7 @@ impl InvalidBlock {
                 Err(fault) => fault,
             };
             let (start, end) = (fault.start, fault.end.min(code.len()));
-            let is_unknown = matches!(fault.message, BlockNotKnown | UnexpectedText);
+            let is_unknown = matches!(fault.message, BlockNotKnown | BlockNotSupported | UnexpectedText);
             let Some(word) = code.get_mut(start..end).filter(|_| start > 0 && is_unknown) else {
                 break;
             };

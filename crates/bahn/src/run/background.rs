@@ -1,0 +1,53 @@
+//! Long computations of the control on a thread of their own: the machine goes on, or Ctrl-C counts, meanwhile.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, sync_channel};
+use std::time::Duration;
+
+use bahn_control::{Control, Done};
+
+use crate::interrupt::Interrupt;
+
+/// How often it is looked whether the run is to end.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// What computes beside.
+#[derive(Default)]
+pub(super) struct Background {
+    result: Option<Receiver<Done>>,
+}
+
+impl Background {
+    /// Lets the control interpret and plan ahead. With the clock on the wall the machine goes on while
+    /// something is computed; otherwise time stands still, so that every run is the same.
+    pub fn prepare(&mut self, control: &mut Control, realtime: bool, interrupt: &Interrupt) {
+        loop {
+            control.prepare();
+            if self.result.is_none()
+                && let Some(work) = control.take_work()
+            {
+                let (sender, receiver) = sync_channel(1);
+                // The run may be over before the result is there: then nobody takes it.
+                std::thread::spawn(move || sender.send(work.compute()));
+                self.result = Some(receiver);
+            }
+            let Some(result) = &self.result else { return };
+            let done = if realtime {
+                match result.try_recv() {
+                    Err(TryRecvError::Empty) => return,
+                    other => other.ok(),
+                }
+            } else {
+                match result.recv_timeout(PATIENCE) {
+                    Err(RecvTimeoutError::Timeout) if interrupt.is_requested() => return,
+                    Err(RecvTimeoutError::Timeout) => continue,
+                    other => other.ok(),
+                }
+            };
+            self.result = None;
+            match done {
+                Some(done) => control.finish_work(done),
+                None => return,
+            }
+        }
+    }
+}
