@@ -41,16 +41,16 @@ fn no_effect_is_said_once() {
 /// What acts in part is executed and said.
 #[test]
 fn part_of_a_function_is_said() {
-    let run = run("FN15: PRINT 1\nFN15: PRINT 2");
+    let run = run("L X+1 R0 F100 M112 T0.1\nL Y+1 M112 T0.2");
     let said = warnings(&run);
     assert_eq!((said.len(), said[0].0), (1, 1));
-    assert!(said[0].1.starts_with("FN15 acts in part here"), "{said:?}");
+    assert!(said[0].1.starts_with("M112 acts in part here"), "{said:?}");
 }
 
 /// With strict checking either is an error.
 #[test]
 fn strict_checking_refuses_it() {
-    for blocks in ["L X+1 FMAX\nL X+2 FMAX M107", "L X+1 FMAX\nFN15: PRINT 1"] {
+    for blocks in ["L X+1 FMAX\nL X+2 FMAX M107", "L X+1 FMAX\nL X+2 FMAX M112"] {
         let run = with(blocks, |settings| settings.strict = true);
         assert_eq!(run.message(), Some((BlockNotKnown, 2)), "{blocks}");
     }
