@@ -14,6 +14,7 @@ use crate::mp::MpOptions;
 use crate::plc::PlcOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
+use crate::test_run::TestOptions;
 
 /// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
 /// shows every tool movement, the machining time and the finished part.
@@ -32,7 +33,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Run a program without a machine: report, tool path, picture of the part.
-    #[command(after_help = TEST_EXAMPLES)]
+    #[command(after_help = crate::test_run::EXAMPLES)]
     Test(Box<TestOptions>),
     /// Run a program on a simulated machine: power-up, reference run, program, with PLC and servo loops.
     #[command(after_help = crate::run::EXAMPLES)]
@@ -66,40 +67,6 @@ pub(crate) enum Command {
     Man(ManOptions),
 }
 
-const TEST_EXAMPLES: &str = "\
-Examples:
-  bahn test part.h
-      Run part.h; report machining time, path, tools, removed material, warnings.
-  bahn test part.h --image part.png --view 3d
-      Show the finished part.
-  bahn test part.h --path part.csv --path part.svg
-      Every tool movement as a table and as a drawing.
-  bahn test part.h --model tnc360 --mp 7420=4 --set Q1=5,Q2=-3.5
-      On a TNC 360 with another machine parameter and Q parameters set.
-  bahn test part.h --tools tool.t --start X0,Y0,Z100 --format json
-      With a tool table, from a start position; the report as JSON.
-
-Tool table (--tools): a text file with a line of column names and one line for each tool:
-  T  L     R    R2  NAME
-  1  80.5  10   0   END MILL D20
-  2  62    4    4   BALL D8
-T is the number, L the length, R the radius, R2 the corner radius (0 flat end, as great as R ball
-end), in mm; DL, DR, DR2 are added to them. A tool that is locked (TL) or whose life is over (CUR.TIME
-greater than TIME2) must not be called; other columns are ignored. Columns are separated by
-blanks, tabs, commas or semicolons. TOOL.T files of later controls (first line BEGIN TOOL .T MM or
-INCH, fixed columns) load too.
-
-Machine parameters (--parameters): a text file with lines like `MP7430 : 1.2 ;overlap`. They replace
-values of the reference list of the model; --mp replaces single ones after that.
-
-JSON report (--format json), lengths in mm: program, unit, completed, error (message, program, block,
-line, detail, or null), machining_time_s (null when the feed is 0), path_mm (feed, rapid),
-blocks_executed, tool_calls (block, tool, speed_rpm), final_position, q, removed_mm3 (null without a
-blank), warnings (message, program, block, line, count), stops (block, function, program, line), printed (block,
-text, program, line: FN15).
-
-Ctrl-C ends the run with the report so far and exit code 130.";
-
 const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn check *.h
@@ -131,31 +98,8 @@ Examples:
   bahn explain
       List all messages.";
 
-/// Options of the test run.
-#[derive(Args, Debug)]
-pub(crate) struct TestOptions {
-    /// The part program, up to 1 GiB.
-    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: PathBuf,
-
-    /// Control model.
-    #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
-    pub model: ControlModel,
-
-    /// How the report is written.
-    #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
-    pub format: Format,
-
-    #[command(flatten)]
-    pub machine: MachineOptions,
-    #[command(flatten)]
-    pub run: RunOptions,
-    #[command(flatten)]
-    pub output: OutputOptions,
-}
-
 /// What the program runs on.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Machine")]
 pub(crate) struct MachineOptions {
     /// Tool table; without one tools are those that the program defines.
@@ -165,7 +109,12 @@ pub(crate) struct MachineOptions {
     #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
     pub parameters: Option<PathBuf>,
     /// One machine parameter, as 7420=4 or 1010.0=5000 (repeatable, or several with commas).
-    #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
+    #[arg(
+        long = "mp",
+        value_name = "N=V",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
     pub mp: Vec<String>,
     /// Feed and rapid-traverse override, 0 to 150 %.
     #[arg(long = "override", value_name = "PERCENT", default_value = "100", value_parser = override_percent)]
@@ -200,6 +149,22 @@ pub(crate) struct RunOptions {
         allow_hyphen_values = true
     )]
     pub start: Vec<String>,
+    /// Where tools are changed: the tip of another tool stands there, as Z200 or X0,Y-100,Z200 in mm, workpiece
+    /// coordinates; by default above the blank.
+    #[arg(long, value_name = "Z..", value_delimiter = ',', allow_hyphen_values = true)]
+    pub tool_change: Vec<String>,
+    /// Where the workpiece lies in the machine: its datum from machine zero, for M91, M92 and the traverse
+    /// range, as X300,Y200,Z-350; by default MP960 where it is not 0.
+    #[arg(
+        long,
+        value_name = "X..,Y..,Z..",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    pub datum: Vec<String>,
+    /// Time after which a run is broken off with the report so far, s; 300 in a table, none otherwise.
+    #[arg(long, value_name = "S", value_parser = time_limit)]
+    pub time_limit: Option<f64>,
     /// Pass over optional blocks (/).
     #[arg(long)]
     pub skip_blocks: bool,
@@ -400,11 +365,11 @@ fn finite(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "no number".to_owned())
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()
         .filter(|value| *value > 0.0)
-        .ok_or_else(|| "it takes a length greater than 0 mm".to_owned())
+        .ok_or_else(|| "it takes a number greater than 0".to_owned())
 }
 
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
@@ -412,6 +377,13 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|value| *value >= 0.0)
         .ok_or_else(|| "it takes a time of 0 s or more".to_owned())
+}
+
+fn time_limit(text: &str) -> Result<f64, String> {
+    finite(text)
+        .ok()
+        .filter(|value| (0.001..=1e9).contains(value))
+        .ok_or_else(|| "it takes a time of at least 0.001 s".to_owned())
 }
 
 pub(crate) fn override_percent(text: &str) -> Result<f64, String> {

@@ -1,53 +1,227 @@
 //! The part while the path runs: removes material, is touched by the probe, and is drawn at the end.
 
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::Path;
 
-use bahn_path::{Axis, Blank, BlockRef, Curve, Function, PathElement, Position, ToolShape, Touch};
+use bahn_path::{
+    At, Axis, Blank, BlockRef, Curve, Function, OverrideLaw, PathElement, Position, ToolShape, Touch,
+};
 use bahn_picture::Image;
-use bahn_workpiece::{Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece};
+use bahn_workpiece::{
+    EventKind, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
+};
 
 use crate::cli::{OutputOptions, View};
 use crate::files::NewFile;
 use crate::report::{Notice, Record};
 use crate::{UsageError, files};
 
+/// What columns the part is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Columns {
+    /// As many as a picture needs.
+    BySize,
+    /// Of this side, mm.
+    Millimetres(f64),
+    /// About so many.
+    About(f64),
+}
+
+impl Columns {
+    fn resolution(self, blank: &Blank) -> Resolution {
+        match self {
+            Columns::BySize => Resolution::BySize,
+            Columns::Millimetres(side) => Resolution::Millimetres(side),
+            Columns::About(count) => {
+                let side = |axis: Axis| {
+                    let corner = |of: &[f64; 3]| of.get(axis.index()).copied().unwrap_or_default();
+                    corner(&blank.max) - corner(&blank.min)
+                };
+                let area = side(blank.plane.first) * side(blank.plane.second);
+                Resolution::Millimetres((area / count).sqrt())
+            }
+        }
+    }
+}
+
 /// The part, once BLK FORM gives a blank.
 pub(crate) struct Cutting {
-    resolution: Resolution,
+    columns: Columns,
     workpiece: Option<(Blank, Workpiece)>,
-    tool: ToolShape,
+    /// Tool in the spindle; `None` before the first TOOL CALL.
+    tool: Option<u32>,
+    shape: ToolShape,
     tool_axis: Axis,
     moved: bool,
+    spindle: Spindle,
+    /// Tools that cut with M4.
+    left_hand: BTreeSet<u32>,
+    /// What was said of a tool already.
+    told: HashSet<(Option<u32>, EventKind)>,
+    /// Where each tool was below the blank: first and last block, elements.
+    below: BTreeMap<Option<u32>, (BlockRef, BlockRef, u64)>,
+}
+
+/// What the program did with the spindle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Spindle {
+    turns: Option<Turn>,
+    speed_rpm: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    Clockwise,
+    CounterClockwise,
+}
+
+impl Spindle {
+    /// Takes a function of the program [003:7459-7577]: M0, M2, M6 and M30 stop the spindle as M5 does.
+    fn take(&mut self, function: &Function) {
+        match function {
+            Function::M(3 | 13) => self.turns = Some(Turn::Clockwise),
+            Function::M(4 | 14) => self.turns = Some(Turn::CounterClockwise),
+            Function::M(0 | 2 | 5 | 6 | 30) => self.turns = None,
+            Function::Tool(call) => self.speed_rpm = call.speed_rpm,
+            Function::SpindleSpeed(speed_rpm) => self.speed_rpm = *speed_rpm,
+            _ => {}
+        }
+    }
+
+    /// What is wrong when a tool cuts now.
+    fn fault(&self, left_hand: bool) -> Option<EventKind> {
+        let right = if left_hand {
+            Turn::CounterClockwise
+        } else {
+            Turn::Clockwise
+        };
+        match self.turns {
+            None => Some(EventKind::SpindleStopped),
+            Some(_) if self.speed_rpm == 0.0 => Some(EventKind::SpindleWithoutSpeed),
+            Some(turn) if turn != right => Some(EventKind::SpindleWrongWay),
+            Some(_) => None,
+        }
+    }
 }
 
 impl Cutting {
-    pub fn new(resolution_mm: Option<f64>) -> Cutting {
+    /// For tools of which some cut with M4.
+    pub fn new(columns: Columns, left_hand: BTreeSet<u32>) -> Cutting {
         Cutting {
-            resolution: resolution_mm.map_or(Resolution::BySize, Resolution::Millimetres),
+            columns,
             workpiece: None,
-            tool: ToolShape::default(),
+            tool: None,
+            shape: ToolShape::default(),
             tool_axis: Axis::Z,
             moved: false,
+            spindle: Spindle::default(),
+            left_hand,
+            told: HashSet::new(),
+            below: BTreeMap::new(),
         }
     }
 
     /// Takes an element that was executed. A blank that the wanted resolution does not fit is wrong use.
     #[inline]
     pub fn element(&mut self, element: &PathElement, record: &mut Record) -> Result<(), UsageError> {
-        for function in element.functions() {
-            match &function.function {
-                Function::Tool(call) => (self.tool, self.tool_axis) = (call.shape, call.axis),
-                Function::Blank(blank) => self.blank(blank, element.block, record)?,
-                _ => {}
-            }
+        if element.functions.is_some() {
+            self.functions(element, false, record)?;
         }
         if element.curve != Curve::Hold {
             self.moved = true;
             if let Some((_, workpiece)) = &mut self.workpiece {
-                workpiece.cut(element, &self.tool, self.tool_axis);
+                // The spindle of rigid tapping is turned by the cycle itself [003:5106].
+                let tapping = element.override_law == OverrideLaw::Disabled;
+                if tapping {
+                    workpiece.note_cut(None);
+                }
+                workpiece.cut(element, &self.shape, self.tool_axis);
+                if tapping {
+                    self.watch();
+                }
             }
         }
+        if element.functions.is_some() {
+            self.functions(element, true, record)?;
+        }
         Ok(())
+    }
+
+    /// Takes the functions at the end of an element, or all others.
+    fn functions(
+        &mut self,
+        element: &PathElement,
+        at_end: bool,
+        record: &mut Record,
+    ) -> Result<(), UsageError> {
+        let before = self.spindle;
+        for function in element.functions() {
+            if (function.at == At::End) != at_end {
+                continue;
+            }
+            self.spindle.take(&function.function);
+            match &function.function {
+                Function::Tool(call) => {
+                    self.take_events(record);
+                    (self.tool, self.shape, self.tool_axis) = (Some(call.tool), call.shape, call.axis);
+                    self.watch();
+                }
+                Function::Blank(blank) => self.blank(blank, element.block, record)?,
+                _ => {}
+            }
+        }
+        if self.spindle != before {
+            self.watch();
+        }
+        Ok(())
+    }
+
+    /// Lets the workpiece note the first cut of the tool with which something is wrong.
+    fn watch(&mut self) {
+        let left_hand = self.tool.is_some_and(|tool| self.left_hand.contains(&tool));
+        let fault = self
+            .spindle
+            .fault(left_hand)
+            .filter(|kind| !self.told.contains(&(self.tool, *kind)));
+        if let Some((_, workpiece)) = &mut self.workpiece {
+            workpiece.note_cut(fault);
+        }
+    }
+
+    /// Says what happened with the tool in the spindle.
+    fn take_events(&mut self, record: &mut Record) {
+        let Some((_, workpiece)) = &mut self.workpiece else {
+            return;
+        };
+        for event in workpiece.take_events() {
+            match event.kind {
+                EventKind::BelowBlank => {
+                    let (_, last, count) =
+                        self.below
+                            .entry(self.tool)
+                            .or_insert((event.block, event.block, 0));
+                    *last = event.block.max(*last);
+                    *count += event.count;
+                }
+                EventKind::SpindleStopped
+                | EventKind::SpindleWithoutSpeed
+                | EventKind::SpindleWrongWay
+                | EventKind::NoRadius => {
+                    if self.told.insert((self.tool, event.kind)) {
+                        let tool = self.tool;
+                        record.warn(
+                            event.block,
+                            Notice::Tool {
+                                tool,
+                                kind: event.kind,
+                            },
+                            1,
+                        );
+                    }
+                }
+                kind => record.warn(event.block, Notice::Cut(kind), event.count),
+            }
+        }
     }
 
     /// BLK FORM: counts until something moves; the same again, in a repeat, changes nothing.
@@ -60,9 +234,10 @@ impl Cutting {
             }
             _ => {}
         }
-        let workpiece = Workpiece::new(blank, self.resolution)
+        let workpiece = Workpiece::new(blank, self.columns.resolution(blank))
             .map_err(|error| UsageError::new(format!("--resolution: {error}")))?;
         self.workpiece = Some((*blank, workpiece));
+        self.watch();
         Ok(())
     }
 
@@ -79,12 +254,12 @@ impl Cutting {
     }
 
     /// The part at the end of the run; `None` without a blank.
-    pub fn finish(self, record: &mut Record) -> Option<Part> {
-        let (_, mut workpiece) = self.workpiece?;
-        for event in workpiece.take_events() {
-            record.warn(event.block, Notice::Cut(event.kind), event.count);
+    pub fn finish(mut self, record: &mut Record) -> Option<Part> {
+        self.take_events(record);
+        for (tool, (first, last, count)) in std::mem::take(&mut self.below) {
+            record.warn(first, Notice::BelowBlank { tool, last }, count);
         }
-        Some(workpiece.finished())
+        self.workpiece.map(|(_, workpiece)| workpiece.finished())
     }
 }
 

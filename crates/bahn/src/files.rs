@@ -1,5 +1,7 @@
 //! Files: reading programs, finding called ones, writing without leaving half-written files.
 
+mod neighbours;
+
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Read, Write};
@@ -69,9 +71,45 @@ pub(crate) fn read_table(path: &Path) -> Result<Vec<u8>, UsageError> {
     }
 }
 
-/// Wrong use: a file that cannot be read or written.
+/// Wrong use: a file that cannot be read or written. Of one that is not there its folder says what is.
 pub(crate) fn cannot(verb: &str, path: &Path, error: &io::Error) -> UsageError {
-    UsageError::new(format!("cannot {verb} {}: {error}", path.display()))
+    let mut text = format!("cannot {verb} {}: {error}", path.display());
+    if verb == "read" && error.kind() == io::ErrorKind::NotFound {
+        text += &neighbours::of(path).unwrap_or_default();
+    }
+    UsageError::new(text)
+}
+
+/// Refuses outputs, given with their options, that would overwrite an input or each other.
+pub(crate) fn keep_inputs(inputs: &[&Path], outputs: &[(&str, &Path)]) -> Result<(), UsageError> {
+    let mut taken: Vec<(PathBuf, &str)> = inputs
+        .iter()
+        .filter_map(|path| Some((regular(path)?, "an input")))
+        .collect();
+    for (option, path) in outputs {
+        let Some(file) = regular(path) else { continue };
+        if let Some((_, by)) = taken.iter().find(|(other, _)| *other == file) {
+            return Err(UsageError::new(format!(
+                "{option} {}: this file is already {by} of the command",
+                path.display()
+            )));
+        }
+        taken.push((file, "an output"));
+    }
+    Ok(())
+}
+
+/// What a path leads to, by its real name; `None` for what is there but no regular file, as `/dev/stdout`.
+fn regular(path: &Path) -> Option<PathBuf> {
+    match fs::metadata(path) {
+        Ok(there) if !there.is_file() => None,
+        Ok(_) => fs::canonicalize(path).ok(),
+        Err(_) => {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            let folder = fs::canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
+            Some(folder.join(path.file_name()?))
+        }
+    }
 }
 
 /// The name that a program of this path is opened by: its absolute path, so that no two programs share one

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use crate::Outcome;
 
@@ -32,5 +33,58 @@ impl Interrupt {
     /// The flag, for rooms that watch it themselves.
     pub fn flag(&self) -> Arc<AtomicBool> {
         self.0.clone()
+    }
+}
+
+/// Ends one run: by Ctrl-C, or because its time is over.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stop {
+    flag: Arc<AtomicBool>,
+    late: Arc<AtomicBool>,
+}
+
+impl Stop {
+    /// Ctrl-C ends the run.
+    pub fn by(interrupt: &Interrupt) -> Stop {
+        Stop {
+            flag: interrupt.flag(),
+            late: Arc::default(),
+        }
+    }
+
+    /// Ends the run when this time has passed.
+    pub fn after(&self, limit: Duration) {
+        let stop = self.clone();
+        std::thread::spawn(move || {
+            std::thread::sleep(limit);
+            stop.end_late();
+        });
+    }
+
+    /// Ends the run.
+    pub fn end(&self) {
+        self.flag.store(true, Ordering::Relaxed);
+    }
+
+    /// Ends the run because its time is over.
+    pub fn end_late(&self) {
+        self.late.store(true, Ordering::Relaxed);
+        self.end();
+    }
+
+    /// Whether the run shall end.
+    #[inline]
+    pub fn is_requested(&self) -> bool {
+        self.flag.load(Ordering::Relaxed)
+    }
+
+    /// Whether its time is over.
+    pub fn is_late(&self) -> bool {
+        self.late.load(Ordering::Relaxed)
+    }
+
+    /// The flag, for rooms that watch it themselves.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        self.flag.clone()
     }
 }

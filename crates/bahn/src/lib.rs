@@ -7,7 +7,7 @@
 //! - `cli`: options and help texts; `settings` and `tool_table` turn them into the settings of the
 //!   other rooms;
 //! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
-//!   `path_csv`, `path_svg` and `cutting` take the path elements;
+//!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
 //!   makes folders of machines;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
@@ -44,6 +44,7 @@ mod report_text;
 mod run;
 mod scope;
 mod settings;
+mod shelf;
 mod test_run;
 mod tool_table;
 

@@ -31,6 +31,8 @@ pub(crate) struct PathDrawing {
     bounds: Option<[Point2; 2]>,
     first: Option<Point2>,
     last: Option<Point2>,
+    /// Where the path leaves the workpiece for a place that is not known (M91).
+    leaving: Vec<Point2>,
 }
 
 /// The commands of one kind of line.
@@ -62,8 +64,10 @@ impl PathDrawing {
         }
         self.elements += 1;
         let plane = *self.plane.get_or_insert(Plane::XY);
-        if let (Some(from), Some(to)) = (known(plane, &element.start), known(plane, &element.end)) {
-            self.draw(plane, element, from, to);
+        match (known(plane, &element.start), known(plane, &element.end)) {
+            (Some(from), Some(to)) => self.draw(plane, element, from, to),
+            (Some(from), None) => self.leaving.push(from),
+            _ => {}
         }
         true
     }
@@ -111,6 +115,31 @@ impl PathDrawing {
         }
     }
 
+    /// Draws the ways that leave the workpiece: out of everything, on the nearest side.
+    fn lead_away(&mut self) {
+        const BEYOND: f64 = 0.05;
+        let Some([min, max]) = self.bounds else { return };
+        let beyond = BEYOND * (max[0] - min[0]).max(max[1] - min[1]);
+        for from in std::mem::take(&mut self.leaving) {
+            let sides = [
+                from[0] - min[0],
+                max[0] - from[0],
+                from[1] - min[1],
+                max[1] - from[1],
+            ];
+            let nearest = sides.iter().copied().fold(f64::INFINITY, f64::min);
+            let to = match sides.iter().position(|side| *side == nearest) {
+                Some(0) => [min[0] - beyond, from[1]],
+                Some(1) => [max[0] + beyond, from[1]],
+                Some(2) => [from[0], min[1] - beyond],
+                _ => [from[0], max[1] + beyond],
+            };
+            self.rapid.move_to(from);
+            self.rapid.line_to(to);
+            self.include(to);
+        }
+    }
+
     /// Writes the drawing.
     pub fn write(mut self, title: &str, file: &mut NewFile) -> Result<(), UsageError> {
         let plane = self.plane.unwrap_or(Plane::XY);
@@ -127,6 +156,7 @@ impl PathDrawing {
         for point in blank.into_iter().flatten() {
             self.include(point);
         }
+        self.lead_away();
         let sheet = Sheet::new(self.bounds.unwrap_or([[0.0; 2], [100.0; 2]]));
         let mut out = Vec::new();
         sheet.begin(&mut out, title, plane);

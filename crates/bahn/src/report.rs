@@ -47,6 +47,14 @@ pub(crate) enum Notice {
     Program(WarningKind),
     /// Found while removing material.
     Cut(EventKind),
+    /// Found while removing material, once for each tool.
+    Tool {
+        /// `None` before the first TOOL CALL.
+        tool: Option<u32>,
+        kind: EventKind,
+    },
+    /// The tool was below the blank, last in this block.
+    BelowBlank { tool: Option<u32>, last: BlockRef },
     /// A second, different BLK FORM after the first movement.
     BlankRedefined,
     /// TCH PROBE without a part.
@@ -157,9 +165,10 @@ impl Record {
         let place = |block: BlockRef| Place::of(run, block);
         self.warnings.sort_by_key(|(block, ..)| *block);
         let warnings = self.warnings.into_iter().map(|(block, notice, count)| {
+            let message = notice.text(model, block);
             let Place { program, block, line } = place(block);
             WarningReport {
-                message: notice.text(model),
+                message,
                 program,
                 block,
                 line,
@@ -247,12 +256,30 @@ fn further(what: &str, count: u64) -> Option<WarningReport> {
 }
 
 impl Notice {
-    /// What is shown.
-    fn text(&self, model: ControlModel) -> String {
+    /// What is shown at a block.
+    fn text(&self, model: ControlModel, block: BlockRef) -> String {
+        let named = |tool: &Option<u32>| tool.map_or("no tool".into(), |tool| format!("tool {tool}"));
         match self {
             Notice::Program(kind) => kind.to_string(),
             Notice::Cut(EventKind::RapidCut) => "material is removed in rapid traverse".into(),
-            Notice::Cut(EventKind::BelowBlank) => "the tool is below the blank".into(),
+            Notice::BelowBlank { tool, last } if *last == block => {
+                format!("{} is below the blank", named(tool))
+            }
+            Notice::BelowBlank { tool, last } => {
+                format!("{} is below the blank, last in block {}", named(tool), last.block)
+            }
+            Notice::Tool {
+                tool: None,
+                kind: EventKind::NoRadius,
+            } => "no tool is called: the path through the blank removes nothing".into(),
+            Notice::Tool { tool, kind } => format!("{} {}", named(tool), what_a_tool_does(*kind)),
+            Notice::Cut(
+                kind @ (EventKind::BelowBlank
+                | EventKind::SpindleStopped
+                | EventKind::SpindleWithoutSpeed
+                | EventKind::SpindleWrongWay
+                | EventKind::NoRadius),
+            ) => format!("a tool {}", what_a_tool_does(*kind)),
             Notice::Cut(EventKind::ToolAxisNotShown) => {
                 format!(
                     "{}: the tool axis is not that of BLK FORM",
@@ -274,6 +301,17 @@ impl Notice {
     }
 }
 
+/// What is said once of a tool.
+fn what_a_tool_does(kind: EventKind) -> &'static str {
+    match kind {
+        EventKind::SpindleStopped => "cuts while the spindle stands still",
+        EventKind::SpindleWithoutSpeed => "cuts with spindle speed 0",
+        EventKind::SpindleWrongWay => "cuts while the spindle turns the wrong way for it",
+        EventKind::NoRadius => "has no radius: it moves through the blank and removes nothing",
+        _ => "is below the blank",
+    }
+}
+
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum End {
@@ -283,6 +321,8 @@ pub(crate) enum End {
     Stopped,
     /// By Ctrl-C.
     Interrupted,
+    /// By the time limit.
+    Late,
     /// By an error of the program.
     Failed(Box<ErrorReport>),
 }

@@ -1,7 +1,9 @@
 //! From options to the settings of the other rooms.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use bahn_control::Tool;
 use bahn_interpreter::{Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
 use bahn_parameters::{ControlModel, ParameterList};
@@ -46,23 +48,39 @@ fn list_errors(path: &Path, errors: &[impl std::fmt::Display]) -> String {
     lines.join("\n")
 }
 
+/// The tool table of the run; `None` when tools are those that the program defines.
+pub(crate) fn tools(machine: &MachineOptions) -> Result<Option<BTreeMap<u32, Tool>>, UsageError> {
+    machine.tools.as_deref().map(tool_table::load).transpose()
+}
+
+/// The tools that cut with M4.
+pub(crate) fn left_hand(tools: Option<&BTreeMap<u32, Tool>>) -> BTreeSet<u32> {
+    let tools = tools.into_iter().flatten();
+    tools
+        .filter(|(_, tool)| tool.left_hand)
+        .map(|(number, _)| *number)
+        .collect()
+}
+
 /// The settings of the interpreter.
 pub(crate) fn interpreter(
     list: &ParameterList,
-    machine: &MachineOptions,
+    tools: Option<&BTreeMap<u32, Tool>>,
     run: &RunOptions,
 ) -> Result<bahn_interpreter::Settings, UsageError> {
     let model = list.model();
-    let table = machine.tools.as_deref().map(tool_table::load).transpose()?;
+    let mut rules = Rules::of(list);
+    rules.machine_zero = machine_zero(list, &position("--datum", &run.datum, model)?);
     Ok(bahn_interpreter::Settings {
         model,
-        rules: Rules::of(list),
-        barred_tools: tool_table::barred(table.iter().flatten()),
-        tools: table.map(tool_table::shapes),
+        rules,
         texts: bahn_interpreter::MachineTexts::default(),
+        barred_tools: tool_table::barred(tools.into_iter().flatten()),
+        tools: tools.map(|tools| tools.iter().map(|(number, tool)| (*number, tool.shape)).collect()),
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
         tool_length_mm: None,
+        tool_change: position("--tool-change", &run.tool_change, model)?,
         machine: false,
         skip_blocks: run.skip_blocks,
         inch_feed: run.inch_feed.map(Into::into),
@@ -70,6 +88,17 @@ pub(crate) fn interpreter(
         skip_unknown: run.skip_unknown,
         max_blocks_without_motion: run.max_blocks,
     })
+}
+
+/// Machine zero from the workpiece datum. Without `--datum` the workpiece datum is that of the scales, and
+/// MP960 says where machine zero lies; where both are silent nobody knows it (inferred) [000:6244].
+fn machine_zero(list: &ParameterList, datum: &Position) -> Position {
+    let zero = |axis: Axis| match (datum.get(axis), list.machine_datum(axis)) {
+        (Some(datum), _) => -datum,
+        (None, 0.0) => f64::NAN,
+        (None, machine_datum) => machine_datum,
+    };
+    Axis::ALL.map(zero).into()
 }
 
 /// The limits of motion.

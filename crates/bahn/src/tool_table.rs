@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::Path;
 
 use bahn_control::Tool;
-use bahn_interpreter::{ToolState, ToolTable, tool_key};
+use bahn_interpreter::{ToolState, tool_key};
 use bahn_path::ToolShape;
 
 use crate::{UsageError, files};
@@ -20,14 +20,6 @@ pub(crate) fn load(path: &Path) -> Result<BTreeMap<u32, Tool>, UsageError> {
             faults.first().map(TableFault::to_string).unwrap_or_default()
         ))
     })
-}
-
-/// The shapes of the tools, for the interpreter.
-pub(crate) fn shapes(tools: BTreeMap<u32, Tool>) -> ToolTable {
-    tools
-        .into_iter()
-        .map(|(number, tool)| (number, tool.shape))
-        .collect()
 }
 
 /// The tools that must not be called.
@@ -156,6 +148,7 @@ impl Columns {
             length: length("L")? + length("DL")?,
             radius: length("R")? + length("DR")?,
             corner_radius: length("R2")? + length("DR2")?,
+            point_angle_deg: self.point_angle_deg(&fields)?,
         };
         if shape.corner_radius < 0.0 || length("R")? < 0.0 {
             return Err("a radius is negative".into());
@@ -176,13 +169,34 @@ impl Columns {
             "1" | "Y" | "J" | "S" | "ST" => true,
             text => return Err(format!("ST: `{text}` is neither empty nor S")),
         };
+        // Tables of later controls write `DIRECT.` and `DIR.`; blank and - are M3 [000:15449].
+        let direct = ["DIRECT", "DIRECT.", "DIR."].map(|name| self.field(&fields, name));
+        let left_hand = match direct.into_iter().find(|text| !text.is_empty()) {
+            None | Some("-") | Some("0") => false,
+            Some("+") | Some("1") => true,
+            Some(text) => return Err(format!("DIRECT: `{text}` is neither - (M3) nor + (M4)")),
+        };
         let tool_data = Tool {
             shape,
             pocket,
             special,
             state: self.state(&fields)?,
+            left_hand,
         };
         Ok((tool, tool_data))
+    }
+
+    /// T-ANGLE (later controls): the angle of a drill's point; missing, 0 and 180 are a flat end.
+    fn point_angle_deg(&self, fields: &[String]) -> Result<f64, String> {
+        let angle = self.length(fields, "T-ANGLE")?;
+        if angle == 0.0 || angle == 180.0 {
+            return Ok(0.0);
+        }
+        if !(ToolShape::POINT_ANGLE_MIN_DEG..180.0).contains(&angle) {
+            let least = ToolShape::POINT_ANGLE_MIN_DEG;
+            return Err(format!("T-ANGLE: a point has {least} to 180 degrees"));
+        }
+        Ok(angle)
     }
 
     fn fields(&self, line: &str) -> Result<Vec<String>, String> {
@@ -292,6 +306,7 @@ mod tests {
                 length,
                 radius,
                 corner_radius,
+                point_angle_deg: 0.0,
             },
             ..Tool::default()
         }
@@ -352,6 +367,22 @@ mod tests {
         use ToolState::{Expired, Locked, Replaced, Usable};
         assert_eq!(states, [Locked, Usable, Expired, Replaced, Usable]);
         assert_eq!(barred(table.iter()).len(), 3);
+    }
+
+    #[test]
+    fn points_of_drills_have_an_angle() {
+        let table = parse("T;R;T-ANGLE\n1;5;118\n2;5;\n3;5;180\n").unwrap();
+        let angles: Vec<f64> = table.values().map(|tool| tool.shape.point_angle_deg).collect();
+        assert_eq!(angles, [118.0, 0.0, 0.0]);
+        assert!(parse("T;R;T-ANGLE\n1;5;181").is_err() && parse("T;R;T-ANGLE\n1;5;-5").is_err());
+    }
+
+    #[test]
+    fn left_hand_tools_are_marked_by_direct() {
+        let table = parse("T;R;DIRECT\n1;5;-\n2;5;\n3;5;+\n").unwrap();
+        let left: Vec<bool> = table.values().map(|tool| tool.left_hand).collect();
+        assert_eq!(left, [false, false, true]);
+        assert!(parse("T;R;DIRECT\n1;5;x").is_err());
     }
 
     #[test]

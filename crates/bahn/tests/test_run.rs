@@ -510,7 +510,7 @@ fn rapid_cuts_are_reported() {
         all,
         [
             (&json!(6), &json!("material is removed in rapid traverse")),
-            (&json!(7), &json!("the tool is below the blank"))
+            (&json!(7), &json!("tool 1 is below the blank"))
         ]
     );
     // Without graphics nothing is removed, and nothing known of it.
@@ -664,7 +664,6 @@ fn wrong_use_has_exit_code_2() {
         "frobnicate",
         "test",
         "test nothing.H",
-        "test .",
         "test main.H --format xml",
         "test main.H --path out.txt",
         "test main.H --path nowhere/out.csv",

@@ -204,6 +204,9 @@ impl Control {
         self.run.answer = None;
         self.run.restore = None;
         self.run.speed = 0.0;
+        if let Some(feeder) = &mut self.run.feeder {
+            feeder.interpreter_mut().give_up_work();
+        }
         self.end_probing();
         self.handshakes.abort(&mut self.exchange);
         for index in 0..crate::markers::AXES {
@@ -414,8 +417,8 @@ impl Control {
             start: self.offsets.to_path(machine),
             tool_length_mm: Some(self.offsets.tool_length),
             machine: true,
-            inch_feed: self.inch_feed,
             max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
+            inch_feed: self.inch_feed,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);

@@ -21,6 +21,8 @@ pub struct Tool {
     pub pocket: Option<u16>,
     /// A special tool, which takes more than one pocket.
     pub special: bool,
+    /// It cuts when the spindle turns counter-clockwise (M4): DIRECT [000:9028].
+    pub left_hand: bool,
     /// Whether it may be called.
     pub state: ToolState,
 }

@@ -116,13 +116,18 @@ impl SpindleUnit {
         self.plc_volts = volts;
     }
 
-    /// Whether the spindle has a speed: otherwise it is refused, M2092 [000:5653-5656].
-    pub fn judge(&mut self, rpm: f64, exchange: &mut Exchange) -> bool {
-        let has = match self.parameters.output {
+    /// Whether the spindle has a speed.
+    pub fn has_speed(&self, rpm: f64) -> bool {
+        match self.parameters.output {
             SpindleOutput::None => true,
             SpindleOutput::Coded { .. } => self.speed_code(rpm).is_some(),
             SpindleOutput::Analogue { .. } => self.servo.gear_for(rpm).is_some(),
-        };
+        }
+    }
+
+    /// A speed that the spindle does not have is refused: M2092 [000:5653-5656].
+    pub fn judge(&mut self, rpm: f64, exchange: &mut Exchange) -> bool {
+        let has = self.has_speed(rpm);
         self.wrong = !has;
         self.wrong_speed |= !has;
         exchange.nc_set(signal::ILLEGAL_SPINDLE_SPEED, self.wrong);

@@ -35,6 +35,11 @@ impl Control {
         self.path.element()
     }
 
+    /// Path length to the end of that element, mm.
+    pub fn rest_mm(&self) -> f64 {
+        self.path.rest_mm()
+    }
+
     /// The interpreter of the program that runs, or ran last.
     pub fn interpreter(&self) -> Option<&Interpreter> {
         self.run.feeder.as_ref().map(crate::feeder::Feeder::interpreter)

@@ -19,6 +19,7 @@ fn build(parameters: &[&str], plc: &str, program: &str) -> Rig {
             length,
             radius: 5.0,
             corner_radius: 0.0,
+            ..ToolShape::default()
         },
         pocket,
         special,

@@ -184,6 +184,8 @@ pub enum WarningKind {
     BlankEmpty,
     /// A blank was given in a called program only [003:7908-7912].
     BlankInCalledProgram,
+    /// M91 or M92 without the place of the workpiece in the machine: the axes leave the workpiece.
+    MachineZeroUnknown,
     /// M2 or M30 stands in a called program, where it must not [003:3870-3902].
     EndInCalledProgram,
     /// A function that has no effect here, or only part of it.
@@ -226,6 +228,12 @@ impl std::fmt::Display for WarningKind {
                 write!(
                     f,
                     "BLK FORM stands in a called program only; give it in the main program"
+                )
+            }
+            WarningKind::MachineZeroUnknown => {
+                write!(
+                    f,
+                    "M91 and M92 lead away from the workpiece: where it lies in the machine is not known"
                 )
             }
             WarningKind::EndInCalledProgram => {

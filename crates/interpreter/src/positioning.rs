@@ -278,9 +278,36 @@ impl Run {
             return Err(MessageId::FeedRateIsMissing.into());
         };
         self.check_count(axes, settings)?;
-        self.check_range(&nominal, axes, settings)?;
         self.modal.last_move = None;
+        let placed = nominal.known().intersection(axes);
+        self.check_range(&nominal, placed, settings)?;
+        if placed != axes {
+            return self.leave_workpiece(nominal, axes, feed, functions);
+        }
         self.emit_movement(Curve::Line, nominal, axes, Compensation::Off, feed, functions)
+    }
+
+    /// A movement to a place of the machine when nobody has said where the workpiece lies in it: the axes have
+    /// no position until they are programmed again (inferred).
+    fn leave_workpiece(
+        &mut self,
+        nominal: Position,
+        axes: AxisSet,
+        feed: FeedRate,
+        functions: BlockFunctions,
+    ) -> Result<Flow, Fault> {
+        if !std::mem::replace(&mut self.machine_zero_missed, true) {
+            self.warn(WarningKind::MachineZeroUnknown);
+        }
+        self.finish_contour()?;
+        let start = self.tool_centre();
+        let mut end = start;
+        for axis in axes.iter() {
+            end[axis] = nominal[axis];
+        }
+        (self.modal.nominal, self.modal.actual) = (nominal, end);
+        let element = self.element(Curve::Line, start, end, feed);
+        self.push(element, functions, false)
     }
 
     /// Transforms a movement into workpiece coordinates. Axes that are neither programmed nor turned by

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use bahn_parameters::{InchFeed, MessageId};
 use bahn_path::{
-    At, Axis, AxisSet, Barrier, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Position,
-    Synchronisation, TechnologyFunction, ToolShape,
+    At, Axis, AxisSet, Barrier, Blank, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement,
+    Position, Synchronisation, TechnologyFunction, ToolShape,
 };
 use bahn_program::{Block, Compensation, Operation, Unit, Value};
 
@@ -45,8 +45,10 @@ pub(crate) struct Run {
     pub warnings: Vec<Warning>,
     /// Functions that the user was told of.
     pub said: Said,
-    /// A BLK FORM was given in the main program.
-    pub blank_given: bool,
+    /// The first BLK FORM of the main program.
+    pub blank: Option<Blank>,
+    /// It was said that the place of machine zero is not known.
+    pub machine_zero_missed: bool,
     /// The next block is a straight line with coordinates: neither a rounding nor a tangential arc can refer
     /// to the movement of this block, so nothing needs to be held back for it.
     pub line_follows: bool,
@@ -92,7 +94,8 @@ impl Run {
             block: BlockRef::default(),
             warnings: Vec::new(),
             said: Said::default(),
-            blank_given: false,
+            blank: None,
+            machine_zero_missed: false,
             line_follows: false,
             join_follows: false,
             increments_from: None,

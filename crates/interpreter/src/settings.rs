@@ -26,6 +26,10 @@ pub struct Settings {
     /// Length of the tool that is in the spindle before the start, mm. `None` when nobody knows: the first
     /// TOOL CALL then leaves the position as it is.
     pub tool_length_mm: Option<f64>,
+    /// Where the tip stands after the change to another tool, workpiece coordinates, mm; axes that are not
+    /// given stay where they are, the tool axis at least on the upper face of the blank. On a machine the
+    /// axes stand where they stand.
+    pub tool_change: Position,
     /// Pass over blocks with `/`.
     pub skip_blocks: bool,
     /// What F counts in a program in inches; `None` for what it counts on the model.
@@ -53,6 +57,7 @@ impl Default for Settings {
             q_values: Vec::new(),
             start: Position::UNKNOWN,
             tool_length_mm: None,
+            tool_change: Position::UNKNOWN,
             skip_blocks: false,
             inch_feed: None,
             strict: false,
@@ -139,7 +144,8 @@ pub struct Rules {
     pub spindle_orientation_deg: f64,
     /// MP950: machine datum of M92 from machine zero, mm or degrees [000:6248-6258].
     pub machine_datum: Position,
-    /// MP960: machine zero of M91 from the workpiece datum of the run, mm or degrees [000:6244].
+    /// MP960: machine zero of M91 from the workpiece datum of the run, mm or degrees [000:6244]. An axis
+    /// whose machine zero is not known leaves the workpiece with M91 and M92 and has no position then.
     pub machine_zero: Position,
     /// MP1060: acceleration of each axis, m/s²: limits the rounding arcs of M112 [000:5140-5152].
     pub acceleration_m_s2: [f64; Axis::COUNT],

@@ -1,7 +1,9 @@
 //! Tools and the blank.
 
 use bahn_parameters::MessageId;
-use bahn_path::{At, Axis, Blank, Function, Plane, Synchronisation, TechnologyFunction, ToolCall, ToolShape};
+use bahn_path::{
+    At, Axis, Blank, Function, Plane, Position, Synchronisation, TechnologyFunction, ToolCall, ToolShape,
+};
 use bahn_program::{Coordinates, Value};
 
 use crate::availability::{Feature, words};
@@ -58,6 +60,7 @@ impl Run {
                 length,
                 radius,
                 corner_radius: 0.0,
+                ..ToolShape::default()
             },
         );
         Ok(())
@@ -101,7 +104,12 @@ impl Run {
             .unwrap_or(0.0);
         let axis = axis.or(self.modal.tool.map(|tool| tool.axis)).unwrap_or(Axis::Z);
         self.set_tool_axis(axis)?;
-        self.change_length(axis, shape.length);
+        if settings.machine || self.modal.tool.is_some_and(|tool| tool.number == number) {
+            self.change_length(axis, shape.length);
+        } else {
+            self.modal.length_mm = Some(shape.length);
+            self.lift_out(axis, &settings.tool_change);
+        }
         self.modal.tool = Some(Tool {
             number,
             axis,
@@ -146,6 +154,26 @@ impl Run {
             for position in [&mut self.modal.nominal, &mut self.modal.actual] {
                 position[old_axis] += before;
                 position[axis] -= length;
+            }
+        }
+    }
+
+    /// Without a machine nobody knows where tools are changed: another tool is lifted out of the workpiece
+    /// until its axis is positioned (inferred).
+    fn lift_out(&mut self, tool_axis: Axis, change_at: &Position) {
+        let top = self
+            .blank
+            .zip(tool_axis.main())
+            .map_or(f64::NAN, |(blank, main)| {
+                blank.max.get(main.index()).copied().unwrap_or(f64::NAN)
+            });
+        for position in [&mut self.modal.nominal, &mut self.modal.actual] {
+            // An axis without a position keeps none; f64::max would give it that of the blank.
+            if position[tool_axis] < top {
+                position[tool_axis] = top;
+            }
+            for axis in change_at.known().iter() {
+                position[axis] = change_at[axis];
             }
         }
     }
@@ -329,13 +357,14 @@ impl Run {
             )));
         }
         if self.at.in_called_program() {
-            if !self.blank_given {
+            if self.blank.is_none() {
                 self.warn(WarningKind::BlankInCalledProgram);
             }
             return Ok(());
         }
-        self.blank_given = true;
-        self.output_function(Function::Blank(Blank { plane, min, max }), false)
+        let blank = Blank { plane, min, max };
+        self.blank.get_or_insert(blank);
+        self.output_function(Function::Blank(blank), false)
     }
 
     fn corner(&self, coordinates: &Coordinates, base: [f64; 3]) -> Result<[f64; 3], Fault> {

@@ -31,6 +31,7 @@ fn example(name: &str) -> Run {
                     length,
                     radius,
                     corner_radius,
+                    ..ToolShape::default()
                 },
             )
         });

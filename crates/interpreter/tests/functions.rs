@@ -160,14 +160,15 @@ fn rotary_axes() {
     assert_eq!(run.position[Axis::C], 135.0);
 }
 
-/// At a tool change the axes stand: the tip of a tool that is 15 mm longer stands 15 mm lower, and IZ counts
-/// from there. M91 positions the spindle nose: with a tool of 25 mm its tip is 25 mm below.
+/// On a machine the axes stand at a tool change: the tip of a tool that is 15 mm longer stands 15 mm lower, and
+/// IZ counts from there. M91 positions the spindle nose: with a tool of 25 mm its tip is 25 mm below.
 #[test]
 fn tip_follows_the_length_at_a_tool_change() {
-    let run = run(
+    let text = program(
         "TOOL DEF 1 L+10 R+1\nTOOL DEF 2 L+25 R+1\nTOOL CALL 1 Z S500\nL X+0 Y+0 Z+100 R0 FMAX\n\
-                   TOOL CALL 2 Z S500\nL X+5 R0 FMAX\nL IZ+10 R0 FMAX\nL Z+0 R0 FMAX M91",
+         TOOL CALL 2 Z S500\nL X+5 R0 FMAX\nL IZ+10 R0 FMAX\nL Z+0 R0 FMAX M91",
     );
+    let run = Job::new(text).with(|s| s.machine = true).run();
     let moves: Vec<_> = run.moves().map(|e| (xyz(&e.start), xyz(&e.end))).collect();
     assert_eq!(moves[1], ([0.0, 0.0, 85.0], [5.0, 0.0, 85.0]));
     assert_eq!(moves[2], ([5.0, 0.0, 85.0], [5.0, 0.0, 95.0]));
@@ -236,4 +237,72 @@ fn rapid_traverse_in_tenths_of_an_inch() {
         run.moves()
             .all(|element| element.feed == bahn_path::FeedRate::Rapid)
     );
+}
+
+/// Without a machine another tool is lifted out, at least to the upper face of the blank, until its axis is
+/// positioned; the same tool with another DL stays where it is, its tip lower by the difference.
+#[test]
+fn another_tool_is_lifted_out_of_the_workpiece() {
+    let text = program(
+        "BLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+50 Y+50 Z+3\nTOOL DEF 1 L+10 R+1\nTOOL DEF 2 L+95 R+1\n\
+         TOOL CALL 1 Z S500\nL X+0 Y+0 Z-5 R0 FMAX\nTOOL CALL 1 Z S800 DL+2\nL X+1 FMAX\n\
+         TOOL CALL 2 Z S500\nL X+5 R0 FMAX\nL Z+60 R0 FMAX\nTOOL CALL 1 Z S500\nL X+6 R0 FMAX",
+    );
+    let starts = |job: Job| job.run().moves().map(|e| xyz(&e.start)).collect::<Vec<_>>();
+    let seen = starts(Job::new(text.clone()));
+    assert_eq!(seen[1], [0.0, 0.0, -7.0]);
+    assert_eq!(seen[2], [1.0, 0.0, 3.0]);
+    assert_eq!(seen[4], [5.0, 0.0, 60.0]);
+    let seen = starts(Job::new(text).with(|s| {
+        s.tool_change[Axis::X] = -30.0;
+        s.tool_change[Axis::Z] = 200.0;
+    }));
+    assert_eq!(seen[2], [-30.0, 0.0, 200.0]);
+    assert_eq!(seen[4], [-30.0, 0.0, 200.0]);
+}
+
+/// Who has not said where the workpiece lies sees the axes of M91 leave it, and is told once.
+#[test]
+fn machine_positions_without_a_machine_lead_away() {
+    let text = program(
+        "TOOL DEF 1 L+10 R+1\nTOOL CALL 1 Z S500\nL X+0 Y+0 Z+2 R0 FMAX\nL Z-1 R0 FMAX M91\nL X+30 FMAX\n\
+         L Y+300 R0 FMAX M92\nL X+9 Y+8 FMAX\nL Z+2 FMAX",
+    );
+    let unknown = |s: &mut bahn_interpreter::Settings| {
+        s.rules.machine_zero = Position::UNKNOWN;
+        s.rules.machine_zero[Axis::X] = -40.0;
+    };
+    let run = Job::new(text).with(unknown).run();
+    run.assert_completed();
+    let ends: Vec<_> = run
+        .moves()
+        .map(|e| [Axis::X, Axis::Y, Axis::Z].map(|a| e.end.get(a)))
+        .collect();
+    assert_eq!(
+        ends,
+        [
+            [Some(0.0), Some(0.0), Some(2.0)],
+            [Some(0.0), Some(0.0), None],
+            [Some(30.0), Some(0.0), None],
+            [Some(30.0), None, None],
+            [Some(9.0), Some(8.0), None],
+            [Some(9.0), Some(8.0), Some(2.0)],
+        ]
+    );
+    // Only what lies between two positions has a length: 30, then from 30 to 9.
+    assert_eq!(
+        run.moves().map(|e| e.length()).collect::<Vec<_>>(),
+        [0.0, 0.0, 30.0, 0.0, 21.0, 0.0]
+    );
+    assert_eq!(run.warnings.len(), 1);
+    assert_eq!(run.warnings[0].block.block, 4);
+    // With radius compensation and in an axis whose place is known all stays as it was.
+    let run = Job::new(program(
+        "TOOL DEF 1 L+10 R+1\nTOOL CALL 1 Z S500\nL X+0 Y+0 Z+2 R0 FMAX\nL X+10 Y+10 RL F100\nL X+50\n\
+         L X+0 Y+0 FMAX M91\nL X+5 R0",
+    ))
+    .with(unknown)
+    .run();
+    run.assert_completed();
+    assert!(run.moves().all(|e| !e.length().is_nan()));
 }

@@ -112,6 +112,11 @@ impl<S: ElementSource> Planner<S> {
     pub fn source_mut(&mut self) -> &mut S {
         &mut self.source
     }
+
+    /// The source, when nothing more is planned.
+    pub fn into_source(self) -> S {
+        self.source
+    }
 }
 
 impl Planned {

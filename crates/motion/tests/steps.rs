@@ -169,6 +169,7 @@ fn auxiliary_times() {
             length: 0.0,
             radius: 5.0,
             corner_radius: 0.0,
+            ..ToolShape::default()
         };
         Function::Tool(ToolCall {
             tool,

@@ -172,6 +172,13 @@ pub struct ToolShape {
     pub radius: f64,
     /// Corner radius R2, mm: 0 flat end, equal to `radius` ball end.
     pub corner_radius: f64,
+    /// Angle of the point of a drill, degrees: 0 none. The length is that to the tip of the point.
+    pub point_angle_deg: f64,
+}
+
+impl ToolShape {
+    /// Sharper points are none (inferred), degrees.
+    pub const POINT_ANGLE_MIN_DEG: f64 = 5.0;
 }
 
 /// The blank of BLK FORM: a cuboid with sides parallel to the axes [003:2105-2121].

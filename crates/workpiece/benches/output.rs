@@ -47,6 +47,7 @@ fn part() -> Part {
                 length: 0.0,
                 radius: 8.0,
                 corner_radius,
+                ..ToolShape::default()
             },
             Axis::Z,
         );

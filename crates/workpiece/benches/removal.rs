@@ -66,6 +66,7 @@ fn run(points: &[[f64; 3]], corner_radius: f64) -> f64 {
         length: 0.0,
         radius: 5.0,
         corner_radius,
+        ..ToolShape::default()
     };
     let mut workpiece = Workpiece::new(&BLANK, Resolution::Millimetres(0.1)).expect("a valid blank");
     let at = |p: &[f64; 3]| {

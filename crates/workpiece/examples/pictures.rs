@@ -90,6 +90,7 @@ impl Mill {
             length: 0.0,
             radius,
             corner_radius,
+            ..ToolShape::default()
         };
     }
 

@@ -25,6 +25,14 @@ pub enum EventKind {
     /// The tool tip was lower than the lower face of the blank while a part of the tool was over the
     /// blank (inferred).
     BelowBlank,
+    /// The tool cut while the spindle stood still, as [`Workpiece::note_cut`](crate::Workpiece::note_cut) was told.
+    SpindleStopped,
+    /// The tool cut while the speed of the spindle was 0, likewise.
+    SpindleWithoutSpeed,
+    /// The tool cut while the spindle turned the wrong way for it, likewise.
+    SpindleWrongWay,
+    /// A tool without a radius was moved through the blank in feed: it removes nothing.
+    NoRadius,
     /// `PGM SECTION CANNOT BE SHOWN`: the tool axis is not the one of BLK FORM. Nothing is removed
     /// [003:7967-7971].
     ToolAxisNotShown,

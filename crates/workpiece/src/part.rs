@@ -59,6 +59,37 @@ impl Part {
         rows.iter().sum::<f64>() * self.grid.dx * self.grid.dy
     }
 
+    /// Least and greatest coordinates of the material that is left, in the order of [`Part::axes`], mm; `None`
+    /// when nothing is left.
+    pub fn extent(&self) -> Option<[[f64; 3]; 2]> {
+        let Grid { nx, dx, dy, .. } = self.grid;
+        let (mut columns, mut rows, mut top) = ([usize::MAX, 0], [usize::MAX, 0], 0.0_f32);
+        for (j, row) in self.heights.chunks(nx).enumerate() {
+            let Some(first) = row.iter().position(|height| *height > 0.0) else {
+                continue;
+            };
+            let last = row.iter().rposition(|height| *height > 0.0).unwrap_or(first);
+            columns = [columns[0].min(first), columns[1].max(last + 1)];
+            rows = [rows[0].min(j), j + 1];
+            top = row.iter().copied().fold(top, f32::max);
+        }
+        let min = self.setup.min;
+        (top > 0.0).then(|| {
+            [
+                [
+                    min[0] + columns[0] as f64 * dx,
+                    min[1] + rows[0] as f64 * dy,
+                    min[2],
+                ],
+                [
+                    min[0] + columns[1] as f64 * dx,
+                    min[1] + rows[1] as f64 * dy,
+                    min[2] + f64::from(top),
+                ],
+            ]
+        })
+    }
+
     /// Coordinate of the surface in the tool axis at a point of the working plane, mm. `None` outside
     /// the blank and where nothing is left.
     pub fn height_at(&self, point: [f64; 2]) -> Option<f64> {

@@ -56,6 +56,7 @@ impl Segment {
             Bottom::Flat => track.sweep_flat(grid, rows, sink),
             Bottom::Ball => track.sweep_ball(grid, rows, sink),
             Bottom::Torus => track.sweep_torus(grid, rows, sink),
+            Bottom::Cone => track.sweep_cone(grid, rows, sink, self.tool.cone as f32),
         }
     }
 }
@@ -299,6 +300,42 @@ impl Track {
                     height(x * ux + along, b, leads.at(chord / radius))
                 }),
             }
+        }
+    }
+
+    /// The point of a drill rises by `rise` for each mm from its axis. On a slope it is touched before its axis,
+    /// where the cone rises along the track as the slope does; on a steeper slope at its edge.
+    fn sweep_cone(&self, grid: &Grid, rows: Range<usize>, sink: &mut impl Sink, rise: f32) {
+        let radius = self.radius as f32;
+        let sine = self.slope as f32 / rise;
+        let lead = (sine < 1.0).then(|| sine / ((1.0 - sine) * (1.0 + sine)).sqrt());
+        let spans = self.spans(grid, &rows);
+        for (k, row) in rows.enumerate() {
+            let columns = spans.all(k);
+            if columns.is_empty() {
+                continue;
+            }
+            let Row {
+                x,
+                dx,
+                ux,
+                uy,
+                along,
+                across,
+                length,
+                slope,
+                low,
+            } = self.row(grid, columns.start, row);
+            sink.shaped(row, columns, move |k| {
+                let x = x + k * dx;
+                let b = x * uy - across;
+                let a = x * ux + along;
+                let chord = positive((radius - b) * (radius + b)).sqrt();
+                let ahead = lead.map_or(chord, |lead| least(lead * b.abs(), chord));
+                let s = least(positive(a - ahead), length);
+                let e = a - s;
+                positive(low + slope * s + rise * (b * b + e * e).sqrt())
+            });
         }
     }
 

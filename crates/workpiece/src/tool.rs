@@ -5,19 +5,22 @@ use bahn_path::ToolShape;
 use crate::grid::Grid;
 
 /// Tool with a round bottom profile: flat inside `flat`, then a quarter circle of radius `corner` up
-/// to `radius = flat + corner`, mm.
+/// to `radius = flat + corner`, mm; or a cone whose tip is the lowest point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tool {
     pub radius: f64,
     pub corner: f64,
+    /// Rise of the cone for each mm from the axis; 0 without a point.
+    pub cone: f64,
 }
 
-/// The three cases that have their own arithmetic.
+/// The four cases that have their own arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Bottom {
     Flat,
     Ball,
     Torus,
+    Cone,
 }
 
 impl Tool {
@@ -29,11 +32,19 @@ impl Tool {
         }
         let radius = shape.radius.max(grid.half_diagonal());
         let corner = shape.corner_radius.max(0.0).min(shape.radius);
-        Some(Tool { radius, corner })
+        let point = ToolShape::POINT_ANGLE_MIN_DEG..180.0;
+        let cone = if corner == 0.0 && point.contains(&shape.point_angle_deg) {
+            1.0 / (0.5 * shape.point_angle_deg).to_radians().tan()
+        } else {
+            0.0
+        };
+        Some(Tool { radius, corner, cone })
     }
 
     pub fn bottom(&self) -> Bottom {
-        if self.corner <= 0.0 {
+        if self.cone > 0.0 {
+            Bottom::Cone
+        } else if self.corner <= 0.0 {
             Bottom::Flat
         } else if self.corner >= self.radius {
             Bottom::Ball
@@ -49,6 +60,7 @@ impl Tool {
         Tool {
             radius,
             corner: self.corner.min(radius),
+            cone: self.cone,
         }
     }
 }

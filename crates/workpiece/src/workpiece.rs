@@ -49,7 +49,9 @@ pub struct Workpiece {
     part: Part,
     batch: Batch,
     /// Origin of every segment of the batch.
-    origins: Vec<(BlockRef, u64)>,
+    origins: Vec<Origin>,
+    /// What the next cut is noted as, see [`Workpiece::note_cut`].
+    noted: Option<EventKind>,
     events: EventLog,
     /// Count of elements, to count an event once for each.
     elements: u64,
@@ -57,6 +59,15 @@ pub struct Workpiece {
     last: Option<(Local, Tool)>,
     /// Angles of the rotary axes at which the blank is shown, degrees.
     rotary: HashMap<Axis, f64>,
+}
+
+/// Where a segment comes from, and what it is when it removes material.
+#[derive(Clone, Copy, Debug)]
+struct Origin {
+    block: BlockRef,
+    element: u64,
+    rapid: bool,
+    noted: Option<EventKind>,
 }
 
 impl Workpiece {
@@ -77,6 +88,7 @@ impl Workpiece {
             part: Part::new(setup, grid),
             batch: Batch::default(),
             origins: Vec::new(),
+            noted: None,
             events: EventLog::default(),
             elements: 0,
             last: None,
@@ -95,7 +107,7 @@ impl Workpiece {
             return;
         }
         let Some(tool) = Tool::new(tool, &self.part.grid) else {
-            return;
+            return self.pass_without_radius(element);
         };
         let rapid = element.feed == FeedRate::Rapid;
         let tolerance = CHORD_TOLERANCE * self.part.grid.cell();
@@ -103,6 +115,14 @@ impl Workpiece {
         let reach = tool.radius + self.part.grid.cell();
         let push = |from, to| self.push(from, to, tool, rapid, element.block);
         chords::chop(element, &setup, tolerance, reach, push);
+    }
+
+    /// Notes the next cut, and only that, as an event of this kind: the caller knows what is wrong with it.
+    pub fn note_cut(&mut self, kind: Option<EventKind>) {
+        if self.noted.is_some() {
+            self.flush();
+        }
+        self.noted = kind;
     }
 
     /// The material as it is now.
@@ -123,6 +143,20 @@ impl Workpiece {
         self.events.take()
     }
 
+    /// A tool without a radius goes through the blank in feed.
+    fn pass_without_radius(&mut self, element: &PathElement) {
+        if element.feed == FeedRate::Rapid {
+            return;
+        }
+        let (setup, mut inside) = (self.part.setup, false);
+        chords::chop(element, &setup, self.part.grid.cell(), 0.0, |from, to| {
+            inside |= chords::clip(from, to, &setup.size, 0.0).is_some();
+        });
+        if inside {
+            self.events.add(element.block, self.elements, EventKind::NoRadius);
+        }
+    }
+
     fn push(&mut self, from: Local, to: Local, tool: Tool, rapid: bool, block: BlockRef) {
         let size = self.part.setup.size;
         let margin = tool.radius + self.part.grid.cell();
@@ -141,9 +175,14 @@ impl Workpiece {
                 tool,
                 start_is_cut: start_is_cut && a == from,
             },
-            rapid,
+            rapid || self.noted.is_some(),
         );
-        self.origins.push((block, self.elements));
+        self.origins.push(Origin {
+            block,
+            element: self.elements,
+            rapid,
+            noted: self.noted,
+        });
         self.last = (b == to).then_some((to, tool));
         if self.batch.len() >= BATCH_SEGMENTS {
             self.flush();
@@ -153,8 +192,15 @@ impl Workpiece {
     fn flush(&mut self) {
         let hits = self.batch.cut(&self.part.grid, &mut self.part.heights);
         for hit in hits {
-            if let Some((block, element)) = self.origins.get(hit as usize) {
-                self.events.add(*block, *element, EventKind::RapidCut);
+            let Some(origin) = self.origins.get(hit as usize) else {
+                continue;
+            };
+            if origin.rapid {
+                self.events.add(origin.block, origin.element, EventKind::RapidCut);
+            }
+            if let Some(kind) = origin.noted.filter(|_| self.noted == origin.noted) {
+                self.events.add(origin.block, origin.element, kind);
+                self.noted = None;
             }
         }
         self.origins.clear();

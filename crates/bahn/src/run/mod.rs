@@ -34,7 +34,7 @@ use bahn_machine::Machine;
 use bahn_workpiece::Projection;
 
 use crate::cli::Format;
-use crate::cutting::{self, Cutting};
+use crate::cutting::{self, Columns, Cutting};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
 use crate::junit;
@@ -42,7 +42,7 @@ use crate::machine_folder::{self, FolderPrograms, LoadedMachine, State};
 use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Place, Record};
 use crate::test_run::{Outputs, print_error};
-use crate::{Outcome, UsageError, console, report_text};
+use crate::{Outcome, UsageError, console, files, report_text, settings};
 use log::Log;
 use operator::{Attendance, Job, Operator};
 use recording::Recording;
@@ -52,6 +52,7 @@ use session::{Ended, Parts, Session, Writers};
 
 /// Runs a program on a machine and reports.
 pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
+    files::keep_inputs(&options.inputs(), &options.written())?;
     let mut machine = match machine_folder::load(&options.machine)? {
         Ok(machine) => machine,
         Err(faults) => return refused(&faults, options),
@@ -124,7 +125,13 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         machine: plant,
         script,
         writers,
-        cutting: (!options.output.no_graphics).then(|| Cutting::new(options.output.resolution)),
+        cutting: (!options.output.no_graphics).then(|| {
+            let columns = options.output.resolution;
+            Cutting::new(
+                columns.map_or(Columns::BySize, Columns::Millimetres),
+                settings::left_hand(machine.tools.as_ref()),
+            )
+        }),
         realtime: options.run.realtime,
         max_time_s: options.run.max_time,
         max_wait_s: options.run.max_wait,

@@ -1,6 +1,6 @@
 //! Options and help texts of `bahn run`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bahn_control::Signal;
 use clap::{Args, ValueHint};
@@ -75,6 +75,22 @@ pub(crate) struct RunMachineOptions {
     pub recording: RecordingOptions,
     #[command(flatten)]
     pub output: OutputOptions,
+}
+
+impl RunMachineOptions {
+    /// Files that are read.
+    pub fn inputs(&self) -> Vec<&Path> {
+        let all = [&self.file, &self.run.script, &self.run.replay];
+        all.into_iter().flatten().map(PathBuf::as_path).collect()
+    }
+
+    /// Files that are written, with their options.
+    pub fn written(&self) -> Vec<(&'static str, &Path)> {
+        let log = self.run.log.iter().map(|path| ("--log", path.as_path()));
+        let record = self.recording.record.iter();
+        let record = record.map(|path| ("--record", path.as_path()));
+        self.output.written().chain(log).chain(record).collect()
+    }
 }
 
 /// How it runs.

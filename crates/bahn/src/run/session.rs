@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bahn_control::{Command, Control, Message, RunState, Shown};
 use bahn_machine::{Event, KeyAction, Machine};
-use bahn_path::{BlockRef, FeedRate, PathElement};
+use bahn_path::{Axis, BlockRef, FeedRate, PathElement};
 
 use super::background::Background;
 use super::deviation::Deviation;
@@ -85,6 +85,8 @@ pub(super) struct Session {
     start_us: Option<u64>,
     /// Elements that were prepared and not yet executed.
     ahead: VecDeque<PathElement>,
+    /// The element that was executed last, with the way that was left of it.
+    last_seen: Option<(ElementId, f64)>,
     moved_us: u64,
     last_stop: bool,
     broken_by: Option<Box<Shown>>,
@@ -103,6 +105,22 @@ pub(super) struct Parts {
     pub realtime: bool,
     pub max_time_s: f64,
     pub max_wait_s: f64,
+}
+
+/// What tells an element from all others of its run. Axes without a position are equal, too, bit by bit.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct ElementId {
+    sequence: u64,
+    ends: [[u64; Axis::COUNT]; 2],
+}
+
+impl ElementId {
+    fn of(element: &PathElement) -> ElementId {
+        ElementId {
+            sequence: element.sequence,
+            ends: [element.start, element.end].map(|position| position.values().map(f64::to_bits)),
+        }
+    }
 }
 
 impl Session {
@@ -144,6 +162,7 @@ impl Session {
             plc_percent: (0.0, 0, 0.0),
             start_us: None,
             ahead: VecDeque::new(),
+            last_seen: None,
             moved_us: 0,
             last_stop: false,
             broken_by: None,
@@ -160,6 +179,7 @@ impl Session {
                 self.execute(deed)?;
             }
             if let Some(ended) = self.ended.take() {
+                self.take_last()?;
                 self.note("end")?;
                 return Ok(ended);
             }
@@ -383,23 +403,54 @@ impl Session {
                 .warn(warning.block, Notice::Program(warning.kind), warning.count);
         }
         let all = self.control.has_ended();
+        if let Some(element) = self.control.element() {
+            self.last_seen = Some((ElementId::of(element), self.control.rest_mm()));
+        }
         let current = self.control.element().map(|element| element.sequence);
         while let Some(element) = self.ahead.front() {
             if !all && current.is_none_or(|current| element.sequence >= current) {
                 break;
             }
-            self.record.path(element);
-            if let Some(cutting) = &mut self.cutting {
-                cutting.element(element, &mut self.record)?;
+            self.take_front()?;
+        }
+        Ok(())
+    }
+
+    /// Of a run that was broken off in a block: what was executed to the end counts, too.
+    fn take_last(&mut self) -> Result<(), UsageError> {
+        /// Way that may be left when an element is done.
+        const DONE_MM: f64 = 1e-6;
+        let Some((current, rest_mm)) = self.last_seen else {
+            return Ok(());
+        };
+        while let Some(element) = self.ahead.front() {
+            let is_current = ElementId::of(element) == current;
+            if element.sequence > current.sequence || is_current && rest_mm > DONE_MM {
+                break;
             }
-            if let Some(run) = self
-                .control
-                .interpreter()
-                .filter(|_| !self.writers.outputs.is_empty())
-            {
-                self.writers.outputs.element(element, run, &mut self.record)?;
+            self.take_front()?;
+            if is_current {
+                break;
             }
-            self.ahead.pop_front();
+        }
+        Ok(())
+    }
+
+    /// Hands on the next element.
+    fn take_front(&mut self) -> Result<(), UsageError> {
+        let Some(element) = self.ahead.pop_front() else {
+            return Ok(());
+        };
+        self.record.path(&element);
+        if let Some(cutting) = &mut self.cutting {
+            cutting.element(&element, &mut self.record)?;
+        }
+        if let Some(run) = self
+            .control
+            .interpreter()
+            .filter(|_| !self.writers.outputs.is_empty())
+        {
+            self.writers.outputs.element(&element, run, &mut self.record)?;
         }
         Ok(())
     }

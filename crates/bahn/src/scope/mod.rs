@@ -17,6 +17,7 @@ mod table;
 pub(crate) use options::{EXAMPLES, ScopeOptions};
 
 use std::io::Write;
+use std::path::{Path, PathBuf};
 
 use crate::cli::Format;
 use crate::files::{self, NewFile};
@@ -31,6 +32,13 @@ use table::Table;
 pub(crate) fn command(options: &ScopeOptions) -> Result<Outcome, UsageError> {
     if options.cursor.len() > 2 {
         return Err(UsageError::new("--cursor: there are two cursors at most"));
+    }
+    if let Some(Picture::Svg(path) | Picture::Png(path)) = &options.output {
+        let inputs: Vec<&Path> = std::iter::once(&options.file)
+            .chain(&options.against)
+            .map(PathBuf::as_path)
+            .collect();
+        files::keep_inputs(&inputs, &[("--output", path.as_path())])?;
     }
     let recording = Recordings::load(options)?;
     let in_file = |error: String| UsageError::new(format!("{}: {error}", options.file.display()));

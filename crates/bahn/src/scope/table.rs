@@ -47,8 +47,9 @@ pub(super) struct Table {
 impl Table {
     /// Reads a recording.
     pub fn load(path: &Path) -> Result<Table, UsageError> {
-        let bytes = files::read_program(path)?;
-        Table::read(&String::from_utf8_lossy(&bytes.unwrap_or_default()))
+        let bytes = files::read_program(path)?
+            .ok_or_else(|| UsageError::new(format!("{}: {}", path.display(), files::TOO_LARGE)))?;
+        Table::read(&String::from_utf8_lossy(&bytes))
             .map_err(|error| UsageError::new(format!("{}:{error}", path.display())))
     }
 

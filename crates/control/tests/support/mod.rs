@@ -71,6 +71,7 @@ impl Build {
                 length,
                 radius,
                 corner_radius: 0.0,
+                ..ToolShape::default()
             },
             ..Tool::default()
         };

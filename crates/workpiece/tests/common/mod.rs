@@ -26,6 +26,7 @@ pub fn flat(radius: f64) -> ToolShape {
         length: 0.0,
         radius,
         corner_radius: 0.0,
+        ..ToolShape::default()
     }
 }
 
@@ -34,6 +35,7 @@ pub fn ball(radius: f64) -> ToolShape {
         length: 0.0,
         radius,
         corner_radius: radius,
+        ..ToolShape::default()
     }
 }
 
@@ -42,6 +44,15 @@ pub fn torus(radius: f64, corner_radius: f64) -> ToolShape {
         length: 0.0,
         radius,
         corner_radius,
+        ..ToolShape::default()
+    }
+}
+
+/// A drill with a point.
+pub fn drill(radius: f64, point_angle_deg: f64) -> ToolShape {
+    ToolShape {
+        point_angle_deg,
+        ..flat(radius)
     }
 }
 

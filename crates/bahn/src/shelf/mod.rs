@@ -1,0 +1,223 @@
+//! A shelf of programs: all of them run on all cores, one table of what came out.
+//!
+//! - `collect`: which programs; `crew`: runs them side by side; `row`: what is said of one;
+//! - `table`, `csv`, `html`: how it is written; `against`: what changes from another run.
+
+mod against;
+mod collect;
+mod crew;
+mod csv;
+mod html;
+mod row;
+mod table;
+
+use std::collections::HashSet;
+use std::io::Write;
+use std::path::Path;
+use std::time::Duration;
+
+use bahn_workpiece::{Page, View3d};
+use serde::{Deserialize, Serialize};
+
+pub(crate) use row::Row;
+
+use crate::cli::Format;
+use crate::cutting::Columns;
+use crate::files::NewFile;
+use crate::interrupt::Interrupt;
+use crate::test_run::{Bench, ReportFile, TestOptions, Tested};
+use crate::{Outcome, UsageError, console, diagnostics, files};
+use against::Other;
+use crew::{Done, Work};
+use row::Verdict;
+
+/// Columns that a part of the table is made of: its volume is exact to some tenths of a percent.
+const COLUMNS: Columns = Columns::About(250_000.0);
+/// Time of a program unless the options say otherwise.
+const TIME_LIMIT: Duration = Duration::from_secs(300);
+/// Pictures in the page, pixels.
+const PICTURE: (u32, u32) = (480, 360);
+
+/// The table as JSON.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Shelf {
+    pub model: String,
+    pub totals: Totals,
+    pub programs: Vec<Row>,
+}
+
+/// What all programs come to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(crate) struct Totals {
+    pub programs: u64,
+    /// Run to their end, or to the stop that was wanted.
+    pub ok: u64,
+    pub errors: u64,
+    /// Run by others only.
+    pub called: u64,
+    /// Broken off by Ctrl-C, or not run at all.
+    pub not_run: u64,
+    /// Of all programs that were run alone and move.
+    pub machining_time_s: f64,
+    pub feed_mm: f64,
+    pub rapid_mm: f64,
+    pub removed_mm3: f64,
+    pub warnings: u64,
+    /// Programs that are different from the run that was compared with.
+    pub changed: u64,
+}
+
+impl Totals {
+    fn of(rows: &[&Row]) -> Totals {
+        let mut totals = Totals {
+            programs: rows.len() as u64,
+            ..Totals::default()
+        };
+        for row in rows {
+            match row.result {
+                Verdict::Ok | Verdict::Stopped => totals.ok += 1,
+                Verdict::Called => totals.called += 1,
+                Verdict::Interrupted | Verdict::NotRun => totals.not_run += 1,
+                Verdict::Error | Verdict::Unreadable | Verdict::TimeLimit => totals.errors += 1,
+            }
+            totals.machining_time_s += row.machining_time_s.unwrap_or_default();
+            totals.feed_mm += row.feed_mm;
+            totals.rapid_mm += row.rapid_mm;
+            totals.removed_mm3 += row.removed_mm3.unwrap_or_default();
+            totals.warnings += row.warnings.len() as u64;
+            totals.changed += u64::from(!row.changes.is_empty());
+        }
+        totals
+    }
+}
+
+/// Runs all programs and writes the table.
+pub(crate) fn command(options: &TestOptions) -> Result<Outcome, UsageError> {
+    refuse_single_outputs(options)?;
+    let files = collect::programs(&options.files, &options.table.ext)?;
+    let inputs: Vec<&Path> = files.iter().map(AsRef::as_ref).collect();
+    files::keep_inputs(&inputs, &options.written())?;
+    let bench = Bench::new(options, &options.machine, COLUMNS)?;
+    let other = options.table.against.as_deref();
+    let other = other
+        .map(|path| against::load(path, options, COLUMNS))
+        .transpose()?;
+    let (before, report) = match other {
+        Some(Other::Bench(bench)) => (Some(*bench), None),
+        Some(Other::Report(rows)) => (None, Some(rows)),
+        None => (None, None),
+    };
+    // All files can be written before the long run begins.
+    let outputs = options.table.report.iter();
+    let outputs: Vec<(&ReportFile, NewFile)> = outputs
+        .map(|file| Ok((file, NewFile::create(file.path())?)))
+        .collect::<Result<_, UsageError>>()?;
+    let has_page = outputs
+        .iter()
+        .any(|(file, _)| matches!(file, ReportFile::Html(_)));
+    let limit = options.run.time_limit.map_or(TIME_LIMIT, Duration::from_secs_f64);
+    let interrupt = Interrupt::on_ctrl_c();
+    let mut done = crew::run(
+        Work {
+            files,
+            bench,
+            before,
+            density: options.table.density,
+            draw: has_page.then_some(picture),
+            time_limit: limit,
+        },
+        &interrupt,
+    )?;
+    mark_called(&mut done);
+    if let Some(earlier) = report {
+        for Done { row, .. } in &mut done {
+            row.changes = match earlier.get(&row.path) {
+                Some(before) => against::changes(before, row),
+                None => vec!["new".into()],
+            };
+        }
+    }
+    for (kind, file) in outputs {
+        write(kind, file, &done, options)?;
+    }
+    if interrupt.is_requested() {
+        diagnostics::print_line("interrupted: the table so far");
+    }
+    let rows: Vec<&Row> = done.iter().map(|done| &done.row).collect();
+    match options.format {
+        Format::Text => console::print(&table::render(&rows, &Totals::of(&rows), options))?,
+        Format::Json => console::print(&json(&rows, options)?)?,
+    }
+    Ok(if interrupt.is_requested() {
+        Outcome::Interrupted
+    } else if rows.iter().any(|row| row.result.is_fault()) {
+        Outcome::ProgramError
+    } else {
+        Outcome::Fine
+    })
+}
+
+/// Paths, pictures and meshes belong to one program.
+fn refuse_single_outputs(options: &TestOptions) -> Result<(), UsageError> {
+    match options.output.written().next() {
+        Some((option, _)) => Err(UsageError::new(format!(
+            "{option} belongs to a single program; the pictures of many are in --report OUT.html"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Many subprograms cannot run alone: what another program of the shelf calls is judged there.
+fn mark_called(done: &mut [Done]) {
+    let absolute = |path: &str| std::path::absolute(path).unwrap_or_default();
+    let called: HashSet<_> = done
+        .iter()
+        .filter(|done| done.row.result == Verdict::Ok)
+        .flat_map(|done| done.row.calls.iter().map(|path| absolute(path)))
+        .collect();
+    for Done { row, .. } in done {
+        if row.result == Verdict::Error && called.contains(&absolute(&row.path)) {
+            row.result = Verdict::Called;
+        }
+    }
+}
+
+fn picture(tested: &Tested, path: &Path) -> Option<Vec<u8>> {
+    let title = path.file_name().unwrap_or_default().to_string_lossy();
+    let page = Page::new(PICTURE.0, PICTURE.1, &title, "").ok()?;
+    let image = tested.part.as_ref()?.view_3d(&page, &View3d::default());
+    let mut png = Vec::new();
+    image.write_png(&mut png).ok()?;
+    Some(png)
+}
+
+fn json(rows: &[&Row], options: &TestOptions) -> Result<String, UsageError> {
+    let shelf = Shelf {
+        model: options.model.to_string(),
+        totals: Totals::of(rows),
+        programs: rows.iter().map(|row| (*row).clone()).collect(),
+    };
+    serde_json::to_string_pretty(&shelf)
+        .map(|text| text + "\n")
+        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))
+}
+
+fn write(
+    kind: &ReportFile,
+    mut file: NewFile,
+    done: &[Done],
+    options: &TestOptions,
+) -> Result<(), UsageError> {
+    let rows: Vec<&Row> = done.iter().map(|done| &done.row).collect();
+    let written = match kind {
+        ReportFile::Csv(_) => {
+            let text = csv::write(&rows, csv::Style::new(options.table.comma));
+            file.write_all(text.as_bytes())
+        }
+        ReportFile::Json(_) => file.write_all(json(&rows, options)?.as_bytes()),
+        ReportFile::Html(_) => html::write(&mut file, done, &Totals::of(&rows), options),
+    };
+    written.map_err(|error| files::cannot("write", kind.path(), &error))?;
+    file.finish()
+}

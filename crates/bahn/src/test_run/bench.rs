@@ -1,0 +1,342 @@
+//! One program run to its end: nothing is printed here, so that many can run side by side.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+use bahn_control::Tool;
+use bahn_interpreter::{Interpreter, ProgramError};
+use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
+use bahn_parameters::{ControlModel, MessageId, ParameterList};
+use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
+use bahn_program::{Operation, Program};
+use bahn_workpiece::Part;
+
+use super::options::TestOptions;
+use super::outputs::Outputs;
+use super::survey::Survey;
+use crate::block_time::BlockTime;
+use crate::cli::MachineOptions;
+use crate::cutting::{Columns, Cutting};
+use crate::diagnostics::Marked;
+use crate::files::{self, FileLibrary, Loaded};
+use crate::interrupt::Stop;
+use crate::progress::Progress;
+use crate::report::{End, ErrorReport, Notice, Place, Record, Report};
+use crate::shelf::Row;
+use crate::{UsageError, settings};
+
+/// What programs run on: model, machine parameters, tools.
+pub(crate) struct Bench {
+    pub list: ParameterList,
+    settings: bahn_interpreter::Settings,
+    limits: Limits,
+    times: AuxiliaryTimes,
+    left_hand: BTreeSet<u32>,
+    /// `None` for runs without graphics.
+    columns: Option<Columns>,
+    ends_at_stop: bool,
+    /// Simulate the block processing time of the model.
+    block_time: bool,
+}
+
+/// What goes along with a run.
+#[derive(Default)]
+pub(crate) struct Company {
+    pub outputs: Outputs,
+    /// Show how far the run has come.
+    pub progress: bool,
+    pub survey: Option<Survey>,
+    pub stop: Stop,
+}
+
+/// A run that has ended.
+pub(crate) struct Tested {
+    pub end: End,
+    pub report: Report,
+    /// `None` without a blank, or without graphics.
+    pub part: Option<Part>,
+    pub survey: Option<Survey>,
+    /// The programs of the run, for places.
+    pub interpreter: Interpreter,
+}
+
+impl Bench {
+    /// What the options say; `columns` are those of the part unless they give a resolution.
+    pub fn new(
+        options: &TestOptions,
+        machine: &MachineOptions,
+        columns: Columns,
+    ) -> Result<Bench, UsageError> {
+        let list = settings::parameters(options.model, machine)?;
+        let tools = settings::tools(machine)?;
+        Bench::on(options, machine, list, tools, columns)
+    }
+
+    /// Likewise with the parameters and tools of a machine.
+    pub fn on(
+        options: &TestOptions,
+        machine: &MachineOptions,
+        list: ParameterList,
+        tools: Option<BTreeMap<u32, Tool>>,
+        columns: Columns,
+    ) -> Result<Bench, UsageError> {
+        let wanted = options.output.resolution.map_or(columns, Columns::Millimetres);
+        Ok(Bench {
+            settings: settings::interpreter(&list, tools.as_ref(), &options.run)?,
+            left_hand: settings::left_hand(tools.as_ref()),
+            limits: settings::limits(&list, machine),
+            times: settings::times(machine),
+            columns: (!options.output.no_graphics).then_some(wanted),
+            ends_at_stop: options.run.stop,
+            block_time: machine.block_time,
+            list,
+        })
+    }
+
+    /// What the table says of a run.
+    pub fn row(&self, path: &Path, tested: &Tested, density: Option<f64>) -> Row {
+        Row::of(
+            path,
+            tested,
+            &self.list,
+            &self.settings.rules.machine_zero,
+            density,
+        )
+    }
+
+    /// Runs the program of a file.
+    ///
+    /// # Errors
+    /// When the file cannot be read, an output cannot be written, or the resolution is too fine.
+    pub fn test(&self, file: &Path, company: Company) -> Result<Tested, UsageError> {
+        let (program, fault) = match files::load_program(file)? {
+            Loaded::Program(program) => (program, None),
+            Loaded::Empty(program) => (program, Some((MessageId::EndOfProgramMissing, files::EMPTY))),
+            Loaded::TooLarge => {
+                let stand_in = Arc::new(Program::from_bytes(file.to_string_lossy(), Vec::new()));
+                (
+                    stand_in,
+                    Some((MessageId::FurtherProgramEntryImpossible, files::TOO_LARGE)),
+                )
+            }
+        };
+        let progress = company.progress.then(|| Progress::new(program.block_count()));
+        let library = FileLibrary::with_main(&program);
+        let mut interpreter = Interpreter::new(program, self.settings.clone(), Box::new(library));
+        interpreter.set_interrupt(company.stop.flag());
+        let mut run = TestRun {
+            planner: Planner::new(interpreter, &self.limits, &self.times),
+            record: Record::new(self.settings.start),
+            cutting: self
+                .columns
+                .map(|columns| Cutting::new(columns, self.left_hand.clone())),
+            progress,
+            company,
+            ends_at_stop: self.ends_at_stop,
+            block_time: self.block_time.then(|| BlockTime::of(self.list.model())),
+            last_stop: None,
+            model: self.list.model(),
+        };
+        let end = match fault {
+            Some((message, detail)) => run.failed_before_start(message, detail),
+            None => run.run()?,
+        };
+        run.finish(end)
+    }
+}
+
+/// A run and everything that takes its elements.
+struct TestRun {
+    planner: Planner<Interpreter>,
+    record: Record,
+    /// `None` for a run without graphics.
+    cutting: Option<Cutting>,
+    company: Company,
+    progress: Option<Progress>,
+    ends_at_stop: bool,
+    block_time: Option<BlockTime>,
+    /// The block of the last stop and its function: in a loop it is the same again and again.
+    last_stop: Option<(BlockRef, Option<&'static str>)>,
+    model: ControlModel,
+}
+
+impl TestRun {
+    fn run(&mut self) -> Result<End, UsageError> {
+        loop {
+            match self.planner.next() {
+                PlannedStep::Element(planned) => {
+                    self.record.element(&planned);
+                    if let Some(block_time) = &mut self.block_time {
+                        self.record.machining_time_s += block_time.wait_s(planned.duration_s());
+                    }
+                    if let Some(survey) = &mut self.company.survey {
+                        survey.element(&planned);
+                    }
+                    self.element(&planned.element)?;
+                }
+                PlannedStep::Barrier(barrier) => {
+                    if self.is_stop(&barrier) && self.ends_at_stop {
+                        return Ok(End::Stopped);
+                    }
+                    let live = self.live_data(&barrier);
+                    self.planner.resume(live);
+                }
+                PlannedStep::End => {
+                    self.take_warnings();
+                    return Ok(End::Completed);
+                }
+                // A loop without movements was interrupted.
+                PlannedStep::Starved => return Ok(self.broken_off()),
+                PlannedStep::Error(error) => {
+                    self.take_warnings();
+                    return Ok(End::Failed(Box::new(self.error_report(&error))));
+                }
+            }
+            if self.company.stop.is_requested() {
+                return Ok(self.broken_off());
+            }
+        }
+    }
+
+    fn broken_off(&mut self) -> End {
+        self.take_warnings();
+        if self.company.stop.is_late() {
+            End::Late
+        } else {
+            End::Interrupted
+        }
+    }
+
+    #[inline]
+    fn element(&mut self, element: &PathElement) -> Result<(), UsageError> {
+        if let Some(cutting) = &mut self.cutting {
+            cutting.element(element, &mut self.record)?;
+        }
+        if !self.company.outputs.is_empty() {
+            self.company
+                .outputs
+                .element(element, self.planner.source(), &mut self.record)?;
+        }
+        if let Some(progress) = &mut self.progress {
+            let block = (element.block.program == 0).then_some(element.block.block);
+            progress.element(block, self.record.machining_time_s);
+        }
+        self.take_warnings();
+        Ok(())
+    }
+
+    /// Takes the warnings of the interpreter often, so that they are counted and do not pile up.
+    #[inline]
+    fn take_warnings(&mut self) {
+        for warning in self.planner.source_mut().take_warnings() {
+            self.record
+                .warn(warning.block, Notice::Program(warning.kind), warning.count);
+        }
+    }
+
+    /// Whether a barrier is a programmed stop, which is then listed. The stop for a tool change by M6
+    /// (MP7440 bit 0) is none: nobody changes tools here.
+    fn is_stop(&mut self, barrier: &Barrier) -> bool {
+        let Barrier::Stop { block } = barrier else {
+            return false;
+        };
+        let function = match self.last_stop {
+            Some((last, function)) if last == *block => function,
+            _ => stop_function(self.planner.source(), *block),
+        };
+        self.last_stop = Some((*block, function));
+        if let Some(function) = function {
+            self.record.stop(*block, function);
+        }
+        function.is_some()
+    }
+
+    /// What is found at a barrier. Everything before it has been executed and cut.
+    fn live_data(&mut self, barrier: &Barrier) -> LiveData {
+        let Barrier::Probe {
+            block,
+            from,
+            to,
+            stylus_radius,
+            ..
+        } = barrier
+        else {
+            return LiveData::default();
+        };
+        let touch = self
+            .cutting
+            .as_mut()
+            .and_then(|cutting| cutting.touch(from, to, *stylus_radius));
+        if !self.cutting.as_ref().is_some_and(Cutting::has_part) {
+            self.record.warn(*block, Notice::NothingToProbe, 1);
+        }
+        LiveData {
+            touch,
+            ..LiveData::default()
+        }
+    }
+
+    fn error_report(&self, error: &ProgramError) -> ErrorReport {
+        let run = self.planner.source();
+        let Place { program, block, .. } = Place::of(run, error.block);
+        let line = run
+            .program(error.block.program)
+            .map_or(0, |program| Marked::of_block(program, block).line);
+        let remedy = error.remedy();
+        ErrorReport {
+            message: error.message.text(self.model).to_owned(),
+            program,
+            block,
+            line,
+            detail: error.detail.clone(),
+            at: error.block,
+            remedy,
+        }
+    }
+
+    fn failed_before_start(&self, message: MessageId, detail: &str) -> End {
+        End::Failed(Box::new(ErrorReport {
+            message: message.text(self.model).to_owned(),
+            program: Place::of(self.planner.source(), Default::default()).program,
+            block: 0,
+            line: 1,
+            detail: detail.to_owned(),
+            at: Default::default(),
+            remedy: Some(message.remedy()),
+        }))
+    }
+
+    /// Writes the path and makes the report.
+    fn finish(mut self, end: End) -> Result<Tested, UsageError> {
+        drop(self.progress);
+        self.company.outputs.finish()?;
+        let part = self.cutting.and_then(|cutting| cutting.finish(&mut self.record));
+        let removed_mm3 = part.as_ref().map(Part::removed_mm3);
+        let report = self
+            .record
+            .report(self.planner.source(), end.clone(), removed_mm3, self.model);
+        Ok(Tested {
+            end,
+            report,
+            part,
+            survey: self.company.survey,
+            interpreter: self.planner.into_source(),
+        })
+    }
+}
+
+/// What stops in a block: STOP or M0; `None` for M6.
+pub(crate) fn stop_function(run: &Interpreter, block: BlockRef) -> Option<&'static str> {
+    let chunk = run
+        .program(block.program)?
+        .decode(block.block / Program::CHUNK_SIZE);
+    let offset = (block.block % Program::CHUNK_SIZE) as usize;
+    let m = match &chunk.blocks.get(offset)?.operation {
+        Operation::Stop(_) => return Some("STOP"),
+        Operation::Motion(motion) => &motion.m,
+        Operation::Miscellaneous(m) | Operation::CycleCall(m) => m,
+        _ => return None,
+    };
+    m.contains(0).then_some("M0")
+}

@@ -1,0 +1,128 @@
+//! `bahn test`: one program with its report, or a shelf of them as a table.
+//!
+//! - `options`: options and help; `bench`: one program run to its end, silently; `outputs`: files of the path;
+//!   `survey`: what a table says beyond the report;
+//! - here: what is said of a single program. The table of many is [`crate::shelf`].
+
+mod bench;
+mod options;
+mod outputs;
+mod survey;
+
+use std::path::Path;
+use std::time::Duration;
+
+use bahn_interpreter::Interpreter;
+use bahn_workpiece::Projection;
+
+pub(crate) use bench::{Bench, Company, Tested, stop_function};
+pub(crate) use options::{EXAMPLES, ReportFile, TestOptions};
+pub(crate) use outputs::Outputs;
+pub(crate) use survey::Survey;
+
+use crate::cli::Format;
+use crate::cutting::{self, Columns};
+use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::interrupt::{Interrupt, Stop};
+use crate::report::{End, ErrorReport, Report};
+use crate::{Outcome, UsageError, console, files, report_text, shelf};
+
+/// Runs a program and reports, or all programs of a shelf.
+pub(crate) fn command(options: &TestOptions) -> Result<Outcome, UsageError> {
+    files::keep_inputs(&options.inputs(), &options.written())?;
+    match options.single() {
+        Some(file) => single(options, file),
+        None => shelf::command(options),
+    }
+}
+
+fn single(options: &TestOptions, file: &Path) -> Result<Outcome, UsageError> {
+    let bench = Bench::new(options, &options.machine, Columns::BySize)?;
+    let stop = Stop::by(&Interrupt::on_ctrl_c());
+    if let Some(limit) = options.run.time_limit {
+        stop.after(Duration::from_secs_f64(limit));
+    }
+    let company = Company {
+        outputs: Outputs::create(&options.output)?,
+        progress: true,
+        survey: None,
+        stop,
+    };
+    say(&bench.test(file, company)?, &bench, options, file)
+}
+
+/// Prints the report and writes picture and mesh.
+fn say(tested: &Tested, bench: &Bench, options: &TestOptions, file: &Path) -> Result<Outcome, UsageError> {
+    let report = &tested.report;
+    if let Some(error) = &report.error {
+        print_error(error, &tested.interpreter, file);
+    }
+    match tested.end {
+        End::Interrupted => diagnostics::print_line("interrupted: the report so far"),
+        End::Late => diagnostics::print_line("the time limit is reached: the report so far"),
+        _ => {}
+    }
+    let drawn = cutting::write(
+        tested.part.as_ref(),
+        &options.output,
+        &format!("PGM {}", report.program),
+        projection(bench),
+    );
+    print_report(report, options, drawn.is_ok())?;
+    drawn?;
+    Ok(outcome(&tested.end))
+}
+
+/// The projection of the three planes.
+pub(crate) fn projection(bench: &Bench) -> Projection {
+    if bench.list.graphics().third_angle {
+        Projection::ThirdAngle
+    } else {
+        Projection::FirstAngle
+    }
+}
+
+fn outcome(end: &End) -> Outcome {
+    match end {
+        End::Completed | End::Stopped => Outcome::Fine,
+        End::Interrupted => Outcome::Interrupted,
+        End::Failed(_) | End::Late => Outcome::ProgramError,
+    }
+}
+
+pub(crate) fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
+    let Some(program) = run.program(error.at.program) else {
+        return;
+    };
+    // All programs of a run lie beside the main program.
+    let path = match error.at.program {
+        0 => main.to_owned(),
+        _ => main.with_file_name(files::short_name(program)),
+    };
+    diagnostics::print(&Diagnostic {
+        severity: Severity::Error,
+        title: &error.message,
+        path: &path.to_string_lossy(),
+        marked: Marked::of_block(program, error.block),
+        label: match error.detail.as_str() {
+            "" => format!("block {}", error.block),
+            detail => format!("block {}: {detail}", error.block),
+        },
+        help: error.remedy,
+    });
+}
+
+fn print_report(report: &Report, options: &TestOptions, drawn: bool) -> Result<(), UsageError> {
+    match options.format {
+        Format::Text => console::print(&report_text::render(
+            report,
+            options.model,
+            &report_text::written(&options.output, drawn),
+        )),
+        Format::Json => {
+            let json = serde_json::to_string_pretty(report)
+                .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
+            console::print(&(json + "\n"))
+        }
+    }
+}

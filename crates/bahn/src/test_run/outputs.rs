@@ -1,0 +1,103 @@
+//! The files that take the tool path.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use bahn_interpreter::Interpreter;
+use bahn_path::{Function, PathElement};
+
+use crate::UsageError;
+use crate::cli::{OutputOptions, PathFile};
+use crate::files::{self, NewFile};
+use crate::path_csv::PathTable;
+use crate::path_svg::PathDrawing;
+use crate::report::{Notice, Record};
+
+/// The files that take the tool path.
+#[derive(Default)]
+pub(crate) struct Outputs {
+    tables: Vec<(PathTable, PathBuf)>,
+    drawings: Vec<(PathDrawing, NewFile)>,
+    /// What FN15 puts out.
+    print: Option<(NewFile, PathBuf)>,
+    /// Short names of the programs of the run by number.
+    names: Vec<String>,
+}
+
+impl Outputs {
+    pub fn create(wanted: &OutputOptions) -> Result<Outputs, UsageError> {
+        let mut outputs = Outputs::default();
+        if let Some(path) = &wanted.print {
+            outputs.print = Some((NewFile::create(path)?, path.clone()));
+        }
+        for file in &wanted.path {
+            match file {
+                PathFile::Csv(path) => {
+                    let table = PathTable::new(NewFile::create(path)?);
+                    outputs
+                        .tables
+                        .push((table.map_err(|e| files::cannot("write", path, &e))?, path.clone()));
+                }
+                PathFile::Svg(path) => outputs
+                    .drawings
+                    .push((PathDrawing::default(), NewFile::create(path)?)),
+            }
+        }
+        Ok(outputs)
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.tables.is_empty() && self.drawings.is_empty() && self.print.is_none()
+    }
+
+    pub fn element(
+        &mut self,
+        element: &PathElement,
+        run: &Interpreter,
+        record: &mut Record,
+    ) -> Result<(), UsageError> {
+        let number = element.block.program;
+        while self.names.len() <= usize::from(number) {
+            let program = run.program(self.names.len() as u16);
+            self.names.push(
+                program
+                    .map(|program| files::short_name(program).to_owned())
+                    .unwrap_or_default(),
+            );
+        }
+        if let Some((file, path)) = &mut self.print {
+            for output in element.functions() {
+                if let Function::Print(line) = &output.function {
+                    writeln!(file, "{line}").map_err(|error| files::cannot("write", path, &error))?;
+                }
+            }
+        }
+        let name = self.names.get(usize::from(number)).map_or("", String::as_str);
+        for (table, path) in &mut self.tables {
+            table
+                .element(element, name)
+                .map_err(|error| files::cannot("write", path, &error))?;
+        }
+        for (drawing, _) in &mut self.drawings {
+            if !drawing.element(element) {
+                record.warn(element.block, Notice::DrawingIncomplete, 1);
+            }
+        }
+        Ok(())
+    }
+
+    pub fn finish(&mut self) -> Result<(), UsageError> {
+        for (table, _) in self.tables.drain(..) {
+            table.into_file().finish()?;
+        }
+        if let Some((file, _)) = self.print.take() {
+            file.finish()?;
+        }
+        let title = self.names.first().cloned().unwrap_or_default();
+        for (drawing, mut file) in self.drawings.drain(..) {
+            drawing.write(&title, &mut file)?;
+            file.finish()?;
+        }
+        Ok(())
+    }
+}
