@@ -13,6 +13,7 @@
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
 //!   `bahn plc`, `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
+//!   `kept`: files that survive power-off;
 //! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
@@ -31,6 +32,7 @@ mod files;
 mod format;
 mod interrupt;
 mod junit;
+mod kept;
 mod machine_folder;
 mod manual;
 mod mp;
@@ -49,7 +51,18 @@ mod test_run;
 mod tool_table;
 
 #[doc(hidden)]
+pub use machine_folder::check_state;
+#[doc(hidden)]
 pub use plc::check_script;
+#[doc(hidden)]
+pub use scope::check_recording;
+
+/// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
+#[doc(hidden)]
+pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
+    let faults = |faults: Vec<tool_table::TableFault>| faults.iter().map(|fault| fault.line).collect();
+    tool_table::parse(text).map(drop).map_err(faults)
+}
 
 use std::ffi::OsString;
 use std::fmt;

@@ -110,6 +110,8 @@ pub(crate) fn limits(list: &ParameterList, machine: &MachineOptions) -> Limits {
         corner_angle_deg: list.corner_angle_deg(),
         servo_lag: !list.feed_precontrol(),
         cycle_s: f64::from(list.model().limits().contour_cycle_us) * 1e-6,
+        servo_window_s: bahn_motion::SERVO_WINDOW_S,
+        spindle: list.spindle_parameters().rigid_ramps().map(Into::into),
         feed_override_percent: machine.override_percent,
         rapid_override_percent: machine.override_percent,
     }

@@ -181,3 +181,30 @@ fn a_list_names_what_scripts_can_speak_of() {
         assert!(text.contains(part), "{part}\n{text}");
     }
 }
+
+/// I63 and O127 are none of the inputs and outputs of the boards [000:11556-11567].
+#[test]
+fn wires_end_at_inputs_and_outputs_that_are_there() {
+    let folder = new("tnc415b");
+    let plant = folder.read("m/plant.toml");
+    let wired = |plant: &str, from: &str, to: &str| {
+        assert_eq!(plant.matches(from).count(), 1, "{from}");
+        plant.replace(from, to)
+    };
+    let plant = wired(&plant, "\"I146\"", "\"I63\"");
+    let plant = wired(&plant, "\"O18\"", "\"O127\"");
+    folder.write("m/plant.toml", plant);
+    let run = folder.bahn("machine check m");
+    assert_eq!(run.code(), 1);
+    for (wire, said) in [
+        ("\"I63\"", "no input I63; there are I0-I31"),
+        ("\"O127\"", "no output O127; there are O0-O30"),
+    ] {
+        let place = format!("plant.toml:{}:", line(&folder, "m/plant.toml", wire));
+        assert!(
+            run.err().contains(&place) && run.err().contains(said),
+            "{}",
+            run.err()
+        );
+    }
+}

@@ -144,6 +144,11 @@ impl Control {
                 match state {
                     RunState::BlockEnd => self.path.go_on(),
                     RunState::Stopped => self.run.answer = Some(self.run.q_transfer.answer()),
+                    _ if self.path.is_coupled() => {
+                        // Led out of a thread by hand.
+                        self.path.go_on();
+                        self.put(bahn_exchange::signal::MANUAL_OPERATION_PRESSED, false);
+                    }
                     _ => {}
                 }
                 self.run.state = RunState::Running;
@@ -209,6 +214,7 @@ impl Control {
         }
         self.end_probing();
         self.handshakes.abort(&mut self.exchange);
+        self.tools.take_back(&mut self.offsets);
         for index in 0..crate::markers::AXES {
             self.end_positioning(index);
         }

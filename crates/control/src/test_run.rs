@@ -82,6 +82,11 @@ impl Control {
         self.test = None;
     }
 
+    /// The program in TEST RUN.
+    pub(crate) fn tested_program(&self) -> Option<&str> {
+        self.test.as_ref().map(|test| test.program.as_str())
+    }
+
     /// The test run that was started last.
     pub fn test_report(&self) -> Option<TestReport> {
         self.test.as_ref().map(|test| TestReport {

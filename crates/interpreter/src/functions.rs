@@ -185,7 +185,7 @@ impl Run {
         self.q.preassign(preassigned::SPINDLE, spindle.q110());
     }
 
-    fn stop_spindle(&mut self) {
+    pub(crate) fn stop_spindle(&mut self) {
         let stopped = self.modal.spindle.stopped();
         self.set_spindle(stopped);
     }

@@ -48,8 +48,8 @@ pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, ToolState, ToolTable,
-    tool_key,
+    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules, ToolState,
+    ToolTable, tool_key,
 };
 pub use work::{Done, Work};
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes};
+use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes, SpindleParameters};
 use bahn_path::{Axis, Position, ToolShape};
 
 /// Everything a run depends on beside the program.
@@ -136,10 +136,8 @@ pub struct Rules {
     pub overlap: f64,
     /// MP7440: bits of the M functions [000:7298-7305].
     pub m_functions: MFunctionRules,
-    /// MP7110.0/.1: feed override band while tapping, % [000:6094-6098].
-    pub tapping_override_percent: (f64, f64),
-    /// MP7160: cycle 17 orients the spindle before tapping [000:6141].
-    pub orient_before_rigid_tapping: bool,
+    /// Tapping.
+    pub tapping: TappingRules,
     /// Angle of M19 without cycle 13, degrees [000:5867].
     pub spindle_orientation_deg: f64,
     /// MP950: machine datum of M92 from machine zero, mm or degrees [000:6248-6258].
@@ -169,7 +167,6 @@ impl Rules {
         let m = list.m_functions();
         let tapping = list.tapping();
         let probe = list.probe();
-        let [least, greatest] = tapping.override_percent;
         Rules {
             arc_tolerance_mm: list.arc_tolerance_mm(),
             scaling_in_plane_only: list.scaled_axes() == ScaledAxes::WorkingPlane,
@@ -190,8 +187,12 @@ impl Rules {
                 m105_enabled: m.m105_works,
                 m103_enabled: m.m103_works,
             },
-            tapping_override_percent: (least, greatest),
-            orient_before_rigid_tapping: tapping.orientation,
+            tapping: TappingRules {
+                override_percent: tapping.override_percent,
+                reversal_dwell_s: tapping.reversal_dwell_s,
+                spindle: Some(list.spindle_parameters()),
+                orients: tapping.orientation,
+            },
             acceleration_m_s2: Axis::ALL.map(|axis| list.acceleration_m_s2(axis)),
             radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
             machine_datum: Axis::ALL.map(|axis| list.m92_datum(axis)).into(),
@@ -221,8 +222,7 @@ impl Default for Rules {
             contour_pocket: ContourPocketRules::default(),
             overlap: 1.0,
             m_functions: MFunctionRules::default(),
-            tapping_override_percent: (100.0, 100.0),
-            orient_before_rigid_tapping: true,
+            tapping: TappingRules::default(),
             spindle_orientation_deg: 0.0,
             machine_datum: Position::ZERO,
             machine_zero: Position::ZERO,
@@ -308,6 +308,30 @@ impl MFunctionRules {
     }
 }
 
+/// What cycles 2 and 17 need.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TappingRules {
+    /// MP7110.0 and .1: band of the feed override in cycle 2, % [000:6094-6098].
+    pub override_percent: [f64; 2],
+    /// MP7120.0: dwell before the spindle reverses in cycle 2, s [000:6079].
+    pub reversal_dwell_s: f64,
+    /// The spindle, for the time at which cycle 2 switches it off; without it that is at the depth.
+    pub spindle: Option<SpindleParameters>,
+    /// MP7160 = 0: cycle 17 orients the spindle before tapping [000:6141].
+    pub orients: bool,
+}
+
+impl Default for TappingRules {
+    fn default() -> Self {
+        TappingRules {
+            override_percent: [100.0; 2],
+            reversal_dwell_s: 0.0,
+            spindle: None,
+            orients: true,
+        }
+    }
+}
+
 /// Touch probe parameters [003:7246-7252].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbeRules {
@@ -361,7 +385,7 @@ mod tests {
         assert_eq!(rules.m_functions, MFunctionRules::from_bits(0b00001));
         assert_eq!(rules.overlap, 0.9);
         assert!(rules.scaling_in_plane_only);
-        assert_eq!(rules.tapping_override_percent.0, 80.0);
+        assert_eq!(rules.tapping.override_percent[0], 80.0);
         assert_eq!(rules.machine_datum[Axis::Z], -7.0);
     }
 }

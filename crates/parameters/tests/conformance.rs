@@ -183,7 +183,8 @@ fn parameters_that_act_are_read_outside_this_room() {
     let is_read = |field: &String| match field.split('.').collect::<Vec<_>>()[..] {
         // What is kept under the name of its getter is used under it.
         [getter, name] if sources.contains(&format!("{getter}.")) => {
-            has_word(&sources, &format!("{getter}."), name)
+            let kept = has_word(&sources, &format!("{getter}."), name);
+            kept || has_word(&sources, &format!("{getter}()."), name)
         }
         [.., name] => has_word(&sources, ".", name),
         [] => false,
