@@ -153,6 +153,8 @@ fn examine(program: Arc<Program>, options: &CheckOptions, interrupt: &Interrupt)
     let settings = Settings {
         model: options.model,
         inch_feed: options.inch_feed.map(Into::into),
+        strict: options.strict,
+        skip_unknown: options.skip_unknown,
         ..Settings::default()
     };
     let library = Box::new(FileLibrary::with_main(&program));

@@ -10,8 +10,8 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
 //!   makes folders of machines;
-//! - `check`, `format`, `explain`, `manual`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
-//!   `bahn mp`;
+//! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
+//!   `bahn plc`, `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
 //!   `kept`: files that survive power-off;
 //! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
@@ -23,6 +23,7 @@ mod block_time;
 mod called;
 mod check;
 mod cli;
+mod conformance;
 mod console;
 mod cutting;
 mod diagnostics;
@@ -84,6 +85,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Fmt(options) => format::command(options),
         cli::Command::Plc(options) => plc::command(options),
         cli::Command::Mp(options) => mp::command(options),
+        cli::Command::Conformance(options) => conformance::command(options),
         cli::Command::Explain(options) => explain::command(options),
         cli::Command::Completions(options) => manual::completions(options),
         cli::Command::Man(options) => manual::man(options),

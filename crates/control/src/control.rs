@@ -24,7 +24,7 @@ use crate::plc_link::PlcLink;
 use crate::positioning::Positioning;
 use crate::reference::ReferenceRun;
 use crate::run::ProgramRun;
-use crate::setup::{Remembered, Setup};
+use crate::setup::{Checking, Remembered, Setup};
 use crate::spindle::SpindleUnit;
 use crate::thread::Tapping;
 use crate::tools::Tools;
@@ -85,6 +85,7 @@ pub struct Control {
     /// Active traverse range, 0 to 2.
     pub(crate) range: usize,
     pub(crate) tools: Tools,
+    pub(crate) checking: Checking,
     pub(crate) upkeep: Upkeep,
     pub(crate) stylus: crate::probing::Stylus,
     pub(crate) tapping: Tapping,
@@ -126,6 +127,7 @@ impl Control {
             plc_messages,
             plc_dialogues,
             tools,
+            checking,
             inch_feed,
             programs,
             files,
@@ -177,6 +179,7 @@ impl Control {
             exchange,
             spindle: SpindleUnit::new(parameters.spindle_parameters(), timing),
             tools: Tools::new(tools, operation.tools, &remembered),
+            checking,
             link: PlcLink::new(parameters, plc_messages, plc_dialogues, files),
             plc: PlcUnit {
                 machine: Machine::new(plc, Start::PowerOn),

@@ -66,7 +66,7 @@ pub use manual::HANDWHEEL_STEPS;
 pub use message::{Message, Shown};
 pub use plc_link::NcFiles;
 pub use run::RunState;
-pub use setup::{MovedTool, Position0, Remembered, Setup, Tool, WrittenElement};
+pub use setup::{Checking, MovedTool, Position0, Remembered, Setup, Tool, WrittenElement};
 pub use signal::{AxisSignal, Signal, SignalError};
 pub use snapshot::{AxisState, Snapshot};
 pub use spindle::SpindleState;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_exchange::Exchange;
+use bahn_interpreter::ToolState;
 use bahn_parameters::{InchFeed, ParameterList};
 use bahn_path::{Axis, Position, ToolShape};
 use bahn_plc::{PlcProgram, TableKind};
@@ -22,6 +23,17 @@ pub struct Tool {
     pub special: bool,
     /// It cuts when the spindle turns counter-clockwise (M4): DIRECT [000:9028].
     pub left_hand: bool,
+    /// Whether it may be called.
+    pub state: ToolState,
+}
+
+/// How programs are taken that use what is not executed here.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Checking {
+    /// Refuse what is otherwise accepted with a warning.
+    pub strict: bool,
+    /// Pass over unknown words and blocks, and functions that would move differently, with a warning.
+    pub skip_unknown: bool,
 }
 
 /// Everything a [`Control`](crate::Control) starts with.
@@ -37,6 +49,8 @@ pub struct Setup {
     pub plc_dialogues: Vec<String>,
     /// Tools by number; `None` when tools are defined in the programs.
     pub tools: Option<BTreeMap<u32, Tool>>,
+    /// How programs are taken that use what is not executed here.
+    pub checking: Checking,
     /// What F counts in a program in inches; `None` for what it counts on the model.
     pub inch_feed: Option<InchFeed>,
     /// Where programs come from.

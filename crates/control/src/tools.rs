@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use bahn_exchange::{Exchange, signal};
+use bahn_interpreter::ToolState;
 use bahn_parameters::{ToolOutput, ToolOutputKind, ToolParameters};
 use bahn_path::{Axis, ToolCall};
 use bahn_plc::ToolCallBlock;
@@ -95,6 +96,13 @@ impl Tools {
     pub fn shapes(&self) -> Option<bahn_interpreter::ToolTable> {
         let table = self.table.as_ref()?;
         Some(table.iter().map(|(number, tool)| (*number, tool.shape)).collect())
+    }
+
+    /// The tools that must not be called, for the interpreter.
+    pub fn barred(&self) -> BTreeMap<u32, ToolState> {
+        let tools = self.table.iter().flatten();
+        let states = tools.map(|(number, tool)| (*number, tool.state));
+        states.filter(|(_, state)| *state != ToolState::Usable).collect()
     }
 
     /// All tools of the table.

@@ -49,6 +49,7 @@ impl Kept {
         }
         // Warnings are no state to go back to.
         let warnings = std::mem::take(&mut run.warnings);
+        let said = std::mem::take(&mut run.said);
         self.states.push_back(Checkpoint {
             run: Box::new(run.clone()),
             ended: None,
@@ -56,6 +57,7 @@ impl Kept {
             position,
         });
         run.warnings = warnings;
+        run.said = said;
     }
 
     pub fn handed(&mut self, sequence: u64) {

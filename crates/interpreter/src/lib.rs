@@ -8,12 +8,14 @@
 //! - [`rehearse`]: all faults of a program, found without moving anything;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
+//! What is executed here, and what the user is told, `availability` asks of the registry of the control models.
 //! A block is executed by `run`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
 //! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished
 //! steps.
 //! Nothing here knows of time or of the machine's axes.
 
 mod arc;
+mod availability;
 mod checkpoints;
 mod code;
 mod contour;
@@ -46,8 +48,8 @@ pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules, ToolTable,
-    tool_key,
+    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules, ToolState,
+    ToolTable, tool_key,
 };
 pub use work::{Done, Work};
 
@@ -213,9 +215,11 @@ impl Interpreter {
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
         let warnings = std::mem::take(&mut self.run.warnings);
+        let said = std::mem::take(&mut self.run.said);
         self.pending = Pending::None;
         self.run = (*checkpoint.run).clone();
         self.run.warnings = warnings;
+        self.run.said = said;
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;

@@ -15,6 +15,8 @@ pub struct Settings {
     pub rules: Rules,
     /// Tool table; `None` when tools are defined in the programs [003:1803-1806].
     pub tools: Option<ToolTable>,
+    /// Tools of the table that must not be called.
+    pub barred_tools: BTreeMap<u32, ToolState>,
     /// Texts of the machine for FN14 and FN15.
     pub texts: MachineTexts,
     /// Q parameters set before the start: number, value.
@@ -34,6 +36,9 @@ pub struct Settings {
     pub inch_feed: Option<InchFeed>,
     /// Refuse what is otherwise accepted with a warning (sign of cycle parameters, tools without data).
     pub strict: bool,
+    /// Pass over words and blocks that nothing here knows, and functions without which the control would move
+    /// differently, each with a warning, instead of refusing them.
+    pub skip_unknown: bool,
     /// A control runs the program on a machine: it waits for the PLC, which may write what the next block
     /// reads, and probing movements are executed outside.
     pub machine: bool,
@@ -47,6 +52,7 @@ impl Default for Settings {
             model: ControlModel::default(),
             rules: Rules::default(),
             tools: None,
+            barred_tools: BTreeMap::new(),
             texts: MachineTexts::default(),
             q_values: Vec::new(),
             start: Position::UNKNOWN,
@@ -55,10 +61,25 @@ impl Default for Settings {
             skip_blocks: false,
             inch_feed: None,
             strict: false,
+            skip_unknown: false,
             machine: false,
             max_blocks_without_motion: 10_000_000,
         }
     }
+}
+
+/// Why a tool of the table must not be called [000:9135-9137] [000:9168-9172].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToolState {
+    /// It may be called.
+    #[default]
+    Usable,
+    /// Column TL: it is locked.
+    Locked,
+    /// CUR.TIME is greater than TIME2, and no replacement tool is named.
+    Expired,
+    /// CUR.TIME is greater than TIME2: the control takes the replacement tool of column RT.
+    Replaced,
 }
 
 impl Settings {
@@ -132,6 +153,10 @@ pub struct Rules {
     pub probe: ProbeRules,
     /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
     pub speed_max_rpm: f64,
+    /// MP7245: bit n inhibits cycle n [000:6655-6698].
+    pub inhibited_cycles: u32,
+    /// MP7246: paraxial positioning blocks are disabled [000:7022-7029].
+    pub paraxial_inhibited: bool,
 }
 
 impl Rules {
@@ -179,6 +204,10 @@ impl Rules {
                 ..ProbeRules::default()
             },
             speed_max_rpm: list.spindle_speed_max_rpm(),
+            inhibited_cycles: (1..=31)
+                .filter(|cycle| list.cycle_inhibited(*cycle))
+                .fold(0, |bits, cycle| bits | 1 << cycle),
+            paraxial_inhibited: list.paraxial_inhibited(),
             ..Rules::default()
         }
     }
@@ -201,6 +230,8 @@ impl Default for Rules {
             radial_acceleration_m_s2: 1.0,
             probe: ProbeRules::default(),
             speed_max_rpm: 99_999.0,
+            inhibited_cycles: 0,
+            paraxial_inhibited: false,
         }
     }
 }

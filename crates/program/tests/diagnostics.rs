@@ -199,7 +199,6 @@ fn limits_of_the_control_model() {
     assert_eq!(at("L X+30000.001"), entry("+30000.001"));
     assert_eq!(at("L IZ -30001 F5"), entry("-30001"));
     assert_eq!(at("L X+5 F30000"), entry("30000"));
-    assert_eq!(at("L X+5 F MAX M100"), entry("M100"));
     assert_eq!(at("TOOL CALL 1 Z S100000"), entry("100000"));
     assert_eq!(at("TOOL CALL 255 Z S1"), entry("255"));
     assert_eq!(at("TOOL DEF 255 L+0 R+1"), entry("255"));

@@ -28,7 +28,7 @@ pub(crate) use options::{EXAMPLES, RunMachineOptions};
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_control::{Control, Mode, Position0, Remembered, Setup, Signal};
+use bahn_control::{Checking, Control, Mode, Position0, Remembered, Setup, Signal};
 use bahn_exchange::Exchange;
 use bahn_machine::Machine;
 use bahn_workpiece::Projection;
@@ -109,6 +109,10 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         plc_messages: machine.plc_messages.clone(),
         plc_dialogues: machine.plc_dialogues.clone(),
         tools: machine.tools.clone(),
+        checking: Checking {
+            strict: options.run.strict,
+            skip_unknown: options.run.skip_unknown,
+        },
         inch_feed: options.run.inch_feed.map(Into::into),
         programs: Arc::clone(&programs) as Arc<dyn bahn_control::Programs>,
         files: machine.files.clone(),

@@ -131,6 +131,13 @@ pub(crate) struct RunControl {
     /// One machine parameter instead of that of the list, as 4310.0=0 (repeatable, or several with commas).
     #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
     pub mp: Vec<String>,
+    /// Refuse what is otherwise accepted with a warning, such as functions that have no effect here.
+    #[arg(long)]
+    pub strict: bool,
+    /// Pass over words and blocks that nothing here knows, and functions without which the control would
+    /// move differently, each with a warning, instead of ending with an error.
+    #[arg(long, conflicts_with = "strict")]
+    pub skip_unknown: bool,
     /// Simulate the block processing time of the model: the path waits for blocks that are not read yet.
     #[arg(long)]
     pub block_time: bool,
