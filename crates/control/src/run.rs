@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_interpreter::{Rules, Settings};
+use bahn_interpreter::{Rules, Settings, Status};
 use bahn_motion::FunctionOutput;
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, LiveData, Position};
@@ -86,6 +86,8 @@ pub(crate) struct ProgramRun {
     pub defers: bool,
     /// Block processing time that is simulated.
     pub block_time: BlockTime,
+    /// What the last run left in force.
+    pub status: Status,
     /// Return to the contour.
     pub restore: Option<Restore>,
     /// The path speed, mm/s.
@@ -344,9 +346,12 @@ impl Control {
             for (number, value) in self.run.q_transfer.take_all() {
                 self.keep_q(number, value);
             }
-            let clearing = self.link.list().program_end_clearing();
-            if clearing.q_parameters && clearing.at_program_end {
-                self.q.clear();
+            if let Some(feeder) = &self.run.feeder {
+                self.run.status = feeder.interpreter().status();
+            }
+            // A block of MDI is no program that comes to its end (inferred).
+            if self.link.list().program_end_clearing().at_program_end && !self.run.mdi_over {
+                self.cancel_status();
             }
         }
         if std::mem::take(&mut self.run.mdi_over)
@@ -354,6 +359,21 @@ impl Control {
         {
             self.run.feeder = feeder;
             self.run.resume_from = resume;
+        }
+    }
+
+    /// Cancels what MP7300 names [000:6589-6601]. The tool stays in the spindle, without its data.
+    fn cancel_status(&mut self) {
+        let clearing = self.link.list().program_end_clearing();
+        if clearing.q_parameters {
+            self.q.clear();
+        }
+        if clearing.status {
+            self.run.status.cancel_programmed();
+        }
+        if clearing.tool {
+            self.run.status.cancel_tool();
+            self.tools.forget_length(&mut self.offsets);
         }
     }
 
@@ -396,18 +416,23 @@ impl Control {
         } else {
             self.run.start_block
         };
-        let mut feeder = self.new_feeder_from(program, block, machine, limits);
+        let mut status = self.run.status.clone();
+        if status.tool() != Some(self.tools.number) {
+            status.cancel_tool();
+        }
+        let mut feeder = self.new_feeder_from(program, block, machine, limits, status);
         feeder.set_tap(self.run.tap);
         feeder
     }
 
-    /// A feeder of a program from a block on.
+    /// A feeder of a program from a block on, with what is in force before it.
     pub(crate) fn new_feeder_from(
         &self,
         program: Arc<Program>,
         block: u32,
         machine: &Position,
         limits: Box2,
+        status: Status,
     ) -> Feeder {
         let mut rules = Rules::of(self.link.list());
         rules.machine_zero = self.machine_zero();
@@ -422,6 +447,7 @@ impl Control {
             q_values: self.q.clone(),
             start: self.offsets.to_path(machine),
             tool_length_mm: Some(self.offsets.tool_length),
+            status,
             machine: true,
             max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
             inch_feed: self.inch_feed,
@@ -540,9 +566,7 @@ impl Control {
             return false;
         }
         self.q = self.q_values();
-        if self.link.list().program_end_clearing().q_parameters {
-            self.q.clear();
-        }
+        self.cancel_status();
         self.run.selected = Some(name);
         self.run.start_block = 0;
         self.run.feeder = None;

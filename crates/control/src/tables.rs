@@ -101,7 +101,9 @@ impl Control {
         let before = self.tools.length(self.tools.number);
         self.take_tables();
         let longer = self.tools.length(self.tools.number) - before;
-        if !self.tools.lengthen_held(longer) {
+        // A tool whose data are cancelled counts without length until it is called.
+        let cancelled = self.offsets.tool_length == 0.0 && before != 0.0;
+        if !self.tools.lengthen_held(longer) && !cancelled {
             self.offsets.tool_length += longer;
         }
     }

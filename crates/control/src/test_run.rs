@@ -1,6 +1,7 @@
 //! TEST RUN beside what the machine does: a program is executed without moving an axis, to find what is
 //! wrong with it [003:1514-1535]. Nothing goes to the PLC.
 
+use bahn_interpreter::Status;
 use bahn_parameters::MessageId;
 use bahn_path::{Barrier, BlockRef, ElementSource, Function, LiveData, Step, Touch};
 
@@ -67,7 +68,9 @@ impl Control {
             return false;
         };
         let machine = self.machine_position();
-        let feeder = self.new_feeder_from(program, 0, &machine, self.traverse_box());
+        // A program that is selected finds nothing in force.
+        let status = Status::default();
+        let feeder = self.new_feeder_from(program, 0, &machine, self.traverse_box(), status);
         self.test = Some(TestRun {
             program: name.to_owned(),
             feeder: Box::new(feeder),

@@ -303,6 +303,12 @@ impl Tools {
         self.held
     }
 
+    /// The data of the tool are cancelled: it counts without length.
+    pub fn forget_length(&mut self, offsets: &mut Offsets) {
+        self.changed |= offsets.tool_length != 0.0;
+        offsets.tool_length = 0.0;
+    }
+
     /// A change was broken off: the old tool is still in the spindle, and the next call is one again.
     pub fn take_back(&mut self, offsets: &mut Offsets) {
         self.called = self.number;

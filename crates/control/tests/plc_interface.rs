@@ -237,6 +237,8 @@ fn tables_of_the_control() {
     let build = |length, remembered| {
         let mut build = bench(&plc)
             .mp("7480.0=3")
+            // The data of the tool stay in force.
+            .mp("7300=4")
             .program("1.H", "TOOL CALL 2 Z S0\nL X+60 R0 F6000");
         build.tools = Some([(2, with_pocket(length))].into());
         build.remembered = remembered;

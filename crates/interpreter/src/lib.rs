@@ -45,6 +45,7 @@ use bahn_program::{Block, MotionKind, Operation, Program, Value};
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
+pub use modal::Status;
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
@@ -165,6 +166,11 @@ impl Interpreter {
     /// Executed blocks; BEGIN, END, comments and skipped blocks do not count.
     pub fn blocks_executed(&self) -> u64 {
         self.run.sequence
+    }
+
+    /// What is in force behind the last block that was read.
+    pub fn status(&self) -> Status {
+        self.run.modal.status()
     }
 
     /// The Q parameters by number. Numbers are those of the control model.

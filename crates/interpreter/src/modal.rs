@@ -109,7 +109,50 @@ pub(crate) struct LastMove {
     pub end: Position,
 }
 
+/// What of a run stays in force behind its end until a machine cancels it: coordinate transformations, feed and
+/// the data of the tool [003:6199-6205] [000:6589-6601].
+#[derive(Clone, Debug, Default)]
+pub struct Status {
+    /// Transformations with their plane, and the feed.
+    programmed: Option<(Frame, Option<f64>)>,
+    tool: Option<Tool>,
+}
+
+impl Status {
+    /// Cancels transformations and feed.
+    pub fn cancel_programmed(&mut self) {
+        self.programmed = None;
+    }
+
+    /// Cancels the data of the tool.
+    pub fn cancel_tool(&mut self) {
+        self.tool = None;
+    }
+
+    /// Transformations and feed.
+    pub(crate) fn programmed(&self) -> Option<(Frame, Option<f64>)> {
+        self.programmed
+    }
+
+    pub(crate) fn tool_data(&self) -> Option<Tool> {
+        self.tool
+    }
+
+    /// Number of the tool whose data are in force.
+    pub fn tool(&self) -> Option<u32> {
+        self.tool.map(|tool| tool.number)
+    }
+}
+
 impl Modal {
+    /// What stays in force behind the end.
+    pub fn status(&self) -> Status {
+        Status {
+            programmed: Some((self.frame, self.feed_mm_min)),
+            tool: self.tool,
+        }
+    }
+
     pub fn new(start: Position, length_mm: Option<f64>) -> Modal {
         Modal {
             nominal: start,
@@ -137,6 +180,13 @@ impl Modal {
             blank_min: None,
             probe: None,
         }
+    }
+
+    /// Takes the working plane of a tool axis.
+    pub fn take_plane(&mut self, plane: Plane) {
+        self.plane = plane;
+        self.contour_plane = plane;
+        self.frame.plane = plane;
     }
 
     /// Takes the axes of a block into the plane of compensation: U stands for X until X is programmed again.

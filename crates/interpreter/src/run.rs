@@ -15,7 +15,7 @@ use crate::contour::{Contour, ContourMove, Side};
 use crate::error::{Cause, Fault, Message, Warning, WarningKind};
 use crate::flow::{self, Flow};
 use crate::functions::BlockFunctions;
-use crate::modal::Modal;
+use crate::modal::{Modal, Status};
 use crate::output::Output;
 use crate::probe::Probing;
 use crate::q_parameters::{QTable, preassigned};
@@ -79,7 +79,7 @@ impl Run {
         for &(number, value) in &settings.q_values {
             q.preassign(number, value);
         }
-        Run {
+        let mut run = Run {
             modal,
             q,
             at: flow::Position::at(0, 0),
@@ -103,6 +103,22 @@ impl Run {
             rehearsal: false,
             probing: None,
             recording: None,
+        };
+        run.take_status(&settings.status);
+        run
+    }
+
+    /// Begins with what the run before has left in force.
+    fn take_status(&mut self, status: &Status) {
+        if let Some((frame, feed)) = status.programmed() {
+            self.modal.frame = frame;
+            self.modal.feed_mm_min = feed;
+            self.modal.take_plane(frame.plane);
+        }
+        if let Some(tool) = status.tool_data() {
+            self.modal.tool = Some(tool);
+            self.preassign_tool(tool.shape.length, tool.radius);
+            self.preassign_tool_axis(tool.axis);
         }
     }
 

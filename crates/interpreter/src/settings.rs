@@ -6,6 +6,8 @@ use std::sync::Arc;
 use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes, SpindleParameters};
 use bahn_path::{Axis, Position, ToolShape};
 
+use crate::modal::Status;
+
 /// Everything a run depends on beside the program.
 #[derive(Clone, Debug)]
 pub struct Settings {
@@ -26,6 +28,8 @@ pub struct Settings {
     /// Length of the tool that is in the spindle before the start, mm. `None` when nobody knows: the first
     /// TOOL CALL then leaves the position as it is.
     pub tool_length_mm: Option<f64>,
+    /// What the run before has left in force.
+    pub status: Status,
     /// Where the tip stands after the change to another tool, workpiece coordinates, mm; axes that are not
     /// given stay where they are, the tool axis at least on the upper face of the blank. On a machine the
     /// axes stand where they stand.
@@ -57,6 +61,7 @@ impl Default for Settings {
             q_values: Vec::new(),
             start: Position::UNKNOWN,
             tool_length_mm: None,
+            status: Status::default(),
             tool_change: Position::UNKNOWN,
             skip_blocks: false,
             inch_feed: None,

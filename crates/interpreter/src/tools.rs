@@ -119,12 +119,7 @@ impl Run {
         });
         // The graphics take no notice of a radius that must not be used.
         shape.radius = shape.radius.max(0.0);
-        self.q.preassign(
-            preassigned::TOOL_RADIUS,
-            (shape.radius + delta_radius) / self.main_unit_mm(),
-        );
-        self.q
-            .preassign(preassigned::TOOL_LENGTH, shape.length / self.main_unit_mm());
+        self.preassign_tool(shape.length, shape.radius + delta_radius);
         let call = ToolCall {
             tool: number,
             axis,
@@ -141,6 +136,13 @@ impl Run {
         };
         self.hold(functions)?;
         Ok(())
+    }
+
+    /// Q parameters of the tool in use, in the unit of the main program.
+    pub(crate) fn preassign_tool(&mut self, length: f64, radius: f64) {
+        let unit = self.main_unit_mm();
+        self.q.preassign(preassigned::TOOL_RADIUS, radius / unit);
+        self.q.preassign(preassigned::TOOL_LENGTH, length / unit);
     }
 
     /// The axes stand still at a tool change, so the tip of a longer tool stands lower: the position in the
@@ -285,9 +287,13 @@ impl Run {
         if plane != self.modal.plane && self.modal.frame.rotation_deg != 0.0 {
             return Err(Fault::new(MessageId::PlaneWronglyDefined, "a rotation is active"));
         }
-        self.modal.plane = plane;
-        self.modal.contour_plane = plane;
-        self.modal.frame.plane = plane;
+        self.modal.take_plane(plane);
+        self.preassign_tool_axis(axis);
+        Ok(())
+    }
+
+    /// The Q parameter of the tool axis.
+    pub(crate) fn preassign_tool_axis(&mut self, axis: Axis) {
         let number = match axis {
             Axis::X => 0.0,
             Axis::Y => 1.0,
@@ -298,7 +304,6 @@ impl Run {
             Axis::A | Axis::B | Axis::C => -1.0,
         };
         self.q.preassign(preassigned::TOOL_AXIS, number);
-        Ok(())
     }
 
     /// Millimetres of the unit of the main program, in which the control shows lengths.
