@@ -1,5 +1,7 @@
 //! All faults of a program in one pass.
 
+use std::collections::BTreeSet;
+
 use bahn_parameters::MessageId::{
     self, BlockNotSupported, CyclIncomplete, EndOfProgramMissing, JumpToLabelZeroNotPermitted,
     LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
@@ -53,6 +55,9 @@ pub struct Uncounted {
     /// Warnings.
     pub warnings: usize,
 }
+
+/// Missing labels of one list that are named.
+const LABELS_NAMED: usize = 12;
 
 impl Program {
     /// All faults that can be seen without running the program, in the order of its blocks, at most
@@ -214,9 +219,7 @@ impl Pass<'_> {
             Operation::Cycle(block) => {
                 for word in &block.words {
                     if let CycleWord::Labels(labels) = word {
-                        labels
-                            .iter()
-                            .for_each(|label| self.called(*number, *label, "14.1"));
+                        self.subcontours(*number, labels);
                     }
                 }
             }
@@ -229,6 +232,25 @@ impl Pass<'_> {
         if let Some(fault) = fault {
             self.error(fault.message, *number, &fault.address, &fault.detail);
         }
+    }
+
+    /// The labels of cycle 14: one fault names all that are missing, so that a long list is read once.
+    fn subcontours(&mut self, block: u32, labels: &[u16]) {
+        if labels.contains(&0) {
+            self.called(block, 0, "14.1");
+        }
+        let is_missing = |label: &&u16| **label != 0 && self.program.label(**label).is_none();
+        let missing: BTreeSet<u16> = labels.iter().filter(is_missing).copied().collect();
+        if missing.is_empty() {
+            return;
+        }
+        let mut named: Vec<String> = missing.iter().take(LABELS_NAMED).map(u16::to_string).collect();
+        if missing.len() > LABELS_NAMED {
+            named.push(format!("and {} more", missing.len() - LABELS_NAMED));
+        }
+        let plural = if missing.len() > 1 { "s" } else { "" };
+        let detail = format!("no block sets label{plural} {}", named.join(", "));
+        self.error(LabelNumberNotAllocated, block, "14.1", &detail);
     }
 
     /// A label that is called or jumped to.

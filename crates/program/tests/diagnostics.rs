@@ -85,6 +85,28 @@ fn labels() {
     assert_eq!((fault(contour).0, fault(contour).1), (LabelNumberNotAllocated, 4));
 }
 
+/// One fault names the missing labels of a list, each once, and only some of many: a list of 100,000 labels is
+/// read once.
+#[test]
+fn one_fault_for_the_labels_of_a_list() {
+    let detail = |labels: &str| {
+        let block = format!("CYCL DEF 14.0 CONTOUR\nCYCL DEF 14.1 CONTOUR LABEL {labels}");
+        let program = program(format!("BEGIN PGM 1 MM\nLBL 1\nLBL 0\n{block}\nEND PGM 1 MM\n"));
+        let faults = program.diagnostics(None);
+        assert_eq!(faults.len(), 1, "{} labels", labels.len());
+        faults[0].detail.to_string()
+    };
+    assert_eq!(detail("1/3/1/3"), "no block sets label 3");
+    assert_eq!(detail("5/1/3/5"), "no block sets labels 3, 5");
+    // 2 to 254 are 253 labels: 12 of them and 241 more.
+    let many: Vec<String> = (0..100_000).map(|at| (at % 254 + 1).to_string()).collect();
+    let named: Vec<String> = (2..14).map(|label: u32| label.to_string()).collect();
+    assert_eq!(
+        detail(&many.join("/")),
+        format!("no block sets labels {}, and 241 more", named.join(", "))
+    );
+}
+
 #[test]
 fn cycles_with_missing_or_unordered_blocks() {
     let cut = "CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 SET UP -2\nL X+1 FMAX M99";
