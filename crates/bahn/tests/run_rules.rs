@@ -6,7 +6,7 @@ mod support;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use support::{Folder, Run, number};
+use support::{Folder, Run, number, program};
 
 const PROGRAM: &str = "TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX\nL X+0 Y+0 FMAX\nL X+40 F1000\nL X+0 F1000";
 
@@ -159,6 +159,22 @@ fn a_test_run_beside() {
     assert_eq!(code, 0, "{json}");
     assert_eq!(json["test_run"]["completed"], true);
     assert_eq!(json["test_run"]["program"], "main.H");
+}
+
+/// TEST RUN of another program: from the folder of the machine's programs, or beside the program of the run.
+#[test]
+fn a_test_run_of_another_program() {
+    let folder = Folder::with_program(PROGRAM);
+    folder.write("beside.H", program("L X+1 R0 FMAX"));
+    for name in ["SADDLE.H", "beside.H"] {
+        folder.write(
+            "s.txt",
+            format!("start+1: test {name}\n+1: expect test finished\n"),
+        );
+        let (code, json) = report(&folder, "--script s.txt");
+        assert_eq!(code, 0, "{json}");
+        assert_eq!(json["test_run"]["program"], name);
+    }
 }
 
 /// FN15 is in the report and in a file, of a test run and of the machine. FN14 shows the text of the machine.

@@ -10,7 +10,7 @@ use bahn_program::Program;
 use crate::UsageError;
 use crate::files::{self, FileLibrary, Loaded};
 
-/// The folder of programs, and the program that was given by its path.
+/// The folder of programs, and the program that was given by its path, with those that lie beside it.
 pub(crate) struct FolderPrograms {
     /// A name in the folder: programs lie beside their caller.
     caller: String,
@@ -78,6 +78,10 @@ impl Programs for FolderPrograms {
         {
             return Ok(Some(program));
         }
-        library.find(name, &self.caller)
+        let in_folder = library.find(name, &self.caller)?;
+        match (in_folder, &self.main) {
+            (None, Some(main)) => library.find(name, main.name()),
+            (found, _) => Ok(found),
+        }
     }
 }
