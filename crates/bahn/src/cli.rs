@@ -105,6 +105,10 @@ pub(crate) struct MachineOptions {
     /// Tool table; without one tools are those that the program defines.
     #[arg(long, value_name = "TABLE", value_hint = ValueHint::FilePath)]
     pub tools: Option<PathBuf>,
+    /// Angles of the points of drills that the program defines with TOOL DEF, by tool number in degrees, as
+    /// 1=118,2=90 (a tool table has the column T-ANGLE).
+    #[arg(long, value_name = "TOOL=DEG", value_delimiter = ',', value_parser = point_angle)]
+    pub point_angle: Vec<(u32, f64)>,
     /// List of machine parameters that replaces values of the model's reference list.
     #[arg(long, value_name = "LIST", value_hint = ValueHint::FilePath)]
     pub parameters: Option<PathBuf>,
@@ -370,6 +374,22 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|value| *value > 0.0)
         .ok_or_else(|| "it takes a number greater than 0".to_owned())
+}
+
+/// A tool and the angle of its point.
+fn point_angle(text: &str) -> Result<(u32, f64), String> {
+    let least = bahn_path::ToolShape::POINT_ANGLE_MIN_DEG;
+    let (tool, angle) = text
+        .split_once('=')
+        .ok_or_else(|| "it takes a tool and its angle, as 1=118".to_owned())?;
+    let tool = tool
+        .trim()
+        .parse()
+        .map_err(|_| format!("`{tool}` is no tool number"))?;
+    match angle.trim().parse::<f64>() {
+        Ok(angle) if (least..180.0).contains(&angle) => Ok((tool, angle)),
+        _ => Err(format!("a point has {least} to 180 degrees")),
+    }
 }
 
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {

@@ -177,3 +177,35 @@ fn the_machine_says_so_too() {
         [(5, "tool 1 cuts while the spindle stands still".to_owned())]
     );
 }
+
+/// A drill of the program gets its point by an option: a cylinder, and the cone under it with its tip at Z-8.
+#[test]
+fn a_defined_drill_has_the_point_of_an_option() {
+    let blocks =
+        format!("{BLANK}TOOL CALL 1 Z S1000\nL Z+5 R0 FMAX M3\nL X+50 Y+25 FMAX\nL Z-8 F100\nL Z+5 FMAX");
+    let folder = Folder::with_program(&blocks);
+    let (radius, depth) = (5.0f64, 8.0);
+    let tip = radius / 59.0f64.to_radians().tan();
+    let area = std::f64::consts::PI * radius * radius;
+    for (option, expected) in [
+        ("", area * depth),
+        (
+            "--point-angle 1=118,2=90",
+            area * (depth - tip) + area * tip / 3.0,
+        ),
+    ] {
+        let (code, report) = folder.test(&format!("--resolution 0.05 {option}"));
+        let removed = report["removed_mm3"].as_f64().unwrap();
+        assert_eq!(code, 0, "{report}");
+        assert!(
+            (removed / expected - 1.0).abs() < 2e-3,
+            "{removed} is not {expected}"
+        );
+    }
+    for wrong in ["1", "1=4", "1=180", "x=90"] {
+        assert_eq!(
+            folder.bahn(&format!("test main.H --point-angle {wrong}")).code(),
+            2
+        );
+    }
+}

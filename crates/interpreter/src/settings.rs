@@ -17,6 +17,8 @@ pub struct Settings {
     pub rules: Rules,
     /// Tool table; `None` when tools are defined in the programs [003:1803-1806].
     pub tools: Option<ToolTable>,
+    /// Angles of the points of drills that the programs define, degrees, by tool number: TOOL DEF has none.
+    pub point_angles_deg: BTreeMap<u32, f64>,
     /// Tools of the table that must not be called.
     pub barred_tools: BTreeMap<u32, ToolState>,
     /// Texts of the machine for FN14 and FN15.
@@ -56,6 +58,7 @@ impl Default for Settings {
             model: ControlModel::default(),
             rules: Rules::default(),
             tools: None,
+            point_angles_deg: BTreeMap::new(),
             barred_tools: BTreeMap::new(),
             texts: MachineTexts::default(),
             q_values: Vec::new(),

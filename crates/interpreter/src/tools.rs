@@ -60,7 +60,11 @@ impl Run {
                 length,
                 radius,
                 corner_radius: 0.0,
-                ..ToolShape::default()
+                point_angle_deg: settings
+                    .point_angles_deg
+                    .get(&number)
+                    .copied()
+                    .unwrap_or_default(),
             },
         );
         Ok(())

@@ -82,8 +82,10 @@ impl Bench {
         columns: Columns,
     ) -> Result<Bench, UsageError> {
         let wanted = options.output.resolution.map_or(columns, Columns::Millimetres);
+        let mut settings = settings::interpreter(&list, tools.as_ref(), &options.run)?;
+        settings.point_angles_deg = machine.point_angle.iter().copied().collect();
         Ok(Bench {
-            settings: settings::interpreter(&list, tools.as_ref(), &options.run)?,
+            settings,
             left_hand: settings::left_hand(tools.as_ref()),
             limits: settings::limits(&list, machine),
             times: settings::times(machine),
