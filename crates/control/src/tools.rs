@@ -384,7 +384,7 @@ mod tests {
         let tool = |pocket, special| Tool {
             pocket,
             special,
-            ..Tool::default()..Tool::default()
+            ..Tool::default()
         };
         let table = [
             (1, tool(Some(11), false)),

@@ -1,4 +1,5 @@
 //! Tapping on the mill: cycle 17, in which Z follows the spindle, and cycle 2 [000:6047-6141].
+#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
 mod support;
 
@@ -250,11 +251,7 @@ fn emergency_stop_in_the_thread() {
         }
         rig.event("emergency press");
         rig.until(20.0, "the loops are open", |rig| !rig.bit("M2000"));
-        assert!(
-            rig.messages()
-                .iter()
-                .any(|text| text.starts_with("EMERGENCY STOP") || text.contains("EMERGENCY STOP"))
-        );
+        assert!(rig.messages().iter().any(|text| text.contains("EMERGENCY STOP")));
         // The spindle runs out without power.
         rig.seconds(10.0);
         rig.event("emergency release");
