@@ -35,6 +35,27 @@ fn a_new_machine_of_each_model_is_whole_and_runs() {
     }
 }
 
+/// The part programs are checked with the tools and the control of the machine.
+#[test]
+fn the_part_programs_are_checked() {
+    let folder = new("tnc360");
+    let good = folder.bahn("machine check m --format json").json();
+    assert_eq!(good[0]["programs"][0]["errors"], 0, "{good}");
+    // Tool 77 is not in the table, M114 not on the control.
+    folder.write(
+        "m/programs/BAD.H",
+        "BEGIN PGM BAD MM\nTOOL CALL 77 Z S500\nL X+5 R0 F100 M114\nEND PGM BAD MM\n",
+    );
+    let run = folder.bahn("machine check m");
+    assert_eq!(run.code(), 1);
+    assert!(run.err().contains("BAD.H:2:"), "{}", run.err());
+    assert!(run.err().contains("BAD.H:3:"), "{}", run.err());
+    assert_eq!(
+        folder.bahn("machine check m --format json").json()[0]["ok"],
+        false
+    );
+}
+
 #[test]
 fn nothing_is_overwritten() {
     let folder = new("tnc360");
