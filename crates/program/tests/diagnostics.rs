@@ -246,7 +246,6 @@ fn limits_are_those_of_the_unit_and_the_model() {
     for text in [
         "Q1 = SIN 30",
         "L X+Q150",
-        "M103 F25",
         "CYCL DEF 19.0 PLANE",
         "L X+40000",
     ] {
