@@ -115,6 +115,7 @@ fn the_3d_view_turns() {
                 azimuth_deg,
                 elevation_deg,
                 height_factor,
+                ..View3d::default()
             },
         )
     };
