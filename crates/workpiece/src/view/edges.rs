@@ -15,18 +15,26 @@ pub(super) struct Spot {
     edge: f32,
     /// Distance from the eye in pixels; infinite in the background.
     distance: f32,
+    /// Sine of the flattest angle at which a ray meets the surface.
+    slant: f32,
 }
 
 impl Spot {
     pub const BACKGROUND: Spot = Spot {
         edge: 0.0,
         distance: f32::INFINITY,
+        slant: 1.0,
     };
 
     pub fn new(seen: &[Option<Seen>; SAMPLES * SAMPLES], camera: &Camera) -> Spot {
         let middle = seen[SAMPLES * SAMPLES / 2].or_else(|| seen.iter().copied().flatten().next());
         Spot {
             edge: edge(seen, camera) as f32,
+            slant: seen
+                .iter()
+                .flatten()
+                .map(|seen| dot(seen.normal, camera.forward).abs() as f32)
+                .fold(1.0, f32::min),
             distance: middle.map_or(f32::INFINITY, |seen| (seen.t / camera.mm) as f32),
         }
     }
@@ -40,9 +48,14 @@ impl Spot {
 fn edge(seen: &[Option<Seen>; SAMPLES * SAMPLES], camera: &Camera) -> f64 {
     /// Cosine of the angle from which on surfaces meet in an edge.
     const BEND: f64 = 0.8;
-    /// From this distance on one surface lies behind the other, pixels.
-    const BREAK: f64 = 4.0;
-    let like = |a: &Seen, b: &Seen| dot(a.normal, b.normal) > BEND && (a.t - b.t).abs() < BREAK * camera.mm;
+    /// From this distance on, seen at right angles, one surface lies behind the other, pixels.
+    const BREAK: f64 = 5.0;
+    let like = |a: &Seen, b: &Seen| {
+        let slant = dot(a.normal, camera.forward)
+            .abs()
+            .min(dot(b.normal, camera.forward).abs());
+        dot(a.normal, b.normal) > BEND && (a.t - b.t).abs() * slant.max(0.05) < BREAK * camera.mm
+    };
     let first = seen.iter().flatten().next();
     let same = seen
         .iter()
@@ -113,11 +126,20 @@ fn relief(spots: &[Spot], width: usize, at: usize) -> f32 {
         let sudden = ((near / far.max(f32::MIN_POSITIVE)).min(1.0) - 0.4).max(0.0) / 0.6;
         off / (1.0 + SLOWER * sudden)
     };
-    let off = across(1).max(across(width));
+    let off = across(1).max(across(width)) / (1.0 + turning_away(spots.get(at)));
     if off == f32::INFINITY {
         return 1.0;
     }
     ((off - FADE[0]) / (FADE[1] - FADE[0])).clamp(0.0, 1.0)
+}
+
+/// How much slower lines come in where a slope turns away from the eye, and hides next to nothing at first.
+fn turning_away(spot: Option<&Spot>) -> f32 {
+    /// Sine of the angle from which on a slope does not turn away.
+    const FLAT: f32 = 0.35;
+    const MOST: f32 = 4.0;
+    let slant = spot.map_or(1.0, |spot| spot.slant);
+    MOST * (1.0 - slant / FLAT).max(0.0)
 }
 
 const EDGE: Colour = [30, 34, 42];
