@@ -555,6 +555,26 @@ mod tests {
         String::from_utf8(line.commands).unwrap()
     }
 
+    /// A hole of radius 3 that is pecked is one circle; the way out and rapid traverse are none.
+    #[test]
+    fn drilled_places_are_circles() {
+        let mut plunges = Plunges {
+            radius: 3.0,
+            ..Plunges::default()
+        };
+        plunges.add([15.0, 45.0], true);
+        plunges.add([15.0, 45.0], false);
+        plunges.add([15.0, 45.0], true);
+        plunges.add([85.0, 45.0], false);
+        let mut out = Vec::new();
+        plunges.draw(&mut out, 0.1);
+        let text = String::from_utf8(out).unwrap();
+        assert_eq!(text.matches("<circle").count(), 1);
+        assert!(text.contains("cx=\"15\" cy=\"45\" r=\"3\""), "{text}");
+        // The arms reach 0.3 of the radius beyond.
+        assert!(text.contains("M11.1 45h7.8M15 41.1v7.8"), "{text}");
+    }
+
     #[test]
     fn arcs_stay_arcs() {
         let arc = |sweep_deg| Arc {

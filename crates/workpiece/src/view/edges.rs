@@ -71,15 +71,7 @@ pub(super) fn draw(image: &mut Image, spots: &[Spot]) {
     /// Darkness of the lines.
     const DARKNESS: f64 = 0.4;
     let width = image.width() as usize;
-    let weight = |at: usize| {
-        let edge = spots.get(at).map_or(0.0, |spot| spot.edge);
-        if edge > 0.0 {
-            edge * relief(spots, width, at)
-        } else {
-            0.0
-        }
-    };
-    let weights: Vec<f32> = (0..spots.len()).map(weight).collect();
+    let weights = weights(spots, width);
     for (y, row) in image.rows_mut().enumerate() {
         for (x, pixel) in row.iter_mut().enumerate() {
             let at = y * width + x;
@@ -94,6 +86,15 @@ pub(super) fn draw(image: &mut Image, spots: &[Spot]) {
             }
         }
     }
+}
+
+/// How much of a line goes through each pixel, 0..1.
+pub(super) fn weights(spots: &[Spot], width: usize) -> Vec<f32> {
+    let weight = |(at, spot): (usize, &Spot)| match spot.edge {
+        0.0 => 0.0,
+        edge => edge * relief(spots, width, at),
+    };
+    spots.iter().enumerate().map(weight).collect()
 }
 
 /// How much the surface bends or breaks off about a pixel, from 0 to 1: how far the pixel lies off the straight line
@@ -137,7 +138,7 @@ fn relief(spots: &[Spot], width: usize, at: usize) -> f32 {
 fn turning_away(spot: Option<&Spot>) -> f32 {
     /// Sine of the angle from which on a slope does not turn away.
     const FLAT: f32 = 0.35;
-    const MOST: f32 = 4.0;
+    const MOST: f32 = 8.0;
     let slant = spot.map_or(1.0, |spot| spot.slant);
     MOST * (1.0 - slant / FLAT).max(0.0)
 }

@@ -371,12 +371,12 @@ mod tests {
     fn ranges_are_those_of_the_part() {
         let whole = [
             "0",
-            "−0.50 … −1.00",
-            "−1.50 … −2.00",
-            "−2.50 … −3.00",
-            "−3.50 … −4.00",
-            "−4.50 … −5.00",
-            "−5.50 … −6.00",
+            "−0.5 … −1.0",
+            "−1.5 … −2.0",
+            "−2.5 … −3.0",
+            "−3.5 … −4.0",
+            "−4.5 … −5.0",
+            "−5.5 … −6.0",
         ];
         assert_eq!(labels(&staircase(), 7), whole);
     }
@@ -385,6 +385,6 @@ mod tests {
     fn levels_without_columns_have_no_field() {
         // 11 depths in the first and the last millimetre only.
         let heights: Vec<f32> = (0..10).map(|k| 6.9 - 0.1 * k as f32).chain([1.0]).collect();
-        assert_eq!(labels(&heights, 7), ["−0.10 … −1.00", "−6.00"]);
+        assert_eq!(labels(&heights, 7), ["−0.1 … −1.0", "−6.0"]);
     }
 }

@@ -28,7 +28,7 @@ impl Part {
         let size = page.text_size();
         let shade = DepthShade::new(self, options.levels);
         let legend = shade.legend();
-        let beside = 2.2 * size;
+        let beside = 3.0 * size;
         let right = beside + legend.width(size) + size;
         let inner = area.shrunk(5.0 * size, 2.5 * size, right, 3.5 * size);
         let drawing = fit([self.setup.size[0], self.setup.size[1]], &inner);

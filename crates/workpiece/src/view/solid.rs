@@ -274,3 +274,78 @@ impl Camera {
 
 const BACKGROUND_TOP: Colour = [246, 248, 250];
 const BACKGROUND_BOTTOM: Colour = [214, 221, 229];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Resolution, Workpiece};
+    use bahn_path::{Blank, Plane};
+
+    /// 100 x 100 mm in columns of 0.25 mm, 40 mm thick, with a height over the lower face by the place.
+    fn part(height: impl Fn(f64, f64) -> f64) -> Part {
+        let blank = Blank {
+            plane: Plane::XY,
+            min: [0.0; 3],
+            max: [100.0, 100.0, 40.0],
+        };
+        let mut part = Workpiece::new(&blank, Resolution::Millimetres(0.25))
+            .unwrap()
+            .finished();
+        let nx = part.grid.nx;
+        for (k, cell) in part.heights.iter_mut().enumerate() {
+            let place = |n: usize| (n as f64 + 0.5) * 0.25;
+            *cell = height(place(k % nx), place(k / nx)) as f32;
+        }
+        part
+    }
+
+    /// A sphere of 60 mm whose top is at 39 mm, over a floor at 10 mm.
+    fn sphere(x: f64, y: f64) -> f64 {
+        let square = (x - 50.0).powi(2) + (y - 50.0).powi(2);
+        ((3600.0_f64 - square).max(0.0).sqrt() - 21.0).max(10.0)
+    }
+
+    /// How many of the 90 x 60 pixels in the middle of the picture carry a line.
+    fn lines(part: &Part, elevation_deg: f64) -> usize {
+        let page = Page::new(300, 240, "", "").unwrap();
+        let options = View3d {
+            elevation_deg,
+            ..View3d::default()
+        };
+        let (mut image, area) = page.start(BACKGROUND_TOP);
+        let camera = Camera::new(part, &options, &area);
+        let palette = Palette::new(part, Colouring::Part);
+        let spots = part.render(&mut image, &area, &camera, &palette);
+        let weights = edges::weights(&spots, 300);
+        (105..165)
+            .flat_map(|y| (105..195).map(move |x| y * 300 + x))
+            .filter(|at| weights[*at] > 0.1)
+            .count()
+    }
+
+    #[test]
+    fn smooth_surfaces_have_no_lines() {
+        for elevation_deg in [25.0, 38.0] {
+            let found = lines(&part(sphere), elevation_deg);
+            assert_eq!(found, 0, "{elevation_deg}");
+        }
+    }
+
+    /// A sphere left in steps of 0.5 mm, as a flat mill does.
+    #[test]
+    fn steps_of_a_finishing_cut_are_no_lines() {
+        let steps = part(|x, y| (sphere(x, y) * 2.0).floor() / 2.0);
+        for elevation_deg in [25.0, 38.0] {
+            let found = lines(&steps, elevation_deg);
+            assert_eq!(found, 0, "{elevation_deg}");
+        }
+    }
+
+    /// An edge that runs across the picture without a gap: at least a pixel in each of the columns.
+    #[test]
+    fn edges_are_lines() {
+        let step = part(|_, y| if y > 50.0 { 40.0 } else { 20.0 });
+        let found = lines(&step, 38.0);
+        assert!(found >= 90, "{found}");
+    }
+}
