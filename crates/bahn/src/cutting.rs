@@ -151,7 +151,7 @@ impl Cutting {
             self.moved = true;
             if let Some((_, workpiece)) = &mut self.workpiece {
                 // The spindle of rigid tapping is turned by the cycle itself [003:5106].
-                let tapping = element.override_law == OverrideLaw::Disabled;
+                let tapping = matches!(element.override_law, OverrideLaw::Spindle(_));
                 if tapping {
                     workpiece.note_cut(None);
                 }

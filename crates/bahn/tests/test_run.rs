@@ -42,6 +42,7 @@ fn the_report_has_every_field() {
         "removed_mm3",
         "warnings",
         "stops",
+        "printed",
     ];
     expected.sort_unstable();
     assert_eq!(

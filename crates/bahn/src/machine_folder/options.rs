@@ -39,9 +39,12 @@ without. The README.md in the folder explains every file and key.";
 const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn machine check machines/mill
-  bahn machine check machines/* --format json
+  bahn machine check machines/*/ --format json
 
-JSON: for each folder: folder, name, model, ok, faults (severity, file, line, column, message, detail).
+The part programs are checked, too, for the control, the parameters and the tools of the machine.
+
+JSON: for each folder: folder, name, model, ok, faults (severity, file, line, column, message, detail), programs
+(as `bahn check --format json` has them).
 Exit codes: 0 fine, 1 faults, 2 wrong use.";
 
 /// Options of `bahn machine new`.
