@@ -8,7 +8,7 @@ use bahn_path::{
 };
 use bahn_picture::Image;
 use bahn_workpiece::{
-    EventKind, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
+    Colouring, EventKind, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
 };
 
 use crate::cli::{OutputOptions, View};
@@ -44,9 +44,28 @@ impl Columns {
     }
 }
 
+/// What a picture needs to know beside the material.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Memory {
+    /// Which tool cut what.
+    tools: bool,
+    /// The way of the tool.
+    path: bool,
+}
+
+impl Memory {
+    pub fn of(options: &OutputOptions) -> Memory {
+        Memory {
+            tools: Colouring::from(options.color) == Colouring::Tool,
+            path: options.toolpath,
+        }
+    }
+}
+
 /// The part, once BLK FORM gives a blank.
 pub(crate) struct Cutting {
     columns: Columns,
+    memory: Memory,
     workpiece: Option<(Blank, Workpiece)>,
     /// Tool in the spindle; `None` before the first TOOL CALL.
     tool: Option<u32>,
@@ -106,9 +125,10 @@ impl Spindle {
 
 impl Cutting {
     /// For tools of which some cut with M4.
-    pub fn new(columns: Columns, left_hand: BTreeSet<u32>) -> Cutting {
+    pub fn new(columns: Columns, memory: Memory, left_hand: BTreeSet<u32>) -> Cutting {
         Cutting {
             columns,
+            memory,
             workpiece: None,
             tool: None,
             shape: ToolShape::default(),
@@ -164,6 +184,9 @@ impl Cutting {
                 Function::Tool(call) => {
                     self.take_events(record);
                     (self.tool, self.shape, self.tool_axis) = (Some(call.tool), call.shape, call.axis);
+                    if let Some((_, workpiece)) = &mut self.workpiece {
+                        workpiece.take_tool(self.tool);
+                    }
                     self.watch();
                 }
                 Function::Blank(blank) => self.blank(blank, element.block, record)?,
@@ -234,8 +257,15 @@ impl Cutting {
             }
             _ => {}
         }
-        let workpiece = Workpiece::new(blank, self.columns.resolution(blank))
+        let mut workpiece = Workpiece::new(blank, self.columns.resolution(blank))
             .map_err(|error| UsageError::new(format!("--resolution: {error}")))?;
+        if self.memory.tools {
+            workpiece.remember_tools();
+            workpiece.take_tool(self.tool);
+        }
+        if self.memory.path {
+            workpiece.remember_path();
+        }
         self.workpiece = Some((*blank, workpiece));
         self.watch();
         Ok(())
@@ -322,6 +352,8 @@ fn draw(
             let view = View3d {
                 azimuth_deg: options.angle,
                 elevation_deg: options.elevation,
+                colouring: options.color.into(),
+                tool_path: options.toolpath,
                 ..View3d::default()
             };
             part.view_3d(&page("3D view")?, &view)

@@ -26,6 +26,7 @@
 
 mod batch;
 mod chords;
+mod cutters;
 mod event;
 mod grid;
 mod part;
@@ -34,11 +35,12 @@ mod stl;
 mod sweep;
 mod tool;
 mod touch;
+mod trail;
 mod view;
 mod workpiece;
 
 pub use event::{Event, EventKind};
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
-pub use view::{Page, PageError, PlanView, Projection, ThreePlanes, View3d};
+pub use view::{Colouring, Page, PageError, PlanView, Projection, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};

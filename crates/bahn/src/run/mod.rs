@@ -34,7 +34,7 @@ use bahn_machine::Machine;
 use bahn_workpiece::Projection;
 
 use crate::cli::Format;
-use crate::cutting::{self, Columns, Cutting};
+use crate::cutting::{self, Columns, Cutting, Memory};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
 use crate::junit;
@@ -139,6 +139,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             let columns = options.output.resolution;
             Cutting::new(
                 columns.map_or(Columns::BySize, Columns::Millimetres),
+                Memory::of(&options.output),
                 settings::left_hand(machine.tools.as_ref()),
             )
         }),
