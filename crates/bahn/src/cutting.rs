@@ -176,7 +176,8 @@ impl Cutting {
     ) -> Result<(), UsageError> {
         let before = self.spindle;
         for function in element.functions() {
-            if (function.at == At::End) != at_end {
+            // What is output before the end, as M05 in tapping, acts on the way to the end and not before.
+            if matches!(function.at, At::End | At::BeforeEnd(_)) != at_end {
                 continue;
             }
             self.spindle.take(&function.function);
