@@ -14,6 +14,8 @@ for program in examples/*.H; do
 done
 "$bahn" test examples/housing.H --view plan --image "$out/housing-plan.png" >/dev/null
 "$bahn" test examples/pockets.H --view three-planes --image "$out/pockets-planes.png" >/dev/null
+"$bahn" test examples/three-tools.H --tools examples/tools.tsv --color tool --toolpath \
+    --image "$out/three-tools-path.png" >/dev/null
 "$bahn" test examples/dial.H --path "$out/dial.svg" >/dev/null
 # A hole of machines/mill/programs/INDEX.H with the table clamped for it, on the machine.
 recording=$(mktemp -d)

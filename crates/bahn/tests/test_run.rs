@@ -183,9 +183,7 @@ fn every_view_is_drawn() {
         "--view three-planes",
         "--view three-planes --section X5,Y-10",
         "--view 3d",
-        "--view 3d --angle -60 --elevation 20",
-        "--view 3d --color tool --toolpath",
-        "--view 3d --color depth",
+        "--view 3d --angle -60 --elevation 20 --color tool --toolpath",
         "--view 3d --size 640x480",
     ] {
         let run = folder.bahn(&format!("test main.H --image part.png {options}"));
