@@ -78,7 +78,7 @@ impl Batch {
                     if let (true, Some(marked), Some(mark)) = (hit || !*rapid, &mut marked, marks.get(at)) {
                         let mut sink = Mark {
                             cells: &*cells,
-                            marks: &mut **marked,
+                            marks: marked,
                             width: grid.nx,
                             first_row: first,
                             mark: *mark,
