@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::grid::Grid;
-use crate::sweep::{BAND_ROWS, Segment, Sink};
+use crate::sweep::{BAND_ROWS, Segment, Sink, Start, Track};
 
 /// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
 const RAPID_CUT_MM: f32 = 0.002;
@@ -16,6 +16,8 @@ pub(crate) struct Batch {
     segments: Vec<Segment>,
     /// Segments that are looked at for a cut in rapid traverse.
     rapid: Vec<bool>,
+    /// The tracks of the segments.
+    tracks: Vec<Track>,
     bands: Vec<Vec<u32>>,
 }
 
@@ -24,7 +26,13 @@ impl Batch {
         self.segments.len()
     }
 
-    pub fn push(&mut self, segment: Segment, rapid: bool) {
+    pub fn push(&mut self, mut segment: Segment, rapid: bool) {
+        // A cut that is looked for must be there when its segment is cut, and not before.
+        if let (Some(last), Some(false), false) = (self.segments.last_mut(), self.rapid.last(), rapid)
+            && segment.start == Start::Cut
+        {
+            last.share_end(&mut segment);
+        }
         self.segments.push(segment);
         self.rapid.push(rapid);
     }
@@ -46,7 +54,11 @@ impl Batch {
                 }
             }
         }
-        let (segments, rapid) = (&self.segments, &self.rapid);
+        self.segments
+            .par_iter()
+            .map(Track::new)
+            .collect_into_vec(&mut self.tracks);
+        let (segments, rapid, tracks) = (&self.segments, &self.rapid, &self.tracks);
         let mut hits: Vec<u32> = heights
             .par_chunks_mut(BAND_ROWS * grid.nx)
             .zip(self.bands.par_iter_mut())
@@ -58,10 +70,13 @@ impl Batch {
                 let mut hits = Vec::new();
                 for index in todo.drain(..) {
                     let at = index as usize;
-                    let (Some(segment), Some(rapid)) = (segments.get(at), rapid.get(at)) else {
+                    let (Some(segment), Some(rapid), Some(track)) =
+                        (segments.get(at), rapid.get(at), tracks.get(at))
+                    else {
                         continue;
                     };
-                    if *rapid && is_rapid_cut(segment, grid, rows.clone(), cells) {
+                    let rows = segment.rows_in(grid, &rows);
+                    if *rapid && is_rapid_cut(segment, grid, rows.clone(), cells, first) {
                         hits.push(index);
                     }
                     let mut cut = Cut {
@@ -69,7 +84,8 @@ impl Batch {
                         width: grid.nx,
                         first_row: first,
                     };
-                    segment.sweep(grid, rows.clone(), &mut cut);
+                    let before = at.checked_sub(1).and_then(|before| tracks.get(before));
+                    track.sweep(before, grid, rows, &mut cut);
                 }
                 hits
             })
@@ -82,18 +98,25 @@ impl Batch {
     }
 }
 
-fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32]) -> bool {
+fn is_rapid_cut(
+    segment: &Segment,
+    grid: &Grid,
+    rows: Range<usize>,
+    cells: &[f32],
+    first_row: usize,
+) -> bool {
     let mut detect = Detect {
         cells,
         width: grid.nx,
-        first_row: rows.start,
+        first_row,
         found: false,
     };
     let thinner = Segment {
         tool: segment.tool.thinner(grid),
         ..*segment
     };
-    thinner.sweep(grid, rows, &mut detect);
+    let rows = thinner.rows_in(grid, &rows);
+    Track::new(&thinner).sweep(None, grid, rows, &mut detect);
     detect.found
 }
 

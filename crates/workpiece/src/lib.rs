@@ -29,6 +29,7 @@ mod chords;
 mod event;
 mod grid;
 mod part;
+mod round;
 mod setup;
 mod stl;
 mod sweep;

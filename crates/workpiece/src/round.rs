@@ -1,0 +1,395 @@
+//! The swept volume of tools with a corner radius.
+//!
+//! On a slope such a tool touches what it leaves before its axis: the track of the columns over which it is
+//! lowest at one place of the tool is a curve before the axis, and while the tool travels from one end
+//! to the other the curve sweeps the columns that belong to the track alone. What lies behind the curve at
+//! the lower end, or before the one at the higher end, belongs to an end; where another track starts
+//! or ends there it is lower still over all of it but a wedge. So of a chain of short tracks each
+//! looks at no more than a strip as long as itself.
+
+use std::ops::Range;
+
+use crate::grid::Grid;
+use crate::sweep::{BAND_ROWS, Borders, End, GROUP, Row, Sink, Track, least, nearest, positive};
+
+/// Curves flatter than this part of the radius are taken for this flat: the tool is lower by less than the
+/// precision of the map.
+const FLATTEST: f64 = 1e-3;
+
+/// The half of an ellipse before a place on the track, and the strip behind it: `ahead` long, `beside` to
+/// either side, mm.
+#[derive(Clone, Copy, Debug)]
+struct Cap {
+    ahead: f64,
+    beside: f64,
+}
+
+impl Track {
+    pub(super) fn sweep_ball(
+        &self,
+        before: Option<&Track>,
+        grid: &Grid,
+        rows: Range<usize>,
+        sink: &mut impl Sink,
+    ) {
+        let radius = self.tool.radius as f32;
+        // Sine of the slope: so far before the axis lies the lowest point of the moving ball.
+        let lag = self.sine() as f32;
+        let wanted = Wanted::new(self, before, grid, &rows);
+        for (k, row) in rows.enumerate() {
+            for columns in wanted.row(k) {
+                if columns.is_empty() {
+                    continue;
+                }
+                let Row {
+                    x,
+                    dx,
+                    ux,
+                    uy,
+                    along,
+                    across,
+                    length,
+                    slope,
+                    low,
+                } = self.row(grid, columns.start, row);
+                let low = low + radius;
+                sink.shaped(row, columns, move |k| {
+                    let x = x + k * dx;
+                    let b = x * uy - across;
+                    let chord = positive((radius - b) * (radius + b));
+                    let a = x * ux + along;
+                    let s = least(positive(a - lag * chord.sqrt()), length);
+                    let e = a - s;
+                    positive(low + slope * s - positive(chord - e * e).sqrt())
+                });
+            }
+        }
+    }
+
+    pub(super) fn sweep_torus(
+        &self,
+        before: Option<&Track>,
+        grid: &Grid,
+        rows: Range<usize>,
+        sink: &mut impl Sink,
+    ) {
+        let flat = self.tool.flat() as f32;
+        let corner = self.tool.corner as f32;
+        let radius = self.tool.radius as f32;
+        let wanted = Wanted::new(self, before, grid, &rows);
+        for (k, row) in rows.enumerate() {
+            for columns in wanted.row(k) {
+                if columns.is_empty() {
+                    continue;
+                }
+                let width = columns.len();
+                let Row {
+                    x,
+                    dx,
+                    ux,
+                    uy,
+                    along,
+                    across,
+                    length,
+                    slope,
+                    low,
+                } = self.row(grid, columns.start, row);
+                let height = move |a: f32, b: f32, lead: f32| {
+                    let s = least(positive(a - lead), length);
+                    let e = a - s;
+                    let rise = positive((b * b + e * e).sqrt() - flat);
+                    positive(low + slope * s + corner - positive((corner - rise) * (corner + rise)).sqrt())
+                };
+                let chord = move |b: f32| positive((radius - b) * (radius + b)).sqrt();
+                let parallel = uy.abs() * width as f32 * dx <= FLATTEST as f32 * radius;
+                match &self.leads {
+                    Some(leads) if !parallel => sink.shaped(row, columns, move |k| {
+                        let x = x + k * dx;
+                        let b = x * uy - across;
+                        height(x * ux + along, b, leads.at(chord(b) / radius))
+                    }),
+                    leads => {
+                        let middle = (x + 0.5 * width as f32 * dx) * uy - across;
+                        let lead = leads
+                            .as_ref()
+                            .map_or(0.0, |leads| leads.at(chord(middle) / radius));
+                        sink.shaped(row, columns, move |k| {
+                            let x = x + k * dx;
+                            height(x * ux + along, x * uy - across, lead)
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// Sine of the slope.
+    fn sine(&self) -> f64 {
+        self.slope / self.slope.hypot(1.0)
+    }
+
+    /// A cap that holds the curve of the columns that are touched.
+    fn outer(&self) -> Cap {
+        let radius = self.tool.radius;
+        let share = match &self.leads {
+            Some(leads) => f64::from(leads.most),
+            None => self.sine() * self.tool.corner / radius,
+        };
+        Cap {
+            ahead: share.max(FLATTEST) * radius,
+            beside: radius,
+        }
+    }
+
+    /// Caps within that curve: either of them.
+    fn inner(&self) -> [Option<Cap>; 2] {
+        let radius = self.tool.radius;
+        match &self.leads {
+            Some(leads) => {
+                let middle = self.tool.flat() + self.tool.corner * self.sine();
+                let cap = Cap {
+                    ahead: f64::from(leads.least).max(FLATTEST) * radius,
+                    beside: radius,
+                };
+                let disc = Cap {
+                    ahead: middle,
+                    beside: middle,
+                };
+                [Some(cap), Some(disc)]
+            }
+            None => [Some(self.outer()), None],
+        }
+    }
+
+    /// The columns that the cap at a place of the track holds, in each of the rows, side by side as in
+    /// [`Track::spans`].
+    fn behind(&self, place: f64, cap: Cap, grid: &Grid, rows: &Range<usize>) -> Borders {
+        let base = (self.low[0] / grid.dx).floor();
+        let offset = (self.low[0] / grid.dx - base) as f32;
+        let per_mm = (1.0 / grid.dx) as f32;
+        let (first_y, dy) = (
+            ((rows.start as f64 + 0.5) * grid.dy - self.low[1]) as f32,
+            grid.dy as f32,
+        );
+        let [ux, uy] = self.u.map(|u| u as f32);
+        let (place, beside) = (place as f32, cap.beside as f32);
+        // The ellipse as a circle: lengths along the track are stretched.
+        let stretch = (cap.beside / cap.ahead) as f32;
+        let step = [ux * stretch, uy];
+        let per_step = 1.0 / (step[0] * step[0] + step[1] * step[1]);
+        // The sides of the strip: x = y * per_y -+ side.
+        const PARALLEL: f32 = 1e-6;
+        let steep = if uy.abs() > PARALLEL {
+            uy
+        } else {
+            PARALLEL.copysign(uy)
+        };
+        let (per_y, side) = (ux / steep, beside / steep.abs());
+        let column = |x: f32| nearest(x * per_mm + offset);
+        const NOWHERE: f32 = 1e6;
+        let mut borders = Borders {
+            base: base as i64,
+            columns: grid.nx as i64,
+            spans: [[0; 2]; BAND_ROWS],
+        };
+        for (k, span) in borders.spans.iter_mut().enumerate() {
+            let y = first_y + k as i32 as f32 * dy;
+            let (p, q) = ((y * uy - place) * stretch, -y * ux);
+            let cross = step[0] * q - step[1] * p;
+            let inside = beside * beside / per_step - cross * cross;
+            let middle = -(step[0] * p + step[1] * q) * per_step;
+            let half = if inside > 0.0 {
+                inside.sqrt() * per_step
+            } else {
+                -NOWHERE
+            };
+            let (left, right) = (y * per_y - side, y * per_y + side);
+            let is_strip = |x: f32| x * ux + y * uy <= place;
+            *span = [
+                column(if is_strip(left) { left } else { middle - half }),
+                column(if is_strip(right) { right } else { middle + half }),
+            ];
+        }
+        borders
+    }
+
+    /// The columns that are lowest behind the lower end: at least these.
+    fn behind_low(&self, grid: &Grid, rows: &Range<usize>) -> [Option<Borders>; 2] {
+        self.inner()
+            .map(|cap| cap.map(|cap| self.behind(0.0, cap, grid, rows)))
+    }
+
+    /// The columns that are lowest behind the higher end: at most these.
+    fn behind_high(&self, grid: &Grid, rows: &Range<usize>) -> Borders {
+        self.behind(self.length, self.outer(), grid, rows)
+    }
+}
+
+/// The columns of some rows that a track has to look at.
+struct Wanted {
+    all: Borders,
+    /// No others but these.
+    only: Option<Borders>,
+    /// These as well, whatever `only` holds.
+    also: [Option<Borders>; 2],
+    /// Not these.
+    but: [Option<Borders>; 2],
+    /// Of `but` only what the track before it has cut.
+    cut: Option<Borders>,
+}
+
+impl Wanted {
+    fn new(track: &Track, before: Option<&Track>, grid: &Grid, rows: &Range<usize>) -> Wanted {
+        let mut wanted = Wanted {
+            all: track.spans(grid, rows).all,
+            only: None,
+            also: [None, None],
+            but: [None, None],
+            cut: None,
+        };
+        let is_shared = track.low_end == End::Shared || track.high_end == End::Shared;
+        if track.length == 0.0 || is_shared && before.is_none() {
+            return wanted;
+        }
+        if track.low_end != End::Own {
+            wanted.but = track.behind_low(grid, rows);
+        }
+        if track.high_end != End::Own {
+            wanted.only = Some(track.behind_high(grid, rows));
+        }
+        if let Some(before) = before {
+            if track.low_end == End::Shared {
+                wanted.cut = Some(before.behind_high(grid, rows));
+            }
+            if track.high_end == End::Shared {
+                wanted.also = before.behind_low(grid, rows);
+            }
+        }
+        wanted
+    }
+
+    /// The columns in the row number `k`, in whole groups where there are so many.
+    fn row(&self, k: usize) -> [Range<usize>; 2] {
+        let all = self.all.row(k);
+        let within = |of: Range<usize>, all: &Range<usize>| {
+            let start = of.start.clamp(all.start, all.end);
+            start..of.end.clamp(start, all.end)
+        };
+        let longest = |of: &[Option<Borders>; 2]| {
+            of.iter()
+                .flatten()
+                .map(|borders| borders.row(k))
+                .max_by_key(Range::len)
+                .unwrap_or_default()
+        };
+        let mut outer = match &self.only {
+            Some(only) => within(only.row(k), &all),
+            None => all.clone(),
+        };
+        // What two tracks share is rounded by each of them: a column more on either side.
+        let also = longest(&self.also);
+        if !also.is_empty() {
+            let also = within(also.start.saturating_sub(1)..also.end + 1, &all);
+            outer = if outer.is_empty() {
+                also
+            } else {
+                outer.start.min(also.start)..outer.end.max(also.end)
+            };
+        }
+        let mut but = within(longest(&self.but), &outer);
+        if let Some(cut) = &self.cut {
+            let cut = cut.row(k);
+            let end = cut.end.saturating_sub(1);
+            but = within(but, &((cut.start + 1).min(end)..end));
+        }
+        if but.is_empty() {
+            return [whole_groups(outer, &all), 0..0];
+        }
+        let left = whole_groups(outer.start..but.start, &(outer.start..outer.end));
+        let right = whole_groups(but.end..outer.end, &(outer.start..outer.end));
+        if left.end > right.start {
+            [whole_groups(outer, &all), 0..0]
+        } else {
+            [left, right]
+        }
+    }
+}
+
+/// Some columns more, so that whole groups go without leftovers, which are slow. Nowhere under the tool does
+/// it harm to look at a column.
+fn whole_groups(columns: Range<usize>, all: &Range<usize>) -> Range<usize> {
+    let length = columns.len().next_multiple_of(GROUP);
+    if length == 0 {
+        return columns;
+    }
+    let end = (columns.start + length).min(all.end).max(columns.end);
+    let start = end.saturating_sub(length).max(all.start).min(columns.start);
+    start..end
+}
+
+/// How far before its axis a tool with a corner radius touches what it leaves on a slope, by the
+/// distance across the track.
+///
+/// The bottom of the moving tool is touched where its normal is perpendicular to the movement. At the
+/// angle `p` from the track the point of the corner with the tangent `slope / cos p` is such a point:
+/// `(flat + corner * sin) * cos p` before the axis and `(flat + corner * sin) * sin p` beside it. The
+/// height that follows from the place has its minimum there, so a small error of the place does not
+/// count.
+#[derive(Clone, Debug)]
+pub(crate) struct Leads {
+    /// By equal steps of the half chord as part of the radius, which straightens the curve.
+    leads: [f32; Leads::COUNT + 1],
+    /// Bounds of the lead as part of the half chord.
+    least: f32,
+    most: f32,
+}
+
+impl Leads {
+    const COUNT: usize = 64;
+
+    pub fn new(flat: f32, corner: f32, slope: f32) -> Leads {
+        let radius = flat + corner;
+        let points: [(f32, f32); Leads::COUNT + 1] = std::array::from_fn(|k| {
+            let cos = 1.0 - k as i32 as f32 / Leads::COUNT as f32;
+            let sine = slope / (slope * slope + cos * cos).sqrt();
+            let r = flat + corner * sine;
+            // radius² - (r sin p)², without its loss of digits at the rim.
+            let chord = positive((radius - r) * (radius + r) + r * r * cos * cos).sqrt() / radius;
+            (chord, r * cos)
+        });
+        let mut leads = Leads {
+            leads: [0.0; Leads::COUNT + 1],
+            least: f32::INFINITY,
+            most: 0.0,
+        };
+        let mut next = 1;
+        for (k, lead) in leads.leads.iter_mut().enumerate().rev() {
+            let chord = k as i32 as f32 / Leads::COUNT as f32;
+            while next < Leads::COUNT && points[next].0 > chord {
+                next += 1;
+            }
+            let (near, far) = (points[next - 1], points[next]);
+            let share = if near.0 > far.0 {
+                (near.0 - chord) / (near.0 - far.0)
+            } else {
+                0.0
+            };
+            *lead = near.1 + (far.1 - near.1) * least(positive(share), 1.0);
+            if k > 0 {
+                let part = *lead / (chord * radius);
+                leads.least = leads.least.min(part);
+                leads.most = leads.most.max(part);
+            }
+        }
+        leads
+    }
+
+    #[inline]
+    fn at(&self, chord: f32) -> f32 {
+        let place = chord * Leads::COUNT as f32;
+        // A cast that needs no care for what does not fit; the place is between 0 and COUNT.
+        let k = (place as i32 as usize).min(Leads::COUNT - 1);
+        let (a, b) = (self.leads[k], self.leads[k + 1]);
+        a + (b - a) * (place - k as f32)
+    }
+}
