@@ -16,6 +16,9 @@ use crate::sweep::{BAND_ROWS, Borders, End, GROUP, Row, Sink, Track, least, near
 /// precision of the map.
 const FLATTEST: f64 = 1e-3;
 
+/// Columns farther from the tool than any map is wide.
+const FAR: i64 = 1 << 29;
+
 /// The half of an ellipse before a place on the track, and the strip behind it: `ahead` long, `beside` to
 /// either side, mm.
 #[derive(Clone, Copy, Debug)]
@@ -35,9 +38,9 @@ impl Track {
         let radius = self.tool.radius as f32;
         // Sine of the slope: so far before the axis lies the lowest point of the moving ball.
         let lag = self.sine() as f32;
-        let wanted = Wanted::new(self, before, grid, &rows);
+        let wanted = self.wanted(before, grid, &rows);
         for (k, row) in rows.enumerate() {
-            for columns in wanted.row(k) {
+            for columns in wanted.each_ref().map(|part| part.row(k)) {
                 if columns.is_empty() {
                     continue;
                 }
@@ -76,9 +79,9 @@ impl Track {
         let flat = self.tool.flat() as f32;
         let corner = self.tool.corner as f32;
         let radius = self.tool.radius as f32;
-        let wanted = Wanted::new(self, before, grid, &rows);
+        let wanted = self.wanted(before, grid, &rows);
         for (k, row) in rows.enumerate() {
-            for columns in wanted.row(k) {
+            for columns in wanted.each_ref().map(|part| part.row(k)) {
                 if columns.is_empty() {
                     continue;
                 }
@@ -142,7 +145,7 @@ impl Track {
     }
 
     /// Caps within that curve: either of them.
-    fn inner(&self) -> [Option<Cap>; 2] {
+    fn inner(&self) -> (Cap, Option<Cap>) {
         let radius = self.tool.radius;
         match &self.leads {
             Some(leads) => {
@@ -155,17 +158,16 @@ impl Track {
                     ahead: middle,
                     beside: middle,
                 };
-                [Some(cap), Some(disc)]
+                (cap, Some(disc))
             }
-            None => [Some(self.outer()), None],
+            None => (self.outer(), None),
         }
     }
 
     /// The columns that the cap at a place of the track holds, in each of the rows, side by side as in
     /// [`Track::spans`].
-    fn behind(&self, place: f64, cap: Cap, grid: &Grid, rows: &Range<usize>) -> Borders {
-        let base = (self.low[0] / grid.dx).floor();
-        let offset = (self.low[0] / grid.dx - base) as f32;
+    fn behind(&self, place: f64, cap: Cap, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
+        let offset = (self.low[0] / grid.dx - base as f64) as f32;
         let per_mm = (1.0 / grid.dx) as f32;
         let (first_y, dy) = (
             ((rows.start as f64 + 0.5) * grid.dy - self.low[1]) as f32,
@@ -187,12 +189,8 @@ impl Track {
         let (per_y, side) = (ux / steep, beside / steep.abs());
         let column = |x: f32| nearest(x * per_mm + offset);
         const NOWHERE: f32 = 1e6;
-        let mut borders = Borders {
-            base: base as i64,
-            columns: grid.nx as i64,
-            spans: [[0; 2]; BAND_ROWS],
-        };
-        for (k, span) in borders.spans.iter_mut().enumerate() {
+        let mut borders = Borders::new(base, grid);
+        for (k, (start, end)) in borders.start.iter_mut().zip(&mut borders.end).enumerate() {
             let y = first_y + k as i32 as f32 * dy;
             let (p, q) = ((y * uy - place) * stretch, -y * ux);
             let cross = step[0] * q - step[1] * p;
@@ -205,126 +203,127 @@ impl Track {
             };
             let (left, right) = (y * per_y - side, y * per_y + side);
             let is_strip = |x: f32| x * ux + y * uy <= place;
-            *span = [
-                column(if is_strip(left) { left } else { middle - half }),
-                column(if is_strip(right) { right } else { middle + half }),
-            ];
+            *start = column(if is_strip(left) { left } else { middle - half });
+            *end = column(if is_strip(right) { right } else { middle + half });
         }
         borders
     }
 
     /// The columns that are lowest behind the lower end: at least these.
-    fn behind_low(&self, grid: &Grid, rows: &Range<usize>) -> [Option<Borders>; 2] {
-        self.inner()
-            .map(|cap| cap.map(|cap| self.behind(0.0, cap, grid, rows)))
+    fn behind_low(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
+        let (first, second) = self.inner();
+        let mut borders = self.behind(0.0, first, base, grid, rows);
+        if let Some(cap) = second {
+            let other = self.behind(0.0, cap, base, grid, rows);
+            for k in 0..BAND_ROWS {
+                let is_longer = other.end[k] - other.start[k] > borders.end[k] - borders.start[k];
+                borders.start[k] = if is_longer { other.start[k] } else { borders.start[k] };
+                borders.end[k] = if is_longer { other.end[k] } else { borders.end[k] };
+            }
+        }
+        borders
     }
 
     /// The columns that are lowest behind the higher end: at most these.
-    fn behind_high(&self, grid: &Grid, rows: &Range<usize>) -> Borders {
-        self.behind(self.length, self.outer(), grid, rows)
+    fn behind_high(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
+        self.behind(self.length, self.outer(), base, grid, rows)
     }
-}
 
-/// The columns of some rows that a track has to look at.
-struct Wanted {
-    all: Borders,
-    /// No others but these.
-    only: Option<Borders>,
-    /// These as well, whatever `only` holds.
-    also: [Option<Borders>; 2],
-    /// Not these.
-    but: [Option<Borders>; 2],
-    /// Of `but` only what the track before it has cut.
-    cut: Option<Borders>,
-}
-
-impl Wanted {
-    fn new(track: &Track, before: Option<&Track>, grid: &Grid, rows: &Range<usize>) -> Wanted {
-        let mut wanted = Wanted {
-            all: track.spans(grid, rows).all,
-            only: None,
-            also: [None, None],
-            but: [None, None],
-            cut: None,
-        };
-        let is_shared = track.low_end == End::Shared || track.high_end == End::Shared;
-        if track.length == 0.0 || is_shared && before.is_none() {
-            return wanted;
-        }
-        if track.low_end != End::Own {
-            wanted.but = track.behind_low(grid, rows);
-        }
-        if track.high_end != End::Own {
-            wanted.only = Some(track.behind_high(grid, rows));
-        }
-        if let Some(before) = before {
-            if track.low_end == End::Shared {
-                wanted.cut = Some(before.behind_high(grid, rows));
+    /// The columns that the track has to look at, in two parts, in whole groups where there are so many.
+    fn wanted(&self, before: Option<&Track>, grid: &Grid, rows: &Range<usize>) -> [Borders; 2] {
+        let mut all = self.spans(grid, rows).all;
+        all.clip_to_map();
+        let base = all.base;
+        let (mut outer, mut but) = (all, all.nothing());
+        if self.length > 0.0 {
+            // What two tracks share is rounded by each of them: a column more on either side.
+            if self.high_end != End::Own {
+                outer.clip(&self.behind_high(base, grid, rows), 0);
             }
-            if track.high_end == End::Shared {
-                wanted.also = before.behind_low(grid, rows);
+            if let (End::Shared, Some(before)) = (self.high_end, before) {
+                let mut also = before.behind_low(base, grid, rows);
+                also.widen(1);
+                also.clip(&all, 0);
+                outer.join(&also);
+            }
+            if self.low_end != End::Own {
+                but = self.behind_low(base, grid, rows);
+            }
+            if let (End::Shared, Some(before)) = (self.low_end, before) {
+                but.clip(&before.behind_high(base, grid, rows), 1);
             }
         }
-        wanted
-    }
-
-    /// The columns in the row number `k`, in whole groups where there are so many.
-    fn row(&self, k: usize) -> [Range<usize>; 2] {
-        let all = self.all.row(k);
-        let within = |of: Range<usize>, all: &Range<usize>| {
-            let start = of.start.clamp(all.start, all.end);
-            start..of.end.clamp(start, all.end)
-        };
-        let longest = |of: &[Option<Borders>; 2]| {
-            of.iter()
-                .flatten()
-                .map(|borders| borders.row(k))
-                .max_by_key(Range::len)
-                .unwrap_or_default()
-        };
-        let mut outer = match &self.only {
-            Some(only) => within(only.row(k), &all),
-            None => all.clone(),
-        };
-        // What two tracks share is rounded by each of them: a column more on either side.
-        let also = longest(&self.also);
-        if !also.is_empty() {
-            let also = within(also.start.saturating_sub(1)..also.end + 1, &all);
-            outer = if outer.is_empty() {
-                also
-            } else {
-                outer.start.min(also.start)..outer.end.max(also.end)
-            };
-        }
-        let mut but = within(longest(&self.but), &outer);
-        if let Some(cut) = &self.cut {
-            let cut = cut.row(k);
-            let end = cut.end.saturating_sub(1);
-            but = within(but, &((cut.start + 1).min(end)..end));
-        }
-        if but.is_empty() {
-            return [whole_groups(outer, &all), 0..0];
-        }
-        let left = whole_groups(outer.start..but.start, &(outer.start..outer.end));
-        let right = whole_groups(but.end..outer.end, &(outer.start..outer.end));
-        if left.end > right.start {
-            [whole_groups(outer, &all), 0..0]
-        } else {
-            [left, right]
-        }
+        outer.without(&but, &all)
     }
 }
 
-/// Some columns more, so that whole groups go without leftovers, which are slow. Nowhere under the tool does
-/// it harm to look at a column.
-fn whole_groups(columns: Range<usize>, all: &Range<usize>) -> Range<usize> {
-    let length = columns.len().next_multiple_of(GROUP);
-    if length == 0 {
-        return columns;
+/// Arithmetic of borders, all rows side by side.
+impl Borders {
+    fn nothing(&self) -> Borders {
+        Borders {
+            start: [0; BAND_ROWS],
+            end: [0; BAND_ROWS],
+            ..*self
+        }
     }
-    let end = (columns.start + length).min(all.end).max(columns.end);
-    let start = end.saturating_sub(length).max(all.start).min(columns.start);
-    start..end
+
+    /// Only the columns of the map.
+    fn clip_to_map(&mut self) {
+        let border = |of: i64| (of - self.base).clamp(-FAR, FAR) as i32;
+        let (first, last) = (border(0), border(self.columns));
+        for (start, end) in self.start.iter_mut().zip(&mut self.end) {
+            *start = (*start).max(first).min(last);
+            *end = (*end).max(*start).min(last);
+        }
+    }
+
+    /// Only the columns that are in `other` too, by `margin` within it.
+    fn clip(&mut self, other: &Borders, margin: i32) {
+        for k in 0..BAND_ROWS {
+            self.start[k] = self.start[k].max(other.start[k] + margin);
+            self.end[k] = self.end[k].min(other.end[k] - margin);
+        }
+    }
+
+    fn widen(&mut self, margin: i32) {
+        for k in 0..BAND_ROWS {
+            let margin = if self.start[k] < self.end[k] { margin } else { 0 };
+            self.start[k] -= margin;
+            self.end[k] += margin;
+        }
+    }
+
+    /// The columns of both, and those between them.
+    fn join(&mut self, other: &Borders) {
+        for k in 0..BAND_ROWS {
+            let (start, end) = (self.start[k], self.end[k]);
+            let (from, to) = (other.start[k], other.end[k]);
+            let (is_empty, is_more) = (start >= end, from < to);
+            self.start[k] = if is_empty || is_more && from < start { from } else { start };
+            self.end[k] = if is_empty || is_more && to > end { to } else { end };
+        }
+    }
+
+    /// What is left and right of the columns `but`; some columns of these as well, so that whole groups go
+    /// without leftovers, which are slow. Nowhere under the tool, in `all`, does it harm to look at a column.
+    fn without(&self, but: &Borders, all: &Borders) -> [Borders; 2] {
+        const MASK: i32 = GROUP as i32 - 1;
+        let whole = |length: i32| (length.max(0) + MASK) & !MASK;
+        let (mut left, mut right) = (*self, *self);
+        for k in 0..BAND_ROWS {
+            let (start, end) = (self.start[k], self.end[k]);
+            let (from, to) = (but.start[k].max(start), but.end[k].min(end));
+            let before = (start + whole(from - start)).min(end);
+            let after = (end - whole(end - to)).max(start);
+            let is_one = from >= to || before > after;
+            let last = (start + whole(end - start)).min(all.end[k]);
+            let first = (last - whole(end - start)).max(all.start[k]);
+            left.start[k] = if is_one { first.min(start) } else { start };
+            left.end[k] = if is_one { last } else { before };
+            right.start[k] = if is_one { end } else { after };
+        }
+        [left, right]
+    }
 }
 
 /// How far before its axis a tool with a corner radius touches what it leaves on a slope, by the

@@ -210,26 +210,20 @@ impl Track {
             (0.0, length, 0.0)
         };
         let column = |x: f32| nearest(x * per_mm + offset);
-        let borders = || Borders {
-            base,
-            columns: grid.nx as i64,
-            spans: [[0; 2]; BAND_ROWS],
-        };
         let mut spans = Spans {
-            all: borders(),
-            low: borders(),
+            all: Borders::new(base, grid),
+            low: Borders::new(base, grid),
         };
-        for (k, (all, low)) in spans.all.spans.iter_mut().zip(&mut spans.low.spans).enumerate() {
+        for k in 0..BAND_ROWS {
             let y = first_y + k as i32 as f32 * dy;
             let half_chord = |y: f32| positive((radius - y) * (radius + y)).sqrt();
             let s = least(positive(y * per_y + at_left), length);
             let t = least(positive(y * per_y + at_right), length);
-            *all = [
-                column(s * ux - half_chord(y - s * uy)),
-                column(t * ux + half_chord(y - t * uy)),
-            ];
+            spans.all.start[k] = column(s * ux - half_chord(y - s * uy));
+            spans.all.end[k] = column(t * ux + half_chord(y - t * uy));
             let half = half_chord(y);
-            *low = [column(-half), column(half)];
+            spans.low.start[k] = column(-half);
+            spans.low.end[k] = column(half);
         }
         spans
     }
@@ -368,18 +362,29 @@ pub(super) struct Spans {
 }
 
 /// Columns in some rows, as borders between columns relative to `base`.
+#[derive(Clone, Copy)]
 pub(super) struct Borders {
     pub base: i64,
     /// Columns of the map.
     pub columns: i64,
-    pub spans: [[i32; 2]; BAND_ROWS],
+    pub start: [i32; BAND_ROWS],
+    pub end: [i32; BAND_ROWS],
 }
 
 impl Borders {
+    pub fn new(base: i64, grid: &Grid) -> Borders {
+        Borders {
+            base,
+            columns: grid.nx as i64,
+            start: [0; BAND_ROWS],
+            end: [0; BAND_ROWS],
+        }
+    }
+
     /// The columns in the row number `k`.
     #[inline]
     pub fn row(&self, k: usize) -> Range<usize> {
-        let Some([start, end]) = self.spans.get(k) else {
+        let (Some(start), Some(end)) = (self.start.get(k), self.end.get(k)) else {
             return 0..0;
         };
         let bound = |border: &i32| (self.base + i64::from(*border)).clamp(0, self.columns) as usize;
