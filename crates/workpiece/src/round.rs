@@ -10,11 +10,14 @@
 use std::ops::Range;
 
 use crate::grid::Grid;
-use crate::sweep::{BAND_ROWS, Borders, End, GROUP, Row, Sink, Track, least, nearest, positive};
+use crate::sweep::{BAND_ROWS, Borders, End, Row, Sink, Track, least, nearest, positive};
 
 /// Curves flatter than this part of the radius are taken for this flat: the tool is lower by less than the
 /// precision of the map.
 const FLATTEST: f64 = 1e-3;
+
+/// Columns that are cut side by side: a register of the x86-64 base line.
+const GROUP: i32 = 4;
 
 /// Columns farther from the tool than any map is wide.
 const FAR: i64 = 1 << 29;
@@ -128,7 +131,7 @@ impl Track {
 
     /// Sine of the slope.
     fn sine(&self) -> f64 {
-        self.slope / self.slope.hypot(1.0)
+        self.slope / (self.slope * self.slope + 1.0).sqrt()
     }
 
     /// A cap that holds the curve of the columns that are touched.
@@ -307,8 +310,7 @@ impl Borders {
     /// What is left and right of the columns `but`; some columns of these as well, so that whole groups go
     /// without leftovers, which are slow. Nowhere under the tool, in `all`, does it harm to look at a column.
     fn without(&self, but: &Borders, all: &Borders) -> [Borders; 2] {
-        const MASK: i32 = GROUP as i32 - 1;
-        let whole = |length: i32| (length.max(0) + MASK) & !MASK;
+        let whole = |length: i32| (length.max(0) + GROUP - 1) & !(GROUP - 1);
         let (mut left, mut right) = (*self, *self);
         for k in 0..BAND_ROWS {
             let (start, end) = (self.start[k], self.end[k]);

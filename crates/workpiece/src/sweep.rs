@@ -122,7 +122,7 @@ pub(super) enum End {
 }
 
 /// Columns that are cut side by side: two registers of the x86-64 base line.
-pub(super) const GROUP: usize = 8;
+const GROUP: usize = 8;
 
 /// Tracks shorter than this in the plane are plunges, mm.
 const PLUNGE_MM: f64 = 1e-9;
