@@ -98,13 +98,7 @@ impl Batch {
     }
 }
 
-fn is_rapid_cut(
-    segment: &Segment,
-    grid: &Grid,
-    rows: Range<usize>,
-    cells: &[f32],
-    first_row: usize,
-) -> bool {
+fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32], first_row: usize) -> bool {
     let mut detect = Detect {
         cells,
         width: grid.nx,

@@ -26,6 +26,7 @@
 
 mod batch;
 mod chords;
+mod coarsen;
 mod event;
 mod grid;
 mod part;
@@ -41,5 +42,6 @@ mod workpiece;
 pub use event::{Event, EventKind};
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
+pub use stl::{MAX_TRIANGLES, MeshError};
 pub use view::{Page, PageError, PlanView, Projection, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};

@@ -220,7 +220,11 @@ impl Track {
             let other = self.behind(0.0, cap, base, grid, rows);
             for k in 0..BAND_ROWS {
                 let is_longer = other.end[k] - other.start[k] > borders.end[k] - borders.start[k];
-                borders.start[k] = if is_longer { other.start[k] } else { borders.start[k] };
+                borders.start[k] = if is_longer {
+                    other.start[k]
+                } else {
+                    borders.start[k]
+                };
                 borders.end[k] = if is_longer { other.end[k] } else { borders.end[k] };
             }
         }
@@ -302,7 +306,11 @@ impl Borders {
             let (start, end) = (self.start[k], self.end[k]);
             let (from, to) = (other.start[k], other.end[k]);
             let (is_empty, is_more) = (start >= end, from < to);
-            self.start[k] = if is_empty || is_more && from < start { from } else { start };
+            self.start[k] = if is_empty || is_more && from < start {
+                from
+            } else {
+                start
+            };
             self.end[k] = if is_empty || is_more && to > end { to } else { end };
         }
     }

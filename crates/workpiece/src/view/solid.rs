@@ -45,7 +45,7 @@ impl Part {
             options,
             &area.shrunk(2.5 * size, 2.5 * size, 2.5 * size, 4.5 * size),
         );
-        self.render(&mut image, &area, &camera);
+        self.render(&mut image, &area, &camera, page);
         camera.triad(
             &mut image,
             self,
@@ -68,7 +68,7 @@ impl Part {
         image
     }
 
-    fn render(&self, image: &mut Image, area: &Area, camera: &Camera) {
+    fn render(&self, image: &mut Image, area: &Area, camera: &Camera, page: &Page) {
         let caster = Caster::new(self);
         let shader = Shader {
             caster: &caster,
@@ -86,6 +86,9 @@ impl Part {
             .skip(first)
             .enumerate();
         rows.par_bridge().for_each(|(row, (pixels, edges))| {
+            if page.is_stopped() {
+                return;
+            }
             let background = mix(BACKGROUND_TOP, BACKGROUND_BOTTOM, row as f64 / count);
             for (x, (pixel, edge)) in pixels.iter_mut().zip(edges).enumerate() {
                 (*pixel, *edge) = pixel_at(camera, &shader, [x, row + first], background);
