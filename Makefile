@@ -6,7 +6,7 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test bench doc pictures tools clean
+.PHONY: run test bench doc pictures conformance tools clean
 
 # The main job: a program without a machine, then the programs of a machine on it, in closed loop with its
 # PLC; reports on the screen, pictures beside them.
@@ -49,6 +49,10 @@ doc:
 pictures:
 	$(CARGO) build --quiet --release -p bahn
 	./examples/pictures.sh
+
+# docs/conformance.md, made anew from the registry.
+conformance:
+	BAHN_WRITE_DOCS=1 $(CARGO) test -p bahn --locked --quiet --test conformance the_document
 
 # Parts of the toolchain that a minimal installation lacks.
 tools:

@@ -23,3 +23,8 @@ trap 'rm -rf "$recording"' EXIT
 "$bahn" scope "$recording/index.csv" --from 20 --to 36 --title "INDEX.H: drilling, rotary table clamped with M10" \
     -o "$out/scope.png" >/dev/null
 echo "$out/scope.png"
+"$bahn" run CIRCLE.H --machine machines/mill --fresh --record "$recording/circle.csv" \
+    --signals X.nominal,X.actual,Y.nominal,Y.actual >/dev/null
+"$bahn" scope "$recording/circle.csv" --circle X,Y --title "CIRCLE.H: radius 40 mm at F3000 in both directions" \
+    -o "$out/round.png" >/dev/null
+echo "$out/round.png"

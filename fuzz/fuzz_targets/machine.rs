@@ -9,6 +9,7 @@
 
 use bahn_machine::Machine;
 use bahn_servo::Plant;
+use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -9,6 +9,7 @@
 
 use bahn_parameters::ControlModel;
 use bahn_program::{Block, FormatOptions, Operation, Program, format_program};
+use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

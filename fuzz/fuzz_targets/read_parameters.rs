@@ -2,6 +2,7 @@
 #![no_main]
 
 use bahn_parameters::{ControlModel, Definition, ListText, ParameterId, ParameterList};
+use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|data: (u8, f64, &[u8])| {

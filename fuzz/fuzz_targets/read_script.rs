@@ -6,6 +6,7 @@
 
 #![no_main]
 
+use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

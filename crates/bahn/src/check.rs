@@ -19,13 +19,29 @@ use crate::{Outcome, UsageError, console};
 /// Faults of a program that are printed; the others are counted. JSON has more.
 const PRINTED_MAX: usize = 100;
 
+/// How programs are checked.
+pub(crate) struct Check {
+    pub settings: Settings,
+    pub format: Format,
+}
+
 /// Checks files and prints what is wrong.
 pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     let interrupt = Interrupt::on_ctrl_c();
+    let how = Check {
+        settings: Settings {
+            model: options.model,
+            inch_feed: options.inch_feed.map(Into::into),
+            strict: options.strict,
+            skip_unknown: options.skip_unknown,
+            ..Settings::default()
+        },
+        format: options.format,
+    };
     let mut outcome = Outcome::Fine;
     let mut reports = Vec::new();
     for path in &options.files {
-        match check(path, options, &interrupt) {
+        match check(path, &how, &interrupt) {
             Ok(report) => {
                 if report.errors > 0 && outcome == Outcome::Fine {
                     outcome = Outcome::ProgramError;
@@ -53,10 +69,10 @@ pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
 
 /// What is wrong with one file.
 #[derive(Debug, serde::Serialize)]
-struct CheckReport {
+pub(crate) struct CheckReport {
     file: String,
     blocks: u32,
-    errors: usize,
+    pub errors: usize,
     warnings: usize,
     /// The end was reached, whatever the faults on the way.
     complete: bool,
@@ -85,9 +101,10 @@ struct Found {
     fault: Fault,
 }
 
-fn check(path: &Path, options: &CheckOptions, interrupt: &Interrupt) -> Result<CheckReport, UsageError> {
+/// Checks a file and prints what is wrong.
+pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<CheckReport, UsageError> {
     let (programs, found, more, complete) = match files::load_program(path)? {
-        Loaded::Program(program) => examine(program, options, interrupt),
+        Loaded::Program(program) => examine(program, &how.settings, interrupt),
         Loaded::Empty(program) => nothing(program, MessageId::EndOfProgramMissing, files::EMPTY),
         Loaded::TooLarge => {
             let program = Arc::new(Program::from_bytes("", Vec::new()));
@@ -115,12 +132,12 @@ fn check(path: &Path, options: &CheckOptions, interrupt: &Interrupt) -> Result<C
         complete: complete == Complete::Yes,
         diagnostics: found
             .iter()
-            .map(|found| entry(found, &programs, options.model))
+            .map(|found| entry(found, &programs, how.settings.model))
             .collect(),
     };
-    if options.format == Format::Text {
+    if how.format == Format::Text {
         for found in found.iter().take(PRINTED_MAX) {
-            print(found, &programs, path, options.model);
+            print(found, &programs, path, how.settings.model);
         }
         summary(&report, complete);
     }
@@ -139,8 +156,11 @@ enum Complete {
 type Examined = (Vec<Arc<Program>>, Vec<Found>, Uncounted, Complete);
 
 /// Reads every block and rehearses the program.
-fn examine(program: Arc<Program>, options: &CheckOptions, interrupt: &Interrupt) -> Examined {
-    let (faults, more) = program.counted_diagnostics(Some(reading(options)));
+fn examine(program: Arc<Program>, settings: &Settings, interrupt: &Interrupt) -> Examined {
+    let (faults, more) = program.counted_diagnostics(Some(Reading {
+        limits: settings.model.limits(),
+        inch_feed: settings.inch_feed(),
+    }));
     if program.is_din_iso() || faults.len() >= MAX_DIAGNOSTICS {
         // Not a program that can be executed.
         return (
@@ -150,29 +170,15 @@ fn examine(program: Arc<Program>, options: &CheckOptions, interrupt: &Interrupt)
             Complete::NotBegun,
         );
     }
-    let settings = Settings {
-        model: options.model,
-        inch_feed: options.inch_feed.map(Into::into),
-        ..Settings::default()
-    };
     let library = Box::new(FileLibrary::with_main(&program));
-    let rehearsal = rehearse(program, settings, library, &interrupt.flag());
-    let found = merged(faults, &rehearsal, options.model);
+    let rehearsal = rehearse(program, settings.clone(), library, &interrupt.flag());
+    let found = merged(faults, &rehearsal, settings.model);
     let complete = if rehearsal.complete {
         Complete::Yes
     } else {
         Complete::No
     };
     (rehearsal.programs, found, more, complete)
-}
-
-/// What programs are read for.
-fn reading(options: &CheckOptions) -> Reading<'static> {
-    let limits = options.model.limits();
-    Reading {
-        limits,
-        inch_feed: options.inch_feed.map_or(limits.inch_feed, Into::into),
-    }
 }
 
 /// What was read and what was rehearsed, in the order of programs and blocks. What reading has found at a

@@ -4,9 +4,11 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use bahn_parameters::{ControlModel, InchFeed};
+use bahn_workpiece::Colouring;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
 use crate::Outcome;
+use crate::conformance::ConformanceOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
@@ -52,6 +54,9 @@ pub(crate) enum Command {
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// List what each function of a control does here: M functions, cycles, words, machine parameters and so on.
+    #[command(after_help = crate::conformance::EXAMPLES)]
+    Conformance(ConformanceOptions),
     /// Say what a message or PLC error means and what to do about it; search by word.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainOptions),
@@ -170,9 +175,14 @@ pub(crate) struct RunOptions {
     /// End at the first programmed stop (STOP, M0) instead of passing over it.
     #[arg(long)]
     pub stop: bool,
-    /// Refuse what is otherwise accepted with a warning, such as signs of cycle parameters that disagree.
+    /// Refuse what is otherwise accepted with a warning, such as functions that have no effect here or signs
+    /// of cycle parameters that disagree.
     #[arg(long)]
     pub strict: bool,
+    /// Pass over words and blocks that nothing here knows, and functions without which the control would
+    /// move differently, each with a warning, instead of ending with an error.
+    #[arg(long, conflicts_with = "strict")]
+    pub skip_unknown: bool,
     /// Blocks that may be executed without a movement; more are taken for an endless loop.
     #[arg(long, value_name = "N", default_value_t = 10_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     pub max_blocks: u64,
@@ -200,6 +210,12 @@ pub(crate) struct OutputOptions {
     /// 3D view: how high the eye stands, degrees; 90 from above, negative from below.
     #[arg(long, value_name = "DEGREES", default_value = "38", requires = "image", allow_hyphen_values = true, value_parser = finite)]
     pub elevation: f64,
+    /// 3D view: what the colours tell.
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t, requires = "image")]
+    pub color: ColorOption,
+    /// 3D view: draw the tool path over the part, feed solid, rapid traverse dashed.
+    #[arg(long, requires = "image")]
+    pub toolpath: bool,
     /// Three planes: where the sections lie, as X30,Y20; the middle of the blank otherwise.
     #[arg(
         long,
@@ -232,6 +248,12 @@ pub(crate) struct CheckOptions {
     /// Control model whose limits apply.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
+    /// Refuse functions that have no effect here, or only part of it.
+    #[arg(long)]
+    pub strict: bool,
+    /// Warn of functions without which the control would move differently, instead of refusing them.
+    #[arg(long, conflicts_with = "strict")]
+    pub skip_unknown: bool,
     /// What F counts in a program in inches, instead of what it counts on the model.
     #[arg(long, value_name = "WHAT", value_enum)]
     pub inch_feed: Option<InchFeedOption>,
@@ -307,6 +329,28 @@ pub(crate) enum View {
     #[default]
     #[value(name = "3d")]
     ThreeD,
+}
+
+/// What the colours of the 3D view tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorOption {
+    /// Blank and machined surfaces.
+    #[default]
+    Part,
+    /// The deeper, the darker.
+    Depth,
+    /// The tool that cut last; cuts in rapid traverse are red.
+    Tool,
+}
+
+impl From<ColorOption> for Colouring {
+    fn from(option: ColorOption) -> Colouring {
+        match option {
+            ColorOption::Part => Colouring::Part,
+            ColorOption::Depth => Colouring::Depth,
+            ColorOption::Tool => Colouring::Tool,
+        }
+    }
 }
 
 /// A file for the tool path.

@@ -10,7 +10,8 @@ use bahn_path::{
 };
 use bahn_picture::Image;
 use bahn_workpiece::{
-    EventKind, MeshError, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
+    Colouring, EventKind, MeshError, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d,
+    Workpiece,
 };
 
 use crate::cli::{OutputOptions, View};
@@ -46,9 +47,28 @@ impl Columns {
     }
 }
 
+/// What a picture needs to know beside the material.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Memory {
+    /// Which tool cut what.
+    tools: bool,
+    /// The way of the tool.
+    path: bool,
+}
+
+impl Memory {
+    pub fn of(options: &OutputOptions) -> Memory {
+        Memory {
+            tools: Colouring::from(options.color) == Colouring::Tool,
+            path: options.toolpath,
+        }
+    }
+}
+
 /// The part, once BLK FORM gives a blank.
 pub(crate) struct Cutting {
     columns: Columns,
+    memory: Memory,
     workpiece: Option<(Blank, Workpiece)>,
     /// Tool in the spindle; `None` before the first TOOL CALL.
     tool: Option<u32>,
@@ -108,9 +128,10 @@ impl Spindle {
 
 impl Cutting {
     /// For tools of which some cut with M4.
-    pub fn new(columns: Columns, left_hand: BTreeSet<u32>) -> Cutting {
+    pub fn new(columns: Columns, memory: Memory, left_hand: BTreeSet<u32>) -> Cutting {
         Cutting {
             columns,
+            memory,
             workpiece: None,
             tool: None,
             shape: ToolShape::default(),
@@ -133,7 +154,7 @@ impl Cutting {
             self.moved = true;
             if let Some((_, workpiece)) = &mut self.workpiece {
                 // The spindle of rigid tapping is turned by the cycle itself [003:5106].
-                let tapping = element.override_law == OverrideLaw::Disabled;
+                let tapping = matches!(element.override_law, OverrideLaw::Spindle(_));
                 if tapping {
                     workpiece.note_cut(None);
                 }
@@ -158,7 +179,8 @@ impl Cutting {
     ) -> Result<(), UsageError> {
         let before = self.spindle;
         for function in element.functions() {
-            if (function.at == At::End) != at_end {
+            // What is output before the end, as M05 in tapping, acts on the way to the end and not before.
+            if matches!(function.at, At::End | At::BeforeEnd(_)) != at_end {
                 continue;
             }
             self.spindle.take(&function.function);
@@ -166,6 +188,9 @@ impl Cutting {
                 Function::Tool(call) => {
                     self.take_events(record);
                     (self.tool, self.shape, self.tool_axis) = (Some(call.tool), call.shape, call.axis);
+                    if let Some((_, workpiece)) = &mut self.workpiece {
+                        workpiece.take_tool(self.tool);
+                    }
                     self.watch();
                 }
                 Function::Blank(blank) => self.blank(blank, element.block, record)?,
@@ -236,8 +261,15 @@ impl Cutting {
             }
             _ => {}
         }
-        let workpiece = Workpiece::new(blank, self.columns.resolution(blank))
+        let mut workpiece = Workpiece::new(blank, self.columns.resolution(blank))
             .map_err(|error| UsageError::new(format!("--resolution: {error}")))?;
+        if self.memory.tools {
+            workpiece.remember_tools();
+            workpiece.take_tool(self.tool);
+        }
+        if self.memory.path {
+            workpiece.remember_path();
+        }
         self.workpiece = Some((*blank, workpiece));
         self.watch();
         Ok(())
@@ -353,6 +385,8 @@ fn draw(
             let view = View3d {
                 azimuth_deg: options.angle,
                 elevation_deg: options.elevation,
+                colouring: options.color.into(),
+                tool_path: options.toolpath,
                 ..View3d::default()
             };
             part.view_3d(&page("3D view")?, &view)

@@ -93,10 +93,9 @@ impl Marked {
 
     /// The text as it is shown, and the bytes of it that are marked.
     fn shown(&self) -> (String, std::ops::Range<usize>) {
-        let text = self
-            .text
-            .trim_end_matches(|c: char| c.is_whitespace() || c.is_control());
-        let text = printable(&text.chars().take(MAX_COLUMNS).collect::<String>());
+        // Cut first: the line of a broken file may have millions of NULs.
+        let text: String = self.text.chars().take(MAX_COLUMNS).collect();
+        let text = printable(text.trim_end_matches(|c: char| c.is_whitespace() || c.is_control()));
         let text = text.as_str();
         let byte_of = |character: usize| {
             text.char_indices()
@@ -280,7 +279,7 @@ mod tests {
     }
 
     proptest::proptest! {
-        #![proptest_config(proptest::prelude::ProptestConfig { failure_persistence: None, cases: 2000, ..Default::default() })]
+        #![proptest_config(proptest::prelude::ProptestConfig { failure_persistence: None, cases: 256, ..Default::default() })]
 
         /// Whatever stands in a file, wherever the mark is, under whatever name.
         #[test]

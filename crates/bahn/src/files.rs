@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_interpreter::Library;
 use bahn_program::Program;
@@ -192,6 +192,21 @@ impl Library for FileLibrary {
     }
 }
 
+/// The files that are being written and have not their names yet.
+static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn temporaries() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+    TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what is half written: the process ends.
+pub(crate) fn remove_temporaries() {
+    for temporary in temporaries().drain(..) {
+        // It is of no use to anybody.
+        let _ = fs::remove_file(temporary);
+    }
+}
+
 /// A file being written: it appears under its name when it is complete, in one step. Until then, and for
 /// good when it is dropped before, whatever was there stays there.
 #[derive(Debug)]
@@ -225,6 +240,7 @@ impl NewFile {
             .to_string_lossy()
             .into_owned();
         let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+        temporaries().push(temporary.clone());
         let file = File::create(&temporary)?;
         if let Some(old) = old {
             file.set_permissions(old.permissions())?;
@@ -249,6 +265,7 @@ impl NewFile {
         };
         self.writer.get_ref().sync_all()?;
         fs::rename(temporary, &self.path)?;
+        temporaries().retain(|known| known != temporary);
         self.temporary = None;
         sync_folder(&self.path);
         Ok(())
@@ -271,6 +288,7 @@ impl Drop for NewFile {
         if let Some(temporary) = &self.temporary {
             // It is of no use to anybody.
             let _ = fs::remove_file(temporary);
+            temporaries().retain(|known| known != temporary);
         }
     }
 }

@@ -1,24 +1,46 @@
-//! Ctrl-C: the first one ends a run with the report so far, the second one ends the process.
+//! Ctrl-C: the first one ends a run with the report so far; the second one ends the process when it does not
+//! react; the third one ends it at once.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Duration;
 
-use crate::Outcome;
+use crate::{Outcome, files};
+
+/// How long a run may take to notice that it is to end, when it is asked twice.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Whether somebody wants the run to end.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Interrupt(Arc<AtomicBool>);
+pub(crate) struct Interrupt {
+    requested: Arc<AtomicBool>,
+    /// The run has seen it: it is on its way to the report.
+    noticed: Arc<AtomicBool>,
+}
 
 impl Interrupt {
     /// Takes over Ctrl-C (SIGINT), and SIGTERM likewise.
     pub fn on_ctrl_c() -> Interrupt {
         let interrupt = Interrupt::default();
-        let flag = interrupt.0.clone();
+        let handled = interrupt.clone();
+        let count = AtomicU32::new(0);
         // Without a handler Ctrl-C ends the process at once, which is no worse than before.
         let _ = ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::Relaxed) {
-                std::process::exit(i32::from(Outcome::Interrupted.code()));
+            handled.requested.store(true, Ordering::Relaxed);
+            match count.fetch_add(1, Ordering::Relaxed) {
+                0 => {}
+                1 => {
+                    let noticed = handled.noticed.clone();
+                    let watch = std::thread::Builder::new().spawn(move || {
+                        std::thread::sleep(PATIENCE);
+                        if !noticed.load(Ordering::Relaxed) {
+                            exit();
+                        }
+                    });
+                    // Without a thread the third one ends it.
+                    drop(watch);
+                }
+                _ => exit(),
             }
         });
         interrupt
@@ -27,12 +49,16 @@ impl Interrupt {
     /// Whether Ctrl-C came.
     #[inline]
     pub fn is_requested(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        let requested = self.requested.load(Ordering::Relaxed);
+        if requested {
+            self.noticed.store(true, Ordering::Relaxed);
+        }
+        requested
     }
 
     /// The flag, for rooms that watch it themselves.
     pub fn flag(&self) -> Arc<AtomicBool> {
-        self.0.clone()
+        self.requested.clone()
     }
 
     /// A flag for what is written after the run: what an interrupted run left is written all the same, as a
@@ -107,4 +133,10 @@ impl Stop {
     pub fn flag(&self) -> Arc<AtomicBool> {
         self.flag.clone()
     }
+}
+
+/// Ends the process, without half-written files.
+fn exit() {
+    files::remove_temporaries();
+    std::process::exit(i32::from(Outcome::Interrupted.code()));
 }

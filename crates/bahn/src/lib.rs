@@ -10,9 +10,10 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
 //!   makes folders of machines;
-//! - `check`, `format`, `explain`, `manual`: the other subcommands; `plc` and `mp`: the groups `bahn plc`,
-//!   `bahn mp`;
+//! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
+//!   `bahn plc`, `bahn mp`;
 //! - `files`: reading programs, finding called ones, writing without half-written files;
+//!   `kept`: files that survive power-off;
 //! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
@@ -22,6 +23,7 @@ mod block_time;
 mod called;
 mod check;
 mod cli;
+mod conformance;
 mod console;
 mod cutting;
 mod diagnostics;
@@ -30,6 +32,7 @@ mod files;
 mod format;
 mod interrupt;
 mod junit;
+mod kept;
 mod machine_folder;
 mod manual;
 mod mp;
@@ -48,7 +51,18 @@ mod test_run;
 mod tool_table;
 
 #[doc(hidden)]
+pub use machine_folder::check_state;
+#[doc(hidden)]
 pub use plc::check_script;
+#[doc(hidden)]
+pub use scope::check_recording;
+
+/// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
+#[doc(hidden)]
+pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
+    let faults = |faults: Vec<tool_table::TableFault>| faults.iter().map(|fault| fault.line).collect();
+    tool_table::parse(text).map(drop).map_err(faults)
+}
 
 use std::ffi::OsString;
 use std::fmt;
@@ -71,6 +85,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Fmt(options) => format::command(options),
         cli::Command::Plc(options) => plc::command(options),
         cli::Command::Mp(options) => mp::command(options),
+        cli::Command::Conformance(options) => conformance::command(options),
         cli::Command::Explain(options) => explain::command(options),
         cli::Command::Completions(options) => manual::completions(options),
         cli::Command::Man(options) => manual::man(options),

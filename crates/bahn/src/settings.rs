@@ -75,6 +75,7 @@ pub(crate) fn interpreter(
         model,
         rules,
         texts: bahn_interpreter::MachineTexts::default(),
+        barred_tools: tool_table::barred(tools.into_iter().flatten()),
         tools: tools.map(|tools| tools.iter().map(|(number, tool)| (*number, tool.shape)).collect()),
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
@@ -84,6 +85,7 @@ pub(crate) fn interpreter(
         skip_blocks: run.skip_blocks,
         inch_feed: run.inch_feed.map(Into::into),
         strict: run.strict,
+        skip_unknown: run.skip_unknown,
         max_blocks_without_motion: run.max_blocks,
     })
 }
@@ -108,6 +110,8 @@ pub(crate) fn limits(list: &ParameterList, machine: &MachineOptions) -> Limits {
         corner_angle_deg: list.corner_angle_deg(),
         servo_lag: !list.feed_precontrol(),
         cycle_s: f64::from(list.model().limits().contour_cycle_us) * 1e-6,
+        servo_window_s: bahn_motion::SERVO_WINDOW_S,
+        spindle: list.spindle_parameters().rigid_ramps().map(Into::into),
         feed_override_percent: machine.override_percent,
         rapid_override_percent: machine.override_percent,
     }

@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::Path;
 
 use bahn_control::Tool;
-use bahn_interpreter::tool_key;
+use bahn_interpreter::{ToolState, tool_key};
 use bahn_path::ToolShape;
 
 use crate::{UsageError, files};
@@ -20,6 +20,14 @@ pub(crate) fn load(path: &Path) -> Result<BTreeMap<u32, Tool>, UsageError> {
             faults.first().map(TableFault::to_string).unwrap_or_default()
         ))
     })
+}
+
+/// The tools that must not be called.
+pub(crate) fn barred<'a>(tools: impl Iterator<Item = (&'a u32, &'a Tool)>) -> BTreeMap<u32, ToolState> {
+    tools
+        .map(|(number, tool)| (*number, tool.state))
+        .filter(|(_, state)| *state != ToolState::Usable)
+        .collect()
 }
 
 /// What is wrong in a line of a table, from 1; 0 is the table as a whole.
@@ -172,6 +180,7 @@ impl Columns {
             shape,
             pocket,
             special,
+            state: self.state(&fields)?,
             left_hand,
         };
         Ok((tool, tool_data))
@@ -225,6 +234,22 @@ impl Columns {
     fn field<'a>(&self, fields: &'a [String], name: &str) -> &'a str {
         let at = self.names.iter().position(|column| column == name);
         at.and_then(|at| fields.get(at)).map_or("", String::as_str)
+    }
+
+    /// Whether the tool may be called: column TL locks it, and CUR.TIME beyond TIME2 ends its life
+    /// [000:9168-9172].
+    fn state(&self, fields: &[String]) -> Result<ToolState, String> {
+        let is_empty = |name| matches!(self.field(fields, name), "" | "-" | "0");
+        if !is_empty("TL") {
+            return Ok(ToolState::Locked);
+        }
+        let life = self.length(fields, "TIME2")?;
+        let used = self.length(fields, "CUR.TIME")?;
+        Ok(match life > 0.0 && used > life {
+            false => ToolState::Usable,
+            true if is_empty("RT") => ToolState::Expired,
+            true => ToolState::Replaced,
+        })
     }
 
     /// A length; a column that is missing, empty or `-` is 0. A decimal comma is a point.
@@ -331,6 +356,17 @@ mod tests {
         );
         let all = parse("T R ST\n1 x\n2 5 ?\n3 1\n3 1").unwrap_err();
         assert_eq!(all.iter().map(|fault| fault.line).collect::<Vec<_>>(), [2, 3, 5]);
+    }
+
+    #[test]
+    fn locks_and_lives() {
+        let text =
+            "T;R;TL;TIME2;CUR.TIME;RT\n1;5;L;;;\n2;5;;20;20;\n3;5;-;20;20.1;-\n4;5;;20;21;7\n5;5;;0;99;\n";
+        let table = parse(text).unwrap();
+        let states: Vec<_> = table.values().map(|tool| tool.state).collect();
+        use ToolState::{Expired, Locked, Replaced, Usable};
+        assert_eq!(states, [Locked, Usable, Expired, Replaced, Usable]);
+        assert_eq!(barred(table.iter()).len(), 3);
     }
 
     #[test]

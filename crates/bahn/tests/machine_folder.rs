@@ -35,6 +35,27 @@ fn a_new_machine_of_each_model_is_whole_and_runs() {
     }
 }
 
+/// The part programs are checked with the tools and the control of the machine.
+#[test]
+fn the_part_programs_are_checked() {
+    let folder = new("tnc360");
+    let good = folder.bahn("machine check m --format json").json();
+    assert_eq!(good[0]["programs"][0]["errors"], 0, "{good}");
+    // Tool 77 is not in the table, M114 not on the control.
+    folder.write(
+        "m/programs/BAD.H",
+        "BEGIN PGM BAD MM\nTOOL CALL 77 Z S500\nL X+5 R0 F100 M114\nEND PGM BAD MM\n",
+    );
+    let run = folder.bahn("machine check m");
+    assert_eq!(run.code(), 1);
+    assert!(run.err().contains("BAD.H:2:"), "{}", run.err());
+    assert!(run.err().contains("BAD.H:3:"), "{}", run.err());
+    assert_eq!(
+        folder.bahn("machine check m --format json").json()[0]["ok"],
+        false
+    );
+}
+
 #[test]
 fn nothing_is_overwritten() {
     let folder = new("tnc360");
@@ -179,5 +200,32 @@ fn a_list_names_what_scripts_can_speak_of() {
         "expect tool=3",
     ] {
         assert!(text.contains(part), "{part}\n{text}");
+    }
+}
+
+/// I63 and O127 are none of the inputs and outputs of the boards [000:11556-11567].
+#[test]
+fn wires_end_at_inputs_and_outputs_that_are_there() {
+    let folder = new("tnc415b");
+    let plant = folder.read("m/plant.toml");
+    let wired = |plant: &str, from: &str, to: &str| {
+        assert_eq!(plant.matches(from).count(), 1, "{from}");
+        plant.replace(from, to)
+    };
+    let plant = wired(&plant, "\"I146\"", "\"I63\"");
+    let plant = wired(&plant, "\"O18\"", "\"O127\"");
+    folder.write("m/plant.toml", plant);
+    let run = folder.bahn("machine check m");
+    assert_eq!(run.code(), 1);
+    for (wire, said) in [
+        ("\"I63\"", "no input I63; there are I0-I31"),
+        ("\"O127\"", "no output O127; there are O0-O30"),
+    ] {
+        let place = format!("plant.toml:{}:", line(&folder, "m/plant.toml", wire));
+        assert!(
+            run.err().contains(&place) && run.err().contains(said),
+            "{}",
+            run.err()
+        );
     }
 }

@@ -208,10 +208,17 @@ fn retained_memory_survives() {
     };
     assert_eq!(run(1), json!({"B0": 1, "B128": 1, "M100": 1}));
     assert_eq!(run(2), json!({"B0": 3, "B128": 2, "M100": 0}));
-    // Power-off in the middle of a record loses that record only.
-    let journal = std::fs::read(folder.path("memory")).unwrap();
-    std::fs::write(folder.path("memory"), &journal[..journal.len() - 1]).unwrap();
+    // Power-off in the middle of a record loses that record only: the one with the greatest number.
+    let mut journal = std::fs::read(folder.path("memory")).unwrap();
+    let newest = journal
+        .chunks(512)
+        .enumerate()
+        .max_by_key(|(_, record)| record[4..12].to_vec());
+    let (newest, _) = newest.unwrap();
+    journal[newest * 512 + 300] ^= 1;
+    std::fs::write(folder.path("memory"), &journal).unwrap();
     assert_eq!(run(1), json!({"B0": 2, "B128": 1, "M100": 0}));
+    assert_eq!(std::fs::read(folder.path("memory.damaged")).unwrap(), journal);
     folder.write("memory", "a letter");
     assert_eq!(folder.bahn("plc run MAIN.PLC --retain memory").code(), 2);
     assert_eq!(

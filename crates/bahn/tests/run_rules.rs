@@ -150,21 +150,15 @@ fn the_handwheel_of_a_script() {
     }
 }
 
-/// TEST RUN of another program while one runs; its error is in the report and no error of the run.
+/// TEST RUN while the program runs; what it came to is in the report.
 #[test]
 fn a_test_run_beside() {
     let folder = Folder::with_program(PROGRAM);
-    std::fs::write(
-        folder.path("OTHER.H"),
-        "BEGIN PGM OTHER MM\nL X+10 R0 F100\nCALL LBL 7\nEND PGM OTHER MM\n",
-    )
-    .unwrap();
-    folder.write("s.txt", "start+1: test OTHER.H\n+1: expect test failed\n");
+    folder.write("s.txt", "start+1: test main.H\n+1: expect test finished\n");
     let (code, json) = report(&folder, "--script s.txt");
     assert_eq!(code, 0, "{json}");
-    assert_eq!(json["test_run"]["completed"], false);
-    assert_eq!(json["test_run"]["message"], "LABEL NUMBER NOT ALLOCATED");
-    assert_eq!(json["test_run"]["program"], "OTHER.H");
+    assert_eq!(json["test_run"]["completed"], true);
+    assert_eq!(json["test_run"]["program"], "main.H");
 }
 
 /// FN15 is in the report and in a file, of a test run and of the machine. FN14 shows the text of the machine.
@@ -197,13 +191,13 @@ fn printed_lines_and_texts_of_the_machine() {
     );
 }
 
-/// The block processing time of the model: 200 elements of 0.1 mm at 6000 mm/min are 1 ms each; at 4 ms for a
-/// block they take 0.8 s at least.
+/// The block processing time of the model: 2000 elements of 0.05 mm at 6000 mm/min are 0.5 ms each; at 4 ms for
+/// a block they take 8 s, less what is read ahead meanwhile.
 #[test]
 fn block_processing_time() {
     let mut blocks = "L Z+50 R0 FMAX\nL X+0 Y+0 FMAX\n".to_owned();
-    for element in 1..=200 {
-        blocks += &format!("L X+{} F6000\n", f64::from(element) * 0.1);
+    for element in 1..=2000 {
+        blocks += &format!("L X+{} F6000\n", f64::from(element) * 0.05);
     }
     let folder = Folder::with_program(&blocks);
     let feed = |arguments: &str| {
@@ -213,10 +207,10 @@ fn block_processing_time() {
     };
     let (plain, simulated) = (feed(""), feed("--block-time"));
     assert!(
-        simulated - plain > 0.4 && simulated - plain < 20.0,
+        simulated - plain > 4.0 && simulated - plain < 20.0,
         "{plain} {simulated}"
     );
     let test = |arguments: &str| number(&folder.test(arguments).1, "/machining_time_s");
     let (plain, simulated) = (test(""), test("--block-time"));
-    assert!(simulated > plain && simulated >= 0.8, "{plain} {simulated}");
+    assert!(simulated > plain && simulated >= 8.0, "{plain} {simulated}");
 }

@@ -42,6 +42,7 @@ fn the_report_has_every_field() {
         "removed_mm3",
         "warnings",
         "stops",
+        "printed",
     ];
     expected.sort_unstable();
     assert_eq!(
@@ -189,6 +190,8 @@ fn every_view_is_drawn() {
         "--view three-planes --section X5,Y-10",
         "--view 3d",
         "--view 3d --angle -60 --elevation 20",
+        "--view 3d --color tool --toolpath",
+        "--view 3d --color depth",
         "--view 3d --size 640x480",
     ] {
         let run = folder.bahn(&format!("test main.H --image part.png {options}"));

@@ -180,15 +180,16 @@ impl AxisUnit {
         !self.servo.closed() || self.stands() && self.servo.in_position()
     }
 
-    /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag.
-    fn wanted_method(&self, automatic: bool) -> Method {
+    /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag, all others
+    /// with pre-control in rigid tapping [000:6122].
+    fn wanted_method(&self, automatic: bool, rigid: bool) -> Method {
         let precontrol = &self.parameters.precontrol;
         let wanted = if automatic {
             precontrol.in_automatic
         } else {
             precontrol.in_manual
         };
-        if wanted && !self.is_plc_axis() {
+        if (wanted || rigid) && !self.is_plc_axis() {
             Method::Precontrol
         } else {
             Method::Lag
@@ -197,16 +198,21 @@ impl AxisUnit {
 
     /// Chooses lag or feed pre-control for a kind of operation; an axis that moves changes when it has come
     /// to a standstill (inferred). Whether it has the method.
-    pub fn choose_method(&mut self, automatic: bool) -> bool {
-        let wanted = self.wanted_method(automatic);
-        if self.servo.method() == wanted {
+    pub fn choose_method(&mut self, automatic: bool, rigid: bool) -> bool {
+        if self.has_method(automatic, rigid) {
             return true;
         }
+        let wanted = self.wanted_method(automatic, rigid);
         let rests = self.is_at_rest();
         if rests {
             self.servo.set_method(wanted);
         }
         rests
+    }
+
+    /// Whether it has the method for a kind of operation.
+    pub fn has_method(&self, automatic: bool, rigid: bool) -> bool {
+        self.servo.method() == self.wanted_method(automatic, rigid)
     }
 
     /// Says at which machine position a count is; nominal and actual position shift alike, by the value

@@ -24,8 +24,9 @@ use crate::plc_link::PlcLink;
 use crate::positioning::Positioning;
 use crate::reference::ReferenceRun;
 use crate::run::ProgramRun;
-use crate::setup::{Remembered, Setup};
+use crate::setup::{Checking, Remembered, Setup};
 use crate::spindle::SpindleUnit;
+use crate::thread::Tapping;
 use crate::tools::Tools;
 use crate::upkeep::Upkeep;
 
@@ -38,6 +39,9 @@ const MILLISECOND_US: u32 = 1000;
 
 /// Elements of the path that are prepared ahead at most.
 pub(crate) const LOOK_AHEAD: usize = 512;
+
+/// Commands that are kept at most until they are taken.
+const LOG_MAX: usize = 100_000;
 
 /// A control with its PLC, axes and programs. The machine comes with every cycle.
 ///
@@ -81,8 +85,10 @@ pub struct Control {
     /// Active traverse range, 0 to 2.
     pub(crate) range: usize,
     pub(crate) tools: Tools,
+    pub(crate) checking: Checking,
     pub(crate) upkeep: Upkeep,
     pub(crate) stylus: crate::probing::Stylus,
+    pub(crate) tapping: Tapping,
     pub(crate) test: Option<crate::test_run::TestRun>,
     /// Tool changes and datums must be stored before their strobe is reset.
     keeps: bool,
@@ -93,7 +99,9 @@ pub struct Control {
     pub(crate) programs: Arc<dyn Programs>,
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
-    log: Vec<(u64, Command)>,
+    pub(crate) loaded_tables: crate::tables::LoadedTables,
+    /// The commands, when somebody wants them.
+    log: Option<Vec<(u64, Command)>>,
     pub(crate) inputs: [bool; INPUTS],
     outputs: [bool; OUTPUTS],
     output_bits: Vec<(usize, Bit)>,
@@ -119,6 +127,7 @@ impl Control {
             plc_messages,
             plc_dialogues,
             tools,
+            checking,
             inch_feed,
             programs,
             files,
@@ -170,6 +179,7 @@ impl Control {
             exchange,
             spindle: SpindleUnit::new(parameters.spindle_parameters(), timing),
             tools: Tools::new(tools, operation.tools, &remembered),
+            checking,
             link: PlcLink::new(parameters, plc_messages, plc_dialogues, files),
             plc: PlcUnit {
                 machine: Machine::new(plc, Start::PowerOn),
@@ -206,13 +216,15 @@ impl Control {
             range: 0,
             upkeep: Upkeep::new(parameters_interval_s),
             stylus: crate::probing::Stylus::default(),
+            tapping: Tapping::default(),
             test: None,
             keeps: false,
             unsaved: false,
             inch_feed,
             programs,
             q: remembered.q,
-            log: Vec::new(),
+            loaded_tables: crate::tables::LoadedTables::default(),
+            log: None,
             inputs: [false; INPUTS],
             outputs: [false; OUTPUTS],
             output_bits: bits(BitArea::O, OUTPUTS),
@@ -220,9 +232,11 @@ impl Control {
             letters,
             axes,
         };
+        control.link.selected_list = remembered.parameter_list;
         if let Some(name) = remembered.program {
             control.run.selected = Some(name);
         }
+        control.set_up_tables(&remembered.written);
         control.select_range(0);
         let active = control
             .link
@@ -355,8 +369,7 @@ impl Control {
         self.publish();
         self.link.program_running = self.run.is_active();
         self.link.orienting = self.spindle.is_orienting();
-        let angle = self.spindle.angle_deg().unwrap_or(0.0);
-        (self.link.spindle.actual, self.link.spindle.reference) = (angle, angle);
+        self.link.spindle = self.spindle.position();
         self.plc.scans += 1;
         if let Err(error) = self.plc.machine.scan(&mut self.exchange, &mut self.link) {
             let message = Message::PlcStopped {
@@ -407,13 +420,26 @@ impl Control {
             && self.tools.is_changing()
         {
             self.tools.inserted(&self.exchange);
+        }
+        if std::mem::take(&mut self.tools.changed) {
+            self.mirror_pockets();
             self.unsaved = true;
         }
         let waits = self.keeps && self.unsaved;
+        if !waits {
+            self.tools.end_geometry_strobe(&mut self.exchange);
+        }
         if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
             self.acknowledged(transfer);
         }
-        let percent = self.spindle_override.percent();
+        self.follow_tapping();
+        self.spindle.set_feed(self.run.speed * 60.0);
+        // In cycle 2 the override of the spindle is off [003:5032].
+        let percent = if self.taps_floating() {
+            100.0
+        } else {
+            self.spindle_override.percent()
+        };
         self.spindle.cycle(&mut self.exchange, percent);
         if self.spindle.take_wrong_speed() {
             self.show(Message::Plain(MessageId::WrongRpm), false);
@@ -473,9 +499,12 @@ impl Control {
         self.run.block_time.set(time_us);
     }
 
-    /// Gives a command of the operator; it is logged with the time. `false` when it is not possible now.
+    /// Gives a command of the operator; it is logged with the time when a log is kept. `false` when it is not
+    /// possible now.
     pub fn command(&mut self, command: Command) -> bool {
-        self.log.push((self.now_us, command.clone()));
+        if let Some(log) = self.log.as_mut().filter(|log| log.len() < LOG_MAX) {
+            log.push((self.now_us, command.clone()));
+        }
         let done = self.execute(command);
         if !done {
             self.show(Message::Plain(MessageId::KeyNonFunctional), false);
@@ -483,9 +512,16 @@ impl Control {
         done
     }
 
-    /// The commands since power-on with their times, µs: given again at these times they repeat the run.
-    pub fn command_log(&self) -> &[(u64, Command)] {
-        &self.log
+    /// Keeps the commands from now on, for [`Control::take_command_log`].
+    pub fn keep_command_log(&mut self) {
+        self.log = Some(Vec::new());
+    }
+
+    /// The commands since the last call with their times, µs: given again at these times they repeat the run.
+    /// `None` when they were not kept, or were more than fit before they were taken.
+    pub fn take_command_log(&mut self) -> Option<Vec<(u64, Command)>> {
+        let log = std::mem::take(self.log.as_mut()?);
+        (log.len() < LOG_MAX).then_some(log)
     }
 
     pub(crate) fn show(&mut self, message: Message, flashing: bool) {
@@ -542,21 +578,26 @@ impl Control {
         self.unsaved = false;
     }
 
-    /// The list of machine parameters that module 9033 has selected: the control is to be started anew with
-    /// it.
-    pub fn take_restart(&mut self) -> Option<bahn_parameters::ParameterList> {
-        std::mem::take(&mut self.run.restart_wanted).then(|| self.link.list().clone())
+    /// The name of the list of machine parameters that module 9033 has selected: the control is to be started
+    /// anew with it.
+    pub fn take_restart(&mut self) -> Option<String> {
+        std::mem::take(&mut self.run.restart_wanted).then(|| self.link.selected_list.clone())?
     }
 
     /// What survives power-off, as of now.
     pub fn remember(&self) -> Remembered {
+        let offsets = (self.offsets.tool_length, self.offsets.tool_axis);
+        let (tool_length, tool_axis) = self.tools.held_geometry().unwrap_or(offsets);
         Remembered {
             datums: self.datums.map(crate::setup::Position0),
             tool: self.tools.number,
-            tool_length: self.offsets.tool_length,
-            tool_axis: Some(self.offsets.tool_axis),
+            tool_length,
+            tool_axis: Some(tool_axis),
+            pockets: self.tools.moved(),
+            written: self.written_elements(),
             q: self.q_values(),
             offsets_volts: self.offset_volts(),
+            parameter_list: self.link.selected_list.clone(),
             program: self.run.selected.clone(),
         }
     }
@@ -583,6 +624,8 @@ pub(crate) fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[A
         corner_angle_deg: parameters.corner_angle_deg(),
         servo_lag: !parameters.feed_precontrol(),
         cycle_s: f64::from(Timing::of(parameters.model()).contour_us()) * 1e-6,
+        servo_window_s: bahn_motion::SERVO_WINDOW_S,
+        spindle: parameters.spindle_parameters().rigid_ramps().map(Into::into),
         feed_override_percent: 100.0,
         rapid_override_percent: 100.0,
     }

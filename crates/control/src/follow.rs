@@ -36,25 +36,37 @@ impl Control {
             self.move_probe(plant);
             return;
         }
+        self.couple_thread();
         let percent = self.program_override_percent();
         let settled = self.path_in_position();
+        let [back, on] = self.way_out();
+        let stopped = self.run.state != RunState::Running && !on && !self.runs_out_of_thread();
         let drive = Drive {
             feed_override_percent: percent,
             rapid_override_percent: percent,
+            spindle_override_percent: self.spindle.effective_percent(),
+            master: self.master(),
+            back,
             rapid_limit_mm_min: self.rapid_limit_mm_min(),
-            hold: self.run.state != RunState::Running,
-            single_block: self.mode == Mode::SingleBlock,
+            // Without spindle enable nothing is led. Functions at which the axes do not stop (MP7440 bit 2) may
+            // come faster than the PLC takes them.
+            hold: stopped
+                || self.handshakes.is_crowded()
+                || self.path.is_coupled() && !self.spindle.is_enabled(),
+            single_block: self.mode == Mode::SingleBlock || on || self.handshakes.inhibit_read_in(),
             in_position: settled,
             clamped: self.clamped_axes(),
             clamping: self.clamping_axes(),
         };
         let cycle = self.path.cycle(&drive);
         self.run.speed = cycle.speed_mm_s;
+        self.lead_spindle(cycle.lead);
         self.follow_path(&cycle.position);
         while let Some(output) = self.path.next_output() {
-            if self.run.waiting.len() < OUTPUTS {
-                self.run.waiting.push_back(output);
-            }
+            // Behind a function that waits there is none before it is acknowledged.
+            debug_assert!(self.run.waiting.len() < OUTPUTS, "the path waits at its gate");
+            self.run.waiting.push_back(output);
+            self.output_functions(settled);
         }
         self.output_functions(settled);
         match cycle.state {
@@ -64,11 +76,21 @@ impl Control {
                 self.path.release();
                 self.regain_path();
             }
+            State::Master => self.prepare_thread(),
             State::Clamped => self.ask_to_unclamp(drive.clamped),
             State::BlockEnd if settled && self.run.state == RunState::Running => {
-                self.run.state = RunState::BlockEnd;
+                if self.mode == Mode::SingleBlock {
+                    self.run.state = RunState::BlockEnd;
+                } else if !self.handshakes.inhibit_read_in() {
+                    self.path.go_on();
+                }
             }
-            State::Stopped if settled && self.run.waiting.is_empty() && self.handshakes.is_idle() => {
+            State::Stopped
+                if settled
+                    && self.run.waiting.is_empty()
+                    && self.handshakes.is_idle()
+                    && !self.handshakes.inhibit_read_in() =>
+            {
                 self.take_stop();
             }
             _ => {}
@@ -120,6 +142,9 @@ impl Control {
     }
 
     pub(crate) fn path_in_position(&self) -> bool {
+        if self.path.is_coupled() {
+            return self.thread_in_position();
+        }
         self.axes
             .iter()
             .filter(|unit| unit.mover == Mover::Path && unit.servo.closed())
@@ -159,6 +184,9 @@ impl Control {
     /// The axes stand elsewhere than the path: the PLC has moved them, corrected the datum or changed the
     /// tool length. The path then goes on from where they are, within the traverse range as it is now.
     pub(crate) fn regain_path(&mut self) {
+        if self.path.is_coupled() {
+            return;
+        }
         // A tool call lets the tip stand elsewhere without a movement.
         let end = match self.path.element() {
             Some(element) if element.curve == Curve::Hold => element.end,

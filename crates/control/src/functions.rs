@@ -68,7 +68,9 @@ impl Target<'_> {
             // The call is refused as a whole.
             return;
         }
+        let before = (self.offsets.tool_length, self.offsets.tool_axis);
         self.tools.call(call.tool, self.exchange, self.handshakes);
+        self.tools.hold_geometry(before.0, before.1);
         self.offsets.tool_axis = call.axis;
         self.offsets.tool_length = call.shape.length;
         let axes = [Axis::X, Axis::Y, Axis::Z];

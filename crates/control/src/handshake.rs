@@ -8,6 +8,8 @@ use std::collections::VecDeque;
 
 use bahn_exchange::{Bit, Exchange, Image, Number, signal};
 
+use crate::control::LOOK_AHEAD;
+
 /// A function on its way to the PLC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transfer {
@@ -162,16 +164,24 @@ impl std::fmt::Display for Waiting {
 pub(crate) struct Handshakes {
     queue: VecDeque<Transfer>,
     active: Option<Transfer>,
+    /// The PLC inhibited the read-in when it acknowledged, and still does.
+    inhibits: bool,
 }
 
-/// Transfers that wait at most: those of one block.
-const CAPACITY: usize = 64;
+/// Transfers that wait before the path is held.
+const CROWD: usize = 16;
+/// Transfers of one block at most (inferred).
+const PER_BLOCK: usize = 8;
+/// Transfers that wait at most: while the path that is held comes to a standstill, it passes the blocks that
+/// it has looked ahead at, and no others.
+const CAPACITY: usize = CROWD + LOOK_AHEAD * PER_BLOCK;
 
 impl Default for Handshakes {
     fn default() -> Handshakes {
         Handshakes {
             queue: VecDeque::with_capacity(CAPACITY),
             active: None,
+            inhibits: false,
         }
     }
 }
@@ -179,7 +189,18 @@ impl Default for Handshakes {
 impl Handshakes {
     /// Adds a transfer behind those that wait.
     pub fn push(&mut self, transfer: Transfer) {
+        debug_assert!(self.queue.len() < CAPACITY, "the path is held before");
         self.queue.push_back(transfer);
+    }
+
+    /// So many transfers wait that the path is held until the PLC has taken some.
+    pub fn is_crowded(&self) -> bool {
+        self.queue.len() >= CROWD
+    }
+
+    /// M2614: behind the block whose strobe was acknowledged none is executed [000:10835].
+    pub fn inhibit_read_in(&self) -> bool {
+        self.inhibits
     }
 
     /// Nothing is on its way.
@@ -195,12 +216,14 @@ impl Handshakes {
     /// Goes on by one control cycle; the transfer that was acknowledged in it. Its strobe is reset only
     /// when it `may_end`.
     pub fn cycle(&mut self, exchange: &mut Exchange, may_end: bool) -> Option<Transfer> {
+        self.inhibits &= exchange.nc().bit(signal::READ_IN_INHIBIT);
         if let Some(transfer) = self.active {
             if !may_end || !exchange.nc().bit(transfer.handshake().acknowledge) {
                 return None;
             }
             transfer.end(exchange);
             self.active = None;
+            self.inhibits |= exchange.nc().bit(signal::READ_IN_INHIBIT);
             return Some(transfer);
         }
         let next = self.queue.front()?;

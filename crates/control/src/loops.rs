@@ -9,7 +9,7 @@ use crate::command::Mode;
 use crate::control::Control;
 use crate::emergency::Circuit;
 use crate::markers::{AXES, MONITORING_OFF, OPEN_LOOP};
-use crate::message::Message;
+use crate::message::{Message, SPINDLE_INDEX};
 
 const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
 const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop);
@@ -66,7 +66,12 @@ impl Control {
             self.end_positioning(index);
         }
         self.positioning.stop();
-        if self.loops_closed && self.axes.iter().all(|unit| unit.stands()) {
+        let stands = if self.path.is_coupled() {
+            self.thread_stands()
+        } else {
+            self.axes.iter().all(|unit| unit.stands())
+        };
+        if self.loops_closed && stands {
             self.open_loops();
         }
     }
@@ -86,6 +91,7 @@ impl Control {
 
     pub(crate) fn open_loops(&mut self) {
         self.loops_closed = false;
+        self.part_thread();
         self.spindle.open();
         self.manual.stop();
         self.reference.abort();
@@ -141,6 +147,7 @@ impl Control {
             unit.servo.set_monitored(!(suppressed || monitoring_off));
         }
         if all_open {
+            self.part_thread();
             self.spindle.open();
             self.stop_run();
         }
@@ -159,20 +166,22 @@ impl Control {
             .is_some_and(|high| *high == input.active_high)
     }
 
-    /// Faults of the loops: message and machine stop [000:5162].
+    /// Faults of the loops and of the spindle's encoder: message and machine stop [000:5162].
     pub(crate) fn take_faults(&mut self) {
-        for place in 0..self.axes.len() {
-            let Some(unit) = self.axes.get(place) else {
+        for place in 0..=self.axes.len() {
+            let (index, fault) = match self.axes.get(place) {
+                Some(unit) => (unit.index, unit.servo.fault()),
+                None => (SPINDLE_INDEX, self.spindle.fault()),
+            };
+            let Some(fault) = fault else {
                 continue;
             };
-            let Some(fault) = unit.servo.fault() else {
-                continue;
-            };
-            let message = Message::axis(fault.message(), unit.index, fault.letter());
+            let message = Message::axis(fault.message(), index, fault.letter());
             if self.messages.contains(&message) {
                 continue;
             }
             self.show(message, !fault.cancellable());
+            self.part_thread();
             self.stop_run();
             // An error with stop ends what the PLC positions [000:4013-4019].
             for index in 0..AXES {

@@ -19,7 +19,7 @@ pub enum Message {
     Axis {
         /// The message.
         id: MessageId,
-        /// Axis index, 0 to 4.
+        /// Axis index, 0 to 4; 5 is the spindle.
         axis: u8,
         /// The letter.
         letter: Option<char>,
@@ -48,6 +48,9 @@ pub enum Message {
     Program(Box<ProgramError>),
 }
 
+/// The spindle among the axes of messages, the sixth encoder of MP31 [000:3310-3318].
+pub(crate) const SPINDLE_INDEX: usize = 5;
+
 impl Message {
     pub(crate) fn limit(axis: usize, direction: Direction) -> Message {
         Message::Limit {
@@ -67,7 +70,7 @@ impl Message {
     /// The text that the model shows, `plc` being the texts of the PLC messages.
     pub fn text(&self, model: ControlModel, letters: &[char; 5], plc: &[String]) -> String {
         let with_axis = |id: MessageId, axis: u8| {
-            let letter = letters.get(usize::from(axis)).copied().unwrap_or('?');
+            let letter = letters.get(usize::from(axis)).copied().unwrap_or('S');
             let text = id.text(model);
             if text.contains('#') {
                 text.replace('#', letter.encode_utf8(&mut [0; 4]))

@@ -19,9 +19,10 @@ impl Control {
             self.manual.forget_turns(handwheel);
         }
         let automatic = self.mode.is_automatic();
+        let rigid = self.taps_rigidly();
         let mut ready = true;
         for unit in &mut self.axes {
-            ready &= unit.choose_method(automatic && !self.reference.is_running());
+            ready &= unit.choose_method(automatic && !self.reference.is_running(), rigid);
         }
         let waits = automatic && !ready && !self.run.is_active();
         match self.mode {
@@ -35,7 +36,7 @@ impl Control {
             }
             Mode::Reference => self.move_reference(),
             Mode::Mdi | Mode::SingleBlock | Mode::FullSequence => {
-                if self.manual_operation_is_on() {
+                if self.manual_operation_is_on() && !self.path.is_coupled() {
                     self.move_manually(handwheel);
                 } else {
                     self.move_path(plant);

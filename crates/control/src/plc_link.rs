@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use bahn_interpreter::MachineTexts;
 use bahn_parameters::ParameterList;
 use bahn_plc::{
-    CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, Nc, NotSaved, PalletLine,
+    CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable, Nc, NotSaved, PalletLine,
     ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
     SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
@@ -33,6 +33,33 @@ pub struct NcFiles {
     pub compensation_tables: BTreeMap<String, CompensationTable>,
 }
 
+/// What module 9036 changed; the last change of an item counts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct StatusChanges {
+    /// Handwheel subdivision of each axis.
+    pub factors: [Option<u8>; AXES],
+    pub handwheel_axis: Option<usize>,
+    pub jog_limit: Option<JogLimit>,
+}
+
+impl StatusChanges {
+    fn take(&mut self, change: StatusChange) {
+        match change {
+            StatusChange::Subdivision {
+                axis: Some(axis),
+                factor,
+            } => {
+                if let Some(slot) = self.factors.get_mut(axis) {
+                    *slot = Some(factor);
+                }
+            }
+            StatusChange::Subdivision { axis: None, factor } => self.factors = [Some(factor); AXES],
+            StatusChange::HandwheelAxis(axis) => self.handwheel_axis = Some(axis),
+            StatusChange::JogLimit(limit) => self.jog_limit = Some(limit),
+        }
+    }
+}
+
 /// What modules asked for since it was taken.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Requests {
@@ -45,7 +72,7 @@ pub(crate) struct Requests {
     pub restart: bool,
     pub compensation_line: Option<i32>,
     pub program: Option<(String, Option<String>)>,
-    pub status: Vec<StatusChange>,
+    pub status: StatusChanges,
     pub parameters_changed: bool,
 }
 
@@ -76,7 +103,8 @@ pub(crate) struct PlcLink {
     pub plc_axes: [PlcAxisStatus; AXES],
     pub orienting: bool,
     pub requests: Requests,
-    selected_list: String,
+    /// The list that module 9033 has selected.
+    pub selected_list: Option<String>,
 }
 
 impl PlcLink {
@@ -107,7 +135,7 @@ impl PlcLink {
             plc_axes: [PlcAxisStatus::default(); AXES],
             orienting: false,
             requests: Requests::default(),
-            selected_list: String::new(),
+            selected_list: None,
         }
     }
 
@@ -162,8 +190,8 @@ impl Nc for PlcLink {
             .get(name)
             .ok_or(ParameterFileFault::NotFound)?;
         let list = list.clone().ok_or(ParameterFileFault::Faulty)?;
-        if self.selected_list != name {
-            name.clone_into(&mut self.selected_list);
+        if self.selected_list.as_deref() != Some(name) {
+            self.selected_list = Some(name.to_owned());
             self.edited = list.clone();
             self.parameters = list;
             self.requests.restart = true;
@@ -188,7 +216,7 @@ impl Nc for PlcLink {
     }
 
     fn change_status(&mut self, change: StatusChange) {
-        self.requests.status.push(change);
+        self.requests.status.take(change);
     }
 
     fn coordinates(&self, kind: CoordinateKind) -> [f64; 5] {

@@ -83,11 +83,15 @@ impl Control {
     pub(crate) fn manual_operation(&mut self) -> bool {
         let possible = self.run.state == RunState::Interrupted
             && self.run.restore.is_none()
-            && self.operation.restart.return_to_contour
-            && self.path_stands();
+            && (self.operation.restart.return_to_contour && self.path_stands() || self.path.is_coupled());
         if possible {
             self.put(signal::MANUAL_OPERATION_PRESSED, true);
-            for unit in self.axes.iter_mut().filter(|unit| unit.mover == Mover::Path) {
+            let free = !self.path.is_coupled();
+            for unit in self
+                .axes
+                .iter_mut()
+                .filter(|unit| free && unit.mover == Mover::Path)
+            {
                 unit.mover = Mover::None;
             }
         }

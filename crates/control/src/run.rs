@@ -144,6 +144,11 @@ impl Control {
                 match state {
                     RunState::BlockEnd => self.path.go_on(),
                     RunState::Stopped => self.run.answer = Some(self.run.q_transfer.answer()),
+                    _ if self.path.is_coupled() => {
+                        // Led out of a thread by hand.
+                        self.path.go_on();
+                        self.put(bahn_exchange::signal::MANUAL_OPERATION_PRESSED, false);
+                    }
                     _ => {}
                 }
                 self.run.state = RunState::Running;
@@ -204,8 +209,12 @@ impl Control {
         self.run.answer = None;
         self.run.restore = None;
         self.run.speed = 0.0;
+        if let Some(feeder) = &mut self.run.feeder {
+            feeder.interpreter_mut().give_up_work();
+        }
         self.end_probing();
         self.handshakes.abort(&mut self.exchange);
+        self.tools.take_back(&mut self.offsets);
         for index in 0..crate::markers::AXES {
             self.end_positioning(index);
         }
@@ -407,12 +416,15 @@ impl Control {
             rules,
             texts: self.link.machine_texts().clone(),
             tools: self.tools.shapes(),
+            barred_tools: self.tools.barred(),
+            strict: self.checking.strict,
+            skip_unknown: self.checking.skip_unknown,
             q_values: self.q.clone(),
             start: self.offsets.to_path(machine),
             tool_length_mm: Some(self.offsets.tool_length),
             machine: true,
-            inch_feed: self.inch_feed,
             max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
+            inch_feed: self.inch_feed,
             ..Settings::default()
         };
         let programs = Arc::clone(&self.programs);

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_exchange::Exchange;
+use bahn_interpreter::ToolState;
 use bahn_parameters::{InchFeed, ParameterList};
 use bahn_path::{Axis, Position, ToolShape};
-use bahn_plc::PlcProgram;
+use bahn_plc::{PlcProgram, TableKind};
 
 use crate::feeder::Programs;
 use crate::plc_link::NcFiles;
@@ -22,6 +23,17 @@ pub struct Tool {
     pub special: bool,
     /// It cuts when the spindle turns counter-clockwise (M4): DIRECT [000:9028].
     pub left_hand: bool,
+    /// Whether it may be called.
+    pub state: ToolState,
+}
+
+/// How programs are taken that use what is not executed here.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Checking {
+    /// Refuse what is otherwise accepted with a warning.
+    pub strict: bool,
+    /// Pass over unknown words and blocks, and functions that would move differently, with a warning.
+    pub skip_unknown: bool,
 }
 
 /// Everything a [`Control`](crate::Control) starts with.
@@ -37,6 +49,8 @@ pub struct Setup {
     pub plc_dialogues: Vec<String>,
     /// Tools by number; `None` when tools are defined in the programs.
     pub tools: Option<BTreeMap<u32, Tool>>,
+    /// How programs are taken that use what is not executed here.
+    pub checking: Checking,
     /// What F counts in a program in inches; `None` for what it counts on the model.
     pub inch_feed: Option<InchFeed>,
     /// Where programs come from.
@@ -60,12 +74,59 @@ pub struct Remembered {
     pub tool_length: f64,
     /// Axis of the tool.
     pub tool_axis: Option<Axis>,
+    /// Pockets that tools have taken by variable pocket coding [000:9281].
+    pub pockets: Vec<MovedTool>,
+    /// What the PLC wrote into the tool and pocket table with module 9094.
+    pub written: Vec<WrittenElement>,
     /// Q parameters by number.
     pub q: Vec<(u16, f64)>,
     /// Offsets of the axes as adjusted with code number 75 368, V.
     pub offsets_volts: [f64; 5],
+    /// Name of the list of machine parameters that module 9033 has selected.
+    pub parameter_list: Option<String>,
     /// Name of the selected program.
     pub program: Option<String>,
+}
+
+/// A tool that is not in the pocket of the tool table any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MovedTool {
+    /// Its number.
+    pub tool: u32,
+    /// Its pocket now.
+    pub pocket: Option<u16>,
+    /// Its pocket in the tool table. Where the table says another one, the magazine was loaded anew.
+    pub table: Option<u16>,
+}
+
+/// An element of the tool or pocket table that the PLC has written with module 9094.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenElement {
+    /// The table.
+    pub table: TableKind,
+    /// Tool or pocket number.
+    pub line: i32,
+    /// Number of the element [000:15422-15454].
+    pub element: usize,
+    /// Its value.
+    pub value: f64,
+    /// Its value in the file of the tool table. Where that says another one, the file counts.
+    pub file: f64,
+}
+
+impl Remembered {
+    /// Forgets the pockets when the tool table has changed since: it counts then. Whether they were kept.
+    pub fn fit_pockets(&mut self, tools: Option<&BTreeMap<u32, Tool>>) -> bool {
+        let pocket = |tool: u32| Some(tools?.get(&tool)?.pocket);
+        let fits = self
+            .pockets
+            .iter()
+            .all(|moved| pocket(moved.tool) == Some(moved.table));
+        if !fits {
+            self.pockets.clear();
+        }
+        fits
+    }
 }
 
 /// A position that is 0 by default.

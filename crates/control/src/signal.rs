@@ -45,6 +45,8 @@ pub enum Signal {
     SpindleRpm,
     /// `S.volts`: voltage of the spindle, V.
     SpindleVolts,
+    /// `S.angle`: angle of the spindle since power-on with all turns, degrees; positive as M03.
+    SpindleAngle,
     /// A marker, input, output, timer or counter as the PLC sees it, 0 or 1.
     Bit(Bit),
     /// A byte, word or doubleword as the PLC sees it.
@@ -55,7 +57,7 @@ pub enum Signal {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no signal: there are X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts for each axis, \
-     path.speed, path.block, S.rpm, S.volts, and operands of the PLC like M2045, I4, O2, W260, D356"
+     path.speed, path.block, S.rpm, S.volts, S.angle, and operands of the PLC like M2045, I4, O2, W260, D356"
 )]
 pub struct SignalError(String);
 
@@ -79,6 +81,7 @@ impl FromStr for Signal {
             "path.block" => return Ok(Signal::Block),
             "S.rpm" => return Ok(Signal::SpindleRpm),
             "S.volts" => return Ok(Signal::SpindleVolts),
+            "S.angle" => return Ok(Signal::SpindleAngle),
             _ => {}
         }
         if let Some((letter, name)) = text.split_once('.') {
@@ -117,6 +120,7 @@ impl fmt::Display for Signal {
             Signal::Block => write!(f, "path.block"),
             Signal::SpindleRpm => write!(f, "S.rpm"),
             Signal::SpindleVolts => write!(f, "S.volts"),
+            Signal::SpindleAngle => write!(f, "S.angle"),
             Signal::Bit(bit) => bit.fmt(f),
             Signal::Number(number) => number.fmt(f),
         }
@@ -131,6 +135,7 @@ impl Signal {
             Signal::Axis(_, AxisSignal::Speed | AxisSignal::NominalSpeed) | Signal::PathSpeed => "mm/min",
             Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts => "V",
             Signal::SpindleRpm => "rpm",
+            Signal::SpindleAngle => "degrees",
             Signal::Block | Signal::Bit(_) | Signal::Number(_) => "",
         }
     }
@@ -158,6 +163,7 @@ impl Control {
                 .map_or(0.0, |element| element.block.block.into()),
             Signal::SpindleRpm => self.spindle.state().actual_rpm,
             Signal::SpindleVolts => self.spindle.state().volts,
+            Signal::SpindleAngle => self.spindle.turned_deg(),
             Signal::Bit(bit) => f64::from(u8::from(self.exchange.plc().bit(*bit))),
             Signal::Number(number) => self.exchange.plc().number(*number).into(),
         }

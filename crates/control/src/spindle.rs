@@ -3,8 +3,8 @@
 
 use bahn_exchange::{Bit, Exchange, signal};
 use bahn_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
-use bahn_plc::{OrientationDirection, SpindleOrientation};
-use bahn_servo::{Plant, Rotation, SpeedCode, Spindle, Timing, Way};
+use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
+use bahn_servo::{Fault, Plant, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 
 use crate::handshake::Transfer;
 use crate::panel::PlcFaultCode;
@@ -13,8 +13,12 @@ use crate::panel::PlcFaultCode;
 const OUTPUT_S: usize = 5;
 /// Encoder input of the spindle, X6 [000:3376].
 const INPUT_X6: usize = 5;
+/// Range of the analogue outputs, V.
+const OUTPUT_VOLTS: f64 = 10.0;
 /// D356, D756 and module 9171 count in 1/1000 rpm.
 const PER_RPM: f64 = 1000.0;
+/// Degrees per second of one rpm.
+const DEG_S_PER_RPM: f64 = 6.0;
 /// D592 counts in 1/10 000 degree (inferred).
 const PER_DEGREE: f64 = 10_000.0;
 /// D592 with bit 31 alone: the angle of cycle 13.
@@ -58,7 +62,10 @@ pub(crate) struct SpindleUnit {
     jogging: bool,
     turning: bool,
     orienting: bool,
+    /// The path of a thread leads it.
+    led: bool,
     plc_volts: f64,
+    feed_volts: f64,
 }
 
 impl SpindleUnit {
@@ -77,7 +84,9 @@ impl SpindleUnit {
             jogging: false,
             turning: false,
             orienting: false,
+            led: false,
             plc_volts: 0.0,
+            feed_volts: 0.0,
         }
     }
 
@@ -106,8 +115,24 @@ impl SpindleUnit {
         let volts = self.servo.step();
         if self.is_analogue() {
             plant.set_nominal(OUTPUT_S, volts);
-        } else if self.parameters.free_output == FreeOutput::Plc {
-            plant.set_nominal(OUTPUT_S, self.plc_volts);
+        } else {
+            match self.parameters.free_output {
+                FreeOutput::Plc => plant.set_nominal(OUTPUT_S, self.plc_volts),
+                FreeOutput::Feed { .. } => plant.set_nominal(OUTPUT_S, self.feed_volts),
+                FreeOutput::None | FreeOutput::MFunctions => {}
+            }
+        }
+    }
+
+    /// MP3011 = 1: a voltage in proportion to the contour feed, 10 V at MP3012 [000:9835-9839].
+    pub fn set_feed(&mut self, mm_min: f64) {
+        if let FreeOutput::Feed { full_mm_min } = self.parameters.free_output {
+            let volts = mm_min / full_mm_min * OUTPUT_VOLTS;
+            self.feed_volts = if volts.is_finite() {
+                volts.clamp(0.0, OUTPUT_VOLTS)
+            } else {
+                0.0
+            };
         }
     }
 
@@ -116,13 +141,18 @@ impl SpindleUnit {
         self.plc_volts = volts;
     }
 
-    /// Whether the spindle has a speed: otherwise it is refused, M2092 [000:5653-5656].
-    pub fn judge(&mut self, rpm: f64, exchange: &mut Exchange) -> bool {
-        let has = match self.parameters.output {
+    /// Whether the spindle has a speed.
+    pub fn has_speed(&self, rpm: f64) -> bool {
+        match self.parameters.output {
             SpindleOutput::None => true,
             SpindleOutput::Coded { .. } => self.speed_code(rpm).is_some(),
             SpindleOutput::Analogue { .. } => self.servo.gear_for(rpm).is_some(),
-        };
+        }
+    }
+
+    /// A speed that the spindle does not have is refused: M2092 [000:5653-5656].
+    pub fn judge(&mut self, rpm: f64, exchange: &mut Exchange) -> bool {
+        let has = self.has_speed(rpm);
         self.wrong = !has;
         self.wrong_speed |= !has;
         exchange.nc_set(signal::ILLEGAL_SPINDLE_SPEED, self.wrong);
@@ -217,8 +247,76 @@ impl SpindleUnit {
 
     /// Opens the loop and takes the voltage away: EMERGENCY STOP, M2830.
     pub fn open(&mut self) {
+        self.led = false;
         self.servo.rotate(Rotation::M5);
         self.servo.set_enabled(false);
+    }
+
+    /// A fault of its encoder.
+    pub fn fault(&self) -> Option<Fault> {
+        self.servo.fault()
+    }
+
+    /// It can be led by a path: analogue output and an encoder [000:6056] [000:5444-5472].
+    pub fn can_be_led(&self) -> bool {
+        self.is_analogue() && self.parameters.controlled
+    }
+
+    /// Orients before a thread: from standstill by the shorter way [000:623].
+    pub fn orient_for_thread(&mut self, angle_deg: f64) {
+        self.servo.orient(angle_deg, 0.0, Way::Shortest);
+    }
+
+    /// Leads it for a contour cycle along a thread; `None` when the thread is over: it stays where it is.
+    pub fn lead(&mut self, angle_deg: Option<f64>) {
+        self.led = angle_deg.is_some();
+        if let Some(angle) = angle_deg {
+            self.servo.lead(angle);
+        }
+    }
+
+    /// The ramp of M03, M04 and M05 while cycle 2 taps, `None` otherwise: MP3410.2, or flatter, so that it stands
+    /// with a feed that takes `braking_s` to brake [000:6068-6079].
+    pub fn set_tapping(&mut self, braking_s: Option<f64>) {
+        self.servo.set_ramp(match braking_s {
+            None => Ramp::Normal,
+            Some(braking) => {
+                let flat = self.servo.programmed_volts() / (braking * 1000.0);
+                let own = self.parameters.ramps.tapping_v_ms;
+                if flat > 0.0 && (own == 0.0 || flat < own) {
+                    Ramp::Volts(flat)
+                } else {
+                    Ramp::Tapping
+                }
+            }
+        });
+    }
+
+    /// Angle with all turns, degrees: where it is held, and where it will be after a time, s.
+    pub fn angles_deg(&self, after_s: f64) -> [f64; 2] {
+        let will_be = self.servo.turned_deg() + self.servo.actual_rpm() * DEG_S_PER_RPM * after_s;
+        [self.servo.held_deg(), will_be]
+    }
+
+    /// It stands in the window of its orientation.
+    pub fn is_oriented(&self) -> bool {
+        let missing = (self.servo.held_deg() - self.servo.turned_deg()).abs();
+        self.servo.in_position() && missing <= self.parameters.orientation.window_deg
+    }
+
+    /// The part of the programmed speed that override and limits leave, %.
+    pub fn effective_percent(&self) -> f64 {
+        100.0 * self.servo.effective_override()
+    }
+
+    /// The PLC gives the spindle enable: M2608 [000:5500].
+    pub fn is_enabled(&self) -> bool {
+        self.servo.is_enabled()
+    }
+
+    /// Positioning window of the tool axis in a thread, mm: MP7150.
+    pub fn thread_window_mm(&self) -> f64 {
+        self.parameters.tapping.window_mm
     }
 
     /// After a PLC scan: direction, jog, orientation, gear and speed by the PLC. The code of the fault when
@@ -233,8 +331,11 @@ impl SpindleUnit {
         for ((now, before), rotation) in shown.iter().zip(self.shown).zip(rotations) {
             if *now && !before {
                 self.rotation = rotation;
-                self.servo.rotate(rotation);
-                self.orienting = false;
+                // A tool in a thread is not left to turn by itself (inferred).
+                if !self.led {
+                    self.servo.rotate(rotation);
+                    self.orienting = false;
+                }
             }
         }
         self.shown = shown;
@@ -350,6 +451,25 @@ impl SpindleUnit {
     /// Angle of the spindle, degrees, once its reference mark was crossed.
     pub fn angle_deg(&self) -> Option<f64> {
         self.servo.angle_deg()
+    }
+
+    /// Angle since power-on with all turns, degrees.
+    pub fn turned_deg(&self) -> f64 {
+        self.servo.turned_deg()
+    }
+
+    /// What module 9042 reads, in degrees.
+    pub fn position(&self) -> SpindlePosition {
+        let angle = self.angle_deg().unwrap_or(0.0);
+        SpindlePosition {
+            actual: angle,
+            reference: angle,
+            closed_loop: self.servo.lag_and_way_deg().map(|[lag, way]| ControlledSpindle {
+                nominal: angle + lag,
+                trailing_error: lag,
+                distance_to_go: way,
+            }),
+        }
     }
 
     /// An orientation is on its way.

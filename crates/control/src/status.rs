@@ -162,7 +162,11 @@ impl Control {
                 StatusItem::HandwheelAxes,
                 1i32.checked_shl(handwheel.max(0) as u32).unwrap_or(0),
             ),
-            (StatusItem::ExecutedFile, i32::from(self.run.selected.is_some())),
+            (
+                StatusItem::ExecutedFile,
+                kind_of_file(self.run.selected.as_deref()),
+            ),
+            (StatusItem::EditedFile, kind_of_file(self.tested_program())),
         ];
         for (item, value) in items {
             self.link.set_status(item, value);
@@ -177,5 +181,15 @@ impl Control {
         for (item, factor) in subdivisions.into_iter().zip(self.manual.factors) {
             self.link.set_status(item, factor.into());
         }
+    }
+}
+
+/// Kind of a program by its extension, as module 9035 codes it: 1 .H, 2 .I; a name without one is a .H
+/// [000:14921-14926].
+fn kind_of_file(name: Option<&str>) -> i32 {
+    match name {
+        None => 0,
+        Some(name) if name.ends_with(".I") || name.ends_with(".i") => 2,
+        Some(_) => 1,
     }
 }

@@ -2,7 +2,7 @@
 //! parameters, actual-value transfer, keys, gear and speed, and the requests of modules.
 
 use bahn_exchange::signal;
-use bahn_plc::{CoordinateKind, JogLimit, StatusChange};
+use bahn_plc::{CoordinateKind, JogLimit};
 
 use crate::axes::Mover;
 use crate::command::{Command, Mode};
@@ -227,9 +227,7 @@ impl Control {
         if let Some(volts) = self.link.requests.spindle_volts.take() {
             self.spindle.set_plc_volts(volts);
         }
-        while let Some(change) = self.link.requests.status.pop() {
-            self.change_status(change);
-        }
+        self.change_status();
         if std::mem::take(&mut self.link.requests.restart) {
             self.run.restart_wanted = true;
         }
@@ -237,25 +235,26 @@ impl Control {
             self.activate_compensation(usize::try_from(line).ok());
         }
         self.take_changed_parameters();
-        self.link.requests.geometry = false;
+        if std::mem::take(&mut self.link.requests.geometry) {
+            self.initialise_geometry();
+            self.unsaved = true;
+        }
     }
 
     /// Module 9036.
-    fn change_status(&mut self, change: StatusChange) {
-        match change {
-            StatusChange::Subdivision {
-                axis: Some(axis),
-                factor,
-            } => {
-                if let Some(slot) = self.manual.factors.get_mut(axis) {
-                    *slot = factor;
-                }
-            }
-            StatusChange::Subdivision { axis: None, factor } => self.manual.factors = [factor; AXES],
-            StatusChange::HandwheelAxis(axis) => self.manual.handwheel_axis = axis,
-            StatusChange::JogLimit(JogLimit::At(limit)) => self.manual.increment_limit = Some(limit),
-            StatusChange::JogLimit(JogLimit::LastIncrement) => self.manual.increment_limit = None,
-            StatusChange::JogLimit(JogLimit::SmallerOfLastIncrementAndLimit) => {
+    fn change_status(&mut self) {
+        let changes = std::mem::take(&mut self.link.requests.status);
+        for (factor, changed) in self.manual.factors.iter_mut().zip(changes.factors) {
+            *factor = changed.unwrap_or(*factor);
+        }
+        if let Some(axis) = changes.handwheel_axis {
+            self.manual.handwheel_axis = axis;
+        }
+        match changes.jog_limit {
+            None => {}
+            Some(JogLimit::At(limit)) => self.manual.increment_limit = Some(limit),
+            Some(JogLimit::LastIncrement) => self.manual.increment_limit = None,
+            Some(JogLimit::SmallerOfLastIncrementAndLimit) => {
                 if let Some(limit) = self.manual.increment_limit.take() {
                     self.manual.increment = self.manual.increment.min(limit);
                 }

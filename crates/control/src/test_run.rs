@@ -1,7 +1,8 @@
 //! TEST RUN beside what the machine does: a program is executed without moving an axis, to find what is
 //! wrong with it [003:1514-1535]. Nothing goes to the PLC.
 
-use bahn_path::{Barrier, BlockRef, ElementSource, LiveData, Step, Touch};
+use bahn_parameters::MessageId;
+use bahn_path::{Barrier, BlockRef, ElementSource, Function, LiveData, Step, Touch};
 
 use crate::control::Control;
 use crate::feeder::{Feeder, RunFault};
@@ -16,6 +17,15 @@ pub(crate) struct TestRun {
     feeder: Box<Feeder>,
     state: TestState,
     block: BlockRef,
+}
+
+/// The spindle speed that a function asks for, rpm.
+fn speed(function: &Function) -> Option<f64> {
+    match function {
+        Function::Tool(call) => Some(call.speed_rpm),
+        Function::SpindleSpeed(rpm) => Some(*rpm),
+        _ => None,
+    }
 }
 
 impl TestRun {
@@ -72,6 +82,11 @@ impl Control {
         self.test = None;
     }
 
+    /// The program in TEST RUN.
+    pub(crate) fn tested_program(&self) -> Option<&str> {
+        self.test.as_ref().map(|test| test.program.as_str())
+    }
+
     /// The test run that was started last.
     pub fn test_report(&self) -> Option<TestReport> {
         self.test.as_ref().map(|test| TestReport {
@@ -93,6 +108,15 @@ impl Control {
                 Step::Element(element) => {
                     test.block = element.block;
                     test.feeder.forget_before(element.sequence);
+                    let spindle = &self.spindle;
+                    let mut speeds = element
+                        .functions()
+                        .iter()
+                        .filter_map(|output| speed(&output.function));
+                    if speeds.any(|rpm| !spindle.has_speed(rpm)) {
+                        test.state = TestState::Failed(Message::Plain(MessageId::WrongRpm));
+                        return;
+                    }
                 }
                 // Every probing touches where the block says it will.
                 Step::Barrier(Barrier::Probe { to, .. }) => test.feeder.resume(LiveData {

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use bahn_exchange::{Exchange, signal};
+use bahn_interpreter::ToolState;
 use bahn_parameters::{ToolOutput, ToolOutputKind, ToolParameters};
 use bahn_path::{Axis, ToolCall};
 use bahn_plc::ToolCallBlock;
 
 use crate::feeder::Offsets;
 use crate::handshake::{Handshakes, Transfer};
-use crate::setup::{Remembered, Tool};
+use crate::setup::{MovedTool, Remembered, Tool};
 
 /// W262 for a tool without pocket [000:9273-9283].
 const NO_POCKET: i16 = 255;
@@ -18,11 +19,19 @@ const NO_POCKET: i16 = 255;
 #[derive(Debug)]
 pub(crate) struct Tools {
     table: Option<BTreeMap<u32, Tool>>,
+    /// The pockets as the tool table has them.
+    pockets: BTreeMap<u32, Option<u16>>,
     parameters: ToolParameters,
     /// Tool in the spindle.
     pub number: u32,
     /// Tool of the last TOOL CALL.
     called: u32,
+    /// Length and axis of the tool in the spindle while another one is called.
+    held: Option<(f64, Axis)>,
+    /// Tool or pockets have changed: to be stored.
+    pub changed: bool,
+    /// The PLC waits at M2717 for the geometry that it activated.
+    geometry_taken: bool,
     /// Tool of the last TOOL DEF.
     defined: Option<u32>,
     /// A TOOL CALL that module 9150 inserted.
@@ -46,20 +55,96 @@ impl Tools {
         parameters: ToolParameters,
         remembered: &Remembered,
     ) -> Tools {
-        Tools {
+        let mut tools = Tools {
+            pockets: table
+                .iter()
+                .flatten()
+                .map(|(number, tool)| (*number, tool.pocket))
+                .collect(),
             table,
             parameters,
             number: remembered.tool,
             called: remembered.tool,
+            held: None,
+            changed: false,
+            geometry_taken: false,
             defined: None,
             inserted_call: None,
+        };
+        for moved in &remembered.pockets {
+            if let Some(tool) = tools.table.as_mut().and_then(|table| table.get_mut(&moved.tool)) {
+                tool.pocket = moved.pocket;
+            }
         }
+        tools
+    }
+
+    /// The tools that are elsewhere than in the pocket of the tool table.
+    pub fn moved(&self) -> Vec<MovedTool> {
+        let moved = |(tool, table): (&u32, &Option<u16>)| {
+            let pocket = self.tool(*tool).pocket;
+            (pocket != *table).then_some(MovedTool {
+                tool: *tool,
+                pocket,
+                table: *table,
+            })
+        };
+        self.pockets.iter().filter_map(moved).collect()
     }
 
     /// The shapes for the interpreter; `None` when tools are defined in the programs.
     pub fn shapes(&self) -> Option<bahn_interpreter::ToolTable> {
         let table = self.table.as_ref()?;
         Some(table.iter().map(|(number, tool)| (*number, tool.shape)).collect())
+    }
+
+    /// The tools that must not be called, for the interpreter.
+    pub fn barred(&self) -> BTreeMap<u32, ToolState> {
+        let tools = self.table.iter().flatten();
+        let states = tools.map(|(number, tool)| (*number, tool.state));
+        states.filter(|(_, state)| *state != ToolState::Usable).collect()
+    }
+
+    /// All tools of the table.
+    pub fn all(&self) -> Option<impl Iterator<Item = (u32, &Tool)> + Clone> {
+        let table = self.table.as_ref()?;
+        Some(table.iter().map(|(number, tool)| (*number, tool)))
+    }
+
+    /// Length of a tool in the table, mm.
+    pub fn length(&self, number: u32) -> f64 {
+        self.tool(number).shape.length
+    }
+
+    /// Takes the shapes of the tools as a table has them.
+    pub fn take(&mut self, shape: impl Fn(u32, bahn_path::ToolShape) -> Option<bahn_path::ToolShape>) {
+        for (number, tool) in self.table.iter_mut().flatten() {
+            tool.shape = shape(*number, tool.shape).unwrap_or(tool.shape);
+        }
+    }
+
+    /// No tool has a pocket, until it is put into one.
+    pub fn empty_magazine(&mut self) {
+        for tool in self.table.iter_mut().flatten().map(|(_, tool)| tool) {
+            tool.pocket = None;
+        }
+    }
+
+    /// A tool is in a pocket.
+    pub fn put(&mut self, number: u32, pocket: i32, special: bool) {
+        if let Some(tool) = self.table.as_mut().and_then(|table| table.get_mut(&number)) {
+            tool.pocket = u16::try_from(pocket).ok();
+            tool.special = special;
+        }
+    }
+
+    /// The tool in the spindle is longer while another one is called; `false` when none is.
+    pub fn lengthen_held(&mut self, longer: f64) -> bool {
+        match &mut self.held {
+            Some((length, _)) => *length += longer,
+            None => return false,
+        }
+        true
     }
 
     fn tool(&self, number: u32) -> Tool {
@@ -203,12 +288,37 @@ impl Tools {
         self.number != self.called
     }
 
+    /// Length and axis before a call: those of the tool in the spindle until it is changed.
+    pub fn hold_geometry(&mut self, length: f64, axis: Axis) {
+        if self.is_changing() {
+            self.held.get_or_insert((length, axis));
+        } else {
+            // It counts with another length from here on.
+            self.changed = true;
+        }
+    }
+
+    /// Length and axis of the tool in the spindle while another one is called.
+    pub fn held_geometry(&self) -> Option<(f64, Axis)> {
+        self.held
+    }
+
+    /// A change was broken off: the old tool is still in the spindle, and the next call is one again.
+    pub fn take_back(&mut self, offsets: &mut Offsets) {
+        self.called = self.number;
+        if let Some((length, axis)) = self.held.take() {
+            (offsets.tool_length, offsets.tool_axis) = (length, axis);
+        }
+    }
+
     /// The last code of a TOOL CALL was acknowledged: the tool is in the spindle. With variable pocket
     /// coding the old tool has taken the pocket of the new one, unless it went to its own (inferred), and
     /// M2612 = 0 [000:9281].
     pub fn inserted(&mut self, exchange: &Exchange) {
         let (old, new) = (self.number, self.called);
         self.number = new;
+        self.held = None;
+        self.changed = true;
         let nc = exchange.nc();
         let own_pocket = nc.bit(signal::SPECIAL_TOOL_TO_OWN_POCKET);
         if self.parameters.call.what != ToolOutputKind::Pocket
@@ -232,18 +342,27 @@ impl Tools {
         }
     }
 
-    /// M2717: the geometry of the tool in W264 is active [000:9217-9219].
+    /// M2717: the geometry of the tool in W264 is active [000:9217-9219]. The marker falls when that is stored.
     pub fn take_geometry_strobe(&mut self, exchange: &mut Exchange, offsets: &mut Offsets) {
-        if !exchange.nc().bit(signal::ACTIVATE_TOOL_GEOMETRY) {
+        if !exchange.nc().bit(signal::ACTIVATE_TOOL_GEOMETRY) || self.geometry_taken {
             return;
         }
         let number = exchange.nc().number(signal::TOOL_NUMBER);
         if let Ok(number) = u32::try_from(number) {
             self.number = number;
             self.called = number;
+            self.held = None;
             offsets.tool_length = self.tool(number).shape.length;
         }
-        exchange.nc_set(signal::ACTIVATE_TOOL_GEOMETRY, false);
+        self.changed = true;
+        self.geometry_taken = true;
+    }
+
+    /// What changed is stored: M2717 falls.
+    pub fn end_geometry_strobe(&mut self, exchange: &mut Exchange) {
+        if std::mem::take(&mut self.geometry_taken) {
+            exchange.nc_set(signal::ACTIVATE_TOOL_GEOMETRY, false);
+        }
     }
 }
 
@@ -265,7 +384,7 @@ mod tests {
         let tool = |pocket, special| Tool {
             pocket,
             special,
-            ..Tool::default()..Tool::default()
+            ..Tool::default()
         };
         let table = [
             (1, tool(Some(11), false)),

@@ -134,6 +134,7 @@ fn the_command_log_replays() {
     ];
     let drive = |commands: &[(u64, Command)]| {
         let mut rig = bench(ACKNOWLEDGE).program("1.H", PROGRAM).rig();
+        rig.control.keep_command_log();
         let mut trace = Trace::new(&rig);
         let (mut events, mut commands) = (script.iter().peekable(), commands.iter().peekable());
         let mut reference = false;
@@ -164,13 +165,15 @@ fn the_command_log_replays() {
     .into_iter()
     .map(|(time, text)| (time, text.parse().unwrap()))
     .collect();
-    let (first, trace) = drive(&given);
+    let (mut first, trace) = drive(&given);
     assert!(
         first.control.snapshot().ended,
         "{:?} {:?}",
         first.messages(),
         first.control.snapshot().run
     );
-    let (_, replayed) = drive(first.control.command_log());
+    let log = first.control.take_command_log().unwrap();
+    assert_eq!(log.len(), given.len());
+    let (_, replayed) = drive(&log);
     assert_eq!(trace.hash, replayed.hash);
 }

@@ -1,4 +1,5 @@
 //! Single rules of program run: messages with their block, refusals, stops, what the PLC learns.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here fails the test")]
 
 #[path = "support/stand.rs"]
 mod stand;
@@ -251,6 +252,24 @@ fn speeds_that_the_spindle_has() {
     );
 }
 
+/// A test run beside finds a speed that the spindle does not have, as the run would.
+#[test]
+fn a_test_run_knows_the_spindle() {
+    let build = bench(ACKNOWLEDGE).mp("3510.1=2000").mp("3515.1=2000");
+    let build = build
+        .program("1.H", "L X+60 R0 F600")
+        .program("2.H", "L X+60 R0 F600\nTOOL CALL 1 Z S4000");
+    let mut rig = ready(build);
+    assert!(rig.control.test("2.H"));
+    rig.seconds(0.1);
+    let report = rig.control.test_report().unwrap();
+    let bahn_control::TestState::Failed(message) = report.state else {
+        panic!("{report:?}")
+    };
+    assert_eq!(rig.control.message_text(&message), "WRONG SPINDLE SPEED");
+    assert_eq!(report.block.block, 2);
+}
+
 /// Cycle 13 itself tells the PLC (M2408); whichever M function orients with D592 = $80000000 then orients to
 /// its angle, here M70 [000:5853-5865].
 #[test]
@@ -287,6 +306,7 @@ fn cycle_13_reaches_any_orientation() {
         "before any M function"
     );
     rig.until(10.0, "the orientation", |rig| rig.bit("M2007"));
+    rig.seconds(1.0);
     let angle = rig.machine.spindle().unwrap().angle_deg.rem_euclid(360.0);
     let from_mark = (angle - 90.0).rem_euclid(360.0);
     assert!(

@@ -76,7 +76,7 @@ fn nothing_to_touch() {
         rig.start();
         rig.until(30.0, "the message", |rig| !rig.messages().is_empty());
         assert_eq!(rig.messages(), ["TOUCH POINT INACCESSIBLE program 1.H block 2"]);
-        assert_eq!(rig.control.snapshot().run, RunState::Idle);
+        assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
         rig.command("ce");
         rig.seconds(0.3);
     }

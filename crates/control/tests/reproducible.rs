@@ -60,6 +60,7 @@ impl Trail {
 /// Runs with keys and commands at fixed times; the hash of everything.
 fn scripted(seconds: u64) -> (u64, Vec<(u64, Command)>) {
     let mut rig = build();
+    rig.control.keep_command_log();
     let mut trail = Trail::new();
     let events: &[(u64, &str)] = &[
         (100, "ce"),
@@ -91,7 +92,7 @@ fn scripted(seconds: u64) -> (u64, Vec<(u64, Command)>) {
         rig.messages(),
         rig.control.snapshot()
     );
-    (trail.hash, rig.control.command_log().to_vec())
+    (trail.hash, rig.control.take_command_log().unwrap())
 }
 
 /// The number goes into the file of BAHN_TRAIL, too: `make test` compares those of debug and release builds.

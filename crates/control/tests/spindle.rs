@@ -426,3 +426,33 @@ fn ramp_and_zero() {
         "M2487+ M2004- M2004+ M2005+"
     );
 }
+
+/// MP31 and MP32 bit 5: amplitude and edges of the spindle's encoder [000:3310-3328]. The message stays, as that
+/// of an axis.
+#[test]
+fn the_encoder_of_the_spindle_is_monitored() {
+    for (mp, fault, letter) in [("31", "amplitude", 'A'), ("32", "edges", 'B')] {
+        for (bits, found) in [("%000000", false), ("%100000", true)] {
+            let build = diagram(&with_gear()).mp(&format!("{mp}={bits}"));
+            let mut rig = ready(build.program("1.H", "TOOL CALL 0 Z S1000\nM3\nL X+100 R0 F100"));
+            rig.start();
+            rig.until(5.0, "X moves", |rig| nominal(rig, 'X') > 50.5);
+            rig.event(&format!("fault encoder S {fault}"));
+            rig.seconds(0.5);
+            let expected = format!("MEASURING SYSTEM S DEFECTIVE {letter}");
+            assert_eq!(
+                rig.messages() == [expected.as_str()],
+                found,
+                "{:?}",
+                rig.messages()
+            );
+            if found {
+                rig.control.command("ce".parse().unwrap());
+                assert_eq!(rig.messages()[0], expected);
+                let before = display(&rig, 'X');
+                rig.seconds(0.5);
+                near(display(&rig, 'X'), before);
+            }
+        }
+    }
+}

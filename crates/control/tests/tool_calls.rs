@@ -138,3 +138,17 @@ fn length_of_the_tool() {
     assert_eq!(rig.control.snapshot().tool, 1);
     near(display(&rig, 'Z'), 10.0 + 95.0 - 70.0);
 }
+
+/// M2100 to M2103 say which axis is the tool axis [000:3410-3416].
+#[test]
+fn markers_of_the_tool_axis() {
+    let markers = ["M2100", "M2101", "M2102", "M2103"];
+    for (axis, place) in [("Y", 1), ("Z", 2), ("X", 0)] {
+        let mut rig = build(&[], ACKNOWLEDGE, &format!("TOOL CALL 1 {axis} S0"));
+        rig.start();
+        rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+        rig.cycle();
+        let set: Vec<usize> = (0..4).filter(|at| rig.bit(markers[*at])).collect();
+        assert_eq!(set, [place], "{axis}");
+    }
+}

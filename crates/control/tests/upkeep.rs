@@ -200,3 +200,25 @@ LBL 60
     rig.seconds(3.0);
     close(rig.table('X'), 120.0, 0.005);
 }
+
+/// Voltages come in steps of 100 mV, W496 ff. of the first extension and W464 ff. of the second, where MP4410
+/// activates it [000:8449-8484].
+#[test]
+fn analogue_inputs_of_the_extensions() {
+    let words = ["W496", "W498", "W500", "W502", "W464", "W466", "W468", "W470"];
+    for (active, first) in [("%01", 0), ("%10", 4)] {
+        let mut rig = bench("").mps(&format!("4410={active}")).ready();
+        for input in 0..8 {
+            rig.event(&format!("analogue {input} {}", f64::from(input) - 3.5));
+        }
+        rig.settle();
+        for (at, word) in words.iter().enumerate() {
+            let expected = if (first..first + 4).contains(&at) {
+                (at as i32) * 10 - 35
+            } else {
+                0
+            };
+            assert_eq!(rig.number(word), expected, "{word} with MP4410 = {active}");
+        }
+    }
+}

@@ -25,4 +25,6 @@ pub mod signal;
 pub use address::{Bit, BitArea, BitRange, ByteRange, NoSuchOperand, Number, Size};
 pub use exchanging::Exchange;
 pub use image::{CELLS, Image, STRING_LENGTH, STRINGS};
-pub use retention::{MemoryStorage, Retention, RetentionError, RetentionStorage};
+pub use retention::{
+    Damage, JOURNAL_LENGTH, Loss, MemoryStorage, Retention, RetentionError, RetentionStorage,
+};

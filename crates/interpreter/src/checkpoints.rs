@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use bahn_path::{Barrier, BlockRef, Position};
 
-use crate::Ended;
 use crate::run::Run;
+use crate::{Ended, Interpreter};
 
 /// The state of a run at a block: Q parameters, calls, repeats, pole, transformations, tool.
 #[derive(Clone)]
@@ -49,6 +49,7 @@ impl Kept {
         }
         // Warnings are no state to go back to.
         let warnings = std::mem::take(&mut run.warnings);
+        let said = std::mem::take(&mut run.said);
         self.states.push_back(Checkpoint {
             run: Box::new(run.clone()),
             ended: None,
@@ -56,6 +57,7 @@ impl Kept {
             position,
         });
         run.warnings = warnings;
+        run.said = said;
     }
 
     pub fn handed(&mut self, sequence: u64) {
@@ -80,5 +82,32 @@ impl Kept {
     /// States that are kept.
     pub fn count(&self) -> usize {
         self.states.len()
+    }
+}
+
+impl Interpreter {
+    /// Keeps the state before each block whose elements are on their way, for [`Interpreter::go_back`].
+    pub fn keep_checkpoints(&mut self) {
+        self.kept = Some(Kept::default());
+    }
+
+    /// Forgets the states before blocks that come before the one with a sequence: it is executed.
+    pub fn forget_before(&mut self, sequence: u64) {
+        if let Some(kept) = &mut self.kept {
+            kept.forget_before(sequence);
+        }
+    }
+
+    /// Goes back to the latest kept state of which something is so, if there is one; the kept states are
+    /// forgotten.
+    pub fn go_back(&mut self, so: impl Fn(&Checkpoint) -> bool) {
+        if let Some(state) = self.kept.as_mut().and_then(|kept| kept.take(so)) {
+            self.restore(&state);
+        }
+    }
+
+    /// States that are kept, to be seen that they do not pile up.
+    pub fn checkpoints(&self) -> usize {
+        self.kept.as_ref().map_or(0, Kept::count)
     }
 }

@@ -188,6 +188,17 @@ pub enum WarningKind {
     MachineZeroUnknown,
     /// M2 or M30 stands in a called program, where it must not [003:3870-3902].
     EndInCalledProgram,
+    /// A function that has no effect here, or only part of it.
+    Function {
+        /// Which, and what is missing.
+        text: String,
+    },
+    /// What nothing here knows, or what would move differently on the control, was passed over as wanted:
+    /// [`Settings::skip_unknown`](crate::Settings::skip_unknown).
+    PassedOver {
+        /// The words, or the function and why.
+        what: String,
+    },
     /// The feeds of a program in inches look ten times too small or too great.
     InchFeed {
         /// What F is taken to count.
@@ -209,6 +220,8 @@ impl std::fmt::Display for WarningKind {
             WarningKind::ToolNotDefined { tool } => {
                 write!(f, "tool {tool} is not defined: length 0 and radius 0 are taken")
             }
+            WarningKind::Function { text } => f.write_str(text),
+            WarningKind::PassedOver { what } => write!(f, "passed over: {what}"),
             WarningKind::BlankIncomplete => write!(f, "BLK FORM 0.2 is missing: there is no blank"),
             WarningKind::BlankEmpty => write!(f, "BLK FORM has no size: there is no blank"),
             WarningKind::BlankInCalledProgram => {

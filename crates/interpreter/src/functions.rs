@@ -1,9 +1,9 @@
 //! Miscellaneous functions: when they act and what they do in the control.
 
-use bahn_parameters::MessageId;
 use bahn_path::{At, Axis, Function, Synchronisation, TechnologyFunction};
 use bahn_program::MFunctions;
 
+use crate::availability::Feature;
 use crate::contour::{Corner, CornerArcs, FeedLaw};
 use crate::error::{Fault, WarningKind};
 use crate::modal::Spindle;
@@ -81,11 +81,8 @@ impl Run {
         settings: &Settings,
         block: &mut BlockFunctions,
     ) -> Result<(), Fault> {
-        if code > settings.model.limits().m_max {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                format!("this control has no M{code}"),
-            ));
+        if !self.executes(Feature::M(code), settings)? {
+            return Ok(());
         }
         let rules = &settings.rules.m_functions;
         match code {
@@ -188,7 +185,7 @@ impl Run {
         self.q.preassign(preassigned::SPINDLE, spindle.q110());
     }
 
-    fn stop_spindle(&mut self) {
+    pub(crate) fn stop_spindle(&mut self) {
         let stopped = self.modal.spindle.stopped();
         self.set_spindle(stopped);
     }

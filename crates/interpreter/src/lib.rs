@@ -8,12 +8,14 @@
 //! - [`rehearse`]: all faults of a program, found without moving anything;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
+//! What is executed here, and what the user is told, `availability` asks of the registry of the control models.
 //! A block is executed by `run`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
 //! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished
 //! steps.
 //! Nothing here knows of time or of the machine's axes.
 
 mod arc;
+mod availability;
 mod checkpoints;
 mod code;
 mod contour;
@@ -46,7 +48,8 @@ pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, ToolTable, tool_key,
+    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules, ToolState,
+    ToolTable, tool_key,
 };
 pub use work::{Done, Work};
 
@@ -185,61 +188,11 @@ impl Interpreter {
         std::mem::take(&mut self.run.warnings)
     }
 
-    /// Keeps the state before each block whose elements are on their way, for [`Interpreter::go_back`].
-    pub fn keep_checkpoints(&mut self) {
-        self.kept = Some(Kept::default());
-    }
-
-    /// Forgets the states before blocks that come before the one with a sequence: it is executed.
-    pub fn forget_before(&mut self, sequence: u64) {
-        if let Some(kept) = &mut self.kept {
-            kept.forget_before(sequence);
-        }
-    }
-
-    /// Goes back to the latest kept state of which something is so, if there is one; the kept states are
-    /// forgotten.
-    pub fn go_back(&mut self, so: impl Fn(&Checkpoint) -> bool) {
-        if let Some(state) = self.kept.as_mut().and_then(|kept| kept.take(so)) {
-            self.restore(&state);
-        }
-    }
-
-    /// States that are kept, to be seen that they do not pile up.
-    pub fn checkpoints(&self) -> usize {
-        self.kept.as_ref().map_or(0, Kept::count)
-    }
-
     /// Allows an amount of work, as [`Interpreter::next`] counts it, until the next call: a control has
     /// other things to do, too. When it is done, the next step is [`Step::Starved`]. A block costs 1, each
     /// further element of a block, too; a block whose state is kept costs [`STATE_COST`].
     pub fn allow(&mut self, work: u32) {
         self.work = Some(work);
-    }
-
-    /// Leaves long computations to whoever drives: while one is pending the next step is
-    /// [`Step::Starved`], see [`Interpreter::take_work`].
-    pub fn defer_work(&mut self) {
-        self.defers = true;
-    }
-
-    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to.
-    pub fn take_work(&mut self) -> Option<Work> {
-        self.pending.take(&mut self.run, &self.settings)
-    }
-
-    /// Whether this computation is what the run waits for.
-    pub fn waits_for(&self, done: &Done) -> bool {
-        self.pending.is_of(done)
-    }
-
-    /// Goes on with what a computation came to; without effect when it was given up meanwhile.
-    pub fn finish_work(&mut self, done: Done) {
-        match self.pending.finish(done, &mut self.run) {
-            Some(Ok(())) => self.run.at.block += 1,
-            Some(Err(fault)) => self.fail(fault, self.run.block),
-            None => {}
-        }
     }
 
     /// After an error: the run goes on with the block that failed.
@@ -262,9 +215,11 @@ impl Interpreter {
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
         let warnings = std::mem::take(&mut self.run.warnings);
+        let said = std::mem::take(&mut self.run.said);
         self.pending = Pending::None;
         self.run = (*checkpoint.run).clone();
         self.run.warnings = warnings;
+        self.run.said = said;
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;

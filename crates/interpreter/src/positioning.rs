@@ -32,6 +32,10 @@ impl Run {
     }
 
     fn any_positioning(&mut self, motion: &Motion, settings: &Settings) -> Result<Flow, Fault> {
+        if motion.kind == MotionKind::Paraxial && settings.rules.paraxial_inhibited {
+            let detail = "MP7246 disables paraxial positioning blocks";
+            return Err(Fault::new(MessageId::BlockNotKnown, detail));
+        }
         self.take_compensation(motion)?;
         if self.recording.is_some() {
             return self.record(motion, settings);
@@ -87,6 +91,7 @@ impl Run {
             self.modal.nominal[axis] = value;
             self.modal.actual[axis] = value;
         }
+        self.check_count(axes, settings)?;
         self.check_range(&self.modal.actual, axes, settings)?;
         if self.modal.contour_plane != self.modal.plane || !axes.intersection(PARALLEL_AXES).is_empty() {
             self.modal.take_contour_axes(axes);
@@ -138,6 +143,7 @@ impl Run {
         let Some(feed) = feed else {
             return Err(MessageId::FeedRateIsMissing.into());
         };
+        self.check_count(programmed.axes, settings)?;
         self.check_range(&programmed.to, programmed.axes, settings)?;
         self.modal.last_move = Some(LastMove {
             curve: programmed.curve,
@@ -250,8 +256,8 @@ impl Run {
                 _ => 0.0,
             };
             let zero = settings.rules.machine_zero[axis] - length;
-            if zero.is_nan() && functions.reference != Reference::Position {
-                // Only after the reference marks machine coordinates are known [000:4568-4576].
+            if settings.machine && zero.is_nan() && functions.reference != Reference::Position {
+                // On a machine its coordinates are known only after the reference marks [000:4568-4576].
                 return Err(Fault::new(
                     MessageId::ProgramStartUndefined,
                     format!("{axis} has not passed its reference mark"),
@@ -271,6 +277,7 @@ impl Run {
         let Some(feed) = feed else {
             return Err(MessageId::FeedRateIsMissing.into());
         };
+        self.check_count(axes, settings)?;
         self.modal.last_move = None;
         let placed = nominal.known().intersection(axes);
         self.check_range(&nominal, placed, settings)?;
@@ -472,6 +479,25 @@ impl Run {
                 FeedRate::Programmed(feed)
             }
         }))
+    }
+
+    /// Refuses more axes than the control moves together [001:167-173] [003:7761-7763] [000:139]. No manual
+    /// prints the message *(inferred)*.
+    #[inline]
+    fn check_count(&mut self, axes: AxisSet, settings: &Settings) -> Result<(), Fault> {
+        let max = usize::from(settings.model.limits().line_axes_max);
+        if axes.len() <= max {
+            return Ok(());
+        }
+        let detail = format!(
+            "{} axes in a block: this control moves {max} together",
+            axes.len()
+        );
+        if settings.skip_unknown {
+            self.warn(WarningKind::Function { text: detail });
+            return Ok(());
+        }
+        Err(Fault::new(MessageId::WrongAxisProgrammed, detail))
     }
 
     fn check_range(&self, to: &Position, axes: AxisSet, settings: &Settings) -> Result<(), Fault> {

@@ -22,6 +22,8 @@ use crate::{Ended, Interpreter};
 
 /// Blocks that are executed at most, beside those of the program: loops end there.
 const BLOCKS_MAX: u64 = 1_000_000;
+/// Stands for the feed of a block that cannot be read.
+const ASSUMED_FEED_MM_MIN: f64 = 100.0;
 /// Errors and warnings that are kept, each.
 const FOUND_MAX: usize = 1000;
 
@@ -279,6 +281,10 @@ impl Rehearser {
             run.at.block += 1;
         }
         let Operation::Motion(motion) = operation else {
+            if sets(operation).any_of(Doubts::FEED) {
+                // Nobody knows which; with any feed the blocks behind it can be looked at.
+                run.modal.feed_mm_min.get_or_insert(ASSUMED_FEED_MM_MIN);
+            }
             return;
         };
         if let Some(Feed::Value(Value::Number(feed))) = motion.feed {

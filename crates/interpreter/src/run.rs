@@ -9,6 +9,7 @@ use bahn_path::{
 };
 use bahn_program::{Block, Compensation, Operation, Unit, Value};
 
+use crate::availability::{Feature, Said, words};
 use crate::contour::rounding::{Join, JoinKind};
 use crate::contour::{Contour, ContourMove, Side};
 use crate::error::{Cause, Fault, Message, Warning, WarningKind};
@@ -42,6 +43,8 @@ pub(crate) struct Run {
     /// Block being executed: the call block while a cycle runs.
     pub block: BlockRef,
     pub warnings: Vec<Warning>,
+    /// Functions that the user was told of.
+    pub said: Said,
     /// The first BLK FORM of the main program.
     pub blank: Option<Blank>,
     /// It was said that the place of machine zero is not known.
@@ -90,6 +93,7 @@ impl Run {
             since_motion: 0,
             block: BlockRef::default(),
             warnings: Vec::new(),
+            said: Said::default(),
             blank: None,
             machine_zero_missed: false,
             line_follows: false,
@@ -124,7 +128,13 @@ impl Run {
     /// Executes a block. The caller has already passed over skipped blocks.
     #[inline]
     pub fn execute(&mut self, block: &Block, settings: &Settings) -> Result<Flow, Fault> {
-        match &block.operation {
+        self.execute_operation(&block.operation, settings)
+    }
+
+    /// Executes what a block says.
+    #[inline]
+    pub fn execute_operation(&mut self, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
+        match operation {
             Operation::Motion(motion) => self.positioning(motion, settings),
             Operation::Calculate {
                 function,
@@ -231,12 +241,15 @@ impl Run {
                 return self.call_cycle(settings);
             }
             Operation::Probe(block) => self.probe(block, settings)?,
-            Operation::Dialog(_) => {}
-            Operation::Invalid(invalid) => {
-                let error = &invalid.error;
-                let cause = error.help.map_or(Cause::Message, Cause::Written);
-                return Err(Fault::new(error.message, error.detail.to_string()).because(cause));
+            Operation::Dialog(dialog) => {
+                let name = if dialog.call {
+                    words::DIALOG_CALL
+                } else {
+                    words::DIALOG_DEFINITION
+                };
+                self.executes(Feature::Word(name), settings)?;
             }
+            Operation::Invalid(invalid) => return self.unreadable(invalid, settings),
             Operation::Motion(_)
             | Operation::Calculate { .. }
             | Operation::Jump { .. }
@@ -301,8 +314,8 @@ impl Run {
     /// [003:4371-4385].
     fn print(&mut self, items: &[Value], settings: &Settings) -> Result<(), Fault> {
         const TEXT_NUMBER_MAX: f64 = 200.0;
-        if !settings.model.limits().has_fn(15) {
-            return Err(Fault::new(MessageId::BlockNotKnown, "this control has no FN15"));
+        if !self.executes(Feature::Fn(15), settings)? {
+            return Ok(());
         }
         if items.len() > usize::from(settings.model.limits().print_items_max) {
             return Err(Fault::new(

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes};
+use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes, SpindleParameters};
 use bahn_path::{Axis, Position, ToolShape};
 
 /// Everything a run depends on beside the program.
@@ -15,6 +15,8 @@ pub struct Settings {
     pub rules: Rules,
     /// Tool table; `None` when tools are defined in the programs [003:1803-1806].
     pub tools: Option<ToolTable>,
+    /// Tools of the table that must not be called.
+    pub barred_tools: BTreeMap<u32, ToolState>,
     /// Texts of the machine for FN14 and FN15.
     pub texts: MachineTexts,
     /// Q parameters set before the start: number, value.
@@ -34,6 +36,9 @@ pub struct Settings {
     pub inch_feed: Option<InchFeed>,
     /// Refuse what is otherwise accepted with a warning (sign of cycle parameters, tools without data).
     pub strict: bool,
+    /// Pass over words and blocks that nothing here knows, and functions without which the control would move
+    /// differently, each with a warning, instead of refusing them.
+    pub skip_unknown: bool,
     /// A control runs the program on a machine: it waits for the PLC, which may write what the next block
     /// reads, and probing movements are executed outside.
     pub machine: bool,
@@ -47,6 +52,7 @@ impl Default for Settings {
             model: ControlModel::default(),
             rules: Rules::default(),
             tools: None,
+            barred_tools: BTreeMap::new(),
             texts: MachineTexts::default(),
             q_values: Vec::new(),
             start: Position::UNKNOWN,
@@ -55,10 +61,25 @@ impl Default for Settings {
             skip_blocks: false,
             inch_feed: None,
             strict: false,
+            skip_unknown: false,
             machine: false,
             max_blocks_without_motion: 10_000_000,
         }
     }
+}
+
+/// Why a tool of the table must not be called [000:9135-9137] [000:9168-9172].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToolState {
+    /// It may be called.
+    #[default]
+    Usable,
+    /// Column TL: it is locked.
+    Locked,
+    /// CUR.TIME is greater than TIME2, and no replacement tool is named.
+    Expired,
+    /// CUR.TIME is greater than TIME2: the control takes the replacement tool of column RT.
+    Replaced,
 }
 
 impl Settings {
@@ -115,10 +136,8 @@ pub struct Rules {
     pub overlap: f64,
     /// MP7440: bits of the M functions [000:7298-7305].
     pub m_functions: MFunctionRules,
-    /// MP7110.0/.1: feed override band while tapping, % [000:6094-6098].
-    pub tapping_override_percent: (f64, f64),
-    /// MP7160: cycle 17 orients the spindle before tapping [000:6141].
-    pub orient_before_rigid_tapping: bool,
+    /// Tapping.
+    pub tapping: TappingRules,
     /// Angle of M19 without cycle 13, degrees [000:5867].
     pub spindle_orientation_deg: f64,
     /// MP950: machine datum of M92 from machine zero, mm or degrees [000:6248-6258].
@@ -134,6 +153,10 @@ pub struct Rules {
     pub probe: ProbeRules,
     /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
     pub speed_max_rpm: f64,
+    /// MP7245: bit n inhibits cycle n [000:6655-6698].
+    pub inhibited_cycles: u32,
+    /// MP7246: paraxial positioning blocks are disabled [000:7022-7029].
+    pub paraxial_inhibited: bool,
 }
 
 impl Rules {
@@ -144,7 +167,6 @@ impl Rules {
         let m = list.m_functions();
         let tapping = list.tapping();
         let probe = list.probe();
-        let [least, greatest] = tapping.override_percent;
         Rules {
             arc_tolerance_mm: list.arc_tolerance_mm(),
             scaling_in_plane_only: list.scaled_axes() == ScaledAxes::WorkingPlane,
@@ -165,8 +187,12 @@ impl Rules {
                 m105_enabled: m.m105_works,
                 m103_enabled: m.m103_works,
             },
-            tapping_override_percent: (least, greatest),
-            orient_before_rigid_tapping: tapping.orientation,
+            tapping: TappingRules {
+                override_percent: tapping.override_percent,
+                reversal_dwell_s: tapping.reversal_dwell_s,
+                spindle: Some(list.spindle_parameters()),
+                orients: tapping.orientation,
+            },
             acceleration_m_s2: Axis::ALL.map(|axis| list.acceleration_m_s2(axis)),
             radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
             machine_datum: Axis::ALL.map(|axis| list.m92_datum(axis)).into(),
@@ -178,6 +204,10 @@ impl Rules {
                 ..ProbeRules::default()
             },
             speed_max_rpm: list.spindle_speed_max_rpm(),
+            inhibited_cycles: (1..=31)
+                .filter(|cycle| list.cycle_inhibited(*cycle))
+                .fold(0, |bits, cycle| bits | 1 << cycle),
+            paraxial_inhibited: list.paraxial_inhibited(),
             ..Rules::default()
         }
     }
@@ -192,8 +222,7 @@ impl Default for Rules {
             contour_pocket: ContourPocketRules::default(),
             overlap: 1.0,
             m_functions: MFunctionRules::default(),
-            tapping_override_percent: (100.0, 100.0),
-            orient_before_rigid_tapping: true,
+            tapping: TappingRules::default(),
             spindle_orientation_deg: 0.0,
             machine_datum: Position::ZERO,
             machine_zero: Position::ZERO,
@@ -201,6 +230,8 @@ impl Default for Rules {
             radial_acceleration_m_s2: 1.0,
             probe: ProbeRules::default(),
             speed_max_rpm: 99_999.0,
+            inhibited_cycles: 0,
+            paraxial_inhibited: false,
         }
     }
 }
@@ -277,6 +308,30 @@ impl MFunctionRules {
     }
 }
 
+/// What cycles 2 and 17 need.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TappingRules {
+    /// MP7110.0 and .1: band of the feed override in cycle 2, % [000:6094-6098].
+    pub override_percent: [f64; 2],
+    /// MP7120.0: dwell before the spindle reverses in cycle 2, s [000:6079].
+    pub reversal_dwell_s: f64,
+    /// The spindle, for the time at which cycle 2 switches it off; without it that is at the depth.
+    pub spindle: Option<SpindleParameters>,
+    /// MP7160 = 0: cycle 17 orients the spindle before tapping [000:6141].
+    pub orients: bool,
+}
+
+impl Default for TappingRules {
+    fn default() -> Self {
+        TappingRules {
+            override_percent: [100.0; 2],
+            reversal_dwell_s: 0.0,
+            spindle: None,
+            orients: true,
+        }
+    }
+}
+
 /// Touch probe parameters [003:7246-7252].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbeRules {
@@ -330,7 +385,7 @@ mod tests {
         assert_eq!(rules.m_functions, MFunctionRules::from_bits(0b00001));
         assert_eq!(rules.overlap, 0.9);
         assert!(rules.scaling_in_plane_only);
-        assert_eq!(rules.tapping_override_percent.0, 80.0);
+        assert_eq!(rules.tapping.override_percent[0], 80.0);
         assert_eq!(rules.machine_datum[Axis::Z], -7.0);
     }
 }

@@ -6,13 +6,14 @@ use bahn_path::{
 };
 use bahn_program::{Coordinates, Value};
 
+use crate::availability::{Feature, words};
 use crate::error::{Cause, Fault, WarningKind};
 use crate::functions::BlockFunctions;
 use crate::modal::Tool;
 use crate::positioning::known;
 use crate::q_parameters::preassigned;
 use crate::run::Run;
-use crate::settings::{Settings, ToolTable, tool_key};
+use crate::settings::{Settings, ToolState, ToolTable, tool_key};
 
 /// A tool number is meant to have an index when it is as near as this to a tenth.
 const INDEX_TOLERANCE: f64 = 1e-9;
@@ -88,8 +89,11 @@ impl Run {
         };
         self.finish_contour()?;
         let (number, index) = self.indexed_tool_number(tool, settings)?;
+        check_state(number, index, settings)?;
         let (mut shape, defined) = self.tool_shape(number, index, settings)?;
-        let [delta_length, delta_radius] = oversize;
+        let has_oversize = oversize.iter().any(Option::is_some);
+        let executed = !has_oversize || self.executes(Feature::Word(words::OVERSIZE), settings)?;
+        let [delta_length, delta_radius] = if executed { oversize } else { [None; 2] };
         shape.length += delta_length
             .map(|value| self.length(value))
             .transpose()?
@@ -376,5 +380,25 @@ impl Run {
             *slot = if word.incremental { *slot + value } else { value };
         }
         Ok(corner)
+    }
+}
+
+/// Refuses a tool that the table locks, and one whose life is over [000:9168-9172].
+fn check_state(number: u32, index: u8, settings: &Settings) -> Result<(), Fault> {
+    let state = settings
+        .barred_tools
+        .get(&tool_key(number, index))
+        .copied()
+        .unwrap_or_default();
+    let fault = |message, what: &str| Err(Fault::new(message, format!("tool {number}: {what}")));
+    match state {
+        ToolState::Usable => Ok(()),
+        ToolState::Locked => fault(MessageId::ToolLocked, "column TL of the tool table locks it"),
+        ToolState::Expired => fault(MessageId::MaxToolLifeExpired, "CUR.TIME is greater than TIME2"),
+        ToolState::Replaced if settings.skip_unknown => Ok(()),
+        ToolState::Replaced => fault(
+            MessageId::BlockNotKnown,
+            "CUR.TIME is greater than TIME2, and the replacement tool of column RT is not called here",
+        ),
     }
 }

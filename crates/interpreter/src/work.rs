@@ -1,10 +1,10 @@
 //! Computations that take long: they can be done beside, on a thread of whoever drives the interpreter.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
+use crate::Interpreter;
 use crate::cycles::{ContourJob, Halt, Watch};
-use crate::error::Fault;
 use crate::run::Run;
 use crate::settings::Settings;
 
@@ -15,17 +15,8 @@ pub(crate) enum Pending {
     None,
     /// It waits for somebody to do it.
     Waiting(Box<ContourJob>),
-    /// Somebody does it.
-    Taken(Wanted),
-}
-
-/// Tells a computation from others; it is broken off when nobody wants it any more.
-pub(crate) struct Wanted(Arc<AtomicBool>);
-
-impl Drop for Wanted {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
+    /// Somebody does it; the mark tells it from others.
+    Taken(Arc<()>),
 }
 
 /// A computation of an interpreter, to be done on any thread: the path of an SL cycle.
@@ -33,14 +24,15 @@ pub struct Work {
     run: Box<Run>,
     settings: Settings,
     job: Box<ContourJob>,
-    given_up: Arc<AtomicBool>,
+    interrupt: Option<Arc<AtomicBool>>,
+    mark: Arc<()>,
 }
 
 /// What a [`Work`] came to, for the interpreter that it is of.
 pub struct Done {
     run: Box<Run>,
     result: Result<(), Halt>,
-    given_up: Arc<AtomicBool>,
+    mark: Arc<()>,
 }
 
 impl Work {
@@ -50,14 +42,11 @@ impl Work {
             mut run,
             settings,
             job,
-            given_up,
+            interrupt,
+            mark,
         } = self;
-        let result = run.contour_cycle(&job, &settings, &Watch::new(Some(&given_up)));
-        Done {
-            run,
-            result,
-            given_up,
-        }
+        let result = run.contour_cycle(&job, &settings, &Watch::new(interrupt.as_deref()));
+        Done { run, result, mark }
     }
 }
 
@@ -67,16 +56,21 @@ impl Pending {
     }
 
     pub fn is_of(&self, done: &Done) -> bool {
-        matches!(self, Pending::Taken(Wanted(mark)) if Arc::ptr_eq(mark, &done.given_up))
+        matches!(self, Pending::Taken(mark) if Arc::ptr_eq(mark, &done.mark))
     }
 
     /// Hands the computation out.
-    pub fn take(&mut self, run: &mut Run, settings: &Settings) -> Option<Work> {
+    pub fn take(
+        &mut self,
+        run: &mut Run,
+        settings: &Settings,
+        interrupt: Option<&Arc<AtomicBool>>,
+    ) -> Option<Work> {
         let Pending::Waiting(job) = std::mem::take(self) else {
             return None;
         };
-        let given_up = Arc::new(AtomicBool::new(false));
-        *self = Pending::Taken(Wanted(Arc::clone(&given_up)));
+        let mark = Arc::new(());
+        *self = Pending::Taken(Arc::clone(&mark));
         let warnings = std::mem::take(&mut run.warnings);
         let copy = Box::new(run.clone());
         run.warnings = warnings;
@@ -84,25 +78,55 @@ impl Pending {
             run: copy,
             settings: settings.clone(),
             job,
-            given_up,
+            interrupt: interrupt.cloned(),
+            mark,
         })
     }
 
     /// Takes what it came to. `None` when it was given up meanwhile.
-    pub fn finish(&mut self, done: Done, run: &mut Run) -> Option<Result<(), Fault>> {
+    pub fn finish(&mut self, done: Done, run: &mut Run) -> Option<Result<(), Halt>> {
         if !self.is_of(&done) {
             return None;
         }
-        let result = match done.result {
-            Ok(()) => Ok(()),
-            Err(Halt::Fault(fault)) => Err(fault),
-            Err(Halt::Interrupted) => return None,
-        };
         *self = Pending::None;
         let mut warnings = std::mem::take(&mut run.warnings);
         *run = *done.run;
         warnings.append(&mut run.warnings);
         run.warnings = warnings;
-        Some(result)
+        Some(done.result)
+    }
+}
+
+impl Interpreter {
+    /// Leaves long computations to whoever drives: while one is pending the next step is
+    /// [`Step::Starved`], see [`Interpreter::take_work`].
+    pub fn defer_work(&mut self) {
+        self.defers = true;
+    }
+
+    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to.
+    pub fn take_work(&mut self) -> Option<Work> {
+        self.pending
+            .take(&mut self.run, &self.settings, self.interrupt.as_ref())
+    }
+
+    /// Gives a computation up that is pending: its block is executed anew when the run goes on.
+    pub fn give_up_work(&mut self) {
+        self.pending = Pending::None;
+    }
+
+    /// Whether this computation is what the run waits for.
+    pub fn waits_for(&self, done: &Done) -> bool {
+        self.pending.is_of(done)
+    }
+
+    /// Goes on with what a computation came to; without effect when it was given up meanwhile.
+    pub fn finish_work(&mut self, done: Done) {
+        match self.pending.finish(done, &mut self.run) {
+            Some(Ok(())) => self.run.at.block += 1,
+            Some(Err(Halt::Fault(fault))) => self.fail(fault, self.run.block),
+            // Its block is executed anew when the run goes on.
+            Some(Err(Halt::Interrupted)) | None => {}
+        }
     }
 }

@@ -4,7 +4,9 @@ mod support;
 
 use std::f64::consts::PI;
 
-use bahn_path::{Axis, Curve, FeedRate, Function, OverrideLaw, PathElement};
+use bahn_interpreter::{Rules, Settings};
+use bahn_parameters::{ControlModel, ParameterList};
+use bahn_path::{At, Axis, Curve, FeedRate, Function, OverrideLaw, PathElement, Thread};
 use support::*;
 
 /// Feed and end height of movements in the tool axis.
@@ -66,8 +68,8 @@ fn advanced_stop_distance() {
     }
 }
 
-/// P24: tapping with a floating holder: F = S · p, the spindle reverses at the bottom and above
-/// [003:4994-5067].
+/// P24: tapping with a floating holder: F = S · p, the spindle stops on the way, and reverses at the bottom and
+/// above [003:4994-5067] [000:6060-6081].
 #[test]
 fn p24_tapping() {
     let run = run_manual("P24");
@@ -79,30 +81,99 @@ fn p24_tapping() {
     assert!(
         moves[1..]
             .iter()
-            .all(|e| matches!(e.override_law, OverrideLaw::Limited { .. }))
+            .all(|e| matches!(e.override_law, OverrideLaw::Tapping { .. }))
     );
     let in_block = run.functions().into_iter().filter(|(block, _)| *block == 12);
     let functions: Vec<_> = in_block.map(|(_, f)| f.clone()).collect();
-    assert_eq!(functions, [Function::M(4), Function::M(3)]);
+    assert_eq!(functions, [5, 4, 5, 3].map(Function::M));
     let dwell: f64 = run.elements.iter().map(|e| e.dwell_s).sum();
     assert_eq!(dwell, 0.4);
 }
 
-/// Cycle 17: the feed follows from speed and pitch, feed override has no effect [003:4845] [003:5071-5106].
+/// Cycle 2 on a machine: S1000 are 6 V of gear 1 (1500 rpm at 9 V); at 0.1 V/ms they take 60 ms, less the run-on
+/// of 20 ms. With coded speed MP7120.1 counts. Then the dwell MP7120.0 and the programmed one [000:6060-6116].
+#[test]
+fn tapping_by_the_list() {
+    for (kind, lead) in [("3010=3", 0.04), ("3010=1", 0.35)] {
+        let mut list = ParameterList::reference(ControlModel::Tnc415b);
+        for assignment in [
+            kind,
+            "3510.0=1500",
+            "3210.0=9",
+            "3410.2=0.1",
+            "7120.0=0.3",
+            "7120.1=0.35",
+            "7120.2=0.02",
+        ] {
+            list.assign(assignment).unwrap();
+        }
+        let settings = Settings {
+            rules: Rules::of(&list),
+            ..Settings::default()
+        };
+        let run = run_with(
+            "TOOL DEF 1 L+0 R+3
+             TOOL CALL 1 Z S1000
+             CYCL DEF 2.0 TAPPING
+             CYCL DEF 2.1 SET UP -2
+             CYCL DEF 2.2 DEPTH -30
+             CYCL DEF 2.3 DWELL 0.2
+             CYCL DEF 2.4 F1000
+             L X+0 Y+0 Z+2 FMAX M4
+             CYCL CALL",
+            settings,
+        );
+        let call: Vec<_> = run.elements.iter().filter(|e| e.block.block == 9).collect();
+        let all: Vec<_> = call.iter().flat_map(|e| e.functions()).collect();
+        let At::BeforeEnd(early) = all[0].at else {
+            panic!("{all:?}")
+        };
+        close(early, lead, 1e-12);
+        let codes: Vec<_> = all.iter().map(|f| f.function.clone()).collect();
+        assert_eq!(codes, [5, 3, 5, 4].map(Function::M), "a left-hand thread");
+        let dwells: Vec<_> = call.iter().map(|e| e.dwell_s).filter(|s| *s > 0.0).collect();
+        assert_eq!(dwells, [0.3, 0.2]);
+    }
+}
+
+/// Cycle 17: the path follows the spindle with the pitch and sense of the thread, in and out; feed override has
+/// no effect. The spindle stops, and is oriented unless MP7160 says no [003:4845] [003:5071-5106] [000:6122-6141].
 #[test]
 fn rigid_tapping() {
-    let run = run("TOOL DEF 1 L+0 R+3
-         TOOL CALL 1 Z S400
-         CYCL DEF 17.0 RIGID TAPPING
-         CYCL DEF 17.1 SET UP -2
-         CYCL DEF 17.2 DEPTH -30
-         CYCL DEF 17.3 PITCH +0.75
-         L X+0 Y+0 Z+2 FMAX M3
-         CYCL CALL");
-    let moves = run.of_block(8);
-    assert_eq!(heights(&moves), [(feed(400.0 * 0.75), -30.0), (feed(300.0), 2.0)]);
-    assert!(moves.iter().all(|e| e.override_law == OverrideLaw::Disabled));
-    assert!(run.functions().contains(&(8, &Function::SpindleOrientation(0.0))));
+    for (pitch, right_hand, orients) in [(0.75, true, true), (-1.5, false, true), (0.75, true, false)] {
+        let mut settings = Settings::default();
+        settings.rules.tapping.orients = orients;
+        let run = run_with(
+            &format!(
+                "TOOL DEF 1 L+0 R+3
+                 TOOL CALL 1 Z S400
+                 CYCL DEF 17.0 RIGID TAPPING
+                 CYCL DEF 17.1 SET UP -2
+                 CYCL DEF 17.2 DEPTH -30
+                 CYCL DEF 17.3 PITCH {pitch:+}
+                 L X+0 Y+0 Z+2 FMAX M3
+                 CYCL CALL
+                 CYCL CALL"
+            ),
+            settings,
+        );
+        let f = 400.0 * f64::abs(pitch);
+        let moves = run.of_block(8);
+        assert_eq!(heights(&moves), [(feed(f), -30.0), (feed(f), 2.0)]);
+        assert!(run.functions().contains(&(8, &Function::M(5))));
+        let thread = |clockwise, orientation_deg| {
+            OverrideLaw::Spindle(Thread {
+                pitch_mm: f64::abs(pitch),
+                clockwise,
+                orientation_deg,
+            })
+        };
+        let laws: Vec<_> = moves.iter().map(|e| e.override_law).collect();
+        let angle = orients.then_some(0.0);
+        assert_eq!(laws, [thread(right_hand, angle), thread(!right_hand, None)]);
+        // The spindle stands from then on.
+        assert_eq!(heights(&run.of_block(9)), [(feed(f), -30.0), (feed(f), 2.0)]);
+    }
 }
 
 /// P25: two slots [003:5190-5215].

@@ -281,7 +281,6 @@ fn entry_value_incorrect() {
             ("calculated feed", M, 2, "FN 0: Q1 = +30000\nL X+1 FQ1"),
             ("negative feed", M, 2, "FN 0: Q1 = -1\nL X+1 FQ1"),
             ("tool number", M, 1, "TOOL CALL 255 Z S100"),
-            ("M function", M, 1, "L X+1 FMAX M100"),
             ("label", M, 1, "LBL 255"),
             ("repeat count", M, 2, "LBL 1\nCALL LBL 1 REP 65535"),
             ("negative tool radius", M, 1, "TOOL DEF 2 L+0 R-1"),

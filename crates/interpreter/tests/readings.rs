@@ -37,6 +37,7 @@ fn a_negative_radius_is_an_error_when_it_is_used() {
         length: 10.0,
         radius: -0.05,
         corner_radius: 0.0,
+        ..ToolShape::default()
     };
     let run = |blocks: &str| {
         Job::new(program(&format!("TOOL CALL 5 Z S100 DR-0.1\n{blocks}")))
@@ -56,6 +57,7 @@ fn tools_with_an_index() {
         length: 0.0,
         radius,
         corner_radius: 0.0,
+        ..ToolShape::default()
     };
     let blocks = "TOOL CALL 253.1 Z S100\nFN0: Q1 = +Q108\nTOOL CALL 253 Z S100\nFN0: Q2 = +Q108";
     let run = Job::new(program(blocks))

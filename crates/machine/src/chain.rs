@@ -147,6 +147,16 @@ impl Chain {
         live
     }
 
+    /// What the control sees at its acknowledgement: a wire that sticks at a level says the same to the NC as
+    /// to the PLC.
+    pub fn acknowledged(&self, stuck: &[(usize, bool)]) -> bool {
+        let level = self.acknowledgement.and_then(|contact| {
+            let (_, level) = stuck.iter().rev().find(|(input, _)| *input == contact.input())?;
+            Some(contact.says(*level))
+        });
+        level.unwrap_or_else(|| self.voltage())
+    }
+
     pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
         if let Some(contact) = self.acknowledgement {
             contact.set(inputs, self.relay);

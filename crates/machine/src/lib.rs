@@ -33,5 +33,5 @@ pub use encoder::EncoderFault;
 pub use event::{Event, EventError, Fault, KeyAction};
 pub use folder::{MachineFolder, OperatorKeys};
 pub use machine::Machine;
-pub use reader::PlantError;
+pub use reader::{PlantError, Wire};
 pub use spindle::SpindleState;

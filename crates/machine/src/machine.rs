@@ -7,7 +7,7 @@ use crate::chain::Chain;
 use crate::device::{Device, DeviceState};
 use crate::panel::Panel;
 use crate::probe::Probe;
-use crate::reader::{PlantError, Reader, Section};
+use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 
 /// Analogue inputs and Pt 100 inputs of two PLC boards.
@@ -64,6 +64,7 @@ pub struct Machine {
     outputs: [bool; OUTPUTS],
     live: [bool; OUTPUTS],
     pub(crate) stuck: Vec<(usize, bool)>,
+    wires: Vec<Wire>,
 }
 
 /// Analogue outputs that a PLC may set.
@@ -77,7 +78,8 @@ impl Machine {
     pub fn from_toml(text: &str) -> Result<Machine, Vec<PlantError>> {
         let reader = Reader::new(text);
         let table = reader.parse();
-        let machine = Machine::read(Section::root(&reader, &table));
+        let mut machine = Machine::read(Section::root(&reader, &table));
+        machine.wires = reader.wires();
         let faults = reader.faults();
         if faults.is_empty() {
             Ok(machine)
@@ -124,6 +126,7 @@ impl Machine {
             outputs: [false; OUTPUTS],
             live: [false; OUTPUTS],
             stuck: Vec::new(),
+            wires: Vec::new(),
             axes,
         };
         machine.check(&root);
@@ -165,6 +168,11 @@ impl Machine {
         {
             root.fault_at("emergency_stop", format!("there is no key `{key}` in [keys]"));
         }
+    }
+
+    /// What is wired to inputs and outputs of the PLC, in the order of the description.
+    pub fn wires(&self) -> &[Wire] {
+        &self.wires
     }
 
     /// The name in the description.
@@ -326,7 +334,7 @@ impl Plant for Machine {
     }
 
     fn control_ready(&mut self) -> bool {
-        self.chain.voltage()
+        self.chain.acknowledged(&self.stuck)
     }
 
     fn operator(&mut self) -> OperatorInputs {

@@ -21,6 +21,17 @@ pub struct PlantError {
     pub message: String,
 }
 
+/// Something that is wired to a PLC input or output, and where the description says so.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Wire {
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+    /// The input or output, as `I24` or `O10`.
+    pub operand: String,
+}
+
 /// A PLC input and the sense in which it is wired.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact {
@@ -29,6 +40,15 @@ pub(crate) struct Contact {
 }
 
 impl Contact {
+    /// What the contact says when its wire gives this level.
+    pub fn says(self, level: bool) -> bool {
+        level != self.inverted
+    }
+
+    pub fn input(self) -> usize {
+        self.input
+    }
+
     pub fn set(self, inputs: &mut [bool; INPUTS], on: bool) {
         if let Some(input) = inputs.get_mut(self.input) {
             *input = on != self.inverted;
@@ -55,6 +75,7 @@ pub(crate) struct Reader<'t> {
     faults: RefCell<Vec<PlantError>>,
     /// The inputs given away: where, which, to whom.
     taken: RefCell<Vec<(usize, usize, String)>>,
+    wires: RefCell<Vec<Wire>>,
 }
 
 impl<'t> Reader<'t> {
@@ -63,7 +84,23 @@ impl<'t> Reader<'t> {
             text,
             faults: RefCell::default(),
             taken: RefCell::default(),
+            wires: RefCell::default(),
         }
+    }
+
+    /// Notes an input or output that something is wired to.
+    pub fn wire(&self, at: usize, operand: String) {
+        let (line, column) = self.place(at);
+        self.wires.borrow_mut().push(Wire {
+            line,
+            column,
+            operand,
+        });
+    }
+
+    /// The inputs and outputs that were read.
+    pub fn wires(&self) -> Vec<Wire> {
+        self.wires.take()
     }
 
     /// The tables of the text; faults in its form are noted.
@@ -80,13 +117,20 @@ impl<'t> Reader<'t> {
 
     /// Notes a fault at a place of the text, in bytes.
     pub fn fault(&self, at: usize, message: String) {
-        let before = self.text.get(..at).unwrap_or(self.text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let (line, column) = self.place(at);
         self.faults.borrow_mut().push(PlantError {
-            line: before.matches('\n').count() + 1,
-            column: before.get(line_start..).map_or(0, |line| line.chars().count()) + 1,
+            line,
+            column,
             message,
         });
+    }
+
+    /// Line and column of a place of the text, from 1.
+    fn place(&self, at: usize) -> (usize, usize) {
+        let before = self.text.get(..at).unwrap_or(self.text);
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let column = before.get(line_start..).map_or(0, |line| line.chars().count()) + 1;
+        (before.matches('\n').count() + 1, column)
     }
 
     /// All faults in the order of the text.
@@ -308,6 +352,7 @@ impl<'r, 't> Section<'r, 't> {
             {
                 Some((input, inverted)) => {
                     self.reader.taken.borrow_mut().push((at, input, self.path(key)));
+                    self.reader.wire(at, format!("I{input}"));
                     contacts.push(Contact { input, inverted });
                 }
                 None => {
@@ -340,7 +385,9 @@ impl<'r, 't> Section<'r, 't> {
                 format!("{key} is an output \"O0\" to \"O{last}\", or \"not O0\""),
             );
         }
-        coil.map(|(output, inverted)| Coil { output, inverted })
+        let (output, inverted) = coil?;
+        self.reader.wire(value.span().start, format!("O{output}"));
+        Some(Coil { output, inverted })
     }
 
     /// The entries of a table whose keys are the user's names.

@@ -73,6 +73,8 @@ fn limits() -> Limits {
         corner_angle_deg: 10.0,
         servo_lag: true,
         cycle_s: 0.003,
+        servo_window_s: bahn_motion::SERVO_WINDOW_S,
+        spindle: Default::default(),
         feed_override_percent: 100.0,
         rapid_override_percent: 100.0,
     }

@@ -11,6 +11,12 @@ pub struct Drive {
     pub feed_override_percent: f64,
     /// Override of rapid traverse, %; more than 100 % is without effect as MP1010 limits.
     pub rapid_override_percent: f64,
+    /// Override of the spindle, %, as it acts on its speed: for elements that follow the spindle.
+    pub spindle_override_percent: f64,
+    /// The spindle, for elements that follow it.
+    pub master: Master,
+    /// An element that follows the spindle goes back, to its start.
+    pub back: bool,
     /// No axis is faster than this, mm/min, nor than its rapid traverse MP1010 [000:4812-4814].
     pub rapid_limit_mm_min: f64,
     /// NC stop: the path brakes to a standstill, wherever that is, and goes on when this ends.
@@ -32,6 +38,9 @@ impl Default for Drive {
         Drive {
             feed_override_percent: 100.0,
             rapid_override_percent: 100.0,
+            spindle_override_percent: 100.0,
+            master: Master::default(),
+            back: false,
             rapid_limit_mm_min: f64::INFINITY,
             hold: false,
             single_block: false,
@@ -42,6 +51,26 @@ impl Default for Drive {
     }
 }
 
+/// The spindle as the master of a path. Its angles count on over full turns, degrees, positive as M03.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Master {
+    /// Where it is held while it stands: a path that begins to follow it counts from here.
+    pub nominal_deg: f64,
+    /// Where it will be at the end of the cycle.
+    pub actual_deg: f64,
+    /// It may be led: an element that begins to follow it waits until then.
+    pub ready: bool,
+}
+
+/// What a path that follows the spindle wants of it for the end of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lead {
+    /// Nominal angle on the scale of [`Master`], degrees.
+    pub angle_deg: f64,
+    /// Nominal speed, rpm; positive as M03.
+    pub rpm: f64,
+}
+
 /// Where the path is after a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
@@ -49,6 +78,8 @@ pub struct Cycle {
     pub position: Position,
     /// Path speed at the end of the cycle, mm/s.
     pub speed_mm_s: f64,
+    /// What the spindle is to do that the path follows.
+    pub lead: Option<Lead>,
     /// What the path does.
     pub state: State,
 }
@@ -70,6 +101,8 @@ pub enum State {
     Settling,
     /// It stands before an element that moves one of [`Drive::clamped`].
     Clamped,
+    /// It stands before an element that follows the spindle until that is [ready](Master::ready).
+    Master,
     /// It stands at the end of a block that moved one of [`Drive::clamping`].
     Clamping,
     /// All elements are executed; [`Interpolator::prepare`](crate::Interpolator::prepare) may bring more.

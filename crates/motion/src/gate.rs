@@ -19,7 +19,7 @@ pub enum Gate {
 }
 
 impl Gates {
-    /// A block without movement and a dwell stop the path; so do functions that wait for their
+    /// A block without movement, a dwell and a path that follows the spindle stop the path; so do functions that wait for their
     /// acknowledgement, at the end where they do. A block of nothing but functions that do not wait is passed
     /// (MP3030 = 1) [000:5645-5651].
     #[inline]
@@ -29,9 +29,10 @@ impl Gates {
             !functions.is_empty() && functions.iter().all(|function| wait(function).is_none())
         };
         let hold = matches!(element.curve, Curve::Hold) && !passes();
+        let thread = element.thread().is_some();
         let mut gates = Gates {
-            start: hold,
-            end: hold || element.dwell_s > 0.0,
+            start: hold || thread,
+            end: hold || thread || element.dwell_s > 0.0,
         };
         for function in element.functions() {
             match wait(function) {
@@ -56,8 +57,10 @@ pub(crate) fn wait(function: &TechnologyFunction) -> Option<Gate> {
 /// can wait there: the type decides at which end a function that waits is output instead.
 pub(crate) fn place(function: &TechnologyFunction) -> Option<Gate> {
     match (function.at, function.synchronisation) {
-        (At::Start, _) | (At::Length(_), Synchronisation::MvsSvs) => Some(Gate::Start),
-        (At::End, _) | (At::Length(_), Synchronisation::MnsSns) => Some(Gate::End),
-        (At::Length(_), Synchronisation::Mos) => None,
+        (At::Start, _) => Some(Gate::Start),
+        (At::End, _) => Some(Gate::End),
+        (At::Length(_) | At::BeforeEnd(_), Synchronisation::MvsSvs) => Some(Gate::Start),
+        (At::Length(_) | At::BeforeEnd(_), Synchronisation::MnsSns) => Some(Gate::End),
+        (At::Length(_) | At::BeforeEnd(_), Synchronisation::Mos) => None,
     }
 }

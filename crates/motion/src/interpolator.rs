@@ -1,5 +1,6 @@
 //! The path in contour cycles, with overrides and stops that come at any moment.
 
+mod master;
 mod recall;
 
 use std::collections::VecDeque;
@@ -11,6 +12,7 @@ use crate::gate::{Gate, place};
 use crate::limits::{Dynamics, Limits};
 use crate::ramp::{Driven, Ramp};
 use crate::ring::{Item, Output, Ring};
+use master::Coupling;
 
 /// Drives along the path of an [`ElementSource`], contour cycle by contour cycle.
 ///
@@ -24,8 +26,8 @@ pub struct Interpolator<E> {
     cycle_s: f64,
     /// What the source said last, when that was no element.
     after: After<E>,
-    feed_override_percent: f64,
-    rapid_override_percent: f64,
+    /// Overrides of feed, rapid traverse and spindle, %.
+    overrides: [f64; 3],
     rapid_limit_mm_min: f64,
     phase: Phase,
     /// Path speed, mm/s.
@@ -43,6 +45,10 @@ pub struct Interpolator<E> {
     /// Functions along the current element up to this length are output, mm.
     output_to: f64,
     outputs: VecDeque<FunctionOutput>,
+    /// The current element follows the spindle.
+    coupling: Option<Coupling>,
+    /// It is run back.
+    backward: bool,
 }
 
 #[derive(Debug)]
@@ -78,13 +84,12 @@ impl<E> Interpolator<E> {
     /// cycle; those of the limits do not matter. No axis has a position yet.
     pub fn new(limits: &Limits, capacity: usize) -> Interpolator<E> {
         let mut dynamics = Dynamics::new(limits);
-        dynamics.set_overrides(100.0, 100.0);
+        dynamics.set_overrides([100.0; 3]);
         Interpolator {
             cycle_s: dynamics.cycle,
             ring: Ring::new(dynamics, capacity),
             after: After::Open,
-            feed_override_percent: 100.0,
-            rapid_override_percent: 100.0,
+            overrides: [100.0; 3],
             rapid_limit_mm_min: f64::INFINITY,
             phase: Phase::Done,
             speed: 0.0,
@@ -97,6 +102,8 @@ impl<E> Interpolator<E> {
             released: false,
             output_to: 0.0,
             outputs: VecDeque::new(),
+            coupling: None,
+            backward: false,
         }
     }
 
@@ -164,7 +171,9 @@ impl<E> Interpolator<E> {
     pub fn cycle(&mut self, drive: &Drive) -> Cycle {
         self.take(drive);
         let state = self.spend(drive);
-        if matches!(self.phase, Phase::Move)
+        if let Some(position) = self.following(drive.master.actual_deg) {
+            self.position = position;
+        } else if matches!(self.phase, Phase::Move)
             && let Some(item) = self.ring.current()
         {
             self.position = position(item, self.rest);
@@ -172,6 +181,7 @@ impl<E> Interpolator<E> {
         Cycle {
             position: self.position,
             speed_mm_s: self.speed,
+            lead: self.lead(),
             state,
         }
     }
@@ -180,11 +190,15 @@ impl<E> Interpolator<E> {
     fn take(&mut self, drive: &Drive) {
         // NaN is no override: the path stands.
         let percent = |percent: f64| if percent > 0.0 { percent } else { 0.0 };
-        let feed = percent(drive.feed_override_percent);
-        let rapid = percent(drive.rapid_override_percent);
-        if (feed, rapid) != (self.feed_override_percent, self.rapid_override_percent) {
-            (self.feed_override_percent, self.rapid_override_percent) = (feed, rapid);
-            self.ring.set_overrides(feed, rapid);
+        let overrides = [
+            drive.feed_override_percent,
+            drive.rapid_override_percent,
+            drive.spindle_override_percent,
+        ]
+        .map(percent);
+        if overrides != self.overrides {
+            self.overrides = overrides;
+            self.ring.set_overrides(overrides);
         }
         if drive.rapid_limit_mm_min != self.rapid_limit_mm_min {
             self.rapid_limit_mm_min = drive.rapid_limit_mm_min;
@@ -243,11 +257,21 @@ impl<E> Interpolator<E> {
                 }
                 Phase::Begin => {
                     let output = item.start;
+                    if !self.couple(drive) {
+                        return State::Master;
+                    }
                     self.phase = self.output(output, Gate::Start, Phase::Move);
                 }
                 Phase::Gate(end) => return State::Gate(end),
                 Phase::Move => {
-                    let driven = drive_along(item, self.speed, self.rest, drive.hold, time);
+                    if let Some(state) = self.drive_back(drive, time) {
+                        return state;
+                    }
+                    let Some(item) = self.ring.current() else {
+                        return self.at_the_end();
+                    };
+                    let hold = drive.hold || drive.back;
+                    let driven = drive_along(item, self.speed, self.rest, hold, time);
                     let along = item.along;
                     let before = self.rest;
                     match driven {
@@ -257,7 +281,7 @@ impl<E> Interpolator<E> {
                                 self.output_along();
                             }
                             let stands = speed <= 0.0 && rest == before;
-                            return if stands && drive.hold {
+                            return if stands && hold {
                                 State::Held
                             } else {
                                 State::Moving
@@ -281,6 +305,10 @@ impl<E> Interpolator<E> {
                             } else {
                                 Phase::Finish
                             };
+                            // The spindle is told the end before the path goes on.
+                            if self.coupling.is_some() {
+                                return State::Moving;
+                            }
                         }
                     }
                 }
@@ -331,8 +359,11 @@ impl<E> Interpolator<E> {
 
     /// Goes on to the next element.
     fn next(&mut self) {
+        let length = self.ring.current().map_or(0.0, |item| item.length);
+        let before = self.coupling.map(|coupling| (coupling, length));
         self.ring.advance();
         self.enter();
+        self.couple_on(before);
         let stops = self.single_block || !self.clamped.union(self.clamping).is_empty();
         if stops && self.ring.stop_is_behind() {
             let stop = self.block_end();
@@ -385,6 +416,7 @@ impl<E> Interpolator<E> {
                 .and_then(|function| match function.at {
                     At::Length(length) if length > 0.0 => Some(length.min(f64::MAX)),
                     At::Length(_) => Some(0.0),
+                    At::BeforeEnd(lead_s) => Some(self.place_before_end(lead_s)),
                     At::Start | At::End => None,
                 });
             if length.is_some_and(|length| passed.contains(&length)) {
@@ -392,6 +424,26 @@ impl<E> Interpolator<E> {
             }
         }
         self.output_to = to;
+    }
+
+    /// The path length of the current element from which its movement still takes a time, s; at the latest
+    /// that at which it begins to brake, for in tapping the spindle follows a feed ramp that is flatter than
+    /// its own [000:6070].
+    fn place_before_end(&self, time_s: f64) -> f64 {
+        let Some(item) = self.ring.current() else {
+            return 0.0;
+        };
+        let speed = item.feed.min((item.acceleration * item.length).sqrt());
+        let braking = self.braking_s();
+        let way = speed * (0.5 * braking + (time_s - braking).max(0.0));
+        (item.length - way).max(0.0)
+    }
+
+    /// The time in which the current element brakes to a standstill from its feed, s.
+    pub fn braking_s(&self) -> f64 {
+        self.ring.current().map_or(0.0, |item| {
+            item.feed.min((item.acceleration * item.length).sqrt()) / item.acceleration
+        })
     }
 
     fn queue(&mut self, place: Place, waits: bool) {
@@ -496,6 +548,8 @@ impl<E> Interpolator<E> {
         (self.speed, self.rest) = (0.0, 0.0);
         self.released = false;
         self.outputs.clear();
+        self.coupling = None;
+        self.backward = false;
         cut
     }
 

@@ -16,9 +16,12 @@
 //!   and on the falling slope [000:4749];
 //! - the speed never exceeds the programmed feed times the override, the rapid traverse of any moving
 //!   axis (MP1010), nor on circles `sqrt(radius * MP1070)` [000:5080-5086];
-//! - corners up to MP7460, and with M90 in operation with servo lag all corners, are passed as fast as
-//!   the change of velocity allows; the path stops at all others [000:5094-5114] [003:3421-3461];
-//! - every axis stays below `sqrt(MP1060² + MP1070²)` everywhere, seen in contour cycles.
+//! - corners up to MP7460, and with M90 in operation with servo lag all corners, are passed at constant
+//!   speed, as far as the servo follows the step of velocity ([`SERVO_WINDOW_S`]); the path stops at all
+//!   others [000:5094-5114] [003:3421-3461];
+//! - a path that follows the spindle accelerates no faster than the spindle (MP3410.3) and stops at both ends;
+//! - every axis stays below `sqrt(MP1060² + MP1070²)`, seen in contour cycles; at corners that are passed
+//!   its steps of velocity do so, seen in the servo's window.
 //!
 //! Public faces speak of mm, degrees, s and mm/min; speeds inside a profile are mm/s. Where only rotary
 //! axes move, read degrees for mm. One m/s² is 1000 mm/s², and 1000 degrees/s² on a rotary axis
@@ -47,6 +50,8 @@
 //!     corner_angle_deg: 10.0,
 //!     servo_lag: true,
 //!     cycle_s: 0.003,
+//!     servo_window_s: bahn_motion::SERVO_WINDOW_S,
+//!     spindle: Default::default(),
 //!     feed_override_percent: 100.0,
 //!     rapid_override_percent: 100.0,
 //! };
@@ -65,6 +70,7 @@ mod drive;
 mod gate;
 mod interpolator;
 mod limits;
+
 mod motion;
 mod planner;
 mod point_to_point;
@@ -75,10 +81,11 @@ mod sampler;
 mod times;
 mod window;
 
-pub use drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
+pub use corner::SERVO_WINDOW_S;
+pub use drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Master, Place, Prepared, State, Stop};
 pub use gate::Gate;
 pub use interpolator::Interpolator;
-pub use limits::Limits;
+pub use limits::{GEARS, Limits, SpindleGear};
 pub use planner::{Planned, PlannedStep, Planner};
 pub use point_to_point::{Aim, PointToPoint};
 pub use profile::Profile;

@@ -1,6 +1,6 @@
 //! What the machine can do.
 
-use bahn_path::{Axis, FeedRate, OverrideLaw};
+use bahn_path::{Axis, FeedRate, OverrideLaw, PathElement, Thread};
 
 /// The limits that planning obeys, in the units of the machine parameters. Values that no machine can
 /// have (NaN, negative) count as the least one: nothing moves, or moves with the least acceleration.
@@ -22,10 +22,37 @@ pub struct Limits {
     /// Contour cycle: the time from one nominal position to the next, s. 0.003 for TNC 415 and 425,
     /// 0.006 for TNC 407 and 360 [000:4749].
     pub cycle_s: f64,
+    /// Time over which the servo spreads a step of velocity at a corner, s:
+    /// [`SERVO_WINDOW_S`](crate::SERVO_WINDOW_S).
+    pub servo_window_s: f64,
+    /// Gear ranges of the spindle, slowest first, for paths that follow it; those without speed are not
+    /// used.
+    pub spindle: [SpindleGear; GEARS],
     /// Feed override, 0 to 150 % [003:1135-1145].
     pub feed_override_percent: f64,
     /// Override of rapid traverse, 0 to 150 %; more than 100 % is without effect as MP1010 limits.
     pub rapid_override_percent: f64,
+}
+
+/// Gear ranges of the spindle at most [000:5522].
+pub const GEARS: usize = 8;
+
+/// A gear range of the spindle as paths need it that follow the spindle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpindleGear {
+    /// Greatest speed that is programmed in it, rpm: MP3510; 0 is no gear range.
+    pub rated_rpm: f64,
+    /// Change of speed in rigid tapping, rpm/s: MP3410.3 in the voltage of the gear; 0 is no ramp.
+    pub ramp_rpm_s: f64,
+}
+
+impl From<[f64; 2]> for SpindleGear {
+    fn from([rated_rpm, ramp_rpm_s]: [f64; 2]) -> SpindleGear {
+        SpindleGear {
+            rated_rpm,
+            ramp_rpm_s,
+        }
+    }
 }
 
 /// Least entry of MP1060 and MP1070, m/s².
@@ -40,6 +67,8 @@ const STANDSTILL_MM_S: f64 = 1e-9;
 /// rounding of programmed coordinates, not a change of direction that somebody wants.
 const TANGENTIAL_DEG: f64 = 0.01;
 
+/// Least acceleration along a thread, mm/s², for pitches near 0.
+const LEAST_RAMP_MM_S2: f64 = 1e-3;
 /// Stands for the feed limit 0: slow enough to be standstill, without infinities in the formulas, mm/min.
 const NO_FEED_MM_MIN: f64 = 1e-30;
 /// Greatest feed limit that counts, mm/min: far above MP1010's 300 000, without infinities.
@@ -62,8 +91,12 @@ pub(crate) struct Dynamics {
     pub(crate) servo_lag: bool,
     /// Contour cycle, s.
     pub(crate) cycle: f64,
+    /// The servo's window, s.
+    pub(crate) servo_window: f64,
     feed_override: f64,
     rapid_override: f64,
+    spindle_override: f64,
+    gears: [SpindleGear; GEARS],
     /// Slowness of each axis as the machine has it.
     machine_slowness: [f64; Axis::COUNT],
 }
@@ -85,14 +118,39 @@ impl Dynamics {
                 .cos(),
             servo_lag: limits.servo_lag,
             cycle: limits.cycle_s.clamp(LEAST_CYCLE_S, 1.0).max(LEAST_CYCLE_S),
+            servo_window: limits.servo_window_s.clamp(LEAST_CYCLE_S, 1.0).max(LEAST_CYCLE_S),
             feed_override: limits.feed_override_percent,
             rapid_override: limits.rapid_override_percent,
+            spindle_override: 100.0,
+            gears: limits.spindle,
         }
     }
 
-    /// Other overrides, %.
-    pub(crate) fn set_overrides(&mut self, feed_percent: f64, rapid_percent: f64) {
-        (self.feed_override, self.rapid_override) = (feed_percent, rapid_percent);
+    /// Other overrides, %: feed, rapid traverse, spindle.
+    pub(crate) fn set_overrides(&mut self, [feed, rapid, spindle]: [f64; 3]) {
+        (self.feed_override, self.rapid_override) = (feed, rapid);
+        self.spindle_override = spindle;
+    }
+
+    /// How fast the spindle lets an element that follows it accelerate, mm/s²; infinite for others.
+    #[inline]
+    pub(crate) fn spindle_acceleration(&self, element: &PathElement) -> f64 {
+        match (&element.override_law, element.feed) {
+            (OverrideLaw::Spindle(thread), FeedRate::Programmed(feed)) => self.ramp(thread, feed),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The ramp of the smallest gear range that has the speed, along the path, mm/s².
+    fn ramp(&self, thread: &Thread, feed_mm_min: f64) -> f64 {
+        let rpm = feed_mm_min / thread.pitch_mm;
+        let gear = self.gears.iter().find(|gear| gear.rated_rpm >= rpm);
+        match gear {
+            Some(gear) if gear.ramp_rpm_s > 0.0 => {
+                (gear.ramp_rpm_s * thread.pitch_mm / 60.0).max(LEAST_RAMP_MM_S2)
+            }
+            _ => f64::INFINITY,
+        }
     }
 
     /// No axis is faster than this, mm/min.
@@ -108,7 +166,11 @@ impl Dynamics {
         let speed = match feed {
             FeedRate::Rapid => effective(self.rapid_override, law).min(1.0) / slowest,
             FeedRate::Programmed(feed) => {
-                let speed = feed / 60.0 * effective(self.feed_override, law);
+                let percent = match law {
+                    OverrideLaw::Spindle(_) => self.spindle_override,
+                    _ => self.feed_override,
+                };
+                let speed = feed / 60.0 * effective(percent, law);
                 // The comparison is false for NaN, which stays and is standstill below.
                 if speed * slowest > 1.0 {
                     1.0 / slowest
@@ -131,8 +193,8 @@ fn slowness(feed_mm_min: f64) -> f64 {
 /// The effective override as a factor [000:6094-6098] [003:5106].
 fn effective(percent: f64, law: OverrideLaw) -> f64 {
     let percent = match law {
-        OverrideLaw::Free => percent,
-        OverrideLaw::Limited {
+        OverrideLaw::Free | OverrideLaw::Spindle(_) => percent,
+        OverrideLaw::Tapping {
             from_percent,
             to_percent,
         } => percent.max(from_percent).min(to_percent),

@@ -44,25 +44,8 @@ pub(crate) struct Motion {
     pub(crate) main_axes: bool,
     /// Derivative of the axes by the path length at the start; of a line everywhere.
     direction: PerAxis,
-    bend: Option<Bend>,
-}
-
-/// What an arc has beyond a line.
-#[derive(Clone, Copy, Debug)]
-struct Bend {
-    /// The axes of its plane.
-    plane: [usize; 2],
-    /// Derivative of the axes by the path length at the end.
-    end_direction: PerAxis,
-    /// Second derivative of the axes of the plane by the path length at the start and the end, 1/mm.
-    curvature: [Point2; 2],
-}
-
-/// The end of a motion at a joint: direction and curvature.
-pub(crate) struct MotionEnd<'a> {
-    pub(crate) direction: &'a PerAxis,
-    /// Second derivative of the axes by the path length, 1/mm; `None` for lines.
-    pub(crate) curvature: Option<PerAxis>,
+    /// That at the end of an arc.
+    end_direction: Option<PerAxis>,
 }
 
 impl Motion {
@@ -91,11 +74,11 @@ impl Motion {
             speed: dynamics.speed(element.feed, element.override_law, slowest),
             slowest,
             radial_speed: f64::INFINITY,
-            acceleration: acceleration(share, dynamics),
+            acceleration: acceleration(share, dynamics).min(dynamics.spindle_acceleration(element)),
             rotary,
             main_axes,
             direction,
-            bend: None,
+            end_direction: None,
         })
     }
 
@@ -118,14 +101,6 @@ impl Motion {
             [
                 -radial[1] * turn * r + radial[0] * outward,
                 radial[0] * turn * r + radial[1] * outward,
-            ]
-        };
-        // Towards the centre, and around when the radius changes, as on a turning table.
-        let curvature = |radial: Point2, r: f64| {
-            let (centre, around) = (r * turn * turn, 2.0 * outward * turn);
-            [
-                -radial[0] * centre - radial[1] * around,
-                -radial[1] * centre + radial[0] * around,
             ]
         };
         let (start_direction, end_direction) = (tangent(from, r0), tangent(to, r1));
@@ -162,49 +137,26 @@ impl Motion {
             rotary,
             main_axes: false,
             direction,
-            bend: Some(Bend {
-                plane,
-                end_direction: in_plane(&direction, plane, end_direction),
-                curvature: [curvature(from, r0), curvature(to, r1)],
-            }),
+            end_direction: Some(in_plane(&direction, plane, end_direction)),
         })
     }
 
-    /// Greatest curvature of an axis at the start and at the end, 1/mm; `None` for lines.
+    /// Derivative of the axes by the path length at the start.
     #[inline]
-    pub(crate) fn bends(&self) -> Option<[f64; 2]> {
-        let greatest = |curvature: Point2| curvature[0].abs().max(curvature[1].abs());
-        self.bend.as_ref().map(|bend| bend.curvature.map(greatest))
+    pub(crate) fn start(&self) -> &PerAxis {
+        &self.direction
     }
 
+    /// Derivative of the axes by the path length at the end.
     #[inline]
-    pub(crate) fn start(&self) -> MotionEnd<'_> {
-        let curvature = self.bend.as_ref().map(|bend| bend.curvature(0));
-        MotionEnd {
-            direction: &self.direction,
-            curvature,
-        }
+    pub(crate) fn end(&self) -> &PerAxis {
+        self.end_direction.as_ref().unwrap_or(&self.direction)
     }
 
+    /// Whether it is an arc.
     #[inline]
-    pub(crate) fn end(&self) -> MotionEnd<'_> {
-        match &self.bend {
-            None => MotionEnd {
-                direction: &self.direction,
-                curvature: None,
-            },
-            Some(bend) => MotionEnd {
-                direction: &bend.end_direction,
-                curvature: Some(bend.curvature(1)),
-            },
-        }
-    }
-}
-
-impl Bend {
-    /// At the start (0) or the end (1).
-    fn curvature(&self, end: usize) -> PerAxis {
-        in_plane(&[0.0; Axis::COUNT], self.plane, self.curvature[end])
+    pub(crate) fn is_curved(&self) -> bool {
+        self.end_direction.is_some()
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use bahn_path::{Barrier, ElementSource, LiveData, PathElement, Position, Step};
 
-use crate::corner::{Corner, Joint, Run};
+use crate::corner::{Corner, Joint};
 use crate::gate::Gates;
 use crate::limits::{Dynamics, Limits};
 use crate::motion::Motion;
@@ -156,8 +156,8 @@ struct LookAhead {
     last: Option<Motion>,
     /// The joint after `last` is passed whatever its angle.
     any_angle: bool,
-    /// The path since the last corner or stop.
-    run: Run,
+    /// Way since the last corner or stop, mm.
+    way: f64,
     /// The last corner while the way after it is too short to say how fast it may be passed.
     corner: Option<Corner>,
 }
@@ -172,7 +172,7 @@ impl LookAhead {
             stop: true,
             last: None,
             any_angle: false,
-            run: Run::default(),
+            way: 0.0,
             corner: None,
         }
     }
@@ -199,7 +199,7 @@ impl LookAhead {
         self.stop = gates.end;
         match &motion {
             Some(motion) => {
-                self.run.add(motion);
+                self.way += motion.length;
                 self.window.push(motion.length, motion.acceleration, motion.speed);
                 self.any_angle = false;
             }
@@ -216,7 +216,7 @@ impl LookAhead {
         if self
             .corner
             .as_ref()
-            .is_some_and(|corner| self.run.is_enough_for(corner))
+            .is_some_and(|corner| corner.knows_enough(self.way))
         {
             self.settle();
         }
@@ -232,12 +232,7 @@ impl LookAhead {
             // Without a length there is no direction: the corner is where the path goes on.
             return self.window.join(last.speed);
         };
-        let joint = Joint::between(last, next, &self.run, self.any_angle, &self.dynamics);
-        if let Some(corner) = &mut self.corner
-            && !matches!(joint, Joint::Stop)
-        {
-            corner.meet(next, &self.run);
-        }
+        let joint = Joint::between(last, next, self.way, self.any_angle, &self.dynamics);
         match joint {
             Joint::Stop => self.join_stop(),
             Joint::Smooth(speed) => self.window.join(speed),
@@ -245,7 +240,7 @@ impl LookAhead {
                 self.settle();
                 self.window.hold();
                 self.corner = Some(corner);
-                self.run.turn();
+                self.way = 0.0;
             }
         }
     }
@@ -254,14 +249,14 @@ impl LookAhead {
         self.settle();
         self.window.join(0.0);
         self.last = None;
-        self.run.reset();
+        self.way = 0.0;
     }
 
     /// Decides the corner that waits for the way after it.
     #[inline]
     fn settle(&mut self) {
         if let Some(corner) = self.corner.take() {
-            self.window.settle(corner.pass_speed(&self.run));
+            self.window.settle(corner.pass_speed(self.way));
         }
     }
 

@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 
 use bahn_path::{Curve, FeedRate, Function, OverrideLaw, PathElement, Position};
 
-use crate::corner::{Corner, Joint, Run};
+use crate::corner::{Corner, Joint};
 use crate::gate::{Gate, Gates, place, wait};
 use crate::limits::Dynamics;
 use crate::motion::Motion;
@@ -79,8 +79,8 @@ pub(crate) struct Ring {
     last: Option<Motion>,
     /// The joint after `last` is passed whatever its angle.
     any_angle: bool,
-    /// The path since the last corner or stop.
-    run: Run,
+    /// Way since the last corner or stop, mm.
+    way: f64,
     /// The last corner while the way after it is too short to say how fast it may be passed, and the
     /// number of the item before it.
     corner: Option<(u64, Corner)>,
@@ -101,7 +101,7 @@ impl Ring {
             stop_at: None,
             last: None,
             any_angle: false,
-            run: Run::default(),
+            way: 0.0,
             corner: None,
         }
     }
@@ -202,7 +202,7 @@ impl Ring {
             self.join(motion.as_ref(), gates.start);
         }
         if let Some(motion) = motion {
-            self.run.add(&motion);
+            self.way += motion.length;
             self.any_angle = false;
             self.last = Some(motion);
         }
@@ -215,7 +215,7 @@ impl Ring {
         let enough = self
             .corner
             .as_ref()
-            .is_some_and(|(_, corner)| self.run.is_enough_for(corner));
+            .is_some_and(|(_, corner)| corner.knows_enough(self.way));
         if enough || gates.end {
             self.decide();
         }
@@ -243,19 +243,14 @@ impl Ring {
             let cap = last.speed * last.speed;
             return self.set_cap(number, cap);
         };
-        let joint = Joint::between(last, next, &self.run, self.any_angle, &self.dynamics);
-        if let Some((_, corner)) = &mut self.corner
-            && !matches!(joint, Joint::Stop)
-        {
-            corner.meet(next, &self.run);
-        }
+        let joint = Joint::between(last, next, self.way, self.any_angle, &self.dynamics);
         match joint {
             Joint::Stop => self.join_stop(),
             Joint::Smooth(speed) => self.set_cap(number, speed * speed),
             Joint::Corner(corner) => {
                 self.decide();
                 self.corner = Some((number, corner));
-                self.run.turn();
+                self.way = 0.0;
             }
         }
     }
@@ -264,14 +259,14 @@ impl Ring {
     fn join_stop(&mut self) {
         self.decide();
         self.last = None;
-        self.run.reset();
+        self.way = 0.0;
     }
 
     /// Decides the corner that waits for the way after it. Until then it is a stop, for what comes
     /// after it may raise its speed, and lower it too.
     fn decide(&mut self) {
         if let Some((number, corner)) = self.corner.take() {
-            self.set_cap(number, corner.pass_speed(&self.run).powi(2));
+            self.set_cap(number, corner.pass_speed(self.way).powi(2));
         }
     }
 
@@ -288,9 +283,9 @@ impl Ring {
         }
     }
 
-    /// Other overrides, %.
-    pub(crate) fn set_overrides(&mut self, feed_percent: f64, rapid_percent: f64) {
-        self.dynamics.set_overrides(feed_percent, rapid_percent);
+    /// Other overrides, %: feed, rapid traverse, spindle.
+    pub(crate) fn set_overrides(&mut self, percent: [f64; 3]) {
+        self.dynamics.set_overrides(percent);
         let dynamics = &self.dynamics;
         let current = self.current.min(self.items.len());
         self.items

@@ -1,6 +1,6 @@
 //! Time that is no movement: dwell, tool changes, the spindle, M functions.
 
-use bahn_path::{Function, PathElement};
+use bahn_path::{Function, OverrideLaw, PathElement};
 
 use crate::gate::{Gate, wait};
 
@@ -77,8 +77,21 @@ impl Stopwatch {
             before: 0.0,
             after: element.dwell_s.max(0.0),
         };
+        if element
+            .thread()
+            .is_some_and(|thread| thread.orientation_deg.is_some())
+        {
+            self.spindle = Spindle::Stopped;
+            waiting.before += self.times.spindle_orientation_s;
+        }
+        // In a thread the spindle turns on its ramps, and nothing waits for its speed.
+        let tapping = matches!(element.override_law, OverrideLaw::Tapping { .. });
         for function in element.functions() {
-            let time = self.time(&function.function).max(0.0);
+            let time = match (&function.function, self.time(&function.function)) {
+                (Function::M(_), _) if tapping => self.times.m_function_s,
+                (_, time) => time,
+            }
+            .max(0.0);
             match wait(function) {
                 Some(Gate::Start) => waiting.before += time,
                 Some(Gate::End) => waiting.after += time,

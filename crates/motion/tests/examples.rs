@@ -176,55 +176,84 @@ fn arcs_with_rounded_end_points_pass() {
     assert!(exits(0.019).iter().all(|exit| *exit > 16.6));
 }
 
-/// The speed at which a corner of `deg` from the direction of X between long lines is passed, mm/s. By
-/// the law of corners, for MP1060 = 1 and MP1070 = 0.5 m/s²: along X 1000 mm/s² may be in use, along the
-/// new direction the parts of it; a step may take 4/5 of the rest of sqrt(1000² + 500²) over 3 ms.
+/// The greatest speed at which a corner of `deg` from the direction of X between long lines is passed, mm/s.
+/// By the law of corners, for MP1060 = 1 and MP1070 = 0.5 m/s²: a step of velocity takes 4/5 of
+/// sqrt(1000² + 500²) over the servo's window of 0.15 s.
 fn corner_speed(deg: f64) -> f64 {
     let (sin, cos) = deg.to_radians().sin_cos();
-    let bound = 1000f64.hypot(500.0);
-    let x = (bound - 1000.0) / (1.0 - cos);
-    let y = (bound - 1000.0 * sin) / sin;
-    0.8 * 0.003 * x.min(y)
+    0.8 * 1000f64.hypot(500.0) * 0.15 / sin.max(1.0 - cos)
 }
 
-fn corner(deg: f64, m90: bool, limits: &Limits) -> f64 {
+fn corner(feed: f64, deg: f64, m90: bool, limits: &Limits) -> f64 {
     let (sin, cos) = f64::to_radians(deg).sin_cos();
-    let mut path = Path::new(6000.0);
-    path.line(&[(X, 50.0)]);
+    let mut path = Path::new(feed);
+    path.line(&[(X, 150.0)]);
     path.last().constant_speed = m90;
-    path.by(&[(X, 50.0 * cos), (Y, 50.0 * sin)]);
+    path.by(&[(X, 150.0 * cos), (Y, 150.0 * sin)]);
     plan(&path.elements, limits)[0].profile.exit_mm_s
 }
 
-/// MP7460 = 10: changes of direction up to 10 degrees pass [000:5096-5108], as fast as the velocity step
-/// allows; above the path stops.
+/// MP7460: changes of direction up to its angle pass at the feed [000:5096-5108], also that of 18.8 degrees
+/// at F8000; above the path stops.
 #[test]
-fn corners_up_to_mp7460_pass() {
-    close(corner(9.999, false, &limits()), corner_speed(9.999));
-    close(corner(5.0, false, &limits()), corner_speed(5.0));
-    // 5 degrees: Y decides, 0.8 · 0.003 · (1118 - 87) / 0.0872 = 28.4 mm/s.
-    assert_eq!((corner_speed(5.0) * 10.0).round(), 284.0);
-    close(corner(1.0, false, &limits()), 100.0);
-    assert_eq!(corner(10.001, false, &limits()), 0.0);
+fn corners_up_to_mp7460_pass_at_the_feed() {
+    for deg in [1.0, 5.0, 9.999] {
+        close(corner(6000.0, deg, false, &limits()), 100.0);
+    }
+    assert_eq!(corner(6000.0, 10.001, false, &limits()), 0.0);
+    for servo_lag in [false, true] {
+        let wide = Limits {
+            corner_angle_deg: 60.001,
+            servo_lag,
+            ..limits()
+        };
+        close(corner(8000.0, 18.8, false, &wide), 8000.0 / 60.0);
+        // 15 m/min, 60 degrees: the step of Y would be 217 mm/s; the servo follows 134.2 mm/s.
+        close(corner(15_000.0, 60.0, false, &wide), corner_speed(60.0));
+        assert_eq!(corner_speed(60.0).round(), 155.0);
+    }
 }
 
-/// M90 passes any corner, but only with servo lag [000:5112-5114].
+/// M90 passes any corner, but only with servo lag [000:5112-5114]: from 5 to 90 degrees at the feed.
 #[test]
 fn m90_passes_with_servo_lag() {
-    close(corner(60.0, true, &limits()), corner_speed(60.0));
-    close(corner(5.0, true, &limits()), corner_speed(5.0));
+    for deg in [5.0, 15.0, 30.0, 60.0, 90.0] {
+        close(corner(8000.0, deg, true, &limits()), 8000.0 / 60.0);
+    }
+    // Backwards X makes a step of twice the speed.
+    close(corner(8000.0, 180.0, true, &limits()), corner_speed(180.0));
     let feedforward = Limits {
         servo_lag: false,
         ..limits()
     };
-    assert_eq!(corner(60.0, true, &feedforward), 0.0);
-    close(corner(5.0, true, &feedforward), corner_speed(5.0));
+    assert_eq!(corner(8000.0, 60.0, true, &feedforward), 0.0);
+    close(corner(8000.0, 5.0, true, &feedforward), 8000.0 / 60.0);
+}
+
+/// Two corners 2 mm apart share the window. Each owns half the way between them, and half a window beside:
+/// v · change <= limit · (W/2 + 1 mm / v).
+#[test]
+fn corners_close_together_share_the_window() {
+    let (sin, cos) = 45f64.to_radians().sin_cos();
+    let mut path = Path::new(30_000.0);
+    path.line(&[(X, 150.0)]).last().constant_speed = true;
+    path.by(&[(X, 2.0 * cos), (Y, 2.0 * sin)]).last().constant_speed = true;
+    path.by(&[(Y, 150.0)]);
+    let fast = Limits {
+        max_feed_mm_min: [30_000.0; Axis::COUNT],
+        ..limits()
+    };
+    let planned = plan(&path.elements, &fast);
+    let v = planned[0].profile.exit_mm_s;
+    let limit = 0.8 * 1000f64.hypot(500.0) / sin;
+    close(v, limit * (0.075 + 1.0 / v));
+    close(planned[1].profile.exit_mm_s, v);
+    assert!(v < corner(30_000.0, 45.0, true, &fast), "alone it is faster");
 }
 
 /// Short lines along a circle of radius 20 mm, 0.1 mm each: the corners share the time, and the law
-/// v · change <= 0.8 · reserve · length / v gives v² <= 0.8 · reserve · radius, like a circle with that
-/// radial acceleration. The reserve of the axis across the path is at least MP1070, here 500 mm/s², and at
-/// most the bound of 1118 mm/s² where the path goes along the other axis.
+/// v · change <= 0.8 · bound · length / v gives v² <= 0.8 · bound · radius for an axis across the path, like
+/// a circle with that radial acceleration; where both axes share the change it is up to sqrt(2) of that.
 #[test]
 fn short_lines_on_a_circle_run_like_on_a_circle() {
     let mut path = Path::new(30_000.0);
@@ -244,9 +273,9 @@ fn short_lines_on_a_circle_run_like_on_a_circle() {
         .map(|p| p.profile.exit_mm_s)
         .fold(f64::INFINITY, f64::min);
     let greatest = middle.iter().map(|p| p.profile.exit_mm_s).fold(0.0, f64::max);
-    // MP1070 alone would give sqrt(20 · 500) = 100 mm/s.
-    assert!(least > (0.8f64 * 500.0 * 20.0).sqrt() * 0.98, "{least}");
-    assert!(greatest < (0.8f64 * 1118.0 * 20.0).sqrt() * 1.02, "{greatest}");
+    let across = (0.8f64 * 1118.0 * 20.0).sqrt();
+    assert!(least > across * 0.98, "{least}");
+    assert!(greatest < across * 2f64.powf(0.25) * 1.02, "{greatest}");
 }
 
 /// When only rotary axes move the feed is degrees/min: 90° at 50 °/s, 1000 °/s².
@@ -296,7 +325,7 @@ fn override_laws() {
         .profile
         .peak_mm_s
     };
-    let limited = OverrideLaw::Limited {
+    let limited = OverrideLaw::Tapping {
         from_percent: 90.0,
         to_percent: 110.0,
     };
@@ -367,6 +396,8 @@ fn senseless_limits_are_survived() {
             corner_angle_deg: value,
             servo_lag: true,
             cycle_s: value,
+            servo_window_s: bahn_motion::SERVO_WINDOW_S,
+            spindle: Default::default(),
             feed_override_percent: value,
             rapid_override_percent: value,
         };

@@ -4,7 +4,7 @@ mod common;
 
 use bahn_motion::{Drive, Identity, Interpolator, Limits, Sample, Sampler, State};
 use bahn_path::{Axis, PathElement, Position, Step};
-use common::random::{Random, decades, polyline, random_path, regular_corners};
+use common::random::{Random, check_axes, decades, polyline, random_path, regular_corners, window_cycles};
 use common::{List, list, plan, planner_of, time_s};
 use proptest::prelude::*;
 
@@ -100,31 +100,17 @@ fn parts() -> impl Strategy<Value = Vec<Part>> {
     prop::collection::vec((drive, 1usize..60), 0..40)
 }
 
-/// As the laws of planning: speeds of all axes, their second differences in contour cycles; and beside
-/// them the speed along the path.
-fn check_limits(seen: &[Seen], elements: &[PathElement], limits: &Limits) -> Result<(), TestCaseError> {
+/// As the laws of planning, and beside them the speed along the path. `cycles` and `times` as in `check_axes`.
+fn check_limits(
+    seen: &[Seen],
+    elements: &[PathElement],
+    limits: &Limits,
+    (cycles, times): (usize, f64),
+) -> Result<(), TestCaseError> {
     let t = limits.cycle_s;
-    let mut positions = vec![Position::ZERO, Position::ZERO];
+    let mut positions = vec![Position::ZERO; 2 * cycles];
     positions.extend(seen.iter().map(|seen| seen.position));
-    for axis in Axis::ALL {
-        let i = axis.index();
-        let greatest = limits.max_feed_mm_min[i] / 60.0;
-        let bound = 1000.0 * limits.acceleration_m_s2[i].hypot(limits.radial_acceleration_m_s2);
-        for (k, three) in positions.windows(3).enumerate() {
-            let [a, b, c] = [three[0][axis], three[1][axis], three[2][axis]];
-            let speed = (c - b).abs() / t;
-            prop_assert!(
-                speed <= greatest * (1.0 + 1e-6) + 1e-11 / t,
-                "{axis} {speed} over {greatest} at {k}"
-            );
-            let acceleration = (c - 2.0 * b + a).abs() / (t * t);
-            prop_assert!(
-                acceleration <= bound * (1.0 + 1e-6) + 4e-11 / (t * t),
-                "{axis}: {acceleration} mm/s² over {bound} at {k}: {:?}",
-                &seen[k.saturating_sub(3)..(k + 2).min(seen.len())],
-            );
-        }
-    }
+    check_axes(&positions, limits, cycles, times)?;
     let planned = plan(elements, limits);
     let greatest = planned
         .iter()
@@ -184,7 +170,7 @@ proptest! {
                 }
             }
         }
-        check_limits(&seen, &elements, limits)?;
+        check_limits(&seen, &elements, limits, (window_cycles(limits), 2.0))?;
         check_order(&seen)?;
     }
 
@@ -194,9 +180,13 @@ proptest! {
         capacity in prop_oneof![Just(1024usize), 0..20usize], budget in prop_oneof![Just(usize::MAX), 1..5usize],
     ) {
         let Random { limits, .. } = &random;
+        let stops = random.with_stops();
+        let elements = stops.elements();
+        let seen = Run::new(&elements, &stops.limits, capacity).all(&parts, &constant(limits), budget);
+        check_limits(&seen, &elements, &stops.limits, (1, 1.0))?;
         let elements = random.elements();
         let seen = Run::new(&elements, limits, capacity).all(&parts, &constant(limits), budget);
-        check_limits(&seen, &elements, limits)?;
+        check_limits(&seen, &elements, limits, (window_cycles(limits), 2.5))?;
         check_order(&seen)?;
         if seen.len() < MOST {
             prop_assert_eq!(seen.last().map(|seen| seen.position), elements.last().map(|last| last.end));
@@ -216,6 +206,7 @@ proptest! {
         fast.acceleration_m_s2 = fast.acceleration_m_s2.map(|a| 4.0 * a);
         fast.radial_acceleration_m_s2 *= 4.0;
         fast.cycle_s *= 0.5;
+        fast.servo_window_s *= 0.5;
         let elements = random.elements();
         let faster: Vec<_> = elements
             .iter()

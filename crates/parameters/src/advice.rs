@@ -86,11 +86,8 @@ fn rows(table: &'static str) -> impl Iterator<Item = Advice> {
 fn numbers(text: &'static str) -> impl Iterator<Item = u16> {
     text.split(',').flat_map(|part| {
         let (first, last) = part.split_once('-').unwrap_or((part, part));
-        match (first.parse(), last.parse()) {
-            (Ok(first), Ok(last)) => first..=last,
-            // The empty range.
-            _ => 1..=0,
-        }
+        let range = first.parse::<u16>().ok().zip(last.parse().ok());
+        range.into_iter().flat_map(|(first, last)| first..=last)
     })
 }
 

@@ -8,7 +8,8 @@
 //! - [`chapters`]: the chapters of the manuals that a citation means;
 //! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
 //!   model: [`ParameterList::axis_parameters`], [`ParameterList::spindle_parameters`] and so on;
-//! - [`ListText`]: the text of a list, whose values change in their places.
+//! - [`ListText`]: the text of a list, whose values change in their places;
+//! - [`conformance`]: what each function of a control does here, and what it does not.
 //!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
@@ -22,6 +23,7 @@
 
 mod advice;
 mod citation;
+pub mod conformance;
 mod consistency;
 mod definition;
 mod error;

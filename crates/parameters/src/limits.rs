@@ -124,9 +124,6 @@ limits! {
     rotation_max_deg: f64 = 360.0, 360.0, 360.0, 360.0, 360.0, 360.0;
     /// Least and greatest factor of cycle 11 [003:6385-6412]; others than TNC 360 (inferred).
     scaling_range: [f64; 2] = SCALING, SCALING, SCALING, SCALING, SCALING, SCALING;
-    /// Highest M function [001:554-558] [003:7459-7577] [000:7076-7206]: 99 go to the PLC; the
-    /// TNC 407/415/425 have more that act inside the control, up to M204.
-    m_max: u16 = 99, 99, 99, 204, 204, 204;
 
     // Time.
 

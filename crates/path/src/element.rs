@@ -20,22 +20,37 @@ pub enum FeedRate {
     Programmed(f64),
 }
 
-/// What the feed override may do to an element.
+/// What the overrides may do to an element, and with it what leads its path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OverrideLaw {
-    /// The override acts fully.
+    /// The feed override acts fully.
     #[default]
     Free,
-    /// The override acts only between these percentages (tapping with floating holder, MP7110)
-    /// [000:6094-6098].
-    Limited {
+    /// Tapping with a floating holder: the feed override acts only between these percentages (MP7110), that
+    /// of the spindle not at all [000:6094-6098] [003:5032].
+    Tapping {
         /// Lowest effective override, %.
         from_percent: f64,
         /// Highest effective override, %.
         to_percent: f64,
     },
-    /// The feed override has no effect; the feed follows the spindle (rigid tapping) [003:5106].
+    /// The path follows the spindle (rigid tapping): the feed override has no effect, that of the spindle
+    /// acts [003:5106] [000:6122].
+    Spindle(Thread),
+    /// The overrides have no effect.
     Disabled,
+}
+
+/// A path that follows the angle of the spindle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thread {
+    /// Way along the path to a turn of the spindle, mm; positive.
+    pub pitch_mm: f64,
+    /// Along the path the spindle turns as with M03.
+    pub clockwise: bool,
+    /// The spindle is oriented to this angle, degrees, before the path begins; otherwise it goes on from
+    /// where it is: from the thread before, if there is one.
+    pub orientation_deg: Option<f64>,
 }
 
 /// One movement: geometry, feed and the functions that go out with it. Immutable once made.
@@ -53,7 +68,7 @@ pub struct PathElement {
     pub end: Position,
     /// Feed rate.
     pub feed: FeedRate,
-    /// What the feed override may do.
+    /// What the overrides may do.
     pub override_law: OverrideLaw,
     /// Constant path speed is kept over the corner at the *end* of the element whatever its angle
     /// (M90) [003:3439-3457].
@@ -85,6 +100,14 @@ impl PathElement {
         }
     }
 
+    /// How the path follows the spindle.
+    pub fn thread(&self) -> Option<&Thread> {
+        match &self.override_law {
+            OverrideLaw::Spindle(thread) if self.curve != Curve::Hold => Some(thread),
+            _ => None,
+        }
+    }
+
     /// The functions that go out with the element.
     pub fn functions(&self) -> &[TechnologyFunction] {
         self.functions.as_deref().unwrap_or_default()
@@ -111,6 +134,8 @@ pub enum At {
     End,
     /// At a path length from the start, mm.
     Length(f64),
+    /// So long before the end of the movement, s.
+    BeforeEnd(f64),
 }
 
 /// Synchronisation of a function with the path, in the terms of TF5200 [004:54].

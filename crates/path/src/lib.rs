@@ -24,7 +24,7 @@ pub use axis::{Axis, AxisSet, Position};
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use element::{
     At, Blank, BlockRef, FeedRate, Function, OverrideLaw, PathElement, Synchronisation, TechnologyFunction,
-    ToolCall, ToolShape,
+    Thread, ToolCall, ToolShape,
 };
 pub use frame::Frame;
 pub use plane::{Plane, Point2};

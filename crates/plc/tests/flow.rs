@@ -3,7 +3,8 @@
 
 mod common;
 
-use bahn_plc::{InterfaceUser, PlcError, Start};
+use bahn_parameters::{ControlModel, ParameterList};
+use bahn_plc::{InterfaceUser, PlcError, Start, TestNc};
 use common::{Bench, compile, example};
 
 /// Runs one scan that must fail; number and line of the error.
@@ -193,6 +194,35 @@ fn timer_1_runs_for_nine_cycles() {
         })
         .collect();
     assert_eq!(running, [1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0]);
+}
+
+/// On the TNC 155 timers 0 to 15 are MP110 to MP125, 16 to 31 MP193 to MP208, counters 0 to 15 MP94 to MP109
+/// [001:1832-1833].
+#[test]
+fn timers_and_counters_of_the_old_controls() {
+    let mut bench = Bench::new("L I1\n= T1\n= T16\n= T32\n= C1\nL I2\n= C97\nEM\n");
+    bench.nc = TestNc::new(ParameterList::reference(ControlModel::Tnc155));
+    bench.set("MP111=4 MP193=2 MP95=3 I1=1");
+    bench.scan().unwrap();
+    bench.set("I1=0 I2=1");
+    let running: Vec<[i64; 4]> = (0..6)
+        .map(|_| {
+            bench.scan().unwrap();
+            ["T49", "T64", "T80", "C49"].map(|operand| bench.get(operand))
+        })
+        .collect();
+    assert_eq!(
+        running,
+        // The counter is released one scan later.
+        [
+            [1, 1, 0, 1],
+            [1, 1, 0, 1],
+            [1, 0, 0, 1],
+            [1, 0, 0, 0],
+            [0, 0, 0, 0],
+            [0, 0, 0, 0]
+        ]
+    );
 }
 
 #[test]

@@ -106,7 +106,6 @@ impl Check<'_> {
             Operation::Chamfer { length, feed } => self
                 .length("L", Some(*length))
                 .or_else(|| self.feed(feed.map(Feed::Value))),
-            Operation::Stop(m) | Operation::Miscellaneous(m) | Operation::CycleCall(m) => self.m(m.codes()),
             Operation::Label(label) => self.label(*label),
             Operation::CallLabel { label, repeats } => self
                 .label(*label)
@@ -137,7 +136,6 @@ impl Check<'_> {
                     .and_then(|value| self.within("R", value, -circle, circle, self.mm()))
             })
             .or_else(|| self.feed(motion.feed))
-            .or_else(|| self.m(motion.m.codes()))
     }
 
     fn cycle(&self, block: &CycleBlock) -> Option<LimitFault> {
@@ -150,7 +148,6 @@ impl Check<'_> {
         }
         block.words.iter().find_map(|word| match (block.number, word) {
             (_, CycleWord::Feed(feed)) => self.feed(Some(*feed)),
-            (_, CycleWord::M(code)) => self.m(&[*code]),
             (_, CycleWord::Coordinate(axis, word)) => {
                 let max = self.limits.coordinate_max;
                 let scale = if axis.is_rotary() { 1.0 } else { self.mm() };
@@ -231,16 +228,6 @@ impl Check<'_> {
             EntryValueIncorrect,
             "LBL",
             format!("label numbers go from 0 to {max}"),
-        )
-    }
-
-    fn m(&self, codes: &[u16]) -> Option<LimitFault> {
-        let max = self.limits.m_max;
-        let code = codes.iter().find(|&&code| code > max)?;
-        fault(
-            EntryValueIncorrect,
-            &format!("M{code}"),
-            format!("M functions go from 0 to {max}"),
         )
     }
 

@@ -199,7 +199,6 @@ fn limits_of_the_control_model() {
     assert_eq!(at("L X+30000.001"), entry("+30000.001"));
     assert_eq!(at("L IZ -30001 F5"), entry("-30001"));
     assert_eq!(at("L X+5 F30000"), entry("30000"));
-    assert_eq!(at("L X+5 F MAX M100"), entry("M100"));
     assert_eq!(at("TOOL CALL 1 Z S100000"), entry("100000"));
     assert_eq!(at("TOOL CALL 255 Z S1"), entry("255"));
     assert_eq!(at("TOOL DEF 255 L+0 R+1"), entry("255"));
@@ -244,13 +243,7 @@ fn limits_are_those_of_the_unit_and_the_model() {
     };
     assert!(check_limits(&operation("L X+1 F630"), Unit::Inch, whole).is_none());
     assert!(check_limits(&operation("L X+1 F631"), Unit::Inch, whole).is_some());
-    for text in [
-        "Q1 = SIN 30",
-        "L X+Q150",
-        "M103 F25",
-        "CYCL DEF 19.0 PLANE",
-        "L X+40000",
-    ] {
+    for text in ["Q1 = SIN 30", "L X+Q150", "CYCL DEF 19.0 PLANE", "L X+40000"] {
         assert!(
             check_limits(&operation(text), Unit::Mm, Tnc415b.limits()).is_none(),
             "{text}"

@@ -578,6 +578,11 @@ impl Axis {
         self.closed && self.is_sound()
     }
 
+    /// So much later than it was commanded the axis is at a position in uniform motion with pre-control, s.
+    pub fn delay_s(&self) -> f64 {
+        self.transient.delay_steps() * self.timing.step_min() * 60.0
+    }
+
     /// Method of positioning.
     pub fn method(&self) -> Method {
         self.method

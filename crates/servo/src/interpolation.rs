@@ -107,6 +107,11 @@ impl Transient {
         }
     }
 
+    /// By so many steps the mean is late.
+    pub(crate) fn delay_steps(&self) -> f64 {
+        0.5 * (self.window - 1) as f64
+    }
+
     /// Takes the next position in and gives the mean.
     pub(crate) fn advance(&mut self, position: f64) -> f64 {
         let last = self.ring[(self.at + self.window - 1) % self.window];

@@ -73,5 +73,5 @@ pub use marks::DistanceCode;
 pub use measuring::Mark;
 pub use offset::OffsetInterval;
 pub use plant::{Encoder, INPUTS, OUTPUTS, OperatorInputs, Plant};
-pub use spindle::{Ramp, Rotation, SpeedCode, Spindle, Way, tapping_lead_s};
+pub use spindle::{Ramp, Rotation, SpeedCode, Spindle, Way};
 pub use timing::{OUTPUT_VOLTS, Timing};

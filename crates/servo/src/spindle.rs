@@ -1,6 +1,7 @@
 //! The main spindle: speed, gear, ramps, orientation [000:5438-5945].
 
 mod encoder;
+mod lead;
 mod orientation;
 mod speed;
 mod speed_code;
@@ -8,12 +9,13 @@ mod speed_code;
 use bahn_parameters::{Gear, SpindleParameters};
 
 use crate::characteristic::KV_PER_MIN;
+use crate::fault::Fault;
 use crate::plant::Encoder;
 use crate::timing::{OUTPUT_VOLTS, Timing};
 use encoder::SpindleEncoder;
+use lead::Lead;
 use orientation::{Dynamics, Orientation, Phase};
 
-pub use speed::tapping_lead_s;
 pub use speed_code::SpeedCode;
 
 /// Time in position before the offset is adjusted after an orientation, s [000:5716].
@@ -51,8 +53,6 @@ pub enum Ramp {
     Normal,
     /// Tapping with a floating holder: MP3410.2.
     Tapping,
-    /// Rigid tapping: MP3410.3.
-    Rigid,
     /// As flat as a feed ramp that the spindle has to follow, V/ms [000:6070].
     Volts(f64),
 }
@@ -76,6 +76,8 @@ enum Mode {
     /// Speed MP3520.0 while M2501 is set.
     Turn(Rotation),
     Orientation(Orientation),
+    /// The angles that [`Spindle::lead`] gives.
+    Lead,
 }
 
 /// The spindle with analogue output: speed in, voltage out; with an encoder also its angle.
@@ -95,11 +97,13 @@ pub struct Spindle {
     inverted: bool,
     enabled: bool,
     opens: bool,
+    lead: Lead,
     /// The nominal value on its ramp, before offset and converter.
     ramp_volts: f64,
     goal_volts: f64,
     offset_volts: f64,
     volts: f64,
+    fault: Option<Fault>,
 }
 
 impl Spindle {
@@ -117,16 +121,19 @@ impl Spindle {
             inverted: false,
             enabled: true,
             opens: false,
+            lead: Lead::new(&parameters, &timing),
             ramp_volts: 0.0,
             goal_volts: 0.0,
             offset_volts: 0.0,
             volts: 0.0,
+            fault: None,
         }
     }
 
     /// Takes changed parameters over (those that the PLC may change).
     pub fn set_parameters(&mut self, parameters: SpindleParameters) {
         self.parameters = parameters;
+        self.lead.set_parameters(&parameters, &self.timing);
     }
 
     /// The gear range for a programmed speed in rpm, 0 to 7: the smallest that reaches it. `None` for a speed
@@ -178,6 +185,11 @@ impl Spindle {
         self.enabled = enabled;
     }
 
+    /// Whether it has the spindle enable.
+    pub fn is_enabled(&self) -> bool {
+        self.enabled
+    }
+
     /// Orients the spindle: to an angle in degrees, at a speed in rpm (0 is MP3520.1).
     ///
     /// A turning spindle keeps its direction, slows down along MP3410.1 and stops at the angle. A standing
@@ -212,6 +224,32 @@ impl Spindle {
         }
     }
 
+    /// Leads the spindle to an angle on the scale of [`Spindle::turned_deg`] for the end of the contour cycle
+    /// that begins; once in each of them, before its first servo step. The angles bring their own ramps. It
+    /// stays led, and stands at the last one, until something else is asked of it.
+    pub fn lead(&mut self, angle_deg: f64) {
+        if self.mode != Mode::Lead {
+            self.mode = Mode::Lead;
+            self.lead.begin(self.held_deg());
+        }
+        if angle_deg.is_finite() {
+            self.lead.command(angle_deg);
+        }
+    }
+
+    /// The angle where the loop holds the spindle, on the scale of [`Spindle::turned_deg`]; without a loop
+    /// where it is.
+    pub fn held_deg(&self) -> f64 {
+        match self.mode {
+            Mode::Lead => self.lead.target_deg(),
+            Mode::Orientation(Orientation {
+                phase: Phase::Controlled { target_deg },
+                ..
+            }) => target_deg,
+            _ => self.encoder.turned_deg(),
+        }
+    }
+
     /// Whether the loop of an orientation opens as soon as the window is reached: M2499 [000:5875].
     pub fn set_opens(&mut self, opens: bool) {
         self.opens = opens;
@@ -224,8 +262,8 @@ impl Spindle {
 
     /// Takes an encoder reading; once in each servo step, before [`Spindle::step`].
     pub fn measure(&mut self, encoder: Encoder) {
-        self.encoder
-            .read(encoder, self.parameters.counts_negative, &self.timing);
+        let fault = self.encoder.read(encoder, &self.parameters, &self.timing);
+        self.fault = self.fault.or(fault.map(Fault::MeasuringSystem));
     }
 
     /// One servo step: the voltage for output S, V.
@@ -233,13 +271,17 @@ impl Spindle {
         if let Mode::Orientation(orientation) = self.mode {
             self.advance(orientation);
         }
+        if self.mode == Mode::Lead {
+            let lag_slope = self.slope();
+            self.lead.step(self.encoder.turned_deg(), lag_slope, &self.timing);
+        }
         self.goal_volts = self.goal();
         let ramps = &self.parameters.ramps;
         let ramp = match (self.mode, self.ramp) {
+            (Mode::Lead, _) => 0.0,
             (Mode::Orientation(_) | Mode::Turn(_), _) => ramps.orientation_v_ms,
             (_, Ramp::Normal) => ramps.normal_v_ms,
             (_, Ramp::Tapping) => ramps.tapping_v_ms,
-            (_, Ramp::Rigid) => ramps.rigid_v_ms,
             (_, Ramp::Volts(volts)) => volts,
         };
         if !self.enabled {
@@ -272,6 +314,7 @@ impl Spindle {
                 parameters.jog_volts * speed::polarity(parameters, rotation, self.inverted)
             }
             Mode::Turn(rotation) => self.volts_of(parameters.orientation.jog_rpm * 360.0 * rotation.sign()),
+            Mode::Lead => self.volts_of(self.lead.velocity_deg_min()),
             Mode::Orientation(orientation) => match orientation.phase {
                 Phase::Approach => self.volts_of(orientation.rpm * 360.0 * orientation.direction),
                 Phase::Controlled { target_deg } => {
@@ -388,9 +431,25 @@ impl Spindle {
     /// Whether the position loop is closed.
     fn is_controlled(&self) -> bool {
         let Mode::Orientation(orientation) = self.mode else {
-            return false;
+            return self.mode == Mode::Lead;
         };
         matches!(orientation.phase, Phase::Controlled { .. }) && !(self.opens && orientation.reached)
+    }
+
+    /// Lag and distance to go of an orientation in its loop, degrees; `None` with open loop. The nominal value
+    /// runs ahead by the lag that belongs to the speed.
+    pub fn lag_and_way_deg(&self) -> Option<[f64; 2]> {
+        match self.mode {
+            Mode::Orientation(orientation) if self.is_controlled() => {
+                let Phase::Controlled { target_deg } = orientation.phase else {
+                    return None;
+                };
+                let way = target_deg - self.encoder.turned_deg();
+                let lag = self.dynamics(orientation.rpm).velocity(way) / self.slope();
+                Some([lag, way - lag])
+            }
+            _ => None,
+        }
     }
 
     /// Voltage of the output, V.
@@ -419,6 +478,7 @@ impl Spindle {
             Mode::Speed(Rotation::M5) => 0.0,
             Mode::Speed(_) => self.limited_rpm(),
             Mode::Turn(rotation) => self.parameters.orientation.jog_rpm * rotation.sign().abs(),
+            Mode::Lead => (self.lead.profile_deg_min() / 360.0).abs(),
             Mode::Jog(_) | Mode::Orientation(_) => 0.0,
         }
     }
@@ -426,6 +486,12 @@ impl Spindle {
     /// Speed over the last contour cycle, rpm; negative as M04. W322 is its amount.
     pub fn actual_rpm(&self) -> f64 {
         self.encoder.rpm()
+    }
+
+    /// What the monitoring of the encoder has found: amplitude (MP31 bit 5) or edges (MP32 bit 5) of its signals
+    /// [000:3290-3328].
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
     }
 
     /// Angle from the zero of the spindle, 0 up to 360 degrees: the reference mark stands at MP3430. `None`
@@ -438,6 +504,20 @@ impl Spindle {
     /// [000:6122].
     pub fn turned_deg(&self) -> f64 {
         self.encoder.turned_deg()
+    }
+
+    /// The part of the programmed speed that runs with override and limits: MP3310, MP3515.
+    pub fn effective_override(&self) -> f64 {
+        if self.programmed_rpm > 0.0 {
+            self.limited_rpm() / self.programmed_rpm
+        } else {
+            1.0
+        }
+    }
+
+    /// Voltage of the programmed speed, V.
+    pub fn programmed_volts(&self) -> f64 {
+        speed::volts(&self.parameters, &self.gear(), self.programmed_rpm)
     }
 
     /// Whether an orientation is going on: M2712, M2127.

@@ -176,7 +176,7 @@ fn mp3130_and_m2489_are_the_polarity() {
 #[test]
 fn the_voltage_follows_its_ramp() {
     // 6 V at 0.01 V/ms are 600 ms: 1000 steps of 0.6 ms.
-    let mut bench = Bench::new(&[DIAGRAM, &["3410.0=0.01", "3410.2=0.02", "3410.3=0.04"]].concat());
+    let mut bench = Bench::new(&[DIAGRAM, &["3410.0=0.01", "3410.2=0.02"]].concat());
     bench.spindle.set_speed(1500.0, 0);
     let mut steps = |rotation, ramp| {
         bench.spindle.set_ramp(ramp);
@@ -194,7 +194,7 @@ fn the_voltage_follows_its_ramp() {
     let near = |steps: u32, expected: u32| assert!(steps.abs_diff(expected) <= 1, "{steps} {expected}");
     near(steps(Rotation::M3, Ramp::Normal), 1000);
     near(steps(Rotation::M5, Ramp::Tapping), 500);
-    near(steps(Rotation::M4, Ramp::Rigid), 250);
+    near(steps(Rotation::M4, Ramp::Tapping), 500);
     // Through 0 to the other side: 12 V.
     near(steps(Rotation::M3, Ramp::Normal), 2000);
     near(steps(Rotation::M5, Ramp::Volts(0.005)), 2000);
@@ -370,4 +370,70 @@ fn after_an_orientation_the_offset_goes_by_1_mv_in_7_seconds() {
     let second = lag(&bench);
     // 7 steps of 0.1526 mV = 1.07 mV of 5 mV: 0.096 degrees.
     assert!((first - second - 0.096).abs() < 0.02, "{first} {second}");
+}
+
+/// Led through 3 turns there and back at 600 rpm, ramps of 0.1 s: an ideal drive follows the velocity, the loop
+/// what is left; it stands where it was led to.
+#[test]
+fn a_led_spindle_follows_its_angle() {
+    let entries = ["7130=0.5", "7140=0.5", "3510.0=1500", "3210.0=9"];
+    let mut bench = Bench::new(&entries);
+    bench.turning(0.0, Rotation::M5);
+    let from = bench.spindle.turned_deg();
+    assert_eq!(bench.spindle.held_deg(), from);
+    let (speed, ramp, way) = (3600.0, 0.1, 1080.0);
+    let total = way / speed + ramp;
+    // The angle at a time of the trapezoid.
+    let angle = |t: f64| match t {
+        t if t < ramp => 0.5 * speed / ramp * t * t,
+        t if t < total - ramp => speed * (t - 0.5 * ramp),
+        t if t < total => way - 0.5 * speed / ramp * (total - t).powi(2),
+        _ => way,
+    };
+    let cycle = f64::from(bench.timing.contour_us()) * 1e-6;
+    let mut nominal = vec![from; 8];
+    let mut greatest = 0.0f64;
+    for k in 1..=1000 {
+        let t = f64::from(k) * cycle;
+        let back = (t - total).clamp(0.0, total);
+        let wanted = from + angle(t.min(total)) - angle(back);
+        bench.spindle.lead(wanted);
+        for _ in 0..bench.timing.steps() {
+            bench.step();
+        }
+        nominal.push(wanted);
+        // Two means of one contour cycle delay it by one cycle in all, the output by one step.
+        let delayed = nominal[nominal.len() - 2];
+        greatest = greatest.max((bench.spindle.turned_deg() - delayed).abs());
+    }
+    // 3600 degrees/s in one servo step of 0.6 ms are 2.2 degrees; the ramps of 36 000 degrees/s² within the means.
+    assert!(
+        greatest < 3600.0 * 0.0012 + 36_000.0 * 0.003 * 0.003,
+        "{greatest}"
+    );
+    assert!((bench.spindle.turned_deg() - from).abs() < 0.02);
+    assert_eq!(bench.spindle.held_deg(), from);
+    // Smaller entries round more: the speed at the end of the first ramp is still on its way.
+    let rpm = |entries: &[&str]| {
+        let mut bench = Bench::new(entries);
+        bench.turning(0.0, Rotation::M5);
+        let from = bench.spindle.turned_deg();
+        for k in 1..=12 {
+            bench.spindle.lead(from + 3600.0 * 0.003 * f64::from(k));
+            for _ in 0..bench.timing.steps() {
+                bench.step();
+            }
+        }
+        bench.spindle.nominal_rpm()
+    };
+    let (quick, run_in, both) = (
+        rpm(&["7130=0.5", "7140=0.5"]),
+        rpm(&["7130=0.05", "7140=0.5"]),
+        rpm(&["7130=0.05", "7140=0.05"]),
+    );
+    assert!((quick - 600.0).abs() < 1e-6, "{quick}");
+    assert!(
+        run_in > both && both > 0.0 && run_in <= 600.0 + 1e-6,
+        "{run_in} {both}"
+    );
 }

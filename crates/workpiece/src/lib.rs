@@ -27,6 +27,7 @@
 mod batch;
 mod chords;
 mod coarsen;
+mod cutters;
 mod event;
 mod grid;
 mod part;
@@ -36,6 +37,7 @@ mod stl;
 mod sweep;
 mod tool;
 mod touch;
+mod trail;
 mod view;
 mod workpiece;
 
@@ -43,5 +45,5 @@ pub use event::{Event, EventKind};
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
 pub use stl::{MAX_TRIANGLES, MeshError};
-pub use view::{Page, PageError, PlanView, Projection, ThreePlanes, View3d};
+pub use view::{Colouring, Page, PageError, PlanView, Projection, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};

@@ -1,14 +1,18 @@
-//! `bahn machine check`: everything in a folder, all faults of all files.
+//! `bahn machine check`: everything in a folder, all faults of all files, its part programs included.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::load::load;
+use bahn_interpreter::{Rules, Settings};
+
+use super::load::{LoadedMachine, load};
 use super::options::CheckOptions;
+use crate::check::{self, Check, CheckReport};
 use crate::cli::Format;
 use crate::diagnostics::{self, FileFault, Severity};
-use crate::{Outcome, UsageError, console};
+use crate::interrupt::Interrupt;
+use crate::{Outcome, UsageError, console, tool_table};
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -17,6 +21,8 @@ struct Report {
     model: Option<&'static str>,
     ok: bool,
     faults: Vec<Entry>,
+    /// The part programs, as `bahn check` reports them.
+    programs: Vec<CheckReport>,
 }
 
 #[derive(Debug, Serialize)]
@@ -31,10 +37,11 @@ struct Entry {
 
 /// Checks folders and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
+    let interrupt = Interrupt::on_ctrl_c();
     let mut outcome = Outcome::Fine;
     let mut reports = Vec::new();
     for folder in &options.folders {
-        match check(folder, options.format) {
+        match check(folder, options.format, &interrupt) {
             Ok(report) => {
                 if !report.ok && outcome == Outcome::Fine {
                     outcome = Outcome::ProgramError;
@@ -56,7 +63,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     Ok(outcome)
 }
 
-fn check(folder: &Path, format: Format) -> Result<Report, UsageError> {
+fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report, UsageError> {
     let (loaded, faults) = match load(folder)? {
         Ok(machine) => {
             let faults = machine.warnings.clone();
@@ -84,13 +91,56 @@ fn check(folder: &Path, format: Format) -> Result<Report, UsageError> {
             count(faults.len() - errors, "warning")
         ));
     }
+    let programs = match &loaded {
+        Some(machine) => check_programs(machine, format, interrupt)?,
+        None => Vec::new(),
+    };
     Ok(Report {
         folder: folder.display().to_string(),
         name: loaded.as_ref().map(|machine| machine.folder.name.clone()),
         model: loaded.as_ref().map(|machine| machine.parameters.model().id()),
-        ok: loaded.is_some(),
+        ok: loaded.is_some() && programs.iter().all(|program| program.errors == 0),
         faults: faults.iter().map(Entry::new).collect(),
+        programs,
     })
+}
+
+/// Checks the part programs of a machine with its control, parameters and tools.
+fn check_programs(
+    machine: &LoadedMachine,
+    format: Format,
+    interrupt: &Interrupt,
+) -> Result<Vec<CheckReport>, UsageError> {
+    let tools = machine.tools.as_ref();
+    let how = Check {
+        settings: Settings {
+            model: machine.parameters.model(),
+            rules: Rules::of(&machine.parameters),
+            barred_tools: tool_table::barred(tools.into_iter().flatten()),
+            tools: tools.map(|tools| tools.iter().map(|(number, tool)| (*number, tool.shape)).collect()),
+            ..Settings::default()
+        },
+        format,
+    };
+    let mut reports = Vec::new();
+    for path in programs(&machine.root.join(&machine.folder.programs)) {
+        reports.push(check::check(&path, &how, interrupt)?);
+        if interrupt.is_requested() {
+            break;
+        }
+    }
+    Ok(reports)
+}
+
+/// The programs in a folder, in the order of their names; none where it cannot be read.
+fn programs(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut programs: Vec<PathBuf> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|own| own.eq_ignore_ascii_case("h")))
+        .collect();
+    programs.sort();
+    programs
 }
 
 impl Entry {

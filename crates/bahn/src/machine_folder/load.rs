@@ -1,10 +1,11 @@
 //! Everything that belongs to a machine, from its folder; all faults of all files at once.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, NcFiles, Tool};
+use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::{Axis, Position};
@@ -102,6 +103,7 @@ struct Loader<'a> {
 impl Loader<'_> {
     /// Reads all files, so that every fault is found; `None` when one of them could not be read.
     fn load(&mut self, folder: MachineFolder) -> Option<LoadedMachine> {
+        self.stays_inside("state", &folder.state);
         let model = self.model(&folder.model);
         let plant = self.plant(&folder);
         let tools = self.tools(&folder);
@@ -111,6 +113,8 @@ impl Loader<'_> {
         let parameters = self.parameters(&folder, model?);
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
+        let mut files = files?;
+        self.further_lists(&mut files, model?);
         self.agree(&folder, &plant);
         Some(LoadedMachine {
             root: self.root.to_owned(),
@@ -120,7 +124,7 @@ impl Loader<'_> {
             plc_dialogues: plc_dialogues?,
             plant,
             tools: tools?,
-            files: files?,
+            files,
             warnings: Vec::new(),
             folder,
         })
@@ -139,6 +143,16 @@ impl Loader<'_> {
             );
         }
         model
+    }
+
+    /// A name that leads out of the folder is a fault: what belongs to a machine lies in it.
+    fn stays_inside(&mut self, key: &str, name: &str) -> bool {
+        let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+        let stays = Path::new(name).components().all(inside) && !name.contains('\\');
+        if !stays {
+            self.fault_at_key(key, &format!("`{name}` leads out of the folder of the machine"));
+        }
+        stays
     }
 
     /// The bytes of a file that `machine.toml` names.
@@ -163,6 +177,26 @@ impl Loader<'_> {
         list.take(&text);
         let found = mp::machine_list(&text, &list, &path);
         self.sort(found).then_some(list)
+    }
+
+    /// The lists of machine parameters that module 9033 can select: files `NAME.MP` of the folder, in capitals
+    /// [000:14894-14896]. A faulty one is refused when it is selected.
+    fn further_lists(&mut self, files: &mut NcFiles, model: ControlModel) {
+        for entry in std::fs::read_dir(self.root).into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if !name.ends_with(".MP") || name.bytes().any(|byte| byte.is_ascii_lowercase()) {
+                continue;
+            }
+            let list = files::read_table(&entry.path()).ok().and_then(|bytes| {
+                let text = ListText::from_bytes(model, &bytes);
+                let mut list = ParameterList::reference(model);
+                list.take(&text);
+                let found = mp::machine_list(&text, &list, &entry.path());
+                let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
+                (!faulty).then_some(list)
+            });
+            files.parameter_lists.insert(name, list);
+        }
     }
 
     fn plc(
@@ -190,7 +224,10 @@ impl Loader<'_> {
         let (path, bytes) = self.read("plant", &folder.plant)?;
         let text = decode(&bytes);
         match Machine::from_toml(&text) {
-            Ok(machine) => Some(machine),
+            Ok(machine) => {
+                self.wiring(&path, &text, &machine);
+                Some(machine)
+            }
             Err(faults) => {
                 for fault in faults {
                     let place = (fault.line, Some(fault.column));
@@ -204,6 +241,34 @@ impl Loader<'_> {
                 }
                 None
             }
+        }
+    }
+
+    /// Every wire ends at an input or output that the control has [000:11556-11567].
+    fn wiring(&mut self, path: &Path, text: &str, machine: &Machine) {
+        for wire in machine.wires() {
+            let Ok(bit) = wire.operand.parse::<Bit>() else {
+                continue;
+            };
+            if bit.is_listed() {
+                continue;
+            }
+            let (what, area) = match bit.area() {
+                BitArea::O => ("output", "O"),
+                _ => ("input", "I"),
+            };
+            let ranges = bit.area().ranges().iter();
+            let there: Vec<String> = ranges
+                .map(|(first, last)| format!("{area}{first}-{area}{last}"))
+                .collect();
+            let message = format!(
+                "the control has no {what} {}; there are {}",
+                wire.operand,
+                there.join(", ")
+            );
+            let place = (wire.line, Some(wire.column));
+            self.faults
+                .push(file_fault(path, text, place, "the wiring is wrong", &message));
         }
     }
 
@@ -237,6 +302,9 @@ impl Loader<'_> {
         let Some(name) = &folder.compensation else {
             return Some(files);
         };
+        if !self.stays_inside("compensation", name) {
+            return None;
+        }
         let (path, bytes) = self.read("compensation", name)?;
         let text = decode(&bytes);
         let assignment = CompensationAssignment::read(&text);
@@ -245,6 +313,10 @@ impl Loader<'_> {
         let beside = Path::new(name).parent().unwrap_or(Path::new(""));
         let mut complete = true;
         for table in names {
+            if !self.stays_inside("compensation", &table) {
+                complete = false;
+                continue;
+            }
             let file = beside.join(format!("{table}.COM"));
             let table_read = self.read("compensation", &file.display().to_string());
             let table_read = table_read.and_then(|(path, bytes)| {

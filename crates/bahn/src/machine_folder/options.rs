@@ -31,7 +31,7 @@ const NEW_EXAMPLES: &str = "\
 Examples:
   bahn machine new mymill --model tnc407
   bahn machine check mymill
-  bahn run COVER.H --machine mymill
+  bahn run INDEX.H --machine mymill
 
 Models of the 400 series start from a mill with rotary table and gear spindle, the others from a small mill
 without. The README.md in the folder explains every file and key.";
@@ -39,9 +39,12 @@ without. The README.md in the folder explains every file and key.";
 const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn machine check machines/mill
-  bahn machine check machines/* --format json
+  bahn machine check machines/*/ --format json
 
-JSON: for each folder: folder, name, model, ok, faults (severity, file, line, column, message, detail).
+The part programs are checked, too, for the control, the parameters and the tools of the machine.
+
+JSON: for each folder: folder, name, model, ok, faults (severity, file, line, column, message, detail), programs
+(as `bahn check --format json` has them).
 Exit codes: 0 fine, 1 faults, 2 wrong use.";
 
 /// Options of `bahn machine new`.

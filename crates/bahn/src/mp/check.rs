@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use bahn_parameters::conformance::{Effect, Kind, find};
 use bahn_parameters::{
     Definition, Inconsistency, ListError, ListText, ParameterError, ParameterId, ParameterList, chapters,
 };
@@ -72,6 +73,10 @@ struct Report {
     file: String,
     model: &'static str,
     entries: usize,
+    /// Entries that have no effect here.
+    without_effect: usize,
+    /// Entries that act in part here.
+    acting_partly: usize,
     errors: Vec<Item>,
     warnings: Vec<Item>,
 }
@@ -99,6 +104,8 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
         file: path.display().to_string(),
         model: text.model().id(),
         entries: text.entries().len(),
+        without_effect: entries_with(&text, Effect::None),
+        acting_partly: entries_with(&text, Effect::Partly),
         errors: faults.iter().map(error_item).collect(),
         warnings: warnings(&text, options.partial || !faults.is_empty()),
     };
@@ -114,15 +121,26 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
             file_warning(warning, &text, path).print();
         }
         diagnostics::print_line(&format!(
-            "{}: {}, {}, {}, {}",
+            "{}: {}, {} ({} without effect here, {} in part), {}, {}",
             report.file,
             report.model,
             count(report.entries, "parameter"),
+            report.without_effect,
+            report.acting_partly,
             count(report.errors.len(), "error"),
             count(report.warnings.len(), "warning"),
         ));
     }
     Ok(report)
+}
+
+/// How many entries of a list have an effect of a kind here.
+fn entries_with(text: &ListText, effect: Effect) -> usize {
+    let found = |id: ParameterId| find(text.model(), Kind::MachineParameter, &id.to_string());
+    let entries = text.entries().iter();
+    entries
+        .filter(|entry| found(entry.id).is_some_and(|row| row.effect == effect))
+        .count()
 }
 
 fn is_missing(fault: &ListError) -> bool {

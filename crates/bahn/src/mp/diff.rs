@@ -44,6 +44,10 @@ struct Difference {
     unit: &'static str,
     a: Value,
     b: Value,
+    /// What the parameter does here: acts, partly, none.
+    effect: &'static str,
+    /// The same in words; empty for what acts.
+    remark: String,
     /// What the change needs: none, RESET or REF.
     reaction: &'static str,
 }
@@ -67,6 +71,8 @@ impl Difference {
             name: a.title(),
             unit: a.unit,
             reaction: a.reaction,
+            effect: a.effect,
+            remark: a.remark(),
             a: Value {
                 value: a.value,
                 number: a.number,
@@ -100,6 +106,9 @@ fn text(differences: &[Difference], style: Style) -> String {
         };
         let title = style.bold(&format!("{}  {}", difference.parameter, difference.name));
         text += &format!("{title}{needs}\n");
+        if !difference.remark.is_empty() {
+            text += &format!("  {}\n", style.faint(&difference.remark));
+        }
         text += &format!(
             "  {}\n",
             style.removed(&format!("- {}", value(&difference.a, difference.unit)))

@@ -73,6 +73,9 @@ fn text(first: &Row, rows: &[Row], list: &str, style: Style) -> String {
         },
     );
     line("needs:", reaction(first.reaction));
+    for remark in remarks(rows) {
+        line("effect:", &remark);
+    }
     line("versions:", first.versions);
     line("note:", &with_chapters(first.notes));
     text += &labelled_lines("source:", &chapters(first.source));
@@ -101,6 +104,19 @@ fn text(first: &Row, rows: &[Row], list: &str, style: Style) -> String {
         );
     }
     text
+}
+
+/// What has no effect here, or only part of it: said once when it is the same for all indices.
+fn remarks(rows: &[Row]) -> Vec<String> {
+    let runs = rows.chunk_by(|a, b| a.remark() == b.remark());
+    let runs = runs.filter_map(|run| Some((run.first()?, run.last()?)));
+    let said = runs.map(|(first, last)| match first.remark() {
+        remark if remark.is_empty() => remark,
+        remark if rows.len() == 1 || rows.iter().all(|row| row.remark() == remark) => remark,
+        remark if first.parameter == last.parameter => format!("{}: {remark}", first.parameter),
+        remark => format!("{} to {}: {remark}", first.parameter, last.parameter),
+    });
+    said.collect()
 }
 
 /// The related parameters with their names: `MP1070 Radial acceleration, MP1010 Rapid traverse`.

@@ -1,5 +1,6 @@
 //! `bahn mp list`: parameters with value, range, unit and name.
 
+use bahn_parameters::conformance::{Kind, find};
 use bahn_parameters::{Advice, Change, ControlModel, Definition, ParameterList, Reaction};
 use serde::Serialize;
 
@@ -18,6 +19,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
         .filter(|definition| is_wanted(definition, &options.wanted))
         .map(|definition| Row::new(definition, &list))
         .filter(|row| !options.changed || row.value != row.standard)
+        .filter(|row| !options.without_effect || row.effect != "acts")
         .collect();
     match options.values.format {
         Format::Json => print_json(&rows)?,
@@ -61,6 +63,10 @@ pub(super) struct Row {
     /// As number, whatever the format.
     pub number: f64,
     pub meaning: Vec<String>,
+    /// What it does here: acts, partly, none.
+    pub effect: &'static str,
+    /// What is missing of it.
+    pub missing: &'static str,
     pub unit: &'static str,
     pub min: Option<String>,
     pub max: Option<String>,
@@ -87,6 +93,7 @@ pub(super) struct Row {
 impl Row {
     pub fn new(definition: &'static Definition, list: &ParameterList) -> Row {
         let id = definition.id;
+        let entry = find(list.model(), Kind::MachineParameter, &id.to_string());
         let number = list.get(id.number, id.index.unwrap_or(0)).unwrap_or_default();
         let advice = Advice::of(list.model(), id.number);
         let [min, max] = definition
@@ -100,6 +107,8 @@ impl Row {
             value: definition.format_value(number),
             number,
             meaning: definition.meaning(number),
+            effect: entry.map_or("none", |entry| entry.effect.id()),
+            missing: entry.map_or("", |entry| entry.missing),
             unit: definition.unit,
             min,
             max,
@@ -125,6 +134,15 @@ impl Row {
             too_large: advice.map_or("", |advice| advice.too_large),
             related: advice.map_or(&[], |advice| &advice.related),
             model: list.model(),
+        }
+    }
+
+    /// `no effect here (digitizing)`, `acts in part, without: ...`; empty for what acts.
+    pub fn remark(&self) -> String {
+        match self.effect {
+            "acts" => String::new(),
+            "partly" => format!("acts in part here: {}", self.missing),
+            _ => format!("no effect here ({})", self.missing),
         }
     }
 
@@ -164,11 +182,17 @@ fn text(rows: &[Row], style: Style) -> String {
             group = row.group;
         }
         let range = style.faint(&format!("{:<range_width$}", row.range()));
+        let remark = match row.effect {
+            "acts" => "",
+            "partly" => "  (acts in part here)",
+            _ => "  (no effect here)",
+        };
         text += &format!(
-            "{:<9} {:>value_width$}  {range}  {}\n",
+            "{:<9} {:>value_width$}  {range}  {}{}\n",
             row.parameter,
             row.value,
-            row.title()
+            row.title(),
+            style.faint(remark)
         );
     }
     text

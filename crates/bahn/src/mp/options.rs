@@ -50,8 +50,8 @@ itself. The control model is that of --model, otherwise that of the machine in w
 (machine.toml), otherwise the one named in the comments at the beginning of the list (`TNC 415 B`),
 otherwise tnc415b.
 
-JSON: for each file file, model, entries, errors and warnings (number, text, parameter, line, column,
-length, detail). Exit codes: 0 no error, 1 errors, 2 wrong use.";
+JSON: for each file file, model, entries, without_effect, acting_partly, errors and warnings (number,
+text, parameter, line, column, length, detail). Exit codes: 0 no error, 1 errors, 2 wrong use.";
 
 const LIST_EXAMPLES: &str = "\
 Examples:
@@ -60,7 +60,8 @@ Examples:
   bahn mp list 1060 33               those whose number is 1060 or 33..
   bahn mp list --user --model tnc360 those that the operator may change, code number 123
   bahn mp list --list mill.mp --changed
-      What mill.mp sets apart from the list that the control makes by itself.";
+      What mill.mp sets apart from the list that the control makes by itself.
+  bahn mp list --without-effect      what is read and does nothing here, or only part of it";
 
 const EXPLAIN_EXAMPLES: &str = "\
 Examples:
@@ -129,6 +130,9 @@ pub(crate) struct ListOptions {
     /// Only those whose value is not that of the list that the control makes by itself.
     #[arg(long)]
     pub changed: bool,
+    /// Only those that have no effect here, or only part of it.
+    #[arg(long)]
+    pub without_effect: bool,
 }
 
 /// Options of `bahn mp explain`.

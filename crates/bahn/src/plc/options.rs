@@ -71,7 +71,8 @@ Values are decimal, $2A hexadecimal or \"text\". Text behind ; or # is a comment
 Without --cycles the run ends with the last cycle of the script.
 
 JSON: cycles, values, processing_percent (current, maximum), error (number, file, line, or null); with
---trace also trace, with failed expectations also failed_expectations.
+--trace also trace, with failed expectations also failed_expectations (cycle, line, operand,
+expected, found).
 Exit codes: 0 fine, 1 compile error, run-time error or failed expectation, 2 wrong use, 130 ended by Ctrl-C
 (with the report so far).";
 
@@ -87,8 +88,9 @@ Examples:
 
 const WATCH_KEYS: &str = "\
 Keys: r run, s stop, c one cycle, l one line, n start the program and the script anew, up and down choose
-an operand, enter set it, space turn a bit over, a add operands, d remove one, q end. Numbers are shown
-decimal, hexadecimal and binary.
+an operand, enter set it, space turn a bit over, a add operands, d remove one, b set or clear a breakpoint
+at a line of the main file, x stop when the chosen operand changes, t show the course of the values instead
+of binary numbers, q end. Numbers are shown decimal, hexadecimal and binary.
 
 Examples:
   bahn plc watch MAIN.PLC --show I4,O2,W8

@@ -1,18 +1,16 @@
 //! The journal of the non-volatile markers and bytes in a file.
 
-use std::fs::{self, OpenOptions};
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use bahn_exchange::{Exchange, Image, Retention, RetentionStorage};
+use bahn_exchange::{Exchange, Image, JOURNAL_LENGTH, Retention, RetentionError, RetentionStorage};
 
-use crate::{UsageError, files};
+use crate::diagnostics;
+use crate::{UsageError, files, kept};
 
-/// How the journal begins.
-const MARK: &[u8] = b"BPR1";
-
-/// What survives power-off, kept while a program runs.
+/// What survives power-off, kept while a program runs. No other process may have it meanwhile.
 pub(crate) struct Retained {
     path: PathBuf,
     retention: Retention<FileStorage>,
@@ -20,23 +18,37 @@ pub(crate) struct Retained {
 }
 
 impl Retained {
-    /// Opens or begins a journal.
+    /// Opens or begins a journal, and says what is damaged in it.
+    ///
+    /// # Errors
+    /// When another process has it, or it cannot be read or written, or is something else.
     pub fn open(path: &Path) -> Result<Retained, UsageError> {
-        let mut storage = FileStorage(path.to_owned());
-        let content = storage
-            .read()
-            .map_err(|error| files::cannot("read", path, &error))?;
-        // Power-off may leave a part of the mark or zeros; anything else is a file of somebody else.
-        let begins_right = content.iter().zip(MARK).all(|(byte, mark)| byte == mark);
-        if !begins_right && content.iter().any(|byte| *byte != 0) {
+        let there = kept::open(path)?;
+        let is_new = there.is_none();
+        let file = there.map_or_else(|| kept::make(path), Ok)?;
+        if !kept::lock(&file, path)? {
             return Err(UsageError::new(format!(
-                "{} is no file of retained PLC memory",
+                "{} is in use: the machine it belongs to is switched on",
                 path.display()
             )));
         }
+        let storage = FileStorage {
+            path: path.to_owned(),
+            file,
+            is_new,
+            aside: None,
+        };
+        let retention = Retention::open(storage)
+            .map_err(|error| UsageError::new(format!("{}: {error}", path.display())))?;
+        if let Some(damage) = retention.damage() {
+            let aside = retention.storage().aside.as_ref().map_or(String::new(), |aside| {
+                format!("\n  the damaged file is kept: {}", aside.display())
+            });
+            diagnostics::print_line(&format!("warning: {}: {damage}{aside}", path.display()));
+        }
         Ok(Retained {
             path: path.to_owned(),
-            retention: Retention::open(storage).map_err(|error| UsageError::new(error.to_string()))?,
+            retention,
             started: Instant::now(),
         })
     }
@@ -61,36 +73,45 @@ impl Retained {
         self.retention.flush(image).map_err(|error| self.error(&error))
     }
 
-    fn error(&self, error: &impl std::fmt::Display) -> UsageError {
+    fn error(&self, error: &RetentionError) -> UsageError {
         UsageError::new(format!("{}: {error}", self.path.display()))
     }
 }
 
-struct FileStorage(PathBuf);
+/// The journal in its file, which stays open.
+struct FileStorage {
+    path: PathBuf,
+    file: File,
+    is_new: bool,
+    /// Where a damaged journal is kept.
+    aside: Option<PathBuf>,
+}
 
 impl RetentionStorage for FileStorage {
-    fn read(&mut self) -> io::Result<Vec<u8>> {
-        match fs::read(&self.0) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
-            result => result,
+    fn read(&mut self) -> io::Result<Option<Vec<u8>>> {
+        if self.is_new {
+            return Ok(None);
         }
+        let mut content = Vec::new();
+        // One more byte shows that it is longer.
+        let length = JOURNAL_LENGTH as u64 + 1;
+        (&self.file).take(length).read_to_end(&mut content)?;
+        Ok(Some(content))
     }
 
-    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let is_new = !self.0.exists();
-        let mut file = OpenOptions::new().append(true).create(true).open(&self.0)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        if is_new {
-            files::sync_folder(&self.0);
+    fn write(&mut self, at: usize, bytes: &[u8]) -> io::Result<()> {
+        self.file.seek(SeekFrom::Start(at as u64))?;
+        self.file.write_all(bytes)?;
+        if std::mem::take(&mut self.is_new) {
+            self.file.sync_all()?;
+            files::sync_folder(&self.path);
+            return Ok(());
         }
+        self.file.sync_data()
+    }
+
+    fn set_aside(&mut self, journal: &[u8]) -> io::Result<()> {
+        self.aside = Some(kept::set_aside(&self.path, journal)?);
         Ok(())
-    }
-
-    fn replace(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let mut file =
-            files::NewFile::create(&self.0).map_err(|error| io::Error::other(error.to_string()))?;
-        file.write_all(bytes)?;
-        file.finish().map_err(|error| io::Error::other(error.to_string()))
     }
 }

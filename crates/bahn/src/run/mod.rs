@@ -28,13 +28,13 @@ pub(crate) use options::{EXAMPLES, RunMachineOptions};
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_control::{Control, Mode, Position0, Remembered, Setup, Signal};
+use bahn_control::{Checking, Control, Mode, Position0, Remembered, Setup, Signal};
 use bahn_exchange::Exchange;
 use bahn_machine::Machine;
 use bahn_workpiece::Projection;
 
 use crate::cli::Format;
-use crate::cutting::{self, Columns, Cutting, Written};
+use crate::cutting::{self, Columns, Cutting, Memory, Written};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
 use crate::junit;
@@ -57,10 +57,6 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         Ok(machine) => machine,
         Err(faults) => return refused(&faults, options),
     };
-    for assignment in &options.run.mp {
-        let changed = machine.parameters.assign(assignment);
-        changed.map_err(|error| UsageError::new(format!("--mp {assignment}: {error}")))?;
-    }
     let folder = machine.root.join(&machine.folder.programs);
     let programs = Arc::new(FolderPrograms::new(&folder, options.file.as_deref())?);
     let script = match load_script(options, &machine.plant)? {
@@ -68,6 +64,19 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         Err(faults) => return refused(&faults, options),
     };
     let (state, remembered, exchange) = power_on(options, &machine)?;
+    if let Some(name) = &remembered.parameter_list {
+        let list = machine.files.parameter_lists.get(name).cloned().flatten();
+        machine.parameters = list.ok_or_else(|| {
+            UsageError::new(format!(
+                "{name}, which module 9033 selected, is missing or faulty in {}",
+                machine.root.display()
+            ))
+        })?;
+    }
+    for assignment in &options.run.mp {
+        let changed = machine.parameters.assign(assignment);
+        changed.map_err(|error| UsageError::new(format!("--mp {assignment}: {error}")))?;
+    }
     let mut plant = machine.plant.clone();
     let mut log = options
         .run
@@ -100,6 +109,10 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         plc_messages: machine.plc_messages.clone(),
         plc_dialogues: machine.plc_dialogues.clone(),
         tools: machine.tools.clone(),
+        checking: Checking {
+            strict: options.run.strict,
+            skip_unknown: options.run.skip_unknown,
+        },
         inch_feed: options.run.inch_feed.map(Into::into),
         programs: Arc::clone(&programs) as Arc<dyn bahn_control::Programs>,
         files: machine.files.clone(),
@@ -109,6 +122,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     if options.run.block_time {
         control.set_block_time((block_time_ms * 1e3) as u32);
     }
+    control.keep_state(state.is_some());
     let writers = Writers {
         recording: recording(options, &control)?,
         log,
@@ -125,6 +139,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             let columns = options.output.resolution;
             Cutting::new(
                 columns.map_or(Columns::BySize, Columns::Millimetres),
+                Memory::of(&options.output),
                 settings::left_hand(machine.tools.as_ref()),
             )
         }),
@@ -137,10 +152,13 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let interrupt = Interrupt::on_ctrl_c();
     let ended = session.run(&interrupt, &mut progress);
     drop(progress);
-    if let Some(state) = &mut session.writers.state {
-        state.flush(&session.control)?;
-    }
-    finish(session, ended?, &machine, &programs, options, &interrupt)
+    let switched_off = match &mut session.writers.state {
+        Some(state) => state.flush(&session.control),
+        None => Ok(()),
+    };
+    // What could not be stored loses no report.
+    let outcome = finish(session, ended?, &machine, &programs, options, &interrupt)?;
+    switched_off.map(|()| outcome)
 }
 
 /// Prints the faults of files that keep a machine from being switched on.
@@ -175,16 +193,14 @@ fn power_on(
         return Ok((None, begin(), Exchange::default()));
     }
     let found = State::open(&machine.root.join(&machine.folder.state))?;
-    if let Some(damage) = &found.damage {
-        diagnostics::print_line(&format!(
-            "warning: {damage}\n  what the control remembered is lost; the datum is that of machine.toml"
-        ));
+    let mut remembered = found.remembered.unwrap_or_else(begin);
+    if !remembered.fit_pockets(machine.tools.as_ref()) {
+        diagnostics::print_line(
+            "warning: the pockets of the tool table have changed since the last run: they count, not those that the \
+             control remembered",
+        );
     }
-    Ok((
-        Some(found.state),
-        found.remembered.unwrap_or_else(begin),
-        found.exchange,
-    ))
+    Ok((Some(found.state), remembered, found.exchange))
 }
 
 fn operator(options: &RunMachineOptions, machine: &LoadedMachine, programs: &FolderPrograms) -> Operator {
@@ -260,9 +276,12 @@ fn finish(
     let end = match &ended {
         Ended::Completed => End::Completed,
         Ended::Interrupted => End::Interrupted,
-        Ended::Stopped | Ended::TooLong | Ended::Broken(_) | Ended::Hangs(..) => {
-            End::Failed(Box::new(error(&session, &ended)))
-        }
+        Ended::Stopped
+        | Ended::TooLong
+        | Ended::Broken(_)
+        | Ended::Hangs(..)
+        | Ended::NotStored(_)
+        | Ended::Restart(_) => End::Failed(Box::new(error(&session, &ended))),
     };
     let failure = match &end {
         End::Failed(error) => Some(error.clone()),
@@ -350,6 +369,14 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
             "--max-time allows more".to_owned(),
         ),
         Ended::Hangs(what, None) => ("nothing moves any more".to_owned(), what.clone()),
+        Ended::Restart(list) => (
+            "the control restarts with other machine parameters".to_owned(),
+            format!("module 9033 has selected {list}; the next run begins with it"),
+        ),
+        Ended::NotStored(what) => (
+            "what survives power-off cannot be stored".to_owned(),
+            what.clone(),
+        ),
         _ => ("the run was broken off".to_owned(), String::new()),
     };
     let place = run.map(|run| Place::of(run, at));

@@ -40,7 +40,8 @@ the program was started (start+3). Text behind ; or # is a comment. Events are t
 `bahn machine list` names all events, commands, keys and lamps.
 
 State: what survives power-off is read from the state folder of the machine and kept there; --fresh begins
-without it and leaves no trace.
+without it and leaves no trace. A tool change is on the medium before its strobe falls. When control.toml there
+is damaged nothing is started: the message says what to do.
 
 JSON report (--format json): the fields of `bahn test`; machining_time_s is that of the machine with all
 waits. Without a program, or when its run did not begin, only completed and error. machine, model, power_up_s, reference_s; times (what, count, time_s); axes by letter (max_lag,
@@ -130,6 +131,13 @@ pub(crate) struct RunControl {
     /// One machine parameter instead of that of the list, as 4310.0=0 (repeatable, or several with commas).
     #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
     pub mp: Vec<String>,
+    /// Refuse what is otherwise accepted with a warning, such as functions that have no effect here.
+    #[arg(long)]
+    pub strict: bool,
+    /// Pass over words and blocks that nothing here knows, and functions without which the control would
+    /// move differently, each with a warning, instead of ending with an error.
+    #[arg(long, conflicts_with = "strict")]
+    pub skip_unknown: bool,
     /// Simulate the block processing time of the model: the path waits for blocks that are not read yet.
     #[arg(long)]
     pub block_time: bool,
@@ -152,7 +160,7 @@ pub(crate) struct RecordingOptions {
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub record: Option<PathBuf>,
     /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, path.speed,
-    /// path.block, S.rpm, S.volts, operands of the PLC like M2045, I4, W260; by default speeds, positions,
+    /// path.block, S.rpm, S.volts, S.angle, operands of the PLC like M2045, I4, W260; by default speeds, positions,
     /// lags, and the handshake of M functions.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
     pub signals: Vec<Signal>,

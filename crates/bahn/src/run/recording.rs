@@ -139,6 +139,7 @@ pub(super) fn unit(signal: &Signal) -> &'static str {
     match signal.unit() {
         "mm" if rotary => "deg",
         "mm/min" if rotary => "deg/min",
+        "degrees" => "deg",
         unit => unit,
     }
 }
@@ -147,7 +148,7 @@ pub(super) fn unit(signal: &Signal) -> &'static str {
 pub(super) fn value(signal: &Signal, value: f64) -> Decimals {
     let places = match signal {
         Signal::Axis(_, AxisSignal::Actual | AxisSignal::Nominal | AxisSignal::Lag) => 5,
-        Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts => 4,
+        Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts | Signal::SpindleAngle => 4,
         Signal::Axis(..) | Signal::PathSpeed | Signal::SpindleRpm => 3,
         Signal::Block | Signal::Bit(_) | Signal::Number(_) => 0,
     };

@@ -47,6 +47,10 @@ pub(super) enum Ended {
     Broken(Option<Box<Shown>>),
     /// Nothing moves any more; what it waits for, and the message that stopped it.
     Hangs(String, Option<Box<Shown>>),
+    /// Module 9033 selected a list of machine parameters: the control resets.
+    Restart(String),
+    /// What survives power-off cannot be stored; why.
+    NotStored(String),
 }
 
 /// What the session writes while it goes on.
@@ -187,8 +191,13 @@ impl Session {
             self.background.prepare(&mut self.control, realtime, interrupt);
             self.control.cycle(&mut self.machine);
             self.watch()?;
-            if let Some(state) = &mut self.writers.state {
-                state.tick(&self.control)?;
+            if let Some(list) = self.control.take_restart() {
+                return Ok(Ended::Restart(list));
+            }
+            if let Some(state) = &mut self.writers.state
+                && let Err(error) = state.keep(&mut self.control)
+            {
+                return Ok(Ended::NotStored(error.to_string()));
             }
             if let Some(pace) = &mut self.pace {
                 pace.cycle(self.control.time_us());

@@ -28,6 +28,12 @@ use sheet::Sheet;
 use summary::Summary;
 use table::Table;
 
+/// Reads a recording, for fuzzing; an error begins with its line.
+#[doc(hidden)]
+pub fn check_recording(text: &str) -> Result<(), String> {
+    table::Table::read(text).map(drop)
+}
+
 /// Draws a recording and sums it up.
 pub(crate) fn command(options: &ScopeOptions) -> Result<Outcome, UsageError> {
     if options.cursor.len() > 2 {

@@ -44,7 +44,8 @@ Tool table (--tools): a text file with a line of column names and one line for e
   2  62    4    4   BALL D8
 T is the number, L the length, R the radius, R2 the corner radius (0 flat end, as great as R ball
 end), in mm; DL, DR, DR2 are added to them; T-ANGLE is the angle of a drill's point in degrees, DIRECT
-is - for M3, + for M4; other columns are ignored. Columns are separated by blanks, tabs, commas or
+is - for M3, + for M4. A tool that is locked (TL) or whose life is over (CUR.TIME greater than TIME2)
+must not be called; other columns are ignored. Columns are separated by blanks, tabs, commas or
 semicolons. TOOL.T files of later controls (first line BEGIN TOOL .T MM or INCH, fixed columns) load
 too.
 

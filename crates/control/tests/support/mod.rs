@@ -131,6 +131,7 @@ impl Build {
             plc_messages: Vec::new(),
             plc_dialogues: Vec::new(),
             tools: self.tools,
+            checking: Default::default(),
             inch_feed: None,
             programs: Arc::new(self.programs),
             files: NcFiles::default(),

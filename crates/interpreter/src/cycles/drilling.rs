@@ -1,7 +1,7 @@
 //! Cycles 1, 2 and 17: pecking, tapping, rigid tapping.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Function, OverrideLaw};
+use bahn_path::{Function, OverrideLaw, Thread};
 
 use super::Definition;
 use super::machining::{Heights, Tracer, infeeds};
@@ -64,8 +64,9 @@ impl Run {
         trace.finish()
     }
 
-    /// Cycle 2 TAPPING with floating holder: down in one pass, the spindle reverses at the bottom, dwell,
-    /// back with the same feed (inferred), the spindle reverses again [003:4994-5062].
+    /// Cycle 2 TAPPING with floating holder: down in one pass; M05 so early that the spindle stands at the
+    /// bottom, dwell (MP7120.0), M04, the programmed dwell, back with the same feed (inferred); above M05 and M03
+    /// again. With M04 the other way round [003:4994-5062] [000:6060-6116].
     pub(super) fn tapping(&mut self, definition: &Definition, settings: &Settings) -> Result<(), Fault> {
         let setup = definition.length(1, 0, "SETUP")?;
         let depth = definition.length(2, 0, "DEPTH")?;
@@ -74,22 +75,31 @@ impl Run {
         let heights = self.heights(definition, [setup, depth], None, settings)?;
         let clockwise = !matches!(self.modal.spindle, Spindle::CounterClockwise);
         let (forward, back) = if clockwise { (3, 4) } else { (4, 3) };
-        let (from_percent, to_percent) = settings.rules.tapping_override_percent;
+        let rules = &settings.rules.tapping;
+        let lead_s = rules
+            .spindle
+            .map_or(0.0, |spindle| spindle.tapping_lead_s(self.modal.speed_rpm));
+        let [from_percent, to_percent] = rules.override_percent;
         let mut trace = self.tracer();
-        trace.set_override_law(OverrideLaw::Limited {
+        trace.set_override_law(OverrideLaw::Tapping {
             from_percent,
             to_percent,
         });
+        trace.function_before_end(Function::M(5), lead_s);
         trace.feed_height(heights.at_depth(heights.depth), feed);
+        trace.dwell(rules.reversal_dwell_s);
         trace.function(Function::M(back));
         trace.dwell(dwell);
         trace.feed_height(heights.clearance, feed);
+        trace.set_override_law(OverrideLaw::Free);
+        trace.function(Function::M(5));
         trace.function(Function::M(forward));
         trace.finish()
     }
 
-    /// Cycle 17 RIGID TAPPING: the feed follows the spindle, F = S · pitch; the spindle is oriented first so
-    /// that a thread can be cut again (MP7160) [003:5071-5106].
+    /// Cycle 17 RIGID TAPPING: the tool axis follows the spindle down and up, F = S · pitch. The spindle stops
+    /// (M05, inferred: it turns by the cycle alone) and is oriented first, so that a thread can be cut again
+    /// (MP7160). It stands after the cycle, until M03 or M04 (inferred) [003:5071-5106] [000:6118-6141].
     pub(super) fn rigid_tapping(
         &mut self,
         definition: &Definition,
@@ -106,13 +116,25 @@ impl Run {
                 "rigid tapping needs a spindle speed and a pitch",
             ));
         }
-        let orient = settings.rules.orient_before_rigid_tapping;
-        let mut trace = self.tracer();
-        if orient {
-            trace.function(Function::SpindleOrientation(0.0));
+        let turns = matches!(self.modal.spindle, Spindle::Clockwise | Spindle::CounterClockwise);
+        if turns {
+            self.stop_spindle();
         }
-        trace.set_override_law(OverrideLaw::Disabled);
+        let thread = |clockwise, orientation_deg| {
+            OverrideLaw::Spindle(Thread {
+                pitch_mm: pitch.abs(),
+                clockwise,
+                orientation_deg,
+            })
+        };
+        let right_hand = pitch > 0.0;
+        let mut trace = self.tracer();
+        if turns {
+            trace.function(Function::M(5));
+        }
+        trace.set_override_law(thread(right_hand, settings.rules.tapping.orients.then_some(0.0)));
         trace.feed_height(heights.at_depth(heights.depth), feed);
+        trace.set_override_law(thread(!right_hand, None));
         trace.feed_height(heights.clearance, feed);
         trace.finish()
     }

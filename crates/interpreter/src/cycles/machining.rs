@@ -1,7 +1,10 @@
 //! What the machining cycles share: working direction, infeeds, and tracing of movements.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Arc, Curve, FeedRate, OverrideLaw, Plane, Point2, Position};
+use bahn_path::{
+    Arc, At, Curve, FeedRate, Function, OverrideLaw, Plane, Point2, Position, Synchronisation,
+    TechnologyFunction,
+};
 
 use super::Definition;
 use crate::error::{Fault, WarningKind};
@@ -103,6 +106,7 @@ impl Run {
             reversed,
             plane,
             override_law: OverrideLaw::Free,
+            on_the_way: None,
             room,
         }
     }
@@ -133,6 +137,8 @@ pub(super) struct Tracer<'a> {
     reversed: bool,
     plane: Plane,
     override_law: OverrideLaw,
+    /// A function of the next movement.
+    on_the_way: Option<TechnologyFunction>,
     /// Movements that may still be made.
     room: usize,
 }
@@ -217,6 +223,10 @@ impl Tracer<'_> {
             self.room -= 1;
             let mut element = self.run.element(curve, self.at, end, feed);
             element.override_law = self.override_law;
+            element.functions = self
+                .on_the_way
+                .take()
+                .map(|function| Box::new([function]) as Box<[_]>);
             self.run.since_motion = 0;
             self.run.out.push(element, None);
         }
@@ -228,14 +238,30 @@ impl Tracer<'_> {
         if seconds > 0.0 {
             let mut element = self.run.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
             element.dwell_s = seconds;
+            element.override_law = self.override_law;
             self.run.out.push(element, None);
         }
     }
 
     /// A function where the tool stands.
-    pub fn function(&mut self, function: bahn_path::Function) {
-        let at = self.at;
-        self.run.cycle_function(function, at);
+    pub fn function(&mut self, function: Function) {
+        let mut element = self.run.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
+        element.override_law = self.override_law;
+        element.functions = Some(Box::new([TechnologyFunction {
+            function,
+            at: At::Start,
+            synchronisation: Synchronisation::MvsSvs,
+        }]));
+        self.run.out.push(element, None);
+    }
+
+    /// A function so long before the end of the next movement, s, for which the path does not wait.
+    pub fn function_before_end(&mut self, function: Function, lead_s: f64) {
+        self.on_the_way = Some(TechnologyFunction {
+            function,
+            at: At::BeforeEnd(lead_s),
+            synchronisation: Synchronisation::Mos,
+        });
     }
 
     /// Where the tool stands.

@@ -1,6 +1,6 @@
 //! Cycles: definition, call, and what each does.
 //!
-//! Definitions are collected block by block. Cycles 7-11, 13 and 14 act when they are defined, the
+//! Definitions are collected block by block. Cycles 7-11, 13, 14, 19 and 26 act when they are defined, the
 //! others when they are called [003:4849-4857].
 
 mod contour_pocket;
@@ -15,6 +15,7 @@ use bahn_program::{CycleBlock, CycleWord, Value};
 
 pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
 pub(crate) use self::definition::{CycleData, Definition, Resolved};
+use crate::availability::{Feature, names_datum_table, words};
 use crate::error::{Cause, Fault};
 use crate::flow::Flow;
 use crate::run::Run;
@@ -23,12 +24,22 @@ use crate::settings::Settings;
 impl Run {
     /// One block of a cycle definition.
     pub(crate) fn define_cycle(&mut self, block: &CycleBlock, settings: &Settings) -> Result<(), Fault> {
-        if block.sub == 0 && !is_known(block.number, settings) {
-            let detail = format!("this control has no cycle {}", block.number);
+        if block.sub == 0 && is_inhibited(block.number, settings) {
+            let detail = format!("MP7245 inhibits cycle {}", block.number);
             return Err(Fault::new(MessageId::BlockNotKnown, detail));
         }
+        let feature = Feature::Cycle(block.number);
+        let acts_here = is_effective_at_definition(block.number);
+        // A cycle that acts at its call is refused there, unless the control does not know it at all.
+        let is_judged = acts_here || !is_known(block.number, settings);
+        if is_judged && !self.executes(feature, settings)? && acts_here {
+            return Ok(());
+        }
+        if names_datum_table(block) && !self.executes(Feature::Word(words::DATUM_TABLE), settings)? {
+            return Ok(());
+        }
         let words = self.resolve(block, settings)?;
-        if is_effective_at_definition(block.number) {
+        if acts_here {
             return self.define_effective(block, words, settings);
         }
         // A new definition ends M89 [003:4875-4881].
@@ -82,6 +93,9 @@ impl Run {
             };
             return Err(Fault::new(MessageId::CyclIncomplete, "no complete cycle is defined").because(cause));
         };
+        if !self.executes(Feature::Cycle(definition.number), settings)? {
+            return Ok(Flow::Next);
+        }
         if definition.number == 12 {
             return self.called_program(&definition);
         }
@@ -128,6 +142,11 @@ fn is_known(number: u16, settings: &Settings) -> bool {
     settings.model.limits().has_cycle(u32::from(number))
 }
 
+/// MP7245: the machine builder inhibits the cycle [000:6655-6698].
+fn is_inhibited(number: u16, settings: &Settings) -> bool {
+    number < 32 && settings.rules.inhibited_cycles >> number & 1 != 0
+}
+
 fn is_effective_at_definition(number: u16) -> bool {
-    matches!(number, 7..=11 | 13 | 14)
+    matches!(number, 7..=11 | 13 | 14 | 19 | 26)
 }

@@ -1,7 +1,7 @@
 //! Cycles that act when they are defined: transformations, dwell, spindle orientation, contour labels.
 
 use bahn_parameters::MessageId;
-use bahn_path::{At, Axis, Curve, FeedRate, Function, Synchronisation, TechnologyFunction};
+use bahn_path::{Axis, Curve, FeedRate, Function};
 
 use super::Resolved;
 use crate::error::Fault;
@@ -194,17 +194,6 @@ impl Run {
         }
         self.modal.contour_labels = labels;
         Ok(())
-    }
-
-    /// A function in the course of a cycle, where the tool stands.
-    pub(super) fn cycle_function(&mut self, function: Function, at: bahn_path::Position) {
-        let mut element = self.element(Curve::Hold, at, at, FeedRate::Rapid);
-        element.functions = Some(Box::new([TechnologyFunction {
-            function,
-            at: At::Start,
-            synchronisation: Synchronisation::MvsSvs,
-        }]));
-        self.out.push(element, None);
     }
 }
 

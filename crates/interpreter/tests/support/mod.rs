@@ -128,6 +128,13 @@ pub fn run(blocks: &str) -> Run {
     run
 }
 
+/// The same with settings.
+pub fn run_with(blocks: &str, settings: Settings) -> Run {
+    let run = Job::new(program(blocks)).with(|own| *own = settings).run();
+    run.assert_completed();
+    run
+}
+
 struct Shelf(BTreeMap<String, Arc<Program>>);
 
 impl Library for Shelf {

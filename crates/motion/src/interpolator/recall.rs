@@ -1,6 +1,6 @@
 //! What is left of the path when the axes were moved away from it.
 
-use bahn_path::{At, Curve, PathElement, Position, TechnologyFunction};
+use bahn_path::{At, Curve, OverrideLaw, PathElement, Position, TechnologyFunction};
 
 use super::{Interpolator, Phase};
 use crate::gate::{Gate, place};
@@ -26,7 +26,10 @@ impl<E> Interpolator<E> {
         let mut left = element.clone();
         let later = |function: &TechnologyFunction| match place(function) {
             Some(end) => end == Gate::End,
-            None => matches!(function.at, At::Length(length) if length >= self.output_to),
+            None => match function.at {
+                At::Length(length) => length >= self.output_to,
+                _ => self.rest > 0.0,
+            },
         };
         match self.phase {
             Phase::Begin => return Some(left),
@@ -39,6 +42,10 @@ impl<E> Interpolator<E> {
                 (left.curve, left.start, left.end) =
                     element.curve.part(&element.start, &element.end, from, 1.0);
                 left.end = element.end;
+                // The spindle goes on from where it stands.
+                if let OverrideLaw::Spindle(thread) = &mut left.override_law {
+                    thread.orientation_deg = None;
+                }
             }
             Phase::Dwell(_) | Phase::Finish => {
                 left.curve = Curve::Hold;

@@ -1,7 +1,7 @@
 //! Random paths and machines for the laws.
 
 use bahn_motion::Limits;
-use bahn_path::{Axis, FeedRate, PathElement};
+use bahn_path::{Axis, FeedRate, PathElement, Position};
 use proptest::prelude::*;
 
 use super::Path;
@@ -129,11 +129,68 @@ pub fn random_limits() -> impl Strategy<Value = Limits> {
                     corner_angle_deg,
                     servo_lag,
                     cycle_s,
+                    servo_window_s: bahn_motion::SERVO_WINDOW_S,
+                    spindle: Default::default(),
                     feed_override_percent: percent,
                     rapid_override_percent: percent,
                 }
             },
         )
+}
+
+impl Random {
+    /// The same path with a stop at every corner. Beside a line no rotary axis moves, for it makes no corner.
+    pub fn with_stops(&self) -> Random {
+        let mut random = self.clone();
+        for (block, ..) in &mut random.blocks {
+            if let Block::Line { c, .. } = block {
+                *c = 0.0;
+            }
+        }
+        random.limits.corner_angle_deg = 0.0;
+        random.limits.servo_lag = false;
+        random
+    }
+}
+
+/// Whether axes keep their bounds on positions of all contour cycles: the feed limits from cycle to cycle, and
+/// `sqrt(MP1060² + MP1070²)` in second differences of `contour cycle` (1) or the servo's window (more).
+pub fn check_axes(
+    positions: &[Position],
+    limits: &Limits,
+    cycles: usize,
+    times: f64,
+) -> Result<(), TestCaseError> {
+    let t = limits.cycle_s;
+    for axis in Axis::ALL {
+        let i = axis.index();
+        let greatest = limits.max_feed_mm_min[i] / 60.0;
+        let bound = times * 1000.0 * limits.acceleration_m_s2[i].hypot(limits.radial_acceleration_m_s2);
+        for (k, two) in positions.windows(2).enumerate() {
+            let speed = (two[1][axis] - two[0][axis]).abs() / t;
+            prop_assert!(
+                speed <= greatest * (1.0 + 1e-6) + 1e-11 / t,
+                "{axis} {speed} over {greatest} at {k}"
+            );
+        }
+        let w = t * cycles as f64;
+        for (k, window) in positions.windows(2 * cycles + 1).enumerate() {
+            let [a, b, c] = [window[0][axis], window[cycles][axis], window[2 * cycles][axis]];
+            let acceleration = (c - 2.0 * b + a).abs() / (w * w);
+            prop_assert!(
+                acceleration <= bound * (1.0 + 1e-6) + 4e-11 / (w * w),
+                "{axis}: {acceleration} mm/s² over {bound} at sample {k} of {}, {:?}",
+                positions.len(),
+                &positions[k.saturating_sub(1)..(k + 4).min(positions.len())],
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Contour cycles of the servo's window.
+pub fn window_cycles(limits: &Limits) -> usize {
+    (limits.servo_window_s / limits.cycle_s).round() as usize
 }
 
 pub fn random_path(most: usize) -> impl Strategy<Value = Random> {

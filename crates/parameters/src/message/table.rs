@@ -278,6 +278,10 @@ messages! {
         cause "The called tool is in no TOOL DEF block and not in the tool table.";
         remedy "Define the tool before its TOOL CALL, or give a tool table.";
         source "(own message of Bahn)";
+    ToolLocked: "TOOL LOCKED";
+        cause "The called tool is locked in column TL of the tool table [000:9135].";
+        remedy "Release the tool in the table, or call another one.";
+        source "(own message of Bahn)";
     EndlessLoop: "ENDLESS LOOP";
         cause "A jump or call repeats blocks without any movement and comes to no end.";
         remedy "Check the condition of the jump.";

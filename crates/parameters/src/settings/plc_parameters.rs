@@ -101,6 +101,28 @@ impl ParameterList {
         }
     }
 
+    /// Start value of timer T0 to T47 in PLC cycles: MP4110 [000:11764], on the TNC 151/155 MP110 to MP125 and
+    /// MP193 to MP208 for T0 to T31 [001:1833]. 0 for a timer that the model does not have.
+    pub fn timer_preset(&self, timer: u8) -> u16 {
+        self.preset(4110, timer, (110..126).chain(193..209))
+    }
+
+    /// Start value of counter C0 to C31: MP4120 [000:11828], on the TNC 151/155 MP94 to MP109 for C0 to C15
+    /// [001:1832]. 0 for a counter that the model does not have.
+    pub fn counter_preset(&self, counter: u8) -> u16 {
+        self.preset(4120, counter, 94..110)
+    }
+
+    fn preset(&self, new: u16, index: u8, mut old: impl Iterator<Item = u16>) -> u16 {
+        let value = if self.has_old_numbers() {
+            old.nth(index.into()).map(|number| self.old(number))
+        } else {
+            self.get(new, index)
+        };
+        // A cast of a float saturates.
+        value.unwrap_or(0.0) as u16
+    }
+
     /// A number for module 9032, as MP4230 (index 0) or MP4231 (index 1); `None` where there is none
     /// [000:14851-14875].
     pub fn plc_number(&self, list: u8, index: u8) -> Option<f64> {

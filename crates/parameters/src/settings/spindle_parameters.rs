@@ -1,13 +1,18 @@
 //! Everything that spindle, gear change, orientation and tapping need.
 
+use super::bit_of;
 use crate::ParameterList;
 
+/// Bit of the spindle in MP31 and MP32.
+const ENCODER_BIT: u32 = 5;
 /// Gear ranges of the spindle.
 const GEARS: u8 = 8;
 /// Gear ranges that the TNC 151/155 have beside comparator speeds [001:1514-1536].
 const OLD_GEARS: usize = 4;
 /// One increment of the spindle encoder, degrees: 1024 lines, 4-fold [000:5901-5907].
 const INCREMENT_DEG: f64 = 360.0 / 4096.0;
+/// Shortest lead of the spindle's switching off before the depth, s [000:6072-6077].
+const TAPPING_LEAD_MIN_S: f64 = 0.030;
 /// Greatest voltage of the output, V.
 const OUTPUT_VOLTS: f64 = 10.0;
 
@@ -32,6 +37,10 @@ pub struct SpindleParameters {
     pub polarity: SpindlePolarity,
     /// The encoder counts negative with M03: MP3140 (old MP239) [000:5508-5511].
     pub counts_negative: bool,
+    /// Check of the encoder's signal amplitude, letter A: MP31 bit 5; old: none [000:3310-3318].
+    pub check_amplitude: bool,
+    /// Check of the encoder's edge separation, letter B: MP32 bit 5; old: none [000:3320-3328].
+    pub check_edges: bool,
     /// The gear ranges, speeds ascending; those that are not used have rated speed 0 [000:5522-5564].
     pub gears: [Gear; GEARS as usize],
     /// Speeds that M2504 compares with, rpm; TNC 151/155 only, when MP78 to MP85 do not ascend
@@ -185,12 +194,60 @@ pub struct TappingParameters {
     pub orientation: bool,
 }
 
+impl SpindleParameters {
+    /// The gear range for a programmed speed, rpm: the smallest that reaches it.
+    fn gear_for(&self, rpm: f64) -> Option<&Gear> {
+        self.gears
+            .iter()
+            .find(|gear| gear.rated_rpm > 0.0 && rpm <= gear.rated_rpm)
+    }
+
+    /// For each gear range its rated speed, rpm, and how fast the spindle changes its speed in rigid tapping,
+    /// rpm/s: MP3410.3 in the voltage of the gear; 0 where there is no ramp or no gear.
+    pub fn rigid_ramps(&self) -> [[f64; 2]; GEARS as usize] {
+        self.gears.map(|gear| {
+            let rpm_v = if gear.rated_volts > 0.0 {
+                gear.rated_rpm / gear.rated_volts
+            } else {
+                0.0
+            };
+            [gear.rated_rpm, self.ramps.rigid_v_ms * 1000.0 * rpm_v]
+        })
+    }
+
+    /// How long before the depth cycle 2 switches the spindle off, s. With analogue output it is the time of the
+    /// ramp MP3410.2 from the voltage of the speed, less the run-on MP7120.2, but 30 ms where the ramp lasts
+    /// longer than that [000:6072-6077]; with coded output MP7120.1 [000:6111-6116].
+    pub fn tapping_lead_s(&self, rpm: f64) -> f64 {
+        match self.output {
+            SpindleOutput::None => 0.0,
+            SpindleOutput::Coded { .. } => self.tapping.coded_lead_s,
+            SpindleOutput::Analogue { .. } => {
+                let volts = self
+                    .gear_for(rpm)
+                    .map_or(0.0, |gear| rpm * gear.rated_volts / gear.rated_rpm);
+                lead_s(volts, self.ramps.tapping_v_ms, self.tapping.run_on_s)
+            }
+        }
+    }
+}
+
+/// The time of a ramp (V/ms) from a voltage less the run-on, see [`SpindleParameters::tapping_lead_s`].
+fn lead_s(volts: f64, ramp_v_ms: f64, run_on_s: f64) -> f64 {
+    if ramp_v_ms <= 0.0 {
+        return 0.0;
+    }
+    let ramp_s = volts.abs() / ramp_v_ms * 1e-3;
+    ramp_s - run_on_s.min(ramp_s - TAPPING_LEAD_MIN_S).max(0.0)
+}
+
 impl ParameterList {
     /// The parameters of the spindle.
     pub fn spindle_parameters(&self) -> SpindleParameters {
         let kind = self.value((3010, 0), (62, 0)) as u8;
         let (gears, comparator_rpm) = self.gears();
         let old = self.has_old_numbers();
+        let encoder_bit = |number| bit_of(self.get_new(number, 0).unwrap_or_default(), ENCODER_BIT);
         SpindleParameters {
             output: output(kind),
             controlled: if old {
@@ -204,6 +261,8 @@ impl ParameterList {
             zero_permitted: self.spindle_zero_permitted(),
             polarity: polarity(self.value((3130, 0), (172, 0))),
             counts_negative: self.value((3140, 0), (239, 0)) == 1.0,
+            check_amplitude: encoder_bit(31),
+            check_edges: encoder_bit(32),
             gears,
             comparator_rpm,
             min_volts: self.value((3240, 1), (184, 0)),
@@ -343,6 +402,19 @@ fn codes(value: f64) -> SpeedCodes {
 mod tests {
     use super::*;
     use crate::ControlModel;
+
+    #[test]
+    fn the_lead_of_tapping_is_at_least_30_ms() {
+        // 1.8 V at 0.05 V/ms: 36 ms; a run-on of 6 ms or more leaves 30 ms [000:6072-6077].
+        let lead_ms = |run_on| (lead_s(1.8, 0.05, run_on) * 1e6).round() / 1e3;
+        assert_eq!(lead_ms(0.0), 36.0);
+        assert_eq!(lead_ms(0.002), 34.0);
+        assert_eq!(lead_ms(0.006), 30.0);
+        assert_eq!(lead_ms(5.0), 30.0);
+        // A ramp shorter than 30 ms is not delayed.
+        assert_eq!((lead_s(1.0, 0.05, 1.0) * 1e6).round(), 20_000.0);
+        assert_eq!(lead_s(1.8, 0.0, 0.0), 0.0);
+    }
 
     #[test]
     fn the_code_range_reads_as_the_manual_says() {

@@ -74,6 +74,11 @@ pub struct MemoryTable {
 impl MemoryTable {
     /// A table with lines from 0 on.
     pub fn new(kind: TableKind, lines: u16) -> MemoryTable {
+        MemoryTable::with_lines(kind, 0..i32::from(lines))
+    }
+
+    /// A table with lines of these numbers.
+    pub fn with_lines(kind: TableKind, lines: impl Iterator<Item = i32>) -> MemoryTable {
         let columns = kind.columns().iter();
         // Only tool numbers may be -1: there it means none [000:15412][000:15427].
         let empty: Vec<f64> = columns
@@ -84,8 +89,21 @@ impl MemoryTable {
             .collect();
         MemoryTable {
             kind,
-            lines: (0..i32::from(lines)).map(|line| (line, empty.clone())).collect(),
+            lines: lines.map(|line| (line, empty.clone())).collect(),
         }
+    }
+
+    /// Line, element and value of everything in it.
+    pub fn elements(&self) -> impl Iterator<Item = (i32, usize, f64)> {
+        let values = |(line, values): (&i32, &Vec<f64>)| {
+            let line = *line;
+            let values: Vec<f64> = values.clone();
+            values
+                .into_iter()
+                .enumerate()
+                .map(move |(element, value)| (line, element, value))
+        };
+        self.lines.iter().flat_map(values)
     }
 
     /// Its kind.

@@ -6,9 +6,6 @@ use bahn_parameters::ParameterList;
 /// Timers T0-T47, counters C0-C31.
 const TIMERS: usize = 48;
 const COUNTERS: usize = 32;
-/// The preset of timer n is MP4110.n, that of counter n is MP4120.n.
-const TIMER_PRESETS: u16 = 4110;
-const COUNTER_PRESETS: u16 = 4120;
 
 /// The counts that the operands do not show.
 #[derive(Clone, Debug)]
@@ -43,9 +40,10 @@ impl Clock {
     /// A timer that is started counts its preset, in cycles, while T48+n is 1. A start in run k gives
     /// running in runs k+1 to k+N (inferred, the figure is lost) [000:11756-11772].
     fn run_timers(&mut self, image: &mut Image, parameters: &ParameterList) {
-        for (n, count) in (0_u16..).zip(&mut self.timers) {
+        for (timer, count) in (0_u8..).zip(&mut self.timers) {
+            let n = u16::from(timer);
             if set(image, BitArea::T, n) {
-                *count = preset(parameters, TIMER_PRESETS, n);
+                *count = parameters.timer_preset(timer);
             } else {
                 *count = count.saturating_sub(1);
             }
@@ -56,9 +54,10 @@ impl Clock {
     /// A counter that is set counts down by one in every cycle in which its release C96+n is 1; C48+n is 1
     /// until it has counted out (inferred, the figure is lost) [000:11824-11833].
     fn run_counters(&mut self, image: &mut Image, parameters: &ParameterList) {
-        for (n, count) in (0_u16..).zip(&mut self.counters) {
+        for (counter, count) in (0_u8..).zip(&mut self.counters) {
+            let n = u16::from(counter);
             if set(image, BitArea::C, n) {
-                *count = preset(parameters, COUNTER_PRESETS, n);
+                *count = parameters.counter_preset(counter);
             } else if set(image, BitArea::C, 96 + n) {
                 *count = count.saturating_sub(1);
             }
@@ -86,14 +85,6 @@ impl Clock {
         }
         self.edges = enabled;
     }
-}
-
-fn preset(parameters: &ParameterList, number: u16, index: u16) -> u16 {
-    let value = u8::try_from(index)
-        .ok()
-        .and_then(|index| parameters.get(number, index));
-    // A cast of a float saturates.
-    value.unwrap_or(0.0) as u16
 }
 
 fn set(image: &Image, area: BitArea, number: u16) -> bool {

@@ -9,6 +9,7 @@ use std::fmt::{self, Display};
 use std::ops::Range;
 
 use crate::lines::lines;
+use crate::parse::rest_of_word;
 use crate::text::{BYTE_ORDER_MARK, is_blank, to_text, trim};
 use crate::{
     Block, Calculation, Condition, Coordinates, Feed, Header, MFunctions, NumberedBlock, Operation, Program,
@@ -347,9 +348,7 @@ impl Output {
             {
                 self.word("");
                 self.text.push(argument.letter);
-                if argument.letter == 'L' {
-                    self.text.push('A');
-                }
+                self.text.push_str(rest_of_word(code, argument.letter));
                 self.unsigned(argument.value);
             }
         }

@@ -9,7 +9,8 @@ use crate::{MArgument, MFunctions, Operation};
 const MAX_M: u32 = 999;
 
 /// M functions that take words, and their address letters: M103 F [000:7280], M112 T A [000:5134],
-/// M118 handwheel ranges [000:742], and look-ahead LA, filter T and tilting feed F of later software.
+/// M118 handwheel ranges [000:742], M200 to M204 voltages, characteristic and time of a laser [000:9848-9909],
+/// and look-ahead LA, filter T and tilting feed F of later software.
 const ARGUMENTS: &[(u16, &[u8])] = &[
     (103, b"F"),
     (112, b"TA"),
@@ -17,7 +18,22 @@ const ARGUMENTS: &[(u16, &[u8])] = &[
     (120, b"L"),
     (124, b"T"),
     (128, b"F"),
+    (200, b"V"),
+    (201, b"V"),
+    (202, b"F"),
+    (203, b"VT"),
+    (204, b"T"),
 ];
+
+/// Words that are written with more than their letter: look-ahead LA, characteristic FNR, ramp TIME.
+pub(crate) fn rest_of_word(code: u16, letter: char) -> &'static str {
+    match (code, letter) {
+        (120, 'L') => "A",
+        (202, 'F') => "NR",
+        (203 | 204, 'T') => "IME",
+        _ => "",
+    }
+}
 
 /// A block of M functions only: `M8`, `M3 M8`.
 pub(super) fn block(c: &mut Cursor) -> Parsed<Option<Operation>> {
@@ -85,9 +101,14 @@ fn arguments(c: &mut Cursor, code: u16, letters: &[u8], m: &mut MFunctions) -> P
             break;
         }
         c.advance(1);
-        if letter == b'L' && !c.accept(b'A') {
+        let mut rest = rest_of_word(code, char::from(letter)).bytes();
+        if !rest.all(|byte| c.accept(byte)) {
             c.go_to(start);
             break;
+        }
+        if code == 202 {
+            // The number of the characteristic, M202 FNR.5, has a point before it.
+            c.accept(b'.');
         }
         match c.value()? {
             Some(value) => found.push(MArgument {

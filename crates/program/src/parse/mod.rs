@@ -14,6 +14,7 @@ mod path;
 mod probe;
 mod q_parameter;
 mod tool;
+mod unknown;
 
 use bahn_parameters::MessageId;
 
@@ -24,6 +25,7 @@ use cursor::{Cursor, Fault, Parsed, code_length, with_help};
 pub(crate) use cycle::FIRST_PARAMETER_CYCLE;
 pub(crate) use foreign::{is_din_iso, whole_program};
 pub(crate) use formula::FUNCTIONS;
+pub(crate) use m_function::rest_of_word;
 
 /// Reads the block that lies at `raw` in the file. `BEGIN PGM` is a fault where it is not permitted.
 pub(crate) fn parse_block(file: &[u8], raw: RawBlock, may_begin: bool) -> Block {

@@ -1,5 +1,8 @@
 //! The angle of the spindle.
 
+use bahn_parameters::SpindleParameters;
+
+use crate::fault::EncoderFault;
 use crate::plant::Encoder;
 use crate::timing::Timing;
 
@@ -20,8 +23,14 @@ pub(super) struct SpindleEncoder {
 }
 
 impl SpindleEncoder {
-    pub(super) fn read(&mut self, encoder: Encoder, counts_negative: bool, timing: &Timing) {
-        let sign = if counts_negative { -1 } else { 1 };
+    /// Takes a reading; a fault that is to be looked for.
+    pub(super) fn read(
+        &mut self,
+        encoder: Encoder,
+        parameters: &SpindleParameters,
+        timing: &Timing,
+    ) -> Option<EncoderFault> {
+        let sign = if parameters.counts_negative { -1 } else { 1 };
         self.count = encoder.count.wrapping_mul(sign);
         if !self.read_once {
             self.read_once = true;
@@ -36,6 +45,13 @@ impl SpindleEncoder {
             self.rpm = turns / timing.contour_min();
             self.cycle_count = self.count;
             self.steps = 0;
+        }
+        if encoder.amplitude_low && parameters.check_amplitude {
+            Some(EncoderFault::Amplitude)
+        } else if encoder.edges_too_close && parameters.check_edges {
+            Some(EncoderFault::Edges)
+        } else {
+            None
         }
     }
 

@@ -4,9 +4,6 @@ use bahn_parameters::{Gear, SpindleParameters, SpindlePolarity};
 
 use super::Rotation;
 
-/// Shortest lead of the spindle's switching off before the depth, s [000:6072-6077].
-const TAPPING_LEAD_MIN_S: f64 = 0.030;
-
 /// The gear range for a programmed speed in rpm, 0 to 7: the smallest that reaches it. `None` for a speed
 /// that the spindle does not have, also 0 where MP3120 does not permit it: WRONG RPM.
 pub(super) fn gear_for(parameters: &SpindleParameters, rpm: f64) -> Option<u8> {
@@ -51,32 +48,4 @@ pub(super) fn polarity(parameters: &SpindleParameters, rotation: Rotation, inver
         (SpindlePolarity::BothNegative, _) => -1.0,
     };
     if inverted { -sign } else { sign }
-}
-
-/// How long before the depth the spindle is switched off in cycle 2, s: the time of its ramp (V/ms) from its
-/// voltage, less the run-on MP7120.2, but 30 ms where the ramp lasts longer than that [000:6072-6077].
-pub fn tapping_lead_s(volts: f64, ramp_v_ms: f64, run_on_s: f64) -> f64 {
-    if ramp_v_ms <= 0.0 {
-        return 0.0;
-    }
-    let ramp_s = volts.abs() / ramp_v_ms * 1e-3;
-    ramp_s - run_on_s.min(ramp_s - TAPPING_LEAD_MIN_S).max(0.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_lead_of_tapping_is_at_least_30_ms() {
-        // 1.8 V at 0.05 V/ms: 36 ms; a run-on of 6 ms or more leaves 30 ms [000:6072-6077].
-        let lead_ms = |run_on| (tapping_lead_s(1.8, 0.05, run_on) * 1e6).round() / 1e3;
-        assert_eq!(lead_ms(0.0), 36.0);
-        assert_eq!(lead_ms(0.002), 34.0);
-        assert_eq!(lead_ms(0.006), 30.0);
-        assert_eq!(lead_ms(5.0), 30.0);
-        // A ramp shorter than 30 ms is not delayed.
-        assert_eq!((tapping_lead_s(1.0, 0.05, 1.0) * 1e6).round(), 20_000.0);
-        assert_eq!(tapping_lead_s(1.8, 0.0, 0.0), 0.0);
-    }
 }

@@ -1,12 +1,17 @@
 //! Pictures of the part: what all views share.
 
+mod colouring;
+mod edges;
+mod legend;
 mod plan;
 mod raycast;
 mod scale;
 mod shade;
 mod solid;
 mod three_planes;
+mod way;
 
+pub use colouring::Colouring;
 pub use plan::PlanView;
 pub use solid::View3d;
 pub use three_planes::{Projection, ThreePlanes};
@@ -143,6 +148,7 @@ impl Area {
     }
 }
 
+const BACKGROUND: Colour = [252, 252, 250];
 const TITLE_BACKGROUND: Colour = [38, 50, 66];
 const TITLE_TEXT: Colour = [255, 255, 255];
 const TITLE_NOTE: Colour = [190, 205, 222];

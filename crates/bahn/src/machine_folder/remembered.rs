@@ -1,0 +1,352 @@
+//! What the control remembers, as a file: text that people can read, with a check sum in its last line.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use bahn_control::{MovedTool, Position0, Remembered, WrittenElement};
+use bahn_path::{Axis, Position};
+use bahn_plc::TableKind;
+use serde::Deserialize;
+
+/// The form of the file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Form {
+    tool: u32,
+    tool_length: f64,
+    tool_axis: Option<char>,
+    parameter_list: Option<String>,
+    program: Option<String>,
+    offsets_volts: [f64; 5],
+    datum: [BTreeMap<char, f64>; 3],
+    /// Pocket now and pocket in the tool table, by tool; -1 is none.
+    #[serde(default)]
+    pockets: BTreeMap<String, [i32; 2]>,
+    /// Table (T tools, P pockets), line, element, value, value in the file.
+    #[serde(default)]
+    written: Vec<(char, i32, usize, f64, f64)>,
+    #[serde(default)]
+    q: BTreeMap<String, f64>,
+}
+
+/// What the control remembers as a file, with its end mark.
+pub(super) fn write(remembered: &Remembered) -> String {
+    let text = text(remembered);
+    let end = end_mark(text.as_bytes());
+    text + &end
+}
+
+/// What a file says.
+///
+/// # Errors
+/// What of it is damaged.
+pub(super) fn read(file: &[u8]) -> Result<Remembered, String> {
+    let whole = file.strip_suffix(b"\n").unwrap_or(file);
+    let end = whole
+        .iter()
+        .rposition(|byte| *byte == b'\n')
+        .map_or(0, |newline| newline + 1);
+    let (content, mark) = file.split_at(end);
+    if mark != end_mark(content).as_bytes() && mark.trim_ascii() != MENDED.as_bytes() {
+        return Err(match mark.starts_with(b"# end") {
+            true => "its check sum is wrong".to_owned(),
+            false => "its end is missing".to_owned(),
+        });
+    }
+    let text = str::from_utf8(content).map_err(|error| error.to_string())?;
+    content_of(text)
+}
+
+/// The last line: it shows that the file is whole, and that it is as it was written.
+fn end_mark(content: &[u8]) -> String {
+    format!("# end, check {:08x}\n", crc32fast::hash(content))
+}
+
+/// What who mends a file writes instead.
+pub(super) const MENDED: &str = "# end, check by hand";
+
+fn text(remembered: &Remembered) -> String {
+    let mut text = String::from("# What the control remembers over power-off. It writes this file itself.\n");
+    // Writing to a string cannot fail.
+    let mut line = |key: &str, value: String| {
+        let _ = writeln!(text, "{key} = {value}");
+    };
+    line("tool", remembered.tool.to_string());
+    line("tool_length", number(remembered.tool_length));
+    if let Some(axis) = remembered.tool_axis {
+        line("tool_axis", format!("\"{}\"", axis.letter()));
+    }
+    if let Some(list) = &remembered.parameter_list {
+        line("parameter_list", toml::Value::from(list.as_str()).to_string());
+    }
+    if let Some(program) = &remembered.program {
+        line("program", toml::Value::from(program.as_str()).to_string());
+    }
+    if !remembered.written.is_empty() {
+        let rows = remembered.written.iter().map(|row| {
+            let letter = letter_of(row.table);
+            let (value, file) = (number(row.value), number(row.file));
+            format!(
+                "\n  [\"{letter}\", {}, {}, {value}, {file}],",
+                row.line, row.element
+            )
+        });
+        line(
+            "# Elements of tool (T) and pocket (P) table that the PLC wrote: line, element, value, value in the file\nwritten",
+            format!("[{}\n]", rows.collect::<String>()),
+        );
+    }
+    line("offsets_volts", list(remembered.offsets_volts.map(number)));
+    let datum = |Position0(datum): &Position0| {
+        let known = Axis::ALL.into_iter().filter_map(|axis| {
+            let value = datum.get(axis).filter(|value| value.is_finite())?;
+            Some(format!("{} = {}", axis.letter(), number(value)))
+        });
+        format!("{{ {} }}", known.collect::<Vec<_>>().join(", "))
+    };
+    line(
+        "# Workpiece datum of each traverse range, machine coordinates\ndatum",
+        list([0, 1, 2].map(|range| remembered.datums.get(range).map(datum).unwrap_or_default())),
+    );
+    if !remembered.pockets.is_empty() {
+        text.push_str("\n# Tools that are elsewhere than in the pocket of the tool table: pocket now, pocket there\n[pockets]\n");
+        for moved in &remembered.pockets {
+            let [pocket, table] = [moved.pocket, moved.table].map(|pocket| pocket.map_or(-1, i32::from));
+            let _ = writeln!(text, "{} = [{pocket}, {table}]", moved.tool);
+        }
+    }
+    if !remembered.q.is_empty() {
+        text.push_str("\n[q]\n");
+        for (q, value) in remembered.q.iter().filter(|(_, value)| value.is_finite()) {
+            let _ = writeln!(text, "{q} = {}", number(*value));
+        }
+    }
+    text
+}
+
+/// The tables by their letters.
+const TABLES: [(TableKind, char); 3] = [
+    (TableKind::Tool, 'T'),
+    (TableKind::Datum, 'D'),
+    (TableKind::Pocket, 'P'),
+];
+
+fn letter_of(table: TableKind) -> char {
+    TABLES
+        .into_iter()
+        .find(|(known, _)| *known == table)
+        .map_or('T', |(_, letter)| letter)
+}
+
+fn list<const N: usize>(values: [String; N]) -> String {
+    format!("[{}]", values.join(", "))
+}
+
+/// A number that reads back as the same one, with a point.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+fn content_of(text: &str) -> Result<Remembered, String> {
+    let form: Form = toml::from_str(text).map_err(|error| {
+        let line = error.span().map_or(1, |span| {
+            text.get(..span.start)
+                .map_or(1, |before| before.matches('\n').count() + 1)
+        });
+        format!("line {line}: {}", error.message())
+    })?;
+    let axis = |letter: char| {
+        u8::try_from(letter)
+            .ok()
+            .and_then(Axis::from_letter)
+            .ok_or_else(|| format!("`{letter}` is no axis"))
+    };
+    let mut datums = [Position0::default(); 3];
+    for (datum, values) in datums.iter_mut().zip(&form.datum) {
+        let mut position = Position::ZERO;
+        for (letter, value) in values {
+            position[axis(*letter)?] = finite(*value)?;
+        }
+        *datum = Position0(position);
+    }
+    let mut pockets = Vec::new();
+    for (name, [pocket, table]) in form.pockets {
+        let tool = name.parse().map_err(|_| format!("`{name}` is no tool number"))?;
+        let place = |number: i32| match number {
+            -1 => Ok(None),
+            _ => u16::try_from(number)
+                .map(Some)
+                .map_err(|_| format!("{number} is no pocket")),
+        };
+        let (pocket, table) = (place(pocket)?, place(table)?);
+        pockets.push(MovedTool { tool, pocket, table });
+    }
+    pockets.sort_by_key(|moved| moved.tool);
+    let mut written = Vec::new();
+    for (letter, line, element, value, file) in form.written {
+        let table = TABLES.into_iter().find(|(_, known)| *known == letter);
+        let (table, _) = table.ok_or_else(|| format!("`{letter}` is no table"))?;
+        let (value, file) = (finite(value)?, finite(file)?);
+        written.push(WrittenElement {
+            table,
+            line,
+            element,
+            value,
+            file,
+        });
+    }
+    let mut q = Vec::new();
+    for (name, value) in &form.q {
+        let number = name.parse().map_err(|_| format!("`{name}` is no Q parameter"))?;
+        q.push((number, finite(*value)?));
+    }
+    q.sort_by_key(|(number, _)| *number);
+    for volts in form.offsets_volts {
+        finite(volts)?;
+    }
+    Ok(Remembered {
+        datums,
+        tool: form.tool,
+        tool_length: finite(form.tool_length)?,
+        tool_axis: form.tool_axis.map(axis).transpose()?,
+        pockets,
+        written,
+        q,
+        offsets_volts: form.offsets_volts,
+        parameter_list: form.parameter_list,
+        program: form.program,
+    })
+}
+
+fn finite(value: f64) -> Result<f64, String> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("{value} is no value"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A file in which every part is written.
+    fn full() -> Remembered {
+        let mut position = Position::ZERO;
+        position[Axis::X] = 412.5;
+        position[Axis::C] = -0.001;
+        Remembered {
+            datums: [Position0(position), Position0::default(), Position0(position)],
+            tool: 12,
+            tool_length: 81.25,
+            tool_axis: Some(Axis::Z),
+            pockets: vec![
+                MovedTool {
+                    tool: 3,
+                    pocket: Some(14),
+                    table: Some(3),
+                },
+                MovedTool {
+                    tool: 12,
+                    pocket: None,
+                    table: Some(14),
+                },
+            ],
+            written: vec![
+                WrittenElement {
+                    table: TableKind::Tool,
+                    line: 12,
+                    element: 7,
+                    value: 31.0,
+                    file: 0.0,
+                },
+                WrittenElement {
+                    table: TableKind::Pocket,
+                    line: 3,
+                    element: 3,
+                    value: 1.0,
+                    file: -0.5,
+                },
+            ],
+            q: vec![(1, 0.5), (107, -1e-4)],
+            offsets_volts: [0.0, 0.0015, 0.0, 0.0, 0.0],
+            parameter_list: Some("LATHE.MP".to_owned()),
+            program: Some("7432.H".to_owned()),
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn what_is_written_is_read(
+            tool in 0..99u32,
+            values in prop::array::uniform5(-1e5..1e5f64),
+            axis in prop::option::of(0..Axis::COUNT),
+            program in prop::option::of(".{0,12}"),
+            pockets in prop::collection::btree_map(0..300u32, any::<(Option<u16>, Option<u16>)>(), 0..5),
+            q in prop::collection::btree_map(0..300u16, -1e9..1e9f64, 0..5),
+        ) {
+            let moved = |(tool, (pocket, table))| MovedTool { tool, pocket, table };
+            let remembered = Remembered {
+                tool,
+                tool_length: values[2],
+                tool_axis: axis.and_then(|axis| Axis::ALL.get(axis).copied()),
+                pockets: pockets.into_iter().map(moved).collect(),
+                q: q.into_iter().collect(),
+                offsets_volts: values,
+                program,
+                ..full()
+            };
+            prop_assert_eq!(read(write(&remembered).as_bytes()), Ok(remembered));
+        }
+
+        #[test]
+        fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            prop_assert!(read(&bytes).is_err());
+            let _ = read(&[&bytes, MENDED.as_bytes()].concat());
+        }
+
+        #[test]
+        fn any_text_is_read_or_refused(text in "([a-z_]{1,8}( = |\\[|\\])[0-9a-z\\[\\]{}\"., -]{0,12}\n){0,8}") {
+            let _ = read(format!("{text}{MENDED}").as_bytes());
+        }
+    }
+
+    /// Whatever bit flips: nothing wrong is loaded.
+    #[test]
+    fn every_flipped_bit_is_found() {
+        let whole = write(&full()).into_bytes();
+        for at in 0..whole.len() {
+            for bit in 0..8 {
+                let mut damaged = whole.clone();
+                damaged[at] ^= 1 << bit;
+                assert!(read(&damaged).is_err(), "bit {bit} of byte {at}");
+            }
+        }
+    }
+
+    /// Wherever it is cut: nothing is loaded.
+    #[test]
+    fn every_truncation_is_found() {
+        let whole = write(&full()).into_bytes();
+        for length in 0..whole.len() {
+            assert!(read(&whole[..length]).is_err(), "{length} bytes");
+        }
+        assert_eq!(read(&whole), Ok(full()));
+    }
+
+    /// Who has mended a file says so in its last line; what he wrote is read as strictly.
+    #[test]
+    fn a_file_can_be_mended_by_hand() {
+        let whole = write(&full());
+        let content = &whole[..whole.rfind("# end").unwrap()];
+        assert_eq!(read(format!("{content}{MENDED}\r\n").as_bytes()), Ok(full()));
+        assert_eq!(read(format!("{content}{MENDED}").as_bytes()), Ok(full()));
+        let wrong = content.replace("tool_length = 81.25", "tool_length = 8l.25");
+        let error = read(format!("{wrong}{MENDED}").as_bytes()).unwrap_err();
+        assert!(error.starts_with("line 3: "), "{error}");
+    }
+}

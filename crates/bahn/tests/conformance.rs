@@ -1,0 +1,244 @@
+//! The registry of what each function does: complete, proven, shown by the commands.
+#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
+
+mod support;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use bahn_parameters::conformance::{Effect, Entry, Kind, all};
+use bahn_parameters::{ControlModel, MessageId};
+use support::Folder;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn source_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).into_iter().flatten() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            source_files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The names of all tests, `crate::name`: functions behind `#[test]`.
+fn tests() -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for room in fs::read_dir(root().join("crates")).unwrap() {
+        let room = room.unwrap();
+        let mut files = Vec::new();
+        source_files(&room.path().join("src"), &mut files);
+        source_files(&room.path().join("tests"), &mut files);
+        for file in files {
+            let text = fs::read_to_string(file).unwrap();
+            for part in text.split("#[test]").skip(1) {
+                let name = part.split_once("fn ").and_then(|(_, rest)| rest.split_once('('));
+                if let Some((name, _)) = name {
+                    names.insert(format!("{}::{name}", room.file_name().to_string_lossy()));
+                }
+            }
+        }
+    }
+    names
+}
+
+#[test]
+fn what_acts_is_proven_by_a_test() {
+    let tests = tests();
+    assert!(tests.len() > 1000, "{}", tests.len());
+    let is_unproven = |entry: &&Entry| entry.effect != Effect::None && !tests.contains(entry.proof);
+    let unproven: Vec<String> = all()
+        .iter()
+        .filter(is_unproven)
+        .map(|entry| format!("{}: there is no test `{}`", entry.name, entry.proof))
+        .collect();
+    assert!(unproven.is_empty(), "{}", unproven.join("\n"));
+}
+
+/// Names that lack a row, and rows that name nothing.
+fn compare(kind: Kind, names: impl IntoIterator<Item = String>) {
+    let names: BTreeSet<String> = names.into_iter().collect();
+    let rows: Vec<&str> = all()
+        .iter()
+        .filter(|entry| entry.kind == kind)
+        .map(|entry| entry.name)
+        .collect();
+    let unique: BTreeSet<String> = rows.iter().map(|row| (*row).to_owned()).collect();
+    assert_eq!(unique.len(), rows.len(), "a row stands twice");
+    let missing: Vec<_> = names.difference(&unique).collect();
+    let idle: Vec<_> = unique.difference(&names).collect();
+    assert!(
+        missing.is_empty() && idle.is_empty(),
+        "no row: {missing:?}; no object: {idle:?}"
+    );
+}
+
+#[test]
+fn every_marker_module_and_message_has_its_row() {
+    let markers = bahn_exchange::signal::all();
+    compare(
+        Kind::Marker,
+        markers.iter().map(|signal| signal.operand.to_string()),
+    );
+    let modules = bahn_plc::modules();
+    compare(
+        Kind::Module,
+        modules.iter().map(|module| module.number.to_string()),
+    );
+    compare(
+        Kind::Message,
+        MessageId::ALL.iter().map(|id| id.name().to_owned()),
+    );
+}
+
+/// M0 to M99 on every model; beyond, what the manuals name, once on each model.
+#[test]
+fn every_m_function_has_one_row() {
+    for model in ControlModel::ALL {
+        for code in 0..=99 {
+            let name = format!("M{code}");
+            let rows = all()
+                .iter()
+                .filter(|entry| entry.kind == Kind::MFunction && entry.is_of(model) && entry.covers(&name));
+            assert_eq!(rows.count(), 1, "{name} on {model}");
+        }
+    }
+}
+
+/// docs/conformance.md is what the command prints. It is written anew with BAHN_WRITE_DOCS=1.
+#[test]
+fn the_document_is_the_table() {
+    let path = root().join("docs/conformance.md");
+    let run = Folder::new().bahn("conformance --format markdown");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    if std::env::var_os("BAHN_WRITE_DOCS").is_some() {
+        fs::write(&path, run.out()).unwrap();
+    }
+    let written = fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        written == run.out(),
+        "docs/conformance.md is not what `bahn conformance --format markdown` prints: make conformance"
+    );
+}
+
+#[test]
+fn the_table_can_be_narrowed() {
+    let folder = Folder::new();
+    let run = folder.bahn("conformance --model tnc360 --kind m");
+    assert!(
+        !run.out().contains("M103") && run.out().contains("M90 "),
+        "{}",
+        run.out()
+    );
+    let json = folder.bahn("conformance --model tnc425 --kind parameter --effect none --format json");
+    let table: serde_json::Value = serde_json::from_str(&json.out()).unwrap();
+    let entries = table["entries"].as_array().unwrap();
+    assert!(entries.iter().any(|entry| entry["name"] == "MP1920"));
+    assert!(entries.iter().all(|entry| entry["effect"] == "none"));
+    // The parameters of a TNC 425, each counted once: 885 in the manual's list for it.
+    let total = |key: &str| table["totals"][0][key].as_u64().unwrap();
+    assert_eq!(total("acts") + total("partly") + total("none"), 885);
+    assert_eq!(folder.bahn("conformance --kind x").code(), 2);
+}
+
+/// The same program in all three commands: refused, strict, passed over.
+#[test]
+fn the_commands_say_what_is_not_done() {
+    let folder = Folder::with_program("L X+1 R0 FMAX\nL X+2 R0 FMAX M107\nL X+3 R0 FMAX M114");
+    let check = folder.bahn("check main.H");
+    assert_eq!(check.code(), 1);
+    assert!(check.err().contains("M107 has no effect here"), "{}", check.err());
+    assert!(check.err().ends_with("1 error, 1 warning\n"), "{}", check.err());
+    assert!(
+        folder
+            .bahn("check main.H --strict")
+            .err()
+            .ends_with("2 errors, 0 warnings\n")
+    );
+    assert_eq!(folder.bahn("check main.H --skip-unknown").code(), 0);
+    let test = folder.bahn("test main.H --format json");
+    assert_eq!(test.code(), 1);
+    let report = test.json();
+    assert_eq!(
+        report["error"]["message"],
+        "FUNCTION NOT AVAILABLE ON THIS CONTROL"
+    );
+    assert_eq!(report["error"]["block"], 3);
+    assert_eq!(report["warnings"][0]["block"], 2);
+    let skipped = folder.bahn("test main.H --skip-unknown --format json");
+    assert_eq!(skipped.code(), 0, "{}", skipped.err());
+    assert_eq!(skipped.json()["warnings"][1]["block"], 3);
+    assert_eq!(folder.bahn("test main.H --strict --skip-unknown").code(), 2);
+}
+
+#[test]
+fn the_machine_says_it_too() {
+    let folder = Folder::with_program("L X+10 R0 FMAX\nL X+12 R0 FMAX M107\nL X+13 R0 FMAX M114");
+    let mill = root().join("machines/mill");
+    let run = |options: &str| {
+        let mill = mill.display();
+        folder.bahn(&format!(
+            "run main.H --machine {mill} --fresh --format json {options}"
+        ))
+    };
+    let refused = run("");
+    assert_eq!(refused.code(), 1, "{}", refused.err());
+    let skipped = run("--skip-unknown");
+    assert_eq!(skipped.code(), 0, "{}", skipped.err());
+    let text = skipped.out();
+    assert!(
+        text.contains("M107 has no effect here") && text.contains("passed over: M114"),
+        "{text}"
+    );
+}
+
+#[test]
+fn barred_tools_are_refused() {
+    let folder = Folder::with_program("TOOL CALL 1 Z S100\nTOOL CALL 2 Z S100");
+    folder.write("tool.t", "T;R;TL;TIME2;CUR.TIME;RT\n1;5;;20;19;\n2;5;L;;;\n");
+    let message = |folder: &Folder| {
+        let run = folder.bahn("test main.H --tools tool.t --format json");
+        run.json()["error"]["message"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned()
+    };
+    assert_eq!(message(&folder), "TOOL LOCKED");
+    folder.write("tool.t", "T;R;TL;TIME2;CUR.TIME;RT\n1;5;;20;19;\n2;5;;20;21;\n");
+    assert_eq!(message(&folder), "MAX. TOOL LIFE EXPIRED");
+}
+
+#[test]
+fn parameters_say_that_they_have_no_effect() {
+    let folder = Folder::new();
+    let explained = folder.bahn("mp explain 7350").out();
+    assert!(
+        explained.contains("no effect here (colours of the screen)"),
+        "{explained}"
+    );
+    assert!(
+        folder
+            .bahn("mp explain 7680")
+            .out()
+            .contains("acts in part here: ")
+    );
+    assert!(!folder.bahn("mp explain 1060").out().contains("effect"));
+    let listed = folder.bahn("mp list 7350 1060").out();
+    assert_eq!(listed.matches("(no effect here)").count(), 1, "{listed}");
+    let without = folder.bahn("mp list --without-effect --format json").out();
+    assert!(!without.contains("\"acts\"") && without.contains("MP7350"));
+    folder.write("a.mp", "MP7350 : 5\n").write("b.mp", "MP7350 : 6\n");
+    let difference = folder.bahn("mp diff a.mp b.mp").out();
+    assert!(
+        difference.contains("no effect here (colours of the screen)"),
+        "{difference}"
+    );
+    folder.bahn("mp new -o mill.mp");
+    let check = folder.bahn("mp check mill.mp").err();
+    assert!(check.contains(" without effect here, "), "{check}");
+}

@@ -1,0 +1,160 @@
+//! Tool and pocket table as modules 9092 to 9094 see them [000:15375-15545]: what the PLC writes there counts
+//! at once and survives power-off.
+
+use bahn_path::ToolShape;
+use bahn_plc::{MemoryTable, TableFile, TableKind};
+
+use crate::control::Control;
+use crate::setup::{Tool, WrittenElement};
+
+/// Elements of the tool table [000:15431-15454].
+const L: usize = 0;
+const R: usize = 1;
+const R2: usize = 8;
+const DL: usize = 9;
+const DR: usize = 10;
+const DR2: usize = 11;
+/// Elements of the pocket table [000:15422-15429].
+const T: usize = 0;
+const ST: usize = 1;
+/// No tool in a pocket.
+const NO_TOOL: f64 = -1.0;
+
+/// The tables as they were loaded: what differs from them was written.
+#[derive(Debug, Default)]
+pub(crate) struct LoadedTables(Vec<MemoryTable>);
+
+impl LoadedTables {
+    /// The tables of a tool table.
+    fn of<'t>(tools: impl Iterator<Item = (u32, &'t Tool)> + Clone) -> LoadedTables {
+        let line = |number: u32| i32::try_from(number).unwrap_or(i32::MAX);
+        let pockets = tools.clone().filter_map(|(_, tool)| tool.pocket);
+        let last = pockets.max().unwrap_or(0);
+        let mut table =
+            MemoryTable::with_lines(TableKind::Tool, tools.clone().map(|(number, _)| line(number)));
+        let mut magazine = MemoryTable::with_lines(TableKind::Pocket, (0..=last).map(i32::from));
+        for (number, tool) in tools {
+            let shape = tool.shape;
+            for (element, value) in [(L, shape.length), (R, shape.radius), (R2, shape.corner_radius)] {
+                table.set_value(line(number), element, value);
+            }
+            if let Some(pocket) = tool.pocket {
+                magazine.set_value(pocket.into(), T, number.into());
+                magazine.set_value(pocket.into(), ST, f64::from(u8::from(tool.special)));
+            }
+        }
+        LoadedTables(vec![table, magazine])
+    }
+}
+
+impl Control {
+    /// The tables at power-on, with what was written before. Elements whose table has changed since are as it
+    /// says.
+    pub(crate) fn set_up_tables(&mut self, written: &[WrittenElement]) {
+        let Some(tools) = self.tools.all() else { return };
+        self.loaded_tables = LoadedTables::of(tools);
+        for table in &self.loaded_tables.0 {
+            self.link.files.tables.insert(table.kind(), table.clone());
+        }
+        self.mirror_pockets();
+        for element in written {
+            let loaded = self
+                .loaded_tables
+                .0
+                .iter()
+                .find(|table| table.kind() == element.table);
+            let as_before =
+                loaded.and_then(|table| table.value(element.line, element.element)) == Some(element.file);
+            if let Some(table) = self.link.files.tables.get_mut(&element.table)
+                && as_before
+            {
+                table.set_value(element.line, element.element, element.value);
+            }
+        }
+        self.take_tables();
+    }
+
+    /// The tools have changed their pockets: the pocket table says so.
+    pub(crate) fn mirror_pockets(&mut self) {
+        let (Some(tools), Some(magazine)) = (
+            self.tools.all(),
+            self.link.files.tables.get_mut(&TableKind::Pocket),
+        ) else {
+            return;
+        };
+        let mut line = magazine.next_line(0);
+        while let Some(pocket) = line {
+            magazine.set_value(pocket, T, NO_TOOL);
+            magazine.set_value(pocket, ST, 0.0);
+            line = magazine.next_line(pocket.saturating_add(1));
+        }
+        for (number, tool) in tools {
+            if let Some(pocket) = tool.pocket {
+                magazine.set_value(pocket.into(), T, number.into());
+                magazine.set_value(pocket.into(), ST, f64::from(u8::from(tool.special)));
+            }
+        }
+    }
+
+    /// Module 9094 wrote: the tools are as the tables say, the tool in the spindle too.
+    pub(crate) fn initialise_geometry(&mut self) {
+        let before = self.tools.length(self.tools.number);
+        self.take_tables();
+        let longer = self.tools.length(self.tools.number) - before;
+        if !self.tools.lengthen_held(longer) {
+            self.offsets.tool_length += longer;
+        }
+    }
+
+    /// The tools as the tables say.
+    fn take_tables(&mut self) {
+        let files = &self.link.files.tables;
+        let (Some(table), Some(magazine)) = (files.get(&TableKind::Tool), files.get(&TableKind::Pocket))
+        else {
+            return;
+        };
+        self.tools.take(|number, loaded| {
+            let line = i32::try_from(number).ok()?;
+            let value = |element| table.value(line, element);
+            Some(ToolShape {
+                length: value(L)? + value(DL)?,
+                radius: value(R)? + value(DR)?,
+                corner_radius: value(R2)? + value(DR2)?,
+                ..loaded
+            })
+        });
+        self.tools.empty_magazine();
+        let mut line = magazine.next_line(0);
+        while let Some(pocket) = line {
+            let value = |element| magazine.value(pocket, element).unwrap_or_default();
+            if value(T) >= 0.0 {
+                self.tools.put(value(T) as u32, pocket, value(ST) != 0.0);
+            }
+            line = magazine.next_line(pocket.saturating_add(1));
+        }
+    }
+
+    /// What module 9094 wrote and no tool change can say.
+    pub(crate) fn written_elements(&self) -> Vec<WrittenElement> {
+        let mut written = Vec::new();
+        for loaded in &self.loaded_tables.0 {
+            let Some(table) = self.link.files.tables.get(&loaded.kind()) else {
+                continue;
+            };
+            for (line, element, value) in table.elements() {
+                let by_tools = loaded.kind() == TableKind::Pocket && matches!(element, T | ST);
+                match loaded.value(line, element) {
+                    Some(file) if file != value && !by_tools => written.push(WrittenElement {
+                        table: loaded.kind(),
+                        line,
+                        element,
+                        value,
+                        file,
+                    }),
+                    _ => {}
+                }
+            }
+        }
+        written
+    }
+}

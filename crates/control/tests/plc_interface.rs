@@ -1,0 +1,278 @@
+//! Between NC and PLC: read-in inhibit, queues, the free analogue output, modules of status and spindle, tool
+//! changes that are broken off.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+#[path = "support/stand.rs"]
+mod stand;
+mod support;
+
+use bahn_servo::Plant;
+use stand::*;
+use support::*;
+
+/// M2614 = I20: behind the block whose strobe is acknowledged nothing is executed until it falls, whether the
+/// function comes at the begin or at the end of its block [000:10835].
+#[test]
+fn read_in_inhibit() {
+    let plc = format!("{ACKNOWLEDGE}       L     I20\n       = M2614\n");
+    for (program, stands_at) in [
+        ("M8\nL X+60 R0 F6000\nL X+70", 50.0),
+        ("L X+60 R0 F6000 M9\nL X+70", 60.0),
+        ("L X+60 R0 F6000 M3\nL X+70", 60.0),
+        ("L X+60 R0 F6000\nTOOL CALL 1 Z S500\nL X+70", 60.0),
+    ] {
+        let mut rig = bench_with(&plc, program);
+        rig.event("key A press");
+        rig.start();
+        rig.seconds(3.0);
+        near(display(&rig, 'X'), stands_at);
+        assert!(!rig.control.snapshot().ended, "{program}");
+        assert_eq!(rig.control.snapshot().run, bahn_control::RunState::Running);
+        rig.event("key A release");
+        rig.until(3.0, "it goes on", |rig| rig.control.snapshot().ended);
+        near(display(&rig, 'X'), 70.0);
+    }
+    // Without a strobe M2614 holds nothing.
+    let mut rig = bench_with(&plc, "L X+60 R0 F6000\nL X+70");
+    rig.event("key A press");
+    rig.start();
+    rig.until(3.0, "the end", |rig| rig.control.snapshot().ended);
+}
+
+/// M functions at which the axes do not stop (MP7440 bit 2) come faster than the PLC takes them, which waits
+/// 200 ms each: the path is held, and every one of them arrives, in its order.
+#[test]
+fn a_slow_plc_holds_the_path() {
+    // T0 runs 10 cycles of 20 ms.
+    let plc = "
+       L     M2045
+       AN    M2482
+       = T0
+       L     M2045
+       A     T48
+       O     M2482
+       A     M2045
+       = M2482
+";
+    let count: i32 = 60;
+    let blocks: String = (0..count)
+        .map(|number| format!("L IX+0.5 R0 F6000 M{}\n", 40 + number % 40))
+        .collect();
+    let mut rig = ready(
+        bench(plc)
+            .mp("7440=%00111")
+            .mp("4110.0=10")
+            .program("1.H", &format!("{blocks}L X+100")),
+    );
+    rig.start();
+    let mut seen = Vec::new();
+    let mut strobe = false;
+    let mut farthest = 0;
+    let end = rig.control.time_us() + 60_000_000;
+    while rig.control.time_us() < end && !rig.control.snapshot().ended {
+        rig.cycle();
+        if rig.bit("M2045") && !strobe {
+            seen.push(rig.number("W260"));
+        }
+        strobe = rig.bit("M2045");
+        let block = rig.control.snapshot().block.map_or(0, |block| block.block) as i32;
+        farthest = farthest.max(block - seen.len() as i32);
+    }
+    let expected: Vec<i32> = (0..count).map(|number| 40 + number % 40).collect();
+    assert_eq!(seen, expected);
+    // 16 may wait; braking from 100 mm/s at 1 m/s² takes 5 mm, 10 blocks; one is on its way.
+    assert!((10..=16 + 10 + 2).contains(&farthest), "{farthest} ahead");
+    assert!(rig.control.snapshot().ended);
+}
+
+/// Voltage of output S.
+fn volts(rig: &Rig) -> f64 {
+    rig.machine.spindle().unwrap().volts
+}
+
+/// MP3011 = 1: output S gives a voltage in proportion to the contour feed, 10 V at MP3012 [000:9835-9839].
+#[test]
+fn analogue_output_by_feed() {
+    let mut rig = ready(
+        bench(ACKNOWLEDGE)
+            .mp("3010=0")
+            .mp("3011=1")
+            .mp("3012=8000")
+            .program("1.H", "L X+150 R0 F6000"),
+    );
+    assert_eq!(volts(&rig), 0.0);
+    rig.start();
+    rig.until(2.0, "the feed", |rig| {
+        (rig.control.snapshot().feed_mm_min - 6000.0).abs() < 1e-6
+    });
+    rig.cycle();
+    assert!((volts(&rig) - 7.5).abs() < 1e-9, "{}", volts(&rig));
+    rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+    rig.cycle();
+    assert_eq!(volts(&rig), 0.0);
+}
+
+/// Several changes of one item by module 9036 in one scan: the last one holds. All factors, then X, then X
+/// again; handwheel axis Y, then Z.
+#[test]
+fn the_last_change_of_status_holds() {
+    let change = |item: u8, value: u8| {
+        format!("       PS    K+{item}\n       PS    K+{value}\n       CM    9036\n       PL    B200\n")
+    };
+    let changes = [(5, 4), (0, 2), (0, 7), (6, 1), (6, 2)].map(|(item, value)| change(item, value));
+    let plc = format!(
+        "       L     I20\n       AN    M0\n       CMT   CHANGE\n       L     I20\n       = M0\n       EM\nLBL CHANGE\n{}",
+        changes.concat()
+    );
+    let read = |item: u8, to: u16| format!("       PS    K+{item}\n       CM    9035\n       PL    W{to}\n");
+    let reads = [(9, 100), (11, 102), (12, 104)]
+        .map(|(item, to)| read(item, to))
+        .concat();
+    let plc = format!("{reads}{plc}");
+    let mut rig = ready(
+        bench(&plc)
+            .mp("7641=1")
+            .mp("7640=2")
+            .program("1.H", "L X+60 R0 F6000"),
+    );
+    rig.event("key A press");
+    rig.seconds(0.3);
+    assert_eq!(rig.number("B200"), 0);
+    assert_eq!(["W100", "W102", "W104"].map(|word| rig.number(word)), [2, 7, 4]);
+}
+
+/// A tool change that is broken off before the PLC has acknowledged it: the old tool is in the spindle, with
+/// its length, and the same call is a change again.
+#[test]
+fn a_change_that_is_broken_off_did_not_happen() {
+    let plc = "       L     M2046\n       A     I20\n       = M2483\n       L     M2043\n       = M2480\n";
+    let mut rig = ready(
+        bench(plc)
+            .mp("7480.0=1")
+            .program("1.H", "TOOL CALL 1 Z S0\nTOOL CALL 2 Z S0\nL X+60 R0 F6000"),
+    );
+    rig.event("key A press");
+    rig.start();
+    rig.until(2.0, "tool 1", |rig| rig.control.snapshot().tool == 1);
+    rig.event("key A release");
+    rig.until(2.0, "the call of tool 2", |rig| {
+        rig.bit("M2046") && rig.number("W262") == 2
+    });
+    let kept = rig.control.remember();
+    assert_eq!((kept.tool, kept.tool_length), (1, 70.0), "if power fails now");
+    rig.event("key NC_STOP tap");
+    rig.seconds(0.5);
+    rig.command("stop");
+    rig.seconds(0.2);
+    let kept = rig.control.remember();
+    assert_eq!((kept.tool, kept.tool_length), (1, 70.0));
+    assert!(!rig.bit("M2046"));
+    rig.event("key A press");
+    rig.start();
+    rig.until(2.0, "the strobe again", |rig| {
+        rig.bit("M2046") && rig.number("W262") == 2
+    });
+    rig.until(2.0, "tool 2", |rig| rig.control.snapshot().tool == 2);
+    let kept = rig.control.remember();
+    assert_eq!((kept.tool, kept.tool_length), (2, 95.0));
+    rig.until(3.0, "the end", |rig| rig.control.snapshot().ended);
+    near(display(&rig, 'X'), 60.0);
+}
+
+/// The wire of the acknowledgement I3 breaks: the NC sees it as the PLC does, and stops.
+#[test]
+fn a_broken_wire_of_the_acknowledgement_stops_the_axes() {
+    let mut rig = bench_with(ACKNOWLEDGE, "L X+150 R0 F1000");
+    rig.start();
+    rig.until(2.0, "it moves", |rig| rig.control.snapshot().feed_mm_min > 500.0);
+    assert!(rig.machine.control_ready());
+    rig.event("fault input I3 0");
+    assert!(!rig.machine.control_ready());
+    rig.seconds(0.5);
+    assert!(!rig.bit("I3"));
+    let messages = rig.messages();
+    assert!(
+        messages
+            .iter()
+            .any(|text| text.contains("EMERGENCY STOP") || text.contains("EXT")),
+        "{messages:?}"
+    );
+    assert_eq!(rig.control.snapshot().feed_mm_min, 0.0);
+    assert!(display(&rig, 'X') < 100.0);
+}
+
+/// Modules 9092 to 9094 on the running control: tool 2 lies in pocket 12 and is 95 mm long; written to 90.5 it
+/// counts at once, is stored, and is there after power-off. A tool table that says something else since counts.
+#[test]
+fn tables_of_the_control() {
+    let call = |arguments: &[i32], module: u16, results: &[&str]| {
+        let push: String = arguments
+            .iter()
+            .map(|value| format!("       PS    K{value:+}\n"))
+            .collect();
+        let pull: String = results
+            .iter()
+            .map(|operand| format!("       PL    {operand}\n"))
+            .collect();
+        format!("{push}       CM    {module}\n{pull}")
+    };
+    // Pocket table: the line with tool 2; tool table: its length, then written 90.5 mm and the tool life 30 min.
+    let job = [
+        call(&[2, 2, 0, 0], 9092, &["W100", "W102"]),
+        call(&[0, 2, 0], 9093, &["D104", "W108"]),
+        call(&[0, 2, 0, 905_000], 9094, &["W110"]),
+        call(&[0, 2, 7, 30], 9094, &["W112"]),
+        call(&[1, 0, 0], 9093, &["D116", "W114"]),
+    ];
+    let plc = format!(
+        "{ACKNOWLEDGE}       L     I20\n       AN    M0\n       CMT   ASK\n       L     I20\n       = M0\n       EM\nLBL ASK\n       SUBM  JOB\n       = B90\n       EM\nLBL JOB\n{}",
+        job.concat()
+    );
+    let with_pocket = |length: f64| {
+        let mut tool = bahn_control::Tool::default();
+        tool.shape.length = length;
+        tool.pocket = Some(12);
+        tool
+    };
+    let build = |length, remembered| {
+        let mut build = bench(&plc)
+            .mp("7480.0=3")
+            .program("1.H", "TOOL CALL 2 Z S0\nL X+60 R0 F6000");
+        build.tools = Some([(2, with_pocket(length))].into());
+        build.remembered = remembered;
+        build
+    };
+    let mut rig = ready(build(95.0, bahn_control::Remembered::default()));
+    rig.control.keep_state(true);
+    rig.start();
+    while !rig.control.snapshot().ended {
+        assert!(rig.control.time_us() < 30_000_000, "the tool is in");
+        rig.control.stored();
+        rig.seconds(0.1);
+    }
+    let z = display(&rig, 'Z');
+    rig.event("key A press");
+    rig.until(1.0, "what was written is to be stored", |rig| {
+        rig.control.unsaved().is_some()
+    });
+    rig.seconds(0.2);
+    assert_eq!(
+        (rig.number("W100"), rig.number("W102")),
+        (12, 0),
+        "pocket of tool 2"
+    );
+    assert_eq!((rig.number("D104"), rig.number("W108")), (950_000, 0));
+    assert_eq!((rig.number("W110"), rig.number("W112")), (0, 0));
+    assert_eq!(rig.number("W114"), 3, "there is no datum table");
+    near(display(&rig, 'Z'), z + 4.5);
+    let remembered = rig.control.remember();
+    assert_eq!(remembered.tool_length, 90.5);
+    // After power-off the PLC finds what it wrote, and the tool in the spindle is as long as it was.
+    for (length, expected) in [(95.0, 905_000), (97.0, 970_000)] {
+        let mut rig = ready(build(length, remembered.clone()));
+        assert_eq!(rig.control.remember().tool_length, 90.5);
+        rig.event("key A press");
+        rig.seconds(0.2);
+        assert_eq!(rig.number("D104"), expected);
+    }
+}

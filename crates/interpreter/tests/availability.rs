@@ -1,0 +1,207 @@
+//! Functions that have no effect here, or only part of it: nothing is passed over in silence.
+
+mod support;
+
+use bahn_interpreter::{Settings, ToolState, WarningKind};
+use bahn_parameters::ControlModel::{self, Tnc155, Tnc360, Tnc407, Tnc415b, Tnc425};
+use bahn_parameters::MessageId::{BlockNotKnown, MaxToolLifeExpired, ToolLocked, WrongAxisProgrammed};
+use bahn_parameters::{MessageId, ParameterList};
+use support::*;
+
+fn with(blocks: &str, change: impl FnOnce(&mut Settings)) -> Run {
+    Job::new(program(blocks)).with(change).run()
+}
+
+/// Message and block of a program on a model.
+fn on(model: ControlModel, blocks: &str) -> Option<(MessageId, u32)> {
+    with(blocks, |settings| settings.model = model).message()
+}
+
+/// Blocks and texts of the warnings.
+fn warnings(run: &Run) -> Vec<(u32, String)> {
+    let warnings = run.warnings.iter();
+    warnings
+        .map(|warning| (warning.block.block, warning.kind.to_string()))
+        .collect()
+}
+
+/// M107 has no effect: one warning at the first block that has it, however often it comes.
+#[test]
+fn no_effect_is_said_once() {
+    let blocks = "L X+1 FMAX\nLBL 1\nL IX+1 FMAX M107\nCALL LBL 1 REP 5/5\nL X+0 FMAX M107";
+    let run = run(blocks);
+    let said = warnings(&run);
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert_eq!(said[0].0, 3);
+    assert!(said[0].1.starts_with("M107 has no effect here: "), "{said:?}");
+    assert_eq!(run.warnings[0].count, 1);
+    assert_eq!(run.moves().count(), 8);
+}
+
+/// What acts in part is executed and said.
+#[test]
+fn part_of_a_function_is_said() {
+    let run = run("L X+1 R0 F100 M112 T0.1\nL Y+1 M112 T0.2");
+    let said = warnings(&run);
+    assert_eq!((said.len(), said[0].0), (1, 1));
+    assert!(said[0].1.starts_with("M112 acts in part here"), "{said:?}");
+}
+
+/// With strict checking either is an error.
+#[test]
+fn strict_checking_refuses_it() {
+    for blocks in ["L X+1 FMAX\nL X+2 FMAX M107", "L X+1 FMAX\nL X+2 FMAX M112"] {
+        let run = with(blocks, |settings| settings.strict = true);
+        assert_eq!(run.message(), Some((BlockNotKnown, 2)), "{blocks}");
+    }
+}
+
+const MOVES: &[&str] = &[
+    "L X+5 FMAX M114",
+    "L X+5 FMAX M116",
+    "L X+5 FMAX M118 X1",
+    "L X+5 FMAX M126",
+    "L X+5 FMAX M128",
+    "L X+5 FMAX M200 V1",
+    "L X+5 FMAX M202 FNR.5",
+    "L X+5 FMAX M203 V5 TIME3",
+    "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+45",
+    "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X1.4",
+    "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #3",
+    "DLG-CALL 1/2",
+    "DLG-DEF 1/2",
+    "CYCL DEF 27.0 CYLINDER SURFACE\nCYCL DEF 27.1 Q1=-5\nCYCL CALL",
+    "TCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: 5007",
+];
+
+/// What would move differently on the control is refused; passed over with a warning when that is wanted.
+#[test]
+fn what_would_move_differently_is_refused() {
+    for blocks in MOVES {
+        let text = format!("L X+1 FMAX\n{blocks}\nL X+2 FMAX");
+        let refused = with(&text, |_| {});
+        assert_eq!(
+            refused.message().map(|(id, _)| id),
+            Some(BlockNotKnown),
+            "{blocks}"
+        );
+        let passed = with(&text, |settings| settings.skip_unknown = true);
+        passed.assert_completed();
+        let said = &passed.warnings;
+        let is_passed =
+            matches!(said.as_slice(), [one] if matches!(one.kind, WarningKind::PassedOver { .. }));
+        assert!(is_passed, "{blocks}: {said:?}");
+        // No word of the function is taken for a movement.
+        assert_eq!(passed.position[bahn_path::Axis::X], 2.0, "{blocks}");
+        assert!(passed.position[bahn_path::Axis::V].is_nan(), "{blocks}");
+    }
+}
+
+/// A cycle that is passed over at its definition does nothing at its call, either: the cycle before it is no
+/// longer in force.
+#[test]
+fn a_skipped_cycle_is_not_called() {
+    let peck = "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -10\nCYCL DEF 1.3 PECKG -5\n\
+                CYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100";
+    let text = format!("L X+0 Y+0 Z+2 R0 FMAX\n{peck}\nCYCL DEF 99.0 OEM\nCYCL CALL M3\nL X+2 FMAX");
+    let run = with(&text, |settings| settings.skip_unknown = true);
+    run.assert_completed();
+    assert_eq!(run.moves().count(), 2);
+}
+
+/// Unknown words are left out, unknown blocks passed over, each with its place.
+#[test]
+fn unknown_words_and_blocks_are_passed_over() {
+    let text = "L X+1 FMAX\nL X+5 FOO Y+3 FMAX\nAPPR LCT X+1 Y+1 R2 RL F100\nL X+7 FMAX";
+    let run = with(text, |settings| settings.skip_unknown = true);
+    run.assert_completed();
+    assert_eq!(
+        warnings(&run),
+        [
+            (2, "passed over: FOO".to_owned()),
+            (3, "passed over: APPR LCT X+1 Y+1 R2 RL F100".to_owned()),
+        ]
+    );
+    assert_eq!(run.moves().count(), 3);
+    // What is wrong otherwise stays an error.
+    let run = with("L X+1..5 FMAX", |settings| settings.skip_unknown = true);
+    assert!(run.error.is_some());
+}
+
+/// M100 to M204 that a model does not have [003:7459-7577] [001:554-558] [000:740-747].
+#[test]
+fn m_functions_of_other_controls() {
+    for code in [100, 101, 103, 105, 109, 112, 114, 200] {
+        for model in [Tnc155, Tnc360] {
+            let block = format!("L X+1 FMAX M{code}");
+            assert_eq!(on(model, &block), Some((BlockNotKnown, 1)), "{model} M{code}");
+        }
+    }
+    for code in [100, 104, 119, 120, 128, 129, 150, 199, 205] {
+        let block = format!("L X+1 FMAX M{code}");
+        assert_eq!(on(Tnc425, &block), Some((BlockNotKnown, 1)), "M{code}");
+    }
+    assert_eq!(on(Tnc407, "L X+1 FMAX M127"), Some((BlockNotKnown, 1)));
+    for model in [Tnc407, Tnc415b, Tnc425] {
+        assert_eq!(on(model, "L X+1 FMAX M105"), None);
+    }
+}
+
+/// Straight lines of 3 axes [001:167-173] [003:7761-7763] [000:139], on the TNC 415/425 of 5.
+#[test]
+fn more_axes_than_the_control_moves_together() {
+    let five = "L X+1 Y+1 Z+1 A+1 C+1 R0 FMAX";
+    let four = "L X+1 Y+1 Z+1 C+1 R0 FMAX";
+    for model in [Tnc155, Tnc360, Tnc407] {
+        assert_eq!(on(model, four), Some((WrongAxisProgrammed, 1)), "{model}");
+        assert_eq!(on(model, "L X+1 Y+1 C+1 R0 FMAX"), None, "{model}");
+    }
+    assert_eq!(on(Tnc415b, five), None);
+    let nine = "L X+1 FMAX\nL X+1 Y+1 Z+1 A+1 B+1 C+1 U+1 V+1 W+1 R0 FMAX\nL X+2 FMAX";
+    assert_eq!(on(Tnc415b, nine), Some((WrongAxisProgrammed, 2)));
+}
+
+/// A TOOL CALL of the TNC 360 has no oversizes [003:1917-1952].
+#[test]
+fn oversizes_of_a_tool_call() {
+    let call = "TOOL CALL 1 Z S100 DL+1 DR-0.1";
+    assert_eq!(on(Tnc360, call), Some((BlockNotKnown, 1)));
+    assert_eq!(on(Tnc407, call), None);
+}
+
+#[test]
+fn tools_that_are_locked_or_worn() {
+    let state = |state| {
+        with("TOOL CALL 1 Z S100\nTOOL CALL 2 Z S100", |settings| {
+            settings.barred_tools = [(2, state)].into();
+        })
+        .message()
+    };
+    assert_eq!(state(ToolState::Usable), None);
+    assert_eq!(state(ToolState::Locked), Some((ToolLocked, 2)));
+    assert_eq!(state(ToolState::Expired), Some((MaxToolLifeExpired, 2)));
+    assert_eq!(state(ToolState::Replaced), Some((BlockNotKnown, 2)));
+}
+
+/// MP7245.0 bit n inhibits cycle n, MP7245.1 bit n cycle 16 + n [000:6655-6698]; MP7246 paraxial blocks
+/// [000:7022-7029].
+#[test]
+fn inhibited_by_the_machine_builder() {
+    let with_list = |assignment: &str, blocks: &str| {
+        let mut list = ParameterList::reference(Tnc415b);
+        list.assign(assignment).unwrap();
+        with(blocks, |settings| {
+            settings.rules = bahn_interpreter::Rules::of(&list)
+        })
+        .message()
+    };
+    let dwell = "L X+1 FMAX\nCYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1";
+    assert_eq!(with_list("7245.0=$200", dwell), Some((BlockNotKnown, 2)));
+    assert_eq!(with_list("7245.0=$FDFF", dwell), None);
+    let rigid = "CYCL DEF 17.0 RIGID TAPPING";
+    assert_eq!(with_list("7245.1=2", rigid), Some((BlockNotKnown, 1)));
+    assert_eq!(with_list("7245.1=1", rigid), None);
+    let paraxial = "TOOL CALL 0 Z S100\nX+20 R+ F100";
+    assert_eq!(with_list("7246=1", paraxial), Some((BlockNotKnown, 2)));
+    assert_eq!(with_list("7246=0", paraxial), None);
+}

@@ -1,0 +1,350 @@
+//! Paths that follow the spindle.
+#![allow(clippy::panic, reason = "a helper that panics fails its test")]
+
+mod common;
+
+use bahn_motion::{Cycle, Drive, Interpolator, Limits, Master, SpindleGear, State};
+use bahn_path::{
+    At, Axis, Curve, Function, OverrideLaw, Position, Step, Synchronisation, TechnologyFunction, Thread,
+};
+use common::{List, Path, list, plan, time_s};
+
+const PITCH: f64 = 1.5;
+const DEPTH: f64 = 30.0;
+/// 600 rpm.
+const FEED: f64 = 600.0 * PITCH;
+
+fn limits() -> Limits {
+    let mut spindle: [SpindleGear; 8] = Default::default();
+    spindle[0] = SpindleGear {
+        rated_rpm: 1000.0,
+        ramp_rpm_s: 2000.0,
+    };
+    spindle[1] = SpindleGear {
+        rated_rpm: 4000.0,
+        ramp_rpm_s: 8000.0,
+    };
+    Limits {
+        spindle,
+        ..common::limits()
+    }
+}
+
+fn law(clockwise: bool, orientation_deg: Option<f64>) -> OverrideLaw {
+    OverrideLaw::Spindle(Thread {
+        pitch_mm: PITCH,
+        clockwise,
+        orientation_deg,
+    })
+}
+
+/// In and out of a hole of 30 mm, right-hand, and on at the clearance.
+fn thread() -> Path {
+    let mut path = Path::new(FEED);
+    path.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(true, Some(0.0));
+    path.line(&[(Axis::Z, 0.0)]).last().override_law = law(false, None);
+    path.line(&[(Axis::X, 10.0)]);
+    path
+}
+
+/// A spindle that does what it is told, some cycles later.
+struct Bench {
+    path: Interpolator<&'static str>,
+    source: List,
+    told: Vec<f64>,
+    dead: usize,
+    drive: Drive,
+}
+
+impl Bench {
+    fn new(path: &Path, dead: usize) -> Bench {
+        let mut interpolator = Interpolator::new(&limits(), 100);
+        interpolator.set_position(Position::ZERO);
+        let mut bench = Bench {
+            path: interpolator,
+            source: list(path.elements.iter().cloned().map(Step::Element).collect()),
+            told: vec![0.0],
+            dead,
+            drive: Drive::default(),
+        };
+        bench.drive.master.ready = true;
+        bench
+    }
+
+    fn angle(&self) -> f64 {
+        self.told[self.told.len().saturating_sub(1 + self.dead)]
+    }
+
+    fn cycle(&mut self) -> Cycle {
+        self.path.prepare(&mut self.source, 100);
+        self.drive.master = Master {
+            actual_deg: self.angle(),
+            ..self.drive.master
+        };
+        // The control holds the path at its end until the spindle is there too.
+        self.drive.in_position = self
+            .told
+            .iter()
+            .rev()
+            .take(self.dead + 1)
+            .all(|told| *told == self.angle());
+        let cycle = self.path.cycle(&self.drive);
+        self.told.extend(
+            cycle
+                .lead
+                .map(|lead| lead.angle_deg)
+                .or(self.told.last().copied()),
+        );
+        cycle
+    }
+
+    fn until(&mut self, mut so: impl FnMut(&Bench, &Cycle) -> bool) -> Cycle {
+        for _ in 0..20_000 {
+            let cycle = self.cycle();
+            if so(self, &cycle) {
+                return cycle;
+            }
+        }
+        panic!("never");
+    }
+}
+
+/// The height that belongs to an angle.
+fn height(angle_deg: f64) -> f64 {
+    -angle_deg / 360.0 * PITCH
+}
+
+/// F = S · p: 900 mm/min are 15 mm/s; the ramp of gear 1 is 2000 rpm/s · 1.5 mm / 60 = 50 mm/s², so each of
+/// the four ramps takes 0.3 s. Each way: 30 mm / 15 mm/s + 0.3 s; and the orientation of 1 s. The feed override
+/// has no effect.
+#[test]
+fn the_ramp_of_the_spindle_takes_its_time() {
+    let path = thread();
+    for percent in [100.0, 50.0] {
+        let limits = Limits {
+            feed_override_percent: percent,
+            ..limits()
+        };
+        let planned = time_s(&plan(&path.elements[..2], &limits));
+        let expected = 1.0 + 2.0 * (DEPTH / 15.0 + 0.3);
+        assert!((planned - expected).abs() < 1e-9, "{planned} {expected}");
+    }
+    // A faster spindle is in gear 2: 8000 rpm/s.
+    let mut fast = Path::new(2000.0 * PITCH);
+    fast.line(&[(Axis::Z, -DEPTH)]).last().override_law = law(true, None);
+    let expected = DEPTH / 50.0 + 50.0 / 200.0;
+    assert!((time_s(&plan(&fast.elements, &limits())) - expected).abs() < 1e-9);
+}
+
+/// Online the path takes as long as planned, and what the spindle is told is that path.
+#[test]
+fn online_it_takes_as_long_as_planned() {
+    let mut bench = Bench::new(&thread(), 0);
+    let mut cycles = 0.0;
+    let bottom = bench.until(|bench, _| bench.path.element().is_some_and(|e| e.end[Axis::Z] == 0.0));
+    assert_eq!(bottom.lead.map(|lead| lead.angle_deg > 7199.0), Some(true));
+    let mut bench = Bench::new(&thread(), 0);
+    bench.until(|bench, _| {
+        cycles += 1.0;
+        !bench.path.is_coupled() && cycles > 10.0
+    });
+    let planned = 2.0 * (DEPTH / 15.0 + 0.3);
+    let time = cycles * 0.003;
+    // Both ends of the two elements may wait for the next cycle.
+    assert!((time - planned).abs() <= 4.0 * 0.003, "{time} {planned}");
+}
+
+/// However late the spindle is: in every cycle the axis stands where the angle of the spindle says, on one
+/// line through both directions. 30 mm are 20 turns.
+#[test]
+fn the_axis_follows_the_angle_through_the_reversal() {
+    for dead in [0, 1, 7, 30] {
+        let mut bench = Bench::new(&thread(), dead);
+        let (mut deepest, mut coupled) = (0.0f64, 0);
+        bench.until(|bench, cycle| {
+            if bench.path.is_coupled() {
+                coupled += 1;
+                let z = cycle.position[Axis::Z];
+                let angle = bench.drive.master.actual_deg;
+                assert!((z - height(angle)).abs() < 1e-9, "{z} at {angle}");
+                deepest = deepest.min(z);
+            }
+            !bench.path.is_coupled() && coupled > 10
+        });
+        // The reversal may lie between two cycles: 50 mm/s² over half of one.
+        assert!((deepest + DEPTH).abs() < 1e-4, "{deepest}");
+        let greatest = bench.told.iter().fold(0.0f64, |a, b| a.max(*b));
+        assert!((greatest - 7200.0).abs() < 1e-6 && bench.told.last().is_some_and(|last| last.abs() < 1e-6));
+    }
+}
+
+/// The override of the spindle acts, that of the feed does not.
+#[test]
+fn only_the_override_of_the_spindle_acts() {
+    let rpm = |feed: f64, spindle: f64| {
+        let mut bench = Bench::new(&thread(), 0);
+        bench.drive.feed_override_percent = feed;
+        bench.drive.spindle_override_percent = spindle;
+        let cycle = bench.until(|_, cycle| cycle.position[Axis::Z] < -15.0);
+        cycle.lead.map_or(0.0, |lead| lead.rpm)
+    };
+    assert!((rpm(100.0, 100.0) - 600.0).abs() < 1e-6);
+    assert!((rpm(0.0, 100.0) - 600.0).abs() < 1e-6);
+    assert!((rpm(100.0, 120.0) - 720.0).abs() < 1e-6);
+    assert!((rpm(150.0, 50.0) - 300.0).abs() < 1e-6);
+}
+
+/// Held in the thread both brake on the ramp of the spindle; then the path goes back to its start and forward
+/// again, always on the same line.
+#[test]
+fn held_in_the_thread_it_goes_back_and_forward() {
+    let mut bench = Bench::new(&thread(), 2);
+    let check = |bench: &Bench, cycle: &Cycle| {
+        let angle = bench.drive.master.actual_deg;
+        assert!((cycle.position[Axis::Z] - height(angle)).abs() < 1e-9);
+    };
+    bench.until(|_, cycle| cycle.position[Axis::Z] < -15.0);
+    bench.drive.hold = true;
+    let held = bench.until(|bench, cycle| {
+        check(bench, cycle);
+        cycle.state == State::Held && bench.drive.in_position
+    });
+    // 15 mm/s at 50 mm/s²: 2.25 mm, and at most 4 cycles of 0.045 mm: two that the spindle is late,
+    // that in which it was seen, and that in which the hold came.
+    let z = held.position[Axis::Z];
+    assert!(z < -17.2 && z > -17.45, "{z}");
+    bench.drive.back = true;
+    let out = bench.until(|bench, cycle| {
+        check(bench, cycle);
+        cycle.state == State::Held && bench.drive.in_position
+    });
+    assert!(out.position[Axis::Z].abs() < 1e-9);
+    // Half way in again, and back while it moves: it brakes before it turns.
+    (bench.drive.back, bench.drive.hold) = (false, false);
+    bench.until(|bench, cycle| {
+        check(bench, cycle);
+        cycle.position[Axis::Z] < -10.0
+    });
+    bench.drive.back = true;
+    let mut before = 15.0;
+    bench.until(|bench, cycle| {
+        check(bench, cycle);
+        let speed = cycle.lead.map_or(0.0, |lead| lead.rpm * PITCH / 60.0);
+        assert!(f64::abs(speed - before) < 50.0 * 0.003 + 1e-9, "{speed} {before}");
+        before = speed;
+        cycle.position[Axis::Z] > -0.5
+    });
+    bench.drive.back = false;
+    bench.until(|bench, cycle| {
+        if bench.path.is_coupled() {
+            check(bench, cycle);
+        }
+        cycle.position[Axis::X] > 5.0
+    });
+}
+
+/// Spindle and axis were turned and moved by something else: they are coupled again as they stand, and the path
+/// goes on from there.
+#[test]
+fn coupled_again_as_they_stand() {
+    let mut bench = Bench::new(&thread(), 0);
+    bench.until(|_, cycle| cycle.position[Axis::Z] < -15.0);
+    bench.drive.hold = true;
+    bench.until(|_, cycle| cycle.state == State::Held);
+    let mut here = bench.path.position();
+    here[Axis::Z] = -12.0;
+    bench.told.push(100.0);
+    bench.path.couple_again(&here, 100.0);
+    bench.drive.hold = false;
+    let mut deepest = 0.0f64;
+    bench.until(|bench, cycle| {
+        if bench.path.is_coupled() {
+            let expected = -12.0 + height(bench.drive.master.actual_deg - 100.0);
+            assert!((cycle.position[Axis::Z] - expected).abs() < 1e-9);
+        }
+        deepest = deepest.min(cycle.position[Axis::Z]);
+        cycle.position[Axis::X] > 0.0
+    });
+    assert!((deepest + DEPTH).abs() < 1e-9, "{deepest}");
+}
+
+/// A spindle that is not ready keeps the path before the thread.
+#[test]
+fn the_path_waits_for_the_spindle() {
+    let mut bench = Bench::new(&thread(), 0);
+    bench.drive.master.ready = false;
+    for _ in 0..100 {
+        let cycle = bench.cycle();
+        assert_eq!((cycle.state, cycle.lead), (State::Master, None));
+    }
+    bench.drive.master.ready = true;
+    bench.until(|_, cycle| cycle.position[Axis::Z] < -1.0);
+}
+
+fn with_m(path: &mut Path, code: u16, at: At, synchronisation: Synchronisation, law: OverrideLaw) {
+    let element = path.last();
+    element.override_law = law;
+    element.functions = Some(Box::new([TechnologyFunction {
+        function: Function::M(code),
+        at,
+        synchronisation,
+    }]));
+}
+
+/// In and out with a floating holder; M05 goes out so long before the depth.
+fn floating(lead_s: f64) -> Path {
+    let law = OverrideLaw::Tapping {
+        from_percent: 90.0,
+        to_percent: 110.0,
+    };
+    let mut path = Path::new(FEED);
+    path.line(&[(Axis::Z, -DEPTH)]);
+    with_m(&mut path, 5, At::BeforeEnd(lead_s), Synchronisation::Mos, law);
+    let wait = Synchronisation::MvsSvs;
+    path.to(Curve::Hold, path.at);
+    with_m(&mut path, 4, At::Start, wait, law);
+    path.line(&[(Axis::Z, 0.0)]).last().override_law = law;
+    for code in [5, 3] {
+        path.to(Curve::Hold, path.at);
+        with_m(&mut path, code, At::Start, wait, OverrideLaw::Free);
+    }
+    path
+}
+
+/// M05 comes the lead before the end: 15 mm/s, braking 15 ms with 1 m/s². A lead shorter than braking is braking:
+/// the spindle follows the flatter ramp [000:6070].
+#[test]
+fn a_function_before_the_end_of_a_movement() {
+    for (lead, way) in [
+        (0.5, 15.0 * (0.5 - 0.0075)),
+        (0.1, 15.0 * (0.1 - 0.0075)),
+        (0.0, 15.0 * 0.0075),
+        (100.0, DEPTH),
+    ] {
+        let mut bench = Bench::new(&floating(lead), 0);
+        let at = (0..20_000).find_map(|_| {
+            let cycle = bench.cycle();
+            let output = bench.path.next_output()?;
+            let mut functions = bench.path.functions(&output);
+            let is_m5 = functions.any(|function| function.function == Function::M(5));
+            assert!(is_m5 && !output.waits);
+            Some(cycle.position[Axis::Z] + DEPTH)
+        });
+        // It goes out at the end of the cycle in which the path passes its place.
+        let early = way - at.unwrap_or(f64::NAN);
+        assert!((-1e-9..=15.0 * 0.003 + 1e-9).contains(&early), "{lead}: {early}");
+    }
+}
+
+/// In the thread nothing waits for the speed of the spindle; above M05 and M03 do, 1 s each.
+#[test]
+fn a_floating_holder_waits_for_no_speed() {
+    let planned = plan(&floating(0.1).elements, &limits());
+    let moving = 2.0 * (DEPTH / 15.0 + 0.015);
+    // Before M04 the spindle was stopped by M05 on the way, and turns when it comes to the one above.
+    assert!(
+        (time_s(&planned) - moving - 2.0).abs() < 1e-9,
+        "{}",
+        time_s(&planned)
+    );
+}

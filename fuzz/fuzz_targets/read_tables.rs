@@ -1,0 +1,24 @@
+//! Any text is a tool table or faults with their lines; any text is a compensation table, an assignment, or an
+//! error with its line.
+//!
+//! ```text
+//! cargo +nightly fuzz run read_tables
+//! ```
+
+#![no_main]
+
+use bahn_fuzz as _;
+use bahn_control::{CompensationAssignment, CompensationTable};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    let lines = text.lines().count();
+    if let Err(faults) = bahn::check_tool_table(text) {
+        assert!(!faults.is_empty() && faults.iter().all(|line| *line as usize <= lines));
+    }
+    let errors = [
+        CompensationTable::read(text).err(),
+        CompensationAssignment::read(text).err(),
+    ];
+    assert!(errors.into_iter().flatten().all(|error| error.line <= lines.max(1)));
+});
