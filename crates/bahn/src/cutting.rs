@@ -2,19 +2,22 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_path::{
     At, Axis, Blank, BlockRef, Curve, Function, OverrideLaw, PathElement, Position, ToolShape, Touch,
 };
 use bahn_picture::Image;
 use bahn_workpiece::{
-    Colouring, EventKind, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
+    Colouring, EventKind, MeshError, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d,
+    Workpiece,
 };
 
 use crate::cli::{OutputOptions, View};
 use crate::files::NewFile;
 use crate::report::{Notice, Record};
-use crate::{UsageError, files};
+use crate::{UsageError, diagnostics, files};
 
 /// What columns the part is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -294,13 +297,29 @@ impl Cutting {
     }
 }
 
-/// Writes picture and mesh as wanted.
+/// Whether all files were written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Written {
+    All,
+    /// Ctrl-C ended the work.
+    Interrupted,
+}
+
+/// Writes picture and mesh as wanted, until `stop` is set.
 pub(crate) fn write(
     part: Option<&Part>,
     options: &OutputOptions,
     title: &str,
     projection: Projection,
-) -> Result<(), UsageError> {
+    stop: &Arc<AtomicBool>,
+) -> Result<Written, UsageError> {
+    let is_stopped = |path: &Path| {
+        let is_stopped = stop.load(Ordering::Relaxed);
+        if is_stopped {
+            diagnostics::print_line(&format!("interrupted: {} is not written", path.display()));
+        }
+        is_stopped
+    };
     let part_for = |option: &str| {
         part.ok_or_else(|| {
             UsageError::new(format!(
@@ -309,23 +328,33 @@ pub(crate) fn write(
         })
     };
     if let Some(path) = &options.image {
-        let image = draw(part_for("--image")?, options, title, projection)?;
-        write_with(path, |file| image.write_png(file).map_err(std::io::Error::other))?;
+        let image = draw(part_for("--image")?, options, title, projection, stop)?;
+        if is_stopped(path) {
+            return Ok(Written::Interrupted);
+        }
+        let mut file = NewFile::create(path)?;
+        image
+            .write_png(&mut file)
+            .map_err(|error| files::cannot("write", path, &std::io::Error::other(error)))?;
+        if is_stopped(path) {
+            return Ok(Written::Interrupted);
+        }
+        file.finish()?;
     }
     if let Some(path) = &options.mesh {
         let part = part_for("--mesh")?;
-        write_with(path, |file| part.write_stl(file))?;
+        let mut file = NewFile::create(path)?;
+        match part.write_stl(&mut file, stop) {
+            Ok(()) => file.finish()?,
+            Err(MeshError::Stopped) => {
+                is_stopped(path);
+                return Ok(Written::Interrupted);
+            }
+            Err(MeshError::Io(error)) => return Err(files::cannot("write", path, &error)),
+            Err(error) => return Err(UsageError::new(format!("--mesh: {error}"))),
+        }
     }
-    Ok(())
-}
-
-fn write_with(
-    path: &Path,
-    write: impl FnOnce(&mut NewFile) -> std::io::Result<()>,
-) -> Result<(), UsageError> {
-    let mut file = NewFile::create(path)?;
-    write(&mut file).map_err(|error| files::cannot("write", path, &error))?;
-    file.finish()
+    Ok(Written::All)
 }
 
 fn draw(
@@ -333,10 +362,13 @@ fn draw(
     options: &OutputOptions,
     title: &str,
     projection: Projection,
+    stop: &Arc<AtomicBool>,
 ) -> Result<Image, UsageError> {
     let (width, height) = options.size;
     let page = |note: &str| {
-        Page::new(width, height, title, note).map_err(|error| UsageError::new(format!("--size: {error}")))
+        Page::new(width, height, title, note)
+            .map(|page| page.stopped_by(stop.clone()))
+            .map_err(|error| UsageError::new(format!("--size: {error}")))
     };
     Ok(match options.view {
         View::Plan => part.plan_view(&page("plan view")?, &PlanView::default()),

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::cutters::Mark;
 use crate::grid::Grid;
-use crate::sweep::{BAND_ROWS, Segment, Sink};
+use crate::sweep::{BAND_ROWS, Segment, Sink, Start, Track};
 
 /// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
 const RAPID_CUT_MM: f32 = 0.002;
@@ -17,6 +17,8 @@ pub(crate) struct Batch {
     segments: Vec<Segment>,
     /// Segments that are looked at for a cut in rapid traverse.
     rapid: Vec<bool>,
+    /// The tracks of the segments.
+    tracks: Vec<Track>,
     /// What the columns that a segment cuts are marked with; 0 when nobody asks.
     marks: Vec<u8>,
     bands: Vec<Vec<u32>>,
@@ -27,7 +29,14 @@ impl Batch {
         self.segments.len()
     }
 
-    pub fn push(&mut self, segment: Segment, rapid: bool, mark: u8) {
+    pub fn push(&mut self, mut segment: Segment, rapid: bool, mark: u8) {
+        // A cut that is looked for must be there when its segment is cut, and not before.
+        if let (Some(last), Some(false), false) = (self.segments.last_mut(), self.rapid.last(), rapid)
+            && segment.start == Start::Cut
+            && self.marks.last() == Some(&mark)
+        {
+            last.share_end(&mut segment);
+        }
         self.segments.push(segment);
         self.rapid.push(rapid);
         self.marks.push(mark);
@@ -50,7 +59,11 @@ impl Batch {
                 }
             }
         }
-        let (segments, rapid, marks) = (&self.segments, &self.rapid, &self.marks);
+        self.segments
+            .par_iter()
+            .map(Track::new)
+            .collect_into_vec(&mut self.tracks);
+        let (segments, rapid, marks, tracks) = (&self.segments, &self.rapid, &self.marks, &self.tracks);
         let mut marked = marked.map(|marked| marked.chunks_mut(BAND_ROWS * grid.nx));
         let marked: Vec<Option<&mut [u8]>> = (0..self.bands.len())
             .map(|_| marked.as_mut().and_then(Iterator::next))
@@ -67,10 +80,14 @@ impl Batch {
                 let mut hits = Vec::new();
                 for index in todo.drain(..) {
                     let at = index as usize;
-                    let (Some(segment), Some(rapid)) = (segments.get(at), rapid.get(at)) else {
+                    let (Some(segment), Some(rapid), Some(track)) =
+                        (segments.get(at), rapid.get(at), tracks.get(at))
+                    else {
                         continue;
                     };
-                    let hit = *rapid && is_rapid_cut(segment, grid, rows.clone(), cells);
+                    let rows = segment.rows_in(grid, &rows);
+                    let before = at.checked_sub(1).and_then(|before| tracks.get(before));
+                    let hit = *rapid && is_rapid_cut(segment, grid, rows.clone(), cells, first);
                     if hit {
                         hits.push(index);
                     }
@@ -83,14 +100,14 @@ impl Batch {
                             first_row: first,
                             mark: *mark,
                         };
-                        segment.sweep(grid, rows.clone(), &mut sink);
+                        track.sweep(before, grid, rows.clone(), &mut sink);
                     }
                     let mut cut = Cut {
                         cells: &mut *cells,
                         width: grid.nx,
                         first_row: first,
                     };
-                    segment.sweep(grid, rows.clone(), &mut cut);
+                    track.sweep(before, grid, rows, &mut cut);
                 }
                 hits
             })
@@ -104,18 +121,19 @@ impl Batch {
     }
 }
 
-fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32]) -> bool {
+fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32], first_row: usize) -> bool {
     let mut detect = Detect {
         cells,
         width: grid.nx,
-        first_row: rows.start,
+        first_row,
         found: false,
     };
     let thinner = Segment {
         tool: segment.tool.thinner(grid),
         ..*segment
     };
-    thinner.sweep(grid, rows, &mut detect);
+    let rows = thinner.rows_in(grid, &rows);
+    Track::new(&thinner).sweep(None, grid, rows, &mut detect);
     detect.found
 }
 

@@ -26,10 +26,12 @@
 
 mod batch;
 mod chords;
+mod coarsen;
 mod cutters;
 mod event;
 mod grid;
 mod part;
+mod round;
 mod setup;
 mod stl;
 mod sweep;
@@ -42,5 +44,6 @@ mod workpiece;
 pub use event::{Event, EventKind};
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
+pub use stl::{MAX_TRIANGLES, MeshError};
 pub use view::{Colouring, Page, PageError, PlanView, Projection, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};

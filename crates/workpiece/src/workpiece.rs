@@ -12,7 +12,7 @@ use crate::event::{Event, EventKind, EventLog};
 use crate::grid::{Grid, Resolution};
 use crate::part::Part;
 use crate::setup::{Local, Setup};
-use crate::sweep::Segment;
+use crate::sweep::{Segment, Start};
 use crate::tool::Tool;
 
 /// Why there can be no workpiece.
@@ -209,7 +209,12 @@ impl Workpiece {
                 from: a,
                 to: b,
                 tool,
-                start_is_cut: start_is_cut && a == from,
+                start: if start_is_cut && a == from {
+                    Start::Cut
+                } else {
+                    Start::Uncut
+                },
+                followed: false,
             },
             rapid || self.noted.is_some(),
             self.part

@@ -16,18 +16,22 @@ pub use plan::PlanView;
 pub use solid::View3d;
 pub use three_planes::{Projection, ThreePlanes};
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use thiserror::Error;
 
 use bahn_picture::Anchor;
 use bahn_picture::{Colour, Image};
 
 /// The sheet that a view is drawn on: its size and what its title line says.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Page {
     width: u32,
     height: u32,
     title: String,
     note: String,
+    stop: Arc<AtomicBool>,
 }
 
 /// A page that cannot be drawn.
@@ -56,6 +60,7 @@ impl Page {
             height,
             title: title.to_owned(),
             note: note.to_owned(),
+            stop: Arc::default(),
         })
     }
 
@@ -66,7 +71,19 @@ impl Page {
             height: 800,
             title: title.to_owned(),
             note: note.to_owned(),
+            stop: Arc::default(),
         }
+    }
+
+    /// The same page; what is drawn on it is given up, and is no picture, once the flag is set.
+    pub fn stopped_by(mut self, stop: Arc<AtomicBool>) -> Page {
+        self.stop = stop;
+        self
+    }
+
+    /// Whether the picture is given up.
+    fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// Size of ordinary text, pixels: it grows with the page.

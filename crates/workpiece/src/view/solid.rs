@@ -53,7 +53,7 @@ impl Part {
         let beside = legend.as_ref().map_or(0.0, |legend| legend.width(size) + size);
         let free = area.shrunk(2.5 * size, 2.5 * size, 2.5 * size + beside, 4.5 * size);
         let camera = Camera::new(self, options, &free);
-        let spots = self.render(&mut image, &area, &camera, &palette);
+        let spots = self.render(&mut image, &area, &camera, &palette, page);
         if let (true, Some(trail)) = (options.tool_path, &self.trail) {
             way::draw(&mut image, trail, &camera, &spots, &area, page.line_width());
         }
@@ -86,7 +86,14 @@ impl Part {
         image
     }
 
-    fn render(&self, image: &mut Image, area: &Area, camera: &Camera, palette: &Palette) -> Vec<Spot> {
+    fn render(
+        &self,
+        image: &mut Image,
+        area: &Area,
+        camera: &Camera,
+        palette: &Palette,
+        page: &Page,
+    ) -> Vec<Spot> {
         let caster = Caster::new(self);
         let shader = Shader {
             caster: &caster,
@@ -106,6 +113,9 @@ impl Part {
             .skip(first)
             .enumerate();
         rows.par_bridge().for_each(|(row, (pixels, spots))| {
+            if page.is_stopped() {
+                return;
+            }
             let background = mix(BACKGROUND_TOP, BACKGROUND_BOTTOM, row as f64 / count);
             for (x, (pixel, spot)) in pixels.iter_mut().zip(spots).enumerate() {
                 (*pixel, *spot) = pixel_at(camera, &shader, [x, row + first], background);
@@ -315,7 +325,7 @@ mod tests {
         let (mut image, area) = page.start(BACKGROUND_TOP);
         let camera = Camera::new(part, &options, &area);
         let palette = Palette::new(part, Colouring::Part);
-        let spots = part.render(&mut image, &area, &camera, &palette);
+        let spots = part.render(&mut image, &area, &camera, &palette, &page);
         let weights = edges::weights(&spots, 300);
         (105..165)
             .flat_map(|y| (105..195).map(move |x| y * 300 + x))
