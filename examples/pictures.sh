@@ -14,6 +14,8 @@ for program in examples/*.H; do
 done
 "$bahn" test examples/housing.H --view plan --image "$out/housing-plan.png" >/dev/null
 "$bahn" test examples/pockets.H --view three-planes --image "$out/pockets-planes.png" >/dev/null
+"$bahn" test examples/three-tools.H --tools examples/tools.tsv --color tool --toolpath \
+    --image "$out/three-tools-path.png" >/dev/null
 "$bahn" test examples/dial.H --path "$out/dial.svg" >/dev/null
 # A hole of machines/mill/programs/INDEX.H with the table clamped for it, on the machine.
 recording=$(mktemp -d)
@@ -23,3 +25,8 @@ trap 'rm -rf "$recording"' EXIT
 "$bahn" scope "$recording/index.csv" --from 20 --to 36 --title "INDEX.H: drilling, rotary table clamped with M10" \
     -o "$out/scope.png" >/dev/null
 echo "$out/scope.png"
+"$bahn" run CIRCLE.H --machine machines/mill --fresh --record "$recording/circle.csv" \
+    --signals X.nominal,X.actual,Y.nominal,Y.actual >/dev/null
+"$bahn" scope "$recording/circle.csv" --circle X,Y --title "CIRCLE.H: radius 40 mm at F3000 in both directions" \
+    -o "$out/round.png" >/dev/null
+echo "$out/round.png"

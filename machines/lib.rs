@@ -31,7 +31,7 @@ pub const FOLDER: &str = include_str!("FOLDER.md");
 pub const MILL: ShippedMachine = machine!("mill":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
     "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "programs/BRACKET.H",
-    "programs/INDEX.H", "programs/SADDLE.H",
+    "programs/CIRCLE.H", "programs/INDEX.H", "programs/SADDLE.H",
 );
 
 /// A small mill of three axes; its control is a TNC 360.

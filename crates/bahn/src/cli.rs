@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use bahn_parameters::{ControlModel, InchFeed};
+use bahn_workpiece::Colouring;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum, ValueHint};
 
 use crate::Outcome;
@@ -213,6 +214,12 @@ pub(crate) struct OutputOptions {
     /// 3D view: how high the eye stands, degrees; 90 from above, negative from below.
     #[arg(long, value_name = "DEGREES", default_value = "38", requires = "image", allow_hyphen_values = true, value_parser = finite)]
     pub elevation: f64,
+    /// 3D view: what the colours tell.
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t, requires = "image")]
+    pub color: ColorOption,
+    /// 3D view: draw the tool path over the part, feed solid, rapid traverse dashed.
+    #[arg(long, requires = "image")]
+    pub toolpath: bool,
     /// Three planes: where the sections lie, as X30,Y20; the middle of the blank otherwise.
     #[arg(
         long,
@@ -326,6 +333,28 @@ pub(crate) enum View {
     #[default]
     #[value(name = "3d")]
     ThreeD,
+}
+
+/// What the colours of the 3D view tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorOption {
+    /// Blank and machined surfaces.
+    #[default]
+    Part,
+    /// The deeper, the darker.
+    Depth,
+    /// The tool that cut last; cuts in rapid traverse are red.
+    Tool,
+}
+
+impl From<ColorOption> for Colouring {
+    fn from(option: ColorOption) -> Colouring {
+        match option {
+            ColorOption::Part => Colouring::Part,
+            ColorOption::Depth => Colouring::Depth,
+            ColorOption::Tool => Colouring::Tool,
+        }
+    }
 }
 
 /// A file for the tool path.

@@ -2,19 +2,22 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_path::{
     At, Axis, Blank, BlockRef, Curve, Function, OverrideLaw, PathElement, Position, ToolShape, Touch,
 };
 use bahn_picture::Image;
 use bahn_workpiece::{
-    EventKind, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
+    Colouring, EventKind, MeshError, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d,
+    Workpiece,
 };
 
 use crate::cli::{OutputOptions, View};
 use crate::files::NewFile;
 use crate::report::{Notice, Record};
-use crate::{UsageError, files};
+use crate::{UsageError, diagnostics, files};
 
 /// What columns the part is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,9 +47,28 @@ impl Columns {
     }
 }
 
+/// What a picture needs to know beside the material.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Memory {
+    /// Which tool cut what.
+    tools: bool,
+    /// The way of the tool.
+    path: bool,
+}
+
+impl Memory {
+    pub fn of(options: &OutputOptions) -> Memory {
+        Memory {
+            tools: Colouring::from(options.color) == Colouring::Tool,
+            path: options.toolpath,
+        }
+    }
+}
+
 /// The part, once BLK FORM gives a blank.
 pub(crate) struct Cutting {
     columns: Columns,
+    memory: Memory,
     workpiece: Option<(Blank, Workpiece)>,
     /// Tool in the spindle; `None` before the first TOOL CALL.
     tool: Option<u32>,
@@ -106,9 +128,10 @@ impl Spindle {
 
 impl Cutting {
     /// For tools of which some cut with M4.
-    pub fn new(columns: Columns, left_hand: BTreeSet<u32>) -> Cutting {
+    pub fn new(columns: Columns, memory: Memory, left_hand: BTreeSet<u32>) -> Cutting {
         Cutting {
             columns,
+            memory,
             workpiece: None,
             tool: None,
             shape: ToolShape::default(),
@@ -131,7 +154,7 @@ impl Cutting {
             self.moved = true;
             if let Some((_, workpiece)) = &mut self.workpiece {
                 // The spindle of rigid tapping is turned by the cycle itself [003:5106].
-                let tapping = element.override_law == OverrideLaw::Disabled;
+                let tapping = matches!(element.override_law, OverrideLaw::Spindle(_));
                 if tapping {
                     workpiece.note_cut(None);
                 }
@@ -156,7 +179,8 @@ impl Cutting {
     ) -> Result<(), UsageError> {
         let before = self.spindle;
         for function in element.functions() {
-            if (function.at == At::End) != at_end {
+            // What is output before the end, as M05 in tapping, acts on the way to the end and not before.
+            if matches!(function.at, At::End | At::BeforeEnd(_)) != at_end {
                 continue;
             }
             self.spindle.take(&function.function);
@@ -164,6 +188,9 @@ impl Cutting {
                 Function::Tool(call) => {
                     self.take_events(record);
                     (self.tool, self.shape, self.tool_axis) = (Some(call.tool), call.shape, call.axis);
+                    if let Some((_, workpiece)) = &mut self.workpiece {
+                        workpiece.take_tool(self.tool);
+                    }
                     self.watch();
                 }
                 Function::Blank(blank) => self.blank(blank, element.block, record)?,
@@ -234,8 +261,15 @@ impl Cutting {
             }
             _ => {}
         }
-        let workpiece = Workpiece::new(blank, self.columns.resolution(blank))
+        let mut workpiece = Workpiece::new(blank, self.columns.resolution(blank))
             .map_err(|error| UsageError::new(format!("--resolution: {error}")))?;
+        if self.memory.tools {
+            workpiece.remember_tools();
+            workpiece.take_tool(self.tool);
+        }
+        if self.memory.path {
+            workpiece.remember_path();
+        }
         self.workpiece = Some((*blank, workpiece));
         self.watch();
         Ok(())
@@ -263,13 +297,29 @@ impl Cutting {
     }
 }
 
-/// Writes picture and mesh as wanted.
+/// Whether all files were written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Written {
+    All,
+    /// Ctrl-C ended the work.
+    Interrupted,
+}
+
+/// Writes picture and mesh as wanted, until `stop` is set.
 pub(crate) fn write(
     part: Option<&Part>,
     options: &OutputOptions,
     title: &str,
     projection: Projection,
-) -> Result<(), UsageError> {
+    stop: &Arc<AtomicBool>,
+) -> Result<Written, UsageError> {
+    let is_stopped = |path: &Path| {
+        let is_stopped = stop.load(Ordering::Relaxed);
+        if is_stopped {
+            diagnostics::print_line(&format!("interrupted: {} is not written", path.display()));
+        }
+        is_stopped
+    };
     let part_for = |option: &str| {
         part.ok_or_else(|| {
             UsageError::new(format!(
@@ -278,23 +328,33 @@ pub(crate) fn write(
         })
     };
     if let Some(path) = &options.image {
-        let image = draw(part_for("--image")?, options, title, projection)?;
-        write_with(path, |file| image.write_png(file).map_err(std::io::Error::other))?;
+        let image = draw(part_for("--image")?, options, title, projection, stop)?;
+        if is_stopped(path) {
+            return Ok(Written::Interrupted);
+        }
+        let mut file = NewFile::create(path)?;
+        image
+            .write_png(&mut file)
+            .map_err(|error| files::cannot("write", path, &std::io::Error::other(error)))?;
+        if is_stopped(path) {
+            return Ok(Written::Interrupted);
+        }
+        file.finish()?;
     }
     if let Some(path) = &options.mesh {
         let part = part_for("--mesh")?;
-        write_with(path, |file| part.write_stl(file))?;
+        let mut file = NewFile::create(path)?;
+        match part.write_stl(&mut file, stop) {
+            Ok(()) => file.finish()?,
+            Err(MeshError::Stopped) => {
+                is_stopped(path);
+                return Ok(Written::Interrupted);
+            }
+            Err(MeshError::Io(error)) => return Err(files::cannot("write", path, &error)),
+            Err(error) => return Err(UsageError::new(format!("--mesh: {error}"))),
+        }
     }
-    Ok(())
-}
-
-fn write_with(
-    path: &Path,
-    write: impl FnOnce(&mut NewFile) -> std::io::Result<()>,
-) -> Result<(), UsageError> {
-    let mut file = NewFile::create(path)?;
-    write(&mut file).map_err(|error| files::cannot("write", path, &error))?;
-    file.finish()
+    Ok(Written::All)
 }
 
 fn draw(
@@ -302,10 +362,13 @@ fn draw(
     options: &OutputOptions,
     title: &str,
     projection: Projection,
+    stop: &Arc<AtomicBool>,
 ) -> Result<Image, UsageError> {
     let (width, height) = options.size;
     let page = |note: &str| {
-        Page::new(width, height, title, note).map_err(|error| UsageError::new(format!("--size: {error}")))
+        Page::new(width, height, title, note)
+            .map(|page| page.stopped_by(stop.clone()))
+            .map_err(|error| UsageError::new(format!("--size: {error}")))
     };
     Ok(match options.view {
         View::Plan => part.plan_view(&page("plan view")?, &PlanView::default()),
@@ -322,6 +385,8 @@ fn draw(
             let view = View3d {
                 azimuth_deg: options.angle,
                 elevation_deg: options.elevation,
+                colouring: options.color.into(),
+                tool_path: options.toolpath,
                 ..View3d::default()
             };
             part.view_3d(&page("3D view")?, &view)

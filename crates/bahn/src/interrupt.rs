@@ -60,6 +60,16 @@ impl Interrupt {
     pub fn flag(&self) -> Arc<AtomicBool> {
         self.requested.clone()
     }
+
+    /// A flag for what is written after the run: what an interrupted run left is written all the same, as a
+    /// second Ctrl-C ends the process.
+    pub fn after_run(&self) -> Arc<AtomicBool> {
+        if self.is_requested() {
+            Arc::default()
+        } else {
+            self.flag()
+        }
+    }
 }
 
 /// Ends one run: by Ctrl-C, or because its time is over.
@@ -67,6 +77,7 @@ impl Interrupt {
 pub(crate) struct Stop {
     flag: Arc<AtomicBool>,
     late: Arc<AtomicBool>,
+    over: Arc<AtomicBool>,
 }
 
 impl Stop {
@@ -75,6 +86,7 @@ impl Stop {
         Stop {
             flag: interrupt.flag(),
             late: Arc::default(),
+            over: Arc::default(),
         }
     }
 
@@ -92,8 +104,16 @@ impl Stop {
         self.flag.store(true, Ordering::Relaxed);
     }
 
+    /// The run has ended: no time limit counts any more.
+    pub fn run_is_over(&self) {
+        self.over.store(true, Ordering::Relaxed);
+    }
+
     /// Ends the run because its time is over.
     pub fn end_late(&self) {
+        if self.over.load(Ordering::Relaxed) {
+            return;
+        }
         self.late.store(true, Ordering::Relaxed);
         self.end();
     }

@@ -1,5 +1,6 @@
 //! The tool path as a drawing in plan view: rapid traverse dashed, feed solid, arcs as arcs.
 
+use std::collections::HashSet;
 use std::io::Write;
 
 use bahn_path::{Arc, Blank, Curve, FeedRate, Function, PathElement, Plane, Point2, Position};
@@ -31,8 +32,60 @@ pub(crate) struct PathDrawing {
     bounds: Option<[Point2; 2]>,
     first: Option<Point2>,
     last: Option<Point2>,
+    /// Where the tool moves in feed along its axis only, with its radius: once for each place and radius.
+    plunges: Plunges,
     /// Where the path leaves the workpiece for a place that is not known (M91).
     leaving: Vec<Point2>,
+}
+
+/// Places where the tool goes down: drilled holes, and the beginnings of cuts.
+#[derive(Default)]
+struct Plunges {
+    /// Of the tool in the spindle, mm.
+    radius: f64,
+    found: Vec<(Point2, f64)>,
+    known: HashSet<[u64; 3]>,
+}
+
+impl Plunges {
+    /// The way out of a hole is no plunge. The many plunges of a pecked hole are one.
+    fn add(&mut self, at: Point2, is_down: bool) {
+        let radius = if self.radius.is_finite() {
+            self.radius.max(0.0)
+        } else {
+            0.0
+        };
+        if is_down && self.known.insert([at[0], at[1], radius].map(f64::to_bits)) {
+            self.found.push((at, radius));
+        }
+    }
+
+    /// A circle as great as the tool with a cross, for a tool without a radius the cross alone; `mm` is the length of
+    /// a pixel.
+    fn draw(&self, out: &mut Vec<u8>, mm: f64) {
+        let least = 3.0 * mm;
+        for ([x, y], radius) in &self.found {
+            let arm = (1.3 * radius).max(least);
+            let mut text = String::new();
+            if *radius > 0.0 {
+                text += &format!(
+                    "<circle class=\"hole\" cx=\"{}\" cy=\"{}\" r=\"{}\"/>",
+                    short(*x),
+                    short(*y),
+                    short(*radius)
+                );
+            }
+            text += &format!(
+                "<path class=\"hole\" d=\"M{} {}h{w}M{} {}v{w}\"/>\n",
+                short(x - arm),
+                short(*y),
+                short(*x),
+                short(y - arm),
+                w = short(2.0 * arm),
+            );
+            out.extend_from_slice(text.as_bytes());
+        }
+    }
 }
 
 /// The commands of one kind of line.
@@ -52,7 +105,12 @@ impl PathDrawing {
                     self.blank.get_or_insert(*blank);
                     self.plane.get_or_insert(blank.plane);
                 }
-                Function::Tool(call) if self.plane.is_none() => self.plane = Plane::of_tool_axis(call.axis),
+                Function::Tool(call) => {
+                    self.plunges.radius = call.shape.radius;
+                    if self.plane.is_none() {
+                        self.plane = Plane::of_tool_axis(call.axis);
+                    }
+                }
                 _ => {}
             }
         }
@@ -82,6 +140,12 @@ impl PathDrawing {
             FeedRate::Programmed(_) => &mut self.feed,
         };
         line.move_to(from);
+        if from == to && element.curve == Curve::Line && element.feed != FeedRate::Rapid {
+            self.plunges.add(
+                from,
+                element.end.get(plane.normal) < element.start.get(plane.normal),
+            );
+        }
         match &element.curve {
             Curve::Arc(arc) if same_plane(arc.plane, plane) => {
                 line.arc(arc, from, to);
@@ -172,6 +236,7 @@ impl PathDrawing {
                 out.extend_from_slice(b"\"/>\n");
             }
         }
+        self.plunges.draw(&mut out, 1.0 / sheet.scale);
         out.extend_from_slice(b"</g>\n");
         sheet.marks(&mut out, self.first, self.last);
         sheet.end(&mut out);
@@ -274,6 +339,7 @@ impl Sheet {
             ".blank{{fill:#eef2f6;stroke:#9aa7b5;stroke-width:1}}\
              .rapid{{fill:none;stroke:#d9822b;stroke-width:{w1};stroke-dasharray:{d1} {d2}}}\
              .feed{{fill:none;stroke:#1f5fa8;stroke-width:{w2};stroke-linejoin:round;stroke-linecap:round}}\
+             .hole{{fill:none;stroke:#6b3fa0;stroke-width:{w1}}}\
              .grid{{stroke:#d3dbe4;stroke-width:1}}.axis{{stroke:#9aa7b5;stroke-width:1}}\
              text{{font-family:sans-serif;font-size:13px;fill:#2d3744}}",
             w1 = short(mm),
@@ -386,7 +452,9 @@ impl Sheet {
             "<g><line x1=\"70\" y1=\"{l}\" x2=\"110\" y2=\"{l}\" stroke=\"#1f5fa8\" stroke-width=\"1.6\"/><text x=\"116\" y=\"{y}\">feed</text>\
              <line x1=\"170\" y1=\"{l}\" x2=\"210\" y2=\"{l}\" stroke=\"#d9822b\" stroke-dasharray=\"6 4\"/><text x=\"216\" y=\"{y}\">rapid traverse</text>\
              <circle cx=\"330\" cy=\"{l}\" r=\"5\" fill=\"none\" stroke=\"#2a8f4f\" stroke-width=\"2\"/><text x=\"342\" y=\"{y}\">start</text>\
-             <rect x=\"396\" y=\"{e}\" width=\"8\" height=\"8\" fill=\"none\" stroke=\"#c0392b\" stroke-width=\"2\"/><text x=\"410\" y=\"{y}\">end</text></g>\n",
+             <rect x=\"396\" y=\"{e}\" width=\"8\" height=\"8\" fill=\"none\" stroke=\"#c0392b\" stroke-width=\"2\"/><text x=\"410\" y=\"{y}\">end</text>\
+             <path d=\"M452 {l}h16m-8 -8v16\" stroke=\"#6b3fa0\"/><circle cx=\"460\" cy=\"{l}\" r=\"5\" fill=\"none\" stroke=\"#6b3fa0\"/>\
+             <text x=\"474\" y=\"{y}\">plunge or hole</text></g>\n",
             l = y - 4.0,
             e = y - 8.0,
         );
@@ -485,6 +553,26 @@ mod tests {
         line.move_to(from);
         line.arc(arc, from, to);
         String::from_utf8(line.commands).unwrap()
+    }
+
+    /// A hole of radius 3 that is pecked is one circle; the way out and rapid traverse are none.
+    #[test]
+    fn drilled_places_are_circles() {
+        let mut plunges = Plunges {
+            radius: 3.0,
+            ..Plunges::default()
+        };
+        plunges.add([15.0, 45.0], true);
+        plunges.add([15.0, 45.0], false);
+        plunges.add([15.0, 45.0], true);
+        plunges.add([85.0, 45.0], false);
+        let mut out = Vec::new();
+        plunges.draw(&mut out, 0.1);
+        let text = String::from_utf8(out).unwrap();
+        assert_eq!(text.matches("<circle").count(), 1);
+        assert!(text.contains("cx=\"15\" cy=\"45\" r=\"3\""), "{text}");
+        // The arms reach 0.3 of the radius beyond.
+        assert!(text.contains("M11.1 45h7.8M15 41.1v7.8"), "{text}");
     }
 
     #[test]

@@ -280,6 +280,9 @@ impl Notice {
                 | EventKind::SpindleWrongWay
                 | EventKind::NoRadius),
             ) => format!("a tool {}", what_a_tool_does(*kind)),
+            Notice::DrawingIncomplete | Notice::Cut(EventKind::PathIncomplete) => {
+                "the drawing of the path ends here, it has too many elements".into()
+            }
             Notice::Cut(EventKind::ToolAxisNotShown) => {
                 format!(
                     "{}: the tool axis is not that of BLK FORM",
@@ -296,7 +299,6 @@ impl Notice {
             Notice::NothingToProbe => {
                 "there is no part to touch: the program needs a BLK FORM, and graphics".into()
             }
-            Notice::DrawingIncomplete => "the drawing of the path ends here, it has too many elements".into(),
         }
     }
 }

@@ -35,9 +35,10 @@ fn mutated(file: &'static str) -> impl Strategy<Value = String> {
     })
 }
 
-const FOLDER: &str = include_str!("../../../machines/mill/machine.toml");
-const PLANT: &str = include_str!("../../../machines/mill/plant.toml");
-const TOOLS: &str = include_str!("../../../machines/mill/tools.tsv");
+/// A file of the shipped mill.
+fn mill(file: &str) -> &'static str {
+    bahn_machines::MILL.file(file).unwrap()
+}
 
 fn tool_table(text: &str) -> Result<(), TestCaseError> {
     if let Err(faults) = bahn::check_tool_table(text) {
@@ -70,7 +71,7 @@ proptest! {
     }
 
     #[test]
-    fn damaged_files_of_a_machine(folder in mutated(FOLDER), plant in mutated(PLANT), tools in mutated(TOOLS)) {
+    fn damaged_files_of_a_machine(folder in mutated(mill("machine.toml")), plant in mutated(mill("plant.toml")), tools in mutated(mill("tools.tsv"))) {
         let (_, faults) = MachineFolder::read(&folder);
         prop_assert!(faults.iter().all(|fault| fault.line >= 1 && fault.column >= 1));
         if let Err(faults) = Machine::from_toml(&plant) {

@@ -131,7 +131,7 @@ fn the_table_can_be_narrowed() {
     let folder = Folder::new();
     let run = folder.bahn("conformance --model tnc360 --kind m");
     assert!(
-        run.out().contains("M103") == false && run.out().contains("M90 "),
+        !run.out().contains("M103") && run.out().contains("M90 "),
         "{}",
         run.out()
     );

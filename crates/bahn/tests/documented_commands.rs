@@ -60,6 +60,8 @@ fn desk() -> Folder {
     for name in ["part.h", "PART.H"] {
         folder.write(name, part);
     }
+    fs::create_dir(folder.path("parts")).unwrap();
+    folder.write("parts/part.h", part);
     let list = fs::read_to_string(root().join("machines/mill/parameters.mp")).unwrap();
     for name in ["mill.mp", "old.mp", "new.mp", "machine.MP"] {
         folder.write(name, &list);

@@ -204,6 +204,29 @@ fn interrupted(folder: &Folder, arguments: &[&str]) -> (Option<i32>, serde_json:
     (child.wait().unwrap().code(), serde_json::from_str(&json).unwrap())
 }
 
+/// The program is done at once; the picture and the mesh would take far longer.
+#[test]
+fn ctrl_c_ends_picture_and_mesh() {
+    let folder = Folder::with_program(
+        "BLK FORM 0.1 Z X+0 Y+0 Z-40\nBLK FORM 0.2 X+100 Y+100 Z+0\nTOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S500\n\
+         L X+0 Y+0 Z+2 R0 FMAX M3\nL X+100 Y+100 Z-30 F1000",
+    );
+    for arguments in [
+        "--image out.png --view 3d --size 8000x8000",
+        "--mesh out.stl --resolution 0.02",
+    ] {
+        let arguments: Vec<_> = arguments.split(' ').collect();
+        let (code, report) = interrupted(&folder, &arguments);
+        assert_eq!(
+            (code, report["completed"].as_bool()),
+            (Some(130), Some(true)),
+            "{report}"
+        );
+        let names = folder.names();
+        assert!(names.iter().all(|name| name == "main.H"), "{names:?}");
+    }
+}
+
 #[test]
 fn ctrl_c_gives_the_report_so_far() {
     // Moves and comes to no end.

@@ -370,15 +370,19 @@ fn what_survives_power_off_is_kept_in_the_folder() {
             .read("mill/state/control.toml")
             .contains("datum = [{ X = 200.0")
     );
-    // A damaged file is said; the machine runs with the datum of machine.toml.
+    // A damaged file starts nothing and is kept; without it the machine begins with the datum of machine.toml.
     folder.write("mill/state/control.toml", "tool = 3\ntool_length = ");
     let damaged = folder.bahn("run main.H --machine mill");
-    assert_eq!(damaged.code(), 0, "{}", damaged.err());
+    assert_eq!(damaged.code(), 2, "{}", damaged.err());
     assert!(
-        damaged.err().contains("control.toml: line 2"),
+        damaged.err().contains("control.toml: its end is missing"),
         "{}",
         damaged.err()
     );
+    assert!(!folder.path("mill/state/control.toml").exists());
+    std::fs::remove_file(folder.path("mill/state/control.toml.damaged")).unwrap();
+    let anew = folder.bahn("run main.H --machine mill");
+    assert_eq!(anew.code(), 0, "{}", anew.err());
     assert!(
         folder
             .read("mill/state/control.toml")
@@ -482,7 +486,7 @@ fn expectations_are_written_as_junit() {
     assert_eq!(run.code(), 1, "{}", run.err());
     let xml = folder.read("out.xml");
     for expected in [
-        "failures=\"1\" errors=\"0\" skipped=\"1\"",
+        "failures=\"1\" errors=\"1\" skipped=\"1\"",
         "classname=\"s.txt:1\" name=\"0.2: expect message &quot;POWER INTERRUPTED&quot;\"/>",
         "classname=\"s.txt:2\" name=\"0.3: expect no message\">\n      <failure message=\"shown is POWER INTERRUPTED",
         "classname=\"s.txt:3\" name=\"start+4: expect tool=3\"",

@@ -32,7 +32,7 @@ fn report(folder: &Folder, arguments: &str) -> (i32, Value) {
 fn a_script_that_ends_early_fails() {
     let folder = Folder::with_program(PROGRAM);
     for script in ["1: end", "start+2: end"] {
-        folder.write("s.txt", &format!("{script}\n"));
+        folder.write("s.txt", format!("{script}\n"));
         let (code, json) = report(&folder, "--script s.txt");
         assert_eq!((code, &json["completed"]), (1, &json!(false)), "{script}");
         let said = json["error"]["message"].as_str().unwrap();

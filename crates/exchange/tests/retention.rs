@@ -26,8 +26,11 @@ fn holding(content: Vec<u8>) -> MemoryStorage {
     }
 }
 
+/// Image, damage, and what was kept of the journal.
+type Opened = (Image, Option<Damage>, Vec<Vec<u8>>);
+
 /// The image of a journal, what was wrong with it, and what was kept of it.
-fn opened(content: Vec<u8>) -> Result<(Image, Option<Damage>, Vec<Vec<u8>>), RetentionError> {
+fn opened(content: Vec<u8>) -> Result<Opened, RetentionError> {
     let retention = Retention::open(holding(content))?;
     let mut exchange = Exchange::default();
     retention.restore(&mut exchange);

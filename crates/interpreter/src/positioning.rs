@@ -256,8 +256,8 @@ impl Run {
                 _ => 0.0,
             };
             let zero = settings.rules.machine_zero[axis] - length;
-            if zero.is_nan() && functions.reference != Reference::Position {
-                // Only after the reference marks machine coordinates are known [000:4568-4576].
+            if settings.machine && zero.is_nan() && functions.reference != Reference::Position {
+                // On a machine its coordinates are known only after the reference marks [000:4568-4576].
                 return Err(Fault::new(
                     MessageId::ProgramStartUndefined,
                     format!("{axis} has not passed its reference mark"),

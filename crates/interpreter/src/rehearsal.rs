@@ -22,6 +22,8 @@ use crate::{Ended, Interpreter};
 
 /// Blocks that are executed at most, beside those of the program: loops end there.
 const BLOCKS_MAX: u64 = 1_000_000;
+/// Stands for the feed of a block that cannot be read.
+const ASSUMED_FEED_MM_MIN: f64 = 100.0;
 /// Errors and warnings that are kept, each.
 const FOUND_MAX: usize = 1000;
 
@@ -183,7 +185,7 @@ impl Rehearser {
             }
             return;
         };
-        self.propagate(&operation);
+        self.propagate(&operation, effect.unknown || result.is_err());
         match result {
             Ok(()) if effect.unknown => self.doubts = self.doubts.and(effect.sets),
             Ok(()) => self.doubts = self.doubts.without(effect.settles),
@@ -210,12 +212,10 @@ impl Rehearser {
     }
 
     fn effect(&self, operation: &Operation) -> Effect {
-        let mut unknown = false;
-        each_parameter(operation, &mut |number| unknown |= self.is_unknown(number));
         Effect {
             sets: sets(operation),
             settles: settles(operation),
-            unknown,
+            unknown: self.operands_unknown(operation),
         }
     }
 
@@ -223,25 +223,32 @@ impl Rehearser {
         self.unknown_q.get(usize::from(number)).copied().unwrap_or(false)
     }
 
-    /// A result is as little known as what it is calculated from.
-    fn propagate(&mut self, operation: &Operation) {
+    /// Whether a block reads a Q parameter of unknown value; what it calculates is not read.
+    fn operands_unknown(&self, operation: &Operation) -> bool {
         let unknown_value =
             |value: &Value| matches!(value, Value::Q { number, .. } if self.is_unknown(*number));
-        let (target, unknown) = match operation {
-            Operation::Calculate { target, a, b, .. } => (*target, unknown_value(a) || unknown_value(b)),
-            Operation::Formula { target, expression } => {
-                let mut unknown = false;
-                let value = Operation::Formula {
-                    // A parameter that is never unknown: only the operands count.
-                    target: preassigned::UNIT,
-                    expression: expression.clone(),
-                };
-                each_parameter(&value, &mut |number| unknown |= self.is_unknown(number));
-                (*target, unknown)
-            }
-            _ => return,
+        let each_unknown = |operation: &Operation| {
+            let mut unknown = false;
+            each_parameter(operation, &mut |number| unknown |= self.is_unknown(number));
+            unknown
         };
-        if let Some(slot) = self.unknown_q.get_mut(usize::from(target)) {
+        match operation {
+            Operation::Calculate { a, b, .. } => unknown_value(a) || unknown_value(b),
+            Operation::Formula { expression, .. } => each_unknown(&Operation::Formula {
+                // A parameter that is never unknown: only the operands count.
+                target: preassigned::UNIT,
+                expression: expression.clone(),
+            }),
+            _ => each_unknown(operation),
+        }
+    }
+
+    /// A result is as little known as what it is calculated from, or not at all when that failed.
+    fn propagate(&mut self, operation: &Operation, unknown: bool) {
+        let (Operation::Calculate { target, .. } | Operation::Formula { target, .. }) = operation else {
+            return;
+        };
+        if let Some(slot) = self.unknown_q.get_mut(usize::from(*target)) {
             *slot = unknown;
         }
     }
@@ -279,6 +286,10 @@ impl Rehearser {
             run.at.block += 1;
         }
         let Operation::Motion(motion) = operation else {
+            if sets(operation).any_of(Doubts::FEED) {
+                // Nobody knows which; with any feed the blocks behind it can be looked at.
+                run.modal.feed_mm_min.get_or_insert(ASSUMED_FEED_MM_MIN);
+            }
             return;
         };
         if let Some(Feed::Value(Value::Number(feed))) = motion.feed {

@@ -127,10 +127,10 @@ fn has_word(text: &str, before: &str, word: &str) -> bool {
 }
 
 /// Settings under which some parameters act at all: axis-error compensation of either kind, a rotary axis, a
-/// position for tool changes in the block scan.
+/// position for tool changes in the block scan, the output S by feed.
 const CIRCUMSTANCES: &[&[&str]] = &[
     &[],
-    &["730=0", "7450=%11111", "410.3=0"],
+    &["730=0", "7450=%11111", "410.3=0", "3010=0", "3011=1"],
     &["730=%11111", "410.3=2", "410.4=0", "90=5"],
 ];
 
@@ -181,12 +181,12 @@ fn is_read_as(
 fn parameters_that_act_are_read_outside_this_room() {
     let sources = sources();
     let is_read = |field: &String| match field.split('.').collect::<Vec<_>>()[..] {
-        // What is kept under the name of its getter is used under it.
-        [getter, name] if sources.contains(&format!("{getter}.")) => {
+        // What the PLC gets is kept under the name of its getter; its fields have names that others have, too.
+        [getter @ "plc_parameters", name] => {
             let kept = has_word(&sources, &format!("{getter}."), name);
             kept || has_word(&sources, &format!("{getter}()."), name)
         }
-        [.., name] => has_word(&sources, ".", name),
+        [.., name] => has_word(&sources, ".", name) || sources.contains(&format!("{{ {name} }}")),
         [] => false,
     };
     let mut unread = Vec::new();

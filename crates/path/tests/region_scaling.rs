@@ -48,7 +48,12 @@ fn smooth(count: usize) -> Contour {
 
 /// A star, its points much nearer together than they are high.
 fn star(count: usize) -> Contour {
-    let at = |k: usize| polar(if k % 2 == 0 { 50.0 } else { 45.0 }, k as f64 / count as f64);
+    let at = |k: usize| {
+        polar(
+            if k.is_multiple_of(2) { 50.0 } else { 45.0 },
+            k as f64 / count as f64,
+        )
+    };
     Contour::polygon(&(0..count).map(at).collect::<Vec<_>>())
 }
 
@@ -86,7 +91,10 @@ fn cycle<E: Effort>(subcontours: &[SubContour], effort: &E) -> Result<(f64, usiz
 fn islands(pocket: Contour, count: usize) -> Vec<SubContour> {
     let small = |dx: f64| {
         let at = |k: usize| {
-            let [x, y] = polar(if k % 2 == 0 { 6.0 } else { 5.0 }, k as f64 / count as f64);
+            let [x, y] = polar(
+                if k.is_multiple_of(2) { 6.0 } else { 5.0 },
+                k as f64 / count as f64,
+            );
             [x + dx, y]
         };
         Contour::polygon(&(0..count).map(at).collect::<Vec<_>>())

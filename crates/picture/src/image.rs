@@ -8,17 +8,38 @@ use thiserror::Error;
 pub type Colour = [u8; 3];
 
 /// A finished picture, 8 bits each of red, green, blue.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Image {
     width: u32,
     height: u32,
     pixels: Vec<Colour>,
+    labels: Vec<Label>,
+}
+
+/// A text of a picture and the rectangle that its letters cover.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// What is written.
+    pub text: String,
+    /// Upper left corner, pixels.
+    pub min: [f64; 2],
+    /// Lower right corner, pixels.
+    pub max: [f64; 2],
 }
 
 /// Why a picture could not be written.
 #[derive(Debug, Error)]
 #[error("the picture cannot be written: {0}")]
 pub struct ImageError(#[from] png::EncodingError);
+
+/// Pictures are equal when their pixels are.
+impl PartialEq for Image {
+    fn eq(&self, other: &Image) -> bool {
+        (self.width, self.height, &self.pixels) == (other.width, other.height, &other.pixels)
+    }
+}
+
+impl Eq for Image {}
 
 impl Image {
     /// Width, pixels.
@@ -57,7 +78,17 @@ impl Image {
             width,
             height,
             pixels: vec![colour; width as usize * height as usize],
+            labels: Vec::new(),
         }
+    }
+
+    /// The texts in the order of their writing, also those that lie beyond the page.
+    pub fn labels(&self) -> &[Label] {
+        &self.labels
+    }
+
+    pub(crate) fn note(&mut self, label: Label) {
+        self.labels.push(label);
     }
 
     /// Rows of pixels, for those who compute them.

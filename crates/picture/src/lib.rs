@@ -1,7 +1,7 @@
 //! Pictures: pixels, lines and text.
 //!
 //! The face of this room: [`Image`] with what is drawn on it, [`Colour`] and [`mix`], [`Anchor`] and
-//! [`text_width`]. Places are pixels from the upper left corner, fractions count.
+//! [`text_width`], [`Label`] for what was written where. Places are pixels from the upper left corner, fractions count.
 //!
 //! ```
 //! use bahn_picture::{Anchor, Image};
@@ -18,5 +18,5 @@
 mod image;
 mod text;
 
-pub use image::{Colour, Image, ImageError, mix};
+pub use image::{Colour, Image, ImageError, Label, mix};
 pub use text::{Anchor, text_width};

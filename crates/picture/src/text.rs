@@ -2,7 +2,7 @@
 
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 
-use crate::image::{Colour, Image};
+use crate::image::{Colour, Image, Label};
 
 /// Where a text lies from its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,14 +34,20 @@ impl Image {
         let Some(font) = font() else { return };
         let scale = PxScale::from(size as f32);
         let scaled = font.as_scaled(scale);
+        let width = text_width(text, size);
         let mut x = match anchor {
             Anchor::Left => at[0],
-            Anchor::Centre => at[0] - 0.5 * text_width(text, size),
-            Anchor::Right => at[0] - text_width(text, size),
+            Anchor::Centre => at[0] - 0.5 * width,
+            Anchor::Right => at[0] - width,
         };
         // Half the height of capitals below the middle line.
         const CAPITALS: f64 = 0.62;
         let base = (at[1] + 0.5 * CAPITALS * size).round();
+        self.note(Label {
+            text: text.to_owned(),
+            min: [x, base - CAPITALS * size],
+            max: [x + width, base],
+        });
         for c in text.chars() {
             let glyph = font.glyph_id(c);
             let advance = f64::from(scaled.h_advance(glyph));

@@ -265,13 +265,7 @@ fn limits_are_those_of_the_unit_and_the_model() {
     };
     assert!(check_limits(&operation("L X+1 F630"), Unit::Inch, whole).is_none());
     assert!(check_limits(&operation("L X+1 F631"), Unit::Inch, whole).is_some());
-    for text in [
-        "Q1 = SIN 30",
-        "L X+Q150",
-        "M103 F25",
-        "CYCL DEF 19.0 PLANE",
-        "L X+40000",
-    ] {
+    for text in ["Q1 = SIN 30", "L X+Q150", "CYCL DEF 19.0 PLANE", "L X+40000"] {
         assert!(
             check_limits(&operation(text), Unit::Mm, Tnc415b.limits()).is_none(),
             "{text}"

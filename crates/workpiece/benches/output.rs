@@ -2,6 +2,8 @@
 
 #![expect(clippy::expect_used, reason = "a benchmark may stop")]
 
+use std::sync::atomic::AtomicBool;
+
 use bahn_path::{
     Arc, Axis, Blank, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Plane, Position, ToolShape,
 };
@@ -76,5 +78,5 @@ fn view_3d(bencher: divan::Bencher) {
 #[divan::bench(sample_count = 5)]
 fn stl(bencher: divan::Bencher) {
     let part = part();
-    bencher.bench_local(|| part.write_stl(std::io::sink()));
+    bencher.bench_local(|| part.write_stl(std::io::sink(), &AtomicBool::new(false)));
 }

@@ -74,7 +74,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(detail) = part.detail([80.0, 15.0], [145.0, 90.0]) {
         save("3d-detail.png", detail.view_3d(&page("3D view MAGN"), &left))?;
     }
-    part.write_stl(File::create(folder.join("part.stl"))?)?;
+    part.write_stl(
+        File::create(folder.join("part.stl"))?,
+        &std::sync::atomic::AtomicBool::new(false),
+    )?;
     Ok(())
 }
 

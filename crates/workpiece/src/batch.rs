@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::cutters::Mark;
 use crate::grid::Grid;
-use crate::sweep::{BAND_ROWS, Segment, Sink};
+use crate::sweep::{BAND_ROWS, Segment, Sink, Start, Track};
 
 /// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
 const RAPID_CUT_MM: f32 = 0.002;
@@ -16,6 +17,10 @@ pub(crate) struct Batch {
     segments: Vec<Segment>,
     /// Segments that are looked at for a cut in rapid traverse.
     rapid: Vec<bool>,
+    /// The tracks of the segments.
+    tracks: Vec<Track>,
+    /// What the columns that a segment cuts are marked with; 0 when nobody asks.
+    marks: Vec<u8>,
     bands: Vec<Vec<u32>>,
 }
 
@@ -24,14 +29,22 @@ impl Batch {
         self.segments.len()
     }
 
-    pub fn push(&mut self, segment: Segment, rapid: bool) {
+    pub fn push(&mut self, mut segment: Segment, rapid: bool, mark: u8) {
+        // A cut that is looked for must be there when its segment is cut, and not before.
+        if let (Some(last), Some(false), false) = (self.segments.last_mut(), self.rapid.last(), rapid)
+            && segment.start == Start::Cut
+            && self.marks.last() == Some(&mark)
+        {
+            last.share_end(&mut segment);
+        }
         self.segments.push(segment);
         self.rapid.push(rapid);
+        self.marks.push(mark);
     }
 
     /// Cuts all segments in their order and forgets them. The answer tells which rapid segments
-    /// removed material, by index.
-    pub fn cut(&mut self, grid: &Grid, heights: &mut [f32]) -> Vec<u32> {
+    /// removed material, by index. `marked` keeps a mark for each column, when it is asked for.
+    pub fn cut(&mut self, grid: &Grid, heights: &mut [f32], marked: Option<&mut [u8]>) -> Vec<u32> {
         self.bands.resize_with(grid.ny.div_ceil(BAND_ROWS), Vec::new);
         for (index, segment) in self.segments.iter().enumerate() {
             let rows = segment.rows(grid);
@@ -46,54 +59,81 @@ impl Batch {
                 }
             }
         }
-        let (segments, rapid) = (&self.segments, &self.rapid);
+        self.segments
+            .par_iter()
+            .map(Track::new)
+            .collect_into_vec(&mut self.tracks);
+        let (segments, rapid, marks, tracks) = (&self.segments, &self.rapid, &self.marks, &self.tracks);
+        let mut marked = marked.map(|marked| marked.chunks_mut(BAND_ROWS * grid.nx));
+        let marked: Vec<Option<&mut [u8]>> = (0..self.bands.len())
+            .map(|_| marked.as_mut().and_then(Iterator::next))
+            .collect();
         let mut hits: Vec<u32> = heights
             .par_chunks_mut(BAND_ROWS * grid.nx)
             .zip(self.bands.par_iter_mut())
+            .zip(marked)
             .enumerate()
-            .filter(|(_, (_, todo))| !todo.is_empty())
-            .flat_map_iter(|(band, (cells, todo))| {
+            .filter(|(_, ((_, todo), _))| !todo.is_empty())
+            .flat_map_iter(|(band, ((cells, todo), mut marked))| {
                 let first = band * BAND_ROWS;
                 let rows = first..(first + BAND_ROWS).min(grid.ny);
                 let mut hits = Vec::new();
                 for index in todo.drain(..) {
                     let at = index as usize;
-                    let (Some(segment), Some(rapid)) = (segments.get(at), rapid.get(at)) else {
+                    let (Some(segment), Some(rapid), Some(track)) =
+                        (segments.get(at), rapid.get(at), tracks.get(at))
+                    else {
                         continue;
                     };
-                    if *rapid && is_rapid_cut(segment, grid, rows.clone(), cells) {
+                    let rows = segment.rows_in(grid, &rows);
+                    let before = at.checked_sub(1).and_then(|before| tracks.get(before));
+                    let hit = *rapid && is_rapid_cut(segment, grid, rows.clone(), cells, first);
+                    if hit {
                         hits.push(index);
+                    }
+                    // A wall that is passed too near is no cut in rapid traverse.
+                    if let (true, Some(marked), Some(mark)) = (hit || !*rapid, &mut marked, marks.get(at)) {
+                        let mut sink = Mark {
+                            cells: &*cells,
+                            marks: marked,
+                            width: grid.nx,
+                            first_row: first,
+                            mark: *mark,
+                        };
+                        track.sweep(before, grid, rows.clone(), &mut sink);
                     }
                     let mut cut = Cut {
                         cells: &mut *cells,
                         width: grid.nx,
                         first_row: first,
                     };
-                    segment.sweep(grid, rows.clone(), &mut cut);
+                    track.sweep(before, grid, rows, &mut cut);
                 }
                 hits
             })
             .collect();
         self.segments.clear();
         self.rapid.clear();
+        self.marks.clear();
         hits.sort_unstable();
         hits.dedup();
         hits
     }
 }
 
-fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32]) -> bool {
+fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32], first_row: usize) -> bool {
     let mut detect = Detect {
         cells,
         width: grid.nx,
-        first_row: rows.start,
+        first_row,
         found: false,
     };
     let thinner = Segment {
         tool: segment.tool.thinner(grid),
         ..*segment
     };
-    thinner.sweep(grid, rows, &mut detect);
+    let rows = thinner.rows_in(grid, &rows);
+    Track::new(&thinner).sweep(None, grid, rows, &mut detect);
     detect.found
 }
 

@@ -31,6 +31,8 @@ pub enum EventKind {
     SpindleWithoutSpeed,
     /// The tool cut while the spindle turned the wrong way for it, likewise.
     SpindleWrongWay,
+    /// There are too many movements for a picture of the path: the rest is not drawn.
+    PathIncomplete,
     /// A tool without a radius was moved through the blank in feed: it removes nothing.
     NoRadius,
     /// `PGM SECTION CANNOT BE SHOWN`: the tool axis is not the one of BLK FORM. Nothing is removed

@@ -26,19 +26,24 @@
 
 mod batch;
 mod chords;
+mod coarsen;
+mod cutters;
 mod event;
 mod grid;
 mod part;
+mod round;
 mod setup;
 mod stl;
 mod sweep;
 mod tool;
 mod touch;
+mod trail;
 mod view;
 mod workpiece;
 
 pub use event::{Event, EventKind};
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
-pub use view::{Page, PageError, PlanView, Projection, ThreePlanes, View3d};
+pub use stl::{MAX_TRIANGLES, MeshError};
+pub use view::{Colouring, Page, PageError, PlanView, Projection, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};

@@ -1,10 +1,14 @@
 //! The material that is left.
 
+use std::ops::Range;
+
 use bahn_path::Axis;
 use rayon::prelude::*;
 
+use crate::cutters::Cutters;
 use crate::grid::Grid;
 use crate::setup::Setup;
+use crate::trail::Trail;
 
 /// What is left of the blank: one height for every column over the working plane.
 #[derive(Clone, Debug)]
@@ -14,6 +18,9 @@ pub struct Part {
     /// Height of every column over the lower face of the blank, mm; 0 where nothing is left. Rows run
     /// along the first axis of the plane.
     pub(crate) heights: Vec<f32>,
+    /// Who cut the columns, and the way of the tool: when they are remembered.
+    pub(crate) cutters: Option<Cutters>,
+    pub(crate) trail: Option<Trail>,
 }
 
 impl Part {
@@ -22,6 +29,8 @@ impl Part {
             setup,
             grid,
             heights: vec![setup.size[2] as f32; grid.nx * grid.ny],
+            cutters: None,
+            trail: None,
         }
     }
 
@@ -112,13 +121,15 @@ impl Part {
         };
         let Grid { nx, ny, dx, dy } = self.grid;
         let (i, j) = (columns(0, dx, nx)?, columns(1, dy, ny)?);
-        let mut heights = Vec::with_capacity(i.len() * j.len());
-        for row in self.heights.chunks(nx).take(j.end).skip(j.start) {
-            heights.extend_from_slice(row.get(i.clone())?);
-        }
+        let heights = section(&self.heights, nx, &i, &j)?;
+        let cutters = match &self.cutters {
+            Some(cutters) => Some(cutters.with_marks(section(&cutters.marks, nx, &i, &j)?)),
+            None => None,
+        };
+        let corner = [i.start as f64 * dx, j.start as f64 * dy];
         let mut setup = self.setup;
-        setup.min[0] += i.start as f64 * dx;
-        setup.min[1] += j.start as f64 * dy;
+        setup.min[0] += corner[0];
+        setup.min[1] += corner[1];
         setup.size[0] = i.len() as f64 * dx;
         setup.size[1] = j.len() as f64 * dy;
         Some(Part {
@@ -130,6 +141,8 @@ impl Part {
                 dy,
             },
             heights,
+            cutters,
+            trail: self.trail.as_ref().map(|trail| trail.seen_from(corner)),
         })
     }
 
@@ -146,4 +159,13 @@ impl Part {
     pub(crate) fn top(&self) -> f32 {
         self.setup.size[2] as f32
     }
+}
+
+/// The values of some columns of some rows.
+fn section<T: Copy>(values: &[T], width: usize, i: &Range<usize>, j: &Range<usize>) -> Option<Vec<T>> {
+    let mut kept = Vec::with_capacity(i.len() * j.len());
+    for row in values.chunks(width).take(j.end).skip(j.start) {
+        kept.extend_from_slice(row.get(i.clone())?);
+    }
+    Some(kept)
 }

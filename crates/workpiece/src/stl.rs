@@ -6,8 +6,41 @@
 
 use std::io::{self, BufWriter, Write};
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use thiserror::Error;
 
 use crate::part::Part;
+
+/// Most triangles of a mesh; each takes 50 bytes.
+pub const MAX_TRIANGLES: usize = 8_000_000;
+
+/// Faces that are worked off between two looks at whether the work shall end.
+const CHUNK: usize = 4096;
+
+/// Why there is no mesh.
+#[derive(Debug, Error)]
+pub enum MeshError {
+    /// Nobody could read so much.
+    #[error(
+        "the mesh would have {triangles} triangles, the most are {most}: a coarser resolution makes fewer"
+    )]
+    TooLarge {
+        /// How many it would have.
+        triangles: usize,
+        /// How many it may have.
+        most: usize,
+    },
+    /// The work was stopped.
+    #[error("stopped")]
+    Stopped,
+    /// The writer failed.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+}
+
+/// Whether the work goes on: the error ends it.
+pub(crate) type GoOn<'a> = &'a dyn Fn() -> Result<(), MeshError>;
 
 type Triangle = [[f32; 3]; 3];
 
@@ -47,27 +80,52 @@ enum Face {
 
 impl Part {
     /// Writes the part as binary STL in workpiece coordinates, mm. The mesh is closed: every edge is
-    /// met as often in one direction as in the other; its volume is that of the height map.
+    /// met as often in one direction as in the other; its volume is that of the height map. On curved
+    /// surfaces columns that differ by their side at most are one step.
+    ///
+    /// The work ends early once `stop` is set.
     ///
     /// # Errors
-    /// Those of the writer.
-    pub fn write_stl(&self, writer: impl Write) -> io::Result<()> {
-        let mesh = Mesh::new(self);
+    /// For a mesh of more than [`MAX_TRIANGLES`], and when it was stopped.
+    pub fn write_stl(&self, writer: impl Write, stop: &AtomicBool) -> Result<(), MeshError> {
+        self.write_mesh(writer, stop, MAX_TRIANGLES)
+    }
+
+    fn write_mesh(&self, writer: impl Write, stop: &AtomicBool, most: usize) -> Result<(), MeshError> {
+        let go_on = || {
+            if stop.load(Ordering::Relaxed) {
+                Err(MeshError::Stopped)
+            } else {
+                Ok(())
+            }
+        };
+        let coarse = self.coarse(&go_on)?;
+        let mesh = Mesh::new(&coarse, &go_on)?;
+        let mut count = 0;
+        for faces in mesh.faces.chunks(CHUNK) {
+            go_on()?;
+            count += faces.iter().map(|face| mesh.triangles(face).len()).sum::<usize>();
+        }
+        if count > most {
+            return Err(MeshError::TooLarge {
+                triangles: count,
+                most,
+            });
+        }
         let mut writer = BufWriter::new(writer);
         let mut header = [0u8; 80];
         for (to, from) in header.iter_mut().zip(b"Bahn: finished part, mm") {
             *to = *from;
         }
         writer.write_all(&header)?;
-        let count: usize = mesh.faces.iter().map(|face| mesh.triangles(face).len()).sum();
-        let count = u32::try_from(count).map_err(|_| io::Error::other("too many triangles for STL"))?;
-        writer.write_all(&count.to_le_bytes())?;
-        for face in &mesh.faces {
-            for triangle in mesh.triangles(face) {
+        writer.write_all(&(count as u32).to_le_bytes())?;
+        for faces in mesh.faces.chunks(CHUNK) {
+            go_on()?;
+            for triangle in faces.iter().flat_map(|face| mesh.triangles(face)) {
                 write_triangle(&mut writer, &triangle)?;
             }
         }
-        writer.flush()
+        Ok(writer.flush()?)
     }
 }
 
@@ -98,25 +156,27 @@ struct Mesh<'a> {
 }
 
 impl<'a> Mesh<'a> {
-    fn new(part: &'a Part) -> Mesh<'a> {
+    fn new(part: &'a Part, go_on: GoOn) -> Result<Mesh<'a>, MeshError> {
         let mut faces = Vec::new();
         let height = |i: usize, j: usize| part.height(i, j);
-        merge_level(part, height, true, &mut faces);
+        merge_level(part, height, true, &mut faces, go_on)?;
         merge_level(
             part,
             |i, j| if part.height(i, j) > 0.0 { 1.0 } else { 0.0 },
             false,
             &mut faces,
-        );
-        merge_walls(part, &mut faces);
+            go_on,
+        )?;
+        merge_walls(part, &mut faces, go_on)?;
         let mut mesh = Mesh {
             part,
             faces,
             starts: Vec::new(),
             heights: Vec::new(),
         };
+        go_on()?;
         mesh.collect_corners();
-        mesh
+        Ok(mesh)
     }
 
     fn lattice(&self, i: usize, j: usize) -> usize {
@@ -333,10 +393,17 @@ fn rectangle(face: &Face) -> [Corner; 4] {
 }
 
 /// Rectangles of columns with one height: each grows along the row first, then over rows.
-fn merge_level(part: &Part, height: impl Fn(usize, usize) -> f32, positive: bool, faces: &mut Vec<Face>) {
+fn merge_level(
+    part: &Part,
+    height: impl Fn(usize, usize) -> f32,
+    positive: bool,
+    faces: &mut Vec<Face>,
+    go_on: GoOn,
+) -> Result<(), MeshError> {
     let (nx, ny) = (part.grid.nx, part.grid.ny);
     let mut done = vec![false; nx * ny];
     for j in 0..ny {
+        go_on()?;
         let mut i = 0;
         while i < nx {
             let z = height(i, j);
@@ -366,10 +433,11 @@ fn merge_level(part: &Part, height: impl Fn(usize, usize) -> f32, positive: bool
             i = right;
         }
     }
+    Ok(())
 }
 
 /// Walls between columns of different height, merged along the lattice lines.
-fn merge_walls(part: &Part, faces: &mut Vec<Face>) {
+fn merge_walls(part: &Part, faces: &mut Vec<Face>, go_on: GoOn) -> Result<(), MeshError> {
     let (nx, ny) = (part.grid.nx, part.grid.ny);
     // Outside the blank there is nothing: index -1 wraps to one that is too great.
     let at = |i: usize, j: usize| if j < ny { part.height(i, j).max(0.0) } else { 0.0 };
@@ -402,9 +470,44 @@ fn merge_walls(part: &Part, faces: &mut Vec<Face>) {
         }
     };
     for i in 0..=nx {
+        go_on()?;
         runs(i, ny, &|j| [at(i.wrapping_sub(1), j), at(i, j)], 0);
     }
     for j in 0..=ny {
+        go_on()?;
         runs(j, nx, &|i| [at(i, j.wrapping_sub(1)), at(i, j)], 1);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Resolution, Workpiece};
+    use bahn_path::{Blank, Plane};
+
+    #[test]
+    fn a_mesh_too_large_is_refused() {
+        let blank = Blank {
+            plane: Plane::XY,
+            min: [0.0; 3],
+            max: [10.0; 3],
+        };
+        let part = Workpiece::new(&blank, Resolution::Millimetres(1.0))
+            .unwrap()
+            .finished();
+        let (stop, mut file) = (AtomicBool::new(false), Vec::new());
+        // A box: two triangles for each of six sides.
+        let refused = part.write_mesh(&mut file, &stop, 11);
+        assert!(matches!(
+            refused,
+            Err(MeshError::TooLarge {
+                triangles: 12,
+                most: 11
+            })
+        ));
+        assert!(file.is_empty());
+        part.write_mesh(&mut file, &stop, 12).unwrap();
+        assert_eq!(file.len(), 84 + 12 * 50);
     }
 }

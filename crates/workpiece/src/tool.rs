@@ -53,6 +53,11 @@ impl Tool {
         }
     }
 
+    /// Radius of the flat part of the bottom, mm.
+    pub fn flat(&self) -> f64 {
+        self.radius - self.corner
+    }
+
     /// The tool that a rapid traverse is checked with: thinner by a column, so that a wall which lies
     /// between two columns is no cut.
     pub fn thinner(&self, grid: &Grid) -> Tool {

@@ -7,11 +7,12 @@ use thiserror::Error;
 
 use crate::batch::Batch;
 use crate::chords;
+use crate::cutters::Cutters;
 use crate::event::{Event, EventKind, EventLog};
 use crate::grid::{Grid, Resolution};
 use crate::part::Part;
 use crate::setup::{Local, Setup};
-use crate::sweep::Segment;
+use crate::sweep::{Segment, Start};
 use crate::tool::Tool;
 
 /// Why there can be no workpiece.
@@ -101,6 +102,7 @@ impl Workpiece {
     /// radius, or where the element cannot be shown (see [`EventKind`]).
     pub fn cut(&mut self, element: &PathElement, tool: &ToolShape, tool_axis: Axis) {
         self.elements += 1;
+        self.follow(element);
         if let Some(kind) = self.not_shown(element, tool_axis) {
             self.events.add(element.block, self.elements, kind);
             self.last = None;
@@ -125,6 +127,24 @@ impl Workpiece {
         self.noted = kind;
     }
 
+    /// From now on the part remembers which tool cut each column last, for pictures.
+    pub fn remember_tools(&mut self) {
+        let columns = self.part.heights.len();
+        self.part.cutters.get_or_insert_with(|| Cutters::new(columns));
+    }
+
+    /// From now on the part remembers the way of the tool, for pictures.
+    pub fn remember_path(&mut self) {
+        self.part.trail.get_or_insert_default();
+    }
+
+    /// The number of the tool that cuts from now on, for pictures.
+    pub fn take_tool(&mut self, number: Option<u32>) {
+        if let Some(cutters) = &mut self.part.cutters {
+            cutters.take_tool(number);
+        }
+    }
+
     /// The material as it is now.
     pub fn part(&mut self) -> &Part {
         self.flush();
@@ -141,6 +161,22 @@ impl Workpiece {
     pub fn take_events(&mut self) -> Vec<Event> {
         self.flush();
         self.events.take()
+    }
+
+    /// Keeps the way of the tool when it is remembered.
+    fn follow(&mut self, element: &PathElement) {
+        let Some(trail) = &mut self.part.trail else { return };
+        let rapid = element.feed == FeedRate::Rapid;
+        let size = self.part.setup.size;
+        let (mut whole, tolerance) = (true, 0.5 * self.part.grid.cell());
+        let reach = size.into_iter().fold(0.0, f64::max);
+        chords::chop(element, &self.part.setup, tolerance, reach, |from, to| {
+            whole &= trail.push(from, to, rapid);
+        });
+        if !whole {
+            self.events
+                .add(element.block, self.elements, EventKind::PathIncomplete);
+        }
     }
 
     /// A tool without a radius goes through the blank in feed.
@@ -173,9 +209,18 @@ impl Workpiece {
                 from: a,
                 to: b,
                 tool,
-                start_is_cut: start_is_cut && a == from,
+                start: if start_is_cut && a == from {
+                    Start::Cut
+                } else {
+                    Start::Uncut
+                },
+                followed: false,
             },
             rapid || self.noted.is_some(),
+            self.part
+                .cutters
+                .as_ref()
+                .map_or(0, |cutters| cutters.mark(rapid)),
         );
         self.origins.push(Origin {
             block,
@@ -190,7 +235,14 @@ impl Workpiece {
     }
 
     fn flush(&mut self) {
-        let hits = self.batch.cut(&self.part.grid, &mut self.part.heights);
+        let Part {
+            grid,
+            heights,
+            cutters,
+            ..
+        } = &mut self.part;
+        let marked = cutters.as_mut().map(|cutters| cutters.marks.as_mut_slice());
+        let hits = self.batch.cut(grid, heights, marked);
         for hit in hits {
             let Some(origin) = self.origins.get(hit as usize) else {
                 continue;

@@ -8,7 +8,9 @@ use std::collections::HashSet;
 
 use bahn_path::{Axis, Blank, Plane};
 use bahn_picture::Image;
-use bahn_workpiece::{Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece};
+use bahn_workpiece::{
+    Colouring, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
+};
 use common::*;
 
 fn page() -> Page {
@@ -115,6 +117,7 @@ fn the_3d_view_turns() {
                 azimuth_deg,
                 elevation_deg,
                 height_factor,
+                ..View3d::default()
             },
         )
     };
@@ -181,4 +184,177 @@ fn long_titles_are_cut() {
     let title = "x".repeat(5000);
     let page = Page::new(320, 240, &title, &title).unwrap();
     pocketed().plan_view(&page, &PlanView::default());
+}
+
+/// Every text of a picture is on the page, and none covers another one.
+fn assert_legible(image: &Image, what: &str) {
+    let (width, height) = (f64::from(image.width()), f64::from(image.height()));
+    let labels = image.labels();
+    for (k, a) in labels.iter().enumerate() {
+        assert!(
+            a.min[0] >= 0.0 && a.min[1] >= 0.0 && a.max[0] <= width && a.max[1] <= height,
+            "{what}: {a:?} leaves the page"
+        );
+        for b in labels.iter().skip(k + 1) {
+            let apart = (0..2).any(|axis| a.max[axis] <= b.min[axis] || b.max[axis] <= a.min[axis]);
+            assert!(apart, "{what}: {a:?} and {b:?}");
+        }
+    }
+}
+
+#[test]
+fn labels_stay_on_the_page_and_apart() {
+    let pages = [[500, 400], [240, 600], [900, 200]];
+    for size in [
+        [100.0, 80.0, 20.0],
+        [800.0, 10.0, 10.0],
+        [10.0, 800.0, 10.0],
+        [10.0, 10.0, 800.0],
+        [0.4, 0.3, 0.02],
+        [3000.0, 2500.0, 40.0],
+    ] {
+        let min = [-1234.5, 0.0, -0.5 * size[2]];
+        let max = [0, 1, 2].map(|k| min[k] + size[k]);
+        let blank = Blank {
+            plane: Plane::XY,
+            min,
+            max,
+        };
+        let cell = size[0].max(size[1]) / 150.0;
+        let mut workpiece = Workpiece::new(&blank, Resolution::Millimetres(cell)).unwrap();
+        // A ramp through the lower face: many depths, and holes.
+        let middle = 0.5 * (min[1] + max[1]);
+        let ramp = line(
+            at(min[0], middle, max[2]),
+            at(max[0], middle, min[2] - 0.1 * size[2]),
+        );
+        workpiece.cut(&ramp, &flat(0.2 * size[1]), Axis::Z);
+        let part = workpiece.finished();
+        for [width, height] in pages {
+            let page = Page::new(width, height, "PGM 7", "view").unwrap();
+            let what = format!("{size:?} on {width}x{height}");
+            assert_legible(&part.plan_view(&page, &PlanView::default()), &what);
+            for projection in [Projection::FirstAngle, Projection::ThirdAngle] {
+                let options = ThreePlanes {
+                    projection,
+                    ..ThreePlanes::default()
+                };
+                assert_legible(&part.three_planes(&page, &options), &what);
+            }
+        }
+    }
+}
+
+/// Share of the pixels that a test on their colour holds for.
+fn share(image: &Image, of: impl Fn([f64; 3]) -> bool) -> f64 {
+    let found = image.pixels().iter().filter(|pixel| of(pixel.map(f64::from)));
+    found.count() as f64 / image.pixels().len() as f64
+}
+
+#[test]
+fn every_tool_has_its_colour_and_rapid_cuts_are_red() {
+    let cut = |remember: bool| {
+        let mut workpiece = workpiece(0.5);
+        if remember {
+            workpiece.remember_tools();
+        }
+        workpiece.take_tool(Some(5));
+        workpiece.cut(
+            &line(at(20.0, 10.0, -5.0), at(20.0, 70.0, -5.0)),
+            &flat(8.0),
+            Axis::Z,
+        );
+        workpiece.take_tool(Some(7));
+        workpiece.cut(
+            &line(at(50.0, 10.0, -5.0), at(50.0, 70.0, -5.0)),
+            &flat(8.0),
+            Axis::Z,
+        );
+        // Back in the same slot it cuts nothing, beside it does.
+        workpiece.cut(
+            &rapid(at(50.0, 70.0, -5.0), at(50.0, 10.0, -5.0)),
+            &flat(8.0),
+            Axis::Z,
+        );
+        workpiece.cut(
+            &rapid(at(80.0, 10.0, -5.0), at(80.0, 70.0, -5.0)),
+            &flat(8.0),
+            Axis::Z,
+        );
+        workpiece.finished()
+    };
+    let options = View3d {
+        elevation_deg: 90.0,
+        azimuth_deg: 0.0,
+        colouring: Colouring::Tool,
+        ..View3d::default()
+    };
+    let page = Page::new(600, 500, "", "").unwrap();
+    let image = cut(true).view_3d(&page, &options);
+    let texts: Vec<&str> = image.labels().iter().map(|label| label.text.as_str()).collect();
+    for text in ["T5", "T7", "rapid traverse"] {
+        assert_eq!(
+            texts.iter().filter(|label| **label == text).count(),
+            1,
+            "{texts:?}"
+        );
+    }
+    // The three slots are equally large: 16 x 60 mm and two half circles.
+    let brass = share(&image, |[r, g, b]| r > g && g > 1.4 * b && r < 1.6 * g);
+    let teal = share(&image, |[r, g, _]| g > 1.6 * r);
+    let red = share(&image, |[r, g, b]| r > 3.0 * g && r > 3.0 * b);
+    assert!(brass > 0.02, "{brass}");
+    for other in [teal, red] {
+        assert!((other / brass - 1.0).abs() < 0.1, "{brass} {teal} {red}");
+    }
+    // Nobody asked before the cut: nothing is claimed.
+    let plain = cut(false).view_3d(&page, &options);
+    assert!(!plain.labels().iter().any(|label| label.text == "T5"));
+}
+
+#[test]
+fn a_detail_keeps_its_tools() {
+    let mut workpiece = workpiece(0.5);
+    workpiece.remember_tools();
+    workpiece.remember_path();
+    for (tool, x) in [(5, 20.0), (7, 80.0)] {
+        workpiece.take_tool(Some(tool));
+        workpiece.cut(&line(at(x, 10.0, -5.0), at(x, 70.0, -5.0)), &flat(8.0), Axis::Z);
+    }
+    let detail = workpiece.part().detail([60.0, 0.0], [100.0, 80.0]).unwrap();
+    let options = View3d {
+        colouring: Colouring::Tool,
+        tool_path: true,
+        ..View3d::default()
+    };
+    let image = detail.view_3d(&page(), &options);
+    let has = |text: &str| image.labels().iter().any(|label| label.text == text);
+    assert!(has("T7") && !has("T5"));
+}
+
+#[test]
+fn the_tool_path_is_hidden_behind_the_part() {
+    let picture = |y: f64, remember: bool| {
+        let mut workpiece = workpiece(0.5);
+        if remember {
+            workpiece.remember_path();
+        }
+        workpiece.cut(&line(at(10.0, y, -10.0), at(90.0, y, -10.0)), &flat(5.0), Axis::Z);
+        let options = View3d {
+            azimuth_deg: 0.0,
+            elevation_deg: 10.0,
+            tool_path: true,
+            ..View3d::default()
+        };
+        let image = workpiece
+            .finished()
+            .view_3d(&Page::new(500, 400, "", "").unwrap(), &options);
+        let blue = |pixel: &&[u8; 3]| f64::from(pixel[2]) > 2.0 * f64::from(pixel[0]);
+        image.pixels().iter().filter(blue).count()
+    };
+    // An axis in the corner is blue too, and is there without a path. The blank is 100 mm wide and takes more than
+    // 300 pixels, the path 80 mm: in front of the part, and behind it.
+    let none = picture(-20.0, false);
+    assert!(picture(-20.0, true) >= none + 240);
+    assert_eq!(picture(100.0, true), picture(100.0, false));
 }

@@ -111,6 +111,10 @@ const SMALL_MILL_OLD: &[(u16, f64)] = &[
     (78, 4000.0),
     (79, 0.0),
     (169, 0.4),
+    // Timers T2, T3 and T8 of the PLC program.
+    (112, 200.0),
+    (113, 120.0),
+    (118, 3.0),
 ];
 
 /// The list of the shipped machine without what the model does not have. The TNC 151 and 155 number theirs

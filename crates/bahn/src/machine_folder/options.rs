@@ -31,7 +31,7 @@ const NEW_EXAMPLES: &str = "\
 Examples:
   bahn machine new mymill --model tnc407
   bahn machine check mymill
-  bahn run COVER.H --machine mymill
+  bahn run INDEX.H --machine mymill
 
 Models of the 400 series start from a mill with rotary table and gear spindle, the others from a small mill
 without. The README.md in the folder explains every file and key.";

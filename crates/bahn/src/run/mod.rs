@@ -34,7 +34,7 @@ use bahn_machine::Machine;
 use bahn_workpiece::Projection;
 
 use crate::cli::Format;
-use crate::cutting::{self, Columns, Cutting};
+use crate::cutting::{self, Columns, Cutting, Memory, Written};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
 use crate::junit;
@@ -139,6 +139,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             let columns = options.output.resolution;
             Cutting::new(
                 columns.map_or(Columns::BySize, Columns::Millimetres),
+                Memory::of(&options.output),
                 settings::left_hand(machine.tools.as_ref()),
             )
         }),
@@ -148,14 +149,15 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     });
     let blocks = programs.main().map_or(0, |main| main.block_count());
     let mut progress = Progress::new(blocks);
-    let ended = session.run(&Interrupt::on_ctrl_c(), &mut progress);
+    let interrupt = Interrupt::on_ctrl_c();
+    let ended = session.run(&interrupt, &mut progress);
     drop(progress);
     let switched_off = match &mut session.writers.state {
         Some(state) => state.flush(&session.control),
         None => Ok(()),
     };
     // What could not be stored loses no report.
-    let outcome = finish(session, ended?, &machine, &programs, options)?;
+    let outcome = finish(session, ended?, &machine, &programs, options, &interrupt)?;
     switched_off.map(|()| outcome)
 }
 
@@ -252,6 +254,7 @@ fn finish(
     machine: &LoadedMachine,
     programs: &FolderPrograms,
     options: &RunMachineOptions,
+    interrupt: &Interrupt,
 ) -> Result<Outcome, UsageError> {
     let model = machine.parameters.model();
     session.writers.outputs.finish()?;
@@ -326,10 +329,14 @@ fn finish(
         Projection::FirstAngle
     };
     let title = format!("PGM {}", programs.main_name().unwrap_or_default());
-    let drawn = cutting::write(part.as_ref(), &options.output, &title, projection);
-    print_report(&report, result, model, options, drawn.is_ok())?;
-    drawn?;
-    Ok(outcome)
+    let stop = interrupt.after_run();
+    let drawn = cutting::write(part.as_ref(), &options.output, &title, projection, &stop);
+    let all = matches!(drawn, Ok(Written::All));
+    print_report(&report, result, model, options, all)?;
+    Ok(match drawn? {
+        Written::All => outcome,
+        Written::Interrupted => Outcome::Interrupted,
+    })
 }
 
 /// What broke the run off.

@@ -24,6 +24,9 @@ const PERIOD: Duration = Duration::from_millis(50);
 /// A run that was told to end has this long for it; after that it is left alone and the others go on.
 const GRACE: Duration = Duration::from_secs(2);
 
+/// Draws a part as PNG; `None` where there is none.
+pub(super) type Draw = fn(&Tested, &Path) -> Option<Vec<u8>>;
+
 /// What is done with each program.
 pub(super) struct Work {
     pub files: Vec<PathBuf>,
@@ -32,7 +35,7 @@ pub(super) struct Work {
     pub before: Option<Bench>,
     pub density: Option<f64>,
     /// What is drawn of every part.
-    pub draw: Option<fn(&Tested, &Path) -> Option<Vec<u8>>>,
+    pub draw: Option<Draw>,
     pub time_limit: Duration,
 }
 

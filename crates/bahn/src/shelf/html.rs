@@ -97,10 +97,10 @@ fn program(out: &mut impl Write, done: &Done) -> io::Result<()> {
             base64(png)
         )?;
     }
-    write!(
+    writeln!(
         out,
         "</td><td><b>{}</b>{}</td><td>{}{}</td><td class=\"n\">{}</td><td class=\"n\">{:.3}</td>\
-         <td class=\"n\">{:.3}</td><td>{}</td><td class=\"n\">{}</td><td>{}</td><td>{}</td></tr>\n",
+         <td class=\"n\">{:.3}</td><td>{}</td><td class=\"n\">{}</td><td>{}</td><td>{}</td></tr>",
         escaped(&row.path),
         list("changes", row.changes.iter().map(String::as_str)),
         row.result.text(),

@@ -17,7 +17,7 @@ use super::outputs::Outputs;
 use super::survey::Survey;
 use crate::block_time::BlockTime;
 use crate::cli::MachineOptions;
-use crate::cutting::{Columns, Cutting};
+use crate::cutting::{Columns, Cutting, Memory};
 use crate::diagnostics::Marked;
 use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Stop;
@@ -35,6 +35,7 @@ pub(crate) struct Bench {
     left_hand: BTreeSet<u32>,
     /// `None` for runs without graphics.
     columns: Option<Columns>,
+    memory: Memory,
     ends_at_stop: bool,
     /// Simulate the block processing time of the model.
     block_time: bool,
@@ -89,6 +90,7 @@ impl Bench {
             left_hand: settings::left_hand(tools.as_ref()),
             limits: settings::limits(&list, machine),
             times: settings::times(machine),
+            memory: Memory::of(&options.output),
             columns: (!options.output.no_graphics).then_some(wanted),
             ends_at_stop: options.run.stop,
             block_time: machine.block_time,
@@ -132,7 +134,7 @@ impl Bench {
             record: Record::new(self.settings.start),
             cutting: self
                 .columns
-                .map(|columns| Cutting::new(columns, self.left_hand.clone())),
+                .map(|columns| Cutting::new(columns, self.memory, self.left_hand.clone())),
             progress,
             company,
             ends_at_stop: self.ends_at_stop,

@@ -10,6 +10,8 @@ mod outputs;
 mod survey;
 
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use bahn_interpreter::Interpreter;
@@ -21,7 +23,7 @@ pub(crate) use outputs::Outputs;
 pub(crate) use survey::Survey;
 
 use crate::cli::Format;
-use crate::cutting::{self, Columns};
+use crate::cutting::{self, Columns, Written};
 use crate::diagnostics::{self, Diagnostic, Marked, Severity};
 use crate::interrupt::{Interrupt, Stop};
 use crate::report::{End, ErrorReport, Report};
@@ -38,7 +40,8 @@ pub(crate) fn command(options: &TestOptions) -> Result<Outcome, UsageError> {
 
 fn single(options: &TestOptions, file: &Path) -> Result<Outcome, UsageError> {
     let bench = Bench::new(options, &options.machine, Columns::BySize)?;
-    let stop = Stop::by(&Interrupt::on_ctrl_c());
+    let interrupt = Interrupt::on_ctrl_c();
+    let stop = Stop::by(&interrupt);
     if let Some(limit) = options.run.time_limit {
         stop.after(Duration::from_secs_f64(limit));
     }
@@ -46,13 +49,21 @@ fn single(options: &TestOptions, file: &Path) -> Result<Outcome, UsageError> {
         outputs: Outputs::create(&options.output)?,
         progress: true,
         survey: None,
-        stop,
+        stop: stop.clone(),
     };
-    say(&bench.test(file, company)?, &bench, options, file)
+    let tested = bench.test(file, company)?;
+    stop.run_is_over();
+    say(&tested, &bench, options, file, &interrupt.after_run())
 }
 
 /// Prints the report and writes picture and mesh.
-fn say(tested: &Tested, bench: &Bench, options: &TestOptions, file: &Path) -> Result<Outcome, UsageError> {
+fn say(
+    tested: &Tested,
+    bench: &Bench,
+    options: &TestOptions,
+    file: &Path,
+    stop: &Arc<AtomicBool>,
+) -> Result<Outcome, UsageError> {
     let report = &tested.report;
     if let Some(error) = &report.error {
         print_error(error, &tested.interpreter, file);
@@ -67,10 +78,13 @@ fn say(tested: &Tested, bench: &Bench, options: &TestOptions, file: &Path) -> Re
         &options.output,
         &format!("PGM {}", report.program),
         projection(bench),
+        stop,
     );
-    print_report(report, options, drawn.is_ok())?;
-    drawn?;
-    Ok(outcome(&tested.end))
+    print_report(report, options, matches!(drawn, Ok(Written::All)))?;
+    Ok(match drawn? {
+        Written::All => outcome(&tested.end),
+        Written::Interrupted => Outcome::Interrupted,
+    })
 }
 
 /// The projection of the three planes.

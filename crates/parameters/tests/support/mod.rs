@@ -31,6 +31,13 @@ pub fn readings(list: &ParameterList) -> Readings {
     for speed in [100.0, 1000.0, 5000.0] {
         note(&mut all, "spindle_run_up_s", &list.spindle_run_up_s(speed));
     }
+    for place in 0..48 {
+        note(&mut all, "timer_preset", &list.timer_preset(place));
+        note(&mut all, "counter_preset", &list.counter_preset(place));
+    }
+    let spindle = list.spindle_parameters();
+    note(&mut all, "rigid_ramps", &spindle.rigid_ramps());
+    note(&mut all, "tapping_lead_s", &spindle.tapping_lead_s(500.0));
     for cycle in 1..=31 {
         note(&mut all, "cycle_inhibited", &list.cycle_inhibited(cycle));
     }

@@ -58,7 +58,7 @@ mod tests {
         let known = block("L X+10 Y+3 R0 F100 M3").operation;
         for (text, words) in [
             ("L X+10 FOO Y+3 R0 F100 M3", "FOO"),
-            ("L X+10 Y+3 HUGO12 R0 F100 BAR M3 ;comment", "HUGO12 BAR"),
+            ("L X+10 Y+3 HUGO12 R0 F100 KEY M3 ;comment", "HUGO12 KEY"),
             ("L X+10 Y+3 R0 F100 M1001 M3", "M1001"),
         ] {
             assert_eq!(read(text), (Some(known.clone()), words.to_owned()), "{text}");

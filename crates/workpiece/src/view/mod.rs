@@ -1,15 +1,23 @@
 //! Pictures of the part: what all views share.
 
+mod colouring;
+mod edges;
+mod legend;
 mod plan;
 mod raycast;
 mod scale;
 mod shade;
 mod solid;
 mod three_planes;
+mod way;
 
+pub use colouring::Colouring;
 pub use plan::PlanView;
 pub use solid::View3d;
 pub use three_planes::{Projection, ThreePlanes};
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use thiserror::Error;
 
@@ -17,12 +25,13 @@ use bahn_picture::Anchor;
 use bahn_picture::{Colour, Image};
 
 /// The sheet that a view is drawn on: its size and what its title line says.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Page {
     width: u32,
     height: u32,
     title: String,
     note: String,
+    stop: Arc<AtomicBool>,
 }
 
 /// A page that cannot be drawn.
@@ -51,6 +60,7 @@ impl Page {
             height,
             title: title.to_owned(),
             note: note.to_owned(),
+            stop: Arc::default(),
         })
     }
 
@@ -61,7 +71,19 @@ impl Page {
             height: 800,
             title: title.to_owned(),
             note: note.to_owned(),
+            stop: Arc::default(),
         }
+    }
+
+    /// The same page; what is drawn on it is given up, and is no picture, once the flag is set.
+    pub fn stopped_by(mut self, stop: Arc<AtomicBool>) -> Page {
+        self.stop = stop;
+        self
+    }
+
+    /// Whether the picture is given up.
+    fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// Size of ordinary text, pixels: it grows with the page.
@@ -126,6 +148,7 @@ impl Area {
     }
 }
 
+const BACKGROUND: Colour = [252, 252, 250];
 const TITLE_BACKGROUND: Colour = [38, 50, 66];
 const TITLE_TEXT: Colour = [255, 255, 255];
 const TITLE_NOTE: Colour = [190, 205, 222];

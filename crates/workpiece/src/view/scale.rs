@@ -26,6 +26,12 @@ pub(super) fn number(value: f64, step: f64) -> String {
     }
 }
 
+/// Width of the numbers that a ruler of some ten marks carries, pixels.
+pub(super) fn label_width(low: f64, high: f64, size: f64) -> f64 {
+    let step = round_step(0.1 * (high - low));
+    text_width(&number(low, step), size).max(text_width(&number(high, step), size))
+}
+
 /// A ruler: coordinates `low..high` lie between two pixels of one direction.
 pub(super) struct Ruler<'a> {
     pub name: &'a str,
@@ -63,8 +69,12 @@ impl Ruler<'_> {
     /// Draws the ruler below a drawing.
     pub fn below(&self, image: &mut Image) {
         let size = self.text_size;
-        let widest = text_width(&number(self.low, 1.0), size).max(text_width(&number(self.high, 1.0), size));
-        let step = self.step(widest + 2.0 * size);
+        // Smaller steps have more decimals.
+        let widest = |step: f64| {
+            text_width(&number(self.low, step), size).max(text_width(&number(self.high, step), size))
+        };
+        let rough = self.step(widest(1.0) + 2.0 * size);
+        let step = self.step(widest(rough) + size).max(rough);
         let end = self.from.max(self.to);
         let mut name = end + 0.6 * size;
         for (value, x) in self.marks(step) {
@@ -86,12 +96,19 @@ impl Ruler<'_> {
     pub fn left(&self, image: &mut Image) {
         let size = self.text_size;
         let step = self.step(2.5 * size);
+        let widest = self
+            .marks(step)
+            .map(|(value, _)| text_width(&number(value, step), size))
+            .fold(1.0, f64::max);
+        // Long numbers are written smaller, so that they stay on the page.
+        let room = self.line - 0.9 * size;
+        let text_size = size * (room / widest).min(1.0);
         for (value, y) in self.marks(step) {
             image.line([self.line - 0.4 * size, y], [self.line, y], 1.0, FAINT);
             image.text(
                 [self.line - 0.7 * size, y],
                 Anchor::Right,
-                size,
+                text_size,
                 INK,
                 &number(value, step),
             );

@@ -1,5 +1,6 @@
 //! Light on the part: normals, ambient occlusion, colours.
 
+use super::colouring::Palette;
 use super::raycast::{Caster, Face, Hit, Vector};
 use crate::part::Part;
 use bahn_picture::Colour;
@@ -28,11 +29,14 @@ pub(super) struct Seen {
 /// Light and material of a 3D view.
 pub(super) struct Shader<'a> {
     pub caster: &'a Caster<'a>,
+    pub palette: &'a Palette<'a>,
     /// Direction to the middle of the lamp, a unit vector.
     pub lamp: Vector,
     pub to_eye: Vector,
     /// Exaggeration of heights: light sees the part as the eye does.
     pub height_factor: f64,
+    /// Millimetres of a pixel.
+    pub pixel_mm: f64,
 }
 
 impl Shader<'_> {
@@ -59,7 +63,7 @@ impl Shader<'_> {
         } else {
             0.0
         };
-        let base = material(part, point, hit);
+        let base = self.palette.material(point, hit);
         let light = [0, 1, 2].map(|k| base[k] * (ambient * SKY[k] + 0.74 * lit * SUN[k]) + gloss);
         Seen {
             light,
@@ -124,6 +128,15 @@ impl Shader<'_> {
         if all > 0.0 { open / all } else { 1.0 }
     }
 
+    /// Columns over which slopes are seen: some pixels of the picture.
+    fn reach(&self) -> usize {
+        const PIXELS: f64 = 5.0;
+        const MOST: f64 = 12.0;
+        (PIXELS * self.pixel_mm / self.caster.part.grid.cell())
+            .round()
+            .clamp(1.0, MOST) as usize
+    }
+
     fn stretched(&self, n: Vector) -> Vector {
         unit([n[0], n[1], n[2] / self.height_factor])
     }
@@ -132,46 +145,45 @@ impl Shader<'_> {
         let part = self.caster.part;
         match hit.face {
             Face::Bottom => [0.0, 0.0, -1.0],
-            Face::Top => top_normal(part, hit.i, hit.j),
-            Face::Side(axis) => wall_normal(part, point, hit, axis),
+            Face::Top => top_normal(part, hit.i, hit.j, self.reach()),
+            Face::Side(axis) => wall_normal(part, point, hit, axis, self.reach()),
         }
     }
 }
 
-/// Normal of the upper surface. Of the slopes to both neighbours the smaller one counts, so that flat
-/// floors stay flat beside walls, and slopes are as steep as they are.
-fn top_normal(part: &Part, i: usize, j: usize) -> Vector {
+/// Normal of the upper surface, seen over `reach` columns so that the steps of a finishing cut are a slope. Of the
+/// slopes to both sides the smaller one counts, so that flat floors stay flat beside walls, and slopes are as steep
+/// as they are.
+fn top_normal(part: &Part, i: usize, j: usize, reach: usize) -> Vector {
     let h = part.height(i, j);
-    let slope = |before: Option<f32>, after: Option<f32>, step: f64| {
-        let a = f64::from(h - before.unwrap_or(h)) / step;
-        let b = f64::from(after.unwrap_or(h) - h) / step;
-        if a * b <= 0.0 {
-            0.0
-        } else if a.abs() < b.abs() {
-            a
-        } else {
-            b
-        }
-    };
     let at = |i: Option<usize>, j: Option<usize>| {
         let (i, j) = (i?, j?);
         (i < part.grid.nx && j < part.grid.ny).then(|| part.height(i, j))
     };
-    let gx = slope(
-        at(i.checked_sub(1), Some(j)),
-        at(Some(i + 1), Some(j)),
-        part.grid.dx,
-    );
-    let gy = slope(
-        at(Some(i), j.checked_sub(1)),
-        at(Some(i), Some(j + 1)),
-        part.grid.dy,
-    );
+    // Slopes over some lengths are averaged: one alone would beat with the steps.
+    let slope = |step: f64, at: &dyn Fn(isize) -> Option<f32>| {
+        let mut sum = 0.0;
+        for k in 1..=reach as isize {
+            let [a, b] = [at(-k).map(|v| h - v), at(k).map(|v| v - h)];
+            let [a, b] = [a.or(b).unwrap_or(0.0), b.or(a).unwrap_or(0.0)];
+            let rise = if a * b <= 0.0 {
+                0.0
+            } else if a.abs() < b.abs() {
+                a
+            } else {
+                b
+            };
+            sum += f64::from(rise) / (k as f64 * step);
+        }
+        sum / reach as f64
+    };
+    let gx = slope(part.grid.dx, &|k| at(i.checked_add_signed(k), Some(j)));
+    let gy = slope(part.grid.dy, &|k| at(Some(i), j.checked_add_signed(k)));
     unit([-gx, -gy, 1.0])
 }
 
 /// Normal of a wall: away from the material around, at the height of the hit.
-fn wall_normal(part: &Part, point: Vector, hit: &Hit, axis: usize) -> Vector {
+fn wall_normal(part: &Part, point: Vector, hit: &Hit, axis: usize, reach: usize) -> Vector {
     let face = face_normal(part, point, hit, axis);
     if is_outline(part, point, axis) {
         return face;
@@ -179,20 +191,20 @@ fn wall_normal(part: &Part, point: Vector, hit: &Hit, axis: usize) -> Vector {
     // A small step is part of a slope.
     let before = [0, 1].map(|k| [hit.i, hit.j][k].wrapping_add_signed(face[k] as isize));
     let step = f64::from(part.height(hit.i, hit.j) - part.height(before[0], before[1]));
-    if step < SLOPE_STEP * part.grid.cell() {
-        return top_normal(part, hit.i, hit.j);
+    if step < SLOPE_STEP.max(reach as f64) * part.grid.cell() {
+        return top_normal(part, hit.i, hit.j, reach);
     }
     let mut sum = [0.0, 0.0];
     for v in -WALL_WINDOW..=WALL_WINDOW {
         for u in -WALL_WINDOW..=WALL_WINDOW {
             let square = (u * u + v * v) as f64;
-            let reach = ((WALL_WINDOW + 1) * (WALL_WINDOW + 1)) as f64;
+            let radius = ((WALL_WINDOW + 1) * (WALL_WINDOW + 1)) as f64;
             let (i, j) = (hit.i as i64 + u, hit.j as i64 + v);
-            if square > reach || i < 0 || j < 0 || j >= part.grid.ny as i64 {
+            if square > radius || i < 0 || j < 0 || j >= part.grid.ny as i64 {
                 continue;
             }
             if f64::from(part.height(i as usize, j as usize)) > point[2] {
-                let weight = 1.0 - square / reach;
+                let weight = 1.0 - square / radius;
                 sum[0] -= u as f64 * weight;
                 sum[1] -= v as f64 * weight;
             }
@@ -214,23 +226,11 @@ fn face_normal(part: &Part, point: Vector, hit: &Hit, axis: usize) -> Vector {
 }
 
 /// Whether a wall is the outer side of the blank.
-fn is_outline(part: &Part, point: Vector, axis: usize) -> bool {
+pub(super) fn is_outline(part: &Part, point: Vector, axis: usize) -> bool {
     let tolerance = 1e-6 * part.setup.size[axis];
     point[axis] < tolerance || point[axis] > part.setup.size[axis] - tolerance
 }
 
-fn material(part: &Part, point: Vector, hit: &Hit) -> [f64; 3] {
-    let skin = match hit.face {
-        Face::Top => part.height(hit.i, hit.j) >= part.top(),
-        Face::Side(axis) => is_outline(part, point, axis),
-        Face::Bottom => true,
-    };
-    if skin { SKIN } else { CUT }
-}
-
-/// The blank as it came, and where a tool was: linear red, green, blue of steel blue and brass.
-const SKIN: [f64; 3] = [0.243, 0.320, 0.443];
-const CUT: [f64; 3] = [0.812, 0.612, 0.293];
 const SKY: [f64; 3] = [0.94, 0.98, 1.06];
 const SUN: [f64; 3] = [1.04, 1.0, 0.94];
 

@@ -2,11 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::colouring::{Colouring, Palette};
+use super::edges::{self, Spot};
 use super::plan::fit;
 use super::raycast::{Caster, Vector};
 use super::scale::{number, round_step};
-use super::shade::{SAMPLES, Seen, Shader, cross, dot, screen, to_linear, unit};
-use super::{Area, INK, Page};
+use super::shade::{SAMPLES, Shader, cross, dot, screen, to_linear, unit};
+use super::{Area, INK, Page, way};
 use crate::part::Part;
 use bahn_picture::Anchor;
 use bahn_picture::{Colour, Image, mix};
@@ -22,6 +24,11 @@ pub struct View3d {
     pub elevation_deg: f64,
     /// Heights are drawn this much greater: 1 is true to scale [003:923-927].
     pub height_factor: f64,
+    /// What the colours tell.
+    pub colouring: Colouring,
+    /// The way of the tool is drawn over the part; nothing unless
+    /// [`Workpiece::remember_path`](crate::Workpiece::remember_path) was called.
+    pub tool_path: bool,
 }
 
 impl Default for View3d {
@@ -30,22 +37,33 @@ impl Default for View3d {
             azimuth_deg: 30.0,
             elevation_deg: 38.0,
             height_factor: 1.0,
+            colouring: Colouring::Part,
+            tool_path: false,
         }
     }
 }
 
 impl Part {
-    /// The part in parallel projection, shaded, from any angle. The skin of the blank and the machined
-    /// surfaces have different colours.
+    /// The part in parallel projection, shaded, from any angle.
     pub fn view_3d(&self, page: &Page, options: &View3d) -> Image {
         let (mut image, area) = page.start(BACKGROUND_TOP);
         let size = page.text_size();
-        let camera = Camera::new(
-            self,
-            options,
-            &area.shrunk(2.5 * size, 2.5 * size, 2.5 * size, 4.5 * size),
-        );
-        self.render(&mut image, &area, &camera);
+        let palette = Palette::new(self, options.colouring);
+        let legend = palette.legend();
+        let beside = legend.as_ref().map_or(0.0, |legend| legend.width(size) + size);
+        let free = area.shrunk(2.5 * size, 2.5 * size, 2.5 * size + beside, 4.5 * size);
+        let camera = Camera::new(self, options, &free);
+        let spots = self.render(&mut image, &area, &camera, &palette, page);
+        if let (true, Some(trail)) = (options.tool_path, &self.trail) {
+            way::draw(&mut image, trail, &camera, &spots, &area, page.line_width());
+        }
+        if let Some(legend) = legend {
+            let room = Area {
+                min: [area.max[0] - beside, area.min[1] + size],
+                max: [area.max[0], area.max[1] - 4.5 * size],
+            };
+            legend.draw(&mut image, &room, room.min[1], size);
+        }
         camera.triad(
             &mut image,
             self,
@@ -68,38 +86,52 @@ impl Part {
         image
     }
 
-    fn render(&self, image: &mut Image, area: &Area, camera: &Camera) {
+    fn render(
+        &self,
+        image: &mut Image,
+        area: &Area,
+        camera: &Camera,
+        palette: &Palette,
+        page: &Page,
+    ) -> Vec<Spot> {
         let caster = Caster::new(self);
         let shader = Shader {
             caster: &caster,
+            palette,
             lamp: camera.lamp(),
             to_eye: camera.forward.map(|v| -v),
             height_factor: camera.height_factor,
+            pixel_mm: camera.mm,
         };
         let first = area.min[1] as usize;
         let count = area.size()[1];
         let width = image.width() as usize;
-        let mut edges = vec![0.0f32; width * image.height() as usize];
+        let mut spots = vec![Spot::BACKGROUND; width * image.height() as usize];
         let rows = image
             .rows_mut()
-            .zip(edges.chunks_exact_mut(width))
+            .zip(spots.chunks_exact_mut(width))
             .skip(first)
             .enumerate();
-        rows.par_bridge().for_each(|(row, (pixels, edges))| {
+        rows.par_bridge().for_each(|(row, (pixels, spots))| {
+            if page.is_stopped() {
+                return;
+            }
             let background = mix(BACKGROUND_TOP, BACKGROUND_BOTTOM, row as f64 / count);
-            for (x, (pixel, edge)) in pixels.iter_mut().zip(edges).enumerate() {
-                (*pixel, *edge) = pixel_at(camera, &shader, [x, row + first], background);
+            for (x, (pixel, spot)) in pixels.iter_mut().zip(spots).enumerate() {
+                (*pixel, *spot) = pixel_at(camera, &shader, [x, row + first], background);
             }
         });
-        draw_edges(image, &edges);
+        edges::draw(image, &spots);
+        spots
     }
 }
 
-/// Colour of a pixel, and how much of an edge goes through it.
-fn pixel_at(camera: &Camera, shader: &Shader, [x, y]: [usize; 2], background: Colour) -> (Colour, f32) {
+/// Colour of a pixel, and what its edges are made from.
+fn pixel_at(camera: &Camera, shader: &Shader, [x, y]: [usize; 2], background: Colour) -> (Colour, Spot) {
     let mut seen = [None; SAMPLES * SAMPLES];
     for (k, seen) in seen.iter_mut().enumerate() {
-        let offset = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
+        // Nearly to the borders of the pixel: no edge falls between the rays of neighbours.
+        let offset = |k: usize| 0.02 + 0.96 * k as f64 / (SAMPLES - 1) as f64;
         let (u, v) = (offset(k % SAMPLES), offset(k / SAMPLES));
         let (origin, direction) = camera.ray(x as f64 + u, y as f64 + v);
         *seen = shader.caster.cast(origin, direction).map(|hit| {
@@ -108,7 +140,7 @@ fn pixel_at(camera: &Camera, shader: &Shader, [x, y]: [usize; 2], background: Co
         });
     }
     if seen.iter().all(Option::is_none) {
-        return (background, 0.0);
+        return (background, Spot::BACKGROUND);
     }
     let behind = to_linear(background);
     let mut sum = [0.0; 3];
@@ -118,61 +150,21 @@ fn pixel_at(camera: &Camera, shader: &Shader, [x, y]: [usize; 2], background: Co
         }
     }
     let colour = screen(sum.map(|value| value / (SAMPLES * SAMPLES) as f64));
-    (colour, edge(&seen, camera) as f32)
-}
-
-/// Draws the edges as lines, softened over the neighbouring pixels.
-fn draw_edges(image: &mut Image, edges: &[f32]) {
-    /// Darkness of the lines.
-    const DARKNESS: f64 = 0.4;
-    let width = image.width() as usize;
-    for (y, row) in image.rows_mut().enumerate() {
-        for (x, pixel) in row.iter_mut().enumerate() {
-            let at = y * width + x;
-            let value = |index: Option<usize>| index.and_then(|k| edges.get(k)).copied().unwrap_or(0.0);
-            let around = value(at.checked_sub(1))
-                + value(Some(at + 1))
-                + value(at.checked_sub(width))
-                + value(Some(at + width));
-            let line = f64::from(0.5 * value(Some(at)) + 0.25 * around).min(1.0);
-            if line > 0.0 {
-                *pixel = mix(*pixel, EDGE, DARKNESS * line);
-            }
-        }
-    }
-}
-
-/// How much of an edge goes through a pixel, 0..1: its rays meet surfaces of other directions or far
-/// behind each other. Most where they are shared half and half.
-fn edge(seen: &[Option<Seen>; SAMPLES * SAMPLES], camera: &Camera) -> f64 {
-    /// Cosine of the angle from which on surfaces meet in an edge.
-    const BEND: f64 = 0.8;
-    let like = |a: &Seen, b: &Seen| {
-        let slant = dot(a.normal, camera.forward).abs().max(0.05);
-        dot(a.normal, b.normal) > BEND && (a.t - b.t).abs() < 5.0 * camera.mm / slant
-    };
-    let first = seen.iter().flatten().next();
-    let same = seen
-        .iter()
-        .flatten()
-        .filter(|other| first.is_some_and(|first| like(first, other)))
-        .count();
-    let share = same as f64 / seen.len() as f64;
-    (2.5 * share.min(1.0 - share)).min(1.0)
+    (colour, Spot::new(&seen, camera))
 }
 
 /// Parallel projection onto the picture.
-struct Camera {
+pub(super) struct Camera {
     right: Vector,
     up: Vector,
-    forward: Vector,
+    pub forward: Vector,
     height_factor: f64,
     /// Middle of the blank, heights exaggerated.
     target: Vector,
     /// Pixel of the target.
     centre: [f64; 2],
     /// Millimetres of a pixel.
-    mm: f64,
+    pub mm: f64,
 }
 
 impl Camera {
@@ -211,13 +203,29 @@ impl Camera {
     fn ray(&self, x: f64, y: f64) -> (Vector, Vector) {
         let u = (x - self.centre[0]) * self.mm;
         let v = (self.centre[1] - y) * self.mm;
-        let far = 4.0 * self.target.iter().sum::<f64>();
+        let far = self.far();
         let mut origin =
             [0, 1, 2].map(|k| self.target[k] + u * self.right[k] + v * self.up[k] - far * self.forward[k]);
         origin[2] /= self.height_factor;
         let mut direction = self.forward;
         direction[2] /= self.height_factor;
         (origin, direction)
+    }
+
+    /// Distance of the eye from the target, mm.
+    fn far(&self) -> f64 {
+        4.0 * self.target.iter().sum::<f64>()
+    }
+
+    /// Place of a point of the part in the picture, and its distance from the eye; pixels.
+    pub fn project(&self, mut point: Vector) -> Vector {
+        point[2] *= self.height_factor;
+        let from_target = [0, 1, 2].map(|k| point[k] - self.target[k]);
+        [
+            self.centre[0] + dot(from_target, self.right) / self.mm,
+            self.centre[1] - dot(from_target, self.up) / self.mm,
+            (dot(from_target, self.forward) + self.far()) / self.mm,
+        ]
     }
 
     /// The lamp stands on the left of the eye, over it as seen in the picture, and over the part on the
@@ -274,6 +282,80 @@ impl Camera {
     }
 }
 
-const EDGE: Colour = [30, 34, 42];
 const BACKGROUND_TOP: Colour = [246, 248, 250];
 const BACKGROUND_BOTTOM: Colour = [214, 221, 229];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Resolution, Workpiece};
+    use bahn_path::{Blank, Plane};
+
+    /// 100 x 100 mm in columns of 0.25 mm, 40 mm thick, with a height over the lower face by the place.
+    fn part(height: impl Fn(f64, f64) -> f64) -> Part {
+        let blank = Blank {
+            plane: Plane::XY,
+            min: [0.0; 3],
+            max: [100.0, 100.0, 40.0],
+        };
+        let mut part = Workpiece::new(&blank, Resolution::Millimetres(0.25))
+            .unwrap()
+            .finished();
+        let nx = part.grid.nx;
+        for (k, cell) in part.heights.iter_mut().enumerate() {
+            let place = |n: usize| (n as f64 + 0.5) * 0.25;
+            *cell = height(place(k % nx), place(k / nx)) as f32;
+        }
+        part
+    }
+
+    /// A sphere of 60 mm whose top is at 39 mm, over a floor at 10 mm.
+    fn sphere(x: f64, y: f64) -> f64 {
+        let square = (x - 50.0).powi(2) + (y - 50.0).powi(2);
+        ((3600.0_f64 - square).max(0.0).sqrt() - 21.0).max(10.0)
+    }
+
+    /// How many of the 90 x 60 pixels in the middle of the picture carry a line.
+    fn lines(part: &Part, elevation_deg: f64) -> usize {
+        let page = Page::new(300, 240, "", "").unwrap();
+        let options = View3d {
+            elevation_deg,
+            ..View3d::default()
+        };
+        let (mut image, area) = page.start(BACKGROUND_TOP);
+        let camera = Camera::new(part, &options, &area);
+        let palette = Palette::new(part, Colouring::Part);
+        let spots = part.render(&mut image, &area, &camera, &palette, &page);
+        let weights = edges::weights(&spots, 300);
+        (105..165)
+            .flat_map(|y| (105..195).map(move |x| y * 300 + x))
+            .filter(|at| weights[*at] > 0.1)
+            .count()
+    }
+
+    #[test]
+    fn smooth_surfaces_have_no_lines() {
+        for elevation_deg in [25.0, 38.0] {
+            let found = lines(&part(sphere), elevation_deg);
+            assert_eq!(found, 0, "{elevation_deg}");
+        }
+    }
+
+    /// A sphere left in steps of 0.5 mm, as a flat mill does.
+    #[test]
+    fn steps_of_a_finishing_cut_are_no_lines() {
+        let steps = part(|x, y| (sphere(x, y) * 2.0).floor() / 2.0);
+        for elevation_deg in [25.0, 38.0] {
+            let found = lines(&steps, elevation_deg);
+            assert_eq!(found, 0, "{elevation_deg}");
+        }
+    }
+
+    /// An edge that runs across the picture without a gap: at least a pixel in each of the columns.
+    #[test]
+    fn edges_are_lines() {
+        let step = part(|_, y| if y > 50.0 { 40.0 } else { 20.0 });
+        let found = lines(&step, 38.0);
+        assert!(found >= 90, "{found}");
+    }
+}

@@ -1,8 +1,9 @@
 //! Projection in three planes: plan view and two sections.
 
-use super::plan::{DepthShade, draw_plan, frame};
-use super::scale::{Ruler, number};
-use super::{Area, FAINT, INK, Page};
+use super::legend::DepthShade;
+use super::plan::{draw_plan, frame};
+use super::scale::{Ruler, label_width, number};
+use super::{Area, BACKGROUND, FAINT, INK, Page};
 use crate::part::Part;
 use bahn_picture::Anchor;
 use bahn_picture::{Colour, Image, mix};
@@ -69,19 +70,26 @@ impl<'a> Sheet<'a> {
     fn new(part: &'a Part, page: &Page, options: &ThreePlanes, area: &Area) -> Sheet<'a> {
         let size = page.text_size();
         let gap = (3.6 * size).round();
-        let inner = area.shrunk(4.5 * size, 2.4 * size, 2.6 * size, 3.2 * size);
+        // Beyond the last number of a ruler stands the name of its axis.
+        let name = 0.5 * label_width(part.min()[1], part.max()[1], size) + 1.6 * size;
+        let inner = area.shrunk(4.5 * size, 2.4 * size, name, 3.2 * size);
         let [a, b, c] = part.setup.size;
         let room = inner.size();
+        // Symbol and positions need their place beside the plan view, however narrow the part is.
+        let corner = [CORNER[0] * size, CORNER[1] * size];
         let scale = ((room[0] - gap) / (a + b))
+            .min((room[0] - gap - corner[0]) / a)
             .min((room[1] - gap) / (b + c))
+            .min((room[1] - gap - corner[1]) / c)
             .max(1e-9);
         let [w, d, h] = [a, b, c].map(|side| (side * scale).round().max(2.0));
-        let left = (inner.min[0] + 0.5 * (room[0] - gap - w - d)).round();
-        let top = (inner.min[1] + 0.5 * (room[1] - gap - d - h)).round();
+        let (wide, tall) = (d.max(corner[0]), d.max(corner[1]));
+        let left = (inner.min[0] + 0.5 * (room[0] - gap - w - wide)).round();
+        let top = (inner.min[1] + 0.5 * (room[1] - gap - tall - h)).round();
         let right = left + w + gap;
         let (front_top, plan_top) = match options.projection {
             Projection::FirstAngle => (top, top + h + gap),
-            Projection::ThirdAngle => (top + d + gap, top),
+            Projection::ThirdAngle => (top + tall + gap, top),
         };
         let place = |x: f64, y: f64, width: f64, height: f64| Area {
             min: [x, y],
@@ -102,7 +110,7 @@ impl<'a> Sheet<'a> {
             plan: place(left, plan_top, w, d),
             front: place(left, front_top, w, h),
             side: place(right, front_top, d, h),
-            corner: place(right, plan_top, d, d),
+            corner: place(right, plan_top, wide, tall),
             sections: [section(0), section(1)],
             text_size: size,
             line_width: page.line_width(),
@@ -192,7 +200,8 @@ impl<'a> Sheet<'a> {
 
     fn draw_section_lines(&self, image: &mut Image) {
         let [a, b, _] = self.part.setup.size;
-        let over = 0.9 * self.text_size;
+        // Not as far as the numbers of the rulers.
+        let over = 0.45 * self.text_size;
         let pattern = [
             1.1 * self.text_size,
             0.35 * self.text_size,
@@ -285,7 +294,8 @@ impl<'a> Sheet<'a> {
     }
 }
 
-const BACKGROUND: Colour = [252, 252, 250];
+/// Least width and height of the quarter with symbol and positions, in heights of the text.
+const CORNER: [f64; 2] = [8.5, 8.0];
 const CUT_FACE: Colour = [240, 222, 180];
 const CUT_LINE: Colour = [176, 132, 62];
 const BEHIND_NEAR: Colour = [186, 200, 214];

@@ -1,0 +1,132 @@
+//! What the colours of the 3D view mean.
+
+use super::legend::{DepthShade, Legend, Swatch};
+use super::raycast::{Face, Hit, Vector};
+use super::shade::{is_outline, to_linear};
+use crate::cutters::Cutter;
+use crate::part::Part;
+use bahn_picture::{Colour, mix};
+
+/// What the colours of the 3D view tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colouring {
+    /// The skin of the blank and what was machined.
+    #[default]
+    Part,
+    /// The height: the deeper, the darker.
+    Depth,
+    /// The tool that cut last, and cuts in rapid traverse. All is one colour unless
+    /// [`Workpiece::remember_tools`](crate::Workpiece::remember_tools) was called.
+    Tool,
+}
+
+/// The colours of a part.
+pub(super) struct Palette<'a> {
+    part: &'a Part,
+    colouring: Colouring,
+    depths: DepthShade,
+}
+
+impl<'a> Palette<'a> {
+    pub fn new(part: &'a Part, colouring: Colouring) -> Palette<'a> {
+        Palette {
+            part,
+            colouring,
+            depths: DepthShade::new(part, 0),
+        }
+    }
+
+    /// Colour of the material that a ray meets: linear red, green, blue.
+    pub fn material(&self, point: Vector, hit: &Hit) -> [f64; 3] {
+        let part = self.part;
+        let skin = match hit.face {
+            Face::Top => part.height(hit.i, hit.j) >= part.top(),
+            Face::Side(axis) => is_outline(part, point, axis),
+            Face::Bottom => true,
+        };
+        match self.colouring {
+            _ if skin => SKIN,
+            Colouring::Part => CUT,
+            Colouring::Depth => to_linear(self.depths.colour(point[2] as f32)),
+            Colouring::Tool => self.cutter(point, hit).map_or(CUT, |c| to_linear(tool_colour(c))),
+        }
+    }
+
+    /// Who cut what a ray meets: a wall is left by the one that cut the column before it.
+    fn cutter(&self, point: Vector, hit: &Hit) -> Option<Cutter> {
+        let grid = &self.part.grid;
+        let mut column = [hit.i, hit.j];
+        if let Face::Side(axis) = hit.face {
+            let step = [grid.dx, grid.dy];
+            let (at, size) = (column.get_mut(axis)?, step.get(axis)?);
+            *at = if point[axis] < (*at as f64 + 0.5) * size {
+                at.checked_sub(1)?
+            } else {
+                *at + 1
+            };
+        }
+        self.part.cutters.as_ref()?.at(column[1] * grid.nx + column[0])
+    }
+
+    /// What the colours mean, when they need a word.
+    pub fn legend(&self) -> Option<Legend> {
+        match self.colouring {
+            Colouring::Part => None,
+            Colouring::Depth => Some(self.depths.legend()),
+            Colouring::Tool => {
+                let cutters = self.part.cutters.as_ref()?;
+                let mut seen = cutters.seen();
+                seen.sort_by_key(|cutter| cutters.tool(cutter.index));
+                let name = |cutter: &Cutter| match cutters.tool(cutter.index) {
+                    Some(number) => format!("T{number}"),
+                    None => "no tool call".to_owned(),
+                };
+                let mut fields: Vec<(Swatch, String)> = seen
+                    .iter()
+                    .filter(|cutter| !cutter.rapid)
+                    .map(|cutter| (Swatch::Plain(tool_colour(*cutter)), name(cutter)))
+                    .collect();
+                if seen.iter().any(|cutter| cutter.rapid) {
+                    fields.push((Swatch::Plain(RAPID_CUT), "rapid traverse".to_owned()));
+                }
+                let title = "tools".to_owned();
+                (!fields.is_empty()).then_some(Legend { title, fields })
+            }
+        }
+    }
+}
+
+fn tool_colour(cutter: Cutter) -> Colour {
+    if cutter.rapid {
+        return RAPID_CUT;
+    }
+    // The first mark is what cuts before any TOOL CALL.
+    let Some(place) = cutter.index.checked_sub(1) else {
+        return NO_TOOL;
+    };
+    let plain = TOOLS[place % TOOLS.len()];
+    // The next rounds are darker, then lighter.
+    match place / TOOLS.len() % 3 {
+        0 => plain,
+        1 => mix(plain, [0; 3], 0.35),
+        _ => mix(plain, [255; 3], 0.45),
+    }
+}
+
+/// The blank as it came, and where a tool was: linear red, green, blue of steel blue and brass.
+const SKIN: [f64; 3] = [0.243, 0.320, 0.443];
+const CUT: [f64; 3] = [0.812, 0.612, 0.293];
+const RAPID_CUT: Colour = [222, 36, 36];
+const NO_TOOL: Colour = [176, 176, 172];
+/// Easily told from each other, from the skin and from red.
+const TOOLS: [Colour; 9] = [
+    [232, 190, 106],
+    [64, 168, 150],
+    [158, 120, 200],
+    [140, 184, 76],
+    [222, 138, 182],
+    [164, 116, 78],
+    [112, 196, 226],
+    [226, 220, 104],
+    [92, 104, 176],
+];
