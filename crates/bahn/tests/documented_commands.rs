@@ -11,7 +11,6 @@ use support::Folder;
 
 /// What is shown as an error, or cannot be shown without a terminal: part of the command and its exit code.
 const EXCEPTIONS: &[(&str, i32)] = &[
-    ("fmt --check", 1),
     // Wrong use: there is no terminal here.
     ("plc watch", 2),
 ];
