@@ -58,7 +58,8 @@ Examples:
   bahn mp list                       all parameters of a TNC 415 B with the values of its reference list
   bahn mp list acceleration          those with a word in name or group
   bahn mp list 1060 33               those whose number is 1060 or 33..
-  bahn mp list --user --model tnc360 those that the operator may change, code number 123
+  bahn mp list --user --model tnc360
+      Those that the operator may change, code number 123.
   bahn mp list --list mill.mp --changed
       What mill.mp sets apart from the list that the control makes by itself.
   bahn mp list --without-effect      what is read and does nothing here, or only part of it";
