@@ -30,10 +30,6 @@ use crate::thread::Tapping;
 use crate::tools::Tools;
 use crate::upkeep::Upkeep;
 
-/// PLC cycles, µs [000:239] [000:10260].
-const PLC_CYCLE_US: u64 = 20_000;
-const PLC_CYCLE_407_US: u64 = 24_000;
-
 /// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
 const MILLISECOND_US: u32 = 1000;
 
@@ -184,11 +180,7 @@ impl Control {
             plc: PlcUnit {
                 machine: Machine::new(plc, Start::PowerOn),
                 due_us: 0,
-                period_us: if model == ControlModel::Tnc407 {
-                    PLC_CYCLE_407_US
-                } else {
-                    PLC_CYCLE_US
-                },
+                period_us: model.limits().plc_cycle_us.into(),
                 scans: 0,
             },
             emergency: EmergencyStop::new(model, operation.power_interrupted),

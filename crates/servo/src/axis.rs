@@ -6,6 +6,7 @@ use crate::characteristic::Characteristic;
 use crate::fault::Fault;
 use crate::interpolation::{FineInterpolation, Transient};
 use crate::measuring::{Mark, MeasuringSystem};
+use crate::method::Method;
 use crate::monitor::{Monitor, Sample};
 use crate::offset::Offset;
 use crate::plant::Encoder;
@@ -26,16 +27,6 @@ const STANDING_MM: f64 = 1e-9;
 const REST_MM: f64 = 1e-6;
 /// Counting steps in a contour cycle up to which an axis cannot be told from one that stands (inferred).
 const STANDING_STEPS: f64 = 1.5;
-
-/// How an axis is positioned [000:4714-4733].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// With servo lag: the velocity is kv times the lag [000:4735-4776].
-    Lag,
-    /// With feed pre-control: the velocity of the nominal position, and kv times what lag is left
-    /// [000:4929-4975].
-    Precontrol,
-}
 
 /// The position loop of one axis: nominal position in, voltage out.
 ///

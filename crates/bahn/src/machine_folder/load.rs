@@ -209,9 +209,9 @@ impl Loader<'_> {
         let parameters = parameters
             .cloned()
             .unwrap_or_else(|| ParameterList::reference(model));
-        let memory = match parameters.get(4010, 0) {
-            Some(0.0) => ProgramMemory::Eprom,
-            _ => ProgramMemory::Ram,
+        let memory = match parameters.plc_parameters().from_eprom {
+            true => ProgramMemory::Eprom,
+            false => ProgramMemory::Ram,
         };
         let options = Options::for_model(model).stored_in(memory);
         let mut source = plc::Source::compile_for(&path, parameters, options);

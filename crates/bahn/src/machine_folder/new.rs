@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use bahn_parameters::{ControlModel, ListText, ParameterError, ParameterId, ParameterList};
+use bahn_parameters::{ControlModel, ListText, Numbering, ParameterError, ParameterId, ParameterList};
 
 use super::options::NewOptions;
 use crate::files::{self, NewFile};
@@ -26,14 +26,8 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         .into_owned();
     let name = options.name.clone().unwrap_or(own_name);
     let model = options.model;
-    let (shipped, shipped_model) = match model {
-        ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425 => {
-            (bahn_machines::MILL, ControlModel::Tnc415b)
-        }
-        ControlModel::Tnc151 | ControlModel::Tnc155 | ControlModel::Tnc360 => {
-            (bahn_machines::MILL_TNC360, ControlModel::Tnc360)
-        }
-    };
+    let (shipped, shipped_model) = shipped_for(model)
+        .ok_or_else(|| UsageError::new(format!("no machine to start from is shipped for the {model}")))?;
     let files = shipped
         .files
         .iter()
@@ -144,8 +138,17 @@ fn parameters(text: &str, model: ControlModel) -> String {
         .collect()
 }
 
+/// The shipped machine that is a start for a model, and its own model.
+fn shipped_for(model: ControlModel) -> Option<(bahn_machines::ShippedMachine, ControlModel)> {
+    let shipped = bahn_machines::ALL
+        .into_iter()
+        .find(|shipped| shipped.models.contains(&model.id()))?;
+    let own = shipped.models.first()?.parse().ok()?;
+    Some((shipped, own))
+}
+
 fn is_old(model: ControlModel) -> bool {
-    matches!(model, ControlModel::Tnc151 | ControlModel::Tnc155)
+    model.limits().numbering == Numbering::Old
 }
 
 /// The TNC 151 and 155 count 20 steps to a signal period: 1 µm with one of 20 µm [001:1616-1625]; they take

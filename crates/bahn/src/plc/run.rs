@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use bahn_exchange::Exchange;
-use bahn_plc::{PlcProgram, ProcessingTime, RuntimeError};
+use bahn_plc::ProcessingTime;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::bench::{Bench, Failure};
+use super::failure;
 use super::operand::{Content, Operand};
 use super::options::RunOptions;
 use super::print_json;
@@ -15,7 +16,7 @@ use super::retain::Retained;
 use super::source::Source;
 use super::trace::{Line, Trace};
 use crate::cli::Format;
-use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::diagnostics;
 use crate::interrupt::Interrupt;
 use crate::junit::{self, Case, Verdict};
 use crate::{Outcome, UsageError, console};
@@ -61,7 +62,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         let traced = options.trace.is_some_and(|range| range.contains(trace.cycle));
         let result = bench.scan(traced.then_some(&mut trace));
         if let Err(error) = result {
-            print_error(bench.machine.program(), &error);
+            failure::print(bench.machine.program(), &error);
             report.error = Some(Stop {
                 number: error.error.number(),
                 file: error.file,
@@ -138,38 +139,6 @@ fn write_junit(path: &Path, options: &RunOptions, bench: &Bench, report: &Report
     let stopped = report.error.as_ref().map(Stop::to_string);
     let suite = options.program.file.to_string_lossy();
     junit::write(path, &suite, &cases.collect::<Vec<_>>(), stopped.as_deref())
-}
-
-/// Prints a run-time error with its line.
-pub(super) fn print_error(program: &PlcProgram, error: &RuntimeError) {
-    let file = program.files.iter().find(|file| file.name == error.file);
-    let index = (error.line as usize).saturating_sub(1);
-    let text = file
-        .and_then(|file| file.lines.get(index))
-        .cloned()
-        .unwrap_or_default();
-    let code = super::list::split_comment(&text).0;
-    let start = code.chars().take_while(|c| c.is_whitespace()).count();
-    let length = code.trim().chars().count();
-    diagnostics::print(&Diagnostic {
-        severity: Severity::Error,
-        title: &format!("{} {}", error.error.number(), error.error.text()),
-        path: &error.file,
-        marked: Marked {
-            line: error.line,
-            columns: Some((
-                u32::try_from(start + 1).unwrap_or(1),
-                u32::try_from(length).unwrap_or(1),
-            )),
-            text,
-        },
-        label: match error.job {
-            Some(job) => format!("submit job {job} stopped the PLC here"),
-            None => "the PLC stopped here".to_owned(),
-        },
-        help: Some(&format!("{} {}", error.error.cause(), error.error.cure())),
-    });
-    diagnostics::print_line("");
 }
 
 /// The columns of `--record`.

@@ -25,8 +25,8 @@ impl Source {
         let bytes = files::read_table(&options.file)?;
         let parameters = settings::parameter_list(options.model, options.parameters.as_deref())?;
         // Only the list of a machine says that it has an EPROM.
-        let memory = match (&options.parameters, parameters.get(4010, 0)) {
-            (Some(_), Some(0.0)) => ProgramMemory::Eprom,
+        let memory = match &options.parameters {
+            Some(_) if parameters.plc_parameters().from_eprom => ProgramMemory::Eprom,
             _ => ProgramMemory::Ram,
         };
         let mut compile_options = Options::for_model(options.model).stored_in(memory);

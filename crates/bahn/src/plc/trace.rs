@@ -4,9 +4,9 @@ use bahn_exchange::Exchange;
 use bahn_plc::{OperandContent, TraceStep, Tracer};
 
 use super::bench::Bench;
+use super::failure;
 use super::options::TraceOptions;
 use super::print_json;
-use super::run;
 use super::source::Source;
 use crate::cli::Format;
 use crate::{Outcome, UsageError, console};
@@ -36,7 +36,7 @@ pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
     match result {
         Ok(()) => Ok(Outcome::Fine),
         Err(error) => {
-            run::print_error(bench.machine.program(), &error);
+            failure::print(bench.machine.program(), &error);
             Ok(Outcome::ProgramError)
         }
     }

@@ -12,6 +12,7 @@ mod background;
 mod cause;
 mod deviation;
 mod expectation;
+mod listed;
 mod log;
 mod operator;
 mod options;

@@ -1,6 +1,7 @@
 //! From source files to a program.
 
 mod chain;
+mod cost;
 mod emit;
 mod file;
 mod labels;
@@ -56,12 +57,9 @@ impl Options {
         Options { memory, ..self }
     }
 
-    /// Bytes of code of all files together: 128 KB, 64 KB on the TNC 407 [000:14606].
+    /// Bytes of code of all files together.
     fn code_bytes_max(self) -> u32 {
-        match self.model {
-            ControlModel::Tnc407 => 64 * 1024,
-            _ => 128 * 1024,
-        }
+        self.model.limits().plc_code_max_bytes
     }
 }
 

@@ -4,20 +4,12 @@
 //! read, with a note that becomes a warning, or an error in strict checking.
 
 use super::form::{Class, Mnemonic, TNC_355};
-use super::memory::{Scanner, memory_operand};
+use super::memory::memory_operand;
+use super::operand::{LineError, Operand, Scanner, label};
 use crate::PlcError;
-use crate::operand::{BitOperand, NumberOperand, TextOperand};
 
 /// Longest line in characters [000:11940].
 const LINE_LENGTH_MAX: usize = 128;
-/// Characters that tell labels apart [000:14004].
-const LABEL_SIGNIFICANT: usize = 16;
-/// Longest label.
-const LABEL_LENGTH_MAX: usize = 32;
-/// Highest label number [000:14002].
-const LABEL_NUMBER_MAX: u32 = 511;
-/// Numbers of internal modules.
-pub(crate) const MODULE_NUMBERS: std::ops::RangeInclusive<u32> = 9000..=9255;
 
 /// A command with its operand.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,37 +23,6 @@ pub(crate) struct Command {
     pub notes: Vec<LineError>,
     /// Whether it is written as on the TNC 355.
     pub tnc355: bool,
-}
-
-/// The operand of a command.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Operand {
-    None,
-    Bit(BitOperand),
-    Number(NumberOperand),
-    Constant(i32),
-    Text(TextOperand),
-    Field(String),
-    Label(String),
-    File(String),
-}
-
-/// An error in a line, or a deviation.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct LineError {
-    pub error: PlcError,
-    pub column: u32,
-    pub detail: String,
-}
-
-impl LineError {
-    pub(crate) fn new(error: PlcError, at: usize, detail: impl Into<String>) -> LineError {
-        LineError {
-            error,
-            column: u32::try_from(at.saturating_add(1)).unwrap_or(u32::MAX),
-            detail: detail.into(),
-        }
-    }
 }
 
 /// Reads a line. `Ok(None)` is an empty line or a comment. A line that is too long is read all the same; the
@@ -215,34 +176,6 @@ fn read_operand(
         notes,
         tnc355: tnc355 || old_letter,
     })
-}
-
-/// A label: a number, or a name of which 16 characters count [000:14002-14006].
-pub(super) fn label(scanner: &mut Scanner) -> Result<String, LineError> {
-    let at = scanner.at();
-    let word = scanner.take_while(|c| !c.is_whitespace() && c != '[');
-    let error = |error, detail: &str| Err(LineError::new(error, at, detail));
-    if word.is_empty() {
-        return error(PlcError::OperandNotFound, "label expected");
-    }
-    if word.bytes().all(|byte| byte.is_ascii_digit()) {
-        return match word.parse::<u32>() {
-            Ok(number) if number <= LABEL_NUMBER_MAX || MODULE_NUMBERS.contains(&number) => {
-                Ok(number.to_string())
-            }
-            _ => error(PlcError::OperandOutOfRange, "label numbers are 0 to 511"),
-        };
-    }
-    if !word.is_ascii() {
-        return error(PlcError::InvalidOperandType, "label names are ASCII");
-    }
-    if word.len() > LABEL_LENGTH_MAX {
-        return error(
-            PlcError::OperandOutOfRange,
-            "label names have at most 32 characters",
-        );
-    }
-    Ok(word.chars().take(LABEL_SIGNIFICANT).collect())
 }
 
 fn file_name(scanner: &mut Scanner) -> Result<String, LineError> {
