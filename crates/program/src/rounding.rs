@@ -147,8 +147,8 @@ impl InputSteps {
     }
 }
 
-fn each(value: &mut Option<Value>, mut round: impl FnMut(&mut Value) -> bool) -> bool {
-    value.as_mut().is_some_and(|value| round(value))
+fn each(value: &mut Option<Value>, round: impl FnMut(&mut Value) -> bool) -> bool {
+    value.as_mut().is_some_and(round)
 }
 
 /// Rounds a number that stands in the program.
