@@ -76,6 +76,8 @@ pub(crate) struct Cutting {
     tool_axis: Axis,
     moved: bool,
     spindle: Spindle,
+    /// How the spindle of a machine really turns: that counts, whatever the program says.
+    seen: Option<Spindle>,
     /// Tools that cut with M4.
     left_hand: BTreeSet<u32>,
     /// What was said of a tool already.
@@ -84,9 +86,12 @@ pub(crate) struct Cutting {
     below: BTreeMap<Option<u32>, (BlockRef, BlockRef, u64)>,
 }
 
-/// What the program did with the spindle.
+/// Slower than this the spindle of a machine stands still, rpm (inferred).
+const STANDS_RPM: f64 = 1.0;
+
+/// What the program did with the spindle, or the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Spindle {
+pub(crate) struct Spindle {
     turns: Option<Turn>,
     speed_rpm: f64,
 }
@@ -107,6 +112,21 @@ impl Spindle {
             Function::Tool(call) => self.speed_rpm = call.speed_rpm,
             Function::SpindleSpeed(speed_rpm) => self.speed_rpm = *speed_rpm,
             _ => {}
+        }
+    }
+
+    /// How the spindle of a machine turns, rpm, positive as M03; and whether it does not because its programmed speed
+    /// is 0.
+    pub fn seen(rpm: f64, without_speed: bool) -> Spindle {
+        let turn = if rpm < 0.0 {
+            Turn::CounterClockwise
+        } else {
+            Turn::Clockwise
+        };
+        let stands = rpm.abs() < STANDS_RPM;
+        Spindle {
+            turns: (!stands || without_speed).then_some(turn),
+            speed_rpm: if stands { 0.0 } else { rpm.abs() },
         }
     }
 
@@ -138,9 +158,17 @@ impl Cutting {
             tool_axis: Axis::Z,
             moved: false,
             spindle: Spindle::default(),
+            seen: None,
             left_hand,
             told: HashSet::new(),
             below: BTreeMap::new(),
+        }
+    }
+
+    /// How the spindle of the machine turned on the next element.
+    pub fn see(&mut self, spindle: Spindle) {
+        if self.seen.replace(spindle) != Some(spindle) {
+            self.watch();
         }
     }
 
@@ -207,7 +235,8 @@ impl Cutting {
     fn watch(&mut self) {
         let left_hand = self.tool.is_some_and(|tool| self.left_hand.contains(&tool));
         let fault = self
-            .spindle
+            .seen
+            .unwrap_or(self.spindle)
             .fault(left_hand)
             .filter(|kind| !self.told.contains(&(self.tool, *kind)));
         if let Some((_, workpiece)) = &mut self.workpiece {

@@ -96,6 +96,8 @@ limits! {
     resolution_mm: f64 = 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4;
     /// Input step of angles, degrees [003:7825] [000:6419-6424]; TNC 151/155 (inferred).
     resolution_deg: f64 = 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4;
+    /// Input step of cycle 13, degrees [003:6528]; TNC 151/155 and 407/415/425 (inferred).
+    orientation_step_deg: f64 = 0.1, 0.1, 0.1, 1e-3, 1e-4, 1e-4;
     /// Axes that a machine can have [001:1089-1103] [003:7751] [000:133].
     axes_max: u8 = 4, 4, 4, 5, 5, 5;
     /// Axes that move together on a straight line [001:167-173] [003:7761-7763] [000:139].

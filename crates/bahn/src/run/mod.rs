@@ -22,6 +22,7 @@ mod report;
 mod script;
 mod session;
 mod times;
+mod turning;
 
 pub(crate) use expectation::Expectation;
 pub(crate) use options::{EXAMPLES, RunMachineOptions};

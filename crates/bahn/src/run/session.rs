@@ -16,6 +16,7 @@ use super::pace::Pace;
 use super::recording::Recording;
 use super::script::{Action, Base, Line, Script};
 use super::times::Times;
+use super::turning::Turning;
 use crate::UsageError;
 use crate::cutting::Cutting;
 use crate::diagnostics::FileFault;
@@ -89,6 +90,7 @@ pub(super) struct Session {
     start_us: Option<u64>,
     /// Elements that were prepared and not yet executed.
     ahead: VecDeque<PathElement>,
+    turning: Turning,
     /// The element that was executed last, with the way that was left of it.
     last_seen: Option<(ElementId, f64)>,
     moved_us: u64,
@@ -113,13 +115,13 @@ pub(super) struct Parts {
 
 /// What tells an element from all others of its run. Axes without a position are equal, too, bit by bit.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct ElementId {
-    sequence: u64,
+pub(super) struct ElementId {
+    pub sequence: u64,
     ends: [[u64; Axis::COUNT]; 2],
 }
 
 impl ElementId {
-    fn of(element: &PathElement) -> ElementId {
+    pub fn of(element: &PathElement) -> ElementId {
         ElementId {
             sequence: element.sequence,
             ends: [element.start, element.end].map(|position| position.values().map(f64::to_bits)),
@@ -166,6 +168,7 @@ impl Session {
             plc_percent: (0.0, 0, 0.0),
             start_us: None,
             ahead: VecDeque::new(),
+            turning: Turning::default(),
             last_seen: None,
             moved_us: 0,
             last_stop: false,
@@ -353,6 +356,7 @@ impl Session {
         if running {
             self.program_us += cycle_us;
             self.times.cycle(&self.control);
+            self.turning.cycle(&self.control, &self.machine);
             let feed = self.control.element().map(|element| element.feed);
             self.deviation
                 .cycle(&self.control, matches!(feed, Some(FeedRate::Programmed(_))));
@@ -451,7 +455,11 @@ impl Session {
             return Ok(());
         };
         self.record.path(&element);
+        let spindle = self.turning.take(&element);
         if let Some(cutting) = &mut self.cutting {
+            if let Some(spindle) = spindle {
+                cutting.see(spindle);
+            }
             cutting.element(&element, &mut self.record)?;
         }
         if let Some(run) = self
