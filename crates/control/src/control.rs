@@ -161,10 +161,10 @@ impl Control {
         }
         mirror_parameters(&parameters, &mut exchange);
         let path_limits = path_limits(&parameters, &axes);
-        let bits = |area: BitArea, count: usize| {
-            (0..count)
-                .filter_map(|number| Some((number, Bit::new(area, u16::try_from(number).ok()?)?)))
-                .filter(|(_, bit)| bit.is_listed())
+        let bits = |area: BitArea, boards: &[(u16, u16)]| {
+            let numbers = boards.iter().flat_map(|(first, last)| *first..=*last);
+            numbers
+                .filter_map(|number| Some((usize::from(number), Bit::new(area, number)?)))
                 .collect()
         };
         let datums = remembered.datums.map(|datum| datum.0);
@@ -227,8 +227,8 @@ impl Control {
             log: None,
             inputs: [false; INPUTS],
             outputs: [false; OUTPUTS],
-            output_bits: bits(BitArea::O, OUTPUTS),
-            input_bits: bits(BitArea::I, INPUTS),
+            output_bits: bits(BitArea::O, model.limits().outputs),
+            input_bits: bits(BitArea::I, model.limits().inputs),
             letters,
             axes,
         };
