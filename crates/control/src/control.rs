@@ -15,6 +15,7 @@ use crate::command::{Command, Mode};
 use crate::emergency::EmergencyStop;
 use crate::feeder::{Offsets, Programs};
 use crate::handshake::{Handshakes, Transfer};
+use crate::life::LifeCount;
 use crate::manual::Manual;
 use crate::markers::AXES;
 use crate::message::{Message, Messages};
@@ -94,6 +95,8 @@ pub struct Control {
     keeps: bool,
     /// What is to be stored has changed since [`Control::stored`].
     pub(crate) unsaved: bool,
+    /// Of the tool in the spindle.
+    pub(crate) life: LifeCount,
     /// What F counts in a program in inches, when that is not what it counts on the model.
     pub(crate) inch_feed: Option<InchFeed>,
     pub(crate) programs: Arc<dyn Programs>,
@@ -220,6 +223,7 @@ impl Control {
             test: None,
             keeps: false,
             unsaved: false,
+            life: LifeCount::default(),
             inch_feed,
             programs,
             q: remembered.q,
@@ -421,9 +425,11 @@ impl Control {
         {
             self.tools.inserted(&self.exchange);
         }
+        self.count_tool_life();
         if std::mem::take(&mut self.tools.changed) {
             self.mirror_pockets();
             self.unsaved = true;
+            self.life.changed = true;
         }
         let waits = self.keeps && self.unsaved;
         if !waits {

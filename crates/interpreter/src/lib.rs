@@ -35,6 +35,7 @@ mod settings;
 mod tools;
 mod work;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -279,6 +280,11 @@ impl Interpreter {
     /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
     pub fn set_machine_zero(&mut self, zero: Position) {
         self.settings.rules.machine_zero = zero;
+    }
+
+    /// The tools that must not be called, or are replaced, for the blocks that are read from now on.
+    pub fn set_barred_tools(&mut self, barred: BTreeMap<u32, ToolState>) {
+        self.settings.barred_tools = barred;
     }
 
     /// Sets a Q parameter from outside: the PLC, or the operator.
