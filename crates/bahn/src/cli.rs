@@ -103,6 +103,10 @@ Examples:
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Machine")]
 pub(crate) struct MachineOptions {
+    /// Folder of a machine: its control model, parameters, tools, datum and the texts of its PLC count; the
+    /// program runs without its PLC and its drives.
+    #[arg(long = "machine", value_name = "DIR", value_hint = ValueHint::DirPath, conflicts_with = "model")]
+    pub folder: Option<PathBuf>,
     /// Tool table; without one tools are those that the program defines.
     #[arg(long, value_name = "TABLE", value_hint = ValueHint::FilePath)]
     pub tools: Option<PathBuf>,

@@ -34,16 +34,13 @@ pub(crate) struct FileFault {
     /// What exactly is wrong; may be empty.
     pub label: String,
     pub help: Option<String>,
+    /// Where that was opened which is meant, in the same file.
+    pub opened: Option<Marked>,
 }
 
 impl FileFault {
     /// Prints it as rustc does, with an empty line behind it.
     pub fn print(&self) {
-        self.print_with(None);
-    }
-
-    /// The same with the place where that was opened which is meant.
-    pub fn print_with(&self, opened: Option<&Marked>) {
         let diagnostic = Diagnostic {
             severity: self.severity,
             title: &self.title,
@@ -52,7 +49,7 @@ impl FileFault {
             label: self.label.clone(),
             help: self.help.as_deref(),
         };
-        print_line(&diagnostic.render_with(opened, is_styled()));
+        print_line(&diagnostic.render_with(self.opened.as_ref(), is_styled()));
         print_line("");
     }
 }

@@ -247,6 +247,7 @@ impl Control {
     /// Interprets ahead; begins a run.
     pub(crate) fn prepare_run(&mut self) {
         self.close_run();
+        self.take_tool_states();
         if self.run.begin_wanted && self.axes_stand() {
             self.run.begin_wanted = false;
             self.begin_run();
@@ -404,6 +405,9 @@ impl Control {
         } else {
             match self.open_program() {
                 Ok(program) => {
+                    // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
+                    self.tools.counts &= self.mode == Mode::Mdi;
+                    self.tools.replaces_worn &= self.mode == Mode::Mdi;
                     let feeder = self.new_feeder(program, &machine, limits);
                     self.run.feeder = Some(feeder);
                 }

@@ -1,10 +1,12 @@
 //! What a control tells a run from outside, while it goes on.
 
+use std::collections::BTreeMap;
+
 use bahn_path::{Axis, Position};
 use bahn_program::Value;
 
 use crate::Interpreter;
-use crate::settings::Rules;
+use crate::settings::{Rules, ToolState};
 
 impl Interpreter {
     /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
@@ -20,6 +22,11 @@ impl Interpreter {
             machine_zero,
             ..rules
         };
+    }
+
+    /// The tools that must not be called, or are replaced, for the blocks that are read from now on.
+    pub fn set_barred_tools(&mut self, barred: BTreeMap<u32, ToolState>) {
+        self.settings.barred_tools = barred;
     }
 
     /// Sets a Q parameter from outside: the PLC, or the operator.

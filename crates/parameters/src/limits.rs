@@ -155,6 +155,14 @@ limits! {
         STOP_TEST_415;
     /// How the machine parameters are numbered.
     numbering: Numbering = OLD, OLD, NEW, NEW, NEW, NEW;
+
+    // Terminals.
+
+    /// Inputs that machines are wired to, first and last of each board: TNC 151/155 E0-E62, E64-E126
+    /// [001:297]; [000:11556-11567] and those of the handwheel [000:8276-8281]; TNC 360 as these (inferred).
+    inputs: &'static [(u16, u16)] = INPUTS_151, INPUTS_151, INPUTS, INPUTS, INPUTS, INPUTS;
+    /// Outputs in the same way: TNC 151/155 A0-A30, A32-A62 [001:311].
+    outputs: &'static [(u16, u16)] = OUTPUTS_151, OUTPUTS_151, OUTPUTS, OUTPUTS, OUTPUTS, OUTPUTS;
 }
 
 /// Times and repetitions of the test of the EMERGENCY STOP circuit.
@@ -251,6 +259,10 @@ const STOP_TEST_415: EmergencyStopTest = EmergencyStopTest {
     fall_us: 114_000,
     restore_us: 18_000,
 };
+const INPUTS_151: &[(u16, u16)] = &[(0, 62), (64, 126)];
+const INPUTS: &[(u16, u16)] = &[(0, 31), (64, 126), (128, 152), (160, 175), (192, 254)];
+const OUTPUTS_151: &[(u16, u16)] = &[(0, 30), (32, 62)];
+const OUTPUTS: &[(u16, u16)] = &[(0, 30), (32, 62), (64, 94), (96, 111)];
 const TENTHS: InchFeed = InchFeed::Tenths;
 const WHOLE: InchFeed = InchFeed::Whole;
 const SCALE: MachineZero = MachineZero::ScaleDatum;

@@ -20,6 +20,7 @@ mdi BLOCK                           a block for MDI; \\n separates several
 m N                                 an M function in manual operation, output with NC start
 s RPM                               a spindle speed, likewise
 datum AXIS VALUE                    the actual position becomes this value
+tool-life T MIN                     current life of a tool (CUR.TIME), minutes
 jog MM                              jog increment
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
 manual-operation                    axes may be moved while a run is interrupted

@@ -105,7 +105,7 @@ impl Loader<'_> {
     fn load(&mut self, folder: MachineFolder) -> Option<LoadedMachine> {
         self.stays_inside("state", &folder.state);
         let model = self.model(&folder.model);
-        let plant = self.plant(&folder);
+        let plant = self.plant(&folder, model);
         let tools = self.tools(&folder);
         let plc_messages = self.texts("plc_messages", folder.plc_messages.as_deref(), MESSAGES);
         let plc_dialogues = self.texts("plc_dialogues", folder.plc_dialogues.as_deref(), 4096);
@@ -215,17 +215,18 @@ impl Loader<'_> {
         };
         let options = Options::for_model(model).stored_in(memory);
         let mut source = plc::Source::compile_for(&path, parameters, options);
-        let found = source.errors().into_iter().chain(source.warnings()).collect();
-        self.sort(found);
+        self.sort(source.faults());
         source.compilation.program.take().map(Arc::new)
     }
 
-    fn plant(&mut self, folder: &MachineFolder) -> Option<Machine> {
+    fn plant(&mut self, folder: &MachineFolder, model: Option<ControlModel>) -> Option<Machine> {
         let (path, bytes) = self.read("plant", &folder.plant)?;
         let text = decode(&bytes);
         match Machine::from_toml(&text) {
             Ok(machine) => {
-                self.wiring(&path, &text, &machine);
+                if let Some(model) = model {
+                    self.wiring(&path, &text, &machine, model);
+                }
                 Some(machine)
             }
             Err(faults) => {
@@ -244,25 +245,28 @@ impl Loader<'_> {
         }
     }
 
-    /// Every wire ends at an input or output that the control has [000:11556-11567].
-    fn wiring(&mut self, path: &Path, text: &str, machine: &Machine) {
+    /// Every wire ends at an input or output that the control has.
+    fn wiring(&mut self, path: &Path, text: &str, machine: &Machine, model: ControlModel) {
         for wire in machine.wires() {
             let Ok(bit) = wire.operand.parse::<Bit>() else {
                 continue;
             };
-            if bit.is_listed() {
+            let limits = model.limits();
+            let (what, area, boards) = match bit.area() {
+                BitArea::O => ("output", "O", limits.outputs),
+                _ => ("input", "I", limits.inputs),
+            };
+            let is_there = |(first, last): &(u16, u16)| (*first..=*last).contains(&bit.number());
+            if boards.iter().any(is_there) {
                 continue;
             }
-            let (what, area) = match bit.area() {
-                BitArea::O => ("output", "O"),
-                _ => ("input", "I"),
-            };
-            let ranges = bit.area().ranges().iter();
-            let there: Vec<String> = ranges
+            let there: Vec<String> = boards
+                .iter()
                 .map(|(first, last)| format!("{area}{first}-{area}{last}"))
                 .collect();
             let message = format!(
-                "the control has no {what} {}; there are {}",
+                "{} has no {what} {}; there are {}",
+                model.name(),
                 wire.operand,
                 there.join(", ")
             );
@@ -456,6 +460,7 @@ fn file_fault(
         },
         label: message.to_owned(),
         help: None,
+        opened: None,
     }
 }
 

@@ -36,6 +36,7 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         let text = text
             .replace(shipped_model.name(), model.name())
             .replace("../FOLDER.md", "FOLDER.md");
+        let text = inputs_of_panel(&text, model);
         let content = match *file {
             "machine.toml" => description(&text, &name, model),
             "parameters.mp" => parameters(&text, model),
@@ -150,6 +151,25 @@ fn shipped_for(model: ControlModel) -> Option<(bahn_machines::ShippedMachine, Co
 fn is_old(model: ControlModel) -> bool {
     model.limits().numbering == Numbering::Old
 }
+
+/// The operating panel is wired to I128 ff. where the control has inputs of its own for it, otherwise to the
+/// second board, I64 ff.
+fn inputs_of_panel(text: &str, model: ControlModel) -> String {
+    if !is_old(model) {
+        return text.to_owned();
+    }
+    (PANEL_INPUTS..PANEL_INPUTS + 25).fold(text.to_owned(), |text, input| {
+        text.replace(
+            &format!("I{input}"),
+            &format!("I{}", input - PANEL_INPUTS + SECOND_BOARD),
+        )
+    })
+}
+
+/// First input of the operating panel [000:11556-11567].
+const PANEL_INPUTS: u16 = 128;
+/// First input of the second board of the TNC 151 and 155 [001:297].
+const SECOND_BOARD: u16 = 64;
 
 /// The TNC 151 and 155 count 20 steps to a signal period: 1 µm with one of 20 µm [001:1616-1625]; they take
 /// the first reference mark of each axis, so there is one.

@@ -201,6 +201,7 @@ fn file_fault(fault: &ListError, text: &ListText, path: &Path) -> FileFault {
         },
         label: fault.error.to_string(),
         help: help(fault, text),
+        opened: None,
     }
 }
 
@@ -285,5 +286,6 @@ fn file_warning(warning: &Item, text: &ListText, path: &Path) -> FileFault {
         },
         label: warning.detail.clone(),
         help: None,
+        opened: None,
     }
 }

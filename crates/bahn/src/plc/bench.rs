@@ -206,5 +206,7 @@ fn cycle_time(model: ControlModel) -> Duration {
 }
 
 fn assign(list: &mut ParameterList, text: &str) -> Result<(), String> {
-    list.assign(text).map_err(|error| format!("MP{text}: {error}"))
+    list.assign(text)
+        .map(drop)
+        .map_err(|error| format!("MP{text}: {error}"))
 }

@@ -69,29 +69,16 @@ impl Source {
 
     /// Prints errors and warnings as rustc does.
     pub fn print_faults(&self) {
-        let errors = self
-            .compilation
-            .errors
-            .iter()
-            .map(|fault| (Severity::Error, fault));
-        let warnings = self.compilation.warnings.iter();
-        for (severity, fault) in errors.chain(warnings.map(|fault| (Severity::Warning, fault))) {
-            let opened = fault.opened.map(|place| self.marked(&fault.file, place));
-            self.fault(severity, fault).print_with(opened.as_ref());
-        }
+        self.faults().iter().for_each(FileFault::print);
     }
 
-    /// What keeps the program from running.
-    pub fn errors(&self) -> Vec<FileFault> {
+    /// What keeps the program from running, then what is accepted although the printed rules refuse it.
+    pub fn faults(&self) -> Vec<FileFault> {
         let errors = self.compilation.errors.iter();
-        errors.map(|fault| self.fault(Severity::Error, fault)).collect()
-    }
-
-    /// What is accepted although the printed rules refuse it.
-    pub fn warnings(&self) -> Vec<FileFault> {
+        let errors = errors.map(|fault| self.fault(Severity::Error, fault));
         let warnings = self.compilation.warnings.iter();
-        warnings
-            .map(|fault| self.fault(Severity::Warning, fault))
+        errors
+            .chain(warnings.map(|fault| self.fault(Severity::Warning, fault)))
             .collect()
     }
 
@@ -113,6 +100,7 @@ impl Source {
             marked: self.marked(&fault.file, (fault.line, fault.column)),
             label: detail.trim_start_matches(':').trim().to_owned(),
             help: Some(format!("{} {}", fault.error.cause(), fault.error.cure())),
+            opened: fault.opened.map(|place| self.marked(&fault.file, place)),
         }
     }
 

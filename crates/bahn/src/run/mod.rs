@@ -75,10 +75,8 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             ))
         })?;
     }
-    for assignment in &options.run.mp {
-        let changed = machine.parameters.assign(assignment);
-        changed.map_err(|error| UsageError::new(format!("--mp {assignment}: {error}")))?;
-    }
+    settings::assign(&mut machine.parameters, &options.run.mp)?;
+    settings::say_without_effect(&machine.parameters, &options.run.mp);
     let mut plant = machine.plant.clone();
     let mut log = options
         .run

@@ -116,6 +116,7 @@ impl Script {
             },
             label: wrong.message.clone(),
             help: None,
+            opened: None,
         }
     }
 
@@ -132,6 +133,7 @@ impl Script {
             },
             label,
             help: None,
+            opened: None,
         }
     }
 

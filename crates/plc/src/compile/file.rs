@@ -71,7 +71,7 @@ pub(super) fn translate(
     };
     for (number, line) in lines.iter().enumerate() {
         translator.place.line = u32::try_from(number.saturating_add(1)).unwrap_or(u32::MAX);
-        match parse(line) {
+        match parse(line, options.model) {
             Ok(None) => {}
             Ok(Some(command)) => translator.command(&command),
             Err(error) => translator.unreadable(&error),

@@ -3,6 +3,8 @@
 //! The manual's own listings are typed loosely: `LBL230`, `OM 500`, `B 128`, `K + 0`, `X[`. Such lines are
 //! read, with a note that becomes a warning, or an error in strict checking.
 
+use bahn_parameters::ControlModel;
+
 use super::form::{Class, Mnemonic, TNC_355};
 use super::memory::memory_operand;
 use super::operand::{LineError, Operand, Scanner, label};
@@ -25,9 +27,9 @@ pub(crate) struct Command {
     pub tnc355: bool,
 }
 
-/// Reads a line. `Ok(None)` is an empty line or a comment. A line that is too long is read all the same; the
+/// Reads a line for a control. `Ok(None)` is an empty line or a comment. A line that is too long is read all the same; the
 /// error stands in the notes of the command, or is the error of the line.
-pub(crate) fn parse(line: &str) -> Result<Option<Command>, LineError> {
+pub(crate) fn parse(line: &str, model: ControlModel) -> Result<Option<Command>, LineError> {
     let characters: Vec<char> = line.chars().collect();
     let code = code_part(&characters);
     let start = code.iter().position(|c| !c.is_whitespace());
@@ -38,7 +40,7 @@ pub(crate) fn parse(line: &str) -> Result<Option<Command>, LineError> {
     let Some(start) = start else {
         return too_long.map_or(Ok(None), Err);
     };
-    let mut command = read_command(code, start)?;
+    let mut command = read_command(code, start, model)?;
     command.notes.extend(too_long);
     Ok(Some(command))
 }
@@ -67,7 +69,7 @@ fn code_part(characters: &[char]) -> &[char] {
 
 /// Tries every command that the text begins with, the longest first, and takes the first that fits its
 /// operand; otherwise reports the error of the one that the text names completely.
-fn read_command(code: &[char], start: usize) -> Result<Command, LineError> {
+fn read_command(code: &[char], start: usize, model: ControlModel) -> Result<Command, LineError> {
     let word_end = code
         .iter()
         .skip(start)
@@ -79,7 +81,7 @@ fn read_command(code: &[char], start: usize) -> Result<Command, LineError> {
         let Some(end) = match_spelling(code, start, spelling) else {
             continue;
         };
-        match read_operand(mnemonic, code, start, end, tnc355) {
+        match read_operand(mnemonic, code, (start, end), tnc355, model) {
             Ok(command) => return Ok(command),
             Err(error) => {
                 if end >= word_end && named.is_none() {
@@ -130,9 +132,9 @@ fn match_spelling(code: &[char], start: usize, spelling: &str) -> Option<usize> 
 fn read_operand(
     mnemonic: Mnemonic,
     code: &[char],
-    start: usize,
-    end: usize,
+    (start, end): (usize, usize),
     tnc355: bool,
+    model: ControlModel,
 ) -> Result<Command, LineError> {
     let mut scanner = Scanner::new(code, end);
     scanner.skip_blanks();
@@ -157,7 +159,7 @@ fn read_operand(
         }
         (Operand::Label(label(&mut scanner)?), false)
     } else {
-        memory_operand(mnemonic, &mut scanner)?
+        memory_operand(mnemonic, &mut scanner, model)?
     };
     scanner.skip_blanks();
     if let Some(character) = scanner.peek() {
@@ -195,12 +197,14 @@ fn file_name(scanner: &mut Scanner) -> Result<String, LineError> {
 mod tests {
     use super::*;
 
+    const MODEL: ControlModel = ControlModel::Tnc415b;
+
     fn read(line: &str) -> Command {
-        parse(line).unwrap().unwrap()
+        parse(line, MODEL).unwrap().unwrap()
     }
 
     fn error(line: &str) -> u8 {
-        match parse(line) {
+        match parse(line, MODEL) {
             Err(error) => error.error.number(),
             Ok(command) => panic!("{line} is read as {command:?}"),
         }
@@ -232,7 +236,7 @@ mod tests {
         same("LBL ABCDEFGHIJKLMNOPQ", "LBL ABCDEFGHIJKLMNOP");
         same("CM 015", "CM 15");
         assert!(read("L M5").notes.is_empty() && !read("LBL230").notes.is_empty());
-        assert!(parse("   ;nothing").unwrap().is_none() && parse("").unwrap().is_none());
+        assert!(parse("   ;nothing", MODEL).unwrap().is_none() && parse("", MODEL).unwrap().is_none());
     }
 
     #[test]

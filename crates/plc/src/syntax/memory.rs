@@ -1,6 +1,7 @@
 //! Operands in memory, constants and strings.
 
 use bahn_exchange::{Bit, BitArea, Number, STRINGS, Size};
+use bahn_parameters::ControlModel;
 
 use super::form::{Class, Mnemonic};
 use super::operand::{LineError, Operand, Scanner, label};
@@ -18,6 +19,7 @@ const DIALOGUE_LINE_MAX: u16 = 4095;
 pub(super) fn memory_operand(
     mnemonic: Mnemonic,
     scanner: &mut Scanner,
+    model: ControlModel,
 ) -> Result<(Operand, bool), LineError> {
     let at = scanner.at();
     let letter = scanner
@@ -37,7 +39,7 @@ pub(super) fn memory_operand(
             if let Some(error) = wrong_type(Class::Bit) {
                 return Err(error);
             }
-            bit_operand(mnemonic, area(letter), scanner, at)?
+            bit_operand(mnemonic, (area(letter), model), scanner, at)?
         }
         'B' | 'W' | 'D' => {
             let (size, class) = match letter {
@@ -113,16 +115,22 @@ fn width(mnemonic: Mnemonic) -> u16 {
 /// boards by number, but may not leave the area (inferred).
 fn bit_operand(
     mnemonic: Mnemonic,
-    area: BitArea,
+    (area, model): (BitArea, ControlModel),
     scanner: &mut Scanner,
     at: usize,
 ) -> Result<Operand, LineError> {
+    let ranges = ranges(area, model);
+    let is_listed = |bit: &Bit| {
+        let number = bit.number();
+        ranges
+            .iter()
+            .any(|(first, last)| (*first..=*last).contains(&number))
+    };
     let number = scanner.digits("number expected")?;
     let last = number.and_then(|number| number.checked_add(width(mnemonic) - 1));
-    let bit = number
-        .and_then(|number| Bit::new(area, number))
-        .filter(|bit| bit.is_listed());
-    match (bit, last.filter(|last| *last <= area.last())) {
+    let bit = number.and_then(|number| Bit::new(area, number)).filter(is_listed);
+    let end = ranges.last().map_or(0, |(_, last)| *last);
+    match (bit, last.filter(|last| *last <= end)) {
         (Some(bit), Some(_)) => Ok(Operand::Bit(BitOperand {
             bit,
             indexed: scanner.take_all("[X]"),
@@ -130,20 +138,28 @@ fn bit_operand(
         _ => Err(LineError::new(
             PlcError::OperandOutOfRange,
             at,
-            bit_range(area, number),
+            bit_range(area, ranges, number),
         )),
     }
 }
 
-fn bit_range(area: BitArea, number: Option<u16>) -> String {
+/// The numbers of an area; inputs and outputs are those of the control.
+fn ranges(area: BitArea, model: ControlModel) -> &'static [(u16, u16)] {
+    match area {
+        BitArea::I => model.limits().inputs,
+        BitArea::O => model.limits().outputs,
+        BitArea::M | BitArea::T | BitArea::C => area.ranges(),
+    }
+}
+
+fn bit_range(area: BitArea, ranges: &[(u16, u16)], number: Option<u16>) -> String {
     if let (BitArea::M, Some(macro_number @ 3264..=3267)) = (area, number) {
         let module = 200 + (macro_number - 3264) * 10;
         return format!(
             "the TNC 355 macro M{macro_number} is replaced by a module, as module {module} of the manual"
         );
     }
-    let ranges: Vec<String> = area
-        .ranges()
+    let ranges: Vec<String> = ranges
         .iter()
         .map(|(first, last)| format!("{0}{first}-{0}{last}", area.letter()))
         .collect();
