@@ -450,3 +450,14 @@ fn errors_name_what_was_opened() {
     );
     assert_eq!(opened("]\nEM\n", 13), None);
 }
+
+/// A file that is no PLC program has an error in each of its lines: a thousand are listed, the others counted.
+#[test]
+fn a_thousand_errors_are_listed() {
+    let compilation = compile(&format!("{}EM\n", "JUNK\n".repeat(4000)));
+    assert_eq!((compilation.errors.len(), compilation.not_listed), (1000, 3000));
+    assert!(compilation.program.is_none());
+    let compilation = compile(&format!("{}EM\n", "LM 4\n= M5\n".repeat(2500)));
+    assert!(compilation.program.is_some(), "{:?}", compilation.errors.first());
+    assert_eq!((compilation.warnings.len(), compilation.not_listed), (1000, 1500));
+}
