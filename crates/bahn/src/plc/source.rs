@@ -7,7 +7,7 @@ use bahn_parameters::ParameterList;
 use bahn_plc::{Compilation, Diagnostic as Fault, Options, PlcProgram, ProgramMemory, SourceFiles};
 
 use super::options::ProgramOptions;
-use crate::diagnostics::{FileFault, Marked, Severity};
+use crate::diagnostics::{self, FileFault, Marked, PRINTED_MAX, Severity};
 use crate::{UsageError, files, settings};
 
 /// A compiled program with the folder it comes from.
@@ -75,10 +75,13 @@ impl Source {
             .iter()
             .map(|fault| (Severity::Error, fault));
         let warnings = self.compilation.warnings.iter();
-        for (severity, fault) in errors.chain(warnings.map(|fault| (Severity::Warning, fault))) {
+        let all = errors.chain(warnings.map(|fault| (Severity::Warning, fault)));
+        for (severity, fault) in all.take(PRINTED_MAX) {
             let opened = fault.opened.map(|place| self.marked(&fault.file, place));
             self.fault(severity, fault).print_with(opened.as_ref());
         }
+        let listed = self.compilation.errors.len() + self.compilation.warnings.len();
+        diagnostics::print_rest(listed.saturating_sub(PRINTED_MAX) + self.compilation.not_listed);
     }
 
     /// What keeps the program from running.
