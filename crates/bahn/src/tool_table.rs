@@ -46,7 +46,10 @@ impl fmt::Display for TableFault {
     }
 }
 
-/// Reads a tool table: see the help of `bahn test`. All faults are named.
+/// Faulty lines that are named; behind them reading ends.
+const FAULTS_MAX: usize = 100;
+
+/// Reads a tool table: see the help of `bahn test`. All faults are named, up to [`FAULTS_MAX`].
 pub(crate) fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
     let whole = |message: String| vec![TableFault { line: 0, message }];
     let text = text.trim_start_matches('\u{feff}');
@@ -66,6 +69,13 @@ pub(crate) fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> 
     let mut table = BTreeMap::new();
     let mut faults = Vec::new();
     for (number, line) in lines {
+        if faults.len() == FAULTS_MAX {
+            faults.push(TableFault {
+                line: number,
+                message: "too many faults: what follows is not read".to_owned(),
+            });
+            break;
+        }
         if matches!(first_word(line).to_ascii_uppercase().as_str(), "[END]" | "END") {
             break;
         }

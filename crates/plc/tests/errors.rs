@@ -487,3 +487,14 @@ fn inputs_and_outputs_are_those_of_the_control() {
     assert_eq!(limits.inputs, bahn_exchange::BitArea::I.ranges());
     assert_eq!(limits.outputs, bahn_exchange::BitArea::O.ranges());
 }
+
+/// A file that is no PLC program has an error in each of its lines: a thousand are listed, the others counted.
+#[test]
+fn a_thousand_errors_are_listed() {
+    let compilation = compile(&format!("{}EM\n", "JUNK\n".repeat(4000)));
+    assert_eq!((compilation.errors.len(), compilation.not_listed), (1000, 3000));
+    assert!(compilation.program.is_none());
+    let compilation = compile(&format!("{}EM\n", "LM 4\n= M5\n".repeat(2500)));
+    assert!(compilation.program.is_some(), "{:?}", compilation.errors.first());
+    assert_eq!((compilation.warnings.len(), compilation.not_listed), (1000, 1500));
+}

@@ -4,7 +4,7 @@ use bahn_machine::Event;
 
 use super::load::load;
 use super::options::ListOptions;
-use crate::diagnostics::FileFault;
+use crate::diagnostics;
 use crate::diagnostics::printable;
 use crate::run::Expectation;
 use crate::{Outcome, UsageError, console};
@@ -38,7 +38,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     let machine = match load(&options.folder)? {
         Ok(machine) => machine,
         Err(faults) => {
-            faults.iter().for_each(FileFault::print);
+            diagnostics::print_faults(&faults);
             return Ok(Outcome::ProgramError);
         }
     };

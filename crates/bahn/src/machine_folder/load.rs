@@ -11,6 +11,7 @@ use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::{Axis, Position};
 use bahn_plc::{Options, PlcProgram, ProgramMemory};
 
+use super::state;
 use crate::diagnostics::{FileFault, Marked, Severity};
 use crate::{UsageError, files, mp, plc, tool_table};
 
@@ -38,6 +39,22 @@ pub(crate) struct LoadedMachine {
 }
 
 impl LoadedMachine {
+    /// The files that were read, and the lock of the state.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let folder = &self.folder;
+        let named = [&folder.parameters, &folder.plc, &folder.plant].map(Some);
+        let further = [
+            &folder.plc_messages,
+            &folder.plc_dialogues,
+            &folder.compensation,
+            &folder.tools,
+        ];
+        let named = named.into_iter().chain(further.map(Option::as_ref)).flatten();
+        let files = named.map(|name| self.root.join(name));
+        let lock = self.root.join(&folder.state).join(state::LOCK);
+        files.chain([lock]).collect()
+    }
+
     /// The datum of `machine.toml`, for the axes that it names.
     pub fn datum(&self) -> Position {
         let mut datum = Position::ZERO;
@@ -60,7 +77,7 @@ fn axis(letter: char) -> Option<Axis> {
 /// [`UsageError`] when there is no such folder or no `machine.toml` in it.
 pub(crate) fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
     let file = root.join(MachineFolder::FILE);
-    let bytes = files::read_table(&file).map_err(|error| {
+    let bytes = files::read_description(&file).map_err(|error| {
         UsageError::new(format!(
             "{error}\na machine is a folder with {}; `bahn machine new` makes one",
             MachineFolder::FILE
@@ -157,11 +174,20 @@ impl Loader<'_> {
 
     /// The bytes of a file that `machine.toml` names.
     fn read(&mut self, key: &str, name: &str) -> Option<(PathBuf, Vec<u8>)> {
+        self.read_with(key, name, files::read_table)
+    }
+
+    fn read_with(
+        &mut self,
+        key: &str,
+        name: &str,
+        reading: fn(&Path) -> Result<Vec<u8>, UsageError>,
+    ) -> Option<(PathBuf, Vec<u8>)> {
         if name.is_empty() {
             return None;
         }
         let path = self.root.join(name);
-        match files::read_table(&path) {
+        match reading(&path) {
             Ok(bytes) => Some((path, bytes)),
             Err(error) => {
                 self.fault_at_key(key, &error.to_string());
@@ -220,7 +246,7 @@ impl Loader<'_> {
     }
 
     fn plant(&mut self, folder: &MachineFolder, model: Option<ControlModel>) -> Option<Machine> {
-        let (path, bytes) = self.read("plant", &folder.plant)?;
+        let (path, bytes) = self.read_with("plant", &folder.plant, files::read_description)?;
         let text = decode(&bytes);
         match Machine::from_toml(&text) {
             Ok(machine) => {
@@ -247,20 +273,25 @@ impl Loader<'_> {
 
     /// Every wire ends at an input or output that the control has.
     fn wiring(&mut self, path: &Path, text: &str, machine: &Machine, model: ControlModel) {
-        for wire in machine.wires() {
-            let Ok(bit) = wire.operand.parse::<Bit>() else {
-                continue;
+        /// Faults of the wiring that are named at most.
+        const FAULTS_MAX: usize = 1000;
+        let limits = model.limits();
+        let boards = |bit: Bit| match bit.area() {
+            BitArea::O => limits.outputs,
+            _ => limits.inputs,
+        };
+        let is_missing = |bit: &Bit| {
+            let mut boards = boards(*bit).iter();
+            !boards.any(|(first, last)| (*first..=*last).contains(&bit.number()))
+        };
+        let bits = machine.wires().iter();
+        let bits = bits.filter_map(|wire| Some((wire, wire.operand.parse::<Bit>().ok()?)));
+        for (wire, bit) in bits.filter(|(_, bit)| is_missing(bit)).take(FAULTS_MAX) {
+            let (what, area) = match bit.area() {
+                BitArea::O => ("output", "O"),
+                _ => ("input", "I"),
             };
-            let limits = model.limits();
-            let (what, area, boards) = match bit.area() {
-                BitArea::O => ("output", "O", limits.outputs),
-                _ => ("input", "I", limits.inputs),
-            };
-            let is_there = |(first, last): &(u16, u16)| (*first..=*last).contains(&bit.number());
-            if boards.iter().any(is_there) {
-                continue;
-            }
-            let there: Vec<String> = boards
+            let there: Vec<String> = boards(bit)
                 .iter()
                 .map(|(first, last)| format!("{area}{first}-{area}{last}"))
                 .collect();

@@ -7,7 +7,7 @@ use bahn_parameters::ParameterList;
 use bahn_plc::{Compilation, Diagnostic as Fault, Options, PlcProgram, ProgramMemory, SourceFiles};
 
 use super::options::ProgramOptions;
-use crate::diagnostics::{FileFault, Marked, Severity};
+use crate::diagnostics::{self, FileFault, Marked, PRINTED_MAX, Severity};
 use crate::{UsageError, files, settings};
 
 /// A compiled program with the folder it comes from.
@@ -69,7 +69,10 @@ impl Source {
 
     /// Prints errors and warnings as rustc does.
     pub fn print_faults(&self) {
-        self.faults().iter().for_each(FileFault::print);
+        let faults = self.faults();
+        faults.iter().take(PRINTED_MAX).for_each(FileFault::print);
+        let rest = faults.len().saturating_sub(PRINTED_MAX);
+        diagnostics::print_rest(rest + self.compilation.not_listed);
     }
 
     /// What keeps the program from running, then what is accepted although the printed rules refuse it.

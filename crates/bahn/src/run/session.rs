@@ -1,6 +1,6 @@
 //! Control and machine, switched on: cycle after cycle until the run ends.
 
-use std::collections::VecDeque;
+use std::collections::{HashMap, HashSet, VecDeque};
 
 use bahn_control::{Command, Control, Message, RunState, Shown};
 use bahn_machine::{Event, KeyAction, Machine};
@@ -52,6 +52,8 @@ pub(super) enum Ended {
     Restart(String),
     /// What survives power-off cannot be stored; why.
     NotStored(String),
+    /// A file of the run cannot be written, or what the script wants cannot be done; why.
+    Failed(String),
 }
 
 /// What the session writes while it goes on.
@@ -60,6 +62,18 @@ pub(super) struct Writers {
     pub log: Option<Log>,
     pub outputs: Outputs,
     pub state: Option<State>,
+}
+
+impl Writers {
+    /// Completes all files, also behind one that cannot be written.
+    ///
+    /// # Errors
+    /// The first of those.
+    pub fn finish(&mut self) -> Result<(), UsageError> {
+        let recording = self.recording.take().map_or(Ok(()), Recording::finish);
+        let log = self.log.take().map_or(Ok(()), Log::finish);
+        self.outputs.finish().and(recording).and(log)
+    }
 }
 
 /// What is known of a session, while it runs and in the end.
@@ -580,13 +594,15 @@ impl Session {
     pub fn expectations(&self) -> Vec<Case> {
         let expectations = self.script.lines.iter();
         let expectations = expectations.filter(|line| matches!(line.action, Action::Expect(_)));
-        let waits = |number| self.waiting.iter().flatten().any(|line| line.number == number);
+        let waiting: HashSet<u32> = self.waiting.iter().flatten().map(|line| line.number).collect();
+        let failed: HashMap<u32, &FailedExpectation> =
+            self.failed.iter().map(|failed| (failed.line, failed)).collect();
         let cases = expectations.map(|line| Case {
             place: self.script.place(line.number),
             name: self.script.line_text(line.number).trim().to_owned(),
-            verdict: match self.failed.iter().find(|failed| failed.line == line.number) {
+            verdict: match failed.get(&line.number) {
                 Some(failed) => Verdict::Failed(failed.actual.clone()),
-                None if waits(line.number) => Verdict::NotReached,
+                None if waiting.contains(&line.number) => Verdict::NotReached,
                 None => Verdict::Held,
             },
         });
