@@ -59,7 +59,7 @@ impl Effort for Watch<'_> {
     type Stop = Halt;
 
     fn spend(&self, steps: usize) -> Result<(), Halt> {
-        /// About a minute, or a million common points; a contour of 20,000 elements takes a tenth of it.
+        /// About a minute, or 300,000 crossings; a contour of 20,000 elements takes a tenth of it.
         const STEPS_MAX: usize = 1_000_000_000;
         let mut ends = self.ends.into_iter().flatten();
         if ends.any(|flag| flag.load(Ordering::Relaxed)) {
