@@ -394,20 +394,25 @@ impl Interpreter {
             Flow::EndOfProgram => return self.end_of_program(),
             Flow::EndOfRun => return self.end_of_run(),
             Flow::ContourCycle if self.run.rehearsal => self.rehearse_contours()?,
-            Flow::ContourCycle => {
-                let job = self.record_contours()?;
-                if self.defers {
-                    self.pending = Pending::Waiting(Box::new(job));
-                    return Ok(());
-                }
-                let watch = Watch::new(self.interrupt.as_deref());
-                match self.run.contour_cycle(&job, &self.settings, &watch) {
-                    Ok(()) => self.run.at.block += 1,
-                    Err(Halt::Fault(fault)) => return Err(fault),
-                    Err(Halt::Interrupted) => {}
-                }
-            }
+            Flow::ContourCycle => match self.contour_cycle() {
+                Err(Halt::Fault(fault)) => return Err(fault),
+                // Its block is executed anew when the run goes on.
+                Ok(()) | Err(Halt::Interrupted) => {}
+            },
         }
+        Ok(())
+    }
+
+    /// Runs an SL cycle, or leaves it to whoever drives.
+    fn contour_cycle(&mut self) -> Result<(), Halt> {
+        let job = self.record_contours()?;
+        if self.defers {
+            self.pending = Pending::Waiting(Box::new(job));
+            return Ok(());
+        }
+        let watch = Watch::new([self.interrupt.as_deref(), None]);
+        self.run.contour_cycle(&job, &self.settings, &watch)?;
+        self.run.at.block += 1;
         Ok(())
     }
 
@@ -521,10 +526,10 @@ impl Interpreter {
 
     /// Executes the contour subprograms of cycle 14 aside and records their geometry; nothing else of them
     /// has an effect [003:5389-5454].
-    fn record_contours(&mut self) -> Result<ContourJob, Fault> {
+    fn record_contours(&mut self) -> Result<ContourJob, Halt> {
         let labels = self.run.modal.contour_labels.clone();
         if labels.is_empty() {
-            return Err(no_contours());
+            return Err(no_contours().into());
         }
         let mut recorder = self.run.clone();
         recorder.contour = Contour::recorder();
@@ -550,7 +555,7 @@ impl Interpreter {
         Ok(())
     }
 
-    fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Fault> {
+    fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Halt> {
         let home = self.run.at.clone();
         let mut job = None;
         for &label in labels {
@@ -559,11 +564,16 @@ impl Interpreter {
             let target = self.label(label)?;
             self.run.at.call(label, target, self.settings.model.limits())?;
             while self.run.at.depth() > home.depth() {
+                if self.is_interrupted() {
+                    return Err(Halt::Interrupted);
+                }
                 let at = self.run.at.block_ref();
                 self.step().map_err(|fault| fault.at(at))?;
                 if self.ended.take().is_some() {
                     let detail = format!("the contour subprogram LBL {label} does not end with LBL 0");
-                    return Err(Fault::new(MessageId::ExcessiveSubprogramming, detail).at(at));
+                    return Err(Fault::new(MessageId::ExcessiveSubprogramming, detail)
+                        .at(at)
+                        .into());
                 }
             }
             let moves = self.run.contour.take_recorded(&mut self.run.out)?;
