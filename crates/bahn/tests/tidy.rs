@@ -81,6 +81,7 @@ const CIRCLES: &[(&str, &[&str])] = &[
             "feeder",
             "functions",
             "handshake",
+            "life",
             "manual",
             "plc_link",
             "positioning",

@@ -5,8 +5,6 @@ use std::str::FromStr;
 
 use bahn_path::Axis;
 
-use crate::life::CURRENT_MAX_MIN;
-
 /// The machine operating modes, as W272 codes them [000:4680-4687].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
@@ -123,6 +121,8 @@ pub enum Command {
     OffsetAdjustment(bool),
 }
 
+/// Where CUR.TIME of a tool ends, minutes (inferred).
+pub(crate) const CURRENT_MAX_MIN: f64 = 9999.0;
 /// Largest coordinate, mm or degrees: 99 999.9999.
 const COORDINATE_MAX: f64 = 999_999_999.0 / 10_000.0;
 

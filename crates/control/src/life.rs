@@ -5,7 +5,7 @@ use bahn_exchange::signal;
 use bahn_interpreter::ToolState;
 use bahn_plc::{TableFile, TableKind};
 
-use crate::command::Mode;
+use crate::command::{CURRENT_MAX_MIN, Mode};
 use crate::control::Control;
 use crate::tables;
 
@@ -50,8 +50,6 @@ impl ToolLife {
 /// How finely CUR.TIME is counted: 0.1 minutes (inferred; the table shows whole ones).
 const STEP_US: u64 = 6_000_000;
 const US_PER_MIN: f64 = 60e6;
-/// Where CUR.TIME ends, minutes (inferred).
-pub(crate) const CURRENT_MAX_MIN: f64 = 9999.0;
 
 /// The count of the tool in the spindle.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet, VecDeque};
 
 use bahn_control::{Command, Control, Message, RunState, Shown};
 use bahn_machine::{Event, KeyAction, Machine};
-use bahn_path::{Axis, BlockRef, FeedRate, PathElement};
+use bahn_path::{BlockRef, FeedRate, PathElement};
 
 use super::background::Background;
 use super::deviation::Deviation;
@@ -16,7 +16,7 @@ use super::pace::Pace;
 use super::recording::Recording;
 use super::script::{Action, Base, Line, Script};
 use super::times::Times;
-use super::turning::Turning;
+use super::turning::{ElementId, Turning};
 use crate::UsageError;
 use crate::cutting::Cutting;
 use crate::diagnostics::FileFault;
@@ -125,22 +125,6 @@ pub(super) struct Parts {
     pub realtime: bool,
     pub max_time_s: f64,
     pub max_wait_s: f64,
-}
-
-/// What tells an element from all others of its run. Axes without a position are equal, too, bit by bit.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct ElementId {
-    pub sequence: u64,
-    ends: [[u64; Axis::COUNT]; 2],
-}
-
-impl ElementId {
-    pub fn of(element: &PathElement) -> ElementId {
-        ElementId {
-            sequence: element.sequence,
-            ends: [element.start, element.end].map(|position| position.values().map(f64::to_bits)),
-        }
-    }
 }
 
 impl Session {
