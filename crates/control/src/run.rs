@@ -8,6 +8,7 @@ use bahn_motion::FunctionOutput;
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, LiveData, Position};
 use bahn_program::Program;
+use bahn_servo::Rotation;
 
 use crate::axes::{AxisUnit, Mover};
 use crate::block_time::BlockTime;
@@ -290,7 +291,8 @@ impl Control {
         }
     }
 
-    /// Module 9150 without a program: the TOOL CALL is executed at once [000:16063-16067].
+    /// Module 9150 without a program: the TOOL CALL is executed at once; a wrong one is passed over without a message
+    /// [000:16063-16075].
     fn call_inserted_tool(&mut self) {
         let Some(inserted) = self.tools.inserted_call.take() else {
             return;
@@ -298,6 +300,10 @@ impl Control {
         let Some(call) = self.tools.tool_call(&inserted, self.offsets.tool_axis) else {
             return;
         };
+        let called = inserted.tool.is_some() && call.tool != 0;
+        if called && !self.tools.may_be_called(call.tool) {
+            return;
+        }
         let mut target = crate::functions::Target {
             spindle: &mut self.spindle,
             tools: &mut self.tools,
@@ -432,6 +438,13 @@ impl Control {
         if status.tool() != Some(self.tools.number) {
             status.cancel_tool();
         }
+        let spindle = self.spindle.state();
+        let clockwise = match spindle.rotation {
+            Rotation::M3 => Some(true),
+            Rotation::M4 => Some(false),
+            Rotation::M5 => None,
+        };
+        status.take_spindle(clockwise, spindle.programmed_rpm);
         let mut feeder = self.new_feeder_from(program, block, machine, limits, status);
         feeder.set_tap(self.run.tap);
         feeder

@@ -112,6 +112,14 @@ impl Tools {
         states.filter(|(_, state)| *state != ToolState::Usable).collect()
     }
 
+    /// Whether the table has a tool and lets it be called; without a table the programs know.
+    pub fn may_be_called(&self, number: u32) -> bool {
+        let Some(table) = &self.table else { return true };
+        table
+            .get(&number)
+            .is_some_and(|tool| tool.state == ToolState::Usable)
+    }
+
     /// All tools of the table.
     pub fn all(&self) -> Option<impl Iterator<Item = (u32, &Tool)> + Clone> {
         let table = self.table.as_ref()?;

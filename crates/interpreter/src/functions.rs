@@ -187,7 +187,7 @@ impl Run {
         Ok(())
     }
 
-    fn set_spindle(&mut self, spindle: Spindle) {
+    pub(crate) fn set_spindle(&mut self, spindle: Spindle) {
         self.modal.spindle = spindle;
         self.q.preassign(preassigned::SPINDLE, spindle.q110());
     }

@@ -16,6 +16,8 @@ const INCH_FACTOR: f64 = 10.0;
 const SAME: f64 = 1e-3;
 /// What is so near to half a step is half a step.
 const HALF: f64 = 1e-6;
+/// Added and taken away again it leaves the nearest whole number of what is below 2^51.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
 /// Steps of a dwell time in a second [003:6474]; others than TNC 360 *(inferred)*.
 const DWELL_STEPS: f64 = 1000.0;
 
@@ -169,6 +171,16 @@ fn round(value: &mut Value, steps: f64) -> bool {
 #[inline]
 fn rounded(number: f64, steps: f64) -> Option<f64> {
     let count = number * steps;
+    // Nearly all numbers are whole, and this is asked of each one: no call of a function for them.
+    let nearest = (count + WHOLE) - WHOLE;
+    if (count - nearest).abs() <= SAME {
+        return None;
+    }
+    finer(count, steps)
+}
+
+#[cold]
+fn finer(count: f64, steps: f64) -> Option<f64> {
     let whole = (count + HALF.copysign(count)).round();
     ((count - whole).abs() > SAME).then(|| whole / steps)
 }
