@@ -570,7 +570,7 @@ fn a_state_that_may_not_be_read_is_kept() {
         let folder = run_once();
         let file = folder.path("m/state").join(name);
         let before = fs::read(&file).unwrap();
-        fs::set_permissions(&file, fs::Permissions::from_mode(0)).unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o000)).unwrap();
         let command = folder.path("bahn");
         fs::copy(env!("CARGO_BIN_EXE_bahn"), &command).unwrap();
         let mut command = std::process::Command::new(command);
