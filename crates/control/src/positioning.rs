@@ -257,6 +257,7 @@ impl Control {
         let nc = self.exchange.nc();
         let percent = f64::from(nc.number(signal::FREE_ROTATION_FEED_OVERRIDE).clamp(0, 300));
         let stop = self.emergency.circuit() != crate::emergency::Circuit::Ready;
+        let limit = self.rapid_limit_mm_min();
         for unit in &mut self.axes {
             let Some(rotation) = self.positioning.rotation.get(unit.index).copied() else {
                 continue;
@@ -269,7 +270,7 @@ impl Control {
                     let word = POSITIONING_FEED.get(unit.index);
                     let feed = word.map_or(0.0, |word| f64::from(nc.number(*word) as u16));
                     unit.mover = Mover::Rotation;
-                    let feed = feed * percent / 100.0;
+                    let feed = (feed * percent / 100.0).min(limit);
                     unit.drive(time, Aim::Feed(sign * feed), feed);
                 }
                 None if unit.mover == Mover::Rotation => {

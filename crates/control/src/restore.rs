@@ -70,6 +70,7 @@ impl Control {
         self.run.feeder = Some(feeder);
         self.run.state = RunState::Interrupted;
         self.run.broken = false;
+        self.run.ended = false;
         self.run.restore = Some(Restore::Scan {
             block,
             functions: VecDeque::new(),
@@ -264,6 +265,7 @@ impl Control {
         };
         let (target, time, stop) = (*target, self.cycle_s(), self.stop_given());
         let percent = self.feed_override.percent();
+        let limit = self.rapid_limit_mm_min();
         let tool_axis = self.offsets.tool_axis;
         let there = |unit: &crate::axes::AxisUnit| unit.ptp.is_at(target[unit.axis]);
         let raise = self
@@ -286,7 +288,7 @@ impl Control {
                 !raise || tool_there
             };
             unit.mover = Mover::Positioning;
-            let feed = unit.parameters.motion.plc_mm_min * percent / 100.0;
+            let feed = (unit.parameters.motion.plc_mm_min * percent / 100.0).min(limit);
             if stop || !turn {
                 unit.drive(time, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
             } else {

@@ -138,6 +138,10 @@ impl Control {
         if self.run.restore.is_some() || self.is_positioning() {
             return;
         }
+        if self.has_lost_spindle() {
+            self.show(Message::Plain(MessageId::KeyNonFunctional), false);
+            return;
+        }
         match self.run.state {
             RunState::Idle => self.run.begin_wanted = true,
             _ if self.run.broken => self.run.begin_wanted = true,
@@ -177,6 +181,9 @@ impl Control {
     /// INTERNAL STOP: the interrupted run is broken off; the next start begins with its block.
     pub(crate) fn internal_stop(&mut self) -> bool {
         if self.run.state == RunState::Running || self.run.begin_wanted || !self.path_stands() {
+            return false;
+        }
+        if self.is_in_thread() {
             return false;
         }
         if self.run.broken {
@@ -340,9 +347,10 @@ impl Control {
 
     /// What is to be done once a run is over, outside the cycle.
     fn close_run(&mut self) {
-        if std::mem::take(&mut self.run.q_due) {
+        if self.run.q_due {
             self.path.clear();
             self.q = self.q_values();
+            self.run.q_due = false;
             for (number, value) in self.run.q_transfer.take_all() {
                 self.keep_q(number, value);
             }
@@ -530,9 +538,10 @@ impl Control {
         }
     }
 
-    /// Q parameters that are not 0, by number.
+    /// Q parameters that are not 0, by number. Behind the end of a run they are those that its end has left.
     pub(crate) fn q_values(&self) -> Vec<(u16, f64)> {
-        let Some(feeder) = &self.run.feeder else {
+        let over = self.run.ended && !self.run.q_due;
+        let Some(feeder) = self.run.feeder.as_ref().filter(|_| !over) else {
             return self.q.clone();
         };
         (0u16..)

@@ -24,6 +24,8 @@ const POSITION_MAX_MM: f64 = 1e9;
 const STANDING_MM: f64 = 1e-9;
 /// So far may the nominal position of an axis in position go without being a movement, mm.
 const REST_MM: f64 = 1e-6;
+/// Counting steps in a contour cycle up to which an axis cannot be told from one that stands (inferred).
+const STANDING_STEPS: f64 = 1.5;
 
 /// How an axis is positioned [000:4714-4733].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -318,10 +320,11 @@ impl Axis {
         }
     }
 
-    /// Whether the actual position is within the window; with pre-control only below the velocity MP1525
-    /// [000:5304-5318].
+    /// Whether the actual position is within the window; with pre-control only when the axis itself is slower than
+    /// MP1525 [000:813] [000:5304-5318].
     fn is_in_window(&self) -> bool {
-        let slow = self.profile_mm_min.abs() < self.parameters.precontrol.window_mm_min;
+        let unseen = STANDING_STEPS * self.measuring.step_mm().abs() / self.timing.contour_min();
+        let slow = self.actual_mm_min.abs() < self.parameters.precontrol.window_mm_min.max(unseen);
         let window = self.window_mm.unwrap_or(self.parameters.monitoring.window_mm);
         (slow || self.method == Method::Lag) && self.lag_mm().abs() <= window
     }
