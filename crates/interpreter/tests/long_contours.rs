@@ -89,7 +89,8 @@ fn an_interrupt_ends_a_subprogram_without_end() {
 /// Whoever gives a computation up need not wait for it.
 #[test]
 fn a_computation_that_nobody_wants_ends() {
-    let ways: [(&str, fn(Interpreter) -> Option<Interpreter>); 3] = [
+    type Leave = fn(Interpreter) -> Option<Interpreter>;
+    let ways: [(&str, Leave); 3] = [
         ("given up", |mut run| {
             run.give_up_work();
             Some(run)

@@ -90,16 +90,6 @@ impl Chords {
         };
         self.0.iter().map(square).fold(f64::INFINITY, f64::min).sqrt()
     }
-
-    fn crosses(&self, other: &Chords) -> bool {
-        let side = |[a, b]: &[Point2; 2], p: Point2| {
-            (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0.0
-        };
-        let cross = |a: &[Point2; 2], b: &[Point2; 2]| {
-            side(a, b[0]) != side(a, b[1]) && side(b, a[0]) != side(b, a[1])
-        };
-        self.0.iter().any(|a| other.0.iter().any(|b| cross(a, b)))
-    }
 }
 
 /// A corner and how the element behind it bulges: the tangent of a quarter of its sweep, 0 for a line.
@@ -293,7 +283,7 @@ proptest! {
         let shares = [a.intersection(&b), a.difference(&b), b.difference(&a)];
         prop_assume!(shares.iter().all(|share| share.is_empty() || share.area() > BAND));
         let starts_inside = |k: usize| chords[1 - k].holds(start(k));
-        let crosses = chords[0].crosses(&chords[1]);
+        let crosses = shares.iter().all(|share| !share.is_empty());
         let subcontours: Vec<SubContour> =
             (0..2).map(|k| SubContour { contour: contours[k].clone(), kind: kinds[k] }).collect();
         let areas = superimpose(&subcontours, by, Merge::CentrePaths);
