@@ -117,7 +117,7 @@ impl Tools {
         let Some(table) = &self.table else { return true };
         table
             .get(&number)
-            .is_some_and(|tool| tool.state == ToolState::Usable)
+            .is_some_and(|tool| tool.state() == ToolState::Usable)
     }
 
     /// All tools of the table.
