@@ -6,7 +6,6 @@ mod stand;
 mod support;
 
 use bahn_control::{RunState, Tool};
-use bahn_interpreter::ToolState;
 use stand::*;
 
 fn m_functions(lines: &str) -> String {
@@ -284,7 +283,7 @@ LBL INSERT
         );
         let mut build = bench(&plc).program("1.H", "L X+60 R0 F6000");
         let locked = Tool {
-            state: ToolState::Locked,
+            locked: true,
             ..Tool::default()
         };
         build.tools = Some([(2, Tool::default()), (3, locked)].into());
