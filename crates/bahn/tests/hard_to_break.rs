@@ -251,36 +251,6 @@ fn ctrl_c_ends_a_loop_without_movements() {
     assert!(number(&report, "/q/1") > 1000.0);
 }
 
-/// A star of 775 corners crosses itself 300,000 times: seconds for cycle 6. The first Ctrl-C ends it.
-#[test]
-fn ctrl_c_ends_a_contour_that_takes_long() {
-    let corner = |k: usize| {
-        let (sin, cos) = (std::f64::consts::TAU * (k * 387 % 775) as f64 / 775.0).sin_cos();
-        format!(
-            "L X{:+.4} Y{:+.4}{}\n",
-            100.0 * cos,
-            100.0 * sin,
-            if k == 0 { " RL" } else { "" }
-        )
-    };
-    let star: String = (0..=775).map(corner).collect();
-    let folder = Folder::with_program(&format!(
-        "TOOL DEF 1 L+0 R+3\nTOOL CALL 1 Z S1000\nL X+0 Y+0 Z+2 R0 FMAX M3\n\
-         CYCL DEF 14.0 CONTOUR GEOMETRY\nCYCL DEF 14.1 CONTOUR LABEL 1\nCYCL DEF 6.0 ROUGH-OUT\n\
-         CYCL DEF 6.1 SET UP -2 DEPTH -10\nCYCL DEF 6.2 PECKG -5 F100 ALLOW +0\n\
-         CYCL DEF 6.3 ANGLE +0 F500\nCYCL CALL\nL Z+50 FMAX M2\nLBL 1\n{star}LBL 0"
-    ));
-    let begun = Instant::now();
-    let (code, report) = interrupted(&folder, &[]);
-    assert_eq!(
-        (code, &report["completed"]),
-        (Some(130), &json!(false)),
-        "{report}"
-    );
-    // It was left alone for 0.6 s. A loaded machine may take its time for the rest.
-    assert!(begun.elapsed() < Duration::from_secs(3), "{:?}", begun.elapsed());
-}
-
 #[test]
 fn a_closed_output_is_no_panic() {
     let folder = Folder::with_program(&"L X+1 R0 F100\n".repeat(50_000));

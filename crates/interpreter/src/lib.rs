@@ -58,7 +58,7 @@ pub use work::{Done, Work};
 use crate::checkpoints::Kept;
 use crate::code::{Code, Fetched};
 use crate::contour::Contour;
-use crate::cycles::{ContourJob, Halt, Watch, contour_plane};
+use crate::cycles::{ContourJob, Halt, contour_plane};
 use crate::error::Fault;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
@@ -400,19 +400,6 @@ impl Interpreter {
                 Ok(()) | Err(Halt::Interrupted) => {}
             },
         }
-        Ok(())
-    }
-
-    /// Runs an SL cycle, or leaves it to whoever drives.
-    fn contour_cycle(&mut self) -> Result<(), Halt> {
-        let job = self.record_contours()?;
-        if self.defers {
-            self.pending = Pending::Waiting(Box::new(job));
-            return Ok(());
-        }
-        let watch = Watch::new([self.interrupt.as_deref(), None]);
-        self.run.contour_cycle(&job, &self.settings, &watch)?;
-        self.run.at.block += 1;
         Ok(())
     }
 

@@ -143,4 +143,17 @@ impl Interpreter {
             Some(Err(Halt::Interrupted)) | None => {}
         }
     }
+
+    /// Runs an SL cycle, or leaves it to whoever drives.
+    pub(crate) fn contour_cycle(&mut self) -> Result<(), Halt> {
+        let job = self.record_contours()?;
+        if self.defers {
+            self.pending = Pending::Waiting(Box::new(job));
+            return Ok(());
+        }
+        let watch = Watch::new([self.interrupt.as_deref(), None]);
+        self.run.contour_cycle(&job, &self.settings, &watch)?;
+        self.run.at.block += 1;
+        Ok(())
+    }
 }
