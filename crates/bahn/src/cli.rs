@@ -218,10 +218,10 @@ pub(crate) struct OutputOptions {
     /// 3D view: how high the eye stands, degrees; 90 from above, negative from below.
     #[arg(long, value_name = "DEGREES", default_value = "38", requires = "image", allow_hyphen_values = true, value_parser = finite)]
     pub elevation: f64,
-    /// 3D view: what the colours tell.
-    #[arg(long, value_name = "WHAT", value_enum, default_value_t, requires = "image")]
-    pub color: ColorOption,
-    /// 3D view: draw the tool path over the part, feed solid, rapid traverse dashed.
+    /// What the colours tell; in space the blank and what was machined (`part`), from above the depth.
+    #[arg(long, value_name = "WHAT", value_enum, requires = "image")]
+    pub color: Option<ColorOption>,
+    /// Draw the tool path over the part, feed solid, rapid traverse dashed.
     #[arg(long, requires = "image")]
     pub toolpath: bool,
     /// Three planes: where the sections lie, as X30,Y20; the middle of the blank otherwise.
@@ -339,11 +339,10 @@ pub(crate) enum View {
     ThreeD,
 }
 
-/// What the colours of the 3D view tell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+/// What the colours of a view tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ColorOption {
     /// Blank and machined surfaces.
-    #[default]
     Part,
     /// The deeper, the darker.
     Depth,

@@ -8,13 +8,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use bahn_path::{
     At, Axis, Blank, BlockRef, Curve, Function, OverrideLaw, PathElement, Position, ToolShape, Touch,
 };
-use bahn_picture::Image;
+use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{
     Colouring, EventKind, MeshError, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d,
     Workpiece,
 };
 
-use crate::cli::{OutputOptions, View};
+use crate::cli::{ColorOption, OutputOptions, View};
 use crate::files::NewFile;
 use crate::report::{Notice, Record};
 use crate::{UsageError, diagnostics, files};
@@ -59,7 +59,7 @@ pub(crate) struct Memory {
 impl Memory {
     pub fn of(options: &OutputOptions) -> Memory {
         Memory {
-            tools: Colouring::from(options.color) == Colouring::Tool,
+            tools: options.color == Some(ColorOption::Tool),
             path: options.toolpath,
         }
     }
@@ -362,13 +362,14 @@ pub(crate) fn write(
             return Ok(Written::Interrupted);
         }
         let mut file = NewFile::create(path)?;
-        image
-            .write_png(&mut file)
-            .map_err(|error| files::cannot("write", path, &std::io::Error::other(error)))?;
-        if is_stopped(path) {
-            return Ok(Written::Interrupted);
+        match image.write_png_until(&mut file, stop) {
+            Ok(()) => file.finish()?,
+            Err(ImageError::Stopped) => {
+                is_stopped(path);
+                return Ok(Written::Interrupted);
+            }
+            Err(error) => return Err(files::cannot("write", path, &std::io::Error::other(error))),
         }
-        file.finish()?;
     }
     if let Some(path) = &options.mesh {
         let part = part_for("--mesh")?;
@@ -399,22 +400,32 @@ fn draw(
             .map(|page| page.stopped_by(stop.clone()))
             .map_err(|error| UsageError::new(format!("--size: {error}")))
     };
+    let colouring = options.color.map(Colouring::from);
     Ok(match options.view {
-        View::Plan => part.plan_view(&page("plan view")?, &PlanView::default()),
+        View::Plan => {
+            let mut view = PlanView {
+                tool_path: options.toolpath,
+                ..PlanView::default()
+            };
+            view.colouring = colouring.unwrap_or(view.colouring);
+            part.plan_view(&page("plan view")?, &view)
+        }
         View::ThreePlanes => {
             let sections = sections(part, &options.section)?;
-            let view = ThreePlanes {
+            let mut view = ThreePlanes {
                 projection,
                 sections,
+                tool_path: options.toolpath,
                 ..ThreePlanes::default()
             };
+            view.colouring = colouring.unwrap_or(view.colouring);
             part.three_planes(&page("projection in 3 planes")?, &view)
         }
         View::ThreeD => {
             let view = View3d {
                 azimuth_deg: options.angle,
                 elevation_deg: options.elevation,
-                colouring: options.color.into(),
+                colouring: colouring.unwrap_or_default(),
                 tool_path: options.toolpath,
                 ..View3d::default()
             };

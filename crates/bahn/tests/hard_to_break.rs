@@ -213,6 +213,8 @@ fn ctrl_c_ends_picture_and_mesh() {
     );
     for arguments in [
         "--image out.png --view 3d --size 8000x8000",
+        "--image out.png --view plan --size 8000x8000",
+        "--image out.png --view three-planes --size 8000x8000",
         "--mesh out.stl --resolution 0.02",
     ] {
         let arguments: Vec<_> = arguments.split(' ').collect();
