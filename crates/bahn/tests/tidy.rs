@@ -113,7 +113,10 @@ const CIRCLES: &[(&str, &[&str])] = &[
     ),
     ("workpiece", &["round", "sweep"]),
     ("workpiece", &["view::colouring", "view::shade"]),
-    ("workpiece", &["view::edges", "view::solid", "view::way"]),
+    (
+        "workpiece",
+        &["view::edges", "view::plan", "view::solid", "view::way"],
+    ),
 ];
 
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];
