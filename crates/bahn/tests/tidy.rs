@@ -112,7 +112,6 @@ const CIRCLES: &[(&str, &[&str])] = &[
         ],
     ),
     ("workpiece", &["round", "sweep"]),
-    ("workpiece", &["view::colouring", "view::shade"]),
     (
         "workpiece",
         &["view::edges", "view::plan", "view::solid", "view::way"],

@@ -2,8 +2,8 @@
 
 use super::INK;
 use super::legend::{DepthShade, Legend, Swatch, hatched};
+use super::light::{is_outline, screen, to_linear};
 use super::raycast::{Face, Hit, Vector};
-use super::shade::{is_outline, screen, to_linear};
 use crate::cutters::Cutter;
 use crate::part::Part;
 use bahn_picture::{Colour, mix};

@@ -5,8 +5,9 @@
 //! finishing cut and the border of a slope that just turns away stay without dashes.
 
 use super::Page;
-use super::shade::{SAMPLES, Seen, dot};
-use super::solid::Camera;
+use super::camera::Camera;
+use super::light::dot;
+use super::shade::{SAMPLES, Seen};
 use bahn_picture::{Colour, Image, mix};
 use rayon::prelude::*;
 

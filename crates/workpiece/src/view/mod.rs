@@ -1,8 +1,10 @@
 //! Pictures of the part: what all views share.
 
+mod camera;
 mod colouring;
 mod edges;
 mod legend;
+mod light;
 mod plan;
 mod raycast;
 mod scale;
@@ -11,9 +13,10 @@ mod solid;
 mod three_planes;
 mod way;
 
+pub use camera::View3d;
 pub use colouring::Colouring;
 pub use plan::PlanView;
-pub use solid::View3d;
+
 pub use three_planes::{Projection, ThreePlanes};
 
 use std::sync::Arc;
@@ -154,3 +157,17 @@ const TITLE_TEXT: Colour = [255, 255, 255];
 const TITLE_NOTE: Colour = [190, 205, 222];
 const INK: Colour = [45, 55, 68];
 const FAINT: Colour = [150, 160, 172];
+
+/// The largest rectangle with the proportions of `size` in an area, in its middle.
+fn fit(size: [f64; 2], area: &Area) -> Area {
+    let room = area.size();
+    let scale = (room[0] / size[0]).min(room[1] / size[1]);
+    let centre = area.centre();
+    let half = [0.5 * scale * size[0], 0.5 * scale * size[1]];
+    // Whole pixels keep the frame crisp.
+    let min = [(centre[0] - half[0]).round(), (centre[1] - half[1]).round()];
+    Area {
+        min,
+        max: [(min[0] + 2.0 * half[0]).round(), (min[1] + 2.0 * half[1]).round()],
+    }
+}

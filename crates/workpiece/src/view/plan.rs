@@ -2,7 +2,7 @@
 
 use super::colouring::{Colouring, Palette};
 use super::scale::Ruler;
-use super::{Area, BACKGROUND, INK, Page, way};
+use super::{Area, BACKGROUND, INK, Page, fit, way};
 use crate::part::Part;
 use bahn_picture::{Colour, Image};
 use rayon::prelude::*;
@@ -56,20 +56,6 @@ impl Part {
             legend.draw(&mut image, &room, drawing.min[1] - 1.6 * size, size);
         }
         image
-    }
-}
-
-/// The largest rectangle with the proportions of `size` in an area, in its middle.
-pub(super) fn fit(size: [f64; 2], area: &Area) -> Area {
-    let room = area.size();
-    let scale = (room[0] / size[0]).min(room[1] / size[1]);
-    let centre = area.centre();
-    let half = [0.5 * scale * size[0], 0.5 * scale * size[1]];
-    // Whole pixels keep the frame crisp.
-    let min = [(centre[0] - half[0]).round(), (centre[1] - half[1]).round()];
-    Area {
-        min,
-        max: [(min[0] + 2.0 * half[0]).round(), (min[1] + 2.0 * half[1]).round()],
     }
 }
 

@@ -1,9 +1,9 @@
 //! Light on the part: normals, ambient occlusion, colours.
 
 use super::colouring::Palette;
+use super::light::{cross, dot, is_outline, unit};
 use super::raycast::{Caster, Face, Hit, Vector};
 use crate::part::Part;
-use bahn_picture::Colour;
 
 /// Reach of the window that smooths the normals of walls, columns: a round wall on square columns has
 /// to look round.
@@ -225,45 +225,5 @@ fn face_normal(part: &Part, point: Vector, hit: &Hit, axis: usize) -> Vector {
     normal
 }
 
-/// Whether a wall is the outer side of the blank.
-pub(super) fn is_outline(part: &Part, point: Vector, axis: usize) -> bool {
-    let tolerance = 1e-6 * part.setup.size[axis];
-    point[axis] < tolerance || point[axis] > part.setup.size[axis] - tolerance
-}
-
 const SKY: [f64; 3] = [0.94, 0.98, 1.06];
 const SUN: [f64; 3] = [1.04, 1.0, 0.94];
-
-fn linear(value: u8) -> f64 {
-    (f64::from(value) / 255.0).powf(2.2)
-}
-
-/// A linear light as a value of the screen.
-pub(super) fn screen(light: [f64; 3]) -> Colour {
-    light.map(|value| (value.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0).round() as u8)
-}
-
-pub(super) fn to_linear(colour: Colour) -> [f64; 3] {
-    colour.map(linear)
-}
-
-pub(super) fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn cross(a: Vector, b: Vector) -> Vector {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-pub(super) fn unit(v: Vector) -> Vector {
-    let length = dot(v, v).sqrt();
-    if length > 0.0 {
-        v.map(|value| value / length)
-    } else {
-        [0.0, 0.0, 0.0]
-    }
-}
