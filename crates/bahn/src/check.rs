@@ -10,10 +10,10 @@ use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
 use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Reading, Severity, Uncounted};
 
-use crate::cli::{CheckOptions, Format};
 use crate::diagnostics::{self, Diagnostic, Marked};
 use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Interrupt;
+use crate::options::{CheckOptions, Format};
 use crate::{Outcome, UsageError, console};
 
 /// How programs are checked.

@@ -5,7 +5,7 @@ use bahn_parameters::conformance::{Effect, Entry, Kind, all};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::cli::model_parser;
+use crate::options::model_parser;
 use crate::{Outcome, UsageError, console};
 
 pub(crate) const EXAMPLES: &str = "\

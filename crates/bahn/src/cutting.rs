@@ -14,8 +14,8 @@ use bahn_workpiece::{
     Workpiece,
 };
 
-use crate::cli::{ColorOption, OutputOptions, View};
 use crate::files::NewFile;
+use crate::options::{ColorOption, OutputOptions, View};
 use crate::report::{Notice, Record};
 use crate::{UsageError, diagnostics, files};
 

@@ -3,7 +3,7 @@
 use bahn_parameters::{Advice, ControlModel, Definition, MessageCode, MessageId, chapters};
 use bahn_plc::PlcError;
 
-use crate::cli::ExplainOptions;
+use crate::options::ExplainOptions;
 use crate::paragraph::{labelled, labelled_lines};
 use crate::{Outcome, UsageError, console};
 

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use bahn_program::{FormatOptions, Program, format_program};
 
-use crate::cli::FmtOptions;
 use crate::diagnostics::printable;
 use crate::files::{self, Loaded, NewFile};
+use crate::options::FmtOptions;
 use crate::{Outcome, UsageError, console, diagnostics};
 
 /// Prints, writes or compares listings.

@@ -36,6 +36,7 @@ mod kept;
 mod machine_folder;
 mod manual;
 mod mp;
+mod options;
 mod paragraph;
 mod path_csv;
 mod path_svg;
@@ -77,7 +78,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(code) => return code.into(),
     };
     let result = match command {
-        cli::Command::Test(options) => test_run::command(*options),
+        cli::Command::Test(options) => test_run::command(*options, shelf::command),
         cli::Command::Run(options) => run::command(&options),
         cli::Command::Scope(options) => scope::command(&options),
         cli::Command::Machine(options) => machine_folder::command(&options),
@@ -87,8 +88,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Conformance(options) => conformance::command(&options),
         cli::Command::Explain(options) => explain::command(&options),
-        cli::Command::Completions(options) => manual::completions(&options),
-        cli::Command::Man(options) => manual::man(&options),
+        cli::Command::Completions(options) => manual::completions(&options, cli::whole_command()),
+        cli::Command::Man(options) => manual::man(&options, cli::whole_command()),
     };
     match result {
         Ok(outcome) => outcome.into(),

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueHint};
 
 use crate::files::{self, NewFile};
-use crate::{Outcome, UsageError, cli, console, diagnostics};
+use crate::{Outcome, UsageError, console, diagnostics};
 
 pub(crate) const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -37,16 +37,18 @@ pub(crate) struct ManOptions {
 }
 
 /// `bahn completions`.
-pub(crate) fn completions(options: &CompletionsOptions) -> Result<Outcome, UsageError> {
+pub(crate) fn completions(
+    options: &CompletionsOptions,
+    mut whole: clap::Command,
+) -> Result<Outcome, UsageError> {
     let mut script = Vec::new();
-    clap_complete::generate(options.shell, &mut cli::whole_command(), "bahn", &mut script);
+    clap_complete::generate(options.shell, &mut whole, "bahn", &mut script);
     console::print_bytes(&script)?;
     Ok(Outcome::Fine)
 }
 
 /// `bahn man`.
-pub(crate) fn man(options: &ManOptions) -> Result<Outcome, UsageError> {
-    let mut command = cli::whole_command();
+pub(crate) fn man(options: &ManOptions, mut command: clap::Command) -> Result<Outcome, UsageError> {
     command.build();
     let Some(folder) = &options.folder else {
         console::print_bytes(&page(command)?)?;

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use bahn_parameters::ControlModel;
 
-use crate::cli::{OutputOptions, PathFile};
 use crate::diagnostics::printable;
+use crate::options::{OutputOptions, PathFile};
 use crate::report::Report;
 
 /// Entries of a list that are shown; the JSON report has more.

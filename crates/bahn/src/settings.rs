@@ -10,7 +10,7 @@ use bahn_parameters::{ControlModel, ParameterList, conformance};
 use bahn_path::{Axis, Position};
 
 use crate::UsageError;
-use crate::cli::{MachineOptions, RunOptions};
+use crate::options::{MachineOptions, RunOptions};
 use crate::{diagnostics, files, machine_folder, tool_table};
 
 /// What programs run on without a machine: its parameters, its tools, its texts.

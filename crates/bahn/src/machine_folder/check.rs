@@ -9,9 +9,9 @@ use bahn_interpreter::{Rules, Settings};
 use super::load::{LoadedMachine, load};
 use super::options::CheckOptions;
 use crate::check::{self, Check, CheckReport};
-use crate::cli::Format;
 use crate::diagnostics::{self, FileFault, Severity};
 use crate::interrupt::Interrupt;
+use crate::options::Format;
 use crate::{Outcome, UsageError, console, tool_table};
 
 #[derive(Debug, Serialize)]

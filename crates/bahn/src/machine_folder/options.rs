@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use bahn_parameters::ControlModel;
 use clap::{Args, Subcommand, ValueHint};
 
-use crate::cli::{Format, model_parser};
+use crate::options::{Format, model_parser};
 
 /// Options of `bahn machine`.
 #[derive(Args, Debug)]

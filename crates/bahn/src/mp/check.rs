@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::options::CheckOptions;
 use super::{count, print_json, source};
-use crate::cli::Format;
 use crate::diagnostics::{self, FileFault, Marked, Severity};
+use crate::options::Format;
 use crate::{Outcome, UsageError, files};
 
 /// Checks lists and prints what is wrong.

@@ -7,7 +7,7 @@ use super::list::Row;
 use super::options::DiffOptions;
 use super::style::Style;
 use super::{count, explain, print_json, source};
-use crate::cli::Format;
+use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 
 /// Compares two lists, parameter by parameter.

@@ -6,7 +6,7 @@ use super::list::Row;
 use super::options::ExplainOptions;
 use super::style::Style;
 use super::{print_json, source};
-use crate::cli::Format;
+use crate::options::Format;
 use crate::paragraph::{labelled, labelled_lines};
 use crate::{Outcome, UsageError, console};
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::options::ListOptions;
 use super::style::Style;
 use super::{print_json, source};
-use crate::cli::Format;
+use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 
 /// Prints the parameters that are wanted.

@@ -5,7 +5,7 @@ use bahn_plc::Diagnostic as Fault;
 use super::options::CheckOptions;
 use super::print_json;
 use super::source::Source;
-use crate::cli::Format;
+use crate::options::Format;
 use crate::{Outcome, UsageError, diagnostics};
 
 /// Compiles a program and prints what is wrong.

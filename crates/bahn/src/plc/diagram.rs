@@ -12,8 +12,8 @@ use super::operand::{Assignment, Content, Operand};
 use super::options::DiagramOptions;
 use super::print_json;
 use super::source::Source;
-use crate::cli::Format;
 use crate::files::{self, NewFile};
+use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
 
 /// Operands of a diagram [000:11461].

@@ -8,8 +8,8 @@ use super::check::Entry;
 use super::options::ListOptions;
 use super::print_json;
 use super::source::Source;
-use crate::cli::Format;
 use crate::diagnostics::printable;
+use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 
 /// Prints all files of a program with line numbers, commands and comments in columns. Errors and warnings

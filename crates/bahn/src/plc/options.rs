@@ -6,7 +6,7 @@ use bahn_parameters::ControlModel;
 use clap::{Args, Subcommand, ValueHint};
 
 use super::operand::Operand;
-use crate::cli::{Format, model_parser};
+use crate::options::{Format, model_parser};
 
 /// Options of `bahn plc`.
 #[derive(Args, Debug)]

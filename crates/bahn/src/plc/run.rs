@@ -16,10 +16,10 @@ use super::record::Record;
 use super::retain::Retained;
 use super::source::Source;
 use super::trace::{Line, Trace};
-use crate::cli::Format;
 use crate::diagnostics::{self, PRINTED_MAX};
 use crate::interrupt::Interrupt;
 use crate::junit::{self, Case, Verdict};
+use crate::options::Format;
 use crate::{Outcome, UsageError, console, files};
 
 /// Runs a program and shows what came out.

@@ -5,7 +5,7 @@ use bahn_exchange::signal::{self, Signal, SignalOperand};
 use super::operand::Operand;
 use super::options::SignalsOptions;
 use super::print_json;
-use crate::cli::Format;
+use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 
 /// Prints the signals that have all words of the filter.

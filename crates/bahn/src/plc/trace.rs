@@ -8,7 +8,7 @@ use super::failure;
 use super::options::TraceOptions;
 use super::print_json;
 use super::source::Source;
-use crate::cli::Format;
+use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
 
 /// Lines that are shown at most: what is executed from one cycle to the next has no end.

@@ -9,7 +9,7 @@ use bahn_plc::{Label, LabelPlace, PlcProgram, SourceLine};
 use super::options::XrefOptions;
 use super::print_json;
 use super::source::Source;
-use crate::cli::Format;
+use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 use access::{Access, Subject, accesses, fixed_name, is_read_outside};
 

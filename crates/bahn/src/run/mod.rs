@@ -35,12 +35,12 @@ use bahn_exchange::Exchange;
 use bahn_machine::Machine;
 use bahn_workpiece::Projection;
 
-use crate::cli::Format;
 use crate::cutting::{self, Columns, Cutting, Memory, Written};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
 use crate::junit;
 use crate::machine_folder::{self, FolderPrograms, LoadedMachine, State};
+use crate::options::Format;
 use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Place, Record};
 use crate::test_run::{Outputs, print_error};

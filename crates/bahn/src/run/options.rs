@@ -6,7 +6,7 @@ use bahn_control::Signal;
 use clap::{Args, ValueHint};
 
 use super::operator::Attendance;
-use crate::cli::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
+use crate::options::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:

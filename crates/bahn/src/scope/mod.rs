@@ -19,8 +19,8 @@ pub(crate) use options::{EXAMPLES, ScopeOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use crate::cli::Format;
 use crate::files::{self, NewFile};
+use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
 use lanes::Drawing;
 use options::Picture;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use crate::cli::{Format, image_size, seconds};
+use crate::options::{Format, image_size, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:

@@ -192,10 +192,10 @@ fn program(work: &Work, path: &Path, stop: &Stop) -> Done {
         Ok(tested) => tested,
         Err(error) => return without_run(path, Verdict::Unreadable, Some(error.to_string())),
     };
-    let mut row = work.bench.row(path, &now, work.density);
+    let mut row = Row::of(&work.bench, path, &now, work.density);
     if let Some(bench) = &work.before {
         match test(bench, path, stop) {
-            Ok(before) => row.changes = against::changes(&bench.row(path, &before, work.density), &row),
+            Ok(before) => row.changes = against::changes(&Row::of(bench, path, &before, work.density), &row),
             Err(error) => row.changes = vec![error.to_string()],
         }
     }

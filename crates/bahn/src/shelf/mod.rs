@@ -21,10 +21,10 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use row::Row;
 
-use crate::cli::Format;
 use crate::cutting::Columns;
 use crate::files::NewFile;
 use crate::interrupt::Interrupt;
+use crate::options::Format;
 use crate::settings::Equipment;
 use crate::test_run::{Bench, ReportFile, TestOptions, Tested};
 use crate::{Outcome, UsageError, console, diagnostics, files};

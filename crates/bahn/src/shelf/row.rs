@@ -8,7 +8,7 @@ use bahn_path::{Axis, Position};
 use serde::{Deserialize, Serialize};
 
 use crate::report::{End, tidy};
-use crate::test_run::{Survey, Tested};
+use crate::test_run::{Bench, Survey, Tested};
 
 /// How the run of a program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -160,14 +160,9 @@ impl Row {
         }
     }
 
-    /// What a run came to.
-    pub fn of(
-        path: &Path,
-        tested: &Tested,
-        list: &ParameterList,
-        machine_zero: &Position,
-        density: Option<f64>,
-    ) -> Row {
+    /// What a run on a bench came to.
+    pub fn of(bench: &Bench, path: &Path, tested: &Tested, density: Option<f64>) -> Row {
+        let (list, machine_zero) = (&bench.list, bench.machine_zero());
         let report = &tested.report;
         let mut row = Row {
             result: match tested.end {

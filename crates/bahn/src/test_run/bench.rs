@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bahn_interpreter::{Interpreter, ProgramError};
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
+use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position};
 use bahn_program::{Operation, Program};
 use bahn_workpiece::Part;
 
@@ -22,7 +22,6 @@ use crate::interrupt::Stop;
 use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Notice, Place, Record, Report};
 use crate::settings::Equipment;
-use crate::shelf::Row;
 use crate::{UsageError, settings};
 
 /// What programs run on: model, machine parameters, tools.
@@ -81,15 +80,9 @@ impl Bench {
         })
     }
 
-    /// What the table says of a run.
-    pub fn row(&self, path: &Path, tested: &Tested, density: Option<f64>) -> Row {
-        Row::of(
-            path,
-            tested,
-            &self.list,
-            &self.settings.rules.machine_zero,
-            density,
-        )
+    /// Machine zero from the workpiece datum.
+    pub fn machine_zero(&self) -> &Position {
+        &self.settings.rules.machine_zero
     }
 
     /// Runs the program of a file.

@@ -22,23 +22,26 @@ pub(crate) use options::{EXAMPLES, ReportFile, TestOptions};
 pub(crate) use outputs::Outputs;
 pub(crate) use survey::Survey;
 
-use crate::cli::Format;
 use crate::cutting::{self, Columns, Written};
 use crate::diagnostics::{self, Diagnostic, Marked, Severity};
 use crate::interrupt::{Interrupt, Stop};
+use crate::options::Format;
 use crate::report::{End, ErrorReport, Report};
 use crate::settings::{self, Equipment};
-use crate::{Outcome, UsageError, console, files, report_text, shelf};
+use crate::{Outcome, UsageError, console, files, report_text};
 
-/// Runs a program and reports, or all programs of a shelf.
-pub(crate) fn command(mut options: TestOptions) -> Result<Outcome, UsageError> {
+/// What tests a shelf of programs.
+type Shelf = fn(&TestOptions, Equipment) -> Result<Outcome, UsageError>;
+
+/// Runs a program and reports, or leaves several programs to `shelf`.
+pub(crate) fn command(mut options: TestOptions, shelf: Shelf) -> Result<Outcome, UsageError> {
     files::keep_inputs(&options.inputs(), &options.written())?;
     let equipment = Equipment::of(options.model, &options.machine)?;
     options.model = equipment.list.model();
     settings::say_without_effect(&equipment.list, &options.machine.mp);
     match options.single() {
         Some(file) => single(&options, equipment, file),
-        None => shelf::command(&options, equipment),
+        None => shelf(&options, equipment),
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use bahn_parameters::ControlModel;
 use clap::{Args, ValueHint};
 
-use crate::cli::{Format, MachineOptions, OutputOptions, PathFile, RunOptions, model_parser, positive};
+use crate::options::{Format, MachineOptions, OutputOptions, PathFile, RunOptions, model_parser, positive};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:

@@ -7,9 +7,9 @@ use bahn_interpreter::Interpreter;
 use bahn_path::{Function, PathElement};
 
 use crate::UsageError;
-use crate::cli::{OutputOptions, PathFile};
 use crate::diagnostics::printable;
 use crate::files::{self, NewFile};
+use crate::options::{OutputOptions, PathFile};
 use crate::path_csv::PathTable;
 use crate::path_svg::PathDrawing;
 use crate::report::{Notice, Record};
