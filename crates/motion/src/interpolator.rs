@@ -9,9 +9,10 @@ use bahn_path::{At, AxisSet, ElementSource, LiveData, PathElement, Position, Ste
 
 use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
 use crate::gate::{Gate, place};
+use crate::item::{Item, Output};
 use crate::limits::{Dynamics, Limits};
 use crate::ramp::{Driven, Ramp};
-use crate::ring::{Item, Output, Ring};
+use crate::ring::Ring;
 use master::Coupling;
 
 /// Drives along the path of an [`ElementSource`], contour cycle by contour cycle.
@@ -40,6 +41,8 @@ pub struct Interpolator<E> {
     clamping: AxisSet,
     /// The stop of single block, or for axes that are clamped, is to be looked for.
     seek_stop: bool,
+    /// The path stops behind no element before this number.
+    sought: u64,
     /// The gate ahead is passed without waiting.
     released: bool,
     /// Functions along the current element up to this length are output, mm.
@@ -99,6 +102,7 @@ impl<E> Interpolator<E> {
             clamped: AxisSet::EMPTY,
             clamping: AxisSet::EMPTY,
             seek_stop: false,
+            sought: 0,
             released: false,
             output_to: 0.0,
             outputs: VecDeque::new(),
@@ -146,10 +150,8 @@ impl<E> Interpolator<E> {
             self.seek_stop = true;
             self.after = After::Stop(stop);
         };
-        self.ring.settle();
         // Room for whatever the elements can output, so that no cycle allocates.
-        self.outputs
-            .reserve(self.ring.ahead().map(Item::outputs).sum::<usize>());
+        self.outputs.reserve(self.ring.outputs());
         answer
     }
 
@@ -206,11 +208,11 @@ impl<E> Interpolator<E> {
         }
         if drive.single_block != self.single_block {
             self.single_block = drive.single_block;
-            self.seek_stop = true;
+            (self.seek_stop, self.sought) = (true, 0);
         }
         if (drive.clamped, drive.clamping) != (self.clamped, self.clamping) {
             (self.clamped, self.clamping) = (drive.clamped, drive.clamping);
-            self.seek_stop = true;
+            (self.seek_stop, self.sought) = (true, 0);
         }
         if self.seek_stop {
             self.seek_stop = false;
@@ -221,8 +223,17 @@ impl<E> Interpolator<E> {
 
     /// Number of the element at whose end the path stops for single block or for axes that are clamped,
     /// where it can still come to a standstill.
-    fn block_end(&self) -> Option<u64> {
+    fn block_end(&mut self) -> Option<u64> {
         if !self.single_block && self.clamped.union(self.clamping).is_empty() {
+            return None;
+        }
+        let last = self.ring.last()?;
+        let mut first = self.sought.max(self.ring.number());
+        while first < last && !self.stops_behind(first) {
+            first += 1;
+        }
+        self.sought = first;
+        if !self.stops_behind(first) {
             return None;
         }
         let squared = self.speed * self.speed * (1.0 - 1e-9);
@@ -230,15 +241,23 @@ impl<E> Interpolator<E> {
         let mut length = self.rest;
         for (number, item) in (self.ring.number()..).zip(self.ring.ahead()) {
             possible += 2.0 * item.acceleration * length;
-            let next = self.ring.get(number + 1);
-            let stops = item.block_end && (self.single_block || moves(&item.element, self.clamping))
-                || next.is_some_and(|next| moves(&next.element, self.clamped));
-            if stops && squared <= possible {
-                return Some(number);
+            if squared <= possible && (number < first || self.stops_behind(number)) {
+                return Some(number.max(first));
             }
-            length = next.map_or(0.0, |next| next.length);
+            length = self.ring.get(number + 1).map_or(0.0, |next| next.length);
         }
         None
+    }
+
+    /// Whether the path is to stop at the end of an element. What is not so stays so, but for the last element: it
+    /// depends on the one after it.
+    fn stops_behind(&self, number: u64) -> bool {
+        let ends = self
+            .ring
+            .get(number)
+            .is_some_and(|item| item.block_end && (self.single_block || moves(&item.element, self.clamping)));
+        let next = self.ring.get(number + 1);
+        ends || next.is_some_and(|next| moves(&next.element, self.clamped))
     }
 
     /// Goes along the path until the time of the cycle is spent or the path waits.
@@ -267,11 +286,18 @@ impl<E> Interpolator<E> {
                     if let Some(state) = self.drive_back(drive, time) {
                         return state;
                     }
+                    let (feed, exit) = (self.ring.feed(), self.ring.exit());
                     let Some(item) = self.ring.current() else {
                         return self.at_the_end();
                     };
                     let hold = drive.hold || drive.back;
-                    let driven = drive_along(item, self.speed, self.rest, hold, time);
+                    let driven = drive_along(
+                        item,
+                        self.speed,
+                        self.rest,
+                        hold.then_some((0.0, 0.0)).unwrap_or((feed, exit)),
+                        time,
+                    );
                     let along = item.along;
                     let before = self.rest;
                     match driven {
@@ -290,11 +316,8 @@ impl<E> Interpolator<E> {
                         Driven::Arrived { speed, left } => {
                             let dwell = item.element.dwell_s;
                             // Rounding must not carry the path over what was found to be possible.
-                            let exit = if speed * speed > item.cap {
-                                item.cap.sqrt()
-                            } else {
-                                speed
-                            };
+                            let cap = self.ring.cap();
+                            let exit = if speed * speed > cap { cap.sqrt() } else { speed };
                             self.position = item.element.end;
                             (self.speed, self.rest, time) = (exit, 0.0, left);
                             if along {
@@ -433,7 +456,7 @@ impl<E> Interpolator<E> {
         let Some(item) = self.ring.current() else {
             return 0.0;
         };
-        let speed = item.feed.min((item.acceleration * item.length).sqrt());
+        let speed = self.ring.feed().min((item.acceleration * item.length).sqrt());
         let braking = self.braking_s();
         let way = speed * (0.5 * braking + (time_s - braking).max(0.0));
         (item.length - way).max(0.0)
@@ -442,7 +465,7 @@ impl<E> Interpolator<E> {
     /// The time in which the current element brakes to a standstill from its feed, s.
     pub fn braking_s(&self) -> f64 {
         self.ring.current().map_or(0.0, |item| {
-            item.feed.min((item.acceleration * item.length).sqrt()) / item.acceleration
+            self.ring.feed().min((item.acceleration * item.length).sqrt()) / item.acceleration
         })
     }
 
@@ -547,6 +570,7 @@ impl<E> Interpolator<E> {
         self.phase = Phase::Done;
         (self.speed, self.rest) = (0.0, 0.0);
         self.released = false;
+        self.sought = 0;
         self.outputs.clear();
         self.coupling = None;
         self.backward = false;
@@ -575,14 +599,13 @@ impl<E> Interpolator<E> {
 
     /// Elements that are prepared and not yet executed, the current one included.
     pub fn ahead(&self) -> usize {
-        self.ring.ahead().count()
+        self.ring.ahead().len()
     }
 }
 
 /// Drives along an item for a time.
 #[inline]
-fn drive_along(item: &Item, speed: f64, rest: f64, hold: bool, time: f64) -> Driven {
-    let (limit, exit_squared) = if hold { (0.0, 0.0) } else { (item.feed, item.exit) };
+fn drive_along(item: &Item, speed: f64, rest: f64, (limit, exit_squared): (f64, f64), time: f64) -> Driven {
     Ramp {
         speed,
         rest,

@@ -9,8 +9,8 @@ use bahn_path::{Position, Thread};
 
 use super::{Interpolator, Phase};
 use crate::drive::{Drive, Lead, State};
+use crate::item::Item;
 use crate::ramp::{Driven, Ramp};
-use crate::ring::Item;
 
 /// Degrees per second of one rpm.
 const DEG_S: f64 = 6.0;
@@ -116,7 +116,7 @@ impl<E> Interpolator<E> {
             speed: self.speed,
             rest: item.length - self.rest,
             acceleration: item.acceleration,
-            limit: if wanted { item.feed } else { 0.0 },
+            limit: if wanted { self.ring.feed() } else { 0.0 },
             exit_squared: 0.0,
         };
         let left = match covered.drive(time) {

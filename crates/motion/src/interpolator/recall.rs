@@ -4,7 +4,7 @@ use bahn_path::{At, Curve, OverrideLaw, PathElement, Position, TechnologyFunctio
 
 use super::{Interpolator, Phase};
 use crate::gate::{Gate, place};
-use crate::ring::Item;
+use crate::item::Item;
 
 impl<E> Interpolator<E> {
     /// Takes back what is not executed, for the axes stand elsewhere: the path goes on from a position to
