@@ -264,113 +264,127 @@ impl<E> Interpolator<E> {
     fn spend(&mut self, drive: &Drive) -> State {
         let mut time = self.cycle_s;
         loop {
-            let Some(item) = self.ring.current() else {
+            if self.ring.current().is_none() {
                 return self.at_the_end();
-            };
-            // Nothing new begins while the path is held.
-            let held = drive.hold && self.speed <= 0.0;
-            match self.phase {
-                Phase::Begin if held => return State::Held,
-                Phase::Begin if self.speed <= 0.0 && moves(&item.element, self.clamped) => {
-                    return State::Clamped;
-                }
-                Phase::Begin => {
-                    let output = item.start;
-                    if !self.couple(drive) {
-                        return State::Master;
-                    }
-                    self.phase = self.output(output, Gate::Start, Phase::Move);
-                }
-                Phase::Gate(end) => return State::Gate(end),
-                Phase::Move => {
-                    if let Some(state) = self.drive_back(drive, time) {
-                        return state;
-                    }
-                    let (feed, exit) = (self.ring.feed(), self.ring.exit());
-                    let Some(item) = self.ring.current() else {
-                        return self.at_the_end();
-                    };
-                    let hold = drive.hold || drive.back;
-                    let driven = drive_along(
-                        item,
-                        self.speed,
-                        self.rest,
-                        hold.then_some((0.0, 0.0)).unwrap_or((feed, exit)),
-                        time,
-                    );
-                    let along = item.along;
-                    let before = self.rest;
-                    match driven {
-                        Driven::OnTheWay { speed, rest } => {
-                            (self.speed, self.rest) = (speed, rest);
-                            if along {
-                                self.output_along();
-                            }
-                            let stands = speed <= 0.0 && rest == before;
-                            return if stands && hold {
-                                State::Held
-                            } else {
-                                State::Moving
-                            };
-                        }
-                        Driven::Arrived { speed, left } => {
-                            let dwell = item.element.dwell_s;
-                            // Rounding must not carry the path over what was found to be possible.
-                            let cap = self.ring.cap();
-                            let exit = if speed * speed > cap { cap.sqrt() } else { speed };
-                            self.position = item.element.end;
-                            (self.speed, self.rest, time) = (exit, 0.0, left);
-                            if along {
-                                self.output_along();
-                            }
-                            self.phase = if dwell > 0.0 {
-                                Phase::Dwell(dwell)
-                            } else {
-                                Phase::Finish
-                            };
-                            // The spindle is told the end before the path goes on.
-                            if self.coupling.is_some() {
-                                return State::Moving;
-                            }
-                        }
-                    }
-                }
+            }
+            let waits = match self.phase {
+                Phase::Begin => self.begin(drive),
+                Phase::Gate(end) => Some(State::Gate(end)),
+                Phase::Move => self.drive_along(drive, &mut time),
                 // The manual is silent: dwell goes on only while the path is not held (inferred).
-                Phase::Dwell(_) if drive.hold => return State::Held,
+                Phase::Dwell(_) if drive.hold => Some(State::Held),
                 Phase::Dwell(dwell) if dwell > time => {
                     self.phase = Phase::Dwell(dwell - time);
-                    return State::Dwell;
+                    Some(State::Dwell)
                 }
                 Phase::Dwell(dwell) => {
                     time -= dwell;
                     self.phase = Phase::Finish;
+                    None
                 }
                 Phase::Finish => {
-                    let output = item.end;
-                    self.phase = self.output(output, Gate::End, Phase::Done);
+                    self.phase = self.output(Gate::End, Phase::Done);
+                    None
                 }
-                Phase::Done => {
-                    // Whether the block has ended is known when the next element is, or that none comes.
-                    let stands = self.speed <= 0.0;
-                    if stands && item.length > 0.0 && !drive.in_position {
-                        return State::Settling;
-                    }
-                    if stands && item.block_end && moves(&item.element, self.clamping) {
-                        return State::Clamping;
-                    }
-                    if self.single_block && item.block_end && stands {
-                        self.phase = Phase::BlockEnd;
-                    } else if self.ring.following().is_some() {
-                        self.next();
-                    } else {
-                        return self.at_the_end();
-                    }
-                }
-                Phase::BlockEnd => return State::BlockEnd,
-                Phase::Over if self.ring.following().is_some() => self.next(),
-                Phase::Over => return self.at_the_end(),
+                Phase::Done => self.finish(drive),
+                Phase::BlockEnd => Some(State::BlockEnd),
+                Phase::Over => self.next(),
+            };
+            if let Some(state) = waits {
+                return state;
             }
         }
+    }
+
+    /// Outputs the functions before the current element, once it may begin. What it waits for.
+    fn begin(&mut self, drive: &Drive) -> Option<State> {
+        if self.speed <= 0.0 {
+            // Nothing new begins while the path is held.
+            if drive.hold {
+                return Some(State::Held);
+            }
+            if self
+                .ring
+                .current()
+                .is_some_and(|item| moves(&item.element, self.clamped))
+            {
+                return Some(State::Clamped);
+            }
+        }
+        if !self.couple(drive) {
+            return Some(State::Master);
+        }
+        self.phase = self.output(Gate::Start, Phase::Move);
+        None
+    }
+
+    /// Drives along the current element. What the path does when the time is spent before its end.
+    fn drive_along(&mut self, drive: &Drive, time: &mut f64) -> Option<State> {
+        if let Some(state) = self.drive_back(drive, *time) {
+            return Some(state);
+        }
+        let hold = drive.hold || drive.back;
+        let (limit, exit_squared) = if hold {
+            (0.0, 0.0)
+        } else {
+            (self.ring.feed(), self.ring.exit())
+        };
+        let item = self.ring.current()?;
+        let (along, dwell, end) = (item.along, item.element.dwell_s, item.element.end);
+        let ramp = Ramp {
+            speed: self.speed,
+            rest: self.rest,
+            acceleration: item.acceleration,
+            limit,
+            exit_squared,
+        };
+        let state = match ramp.drive(*time) {
+            Driven::OnTheWay { speed, rest } => {
+                (self.speed, self.rest) = (speed, rest);
+                let stands = speed <= 0.0 && rest == ramp.rest;
+                Some(if stands && hold {
+                    State::Held
+                } else {
+                    State::Moving
+                })
+            }
+            Driven::Arrived { speed, left } => {
+                // Rounding must not carry the path over what was found to be possible.
+                let cap = self.ring.cap();
+                self.speed = if speed * speed > cap { cap.sqrt() } else { speed };
+                (self.position, self.rest, *time) = (end, 0.0, left);
+                self.phase = if dwell > 0.0 {
+                    Phase::Dwell(dwell)
+                } else {
+                    Phase::Finish
+                };
+                // The spindle is told the end before the path goes on.
+                self.coupling.map(|_| State::Moving)
+            }
+        };
+        if along {
+            self.output_along();
+        }
+        state
+    }
+
+    /// Goes on behind the current element, unless the path has to wait there. What it waits for.
+    fn finish(&mut self, drive: &Drive) -> Option<State> {
+        let item = self.ring.current()?;
+        if self.speed <= 0.0 {
+            if item.length > 0.0 && !drive.in_position {
+                return Some(State::Settling);
+            }
+            if item.block_end && moves(&item.element, self.clamping) {
+                return Some(State::Clamping);
+            }
+            // Whether the block has ended is known when the next element is, or that none comes.
+            if self.single_block && item.block_end {
+                self.phase = Phase::BlockEnd;
+                return None;
+            }
+        }
+        self.next()
     }
 
     fn at_the_end(&self) -> State {
@@ -380,18 +394,21 @@ impl<E> Interpolator<E> {
         }
     }
 
-    /// Goes on to the next element.
-    fn next(&mut self) {
+    /// Goes on to the next element; there may be none.
+    fn next(&mut self) -> Option<State> {
+        if self.ring.following().is_none() {
+            return Some(self.at_the_end());
+        }
         let length = self.ring.current().map_or(0.0, |item| item.length);
         let before = self.coupling.map(|coupling| (coupling, length));
         self.ring.advance();
         self.enter();
         self.couple_on(before);
-        let stops = self.single_block || !self.clamped.union(self.clamping).is_empty();
-        if stops && self.ring.stop_is_behind() {
+        if self.ring.stop_is_behind() {
             let stop = self.block_end();
             self.ring.set_stop(stop);
         }
+        None
     }
 
     /// Begins the current element.
@@ -402,10 +419,11 @@ impl<E> Interpolator<E> {
     }
 
     /// Outputs the functions at one end of the current element; the phase after it.
-    fn output(&mut self, output: Output, gate: Gate, then: Phase) -> Phase {
-        let place = match gate {
-            Gate::Start => Place::Start,
-            Gate::End => Place::End,
+    fn output(&mut self, gate: Gate, then: Phase) -> Phase {
+        let (place, output) = match (gate, self.ring.current()) {
+            (_, None) => return then,
+            (Gate::Start, Some(item)) => (Place::Start, item.start),
+            (Gate::End, Some(item)) => (Place::End, item.end),
         };
         match output {
             Output::Nothing => then,
@@ -601,19 +619,6 @@ impl<E> Interpolator<E> {
     pub fn ahead(&self) -> usize {
         self.ring.ahead().len()
     }
-}
-
-/// Drives along an item for a time.
-#[inline]
-fn drive_along(item: &Item, speed: f64, rest: f64, (limit, exit_squared): (f64, f64), time: f64) -> Driven {
-    Ramp {
-        speed,
-        rest,
-        acceleration: item.acceleration,
-        limit,
-        exit_squared,
-    }
-    .drive(time)
 }
 
 /// The position with so much of an item to go, mm.
