@@ -1,19 +1,24 @@
 //! The path in contour cycles, with overrides and stops that come at any moment.
 
 mod master;
+mod outputs;
+mod phase;
 mod recall;
+mod stops;
 
-use std::collections::VecDeque;
+use bahn_path::{ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
 
-use bahn_path::{At, AxisSet, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
-
-use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
-use crate::gate::{Gate, place};
+use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Place, Prepared, State, Stop};
+use crate::gate::Gate;
 use crate::item::{Item, Output};
 use crate::limits::{Dynamics, Limits};
 use crate::ramp::{Driven, Ramp};
 use crate::ring::Ring;
 use master::Coupling;
+use outputs::Outputs;
+use phase::Phase;
+use recall::Executed;
+use stops::Stops;
 
 /// Drives along the path of an [`ElementSource`], contour cycle by contour cycle.
 ///
@@ -36,22 +41,16 @@ pub struct Interpolator<E> {
     /// Way to the end of the current element, mm.
     rest: f64,
     position: Position,
-    single_block: bool,
-    clamped: AxisSet,
-    clamping: AxisSet,
-    /// The stop of single block, or for axes that are clamped, is to be looked for.
-    seek_stop: bool,
-    /// The path stops behind no element before this number.
-    sought: u64,
+    stops: Stops,
     /// The gate ahead is passed without waiting.
     released: bool,
-    /// Functions along the current element up to this length are output, mm.
-    output_to: f64,
-    outputs: VecDeque<FunctionOutput>,
+    outputs: Outputs,
     /// The current element follows the spindle.
     coupling: Option<Coupling>,
     /// It is run back.
     backward: bool,
+    /// How far the first element was executed that is taken back and still to be given again.
+    recalled: Option<Executed>,
 }
 
 #[derive(Debug)]
@@ -60,26 +59,6 @@ enum After<E> {
     Stop(Stop<E>),
     /// The stop was taken.
     Taken,
-}
-
-/// How far the current element is executed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Phase {
-    /// Its functions at the start are still to be output.
-    Begin,
-    /// A gate waits.
-    Gate(Gate),
-    Move,
-    /// Dwell to go, s.
-    Dwell(f64),
-    /// Its functions at the end are still to be output.
-    Finish,
-    /// Executed.
-    Done,
-    /// Executed; single block waits.
-    BlockEnd,
-    /// Executed, and single block does not wait any more.
-    Over,
 }
 
 impl<E> Interpolator<E> {
@@ -98,16 +77,12 @@ impl<E> Interpolator<E> {
             speed: 0.0,
             rest: 0.0,
             position: Position::UNKNOWN,
-            single_block: false,
-            clamped: AxisSet::EMPTY,
-            clamping: AxisSet::EMPTY,
-            seek_stop: false,
-            sought: 0,
+            stops: Stops::default(),
             released: false,
-            output_to: 0.0,
-            outputs: VecDeque::new(),
+            outputs: Outputs::default(),
             coupling: None,
             backward: false,
+            recalled: None,
         }
     }
 
@@ -118,11 +93,15 @@ impl<E> Interpolator<E> {
     }
 
     /// Reads elements from the source while there is room, `budget` at most. It may allocate; outputs
-    /// not yet asked for lose their functions.
+    /// not yet asked for lose their functions. What was [recalled](Interpolator::recall) comes first: until it is
+    /// taken nothing is read.
     pub fn prepare<S>(&mut self, source: &mut S, budget: usize) -> Prepared
     where
         S: ElementSource<Error = E>,
     {
+        if self.recalled.is_some() {
+            return Prepared::Starved;
+        }
         self.ring.discard();
         let mut left = budget;
         let answer = loop {
@@ -147,7 +126,7 @@ impl<E> Interpolator<E> {
                 Step::Error(error) => Stop::Error(error),
             };
             self.ring.stop();
-            self.seek_stop = true;
+            self.stops.seek();
             self.after = After::Stop(stop);
         };
         // Room for whatever the elements can output, so that no cycle allocates.
@@ -158,7 +137,7 @@ impl<E> Interpolator<E> {
     fn push(&mut self, element: PathElement) {
         let first = self.ring.current().is_none();
         self.ring.push(element);
-        self.seek_stop = true;
+        self.stops.seek();
         if first {
             self.enter();
         }
@@ -173,12 +152,12 @@ impl<E> Interpolator<E> {
     pub fn cycle(&mut self, drive: &Drive) -> Cycle {
         self.take(drive);
         let state = self.spend(drive);
-        if let Some(position) = self.following(drive.master.actual_deg) {
-            self.position = position;
-        } else if matches!(self.phase, Phase::Move)
-            && let Some(item) = self.ring.current()
-        {
-            self.position = position(item, self.rest);
+        if let Some(item) = self.ring.current() {
+            if let Some(coupling) = &self.coupling {
+                self.position = coupling.position(item, drive.master.actual_deg);
+            } else if matches!(self.phase, Phase::Move) {
+                self.position = position(item, self.rest);
+            }
         }
         Cycle {
             position: self.position,
@@ -206,58 +185,15 @@ impl<E> Interpolator<E> {
             self.rapid_limit_mm_min = drive.rapid_limit_mm_min;
             self.ring.set_rapid_limit(drive.rapid_limit_mm_min);
         }
-        if drive.single_block != self.single_block {
-            self.single_block = drive.single_block;
-            (self.seek_stop, self.sought) = (true, 0);
-        }
-        if (drive.clamped, drive.clamping) != (self.clamped, self.clamping) {
-            (self.clamped, self.clamping) = (drive.clamped, drive.clamping);
-            (self.seek_stop, self.sought) = (true, 0);
-        }
-        if self.seek_stop {
-            self.seek_stop = false;
-            let stop = self.block_end();
-            self.ring.set_stop(stop);
+        if self.stops.take(drive) {
+            self.seek_stop();
         }
     }
 
-    /// Number of the element at whose end the path stops for single block or for axes that are clamped,
-    /// where it can still come to a standstill.
-    fn block_end(&mut self) -> Option<u64> {
-        if !self.single_block && self.clamped.union(self.clamping).is_empty() {
-            return None;
-        }
-        let last = self.ring.last()?;
-        let mut first = self.sought.max(self.ring.number());
-        while first < last && !self.stops_behind(first) {
-            first += 1;
-        }
-        self.sought = first;
-        if !self.stops_behind(first) {
-            return None;
-        }
-        let squared = self.speed * self.speed * (1.0 - 1e-9);
-        let mut possible = 0.0;
-        let mut length = self.rest;
-        for (number, item) in (self.ring.number()..).zip(self.ring.ahead()) {
-            possible += 2.0 * item.acceleration * length;
-            if squared <= possible && (number < first || self.stops_behind(number)) {
-                return Some(number.max(first));
-            }
-            length = self.ring.get(number + 1).map_or(0.0, |next| next.length);
-        }
-        None
-    }
-
-    /// Whether the path is to stop at the end of an element. What is not so stays so, but for the last element: it
-    /// depends on the one after it.
-    fn stops_behind(&self, number: u64) -> bool {
-        let ends = self
-            .ring
-            .get(number)
-            .is_some_and(|item| item.block_end && (self.single_block || moves(&item.element, self.clamping)));
-        let next = self.ring.get(number + 1);
-        ends || next.is_some_and(|next| moves(&next.element, self.clamped))
+    /// Looks for the next place where single block or axes that are clamped stop the path.
+    fn seek_stop(&mut self) {
+        let stop = self.stops.next(&self.ring, self.speed, self.rest);
+        self.ring.set_stop(stop);
     }
 
     /// Goes along the path until the time of the cycle is spent or the path waits.
@@ -306,7 +242,7 @@ impl<E> Interpolator<E> {
             if self
                 .ring
                 .current()
-                .is_some_and(|item| moves(&item.element, self.clamped))
+                .is_some_and(|item| self.stops.is_clamped(item))
             {
                 return Some(State::Clamped);
             }
@@ -362,10 +298,46 @@ impl<E> Interpolator<E> {
                 self.coupling.map(|_| State::Moving)
             }
         };
-        if along {
-            self.output_along();
+        if along && let Some(item) = self.ring.current() {
+            let feed = self.ring.feed();
+            self.outputs.along(item, self.ring.number(), self.rest, feed);
         }
         state
+    }
+
+    /// Couples the current element to the spindle as it stands. `false` when the spindle is not ready.
+    fn couple(&mut self, drive: &Drive) -> bool {
+        let thread = self.ring.current().and_then(|item| item.element.thread());
+        if let (Some(thread), None) = (thread, self.coupling) {
+            if !drive.master.ready {
+                return false;
+            }
+            self.coupling = Some(Coupling::new(thread, drive.master.nominal_deg));
+        }
+        true
+    }
+
+    /// What is told the spindle.
+    fn lead(&self) -> Option<Lead> {
+        let (item, coupling) = self.ring.current().zip(self.coupling)?;
+        let speed = if self.backward { -self.speed } else { self.speed };
+        Some(coupling.lead(item.length - self.rest, speed))
+    }
+
+    /// Goes back along the current element for a time; `None` when it goes forward.
+    fn drive_back(&mut self, drive: &Drive, time: f64) -> Option<State> {
+        let item = self.ring.current()?;
+        let wanted = drive.back && self.coupling.is_some();
+        if self.speed <= 0.0 {
+            self.backward = wanted;
+        }
+        if !self.backward {
+            return None;
+        }
+        let limit = if wanted { self.ring.feed() } else { 0.0 };
+        let (speed, covered) = master::go_back(item, self.speed, item.length - self.rest, limit, time);
+        (self.speed, self.rest) = (speed, item.length - covered);
+        Some(if speed > 0.0 { State::Moving } else { State::Held })
     }
 
     /// Goes on behind the current element, unless the path has to wait there. What it waits for.
@@ -375,11 +347,11 @@ impl<E> Interpolator<E> {
             if item.length > 0.0 && !drive.in_position {
                 return Some(State::Settling);
             }
-            if item.block_end && moves(&item.element, self.clamping) {
+            if self.stops.is_to_be_clamped(item) {
                 return Some(State::Clamping);
             }
             // Whether the block has ended is known when the next element is, or that none comes.
-            if self.single_block && item.block_end {
+            if self.stops.is_block_end(item) {
                 self.phase = Phase::BlockEnd;
                 return None;
             }
@@ -400,13 +372,13 @@ impl<E> Interpolator<E> {
             return Some(self.at_the_end());
         }
         let length = self.ring.current().map_or(0.0, |item| item.length);
-        let before = self.coupling.map(|coupling| (coupling, length));
         self.ring.advance();
         self.enter();
-        self.couple_on(before);
+        let thread = self.ring.current().and_then(|item| item.element.thread());
+        self.coupling = self.coupling.and_then(|coupling| coupling.go_on(length, thread));
+        self.backward = false;
         if self.ring.stop_is_behind() {
-            let stop = self.block_end();
-            self.ring.set_stop(stop);
+            self.seek_stop();
         }
         None
     }
@@ -415,113 +387,46 @@ impl<E> Interpolator<E> {
     fn enter(&mut self) {
         self.phase = Phase::Begin;
         self.rest = self.ring.current().map_or(0.0, |item| item.length);
-        self.output_to = f64::NEG_INFINITY;
+        self.outputs.begin();
     }
 
     /// Outputs the functions at one end of the current element; the phase after it.
     fn output(&mut self, gate: Gate, then: Phase) -> Phase {
-        let (place, output) = match (gate, self.ring.current()) {
-            (_, None) => return then,
-            (Gate::Start, Some(item)) => (Place::Start, item.start),
-            (Gate::End, Some(item)) => (Place::End, item.end),
-        };
-        match output {
-            Output::Nothing => then,
-            Output::Passing => {
-                self.queue(place, false);
-                then
-            }
-            Output::Waiting => {
-                let waits = !std::mem::take(&mut self.released);
-                self.queue(place, waits);
-                if waits { Phase::Gate(gate) } else { then }
-            }
-        }
-    }
-
-    /// Outputs the functions along the current element that were passed.
-    fn output_along(&mut self) {
-        let Some(item) = self.ring.current() else { return };
-        let to = if self.rest > 0.0 {
-            item.length - self.rest
-        } else {
-            f64::INFINITY
-        };
-        let passed = self.output_to..to;
-        for index in 0..item.element.functions().len() {
-            let length = self
-                .ring
-                .current()
-                .and_then(|item| item.element.functions().get(index))
-                .filter(|function| place(function).is_none())
-                .and_then(|function| match function.at {
-                    At::Length(length) if length > 0.0 => Some(length.min(f64::MAX)),
-                    At::Length(_) => Some(0.0),
-                    At::BeforeEnd(lead_s) => Some(self.place_before_end(lead_s)),
-                    At::Start | At::End => None,
-                });
-            if length.is_some_and(|length| passed.contains(&length)) {
-                self.queue(Place::Along(index), false);
-            }
-        }
-        self.output_to = to;
-    }
-
-    /// The path length of the current element from which its movement still takes a time, s; at the latest
-    /// that at which it begins to brake, for in tapping the spindle follows a feed ramp that is flatter than
-    /// its own [000:6070].
-    fn place_before_end(&self, time_s: f64) -> f64 {
         let Some(item) = self.ring.current() else {
-            return 0.0;
+            return then;
         };
-        let speed = self.ring.feed().min((item.acceleration * item.length).sqrt());
-        let braking = self.braking_s();
-        let way = speed * (0.5 * braking + (time_s - braking).max(0.0));
-        (item.length - way).max(0.0)
+        let (place, output) = match gate {
+            Gate::Start => (Place::Start, item.start),
+            Gate::End => (Place::End, item.end),
+        };
+        if output == Output::Nothing {
+            return then;
+        }
+        let waits = output == Output::Waiting && !std::mem::take(&mut self.released);
+        self.outputs.put(item, self.ring.number(), place, waits);
+        if waits { Phase::Gate(gate) } else { then }
     }
 
     /// The time in which the current element brakes to a standstill from its feed, s.
     pub fn braking_s(&self) -> f64 {
-        self.ring.current().map_or(0.0, |item| {
-            self.ring.feed().min((item.acceleration * item.length).sqrt()) / item.acceleration
-        })
-    }
-
-    fn queue(&mut self, place: Place, waits: bool) {
-        if let Some(item) = self.ring.current() {
-            self.outputs.push_back(FunctionOutput {
-                element: self.ring.number(),
-                block: item.element.block,
-                sequence: item.element.sequence,
-                place,
-                waits,
-            });
-        }
+        let item = self.ring.current();
+        item.map_or(0.0, |item| item.braking_s(self.ring.feed()))
     }
 
     /// The next functions to be output, in the order of the path. To be asked for until there are no
     /// more after each cycle.
     pub fn next_output(&mut self) -> Option<FunctionOutput> {
-        self.outputs.pop_front()
+        self.outputs.next()
     }
 
     /// The functions of an output. They are kept until the next [`Interpolator::prepare`], those of
     /// the current element longer.
     pub fn functions(&self, output: &FunctionOutput) -> impl Iterator<Item = &TechnologyFunction> {
-        let wanted = output.place;
-        let functions = self
-            .ring
-            .get(output.element)
-            .map_or(&[] as &[_], |item| item.element.functions());
-        functions
-            .iter()
-            .enumerate()
-            .filter(move |(index, function)| match wanted {
-                Place::Start => place(function) == Some(Gate::Start),
-                Place::End => place(function) == Some(Gate::End),
-                Place::Along(along) => *index == along,
-            })
-            .map(|(_, function)| function)
+        let item = self.ring.get(output.element);
+        outputs::at(
+            output.place,
+            item.map_or(&[] as &[_], |item| item.element.functions()),
+        )
     }
 
     /// The functions for which the path waits are acknowledged. When it does not wait yet, the next
@@ -566,7 +471,7 @@ impl<E> Interpolator<E> {
     /// `None` when all was executed. The next path starts from here.
     pub fn clear(&mut self) -> Option<Cut> {
         let cut = self.ring.current().and_then(|item| {
-            let unfinished = !matches!(self.phase, Phase::Done | Phase::BlockEnd | Phase::Over);
+            let unfinished = !self.phase.is_executed();
             let cut_at = if unfinished {
                 Some(item)
             } else {
@@ -588,11 +493,58 @@ impl<E> Interpolator<E> {
         self.phase = Phase::Done;
         (self.speed, self.rest) = (0.0, 0.0);
         self.released = false;
-        self.sought = 0;
+        self.stops.forget();
         self.outputs.clear();
         self.coupling = None;
         self.backward = false;
+        self.recalled = None;
         cut
+    }
+
+    /// Takes back what is not executed, for the axes stand elsewhere: the path goes on from a position to
+    /// where each of the elements leads, once they are [taken](Interpolator::take_recalled) and given again. The rest
+    /// of the element that was cut comes without the functions that are output already. The path must stand.
+    pub fn recall(&mut self, position: Position) {
+        let executed = Executed {
+            phase: self.phase,
+            length: self.ring.current().map_or(0.0, |item| item.length),
+            rest: self.rest,
+            output_to: self.outputs.to(),
+        };
+        let recalled = self.recalled.or(Some(executed));
+        if self.recalled.is_none() {
+            self.ring.set_aside();
+        }
+        self.position = position;
+        self.clear();
+        self.recalled = recalled;
+    }
+
+    /// What was recalled since it was asked for last, for the source to give it again before all else; there may be
+    /// nothing left. It may allocate.
+    pub fn take_recalled(&mut self) -> Option<Vec<PathElement>> {
+        let executed = self.recalled.take()?;
+        let mut elements = self.ring.take_aside();
+        let first = elements.next().and_then(|first| executed.remainder(first));
+        Some(first.into_iter().chain(elements).collect())
+    }
+
+    /// Couples an element that has begun anew, for spindle and axes were moved meanwhile: this position
+    /// belongs to that angle of the spindle, degrees.
+    pub fn couple_again(&mut self, position: &Position, angle_deg: f64) {
+        let Some((item, coupling)) = self.ring.current().zip(self.coupling.as_mut()) else {
+            return;
+        };
+        let (way, place) = coupling.renew(item, position, angle_deg);
+        if self.phase == Phase::Move {
+            self.rest = (item.length - way).clamp(0.0, item.length);
+        }
+        (self.speed, self.position) = (0.0, place);
+    }
+
+    /// Whether the path follows the spindle: it has begun an element that does so, and none behind it.
+    pub fn is_coupled(&self) -> bool {
+        self.coupling.is_some()
     }
 
     /// Nominal position on the path.
@@ -632,9 +584,4 @@ fn position(item: &Item, rest: f64) -> Position {
         1.0
     };
     curve.position(start, end, fraction)
-}
-
-/// Whether an element moves one of the axes.
-fn moves(element: &PathElement, axes: AxisSet) -> bool {
-    axes.iter().any(|axis| element.moves(axis))
 }

@@ -79,6 +79,16 @@ impl Item {
         }
     }
 
+    /// Greatest speed from and to standstill at a feed, mm/s.
+    pub(crate) fn peak(&self, feed: f64) -> f64 {
+        feed.min((self.acceleration * self.length).sqrt())
+    }
+
+    /// The time in which it brakes to a standstill from that, s.
+    pub(crate) fn braking_s(&self, feed: f64) -> f64 {
+        self.peak(feed) / self.acceleration
+    }
+
     /// How many outputs the element makes at most.
     pub(crate) fn outputs(&self) -> usize {
         self.element.functions().len()

@@ -20,6 +20,9 @@ const LEAST_CAPACITY: usize = 3;
 pub(crate) struct Ring {
     dynamics: Dynamics,
     items: VecDeque<Item>,
+    /// Items that were put aside; so many of them were executed.
+    aside: VecDeque<Item>,
+    executed_aside: usize,
     /// Segment by segment like the items.
     envelope: Envelope,
     joints: Joints,
@@ -41,6 +44,8 @@ impl Ring {
         Ring {
             dynamics,
             items: VecDeque::with_capacity(capacity),
+            aside: VecDeque::with_capacity(capacity),
+            executed_aside: 0,
             envelope: Envelope::with_capacity(capacity),
             joints: Joints::default(),
             capacity,
@@ -97,14 +102,27 @@ impl Ring {
         self.items.range(self.current.min(self.items.len())..)
     }
 
-    /// Takes out the item that is executed and those after it.
-    pub(crate) fn take_ahead(&mut self) -> impl Iterator<Item = PathElement> + '_ {
-        let from = self.current.min(self.items.len());
-        self.items.drain(from..).map(|item| item.element)
+    /// Puts aside the item that is executed and those after it; nothing allocates.
+    pub(crate) fn set_aside(&mut self) {
+        if self.current < self.items.len() {
+            std::mem::swap(&mut self.items, &mut self.aside);
+            self.executed_aside = self.current;
+            self.first += self.current as u64;
+        } else {
+            // What was put aside before is not wanted any more.
+            self.executed_aside = self.aside.len();
+        }
     }
 
-    /// Drops the executed items.
+    /// Takes out what was put aside.
+    pub(crate) fn take_aside(&mut self) -> impl Iterator<Item = PathElement> + '_ {
+        let executed = std::mem::take(&mut self.executed_aside);
+        self.aside.drain(..).skip(executed).map(|item| item.element)
+    }
+
+    /// Drops the executed items, and what was put aside.
     pub(crate) fn discard(&mut self) {
+        self.aside.clear();
         self.first += self.current as u64;
         let executed = self.items.drain(..self.current);
         self.outputs -= executed.map(|item| item.outputs()).sum::<usize>();
