@@ -6,33 +6,36 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test bench doc pictures conformance tools clean
+.PHONY: run test bench doc pictures conformance trails tools clean
 
 # The main job: a program without a machine, then the programs of a machine on it, in closed loop with its
 # PLC; reports on the screen, pictures beside them.
 run:
 	@mkdir -p $(OUT)
-	$(CARGO) run --quiet --release -p bahn -- test examples/housing.H \
+	$(CARGO) run --quiet --profile quick -p bahn -- test examples/housing.H \
 		--view 3d --image $(OUT)/housing.png --path $(OUT)/housing.svg --mesh $(OUT)/housing.stl
 	@for program in BRACKET INDEX SADDLE; do \
 		echo; \
 		image=; \
 		if grep -q "BLK FORM" machines/mill/programs/$$program.H; then image="--image $(OUT)/$$program.png"; fi; \
-		$(CARGO) run --quiet --release -p bahn -- run $$program.H --machine machines/mill --fresh \
+		$(CARGO) run --quiet --profile quick -p bahn -- run $$program.H --machine machines/mill --fresh \
 			$$image --record $(OUT)/$$program.csv --signals $(SIGNALS) || exit 1; \
 		echo; \
-		$(CARGO) run --quiet --release -p bahn -- scope $(OUT)/$$program.csv -o $(OUT)/$$program-scope.png \
+		$(CARGO) run --quiet --profile quick -p bahn -- scope $(OUT)/$$program.csv -o $(OUT)/$$program-scope.png \
 			--title "$$program.H on machines/mill" || exit 1; \
 	done
 	@echo
 	@echo "Pictures: $(OUT)/*.png   tool path: $(OUT)/housing.svg   part: $(OUT)/housing.stl   recordings: $(OUT)/*.csv"
 
-# Everything that must hold: format, lints, documentation, tests.
+# Everything that must hold: format, lints, documentation, tests. Of the fuzz targets nothing is linked here: they
+# compile without libFuzzer.
 test: tools
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked --quiet
 	PROPTEST_RNG_SEED=$(SEED) $(CARGO) test --workspace --locked --quiet
+	CUSTOM_LIBFUZZER_PATH=none/libnone.a CARGO_TARGET_DIR=$${CARGO_TARGET_DIR:-$(CURDIR)/target} \
+		$(CARGO) check --manifest-path fuzz/Cargo.toml --locked --quiet
 	$(CARGO) package --workspace --locked --no-verify --allow-dirty --quiet
 	@mkdir -p $(OUT)
 	BAHN_TRAIL=$(CURDIR)/$(OUT)/debug.trail $(CARGO) test -p bahn-control --locked --quiet --test reproducible twice
@@ -49,6 +52,11 @@ doc:
 pictures:
 	$(CARGO) build --quiet --release -p bahn
 	./examples/pictures.sh
+
+# What every shipped program and 400 random runs do, as one number each, to compare two versions.
+trails:
+	@mkdir -p $(OUT)
+	BAHN_TRAILS=$(CURDIR)/$(OUT)/trails.txt $(CARGO) test -p bahn --locked --quiet --release --test trails the_trails
 
 # docs/conformance.md, made anew from the registry.
 conformance:

@@ -12,14 +12,12 @@ use crate::message::Message;
 use crate::panel::Direction;
 use crate::run::{Resume, RunState};
 
-/// Touch probe [000:7654].
-const MP_PROBE: u16 = 6010;
-const TS_511: f64 = 1.0;
-
 /// What M2502 makes of the stylus.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Stylus {
     deflected: bool,
+    /// A probing has deflected it, and it is not yet free again.
+    probed: bool,
     /// NC stop.
     pub stops: bool,
 }
@@ -138,13 +136,13 @@ impl Control {
         probing.touch = Some(along.sum());
     }
 
-    /// M2502: the machine stops when the stylus is deflected, in all modes, but where a probing deflects it;
-    /// not with a TS 511, which is on standby otherwise [000:7652]. The stop stays until all axes stand and
-    /// no key moves them: by hand the stylus can then be freed; a program goes on only when it is free
-    /// (inferred).
+    /// M2502: the machine stops when the stylus is deflected, in all modes, but where a probing deflects it, until it
+    /// has left the workpiece again; not with a TS 511, which is on standby otherwise [000:7652]. The stop stays
+    /// until all axes stand and no key moves them: by hand the stylus can then be freed; a program goes on only
+    /// when it is free (inferred).
     fn watch_stylus(&mut self, plant: &mut dyn Plant) {
         let guards = self.exchange.nc().bit(signal::NC_STOP_ON_STYLUS_DEFLECTION)
-            && self.link.list().get(MP_PROBE, 0) != Some(TS_511);
+            && !self.link.list().probe().on_standby;
         if !guards && !self.stylus.stops {
             return;
         }
@@ -152,7 +150,9 @@ impl Control {
             .run
             .probing
             .is_some_and(|probing| probing.phase != Phase::Enable);
-        let deflected = guards && !probes && plant.probe_deflected();
+        let touches = guards && plant.probe_deflected();
+        self.stylus.probed = touches && (probes || self.stylus.probed);
+        let deflected = touches && !self.stylus.probed;
         let rises = deflected && !self.stylus.deflected;
         self.stylus.deflected = deflected;
         let keys = self.panel.axis_keys.iter().any(Option::is_some);
@@ -166,10 +166,11 @@ impl Control {
         let running = self.run.state == RunState::Running;
         let time = self.cycle_s();
         let percent = self.feed_override.percent().min(100.0);
+        let limit = self.rapid_limit_mm_min();
         let Some(probing) = &mut self.run.probing else {
             return;
         };
-        let feed = probing.feed_mm_min * percent / 100.0;
+        let feed = (probing.feed_mm_min * percent / 100.0).min(limit);
         let aim = match probing.phase {
             Phase::Enable => {
                 if running && !self.exchange.nc().bit(signal::PROBING_ENABLE) {

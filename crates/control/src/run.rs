@@ -8,6 +8,7 @@ use bahn_motion::FunctionOutput;
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, LiveData, Position};
 use bahn_program::Program;
+use bahn_servo::Rotation;
 
 use crate::axes::{AxisUnit, Mover};
 use crate::block_time::BlockTime;
@@ -138,6 +139,10 @@ impl Control {
         if self.run.restore.is_some() || self.is_positioning() {
             return;
         }
+        if self.has_lost_spindle() {
+            self.show(Message::Plain(MessageId::KeyNonFunctional), false);
+            return;
+        }
         match self.run.state {
             RunState::Idle => self.run.begin_wanted = true,
             _ if self.run.broken => self.run.begin_wanted = true,
@@ -177,6 +182,9 @@ impl Control {
     /// INTERNAL STOP: the interrupted run is broken off; the next start begins with its block.
     pub(crate) fn internal_stop(&mut self) -> bool {
         if self.run.state == RunState::Running || self.run.begin_wanted || !self.path_stands() {
+            return false;
+        }
+        if self.is_in_thread() {
             return false;
         }
         if self.run.broken {
@@ -240,6 +248,7 @@ impl Control {
     /// Interprets ahead; begins a run.
     pub(crate) fn prepare_run(&mut self) {
         self.close_run();
+        self.take_tool_states();
         if self.run.begin_wanted && self.axes_stand() {
             self.run.begin_wanted = false;
             self.begin_run();
@@ -285,7 +294,8 @@ impl Control {
         }
     }
 
-    /// Module 9150 without a program: the TOOL CALL is executed at once [000:16063-16067].
+    /// Module 9150 without a program: the TOOL CALL is executed at once; a wrong one is passed over without a message
+    /// [000:16063-16075].
     fn call_inserted_tool(&mut self) {
         let Some(inserted) = self.tools.inserted_call.take() else {
             return;
@@ -293,6 +303,10 @@ impl Control {
         let Some(call) = self.tools.tool_call(&inserted, self.offsets.tool_axis) else {
             return;
         };
+        let called = inserted.tool.is_some() && call.tool != 0;
+        if called && !self.tools.may_be_called(call.tool) {
+            return;
+        }
         let mut target = crate::functions::Target {
             spindle: &mut self.spindle,
             tools: &mut self.tools,
@@ -343,9 +357,10 @@ impl Control {
 
     /// What is to be done once a run is over, outside the cycle.
     fn close_run(&mut self) {
-        if std::mem::take(&mut self.run.q_due) {
+        if self.run.q_due {
             self.path.clear();
             self.q = self.q_values();
+            self.run.q_due = false;
             for (number, value) in self.run.q_transfer.take_all() {
                 self.keep_q(number, value);
             }
@@ -399,6 +414,9 @@ impl Control {
         } else {
             match self.open_program() {
                 Ok(program) => {
+                    // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
+                    self.tools.counts &= self.mode == Mode::Mdi;
+                    self.tools.replaces_worn &= self.mode == Mode::Mdi;
                     let feeder = self.new_feeder(program, &machine, limits);
                     self.run.feeder = Some(feeder);
                 }
@@ -423,6 +441,13 @@ impl Control {
         if status.tool() != Some(self.tools.number) {
             status.cancel_tool();
         }
+        let spindle = self.spindle.state();
+        let clockwise = match spindle.rotation {
+            Rotation::M3 => Some(true),
+            Rotation::M4 => Some(false),
+            Rotation::M5 => None,
+        };
+        status.take_spindle(clockwise, spindle.programmed_rpm);
         let mut feeder = self.new_feeder_from(program, block, machine, limits, status);
         feeder.set_tap(self.run.tap);
         feeder
@@ -533,9 +558,10 @@ impl Control {
         }
     }
 
-    /// Q parameters that are not 0, by number.
+    /// Q parameters that are not 0, by number. Behind the end of a run they are those that its end has left.
     pub(crate) fn q_values(&self) -> Vec<(u16, f64)> {
-        let Some(feeder) = &self.run.feeder else {
+        let over = self.run.ended && !self.run.q_due;
+        let Some(feeder) = self.run.feeder.as_ref().filter(|_| !over) else {
             return self.q.clone();
         };
         (0u16..)

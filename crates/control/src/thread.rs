@@ -5,7 +5,12 @@
 //! ([`Interpolator`](bahn_motion::Interpolator)). NC stop brakes both together; NC start goes on. What brings
 //! the two apart, EMERGENCY STOP or POSITIONING ERROR, couples them anew as they stand afterwards: the tool
 //! sits in the thread, so nothing is forced (inferred). Then NC start goes on cutting, and MANUAL OPERATION
-//! with the axis key away from the workpiece leads the tool out of the thread (inferred; so later controls).
+//! with the axis key away from the workpiece leads the tool out of the thread (inferred; so later controls). INTERNAL
+//! STOP would part them for good: it is refused until the tool is out (inferred).
+//!
+//! In cycle 2 nothing couples them. When the spindle was taken away in the hole, NC start would pull at a tap that does
+//! not turn: it is refused, and INTERNAL STOP leaves the tap to the operator, who turns it out by hand with M03 or M04
+//! and the axis key (inferred).
 
 use bahn_exchange::signal;
 use bahn_motion::{Lead, Master};
@@ -34,6 +39,8 @@ pub(crate) struct Tapping {
     ready: bool,
     /// Spindle and axis came apart in the thread.
     apart: bool,
+    /// The spindle was taken away while cycle 2 tapped.
+    lost: bool,
 }
 
 impl Control {
@@ -58,6 +65,7 @@ impl Control {
     /// out (inferred). Everything that stops the drives does.
     pub(crate) fn runs_out_of_thread(&self) -> bool {
         self.taps_floating()
+            && !self.tapping.lost
             && self.emergency.circuit() == Circuit::Ready
             && !self.exchange.nc().bit(signal::NC_STOP_AND_OPEN_LOOPS)
             && !self.messages.is_fatal()
@@ -133,6 +141,22 @@ impl Control {
     /// Spindle and axis have come apart in the thread: they are coupled again when both stand in their loops.
     pub(crate) fn part_thread(&mut self) {
         self.tapping.apart |= self.path.is_coupled();
+        self.tapping.lost |= self.taps_floating();
+    }
+
+    /// The spindle that cycle 2 needs was taken away: its feed does not go on.
+    pub(crate) fn has_lost_spindle(&self) -> bool {
+        self.tapping.lost
+    }
+
+    /// The tool that follows the spindle is not yet, or no more, above the thread.
+    pub(crate) fn is_in_thread(&self) -> bool {
+        let axis = self.offsets.tool_axis;
+        let Some(element) = self.path.element().filter(|_| self.path.is_coupled()) else {
+            return false;
+        };
+        let out = element.start[axis].max(element.end[axis]);
+        self.path.position()[axis] < out - self.thread_window()
     }
 
     /// Couples them as they stand, once they can move again. The tool axis does not go back to where the path
@@ -202,7 +226,10 @@ impl Control {
         self.put(signal::TAPPING_CALLED, rigid || floating);
         self.put(signal::RIGID_TAPPING_ACTIVE, rigid);
         if !rigid {
-            self.tapping = Tapping::default();
+            self.tapping = Tapping {
+                lost: self.tapping.lost && floating,
+                ..Tapping::default()
+            };
             self.spindle.lead(None);
         }
         let window = rigid.then(|| self.thread_window());

@@ -141,6 +141,38 @@ fn the_last_change_of_status_holds() {
     assert_eq!(["W100", "W102", "W104"].map(|word| rig.number(word)), [2, 7, 4]);
 }
 
+/// Module 9035 on the running control: operating mode, program of the run and of TEST RUN, axis and subdivision of the
+/// handwheel [000:14899-14933].
+#[test]
+fn the_plc_reads_the_status() {
+    let items = [1, 5, 6, 9, 10, 11, 13];
+    let read = |(place, item): (usize, u8)| {
+        let to = 100 + 2 * place;
+        format!("       PS    K+{item}\n       CM    9035\n       PL    W{to}\n")
+    };
+    let reads: String = (0..).zip(items).map(read).collect();
+    let build = bench(&format!("{ACKNOWLEDGE}{reads}")).mp("7641=1").mp("7640=2");
+    let build = build.program("1.H", "L X+60 R0 F6000").program("2.I", "");
+    let mut rig = ready(build);
+    let status = |rig: &mut Rig| {
+        rig.seconds(0.1);
+        (0..items.len())
+            .map(|place| rig.number(&format!("W{}", 100 + 2 * place)))
+            .collect::<Vec<i32>>()
+    };
+    rig.command("handwheel Z 7");
+    rig.command("handwheel X 3");
+    // Full sequence is 5; a .H is selected, none is tested; the handwheel moves X.
+    assert_eq!(status(&mut rig), [5, 0, 1, 0, 1, 3, 7]);
+    rig.command("mode handwheel");
+    rig.command("handwheel Z 6");
+    assert_eq!(status(&mut rig), [2, 0, 1, 2, 4, 3, 6]);
+    rig.command("mode single");
+    rig.command("test 1.H");
+    rig.command("select 2.I");
+    assert_eq!(status(&mut rig), [4, 1, 2, 2, 4, 3, 6]);
+}
+
 /// A tool change that is broken off before the PLC has acknowledged it: the old tool is in the spindle, with
 /// its length, and the same call is a change again.
 #[test]

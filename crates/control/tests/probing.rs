@@ -201,3 +201,59 @@ fn a_deflected_stylus_stops_the_machine() {
     standby.start();
     standby.until(20.0, "the end", |rig| rig.control.has_ended());
 }
+
+/// While M2502 is set nothing is faster than MP6150, whatever is programmed and whoever moves the axis: feed, rapid
+/// traverse, the probing itself (MP6120), the return to the contour (MP4220) [000:7654]. Without M2502 the feed is
+/// the programmed one.
+#[test]
+fn a_guarded_probe_limits_every_feed() {
+    let plc = format!("{}\n       L     I21\n       = M2502", plc());
+    let program = format!("L Z-20 R0 F6000\nL X+70 F6000\nL X+30 FMAX\n{PROGRAM}");
+    let build = |program: &str| {
+        rig_of(
+            bench(&plc)
+                .mp("6150=600")
+                .mp("6120=3000")
+                .mp("7680=%0000110")
+                .mp("4220.0=2000"),
+            program,
+        )
+    };
+    let fastest = |rig: &mut Rig, until: &dyn Fn(&Rig) -> bool| {
+        let axes = ['X', 'Y', 'Z'];
+        let mut fastest = 0.0f64;
+        let end = rig.control.time_us() + 60_000_000;
+        while !until(rig) {
+            assert!(rig.control.time_us() < end, "{:?}", rig.control.snapshot());
+            let before = axes.map(|axis| nominal(rig, axis));
+            rig.cycle();
+            for (axis, before) in axes.iter().zip(before) {
+                fastest = fastest.max((nominal(rig, *axis) - before).abs() / 0.003 * 60.0);
+            }
+        }
+        fastest
+    };
+    for guarded in [true, false] {
+        let mut rig = build(&program);
+        if guarded {
+            rig.event("key B press");
+        }
+        rig.start();
+        rig.seconds(0.1);
+        let speed = fastest(&mut rig, &|rig| rig.control.has_ended());
+        let right = if guarded {
+            (speed - 600.0).abs() < 1.0
+        } else {
+            speed > 6000.0
+        };
+        assert!(right, "{speed} with M2502 = {guarded}");
+    }
+    let mut rig = build("L X+70 R0 F6000\nL X+30\nL X+20");
+    rig.event("key B press");
+    rig.command("restore-at 3");
+    rig.seconds(0.3);
+    rig.command("restore-position");
+    rig.start();
+    let speed = fastest(&mut rig, &|rig| (nominal(rig, 'X') - 30.0).abs() < 1e-6);
+    assert!((speed - 600.0).abs() < 1.0, "{speed}");
+}

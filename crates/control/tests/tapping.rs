@@ -298,6 +298,96 @@ fn emergency_stop_in_the_thread() {
     }
 }
 
+/// INTERNAL STOP in the thread is refused: axis and spindle stay coupled, and the way out is that after EMERGENCY STOP.
+/// Led out of the thread the run can be broken off.
+#[test]
+fn internal_stop_in_the_thread() {
+    let mut rig = ready(rigid(""));
+    rig.start();
+    let stop = |rig: &mut Rig| rig.control.command("stop".parse().unwrap());
+    let (mut cycles, mut refused) = (0, 0);
+    let seen = record(&mut rig, 60.0, |rig, now| {
+        cycles += 1;
+        match cycles {
+            300 => rig.event("key NC_STOP tap"),
+            700..1500 => {
+                assert!(now.rpm.abs() < 3.0, "{now:?}");
+                refused += u32::from(!stop(rig));
+                assert_eq!(rig.messages(), ["KEY NON-FUNCTIONAL"]);
+                rig.command("ce");
+            }
+            1500 => {
+                rig.command("manual-operation");
+                rig.event("key Z+ press");
+            }
+            // Half way out.
+            1700 => refused += u32::from(!stop(rig)),
+            3300 => rig.event("key Z+ release"),
+            3500 => assert!(stop(rig), "out of the thread: {:?}", rig.messages()),
+            _ => {}
+        }
+    });
+    assert_eq!(refused, 801);
+    assert_on_the_thread(&seen);
+    let out = seen.last().unwrap().z - seen[0].z;
+    assert!(cycles >= 3500 && out.abs() < 0.02, "{cycles} {out}");
+    rig.seconds(0.1);
+    assert_eq!(rig.control.snapshot().run, RunState::Idle);
+    assert!(!rig.bit("M2048") && !rig.bit("M2095"));
+}
+
+/// EMERGENCY STOP in cycle 2: the spindle is without power and the tap sits in the hole. When the voltage is back
+/// nothing moves, and NC start, which would pull at the tap with the spindle standing, is refused. INTERNAL STOP ends
+/// the run; by hand M4 and Z+ lead the tap out.
+#[test]
+fn emergency_stop_with_a_floating_holder() {
+    let program = "TOOL CALL 3 Z S600
+CYCL DEF 2.0 TAPPING
+CYCL DEF 2.1 SET UP -3
+CYCL DEF 2.2 DEPTH -20
+CYCL DEF 2.3 DWELL 0.1
+CYCL DEF 2.4 F900
+L X+20 Y+20 R0 FMAX
+L Z+3 FMAX M3
+CYCL CALL
+L Z+50 FMAX M5";
+    let mut rig = ready(Build::mill().program("1.H", program));
+    rig.start();
+    rig.until(60.0, "M2048", |rig| rig.bit("M2048"));
+    let top = observe(&rig, "Z.nominal");
+    rig.until(5.0, "in the hole", |rig| observe(rig, "Z.nominal") < top - 8.0);
+    rig.event("emergency press");
+    rig.until(20.0, "the loops are open", |rig| !rig.bit("M2000"));
+    rig.seconds(10.0);
+    rig.event("emergency release");
+    rig.seconds(1.0);
+    while !rig.messages().is_empty() {
+        rig.command("ce");
+        rig.seconds(0.1);
+    }
+    let stood = observe(&rig, "Z.actual");
+    let stands = |rig: &Rig| (observe(rig, "Z.actual") - stood).abs() < 0.005 && observe(rig, "S.rpm") == 0.0;
+    rig.seconds(2.0);
+    assert!(stands(&rig), "nobody has pressed START: {:?}", look(&rig));
+    rig.start();
+    rig.seconds(2.0);
+    assert!(stands(&rig), "the spindle does not turn: {:?}", look(&rig));
+    assert_eq!(rig.messages(), ["KEY NON-FUNCTIONAL"]);
+    assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
+    rig.command("ce");
+    rig.command("stop");
+    rig.seconds(0.1);
+    assert!(!rig.bit("M2048"));
+    rig.command("mode manual");
+    rig.command("m 4");
+    rig.start();
+    rig.until(5.0, "M4", |rig| observe(rig, "S.rpm") < -590.0);
+    rig.event("key Z+ press");
+    rig.until(5.0, "out of the hole", |rig| observe(rig, "Z.actual") > top);
+    rig.event("key Z+ release");
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
 /// Cycle 2: M2048 during the cycle; M05 before the depth, M04 there, above M05 and M03. The override of the
 /// spindle is off, that of the feed acts from 90 to 110 % [000:6060-6101] [003:5032]. NC stop acts when the tool is
 /// out of the thread.

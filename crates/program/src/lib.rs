@@ -6,6 +6,7 @@
 //! - [`BlockError`]: what is wrong with a block that cannot be read, and where;
 //! - [`Program::diagnostics`]: all faults of a program in one pass; [`check_limits`] for one block;
 //! - [`FeedDoubt`]: feeds of programs in inches that look ten times off;
+//! - [`InputSteps`]: how fine the numbers of a program may be;
 //! - [`format_program`]: the normalised listing.
 //!
 //! Reading never fails: a block that cannot be read is [`Operation::Invalid`], an error when it is executed.
@@ -20,6 +21,7 @@ mod lines;
 mod operation;
 mod parse;
 mod program;
+mod rounding;
 mod sequence;
 mod text;
 
@@ -30,3 +32,4 @@ pub use format::{FormatOptions, format_block, format_program};
 pub use inch_feed::FeedDoubt;
 pub use operation::*;
 pub use program::{Chunk, NumberedBlock, Program};
+pub use rounding::InputSteps;

@@ -88,6 +88,11 @@ impl MeasuringSystem {
         self.backlash_mm = compensation.backlash_mm;
     }
 
+    /// Way of a counting step, mm, with the sense of counting.
+    pub(crate) fn step_mm(&self) -> f64 {
+        self.step_mm
+    }
+
     /// Takes a reading.
     pub(crate) fn read(&mut self, encoder: Encoder, parameters: &AxisParameters) -> Option<EncoderFault> {
         if !self.measured_once {

@@ -149,6 +149,30 @@ fn the_window_is_checked_below_mp1525_only() {
     assert!(slow.axis.in_position());
 }
 
+/// The drive comes behind its nominal position. A window of 2 mm holds the axis all the time, so that MP1525 alone says
+/// when it has arrived: when the axis itself is slow enough, not when the nominal position stands [000:813]. One
+/// counting step of 20/1024 um in 3 ms is 0.39 mm/min: slower than 1.5 of them is standing. From 10 to 0.6 mm/min the drive takes 6 ms · ln(10/0.6) = 17 ms.
+#[test]
+fn the_window_waits_for_the_axis_itself() {
+    let arrival = |entry: &str| {
+        let entry = format!("1525={entry}");
+        let mut bench = Bench::with_precontrol(Tnc415b, &[BASE, &["1030.0=2", &entry]].concat());
+        bench.drive_s = 0.006;
+        bench.run(3000.0, 0.5);
+        let target = bench.axis.target_mm();
+        let mut cycles = 0;
+        while !bench.axis.in_position() {
+            bench.cycle(target);
+            cycles += 1;
+            assert!(cycles < 1000, "the axis does not arrive");
+        }
+        (bench.velocity_mm_min.abs(), cycles)
+    };
+    let ((speed, early), (slower, late)) = (arrival("10"), arrival("0.5"));
+    assert!(speed < 10.0 && slower < 1.5 * 0.39, "{speed} {slower}");
+    assert!(early + 3 < late, "{early} {late}");
+}
+
 #[test]
 fn a_small_entry_of_mp1520_arrives_more_slowly() {
     let arrival = |entry: &str| {
