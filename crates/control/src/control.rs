@@ -458,6 +458,7 @@ impl Control {
 
     /// Interprets and plans ahead; may allocate. To be called after every cycle.
     pub fn prepare(&mut self) {
+        self.prepare_limits();
         self.prepare_restore();
         self.prepare_run();
         self.prepare_test();

@@ -208,11 +208,8 @@ impl Control {
             return;
         }
         self.upkeep.range_changed = false;
-        let elements = self.path.recall(here);
+        self.path.recall(here);
         self.run.last = None;
-        if let Some(feeder) = &mut self.run.feeder {
-            feeder.put_back(elements.into_iter());
-        }
     }
 
     /// Outputs the functions of the path in their order, once the axes are in position.

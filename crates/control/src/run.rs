@@ -269,6 +269,9 @@ impl Control {
             && !self.run.broken
             && !scans
         {
+            if let Some(recalled) = self.path.take_recalled() {
+                feeder.put_back(recalled.into_iter());
+            }
             feeder.set_datum(self.offsets.datum, zero, limits);
             if let Some(answer) = self.run.answer.take() {
                 if answer.touch.is_none() {

@@ -47,6 +47,10 @@ impl Control {
         self.adjust_cyclically();
         self.correct_axes();
         self.leave_limits();
+    }
+
+    /// A path within the limits as they are now, between programs; allocates.
+    pub(crate) fn prepare_limits(&mut self) {
         if self.upkeep.limits_changed && !self.run.is_active() {
             self.upkeep.limits_changed = false;
             self.path = Interpolator::new(&path_limits(self.link.list(), &self.axes), LOOK_AHEAD);

@@ -3,13 +3,14 @@
 
 use bahn_motion::{Drive, Interpolator, Limits, PointToPoint, Prepared, State};
 use bahn_path::{
-    Axis, BlockRef, Curve, ElementSource, FeedRate, LiveData, OverrideLaw, PathElement, Position, Step,
+    Axis, AxisSet, BlockRef, Curve, ElementSource, FeedRate, LiveData, OverrideLaw, PathElement, Position,
+    Step,
 };
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
 /// Elements of look-ahead.
-const CAPACITY: usize = 1024;
+const CAPACITY: usize = 512;
 
 fn main() {
     divan::main();
@@ -20,6 +21,8 @@ struct Lines {
     length: f64,
     at: Position,
     count: u64,
+    /// Every block has a feed of its own.
+    feeds: bool,
 }
 
 impl ElementSource for Lines {
@@ -30,13 +33,14 @@ impl ElementSource for Lines {
         let start = self.at;
         self.at[Axis::X] += self.length;
         self.at[Axis::Y] += 0.0005 * self.length * (self.count % 5) as f64;
+        let own = (self.count * 7919 % 1000) as f64;
         Step::Element(PathElement {
             block: BlockRef::default(),
             sequence: self.count,
             curve: Curve::Line,
             start,
             end: self.at,
-            feed: FeedRate::Programmed(10_000.0),
+            feed: FeedRate::Programmed(10_000.0 + if self.feeds { own } else { 0.0 }),
             override_law: OverrideLaw::Free,
             constant_speed: false,
             tangential_end: false,
@@ -64,13 +68,14 @@ fn limits() -> Limits {
 }
 
 /// An interpolator at full speed with a full ring.
-fn running(length: f64) -> (Interpolator<()>, Lines) {
+fn running(length: f64, feeds: bool) -> (Interpolator<()>, Lines) {
     let mut path = Interpolator::new(&limits(), CAPACITY);
     path.set_position(Position::ZERO);
     let mut source = Lines {
         length,
         at: Position::ZERO,
         count: 0,
+        feeds,
     };
     for _ in 0..1000 {
         path.prepare(&mut source, usize::MAX);
@@ -81,13 +86,13 @@ fn running(length: f64) -> (Interpolator<()>, Lines) {
     (path, source)
 }
 
-/// 100 cycles, 0.5 mm each, from a full ring.
-fn cycles(bencher: Bencher<'_, '_>, length: f64, drive: impl Fn(u32) -> Drive + Sync) {
+/// 60 cycles, 0.5 mm each, from a full ring.
+fn cycles(bencher: Bencher<'_, '_>, length: f64, feeds: bool, drive: impl Fn(u32) -> Drive + Sync) {
     bencher
-        .counter(ItemsCount::new(100usize))
-        .with_inputs(|| running(length))
+        .counter(ItemsCount::new(60usize))
+        .with_inputs(|| running(length, feeds))
         .bench_local_refs(|(path, _)| {
-            for cycle in 0..100 {
+            for cycle in 0..60 {
                 let cycle = black_box(path.cycle(&drive(cycle)));
                 assert_eq!(cycle.state, State::Moving);
             }
@@ -96,31 +101,50 @@ fn cycles(bencher: Bencher<'_, '_>, length: f64, drive: impl Fn(u32) -> Drive + 
 
 #[divan::bench]
 fn cycle_of_lines_of_0_1_mm(bencher: Bencher<'_, '_>) {
-    cycles(bencher, 0.1, |_| Drive::default());
+    cycles(bencher, 0.1, false, |_| Drive::default());
 }
 
 #[divan::bench]
 fn cycle_of_lines_of_100_mm(bencher: Bencher<'_, '_>) {
-    cycles(bencher, 100.0, |_| Drive::default());
+    cycles(bencher, 100.0, false, |_| Drive::default());
 }
 
-/// The override changes in every cycle: the envelope is made again for the whole ring.
+fn alternating(cycle: u32) -> Drive {
+    Drive {
+        feed_override_percent: 100.0 + f64::from(cycle % 2),
+        ..Drive::default()
+    }
+}
+
+/// The override changes in every cycle.
 #[divan::bench]
 fn cycle_with_changing_override(bencher: Bencher<'_, '_>) {
-    cycles(bencher, 0.1, |cycle| Drive {
-        feed_override_percent: 100.0 + f64::from(cycle % 2),
+    cycles(bencher, 0.1, false, alternating);
+}
+
+/// And every block has its own feed: each of those within the way of braking is asked.
+#[divan::bench]
+fn cycle_with_changing_override_and_feeds(bencher: Bencher<'_, '_>) {
+    cycles(bencher, 0.1, true, alternating);
+}
+
+/// An axis is clamped that no block moves.
+#[divan::bench]
+fn cycle_with_a_clamped_axis(bencher: Bencher<'_, '_>) {
+    cycles(bencher, 0.1, false, |_| Drive {
+        clamped: AxisSet::EMPTY.with(Axis::C),
         ..Drive::default()
     });
 }
 
-/// Reading ahead by what 100 cycles have used, 500 elements.
+/// Reading ahead by what 60 cycles have used, 300 elements.
 #[divan::bench]
 fn prepare_an_element(bencher: Bencher<'_, '_>) {
     bencher
-        .counter(ItemsCount::new(500usize))
+        .counter(ItemsCount::new(300usize))
         .with_inputs(|| {
-            let (mut path, source) = running(0.1);
-            (0..100).for_each(|_| {
+            let (mut path, source) = running(0.1, false);
+            (0..60).for_each(|_| {
                 path.cycle(&Drive::default());
             });
             (path, source)

@@ -1,18 +1,24 @@
 //! The path in contour cycles, with overrides and stops that come at any moment.
 
 mod master;
+mod outputs;
+mod phase;
 mod recall;
+mod stops;
 
-use std::collections::VecDeque;
+use bahn_path::{ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
 
-use bahn_path::{At, AxisSet, ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
-
-use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Place, Prepared, State, Stop};
-use crate::gate::{Gate, place};
+use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Place, Prepared, State, Stop};
+use crate::gate::Gate;
+use crate::item::{Item, Output};
 use crate::limits::{Dynamics, Limits};
 use crate::ramp::{Driven, Ramp};
-use crate::ring::{Item, Output, Ring};
+use crate::ring::Ring;
 use master::Coupling;
+use outputs::Outputs;
+use phase::Phase;
+use recall::Executed;
+use stops::Stops;
 
 /// Drives along the path of an [`ElementSource`], contour cycle by contour cycle.
 ///
@@ -35,20 +41,16 @@ pub struct Interpolator<E> {
     /// Way to the end of the current element, mm.
     rest: f64,
     position: Position,
-    single_block: bool,
-    clamped: AxisSet,
-    clamping: AxisSet,
-    /// The stop of single block, or for axes that are clamped, is to be looked for.
-    seek_stop: bool,
+    stops: Stops,
     /// The gate ahead is passed without waiting.
     released: bool,
-    /// Functions along the current element up to this length are output, mm.
-    output_to: f64,
-    outputs: VecDeque<FunctionOutput>,
+    outputs: Outputs,
     /// The current element follows the spindle.
     coupling: Option<Coupling>,
     /// It is run back.
     backward: bool,
+    /// How far the first element was executed that is taken back and still to be given again.
+    recalled: Option<Executed>,
 }
 
 #[derive(Debug)]
@@ -57,26 +59,6 @@ enum After<E> {
     Stop(Stop<E>),
     /// The stop was taken.
     Taken,
-}
-
-/// How far the current element is executed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Phase {
-    /// Its functions at the start are still to be output.
-    Begin,
-    /// A gate waits.
-    Gate(Gate),
-    Move,
-    /// Dwell to go, s.
-    Dwell(f64),
-    /// Its functions at the end are still to be output.
-    Finish,
-    /// Executed.
-    Done,
-    /// Executed; single block waits.
-    BlockEnd,
-    /// Executed, and single block does not wait any more.
-    Over,
 }
 
 impl<E> Interpolator<E> {
@@ -95,15 +77,12 @@ impl<E> Interpolator<E> {
             speed: 0.0,
             rest: 0.0,
             position: Position::UNKNOWN,
-            single_block: false,
-            clamped: AxisSet::EMPTY,
-            clamping: AxisSet::EMPTY,
-            seek_stop: false,
+            stops: Stops::default(),
             released: false,
-            output_to: 0.0,
-            outputs: VecDeque::new(),
+            outputs: Outputs::default(),
             coupling: None,
             backward: false,
+            recalled: None,
         }
     }
 
@@ -114,11 +93,15 @@ impl<E> Interpolator<E> {
     }
 
     /// Reads elements from the source while there is room, `budget` at most. It may allocate; outputs
-    /// not yet asked for lose their functions.
+    /// not yet asked for lose their functions. What was [recalled](Interpolator::recall) comes first: until it is
+    /// taken nothing is read.
     pub fn prepare<S>(&mut self, source: &mut S, budget: usize) -> Prepared
     where
         S: ElementSource<Error = E>,
     {
+        if self.recalled.is_some() {
+            return Prepared::Starved;
+        }
         self.ring.discard();
         let mut left = budget;
         let answer = loop {
@@ -143,20 +126,18 @@ impl<E> Interpolator<E> {
                 Step::Error(error) => Stop::Error(error),
             };
             self.ring.stop();
-            self.seek_stop = true;
+            self.stops.seek();
             self.after = After::Stop(stop);
         };
-        self.ring.settle();
         // Room for whatever the elements can output, so that no cycle allocates.
-        self.outputs
-            .reserve(self.ring.ahead().map(Item::outputs).sum::<usize>());
+        self.outputs.reserve(self.ring.outputs());
         answer
     }
 
     fn push(&mut self, element: PathElement) {
         let first = self.ring.current().is_none();
         self.ring.push(element);
-        self.seek_stop = true;
+        self.stops.seek();
         if first {
             self.enter();
         }
@@ -171,12 +152,12 @@ impl<E> Interpolator<E> {
     pub fn cycle(&mut self, drive: &Drive) -> Cycle {
         self.take(drive);
         let state = self.spend(drive);
-        if let Some(position) = self.following(drive.master.actual_deg) {
-            self.position = position;
-        } else if matches!(self.phase, Phase::Move)
-            && let Some(item) = self.ring.current()
-        {
-            self.position = position(item, self.rest);
+        if let Some(item) = self.ring.current() {
+            if let Some(coupling) = &self.coupling {
+                self.position = coupling.position(item, drive.master.actual_deg);
+            } else if matches!(self.phase, Phase::Move) {
+                self.position = position(item, self.rest);
+            }
         }
         Cycle {
             position: self.position,
@@ -204,150 +185,178 @@ impl<E> Interpolator<E> {
             self.rapid_limit_mm_min = drive.rapid_limit_mm_min;
             self.ring.set_rapid_limit(drive.rapid_limit_mm_min);
         }
-        if drive.single_block != self.single_block {
-            self.single_block = drive.single_block;
-            self.seek_stop = true;
-        }
-        if (drive.clamped, drive.clamping) != (self.clamped, self.clamping) {
-            (self.clamped, self.clamping) = (drive.clamped, drive.clamping);
-            self.seek_stop = true;
-        }
-        if self.seek_stop {
-            self.seek_stop = false;
-            let stop = self.block_end();
-            self.ring.set_stop(stop);
+        if self.stops.take(drive) {
+            self.seek_stop();
         }
     }
 
-    /// Number of the element at whose end the path stops for single block or for axes that are clamped,
-    /// where it can still come to a standstill.
-    fn block_end(&self) -> Option<u64> {
-        if !self.single_block && self.clamped.union(self.clamping).is_empty() {
-            return None;
-        }
-        let squared = self.speed * self.speed * (1.0 - 1e-9);
-        let mut possible = 0.0;
-        let mut length = self.rest;
-        for (number, item) in (self.ring.number()..).zip(self.ring.ahead()) {
-            possible += 2.0 * item.acceleration * length;
-            let next = self.ring.get(number + 1);
-            let stops = item.block_end && (self.single_block || moves(&item.element, self.clamping))
-                || next.is_some_and(|next| moves(&next.element, self.clamped));
-            if stops && squared <= possible {
-                return Some(number);
-            }
-            length = next.map_or(0.0, |next| next.length);
-        }
-        None
+    /// Looks for the next place where single block or axes that are clamped stop the path.
+    fn seek_stop(&mut self) {
+        let stop = self.stops.next(&self.ring, self.speed, self.rest);
+        self.ring.set_stop(stop);
     }
 
     /// Goes along the path until the time of the cycle is spent or the path waits.
     fn spend(&mut self, drive: &Drive) -> State {
         let mut time = self.cycle_s;
         loop {
-            let Some(item) = self.ring.current() else {
+            if self.ring.current().is_none() {
                 return self.at_the_end();
-            };
-            // Nothing new begins while the path is held.
-            let held = drive.hold && self.speed <= 0.0;
-            match self.phase {
-                Phase::Begin if held => return State::Held,
-                Phase::Begin if self.speed <= 0.0 && moves(&item.element, self.clamped) => {
-                    return State::Clamped;
-                }
-                Phase::Begin => {
-                    let output = item.start;
-                    if !self.couple(drive) {
-                        return State::Master;
-                    }
-                    self.phase = self.output(output, Gate::Start, Phase::Move);
-                }
-                Phase::Gate(end) => return State::Gate(end),
-                Phase::Move => {
-                    if let Some(state) = self.drive_back(drive, time) {
-                        return state;
-                    }
-                    let Some(item) = self.ring.current() else {
-                        return self.at_the_end();
-                    };
-                    let hold = drive.hold || drive.back;
-                    let driven = drive_along(item, self.speed, self.rest, hold, time);
-                    let along = item.along;
-                    let before = self.rest;
-                    match driven {
-                        Driven::OnTheWay { speed, rest } => {
-                            (self.speed, self.rest) = (speed, rest);
-                            if along {
-                                self.output_along();
-                            }
-                            let stands = speed <= 0.0 && rest == before;
-                            return if stands && hold {
-                                State::Held
-                            } else {
-                                State::Moving
-                            };
-                        }
-                        Driven::Arrived { speed, left } => {
-                            let dwell = item.element.dwell_s;
-                            // Rounding must not carry the path over what was found to be possible.
-                            let exit = if speed * speed > item.cap {
-                                item.cap.sqrt()
-                            } else {
-                                speed
-                            };
-                            self.position = item.element.end;
-                            (self.speed, self.rest, time) = (exit, 0.0, left);
-                            if along {
-                                self.output_along();
-                            }
-                            self.phase = if dwell > 0.0 {
-                                Phase::Dwell(dwell)
-                            } else {
-                                Phase::Finish
-                            };
-                            // The spindle is told the end before the path goes on.
-                            if self.coupling.is_some() {
-                                return State::Moving;
-                            }
-                        }
-                    }
-                }
+            }
+            let waits = match self.phase {
+                Phase::Begin => self.begin(drive),
+                Phase::Gate(end) => Some(State::Gate(end)),
+                Phase::Move => self.drive_along(drive, &mut time),
                 // The manual is silent: dwell goes on only while the path is not held (inferred).
-                Phase::Dwell(_) if drive.hold => return State::Held,
+                Phase::Dwell(_) if drive.hold => Some(State::Held),
                 Phase::Dwell(dwell) if dwell > time => {
                     self.phase = Phase::Dwell(dwell - time);
-                    return State::Dwell;
+                    Some(State::Dwell)
                 }
                 Phase::Dwell(dwell) => {
                     time -= dwell;
                     self.phase = Phase::Finish;
+                    None
                 }
                 Phase::Finish => {
-                    let output = item.end;
-                    self.phase = self.output(output, Gate::End, Phase::Done);
+                    self.phase = self.output(Gate::End, Phase::Done);
+                    None
                 }
-                Phase::Done => {
-                    // Whether the block has ended is known when the next element is, or that none comes.
-                    let stands = self.speed <= 0.0;
-                    if stands && item.length > 0.0 && !drive.in_position {
-                        return State::Settling;
-                    }
-                    if stands && item.block_end && moves(&item.element, self.clamping) {
-                        return State::Clamping;
-                    }
-                    if self.single_block && item.block_end && stands {
-                        self.phase = Phase::BlockEnd;
-                    } else if self.ring.following().is_some() {
-                        self.next();
-                    } else {
-                        return self.at_the_end();
-                    }
-                }
-                Phase::BlockEnd => return State::BlockEnd,
-                Phase::Over if self.ring.following().is_some() => self.next(),
-                Phase::Over => return self.at_the_end(),
+                Phase::Done => self.finish(drive),
+                Phase::BlockEnd => Some(State::BlockEnd),
+                Phase::Over => self.next(),
+            };
+            if let Some(state) = waits {
+                return state;
             }
         }
+    }
+
+    /// Outputs the functions before the current element, once it may begin. What it waits for.
+    fn begin(&mut self, drive: &Drive) -> Option<State> {
+        if self.speed <= 0.0 {
+            // Nothing new begins while the path is held.
+            if drive.hold {
+                return Some(State::Held);
+            }
+            if self
+                .ring
+                .current()
+                .is_some_and(|item| self.stops.is_clamped(item))
+            {
+                return Some(State::Clamped);
+            }
+        }
+        if !self.couple(drive) {
+            return Some(State::Master);
+        }
+        self.phase = self.output(Gate::Start, Phase::Move);
+        None
+    }
+
+    /// Drives along the current element. What the path does when the time is spent before its end.
+    fn drive_along(&mut self, drive: &Drive, time: &mut f64) -> Option<State> {
+        if let Some(state) = self.drive_back(drive, *time) {
+            return Some(state);
+        }
+        let hold = drive.hold || drive.back;
+        let (limit, exit_squared) = if hold {
+            (0.0, 0.0)
+        } else {
+            (self.ring.feed(), self.ring.exit())
+        };
+        let item = self.ring.current()?;
+        let (along, dwell, end) = (item.along, item.element.dwell_s, item.element.end);
+        let ramp = Ramp {
+            speed: self.speed,
+            rest: self.rest,
+            acceleration: item.acceleration,
+            limit,
+            exit_squared,
+        };
+        let state = match ramp.drive(*time) {
+            Driven::OnTheWay { speed, rest } => {
+                (self.speed, self.rest) = (speed, rest);
+                let stands = speed <= 0.0 && rest == ramp.rest;
+                Some(if stands && hold {
+                    State::Held
+                } else {
+                    State::Moving
+                })
+            }
+            Driven::Arrived { speed, left } => {
+                // Rounding must not carry the path over what was found to be possible.
+                let cap = self.ring.cap();
+                self.speed = if speed * speed > cap { cap.sqrt() } else { speed };
+                (self.position, self.rest, *time) = (end, 0.0, left);
+                self.phase = if dwell > 0.0 {
+                    Phase::Dwell(dwell)
+                } else {
+                    Phase::Finish
+                };
+                // The spindle is told the end before the path goes on.
+                self.coupling.map(|_| State::Moving)
+            }
+        };
+        if along && let Some(item) = self.ring.current() {
+            let feed = self.ring.feed();
+            self.outputs.along(item, self.ring.number(), self.rest, feed);
+        }
+        state
+    }
+
+    /// Couples the current element to the spindle as it stands. `false` when the spindle is not ready.
+    fn couple(&mut self, drive: &Drive) -> bool {
+        let thread = self.ring.current().and_then(|item| item.element.thread());
+        if let (Some(thread), None) = (thread, self.coupling) {
+            if !drive.master.ready {
+                return false;
+            }
+            self.coupling = Some(Coupling::new(thread, drive.master.nominal_deg));
+        }
+        true
+    }
+
+    /// What is told the spindle.
+    fn lead(&self) -> Option<Lead> {
+        let (item, coupling) = self.ring.current().zip(self.coupling)?;
+        let speed = if self.backward { -self.speed } else { self.speed };
+        Some(coupling.lead(item.length - self.rest, speed))
+    }
+
+    /// Goes back along the current element for a time; `None` when it goes forward.
+    fn drive_back(&mut self, drive: &Drive, time: f64) -> Option<State> {
+        let item = self.ring.current()?;
+        let wanted = drive.back && self.coupling.is_some();
+        if self.speed <= 0.0 {
+            self.backward = wanted;
+        }
+        if !self.backward {
+            return None;
+        }
+        let limit = if wanted { self.ring.feed() } else { 0.0 };
+        let (speed, covered) = master::go_back(item, self.speed, item.length - self.rest, limit, time);
+        (self.speed, self.rest) = (speed, item.length - covered);
+        Some(if speed > 0.0 { State::Moving } else { State::Held })
+    }
+
+    /// Goes on behind the current element, unless the path has to wait there. What it waits for.
+    fn finish(&mut self, drive: &Drive) -> Option<State> {
+        let item = self.ring.current()?;
+        if self.speed <= 0.0 {
+            if item.length > 0.0 && !drive.in_position {
+                return Some(State::Settling);
+            }
+            if self.stops.is_to_be_clamped(item) {
+                return Some(State::Clamping);
+            }
+            // Whether the block has ended is known when the next element is, or that none comes.
+            if self.stops.is_block_end(item) {
+                self.phase = Phase::BlockEnd;
+                return None;
+            }
+        }
+        self.next()
     }
 
     fn at_the_end(&self) -> State {
@@ -357,130 +366,67 @@ impl<E> Interpolator<E> {
         }
     }
 
-    /// Goes on to the next element.
-    fn next(&mut self) {
+    /// Goes on to the next element; there may be none.
+    fn next(&mut self) -> Option<State> {
+        if self.ring.following().is_none() {
+            return Some(self.at_the_end());
+        }
         let length = self.ring.current().map_or(0.0, |item| item.length);
-        let before = self.coupling.map(|coupling| (coupling, length));
         self.ring.advance();
         self.enter();
-        self.couple_on(before);
-        let stops = self.single_block || !self.clamped.union(self.clamping).is_empty();
-        if stops && self.ring.stop_is_behind() {
-            let stop = self.block_end();
-            self.ring.set_stop(stop);
+        let thread = self.ring.current().and_then(|item| item.element.thread());
+        self.coupling = self.coupling.and_then(|coupling| coupling.go_on(length, thread));
+        self.backward = false;
+        if self.ring.stop_is_behind() {
+            self.seek_stop();
         }
+        None
     }
 
     /// Begins the current element.
     fn enter(&mut self) {
         self.phase = Phase::Begin;
         self.rest = self.ring.current().map_or(0.0, |item| item.length);
-        self.output_to = f64::NEG_INFINITY;
+        self.outputs.begin();
     }
 
     /// Outputs the functions at one end of the current element; the phase after it.
-    fn output(&mut self, output: Output, gate: Gate, then: Phase) -> Phase {
-        let place = match gate {
-            Gate::Start => Place::Start,
-            Gate::End => Place::End,
-        };
-        match output {
-            Output::Nothing => then,
-            Output::Passing => {
-                self.queue(place, false);
-                then
-            }
-            Output::Waiting => {
-                let waits = !std::mem::take(&mut self.released);
-                self.queue(place, waits);
-                if waits { Phase::Gate(gate) } else { then }
-            }
-        }
-    }
-
-    /// Outputs the functions along the current element that were passed.
-    fn output_along(&mut self) {
-        let Some(item) = self.ring.current() else { return };
-        let to = if self.rest > 0.0 {
-            item.length - self.rest
-        } else {
-            f64::INFINITY
-        };
-        let passed = self.output_to..to;
-        for index in 0..item.element.functions().len() {
-            let length = self
-                .ring
-                .current()
-                .and_then(|item| item.element.functions().get(index))
-                .filter(|function| place(function).is_none())
-                .and_then(|function| match function.at {
-                    At::Length(length) if length > 0.0 => Some(length.min(f64::MAX)),
-                    At::Length(_) => Some(0.0),
-                    At::BeforeEnd(lead_s) => Some(self.place_before_end(lead_s)),
-                    At::Start | At::End => None,
-                });
-            if length.is_some_and(|length| passed.contains(&length)) {
-                self.queue(Place::Along(index), false);
-            }
-        }
-        self.output_to = to;
-    }
-
-    /// The path length of the current element from which its movement still takes a time, s; at the latest
-    /// that at which it begins to brake, for in tapping the spindle follows a feed ramp that is flatter than
-    /// its own [000:6070].
-    fn place_before_end(&self, time_s: f64) -> f64 {
+    fn output(&mut self, gate: Gate, then: Phase) -> Phase {
         let Some(item) = self.ring.current() else {
-            return 0.0;
+            return then;
         };
-        let speed = item.feed.min((item.acceleration * item.length).sqrt());
-        let braking = self.braking_s();
-        let way = speed * (0.5 * braking + (time_s - braking).max(0.0));
-        (item.length - way).max(0.0)
+        let (place, output) = match gate {
+            Gate::Start => (Place::Start, item.start),
+            Gate::End => (Place::End, item.end),
+        };
+        if output == Output::Nothing {
+            return then;
+        }
+        let waits = output == Output::Waiting && !std::mem::take(&mut self.released);
+        self.outputs.put(item, self.ring.number(), place, waits);
+        if waits { Phase::Gate(gate) } else { then }
     }
 
     /// The time in which the current element brakes to a standstill from its feed, s.
     pub fn braking_s(&self) -> f64 {
-        self.ring.current().map_or(0.0, |item| {
-            item.feed.min((item.acceleration * item.length).sqrt()) / item.acceleration
-        })
-    }
-
-    fn queue(&mut self, place: Place, waits: bool) {
-        if let Some(item) = self.ring.current() {
-            self.outputs.push_back(FunctionOutput {
-                element: self.ring.number(),
-                block: item.element.block,
-                sequence: item.element.sequence,
-                place,
-                waits,
-            });
-        }
+        let item = self.ring.current();
+        item.map_or(0.0, |item| item.braking_s(self.ring.feed()))
     }
 
     /// The next functions to be output, in the order of the path. To be asked for until there are no
     /// more after each cycle.
     pub fn next_output(&mut self) -> Option<FunctionOutput> {
-        self.outputs.pop_front()
+        self.outputs.next()
     }
 
     /// The functions of an output. They are kept until the next [`Interpolator::prepare`], those of
     /// the current element longer.
     pub fn functions(&self, output: &FunctionOutput) -> impl Iterator<Item = &TechnologyFunction> {
-        let wanted = output.place;
-        let functions = self
-            .ring
-            .get(output.element)
-            .map_or(&[] as &[_], |item| item.element.functions());
-        functions
-            .iter()
-            .enumerate()
-            .filter(move |(index, function)| match wanted {
-                Place::Start => place(function) == Some(Gate::Start),
-                Place::End => place(function) == Some(Gate::End),
-                Place::Along(along) => *index == along,
-            })
-            .map(|(_, function)| function)
+        let item = self.ring.get(output.element);
+        outputs::at(
+            output.place,
+            item.map_or(&[] as &[_], |item| item.element.functions()),
+        )
     }
 
     /// The functions for which the path waits are acknowledged. When it does not wait yet, the next
@@ -525,7 +471,7 @@ impl<E> Interpolator<E> {
     /// `None` when all was executed. The next path starts from here.
     pub fn clear(&mut self) -> Option<Cut> {
         let cut = self.ring.current().and_then(|item| {
-            let unfinished = !matches!(self.phase, Phase::Done | Phase::BlockEnd | Phase::Over);
+            let unfinished = !self.phase.is_executed();
             let cut_at = if unfinished {
                 Some(item)
             } else {
@@ -547,10 +493,58 @@ impl<E> Interpolator<E> {
         self.phase = Phase::Done;
         (self.speed, self.rest) = (0.0, 0.0);
         self.released = false;
+        self.stops.forget();
         self.outputs.clear();
         self.coupling = None;
         self.backward = false;
+        self.recalled = None;
         cut
+    }
+
+    /// Takes back what is not executed, for the axes stand elsewhere: the path goes on from a position to
+    /// where each of the elements leads, once they are [taken](Interpolator::take_recalled) and given again. The rest
+    /// of the element that was cut comes without the functions that are output already. The path must stand.
+    pub fn recall(&mut self, position: Position) {
+        let executed = Executed {
+            phase: self.phase,
+            length: self.ring.current().map_or(0.0, |item| item.length),
+            rest: self.rest,
+            output_to: self.outputs.to(),
+        };
+        let recalled = self.recalled.or(Some(executed));
+        if self.recalled.is_none() {
+            self.ring.set_aside();
+        }
+        self.position = position;
+        self.clear();
+        self.recalled = recalled;
+    }
+
+    /// What was recalled since it was asked for last, for the source to give it again before all else; there may be
+    /// nothing left. It may allocate.
+    pub fn take_recalled(&mut self) -> Option<Vec<PathElement>> {
+        let executed = self.recalled.take()?;
+        let mut elements = self.ring.take_aside();
+        let first = elements.next().and_then(|first| executed.remainder(first));
+        Some(first.into_iter().chain(elements).collect())
+    }
+
+    /// Couples an element that has begun anew, for spindle and axes were moved meanwhile: this position
+    /// belongs to that angle of the spindle, degrees.
+    pub fn couple_again(&mut self, position: &Position, angle_deg: f64) {
+        let Some((item, coupling)) = self.ring.current().zip(self.coupling.as_mut()) else {
+            return;
+        };
+        let (way, place) = coupling.renew(item, position, angle_deg);
+        if self.phase == Phase::Move {
+            self.rest = (item.length - way).clamp(0.0, item.length);
+        }
+        (self.speed, self.position) = (0.0, place);
+    }
+
+    /// Whether the path follows the spindle: it has begun an element that does so, and none behind it.
+    pub fn is_coupled(&self) -> bool {
+        self.coupling.is_some()
     }
 
     /// Nominal position on the path.
@@ -575,22 +569,8 @@ impl<E> Interpolator<E> {
 
     /// Elements that are prepared and not yet executed, the current one included.
     pub fn ahead(&self) -> usize {
-        self.ring.ahead().count()
+        self.ring.ahead().len()
     }
-}
-
-/// Drives along an item for a time.
-#[inline]
-fn drive_along(item: &Item, speed: f64, rest: f64, hold: bool, time: f64) -> Driven {
-    let (limit, exit_squared) = if hold { (0.0, 0.0) } else { (item.feed, item.exit) };
-    Ramp {
-        speed,
-        rest,
-        acceleration: item.acceleration,
-        limit,
-        exit_squared,
-    }
-    .drive(time)
 }
 
 /// The position with so much of an item to go, mm.
@@ -604,9 +584,4 @@ fn position(item: &Item, rest: f64) -> Position {
         1.0
     };
     curve.position(start, end, fraction)
-}
-
-/// Whether an element moves one of the axes.
-fn moves(element: &PathElement, axes: AxisSet) -> bool {
-    axes.iter().any(|axis| element.moves(axis))
 }

@@ -65,12 +65,17 @@
 //! assert!((time_s - 1.1).abs() < 1e-12);
 //! ```
 
+mod allowed;
+mod braking;
+mod connect;
 mod corner;
 mod drive;
+mod envelope;
 mod gate;
 mod interpolator;
+mod item;
+mod joints;
 mod limits;
-
 mod motion;
 mod planner;
 mod point_to_point;
@@ -78,7 +83,10 @@ mod profile;
 mod ramp;
 mod ring;
 mod sampler;
+mod segments;
+mod stretch;
 mod times;
+mod wanted;
 mod window;
 
 pub use corner::SERVO_WINDOW_S;

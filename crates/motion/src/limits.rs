@@ -74,11 +74,22 @@ const NO_FEED_MM_MIN: f64 = 1e-30;
 /// Greatest feed limit that counts, mm/min: far above MP1010's 300 000, without infinities.
 const FASTEST_MM_MIN: f64 = 1e9;
 
+/// What of a movement decides how fast its axes let it be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Slowest {
+    /// The time, s, that a mm of path takes the axis that needs longest for its share of it.
+    pub(crate) time: f64,
+    /// The greatest share of an axis in the path.
+    pub(crate) share: f64,
+}
+
 /// [`Limits`] in the units of the formulas, made once.
 #[derive(Clone, Debug)]
 pub(crate) struct Dynamics {
-    /// Seconds that a mm takes each axis at its greatest feed.
+    /// Seconds that a mm takes each axis at its rapid traverse MP1010.
     pub(crate) slowness: [f64; Axis::COUNT],
+    /// Seconds that a mm takes any axis at least.
+    least_slowness: f64,
     /// MP1060, mm/s².
     pub(crate) acceleration: [f64; Axis::COUNT],
     /// `sqrt(MP1060² + MP1070²)` of each axis, mm/s².
@@ -93,12 +104,13 @@ pub(crate) struct Dynamics {
     pub(crate) cycle: f64,
     /// The servo's window, s.
     pub(crate) servo_window: f64,
+    /// Effective overrides as factors, 0 to 1.5.
     feed_override: f64,
     rapid_override: f64,
     spindle_override: f64,
+    /// Overrides of feed and rapid traverse, %.
+    percent: [f64; 2],
     gears: [SpindleGear; GEARS],
-    /// Slowness of each axis as the machine has it.
-    machine_slowness: [f64; Axis::COUNT],
 }
 
 impl Dynamics {
@@ -106,10 +118,9 @@ impl Dynamics {
         let acceleration = limits.acceleration_m_s2.map(mm_s2);
         let radial = mm_s2(limits.radial_acceleration_m_s2);
         let corner = limits.corner_angle_deg.clamp(TANGENTIAL_DEG, 180.0);
-        let machine_slowness = limits.max_feed_mm_min.map(slowness);
         Dynamics {
-            slowness: machine_slowness,
-            machine_slowness,
+            slowness: limits.max_feed_mm_min.map(slowness),
+            least_slowness: 0.0,
             acceleration,
             bound: acceleration.map(|a| a.hypot(radial)),
             radial,
@@ -119,17 +130,19 @@ impl Dynamics {
             servo_lag: limits.servo_lag,
             cycle: limits.cycle_s.clamp(LEAST_CYCLE_S, 1.0).max(LEAST_CYCLE_S),
             servo_window: limits.servo_window_s.clamp(LEAST_CYCLE_S, 1.0).max(LEAST_CYCLE_S),
-            feed_override: limits.feed_override_percent,
-            rapid_override: limits.rapid_override_percent,
-            spindle_override: 100.0,
+            feed_override: factor(limits.feed_override_percent),
+            rapid_override: factor(limits.rapid_override_percent).min(1.0),
+            spindle_override: 1.0,
+            percent: [limits.feed_override_percent, limits.rapid_override_percent],
             gears: limits.spindle,
         }
     }
 
     /// Other overrides, %: feed, rapid traverse, spindle.
     pub(crate) fn set_overrides(&mut self, [feed, rapid, spindle]: [f64; 3]) {
-        (self.feed_override, self.rapid_override) = (feed, rapid);
-        self.spindle_override = spindle;
+        self.percent = [feed, rapid];
+        (self.feed_override, self.spindle_override) = (factor(feed), factor(spindle));
+        self.rapid_override = factor(rapid).min(1.0);
     }
 
     /// How fast the spindle lets an element that follows it accelerate, mm/s²; infinite for others.
@@ -155,22 +168,18 @@ impl Dynamics {
 
     /// No axis is faster than this, mm/min.
     pub(crate) fn set_rapid_limit(&mut self, limit_mm_min: f64) {
-        let least = slowness(limit_mm_min);
-        self.slowness = self.machine_slowness.map(|slowness| slowness.max(least));
+        self.least_slowness = slowness(limit_mm_min);
     }
 
     /// Greatest path speed, mm/s, of a movement: the programmed feed with its override, and no axis
-    /// faster than it can be. `slowest` is the time that a mm of path takes the axis that needs longest
-    /// for its part of it.
-    pub(crate) fn speed(&self, feed: FeedRate, law: OverrideLaw, slowest: f64) -> f64 {
+    /// faster than it can be.
+    #[inline]
+    pub(crate) fn speed(&self, feed: FeedRate, law: OverrideLaw, slowest: Slowest) -> f64 {
+        let slowest = slowest.time.max(slowest.share * self.least_slowness);
         let speed = match feed {
-            FeedRate::Rapid => effective(self.rapid_override, law).min(1.0) / slowest,
+            FeedRate::Rapid => self.rapid(law) / slowest,
             FeedRate::Programmed(feed) => {
-                let percent = match law {
-                    OverrideLaw::Spindle(_) => self.spindle_override,
-                    _ => self.feed_override,
-                };
-                let speed = feed / 60.0 * effective(percent, law);
+                let speed = feed / 60.0 * self.feed(law);
                 // The comparison is false for NaN, which stays and is standstill below.
                 if speed * slowest > 1.0 {
                     1.0 / slowest
@@ -181,6 +190,25 @@ impl Dynamics {
         };
         if speed > STANDSTILL_MM_S { speed } else { 0.0 }
     }
+
+    /// The effective override of a programmed feed as a factor [000:6094-6098] [003:5106].
+    #[inline]
+    fn feed(&self, law: OverrideLaw) -> f64 {
+        match law {
+            OverrideLaw::Free => self.feed_override,
+            OverrideLaw::Spindle(_) => self.spindle_override,
+            OverrideLaw::Tapping { .. } | OverrideLaw::Disabled => bounded(self.percent[0], law),
+        }
+    }
+
+    /// That of rapid traverse: more than 100 % is without effect.
+    #[inline]
+    fn rapid(&self, law: OverrideLaw) -> f64 {
+        match law {
+            OverrideLaw::Free | OverrideLaw::Spindle(_) => self.rapid_override,
+            OverrideLaw::Tapping { .. } | OverrideLaw::Disabled => bounded(self.percent[1], law).min(1.0),
+        }
+    }
 }
 
 /// Time that an axis takes for a mm at a feed, s/mm.
@@ -190,16 +218,20 @@ fn slowness(feed_mm_min: f64) -> f64 {
         .max(NO_FEED_MM_MIN)
 }
 
-/// The effective override as a factor [000:6094-6098] [003:5106].
-fn effective(percent: f64, law: OverrideLaw) -> f64 {
-    let percent = match law {
-        OverrideLaw::Free | OverrideLaw::Spindle(_) => percent,
+/// An override as a factor where not every one is effective.
+fn bounded(percent: f64, law: OverrideLaw) -> f64 {
+    match law {
         OverrideLaw::Tapping {
             from_percent,
             to_percent,
-        } => percent.max(from_percent).min(to_percent),
-        OverrideLaw::Disabled => 100.0,
-    };
+        } => factor(percent.max(from_percent).min(to_percent)),
+        OverrideLaw::Free | OverrideLaw::Spindle(_) => factor(percent),
+        OverrideLaw::Disabled => 1.0,
+    }
+}
+
+/// An override as a factor.
+fn factor(percent: f64) -> f64 {
     percent.clamp(0.0, GREATEST_OVERRIDE_PERCENT) / 100.0
 }
 

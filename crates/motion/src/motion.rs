@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bahn_path::{Arc, Axis, Curve, PathElement, Point2, Position};
 
-use crate::limits::Dynamics;
+use crate::limits::{Dynamics, Slowest};
 
 /// One value per axis in the order of [`Axis::ALL`].
 pub(crate) type PerAxis = [f64; Axis::COUNT];
@@ -32,8 +32,8 @@ pub(crate) struct Motion {
     pub(crate) length: f64,
     /// Greatest path speed, mm/s; 0 when it cannot move.
     pub(crate) speed: f64,
-    /// The time, s, that a mm of path takes the axis that needs longest for its share of it.
-    pub(crate) slowest: f64,
+    /// How fast its axes let it be.
+    pub(crate) slowest: Slowest,
     /// Path speed that the radial acceleration allows, mm/s; infinite on lines.
     pub(crate) radial_speed: f64,
     /// Path acceleration, mm/s².
@@ -204,13 +204,19 @@ fn path_length(delta: &PerAxis) -> Option<(f64, bool)> {
     (rotary > least && rotary.is_finite()).then(|| (rotary.sqrt(), true))
 }
 
-/// The time, s, that a mm of path takes the axis that needs longest for its share of it.
+/// How fast the axes let a movement be.
 #[inline]
-fn slowest(share: &[f64], dynamics: &Dynamics) -> f64 {
-    let mut slowest = 0.0f64;
+fn slowest(share: &[f64], dynamics: &Dynamics) -> Slowest {
+    let mut slowest = Slowest::default();
     for (share, slowness) in share.iter().zip(&dynamics.slowness) {
-        let time = if *share > MOVES { share * slowness } else { 0.0 };
-        slowest = if time > slowest { time } else { slowest };
+        let share = if *share > MOVES { *share } else { 0.0 };
+        let time = share * slowness;
+        slowest.time = if time > slowest.time { time } else { slowest.time };
+        slowest.share = if share > slowest.share {
+            share
+        } else {
+            slowest.share
+        };
     }
     slowest
 }

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use bahn_path::{Barrier, ElementSource, LiveData, PathElement, Position, Step};
 
-use crate::corner::{Corner, Joint};
 use crate::gate::Gates;
+use crate::joints::Joints;
 use crate::limits::{Dynamics, Limits};
 use crate::motion::Motion;
 use crate::profile::Profile;
@@ -142,24 +142,13 @@ impl Planned {
     }
 }
 
-/// The elements read ahead and the state at the end of them.
+/// The elements read ahead.
 #[derive(Debug)]
 struct LookAhead {
     dynamics: Dynamics,
     elements: VecDeque<PathElement>,
     window: Window,
-    /// Whether the last element waits for what comes after it.
-    open: bool,
-    /// The last element ends in a stop.
-    stop: bool,
-    /// The last motion since a stop. Elements without length leave it as it is.
-    last: Option<Motion>,
-    /// The joint after `last` is passed whatever its angle.
-    any_angle: bool,
-    /// Way since the last corner or stop, mm.
-    way: f64,
-    /// The last corner while the way after it is too short to say how fast it may be passed.
-    corner: Option<Corner>,
+    joints: Joints,
 }
 
 impl LookAhead {
@@ -168,12 +157,7 @@ impl LookAhead {
             dynamics,
             elements: VecDeque::new(),
             window: Window::new(),
-            open: false,
-            stop: true,
-            last: None,
-            any_angle: false,
-            way: 0.0,
-            corner: None,
+            joints: Joints::default(),
         }
     }
 
@@ -182,7 +166,7 @@ impl LookAhead {
     fn pop(&mut self) -> Option<(PathElement, Profile)> {
         let full = self.window.is_full();
         if full {
-            self.settle();
+            self.joints.settle(&mut self.window);
         }
         let profile = self.window.pop(full)?;
         Some((self.elements.pop_front()?, profile))
@@ -191,80 +175,25 @@ impl LookAhead {
     /// Reads an element.
     #[inline]
     fn push(&mut self, element: PathElement) {
+        let LookAhead {
+            dynamics,
+            window,
+            joints,
+            ..
+        } = self;
         let gates = Gates::of(&element);
-        let motion = Motion::of(&element, &self.dynamics);
-        if self.open {
-            self.join(motion.as_ref(), gates.start);
-        }
-        self.stop = gates.end;
+        let motion = Motion::of(&element, dynamics);
+        joints.join(window, motion.as_ref(), gates, dynamics);
         match &motion {
-            Some(motion) => {
-                self.way += motion.length;
-                self.window.push(motion.length, motion.acceleration, motion.speed);
-                self.any_angle = false;
-            }
-            None => self.window.push(0.0, 1.0, f64::INFINITY),
+            Some(motion) => window.push(motion.length, motion.acceleration, motion.speed),
+            None => window.push(0.0, 1.0, f64::INFINITY),
         }
-        if motion.is_some() {
-            self.last = motion;
-        }
-        // M90 is effective in operation with servo lag only [000:5114]; a joint that is tangential by
-        // construction may differ by rounding.
-        self.any_angle |= element.constant_speed && self.dynamics.servo_lag || element.tangential_end;
-        self.open = true;
+        joints.follow(window, &element, motion, gates, dynamics);
         self.elements.push_back(element);
-        if self
-            .corner
-            .as_ref()
-            .is_some_and(|corner| corner.knows_enough(self.way))
-        {
-            self.settle();
-        }
-    }
-
-    /// Finds the joint between the last element and the next one.
-    #[inline]
-    fn join(&mut self, next: Option<&Motion>, gate: bool) {
-        let Some(last) = self.last.as_ref().filter(|_| !self.stop && !gate) else {
-            return self.join_stop();
-        };
-        let Some(next) = next else {
-            // Without a length there is no direction: the corner is where the path goes on.
-            return self.window.join(last.speed);
-        };
-        let joint = Joint::between(last, next, self.way, self.any_angle, &self.dynamics);
-        match joint {
-            Joint::Stop => self.join_stop(),
-            Joint::Smooth(speed) => self.window.join(speed),
-            Joint::Corner(corner) => {
-                self.settle();
-                self.window.hold();
-                self.corner = Some(corner);
-                self.way = 0.0;
-            }
-        }
-    }
-
-    fn join_stop(&mut self) {
-        self.settle();
-        self.window.join(0.0);
-        self.last = None;
-        self.way = 0.0;
-    }
-
-    /// Decides the corner that waits for the way after it.
-    #[inline]
-    fn settle(&mut self) {
-        if let Some(corner) = self.corner.take() {
-            self.window.settle(corner.pass_speed(self.way));
-        }
     }
 
     /// The path stops at the end of what was read.
     fn stop(&mut self) {
-        if self.open {
-            self.join_stop();
-            self.open = false;
-        }
+        self.joints.stop(&mut self.window);
     }
 }

@@ -10,6 +10,7 @@
 
 use std::collections::VecDeque;
 
+use crate::joints::Caps;
 use crate::profile::{Profile, Speed};
 
 /// Most elements that look-ahead holds. When the way of braking has more of them (65.5 mm of lines of
@@ -83,37 +84,6 @@ impl Window {
             energy,
             cap: 0.0,
         });
-    }
-
-    /// The speed at the end of the last segment may be at most `speed`.
-    #[inline]
-    pub(crate) fn join(&mut self, speed: f64) {
-        if let Some(last) = self.segments.back_mut() {
-            last.cap = speed * speed;
-            self.joined += 1;
-            if self.held.is_none() {
-                self.decide();
-            }
-        }
-    }
-
-    /// The speed at the end of the last segment is still to be found out; `settle` gives it. Until
-    /// then no later joint is of use.
-    #[inline]
-    pub(crate) fn hold(&mut self) {
-        self.held = Some(self.joined);
-        self.joined += 1;
-    }
-
-    /// Gives the joint that `hold` left open.
-    #[inline]
-    pub(crate) fn settle(&mut self, speed: f64) {
-        if let Some(joint) = self.held.take() {
-            if let Some(segment) = self.segment_mut(joint) {
-                segment.cap = speed * speed;
-            }
-            self.decide();
-        }
     }
 
     /// The profile of the first segment if its exit speed is final. With `now` a path that could still
@@ -197,6 +167,36 @@ impl Window {
     fn segment_mut(&mut self, joint: u64) -> Option<&mut Segment> {
         self.segments
             .get_mut(usize::try_from(joint.checked_sub(self.first)?).ok()?)
+    }
+}
+
+impl Caps for Window {
+    #[inline]
+    fn join(&mut self, speed: f64) {
+        if let Some(last) = self.segments.back_mut() {
+            last.cap = speed * speed;
+            self.joined += 1;
+            if self.held.is_none() {
+                self.decide();
+            }
+        }
+    }
+
+    /// Until the joint is settled no later one is of use.
+    #[inline]
+    fn hold(&mut self) {
+        self.held = Some(self.joined);
+        self.joined += 1;
+    }
+
+    #[inline]
+    fn settle(&mut self, speed: f64) {
+        if let Some(joint) = self.held.take() {
+            if let Some(segment) = self.segment_mut(joint) {
+                segment.cap = speed * speed;
+            }
+            self.decide();
+        }
     }
 }
 

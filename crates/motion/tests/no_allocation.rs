@@ -3,8 +3,13 @@
 
 mod common;
 
-use bahn_motion::{Drive, Interpolator, State};
-use bahn_path::{At, Axis, Function, Position, Step, Synchronisation, TechnologyFunction};
+use std::collections::VecDeque;
+
+use bahn_motion::{Drive, Interpolator, Master, State};
+use bahn_path::{
+    At, Axis, AxisSet, ElementSource, FeedRate, Function, LiveData, OverrideLaw, PathElement, Position, Step,
+    Synchronisation, TechnologyFunction, Thread,
+};
 use common::{Path, limits, list};
 
 /// A path with all that there is: lines, arcs, corners, functions that wait and that do not, dwell.
@@ -77,4 +82,135 @@ fn no_cycle_allocates() {
         }
     }
     panic!("it does not end");
+}
+
+/// A source to which elements are given back.
+struct Queue(VecDeque<PathElement>);
+
+impl ElementSource for Queue {
+    type Error = &'static str;
+
+    fn next(&mut self) -> Step<&'static str> {
+        self.0.pop_front().map_or(Step::End, Step::Element)
+    }
+
+    fn resume(&mut self, _: LiveData) {}
+}
+
+/// Blocks with feeds of their own, rapid traverse and threads among the others.
+fn many_feeds() -> VecDeque<PathElement> {
+    let mut path = path();
+    for i in 0..600u32 {
+        path.by(&[(Axis::X, 0.02)]);
+        path.last().feed = match i % 10 {
+            0 => FeedRate::Rapid,
+            _ => FeedRate::Programmed(500.0 + f64::from(i * 37 % 6000)),
+        };
+        if i % 100 == 50 {
+            path.by(&[(Axis::Z, -2.0)]);
+            path.last().override_law = OverrideLaw::Spindle(Thread {
+                pitch_mm: 1.0,
+                clockwise: true,
+                orientation_deg: None,
+            });
+        }
+    }
+    path.elements.into()
+}
+
+/// Whatever the path is asked for at any moment: other overrides and limits, axes to be clamped, the way back in a
+/// thread, and to be taken back.
+#[test]
+fn whatever_is_done_no_cycle_allocates() {
+    let mut source = Queue(many_feeds());
+    let mut path: Interpolator<&str> = Interpolator::new(&limits(), 512);
+    path.set_position(Position::ZERO);
+    let (mut recalls, mut led, mut angle) = (0, 0, 0.0);
+    for cycle in 0..200_000u32 {
+        let drive = Drive {
+            feed_override_percent: f64::from(cycle * 7919 % 150 + 1),
+            rapid_override_percent: f64::from(cycle * 13 % 100 + 1),
+            rapid_limit_mm_min: f64::from(10_000 + cycle % 100 / 10 * 500),
+            master: Master {
+                nominal_deg: angle,
+                actual_deg: angle,
+                ready: true,
+            },
+            back: cycle % 90 < 5,
+            hold: cycle % 70 < 8,
+            single_block: cycle % 400 < 50,
+            clamping: if cycle % 60 < 10 {
+                AxisSet::EMPTY.with(Axis::Z)
+            } else {
+                AxisSet::EMPTY
+            },
+            ..Drive::default()
+        };
+        path.prepare(&mut source, 50);
+        let (mut state, mut lead) = (State::Empty, None);
+        let allocated = allocation_counter::measure(|| {
+            let now = path.cycle(&drive);
+            (state, lead) = (now.state, now.lead);
+            match state {
+                State::Gate(_) => path.release(),
+                State::BlockEnd => path.go_on(),
+                State::Held if cycle % 5 == 0 && !path.is_coupled() => {
+                    path.recall(now.position);
+                    recalls += 1;
+                }
+                _ => {}
+            }
+            while path.next_output().is_some() {}
+        });
+        assert_eq!(
+            (allocated.count_total, allocated.count_current),
+            (0, 0),
+            "cycle {cycle} {state:?}"
+        );
+        if let Some(lead) = lead {
+            angle = lead.angle_deg;
+            led += 1;
+        }
+        for element in path.take_recalled().into_iter().flatten().rev() {
+            source.0.push_front(element);
+        }
+        if state == State::Stopped {
+            assert!(recalls > 10 && led > 100, "{recalls} {led}");
+            return;
+        }
+    }
+    panic!("it does not end");
+}
+
+/// What is recalled is not lost: until it is taken nothing is read, and it comes but once.
+#[test]
+fn what_is_recalled_waits_to_be_taken() {
+    let mut line = Path::new(6000.0);
+    line.line(&[(Axis::X, 10.0)]).line(&[(Axis::X, 20.0)]);
+    let mut source = Queue(line.elements.into());
+    let mut path: Interpolator<&str> = Interpolator::new(&limits(), 10);
+    path.set_position(Position::ZERO);
+    path.prepare(&mut source, 1);
+    let mut here = Position::ZERO;
+    here[Axis::Y] = 5.0;
+    path.recall(here);
+    path.recall(here);
+    path.prepare(&mut source, 10);
+    assert_eq!(
+        (path.cycle(&Drive::default()).state, source.0.len()),
+        (State::Empty, 1)
+    );
+    let taken = path.take_recalled().unwrap_or_default();
+    assert_eq!((taken.len(), taken[0].end[Axis::X]), (1, 10.0));
+    assert_eq!(path.take_recalled(), None);
+    // An internal stop drops it for good.
+    source.0.push_front(taken[0].clone());
+    path.prepare(&mut source, 1);
+    path.recall(here);
+    path.clear();
+    path.recall(here);
+    assert_eq!(path.take_recalled(), Some(Vec::new()));
+    source.0.push_front(taken[0].clone());
+    path.prepare(&mut source, 10);
+    assert_eq!(path.element().map(|element| element.start[Axis::Y]), Some(5.0));
 }

@@ -7,10 +7,9 @@
 
 use bahn_path::{Position, Thread};
 
-use super::{Interpolator, Phase};
-use crate::drive::{Drive, Lead, State};
+use crate::drive::Lead;
+use crate::item::Item;
 use crate::ramp::{Driven, Ramp};
-use crate::ring::Item;
 
 /// Degrees per second of one rpm.
 const DEG_S: f64 = 6.0;
@@ -25,7 +24,7 @@ pub(super) struct Coupling {
 }
 
 impl Coupling {
-    fn new(thread: &Thread, origin_deg: f64) -> Coupling {
+    pub(super) fn new(thread: &Thread, origin_deg: f64) -> Coupling {
         let sign = if thread.clockwise { 1.0 } else { -1.0 };
         Coupling {
             origin_deg,
@@ -33,108 +32,51 @@ impl Coupling {
         }
     }
 
+    /// The element after one of this length goes on in the thread, if it does not begin its own.
+    pub(super) fn go_on(&self, length: f64, next: Option<&Thread>) -> Option<Coupling> {
+        let thread = next.filter(|thread| thread.orientation_deg.is_none())?;
+        Some(Coupling::new(thread, self.angle_deg(length)))
+    }
+
+    /// The angle that belongs to a place so far along the element, mm.
     fn angle_deg(&self, way_mm: f64) -> f64 {
         self.origin_deg + self.deg_per_mm * way_mm
     }
-}
 
-impl<E> Interpolator<E> {
-    /// Couples the current element to the spindle that was in the thread before, if it goes on from there.
-    pub(super) fn couple_on(&mut self, before: Option<(Coupling, f64)>) {
-        let thread = self.ring.current().and_then(|item| item.element.thread());
-        self.coupling = match (thread, before) {
-            (Some(thread), Some((coupling, length))) if thread.orientation_deg.is_none() => {
-                Some(Coupling::new(thread, coupling.angle_deg(length)))
-            }
-            _ => None,
-        };
-        self.backward = false;
-    }
-
-    /// Couples the current element to the spindle as it stands. `false` when the spindle is not ready.
-    pub(super) fn couple(&mut self, drive: &Drive) -> bool {
-        let thread = self.ring.current().and_then(|item| item.element.thread());
-        if let (Some(thread), None) = (thread, self.coupling) {
-            if !drive.master.ready {
-                return false;
-            }
-            self.coupling = Some(Coupling::new(thread, drive.master.nominal_deg));
+    /// What is told the spindle so far along the element, mm, at a speed, mm/s, negative backwards.
+    pub(super) fn lead(&self, way_mm: f64, speed: f64) -> Lead {
+        Lead {
+            angle_deg: self.angle_deg(way_mm),
+            rpm: self.deg_per_mm * speed / DEG_S,
         }
-        true
-    }
-
-    /// Couples an element that has begun anew, for spindle and axes were moved meanwhile: this position
-    /// belongs to that angle of the spindle, degrees.
-    pub fn couple_again(&mut self, position: &Position, angle_deg: f64) {
-        let Some((item, coupling)) = self.ring.current().zip(self.coupling.as_mut()) else {
-            return;
-        };
-        let way = way(item, position);
-        coupling.origin_deg = angle_deg - coupling.deg_per_mm * way;
-        if self.phase == Phase::Move {
-            self.rest = (item.length - way).clamp(0.0, item.length);
-        }
-        self.speed = 0.0;
-        self.position = place(item, way);
-    }
-
-    /// Whether the path follows the spindle: it has begun an element that does so, and none behind it.
-    pub fn is_coupled(&self) -> bool {
-        self.coupling.is_some()
-    }
-
-    /// What is told the spindle.
-    pub(super) fn lead(&self) -> Option<Lead> {
-        let (item, coupling) = self.ring.current().zip(self.coupling)?;
-        let speed = if self.backward { -self.speed } else { self.speed };
-        Some(Lead {
-            angle_deg: coupling.angle_deg(item.length - self.rest),
-            rpm: coupling.deg_per_mm * speed / DEG_S,
-        })
     }
 
     /// The position that belongs to an angle of the spindle.
-    pub(super) fn following(&self, actual_deg: f64) -> Option<Position> {
-        let (item, coupling) = self.ring.current().zip(self.coupling)?;
-        Some(place(
-            item,
-            (actual_deg - coupling.origin_deg) / coupling.deg_per_mm,
-        ))
+    pub(super) fn position(&self, item: &Item, actual_deg: f64) -> Position {
+        place(item, (actual_deg - self.origin_deg) / self.deg_per_mm)
     }
 
-    /// Goes back along the current element for a time; `None` when it goes forward.
-    pub(super) fn drive_back(&mut self, drive: &Drive, time: f64) -> Option<State> {
-        let item = self.ring.current()?;
-        let wanted = drive.back && self.coupling.is_some();
-        if self.speed <= 0.0 {
-            self.backward = wanted;
-        }
-        if !self.backward {
-            return None;
-        }
-        let covered = Ramp {
-            speed: self.speed,
-            rest: item.length - self.rest,
-            acceleration: item.acceleration,
-            limit: if wanted { item.feed } else { 0.0 },
-            exit_squared: 0.0,
-        };
-        let left = match covered.drive(time) {
-            Driven::OnTheWay { speed, rest } => {
-                self.speed = speed;
-                rest
-            }
-            Driven::Arrived { .. } => {
-                self.speed = 0.0;
-                0.0
-            }
-        };
-        self.rest = item.length - left;
-        Some(if self.speed > 0.0 {
-            State::Moving
-        } else {
-            State::Held
-        })
+    /// From now on this position belongs to that angle of the spindle, degrees. How far along the element it lies,
+    /// mm, and where that is.
+    pub(super) fn renew(&mut self, item: &Item, position: &Position, angle_deg: f64) -> (f64, Position) {
+        let way = way(item, position);
+        self.origin_deg = angle_deg - self.deg_per_mm * way;
+        (way, place(item, way))
+    }
+}
+
+/// Goes back along an element for a time, not faster than a limit, mm/s: the speed and the way that is covered then.
+pub(super) fn go_back(item: &Item, speed: f64, covered: f64, limit: f64, time: f64) -> (f64, f64) {
+    let ramp = Ramp {
+        speed,
+        rest: covered,
+        acceleration: item.acceleration,
+        limit,
+        exit_squared: 0.0,
+    };
+    match ramp.drive(time) {
+        Driven::OnTheWay { speed, rest } => (speed, rest),
+        Driven::Arrived { .. } => (0.0, 0.0),
     }
 }
 

@@ -1,47 +1,39 @@
-//! What is left of the path when the axes were moved away from it.
+//! What is left of an element when the axes were moved away from the path.
 
-use bahn_path::{At, Curve, OverrideLaw, PathElement, Position, TechnologyFunction};
+use bahn_path::{At, Curve, OverrideLaw, PathElement, TechnologyFunction};
 
-use super::{Interpolator, Phase};
+use super::phase::Phase;
 use crate::gate::{Gate, place};
-use crate::ring::Item;
 
-impl<E> Interpolator<E> {
-    /// Takes back what is not executed, for the axes stand elsewhere: the path goes on from a position to
-    /// where each of the elements leads, once they are given again. The rest of the element that was cut
-    /// comes without the functions that are output already. The path must stand.
-    pub fn recall(&mut self, position: Position) -> Vec<PathElement> {
-        let rest = self.ring.current().and_then(|item| self.remainder(item));
-        let mut elements: Vec<PathElement> = rest.into_iter().collect();
-        elements.extend(self.ring.take_ahead().skip(1));
-        self.position = position;
-        self.clear();
-        elements
+/// How far the element was executed that is taken back.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Executed {
+    pub(super) phase: Phase,
+    /// Its length and the way that is left, mm.
+    pub(super) length: f64,
+    pub(super) rest: f64,
+    /// Functions along it up to this length are output, mm.
+    pub(super) output_to: f64,
+}
+
+impl Executed {
+    fn covered(&self) -> f64 {
+        self.length - self.rest
     }
 
-    /// What is left of the element that is executed.
-    fn remainder(&self, item: &Item) -> Option<PathElement> {
-        let element = &item.element;
-        let covered = item.length - self.rest;
-        let mut left = element.clone();
-        let later = |function: &TechnologyFunction| match place(function) {
-            Some(end) => end == Gate::End,
-            None => match function.at {
-                At::Length(length) => length >= self.output_to,
-                _ => self.rest > 0.0,
-            },
-        };
+    /// What is left of the element, without the functions that are output already.
+    pub(super) fn remainder(&self, mut left: PathElement) -> Option<PathElement> {
         match self.phase {
             Phase::Begin => return Some(left),
             Phase::Gate(Gate::Start) | Phase::Move => {
-                let from = if item.length > 0.0 {
-                    covered / item.length
+                let from = if self.length > 0.0 {
+                    self.covered() / self.length
                 } else {
                     0.0
                 };
-                (left.curve, left.start, left.end) =
-                    element.curve.part(&element.start, &element.end, from, 1.0);
-                left.end = element.end;
+                let end = left.end;
+                (left.curve, left.start, left.end) = left.curve.part(&left.start, &end, from, 1.0);
+                left.end = end;
                 // The spindle goes on from where it stands.
                 if let OverrideLaw::Spindle(thread) = &mut left.override_law {
                     thread.orientation_deg = None;
@@ -49,7 +41,7 @@ impl<E> Interpolator<E> {
             }
             Phase::Dwell(_) | Phase::Finish => {
                 left.curve = Curve::Hold;
-                left.start = element.end;
+                left.start = left.end;
                 left.dwell_s = match self.phase {
                     Phase::Dwell(dwell) => dwell,
                     _ => 0.0,
@@ -57,20 +49,23 @@ impl<E> Interpolator<E> {
             }
             Phase::Gate(Gate::End) | Phase::Done | Phase::BlockEnd | Phase::Over => return None,
         }
-        let functions = element
-            .functions()
-            .iter()
-            .filter(|function| later(function))
-            .cloned();
-        let functions: Vec<TechnologyFunction> = functions
-            .map(|mut function| {
-                if let At::Length(length) = &mut function.at {
-                    *length -= covered;
-                }
-                function
-            })
-            .collect();
-        left.functions = (!functions.is_empty()).then(|| functions.into_boxed_slice());
+        left.functions = self.later(left.functions);
         Some(left)
+    }
+
+    /// The functions that are still to be output, at their places on the rest of the way.
+    fn later(&self, functions: Option<Box<[TechnologyFunction]>>) -> Option<Box<[TechnologyFunction]>> {
+        let mut functions = functions?.into_vec();
+        functions.retain(|function| match (place(function), function.at) {
+            (Some(end), _) => end == Gate::End,
+            (None, At::Length(length)) => length >= self.output_to,
+            (None, _) => self.rest > 0.0,
+        });
+        for function in &mut functions {
+            if let At::Length(length) = &mut function.at {
+                *length -= self.covered();
+            }
+        }
+        (!functions.is_empty()).then(|| functions.into_boxed_slice())
     }
 }

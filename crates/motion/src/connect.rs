@@ -1,0 +1,65 @@
+//! How the path goes on from where it is.
+
+use bahn_path::{Curve, Function, PathElement, Position};
+
+/// An element whose arc starts farther than this from where the path is gets a line to its start, mm.
+const GAP: f64 = 1e-6;
+
+/// Lets an element start where the path is, axis by axis where that is known. An arc must start where
+/// it was programmed; when that is elsewhere the answer is a line to there.
+pub(crate) fn connect(at: &Position, element: &mut PathElement) -> Option<PathElement> {
+    let from_source = element.start;
+    // The tip of another tool stands elsewhere in the tool axis, without a movement.
+    let tool_axis = element
+        .functions()
+        .iter()
+        .find_map(|output| match &output.function {
+            Function::Tool(call) => Some(call.axis),
+            _ => None,
+        });
+    for axis in at.known().iter() {
+        if tool_axis == Some(axis) && matches!(element.curve, Curve::Hold) && !from_source[axis].is_nan() {
+            continue;
+        }
+        element.start[axis] = at[axis];
+        // What the element does not move stays where it is.
+        let stays = match &element.curve {
+            Curve::Arc(arc) if axis == arc.plane.first || axis == arc.plane.second => false,
+            _ => element.end[axis] == from_source[axis],
+        };
+        if stays || element.end[axis].is_nan() || matches!(element.curve, Curve::Hold) {
+            element.end[axis] = at[axis];
+        }
+    }
+    let Curve::Arc(arc) = &element.curve else {
+        return None;
+    };
+    let mut gap = false;
+    for axis in [arc.plane.first, arc.plane.second] {
+        if !from_source[axis].is_nan() {
+            gap |= (from_source[axis] - element.start[axis]).abs() > GAP;
+        }
+    }
+    if !gap {
+        return None;
+    }
+    let start = element.start;
+    for axis in [arc.plane.first, arc.plane.second] {
+        if !from_source[axis].is_nan() {
+            element.start[axis] = from_source[axis];
+        }
+    }
+    Some(PathElement {
+        block: element.block,
+        sequence: element.sequence,
+        curve: Curve::Line,
+        start,
+        end: element.start,
+        feed: element.feed,
+        override_law: element.override_law,
+        constant_speed: false,
+        tangential_end: false,
+        dwell_s: 0.0,
+        functions: None,
+    })
+}

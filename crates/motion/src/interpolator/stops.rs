@@ -1,0 +1,107 @@
+//! Where single block and axes that are clamped stop the path.
+
+use bahn_path::AxisSet;
+
+use crate::drive::Drive;
+use crate::item::Item;
+use crate::ring::Ring;
+
+#[derive(Debug)]
+pub(super) struct Stops {
+    single_block: bool,
+    clamped: AxisSet,
+    clamping: AxisSet,
+    /// The next stop is to be looked for.
+    wanted: bool,
+    /// The path stops behind no element before this number.
+    sought: u64,
+}
+
+impl Default for Stops {
+    fn default() -> Stops {
+        Stops {
+            single_block: false,
+            clamped: AxisSet::EMPTY,
+            clamping: AxisSet::EMPTY,
+            wanted: false,
+            sought: 0,
+        }
+    }
+}
+
+impl Stops {
+    /// Takes over how to drive. Whether the next stop is to be looked for.
+    pub(super) fn take(&mut self, drive: &Drive) -> bool {
+        let now = (drive.single_block, drive.clamped, drive.clamping);
+        if now != (self.single_block, self.clamped, self.clamping) {
+            (self.single_block, self.clamped, self.clamping) = now;
+            (self.wanted, self.sought) = (true, 0);
+        }
+        std::mem::take(&mut self.wanted)
+    }
+
+    /// There are more elements, or it is known that no more come.
+    pub(super) fn seek(&mut self) {
+        self.wanted = true;
+    }
+
+    /// The elements are others.
+    pub(super) fn forget(&mut self) {
+        self.sought = 0;
+    }
+
+    /// Number of the next element at whose end the path stops, where it can still come to a standstill at a speed,
+    /// mm/s, with so much of the current one to go, mm.
+    pub(super) fn next(&mut self, ring: &Ring, speed: f64, rest: f64) -> Option<u64> {
+        if !self.single_block && self.clamped.union(self.clamping).is_empty() {
+            return None;
+        }
+        let last = ring.last()?;
+        let mut first = self.sought.max(ring.number());
+        while first < last && !self.stops_behind(ring, first) {
+            first += 1;
+        }
+        self.sought = first;
+        if !self.stops_behind(ring, first) {
+            return None;
+        }
+        let squared = speed * speed * (1.0 - 1e-9);
+        let mut possible = 0.0;
+        let mut length = rest;
+        for (number, item) in (ring.number()..).zip(ring.ahead()) {
+            possible += 2.0 * item.acceleration * length;
+            if squared <= possible && (number < first || self.stops_behind(ring, number)) {
+                return Some(number.max(first));
+            }
+            length = ring.get(number + 1).map_or(0.0, |next| next.length);
+        }
+        None
+    }
+
+    /// Whether the path is to stop at the end of an element. What is not so stays so, but for the last element: it
+    /// depends on the one after it.
+    fn stops_behind(&self, ring: &Ring, number: u64) -> bool {
+        let ends = |item: &Item| self.is_block_end(item) || self.is_to_be_clamped(item);
+        ring.get(number).is_some_and(ends) || ring.get(number + 1).is_some_and(|next| self.is_clamped(next))
+    }
+
+    /// The path stops behind it in single block.
+    pub(super) fn is_block_end(&self, item: &Item) -> bool {
+        item.block_end && self.single_block
+    }
+
+    /// An axis that it moves is clamped.
+    pub(super) fn is_clamped(&self, item: &Item) -> bool {
+        moves(item, self.clamped)
+    }
+
+    /// An axis that its block moved is to be clamped behind it.
+    pub(super) fn is_to_be_clamped(&self, item: &Item) -> bool {
+        item.block_end && moves(item, self.clamping)
+    }
+}
+
+/// Whether an element moves one of the axes.
+fn moves(item: &Item, axes: AxisSet) -> bool {
+    axes.iter().any(|axis| item.element.moves(axis))
+}
