@@ -148,6 +148,7 @@ impl Pass<'_> {
     fn around_the_end(&mut self) {
         let last = self.program.block_count().saturating_sub(1);
         match (self.program.begin(), self.program.end()) {
+            (_, None) if self.program.is_growing() => {}
             (_, None) => {
                 let detail = "the program does not end with END PGM";
                 self.at_word(EndOfProgramMissing, Severity::Warning, last, "", detail);

@@ -54,6 +54,8 @@ pub enum EditError {
     Frame,
     /// There is no such block.
     NoBlock,
+    /// The program is still being transferred.
+    Growing,
     /// The text holds no block.
     Empty,
     /// The program would be larger than [`Program::MAX_BYTES`].
@@ -66,7 +68,9 @@ impl EditError {
         match self {
             EditError::Protected => MessageId::ProtectedPgm,
             EditError::TooLarge => MessageId::FurtherProgramEntryImpossible,
-            EditError::Frame | EditError::NoBlock | EditError::Empty => MessageId::EntryValueIncorrect,
+            EditError::Frame | EditError::NoBlock | EditError::Growing | EditError::Empty => {
+                MessageId::EntryValueIncorrect
+            }
         }
     }
 }
@@ -91,6 +95,9 @@ impl Program {
     pub fn edit(&self, edit: &Edit<'_>) -> Result<Program, EditError> {
         if self.is_protected() && *edit != Edit::Unprotect {
             return Err(EditError::Protected);
+        }
+        if self.is_growing() {
+            return Err(EditError::Growing);
         }
         match edit {
             Edit::Insert { before, text } => self.replaced(*before..*before, &self.own_blocks(text)?),
@@ -119,7 +126,6 @@ impl Program {
         }
         let mut own = own.into_bytes();
         self.unjoin(&mut own, b"L");
-        own.extend_from_slice(self.line_end.as_bytes());
         let own = String::from_utf8(own).unwrap_or_default();
         let blocks = self.language.cut(own.as_bytes(), 1);
         let frames = |raw: &RawBlock| {
@@ -133,16 +139,23 @@ impl Program {
         }
     }
 
-    /// Takes from the end of a text what would join the text behind it, with the line end.
+    /// Takes from the end of whole lines what would join the text behind them.
     fn unjoin(&self, text: &mut Vec<u8>, behind: &[u8]) {
         let length = text.len();
         text.extend_from_slice(lines(behind).next().unwrap_or_default());
-        let joins = (self.language.cut(text, 1).last()).is_some_and(|last| last.start < length);
+        let last = self.language.cut(text, 1).last().copied();
         text.truncate(length);
-        let is_part = |byte: u8| is_blank(byte) || (joins && byte == b'~');
-        while text.last().is_some_and(|&last| is_part(last)) {
+        let Some(last) = last.filter(|last| last.start < length) else {
+            return;
+        };
+        while text.len() > last.start && text.last().is_some_and(|&byte| is_blank(byte) || byte == b'~') {
             text.pop();
         }
+        if text.len() == last.start {
+            // Nothing but the mark: an empty comment.
+            self.write_empty(text);
+        }
+        text.extend_from_slice(self.line_end.as_bytes());
     }
 
     /// Other text in the place of blocks between BEGIN and END.
@@ -227,19 +240,25 @@ impl Program {
             .into_iter()
             .find(|text| !text.is_empty());
         if let Some(behind) = behind.filter(|_| !new.is_empty()) {
-            let tail = new.clone();
-            self.unjoin(&mut new, behind);
-            // Its line end, and blank lines.
-            let kept = tail.get(new.len()..).unwrap_or_default();
-            let line_ends = kept.iter().filter(|&&byte| byte != b'~');
-            new.extend(line_ends);
             if !matches!(new.last(), Some(b'\n' | b'\r' | b'\x0c')) {
                 new.extend_from_slice(self.line_end.as_bytes());
             }
+            self.unjoin(&mut new, behind);
         }
         new.extend_from_slice(text.as_bytes());
         new.extend_from_slice(rest);
         new
+    }
+
+    /// Writes an empty comment.
+    fn write_empty(&self, text: &mut Vec<u8>) {
+        let block = Block {
+            operation: Operation::Comment("".into()),
+            ..Block::EMPTY
+        };
+        let mut empty = String::new();
+        self.language.write(&block, FormatOptions::default(), &mut empty);
+        text.extend_from_slice(empty.as_bytes());
     }
 
     /// Why the program is none of its language, by its first block.
@@ -259,7 +278,7 @@ impl Program {
             let (first, _) = self.rope.start(index);
             made.push(piece.with_text(self.language.renumber(piece.text(), first)));
         }
-        let rope = Rope::new(made, self.rope.first());
+        let rope = self.rope.with_pieces(made);
         let frame = self.frame.clone();
         Program::of(self.name.clone(), self.language, rope, frame, self.line_end)
     }

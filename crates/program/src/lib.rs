@@ -4,6 +4,7 @@
 //! - [`Program`]: a version of a file; decodes its blocks a [`Chunk`] at a time;
 //! - [`Language`]: what a language has to say, and how one block is read by itself; [`PlainLanguage`] is the first;
 //! - [`Edit`]: makes a new version of a program, which shares what stays the same;
+//! - [`Program::growing`]: a program that is executed while it is still being transferred;
 //! - [`Block`] and [`Operation`]: what a block does, the same whatever language or spelling it came from;
 //! - [`BlockError`]: what is wrong with a block that cannot be read, and where;
 //! - [`Program::diagnostics`]: all faults of a program in one pass; [`check_limits`] for one block;
@@ -34,6 +35,7 @@ mod diagnostics;
 mod edit;
 mod error;
 mod format;
+mod grow;
 mod inch_feed;
 mod labels;
 mod language;

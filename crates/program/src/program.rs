@@ -3,13 +3,14 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::bulk::Bulk;
+use crate::grow::Growth;
 use crate::labels::Labels;
 use crate::language::Language;
 use crate::lines::{RawBlock, line_at};
 use crate::plain::PlainLanguage;
 use crate::rope::{PIECE_BLOCKS, Piece, Rope};
 use crate::survey::Frame;
-use crate::text::{BYTE_ORDER_MARK, settle_line_ends, to_text, without_utf16};
+use crate::text::{settle_line_ends, text_start, to_text, without_utf16};
 use crate::{Block, Header, Operation, Unit};
 
 /// A version of a part program.
@@ -36,6 +37,8 @@ pub struct Program {
     pub(crate) frame: Frame,
     /// What ends the lines of the file.
     pub(crate) line_end: &'static str,
+    /// What is known of a program that is still coming.
+    pub(crate) growth: Option<Growth>,
     labels: OnceLock<Labels>,
 }
 
@@ -77,12 +80,16 @@ impl Program {
         bytes: Vec<u8>,
         language: &'static L,
     ) -> Program {
+        Program::of_bytes(name.into(), bytes, language)
+    }
+
+    pub(crate) fn of_bytes(name: Box<str>, bytes: Vec<u8>, language: &'static dyn Bulk) -> Program {
         let mut file = without_utf16(bytes);
         file.truncate(usize::try_from(Program::MAX_BYTES).unwrap_or(usize::MAX));
         let line_end = settle_line_ends(&mut file);
         let file = Arc::new(file);
         let (rope, frame) = language.survey(&file, text_start(&file));
-        Program::of(name.into(), language, rope, frame, line_end)
+        Program::of(name, language, rope, frame, line_end)
     }
 
     pub(crate) fn of(
@@ -98,6 +105,7 @@ impl Program {
             rope,
             frame,
             line_end,
+            growth: None,
             labels: OnceLock::new(),
         }
     }
@@ -146,8 +154,12 @@ impl Program {
 
     /// Number of blocks, BEGIN and END included.
     pub fn block_count(&self) -> u32 {
-        let implied_end = u32::from(self.end().is_none());
-        self.rope.end().saturating_add(implied_end)
+        self.rope.end().saturating_add(u32::from(self.implies_end()))
+    }
+
+    /// Whether the END block is not in the file, and will not come.
+    fn implies_end(&self) -> bool {
+        self.end().is_none() && self.growth.is_none()
     }
 
     /// Number of chunks.
@@ -191,6 +203,10 @@ impl Program {
         }
         while blocks.len() < count {
             let number = decoded.first_block + blocks.len() as u32;
+            if number < self.rope.first() {
+                blocks.push(forgotten());
+                continue;
+            }
             let Some((piece, index)) = self.piece_of(number) else {
                 blocks.push(implied(Operation::End));
                 break;
@@ -231,7 +247,7 @@ impl Program {
                 })
         });
         let begin = self.begin().is_none().then_some(begin);
-        let end = std::iter::repeat_with(end).take(usize::from(self.end().is_none()));
+        let end = std::iter::repeat_with(end).take(usize::from(self.implies_end()));
         begin.into_iter().chain(in_file).chain(end)
     }
 
@@ -329,15 +345,6 @@ impl Program {
     }
 }
 
-/// Where the text begins, behind a byte-order mark.
-pub(crate) fn text_start(file: &[u8]) -> usize {
-    if file.starts_with(BYTE_ORDER_MARK) {
-        BYTE_ORDER_MARK.len()
-    } else {
-        0
-    }
-}
-
 /// A BEGIN or END block that the file lacks.
 fn implied(kind: fn(Box<Header>) -> Operation) -> Block {
     let header = Header {
@@ -349,5 +356,13 @@ fn implied(kind: fn(Box<Header>) -> Operation) -> Block {
         skip: false,
         operation: kind(Box::new(header)),
         comment: None,
+    }
+}
+
+/// In the place of a block whose text is forgotten.
+fn forgotten() -> Block {
+    Block {
+        operation: Operation::Comment("".into()),
+        ..Block::EMPTY
     }
 }

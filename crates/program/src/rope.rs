@@ -105,22 +105,25 @@ pub(crate) struct Rope {
     starts: Vec<Start>,
     /// Number of the first block.
     first: u32,
+    /// Line that the first piece begins with.
+    line: u32,
     /// Number behind the last block.
     end: u32,
     bytes: u64,
 }
 
 impl Rope {
-    /// Pieces whose first block has a number.
-    pub(crate) fn new(pieces: Vec<Arc<Piece>>, first: u32) -> Rope {
+    /// Pieces whose first block and first line have numbers.
+    pub(crate) fn new(pieces: Vec<Arc<Piece>>, first: u32, first_line: u32) -> Rope {
         let mut rope = Rope {
             starts: Vec::with_capacity(pieces.len()),
             pieces,
             first,
+            line: first_line,
             end: first,
             bytes: 0,
         };
-        let mut line = 1_u32;
+        let mut line = first_line;
         for piece in &rope.pieces {
             rope.starts.push(Start {
                 block: rope.end,
@@ -139,7 +142,7 @@ impl Rope {
         pieces.extend_from_slice(self.pieces.get(..range.start).unwrap_or_default());
         pieces.extend(new);
         pieces.extend_from_slice(self.pieces.get(range.end..).unwrap_or_default());
-        Rope::new(pieces, self.first)
+        self.with_pieces(pieces)
     }
 
     pub(crate) fn pieces(&self) -> &[Arc<Piece>] {
@@ -149,6 +152,11 @@ impl Rope {
     /// Number of the first block that stands in the file.
     pub(crate) fn first(&self) -> u32 {
         self.first
+    }
+
+    /// The same places with the pieces written otherwise.
+    pub(crate) fn with_pieces(&self, pieces: Vec<Arc<Piece>>) -> Rope {
+        Rope::new(pieces, self.first, self.line)
     }
 
     /// Bytes of all pieces.

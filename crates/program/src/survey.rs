@@ -105,5 +105,5 @@ pub(crate) fn survey<L: Language>(language: &L, file: &Arc<Vec<u8>>, start: usiz
     pieces.cut(behind.unwrap_or(end));
     pieces.cut(end);
     let first_block = u32::from(frame.begin.is_none());
-    (Rope::new(pieces.made, first_block), frame)
+    (Rope::new(pieces.made, first_block, 1), frame)
 }

@@ -99,10 +99,24 @@ pub(crate) fn settle_line_ends(file: &mut [u8]) -> &'static str {
             *byte = instead;
         }
     }
-    match memchr::memchr2(b'\n', b'\r', file) {
-        Some(at) if file.get(at) == Some(&b'\r') && !lone(file, at) => "\r\n",
-        Some(at) if file.get(at) == Some(&b'\r') => "\r",
+    line_end_of(file)
+}
+
+/// What ends the first line of a text.
+pub(crate) fn line_end_of(text: &[u8]) -> &'static str {
+    match memchr::memchr2(b'\n', b'\r', text).map(|at| text.get(at..).unwrap_or_default()) {
+        Some([b'\r', b'\n', ..]) => "\r\n",
+        Some([b'\r', ..]) => "\r",
         _ => "\n",
+    }
+}
+
+/// Where the text begins, behind a byte-order mark.
+pub(crate) fn text_start(file: &[u8]) -> usize {
+    if file.starts_with(BYTE_ORDER_MARK) {
+        BYTE_ORDER_MARK.len()
+    } else {
+        0
     }
 }
 
