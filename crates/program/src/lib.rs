@@ -6,6 +6,7 @@
 //! - [`Edit`]: makes a new version of a program, which shares what stays the same;
 //! - [`Program::growing`]: a program that is executed while it is still being transferred;
 //! - [`Block`] and [`Operation`]: what a block does, the same whatever language or spelling it came from;
+//! - [`CYCLES`]: what stands in which block of which cycle;
 //! - [`BlockError`]: what is wrong with a block that cannot be read, and where;
 //! - [`Program::diagnostics`]: all faults of a program in one pass; [`check_limits`] for one block;
 //! - [`FeedDoubt`]: feeds of programs in inches that look ten times off;
@@ -31,6 +32,7 @@
 
 mod bulk;
 mod check;
+mod cycles;
 mod diagnostics;
 mod edit;
 mod error;
@@ -50,6 +52,7 @@ mod survey;
 mod text;
 
 pub use check::{LimitFault, Reading, check_limits, each_parameter};
+pub use cycles::{CYCLES, Cycle, CycleFunction, CycleParameter, Quantity, Sign, cycle};
 pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity, Uncounted};
 pub use edit::{Edit, EditError};
 pub use error::BlockError;

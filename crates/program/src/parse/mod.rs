@@ -26,7 +26,6 @@ use crate::lines::{BlockText, lines, stands_alone};
 use crate::text::{character_count, to_text, trim, trim_continuation};
 use crate::{Block, BlockError, InvalidBlock, Operation};
 use cursor::{Cursor, Fault, Parsed, code_length, with_help};
-pub(crate) use cycle::FIRST_PARAMETER_CYCLE;
 pub(crate) use faults::faults;
 pub(crate) use foreign::{is_din_iso, whole_program};
 pub(crate) use formula::FUNCTIONS;
