@@ -11,14 +11,17 @@
 pub struct ShippedMachine {
     /// Name of the folder.
     pub name: &'static str,
+    /// Identifiers of the control models that it is a start for; the first is its own.
+    pub models: &'static [&'static str],
     /// Files by their path in the folder, with `/`, and their text.
     pub files: &'static [(&'static str, &'static str)],
 }
 
 macro_rules! machine {
-    ($folder:literal: $($file:literal),* $(,)?) => {
+    ($folder:literal for $($model:literal),+: $($file:literal),* $(,)?) => {
         ShippedMachine {
             name: $folder,
+            models: &[$($model),+],
             files: &[$(($file, include_str!(concat!($folder, "/", $file)))),*],
         }
     };
@@ -28,17 +31,20 @@ macro_rules! machine {
 pub const FOLDER: &str = include_str!("FOLDER.md");
 
 /// A mill with rotary table and two gear ranges; its control is a TNC 415 B.
-pub const MILL: ShippedMachine = machine!("mill":
+pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407", "tnc425":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
     "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "programs/BRACKET.H",
     "programs/CIRCLE.H", "programs/INDEX.H", "programs/SADDLE.H",
 );
 
 /// A small mill of three axes; its control is a TNC 360.
-pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360":
+pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360" for "tnc360", "tnc151", "tnc155":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
     "plc/run.txt", "programs/COVER.H",
 );
+
+/// All of them.
+pub const ALL: [ShippedMachine; 2] = [MILL, MILL_TNC360];
 
 impl ShippedMachine {
     /// The text of a file.

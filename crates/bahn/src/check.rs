@@ -16,9 +16,6 @@ use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, console};
 
-/// Faults of a program that are printed; the others are counted. JSON has more.
-const PRINTED_MAX: usize = 100;
-
 /// How programs are checked.
 pub(crate) struct Check {
     pub settings: Settings,
@@ -136,7 +133,7 @@ pub(crate) fn check(path: &Path, how: &Check, interrupt: &Interrupt) -> Result<C
             .collect(),
     };
     if how.format == Format::Text {
-        for found in found.iter().take(PRINTED_MAX) {
+        for found in found.iter().take(diagnostics::PRINTED_MAX) {
             print(found, &programs, path, how.settings.model);
         }
         summary(&report, complete);
@@ -329,7 +326,7 @@ fn summary(report: &CheckReport, complete: Complete) {
         _ => format!("{number} {what}s"),
     };
     let all = report.errors + report.warnings;
-    let printed = report.diagnostics.len().min(PRINTED_MAX);
+    let printed = report.diagnostics.len().min(diagnostics::PRINTED_MAX);
     let more = match all - printed {
         0 => String::new(),
         rest => format!(", {rest} of them not shown"),

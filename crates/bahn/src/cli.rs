@@ -103,6 +103,10 @@ Examples:
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Machine")]
 pub(crate) struct MachineOptions {
+    /// Folder of a machine: its control model, parameters, tools, datum and the texts of its PLC count; the
+    /// program runs without its PLC and its drives.
+    #[arg(long = "machine", value_name = "DIR", value_hint = ValueHint::DirPath, conflicts_with = "model")]
+    pub folder: Option<PathBuf>,
     /// Tool table; without one tools are those that the program defines.
     #[arg(long, value_name = "TABLE", value_hint = ValueHint::FilePath)]
     pub tools: Option<PathBuf>,
@@ -214,10 +218,10 @@ pub(crate) struct OutputOptions {
     /// 3D view: how high the eye stands, degrees; 90 from above, negative from below.
     #[arg(long, value_name = "DEGREES", default_value = "38", requires = "image", allow_hyphen_values = true, value_parser = finite)]
     pub elevation: f64,
-    /// 3D view: what the colours tell.
-    #[arg(long, value_name = "WHAT", value_enum, default_value_t, requires = "image")]
-    pub color: ColorOption,
-    /// 3D view: draw the tool path over the part, feed solid, rapid traverse dashed.
+    /// What the colours tell; in space the blank and what was machined (`part`), from above the depth.
+    #[arg(long, value_name = "WHAT", value_enum, requires = "image")]
+    pub color: Option<ColorOption>,
+    /// Draw the tool path over the part, feed solid, rapid traverse dashed.
     #[arg(long, requires = "image")]
     pub toolpath: bool,
     /// Three planes: where the sections lie, as X30,Y20; the middle of the blank otherwise.
@@ -335,11 +339,10 @@ pub(crate) enum View {
     ThreeD,
 }
 
-/// What the colours of the 3D view tell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+/// What the colours of a view tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ColorOption {
     /// Blank and machined surfaces.
-    #[default]
     Part,
     /// The deeper, the darker.
     Depth,

@@ -8,13 +8,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use bahn_path::{
     At, Axis, Blank, BlockRef, Curve, Function, OverrideLaw, PathElement, Position, ToolShape, Touch,
 };
-use bahn_picture::Image;
+use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{
     Colouring, EventKind, MeshError, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d,
     Workpiece,
 };
 
-use crate::cli::{OutputOptions, View};
+use crate::cli::{ColorOption, OutputOptions, View};
 use crate::files::NewFile;
 use crate::report::{Notice, Record};
 use crate::{UsageError, diagnostics, files};
@@ -59,7 +59,7 @@ pub(crate) struct Memory {
 impl Memory {
     pub fn of(options: &OutputOptions) -> Memory {
         Memory {
-            tools: Colouring::from(options.color) == Colouring::Tool,
+            tools: options.color == Some(ColorOption::Tool),
             path: options.toolpath,
         }
     }
@@ -76,6 +76,8 @@ pub(crate) struct Cutting {
     tool_axis: Axis,
     moved: bool,
     spindle: Spindle,
+    /// How the spindle of a machine really turns: that counts, whatever the program says.
+    seen: Option<Spindle>,
     /// Tools that cut with M4.
     left_hand: BTreeSet<u32>,
     /// What was said of a tool already.
@@ -84,9 +86,12 @@ pub(crate) struct Cutting {
     below: BTreeMap<Option<u32>, (BlockRef, BlockRef, u64)>,
 }
 
-/// What the program did with the spindle.
+/// Slower than this the spindle of a machine stands still, rpm (inferred).
+const STANDS_RPM: f64 = 1.0;
+
+/// What the program did with the spindle, or the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Spindle {
+pub(crate) struct Spindle {
     turns: Option<Turn>,
     speed_rpm: f64,
 }
@@ -107,6 +112,21 @@ impl Spindle {
             Function::Tool(call) => self.speed_rpm = call.speed_rpm,
             Function::SpindleSpeed(speed_rpm) => self.speed_rpm = *speed_rpm,
             _ => {}
+        }
+    }
+
+    /// How the spindle of a machine turns, rpm, positive as M03; and whether it does not because its programmed speed
+    /// is 0.
+    pub fn seen(rpm: f64, without_speed: bool) -> Spindle {
+        let turn = if rpm < 0.0 {
+            Turn::CounterClockwise
+        } else {
+            Turn::Clockwise
+        };
+        let stands = rpm.abs() < STANDS_RPM;
+        Spindle {
+            turns: (!stands || without_speed).then_some(turn),
+            speed_rpm: if stands { 0.0 } else { rpm.abs() },
         }
     }
 
@@ -138,9 +158,17 @@ impl Cutting {
             tool_axis: Axis::Z,
             moved: false,
             spindle: Spindle::default(),
+            seen: None,
             left_hand,
             told: HashSet::new(),
             below: BTreeMap::new(),
+        }
+    }
+
+    /// How the spindle of the machine turned on the next element.
+    pub fn see(&mut self, spindle: Spindle) {
+        if self.seen.replace(spindle) != Some(spindle) {
+            self.watch();
         }
     }
 
@@ -207,7 +235,8 @@ impl Cutting {
     fn watch(&mut self) {
         let left_hand = self.tool.is_some_and(|tool| self.left_hand.contains(&tool));
         let fault = self
-            .spindle
+            .seen
+            .unwrap_or(self.spindle)
             .fault(left_hand)
             .filter(|kind| !self.told.contains(&(self.tool, *kind)));
         if let Some((_, workpiece)) = &mut self.workpiece {
@@ -333,13 +362,14 @@ pub(crate) fn write(
             return Ok(Written::Interrupted);
         }
         let mut file = NewFile::create(path)?;
-        image
-            .write_png(&mut file)
-            .map_err(|error| files::cannot("write", path, &std::io::Error::other(error)))?;
-        if is_stopped(path) {
-            return Ok(Written::Interrupted);
+        match image.write_png_until(&mut file, stop) {
+            Ok(()) => file.finish()?,
+            Err(ImageError::Stopped) => {
+                is_stopped(path);
+                return Ok(Written::Interrupted);
+            }
+            Err(error) => return Err(files::cannot("write", path, &std::io::Error::other(error))),
         }
-        file.finish()?;
     }
     if let Some(path) = &options.mesh {
         let part = part_for("--mesh")?;
@@ -370,22 +400,32 @@ fn draw(
             .map(|page| page.stopped_by(stop.clone()))
             .map_err(|error| UsageError::new(format!("--size: {error}")))
     };
+    let colouring = options.color.map(Colouring::from);
     Ok(match options.view {
-        View::Plan => part.plan_view(&page("plan view")?, &PlanView::default()),
+        View::Plan => {
+            let mut view = PlanView {
+                tool_path: options.toolpath,
+                ..PlanView::default()
+            };
+            view.colouring = colouring.unwrap_or(view.colouring);
+            part.plan_view(&page("plan view")?, &view)
+        }
         View::ThreePlanes => {
             let sections = sections(part, &options.section)?;
-            let view = ThreePlanes {
+            let mut view = ThreePlanes {
                 projection,
                 sections,
+                tool_path: options.toolpath,
                 ..ThreePlanes::default()
             };
+            view.colouring = colouring.unwrap_or(view.colouring);
             part.three_planes(&page("projection in 3 planes")?, &view)
         }
         View::ThreeD => {
             let view = View3d {
                 azimuth_deg: options.angle,
                 elevation_deg: options.elevation,
-                colouring: options.color.into(),
+                colouring: colouring.unwrap_or_default(),
                 tool_path: options.toolpath,
                 ..View3d::default()
             };

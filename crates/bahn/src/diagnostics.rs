@@ -6,6 +6,9 @@ use std::path::PathBuf;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use bahn_program::{Operation, Program};
 
+/// Faults of a file that are printed; the others are counted.
+pub(crate) const PRINTED_MAX: usize = 100;
+
 /// Characters of a line that are shown; a line of a broken file may have millions.
 const MAX_COLUMNS: usize = 200;
 
@@ -34,16 +37,13 @@ pub(crate) struct FileFault {
     /// What exactly is wrong; may be empty.
     pub label: String,
     pub help: Option<String>,
+    /// Where that was opened which is meant, in the same file.
+    pub opened: Option<Marked>,
 }
 
 impl FileFault {
     /// Prints it as rustc does, with an empty line behind it.
     pub fn print(&self) {
-        self.print_with(None);
-    }
-
-    /// The same with the place where that was opened which is meant.
-    pub fn print_with(&self, opened: Option<&Marked>) {
         let diagnostic = Diagnostic {
             severity: self.severity,
             title: &self.title,
@@ -52,8 +52,21 @@ impl FileFault {
             label: self.label.clone(),
             help: self.help.as_deref(),
         };
-        print_line(&diagnostic.render_with(opened, is_styled()));
+        print_line(&diagnostic.render_with(self.opened.as_ref(), is_styled()));
         print_line("");
+    }
+}
+
+/// Prints the first [`PRINTED_MAX`] faults, and how many there are besides.
+pub(crate) fn print_faults(faults: &[FileFault]) {
+    faults.iter().take(PRINTED_MAX).for_each(FileFault::print);
+    print_rest(faults.len().saturating_sub(PRINTED_MAX));
+}
+
+/// Says how many faults are not shown.
+pub(crate) fn print_rest(count: usize) {
+    if count > 0 {
+        print_line(&format!("{count} more not shown\n"));
     }
 }
 

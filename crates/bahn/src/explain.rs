@@ -126,22 +126,7 @@ impl Found {
 
 /// Which parameters hold the limit of an axis and sign, `X+`.
 fn limit(axis: &str, model: ControlModel) -> String {
-    let index = "XYZ".find(|letter| axis.starts_with(letter));
-    let (plus, minus): (Vec<String>, Vec<String>) = match model {
-        ControlModel::Tnc151 | ControlModel::Tnc155 => {
-            let at = index.unwrap_or(3) * 2 + 44;
-            (vec![format!("MP{at}")], vec![format!("MP{}", at + 1)])
-        }
-        _ => {
-            let index = index.map_or("3 or .4".to_owned(), |index| index.to_string());
-            let named = |first: u16| {
-                (first..first + 3)
-                    .map(|number| format!("MP{number}.{index}"))
-                    .collect()
-            };
-            (named(910), named(920))
-        }
-    };
+    let [plus, minus] = model.limit_parameters(axis);
     let letter = axis.trim_end_matches(['+', '-']);
     let (end, numbers) = match axis.chars().last() {
         Some('+') => ("positive end", plus),

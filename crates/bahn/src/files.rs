@@ -20,6 +20,9 @@ pub(crate) const MAX_PROGRAM_BYTES: u64 = 1 << 30;
 /// Largest tool table or list of machine parameters, 16 MiB: many times what any control holds.
 const MAX_TABLE_BYTES: u64 = 16 << 20;
 
+/// Largest description of a machine, 1 MiB: the tree that is made of it takes many times as much.
+const MAX_DESCRIPTION_BYTES: u64 = 1 << 20;
+
 /// What became of reading a program.
 pub(crate) enum Loaded {
     /// The program.
@@ -64,7 +67,16 @@ pub(crate) fn read_program(path: &Path) -> Result<Option<Vec<u8>>, UsageError> {
 
 /// Reads a tool table or parameter list.
 pub(crate) fn read_table(path: &Path) -> Result<Vec<u8>, UsageError> {
-    match read(path, MAX_TABLE_BYTES) {
+    read_up_to(path, MAX_TABLE_BYTES)
+}
+
+/// Reads the description of a machine.
+pub(crate) fn read_description(path: &Path) -> Result<Vec<u8>, UsageError> {
+    read_up_to(path, MAX_DESCRIPTION_BYTES)
+}
+
+fn read_up_to(path: &Path, limit: u64) -> Result<Vec<u8>, UsageError> {
+    match read(path, limit) {
         Ok(Some(bytes)) => Ok(bytes),
         Ok(None) => Err(UsageError::new(format!("{} is too large", path.display()))),
         Err(error) => Err(cannot("read", path, &error)),
@@ -80,7 +92,12 @@ pub(crate) fn cannot(verb: &str, path: &Path, error: &io::Error) -> UsageError {
     UsageError::new(text)
 }
 
-/// Refuses outputs, given with their options, that would overwrite an input or each other.
+/// Endings of files that commands read and none of these options writes: programs, PLC programs, lists and
+/// descriptions of machines, tool and compensation tables, memories.
+const KEPT: [&str; 9] = ["h", "i", "plc", "mp", "toml", "tsv", "cma", "com", "mem"];
+
+/// Refuses outputs, given with their options, that would overwrite an input or each other, or a file of a kind
+/// that the command may read under way, as a program that another one calls.
 pub(crate) fn keep_inputs(inputs: &[&Path], outputs: &[(&str, &Path)]) -> Result<(), UsageError> {
     let mut taken: Vec<(PathBuf, &str)> = inputs
         .iter()
@@ -91,6 +108,14 @@ pub(crate) fn keep_inputs(inputs: &[&Path], outputs: &[(&str, &Path)]) -> Result
         if let Some((_, by)) = taken.iter().find(|(other, _)| *other == file) {
             return Err(UsageError::new(format!(
                 "{option} {}: this file is already {by} of the command",
+                path.display()
+            )));
+        }
+        let ending = file.extension().and_then(|ending| ending.to_str());
+        let is_kept = ending.is_some_and(|ending| KEPT.contains(&ending.to_ascii_lowercase().as_str()));
+        if is_kept && file.exists() {
+            return Err(UsageError::new(format!(
+                "{option} {}: an output does not replace a file of this kind",
                 path.display()
             )));
         }
@@ -241,7 +266,9 @@ impl NewFile {
             .into_owned();
         let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
         temporaries().push(temporary.clone());
-        let file = File::create(&temporary)?;
+        let create = || OpenOptions::new().write(true).create_new(true).open(&temporary);
+        // What is there is what a killed process of the same number left, or a link that leads elsewhere.
+        let file = create().or_else(|_| fs::remove_file(&temporary).and_then(|()| create()))?;
         if let Some(old) = old {
             file.set_permissions(old.permissions())?;
         }

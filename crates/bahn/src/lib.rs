@@ -76,19 +76,19 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(command) => command,
         Err(code) => return code.into(),
     };
-    let result = match &command {
-        cli::Command::Test(options) => test_run::command(options),
-        cli::Command::Run(options) => run::command(options),
-        cli::Command::Scope(options) => scope::command(options),
-        cli::Command::Machine(options) => machine_folder::command(options),
-        cli::Command::Check(options) => check::command(options),
-        cli::Command::Fmt(options) => format::command(options),
-        cli::Command::Plc(options) => plc::command(options),
-        cli::Command::Mp(options) => mp::command(options),
-        cli::Command::Conformance(options) => conformance::command(options),
-        cli::Command::Explain(options) => explain::command(options),
-        cli::Command::Completions(options) => manual::completions(options),
-        cli::Command::Man(options) => manual::man(options),
+    let result = match command {
+        cli::Command::Test(options) => test_run::command(*options),
+        cli::Command::Run(options) => run::command(&options),
+        cli::Command::Scope(options) => scope::command(&options),
+        cli::Command::Machine(options) => machine_folder::command(&options),
+        cli::Command::Check(options) => check::command(&options),
+        cli::Command::Fmt(options) => format::command(&options),
+        cli::Command::Plc(options) => plc::command(&options),
+        cli::Command::Mp(options) => mp::command(&options),
+        cli::Command::Conformance(options) => conformance::command(&options),
+        cli::Command::Explain(options) => explain::command(&options),
+        cli::Command::Completions(options) => manual::completions(&options),
+        cli::Command::Man(options) => manual::man(&options),
     };
     match result {
         Ok(outcome) => outcome.into(),

@@ -4,35 +4,106 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use bahn_control::Tool;
-use bahn_interpreter::{Q_VALUE_MAX, Rules};
+use bahn_interpreter::{MachineTexts, Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::{ControlModel, ParameterList, conformance};
 use bahn_path::{Axis, Position};
 
 use crate::UsageError;
 use crate::cli::{MachineOptions, RunOptions};
-use crate::{files, tool_table};
+use crate::{diagnostics, files, machine_folder, tool_table};
 
-/// The machine parameters of the run: reference list of the model, then the list, then single ones.
-pub(crate) fn parameters(model: ControlModel, options: &MachineOptions) -> Result<ParameterList, UsageError> {
-    let mut list = parameter_list(model, options.parameters.as_deref())?;
-    for assignment in &options.mp {
+/// What programs run on without a machine: its parameters, its tools, its texts.
+pub(crate) struct Equipment {
+    pub list: ParameterList,
+    /// `None` when tools are those that the program defines.
+    pub tools: Option<BTreeMap<u32, Tool>>,
+    pub texts: MachineTexts,
+    /// Where the workpiece lies unless the options say it.
+    pub datum: Position,
+}
+
+impl Equipment {
+    /// The machine's or the reference list of the model, then the list, then single parameters; the tool table.
+    pub fn of(model: ControlModel, options: &MachineOptions) -> Result<Equipment, UsageError> {
+        let mut equipment = match &options.folder {
+            Some(folder) => Equipment::of_folder("--machine", folder)?,
+            None => Equipment {
+                list: ParameterList::reference(model),
+                tools: None,
+                texts: MachineTexts::default(),
+                datum: Position::UNKNOWN,
+            },
+        };
+        if let Some(path) = &options.parameters {
+            read_list(&mut equipment.list, path)?;
+        }
+        assign(&mut equipment.list, &options.mp)?;
+        if let Some(path) = &options.tools {
+            equipment.tools = Some(tool_table::load(path)?);
+        }
+        Ok(equipment)
+    }
+
+    /// That of a machine.
+    pub fn of_folder(option: &str, folder: &Path) -> Result<Equipment, UsageError> {
+        let machine = machine_folder::load(folder)?.map_err(|faults| {
+            let first = faults.first().map(|fault| fault.title.clone());
+            UsageError::new(format!(
+                "{option} {}: {}; `bahn machine check` shows all",
+                folder.display(),
+                first.unwrap_or_default()
+            ))
+        })?;
+        Ok(Equipment {
+            texts: MachineTexts {
+                messages: machine.plc_messages.as_slice().into(),
+                dialogues: machine.plc_dialogues.as_slice().into(),
+            },
+            datum: machine.datum(),
+            list: machine.parameters,
+            tools: machine.tools,
+        })
+    }
+}
+
+/// Sets the single parameters of the command line.
+pub(crate) fn assign(list: &mut ParameterList, assignments: &[String]) -> Result<(), UsageError> {
+    for assignment in assignments {
+        let model = list.model();
         list.assign(assignment)
             .map_err(|error| UsageError::new(format!("--mp {assignment}: {error} ({model})")))?;
     }
-    Ok(list)
+    Ok(())
+}
+
+/// Says which of the single parameters do nothing here, or only part of what they say.
+pub(crate) fn say_without_effect(list: &ParameterList, assignments: &[String]) {
+    let mut list = list.clone();
+    for assignment in assignments {
+        let Ok(id) = list.assign(assignment) else { continue };
+        let row = conformance::find(list.model(), conformance::Kind::MachineParameter, &id.to_string());
+        if let Some(remark) = row.and_then(conformance::Entry::remark) {
+            diagnostics::print_text(&format!("warning: --mp {assignment}: {id} {remark}"));
+        }
+    }
 }
 
 /// The reference list of the model, with values of a list file in place of its own.
 pub(crate) fn parameter_list(model: ControlModel, path: Option<&Path>) -> Result<ParameterList, UsageError> {
     let mut list = ParameterList::reference(model);
     if let Some(path) = path {
-        let errors = list.read(&files::read_table(path)?);
-        if !errors.is_empty() {
-            return Err(UsageError::new(list_errors(path, &errors)));
-        }
+        read_list(&mut list, path)?;
     }
     Ok(list)
+}
+
+fn read_list(list: &mut ParameterList, path: &Path) -> Result<(), UsageError> {
+    let errors = list.read(&files::read_table(path)?);
+    if errors.is_empty() {
+        return Ok(());
+    }
+    Err(UsageError::new(list_errors(path, &errors)))
 }
 
 fn list_errors(path: &Path, errors: &[impl std::fmt::Display]) -> String {
@@ -48,11 +119,6 @@ fn list_errors(path: &Path, errors: &[impl std::fmt::Display]) -> String {
     lines.join("\n")
 }
 
-/// The tool table of the run; `None` when tools are those that the program defines.
-pub(crate) fn tools(machine: &MachineOptions) -> Result<Option<BTreeMap<u32, Tool>>, UsageError> {
-    machine.tools.as_deref().map(tool_table::load).transpose()
-}
-
 /// The tools that cut with M4.
 pub(crate) fn left_hand(tools: Option<&BTreeMap<u32, Tool>>) -> BTreeSet<u32> {
     let tools = tools.into_iter().flatten();
@@ -64,17 +130,21 @@ pub(crate) fn left_hand(tools: Option<&BTreeMap<u32, Tool>>) -> BTreeSet<u32> {
 
 /// The settings of the interpreter.
 pub(crate) fn interpreter(
-    list: &ParameterList,
-    tools: Option<&BTreeMap<u32, Tool>>,
+    equipment: &Equipment,
     run: &RunOptions,
 ) -> Result<bahn_interpreter::Settings, UsageError> {
+    let (list, tools) = (&equipment.list, equipment.tools.as_ref());
     let model = list.model();
     let mut rules = Rules::of(list);
-    rules.machine_zero = machine_zero(list, &position("--datum", &run.datum, model)?);
+    let datum = match run.datum.is_empty() {
+        true => equipment.datum,
+        false => position("--datum", &run.datum, model)?,
+    };
+    rules.machine_zero = machine_zero(list, &datum);
     Ok(bahn_interpreter::Settings {
         model,
         rules,
-        texts: bahn_interpreter::MachineTexts::default(),
+        texts: equipment.texts.clone(),
         barred_tools: tool_table::barred(tools.into_iter().flatten()),
         tools: tools.map(|tools| tools.iter().map(|(number, tool)| (*number, tool.shape)).collect()),
         q_values: q_values(&run.set, model)?,

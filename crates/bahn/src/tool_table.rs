@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 
-use bahn_control::Tool;
+use bahn_control::{Tool, ToolLife};
 use bahn_interpreter::{ToolState, tool_key};
 use bahn_path::ToolShape;
 
@@ -25,7 +25,7 @@ pub(crate) fn load(path: &Path) -> Result<BTreeMap<u32, Tool>, UsageError> {
 /// The tools that must not be called.
 pub(crate) fn barred<'a>(tools: impl Iterator<Item = (&'a u32, &'a Tool)>) -> BTreeMap<u32, ToolState> {
     tools
-        .map(|(number, tool)| (*number, tool.state))
+        .map(|(number, tool)| (*number, tool.state()))
         .filter(|(_, state)| *state != ToolState::Usable)
         .collect()
 }
@@ -46,7 +46,10 @@ impl fmt::Display for TableFault {
     }
 }
 
-/// Reads a tool table: see the help of `bahn test`. All faults are named.
+/// Faulty lines that are named; behind them reading ends.
+const FAULTS_MAX: usize = 100;
+
+/// Reads a tool table: see the help of `bahn test`. All faults are named, up to [`FAULTS_MAX`].
 pub(crate) fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
     let whole = |message: String| vec![TableFault { line: 0, message }];
     let text = text.trim_start_matches('\u{feff}');
@@ -66,6 +69,13 @@ pub(crate) fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> 
     let mut table = BTreeMap::new();
     let mut faults = Vec::new();
     for (number, line) in lines {
+        if faults.len() == FAULTS_MAX {
+            faults.push(TableFault {
+                line: number,
+                message: "too many faults: what follows is not read".to_owned(),
+            });
+            break;
+        }
         if matches!(first_word(line).to_ascii_uppercase().as_str(), "[END]" | "END") {
             break;
         }
@@ -180,7 +190,8 @@ impl Columns {
             shape,
             pocket,
             special,
-            state: self.state(&fields)?,
+            locked: !matches!(self.field(&fields, "TL"), "" | "-" | "0"),
+            life: self.life(&fields)?,
             left_hand,
         };
         Ok((tool, tool_data))
@@ -236,19 +247,21 @@ impl Columns {
         at.and_then(|at| fields.get(at)).map_or("", String::as_str)
     }
 
-    /// Whether the tool may be called: column TL locks it, and CUR.TIME beyond TIME2 ends its life
-    /// [000:9168-9172].
-    fn state(&self, fields: &[String]) -> Result<ToolState, String> {
-        let is_empty = |name| matches!(self.field(fields, name), "" | "-" | "0");
-        if !is_empty("TL") {
-            return Ok(ToolState::Locked);
-        }
-        let life = self.length(fields, "TIME2")?;
-        let used = self.length(fields, "CUR.TIME")?;
-        Ok(match life > 0.0 && used > life {
-            false => ToolState::Usable,
-            true if is_empty("RT") => ToolState::Expired,
-            true => ToolState::Replaced,
+    /// TIME1, TIME2 and CUR.TIME in minutes, RT [000:9021-9027].
+    fn life(&self, fields: &[String]) -> Result<ToolLife, String> {
+        let minutes = |name: &str| match self.length(fields, name)? {
+            minutes if minutes < 0.0 => Err(format!("{name}: a tool life is not negative")),
+            minutes => Ok(minutes),
+        };
+        let replacement = match self.field(fields, "RT") {
+            "" | "-" | "0" | "-1" => None,
+            text => Some(key(text).ok_or_else(|| format!("RT: `{text}` is no tool number"))?),
+        };
+        Ok(ToolLife {
+            time1_min: minutes("TIME1")?,
+            time2_min: minutes("TIME2")?,
+            current_min: minutes("CUR.TIME")?,
+            replacement,
         })
     }
 
@@ -363,10 +376,13 @@ mod tests {
         let text =
             "T;R;TL;TIME2;CUR.TIME;RT\n1;5;L;;;\n2;5;;20;20;\n3;5;-;20;20.1;-\n4;5;;20;21;7\n5;5;;0;99;\n";
         let table = parse(text).unwrap();
-        let states: Vec<_> = table.values().map(|tool| tool.state).collect();
+        let states: Vec<_> = table.values().map(Tool::state).collect();
         use ToolState::{Expired, Locked, Replaced, Usable};
-        assert_eq!(states, [Locked, Usable, Expired, Replaced, Usable]);
+        assert_eq!(states, [Locked, Usable, Expired, Replaced(7), Usable]);
         assert_eq!(barred(table.iter()).len(), 3);
+        for wrong in ["T;R;TIME1\n1;5;-1", "T;R;CUR.TIME\n1;5;x", "T;R;RT\n1;5;y"] {
+            assert!(parse(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

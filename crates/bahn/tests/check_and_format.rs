@@ -325,3 +325,50 @@ fn escape_sequences_are_shown_not_sent() {
         }
     }
 }
+
+/// Nor do they reach a table, a report or a log, in which a line stays a line.
+#[cfg(unix)]
+#[test]
+fn escape_sequences_reach_no_file() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("shelf")).unwrap();
+    let name = "shelf/a\u{1b}[31m\nb.H";
+    folder.write(
+        name,
+        "BEGIN PGM \u{1b}[2J MM\nTOOL CALL 3 Z S500\nL X+1 Y+1 R0 F500\nCALL PGM x\u{1b}]0;y\nEND PGM 1 MM\n",
+    );
+    let mill = format!("{}/../../machines/mill", env!("CARGO_MANIFEST_DIR"));
+    let run = format!("--machine {mill} --fresh --no-graphics --log out.log --record out.csv");
+    for (command, arguments, files) in [
+        (
+            "test",
+            "--path path.csv --path path.svg",
+            &["path.csv", "path.svg"][..],
+        ),
+        ("run", &run, &["out.log", "out.csv"]),
+    ] {
+        let output = folder
+            .command()
+            .arg(command)
+            .arg(name)
+            .args(arguments.split(' '))
+            .output();
+        assert!(
+            output.unwrap().status.code().is_some_and(|code| code <= 1),
+            "{command}"
+        );
+        for file in files {
+            assert!(!folder.read(file).contains('\u{1b}'), "{}", folder.read(file));
+        }
+    }
+    let log = folder.read("out.log");
+    assert!(
+        log.lines()
+            .all(|line| line.starts_with("; ") || line.contains(": ")),
+        "{log}"
+    );
+    for report in ["all.csv", "all.html", "all.json"] {
+        folder.bahn(&format!("test shelf --report {report}"));
+        assert!(!folder.read(report).contains('\u{1b}'), "{report}");
+    }
+}

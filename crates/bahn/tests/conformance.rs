@@ -3,7 +3,7 @@
 
 mod support;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -26,9 +26,15 @@ fn source_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The names of all tests, `crate::name`: functions behind `#[test]`.
-fn tests() -> BTreeSet<String> {
-    let mut names = BTreeSet::new();
+/// The source of a test: its comment with its body; the file it stands in with the manual's programs that it runs.
+struct Source {
+    test: String,
+    file: String,
+}
+
+/// All tests by name, `crate::name`: functions behind `#[test]`.
+fn tests() -> BTreeMap<String, Vec<Source>> {
+    let mut found: BTreeMap<String, Vec<Source>> = BTreeMap::new();
     for room in fs::read_dir(root().join("crates")).unwrap() {
         let room = room.unwrap();
         let mut files = Vec::new();
@@ -36,28 +42,187 @@ fn tests() -> BTreeSet<String> {
         source_files(&room.path().join("tests"), &mut files);
         for file in files {
             let text = fs::read_to_string(file).unwrap();
-            for part in text.split("#[test]").skip(1) {
+            let parts: Vec<&str> = text.split("#[test]").collect();
+            for pair in parts.windows(2) {
+                let [before, part] = pair else { continue };
                 let name = part.split_once("fn ").and_then(|(_, rest)| rest.split_once('('));
-                if let Some((name, _)) = name {
-                    names.insert(format!("{}::{name}", room.file_name().to_string_lossy()));
-                }
+                let Some((name, _)) = name else { continue };
+                let comment = before.rsplit("\n\n").next().unwrap_or_default();
+                // The function ends where a brace stands as far left as it began.
+                let indent = before.len() - before.trim_end_matches(' ').len();
+                let end = part
+                    .find(&format!("\n{}}}", " ".repeat(indent)))
+                    .unwrap_or(part.len());
+                let test = format!("{comment}{}", &part[..end]);
+                let programs = test
+                    .split("manual(\"")
+                    .skip(1)
+                    .filter_map(|rest| rest.split('"').next());
+                let programs = programs.map(|name| room.path().join(format!("tests/programs/{name}.H")));
+                let programs: String = programs
+                    .filter_map(|path| fs::read_to_string(path).ok())
+                    .collect();
+                let source = Source {
+                    test,
+                    file: format!("{text}{programs}"),
+                };
+                let name = format!("{}::{name}", room.file_name().to_string_lossy());
+                found.entry(name).or_default().push(source);
             }
         }
     }
-    names
+    found
 }
 
 #[test]
 fn what_acts_is_proven_by_a_test() {
     let tests = tests();
     assert!(tests.len() > 1000, "{}", tests.len());
-    let is_unproven = |entry: &&Entry| entry.effect != Effect::None && !tests.contains(entry.proof);
     let unproven: Vec<String> = all()
         .iter()
-        .filter(is_unproven)
-        .map(|entry| format!("{}: there is no test `{}`", entry.name, entry.proof))
+        .filter(|entry| entry.effect != Effect::None)
+        .flat_map(|entry| entry.proof.split(' ').map(move |proof| (entry.name, proof)))
+        .filter(|(_, proof)| !tests.contains_key(*proof))
+        .map(|(name, proof)| format!("{name}: there is no test `{proof}`"))
         .collect();
     assert!(unproven.is_empty(), "{}", unproven.join("\n"));
+}
+
+/// Where a text has a word, not as a part of another one.
+fn has_word(text: &str, word: &str) -> bool {
+    let part_of_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+    text.match_indices(word).any(|(at, _)| {
+        !part_of_word(text[..at].chars().next_back()) && !part_of_word(text[at + word.len()..].chars().next())
+    })
+}
+
+/// Whether a text names a machine parameter: `MP1060`, `mp1060_`, `"1060.0=5`, `(1060, 0`, or a row of a table.
+fn names_parameter(text: &str, number: &str) -> bool {
+    text.match_indices(number).any(|(at, _)| {
+        let before = text[..at].trim_end_matches(' ');
+        let begins = ["MP", "mp", "\"", "(", "\n", "\\"]
+            .iter()
+            .any(|mark| before.ends_with(mark));
+        begins && !text[at + number.len()..].starts_with(|c: char| c.is_ascii_digit())
+    })
+}
+
+/// Whether a proof is about its row: it says the number or the name. Of a row of signals, one for each
+/// axis, direction or key, it may take any. Programs stand beside their tests.
+fn is_about(entry: &Entry, source: &Source) -> bool {
+    let (test, file) = (source.test.as_str(), source.file.as_str());
+    let codes = |letters: &str| -> Vec<String> {
+        let digits = |text: &str| {
+            text.trim_start_matches(|c: char| !c.is_ascii_digit())
+                .parse::<u32>()
+        };
+        let mut ends = entry.name.split('-').map(digits);
+        let first = ends.next().and_then(Result::ok).unwrap_or_default();
+        let last = ends.next().and_then(Result::ok).unwrap_or(first);
+        (first..=last).map(|code| format!("{letters}{code}")).collect()
+    };
+    match entry.kind {
+        Kind::MachineParameter => {
+            let digits = entry.name.trim_start_matches("MP");
+            let number = digits.split(['.', '-']).next().unwrap_or_default();
+            names_parameter(test, number)
+        }
+        Kind::MFunction => codes("M").iter().any(|code| {
+            let spelled = [code.clone(), code.replacen('M', "M0", 1)];
+            spelled
+                .iter()
+                .any(|code| has_word(file, code) || test.contains(&format!("{}_", code.to_lowercase())))
+        }),
+        Kind::Cycle => codes(
+            entry
+                .name
+                .trim_end_matches(|c: char| c.is_ascii_digit() || c == '-'),
+        )
+        .iter()
+        .any(|cycle| has_word(file, cycle)),
+        Kind::Fn => codes("FN").iter().any(|function| has_word(file, function)),
+        Kind::Module => test.contains(entry.name),
+        Kind::Word => entry
+            .name
+            .split([' ', ':'])
+            .any(|word| !word.is_empty() && has_word(file, word)),
+        Kind::Message => {
+            let id = MessageId::ALL.iter().find(|id| id.name() == entry.name);
+            let texts = ControlModel::ALL.map(|model| id.map_or("", |id| id.text(model)));
+            has_word(test, entry.name) || texts.iter().any(|text| test.contains(text))
+        }
+        Kind::Marker => {
+            let signals = bahn_exchange::signal::all();
+            let own = signals
+                .iter()
+                .find(|signal| signal.operand.to_string() == entry.name);
+            let row = own.map(|own| row_of(own.name));
+            let mut like = signals.iter().filter(|signal| Some(row_of(signal.name)) == row);
+            like.any(|signal| has_word(test, &signal.operand.to_string()) || has_word(test, signal.name))
+        }
+    }
+}
+
+/// The name of a signal without axis, direction and number: `JOG_X_PLUS` is one of a row.
+fn row_of(name: &str) -> Vec<&str> {
+    const PLACES: &[&str] = &["X", "Y", "Z", "IV", "V", "PLUS", "MINUS"];
+    let is_place = |part: &&str| PLACES.contains(part) || part.parse::<u32>().is_ok();
+    name.split('_').filter(|part| !is_place(part)).collect()
+}
+
+/// Proofs that are about their rows without saying so.
+const UNSAID: &[&str] = &[
+    // Ranges: the test takes some of them, or all in a loop.
+    "bahn::retained_memory_survives",
+    "control::changed_parameters_take_effect",
+    "control::edges_of_inputs",
+    "exchange::a_quiet_scan_brings_the_images_together",
+    "plc::m9001_copies_bytes",
+    // Names that the test puts together: axes, keys, functions, messages with an axis.
+    "control::analogue_inputs_of_the_extensions",
+    "control::encoder_signals",
+    "control::inhibited_keys",
+    "control::jog_increment",
+    "control::one_mark_from_the_cam",
+    "control::positioning_error_in_a_program",
+    "control::software_limits",
+    "interpreter::dwell_time",
+    "interpreter::functions_calculate",
+    "interpreter::functions_jump",
+    // The function is reached by its own interface, or goes by another name: a chamfer is an L block.
+    "interpreter::m112_rounds_corners_of_uncompensated_lines",
+    "interpreter::p02_chamfer",
+    "machine::the_probe_touches_a_block_beside_and_from_above",
+    "plc::m9031_error_codes",
+    "servo::a_turning_spindle_stops_at_its_angle_in_its_direction",
+    "workpiece::another_tool_axis_is_not_shown",
+    "workpiece::plunge_is_a_cylinder",
+];
+
+#[test]
+fn proofs_name_what_they_prove() {
+    let tests = tests();
+    let mut unsaid = BTreeSet::new();
+    let mut missing = Vec::new();
+    for entry in all().iter().filter(|entry| entry.effect != Effect::None) {
+        let mut sources = entry
+            .proof
+            .split(' ')
+            .filter_map(|proof| tests.get(proof))
+            .flatten();
+        if !sources.any(|source| is_about(entry, source)) {
+            unsaid.insert(entry.proof);
+            if !UNSAID.contains(&entry.proof) {
+                missing.push(format!("{}: {} does not name it", entry.name, entry.proof));
+            }
+        }
+    }
+    let idle: Vec<_> = UNSAID.iter().filter(|proof| !unsaid.contains(*proof)).collect();
+    assert!(
+        missing.is_empty() && idle.is_empty(),
+        "{}\nno exception: {idle:?}",
+        missing.join("\n")
+    );
 }
 
 /// Names that lack a row, and rows that name nothing.

@@ -3,8 +3,6 @@
 
 mod support;
 
-use std::path::{Path, PathBuf};
-
 use serde_json::Value;
 use support::{Folder, number};
 
@@ -15,9 +13,7 @@ struct Mill {
 
 impl Mill {
     fn new(blocks: &str, changes: &[(&str, &str)]) -> Mill {
-        let folder = Folder::with_program(blocks);
-        let mill = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/mill");
-        copy(&mill, &folder.path("mill"));
+        let folder = Folder::with_mill(blocks);
         let plant = folder.path("mill").join("plant.toml");
         let mut text = std::fs::read_to_string(&plant).unwrap();
         for (from, to) in changes {
@@ -33,21 +29,6 @@ impl Mill {
             "run main.H --machine mill --fresh --no-graphics --format json {parameters}"
         ));
         run.json()
-    }
-}
-
-fn copy(from: &PathBuf, to: &PathBuf) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        let target = to.join(path.file_name().unwrap());
-        match path.is_dir() {
-            true if path.ends_with("state") => {}
-            true => copy(&path, &target),
-            false => {
-                std::fs::copy(&path, target).unwrap();
-            }
-        }
     }
 }
 

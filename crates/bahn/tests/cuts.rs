@@ -178,6 +178,32 @@ fn the_machine_says_so_too() {
     );
 }
 
+/// On the machine the spindle itself counts, not M3: with its drive wired the wrong way it turns as with M4, and when
+/// the override is turned down to 0 (MP3310.1 = 0) during the dwell it stands.
+#[test]
+fn the_spindle_of_the_machine_counts() {
+    let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/mill");
+    let blocks = "BLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+100 Y+50 Z+0\nTOOL CALL 1 Z S1000\n\
+         L X+20 Y+25 Z+50 R0 FMAX M3\nCYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 30\nL Z-2 F1000\nL X+60\n\
+         L Z+50 FMAX";
+    let seen = |script: &str| {
+        let folder = Folder::with_program(blocks);
+        folder.write("s.txt", script);
+        let run = folder.bahn(&format!(
+            "run main.H --machine {machine} --fresh --format json --script s.txt --mp 3310.1=0"
+        ));
+        assert_eq!(run.code(), 0, "{}", run.err());
+        of(&run.json())
+    };
+    let said = |what: &str| [(7, format!("tool 1 cuts while the spindle {what}"))];
+    assert_eq!(seen(""), []);
+    assert_eq!(
+        seen("0: fault drive S reversed\n"),
+        said("turns the wrong way for it")
+    );
+    assert_eq!(seen("start+20: override spindle 0\n"), said("stands still"));
+}
+
 /// A drill of the program gets its point by an option: a cylinder, and the cone under it with its tip at Z-8.
 #[test]
 fn a_defined_drill_has_the_point_of_an_option() {

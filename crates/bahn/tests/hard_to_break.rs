@@ -213,6 +213,8 @@ fn ctrl_c_ends_picture_and_mesh() {
     );
     for arguments in [
         "--image out.png --view 3d --size 8000x8000",
+        "--image out.png --view plan --size 8000x8000",
+        "--image out.png --view three-planes --size 8000x8000",
         "--mesh out.stl --resolution 0.02",
     ] {
         let arguments: Vec<_> = arguments.split(' ').collect();
@@ -287,4 +289,121 @@ fn a_file_that_cannot_be_written_leaves_the_old_one() {
     assert_eq!(run.code(), 2);
     assert_eq!(folder.read("out.csv"), "old");
     assert_eq!(folder.names(), ["main.H", "out.csv"]);
+}
+
+fn mill() -> String {
+    format!("{}/../../machines/mill", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Files that are something else have a fault in each line: a hundred are shown, the others counted.
+#[test]
+fn a_hundred_faults_of_a_file_are_shown() {
+    let folder = Folder::with_program("L X+0 R0 F100");
+    folder.write("junk.PLC", "JUNK\n".repeat(100_000));
+    for arguments in [
+        "plc check junk.PLC".to_owned(),
+        "plc run junk.PLC".to_owned(),
+        "mp check junk.PLC --model tnc415b".to_owned(),
+        format!("run main.H --machine {} --fresh --script junk.PLC", mill()),
+    ] {
+        let run = folder.bahn(&arguments);
+        assert_eq!(run.code(), 1, "{arguments}");
+        let shown = run.err().matches("| JUNK").count();
+        assert_eq!(shown, 100, "{arguments}");
+        assert!(run.err().contains("more"), "{arguments}: {}", run.err());
+    }
+    let report = folder.bahn("plc check junk.PLC --format json").json();
+    assert_eq!(
+        (report["errors"].as_array().unwrap().len(), &report["not_listed"]),
+        (1000, &json!(99_000))
+    );
+}
+
+/// The lines that are executed from one cycle to another have no end: the trace has, and says so.
+#[test]
+fn a_trace_is_bounded() {
+    let folder = Folder::new();
+    folder.write("MAIN.PLC", "L M1\n= M2\nEM\n");
+    // Three lines a cycle.
+    let report = folder.bahn("plc run MAIN.PLC --cycles 50000 --trace --format json");
+    assert_eq!(report.code(), 0);
+    let report = report.json();
+    assert_eq!(
+        (
+            report["trace"].as_array().unwrap().len(),
+            &report["trace_left_off"]
+        ),
+        (100_000, &json!(50_000))
+    );
+    let text = folder.bahn("plc run MAIN.PLC --cycles 50000 --trace").out();
+    assert!(text.contains("\n50000 more lines were executed; 100000 are shown at most\n"));
+    let report = folder
+        .bahn("plc run MAIN.PLC --cycles 2 --trace --format json")
+        .json();
+    assert_eq!(report["trace_left_off"], json!(0));
+}
+
+/// Expectations cost no more when there are many.
+#[test]
+fn a_hundred_thousand_expectations_are_told_at_once() {
+    let folder = Folder::with_program("TOOL CALL 1 Z S500\nL X+0 R0 F100");
+    folder.write("MAIN.PLC", "L M1\n= M2\nEM\n");
+    folder.write("p.txt", "1: expect M2=1\n".repeat(100_000));
+    folder.write("s.txt", "1: expect mode manual\n".repeat(100_000));
+    let started = Instant::now();
+    let run = folder.bahn("plc run MAIN.PLC --script p.txt --junit p.xml");
+    assert_eq!(
+        (run.code(), folder.read("p.xml").matches("<failure").count()),
+        (1, 100_000)
+    );
+    assert_eq!(run.err().matches(" --> p.txt:").count(), 100);
+    let run = folder.bahn(&format!(
+        "run main.H --machine {} --fresh --no-graphics --script s.txt --junit s.xml",
+        mill()
+    ));
+    let cases = folder.read("s.xml").matches("<testcase").count();
+    assert!(cases >= 100_000, "{cases} {}", run.err());
+    assert!(
+        started.elapsed() < Duration::from_secs(90),
+        "{:?}",
+        started.elapsed()
+    );
+}
+
+/// A medium that is full: every other file and the report are there, and the exit code says what is not.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_medium_loses_no_report() {
+    let folder = Folder::with_program("TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX\nL X+0 Y+0 FMAX\nL X+10 F1000");
+    folder.write("MAIN.PLC", "L M1\n= M2\nEM\n");
+    folder.write("s.txt", "1: expect M1=0\n");
+    std::os::unix::fs::symlink("/dev/full", folder.path("full.csv")).unwrap();
+    for output in [
+        "--record full.csv --log good.txt",
+        "--log full.csv --record good.txt",
+        "--path full.csv --record good.txt",
+        "--script s.txt --junit full.csv --operator full --record good.txt",
+    ] {
+        let run = folder.bahn(&format!(
+            "run main.H --machine {} --fresh --no-graphics --format json {output}",
+            mill()
+        ));
+        assert_eq!(run.code(), 2, "{output}: {}", run.err());
+        assert!(run.err().contains("No space left"), "{output}: {}", run.err());
+        assert!(run.json()["completed"].is_boolean(), "{output}");
+        assert!(folder.read("good.txt").lines().count() > 1, "{output}");
+        std::fs::remove_file(folder.path("good.txt")).unwrap();
+    }
+    for output in [
+        "--record full.csv --junit good.txt",
+        "--junit full.csv --record good.txt",
+    ] {
+        let run = folder.bahn(&format!(
+            "plc run MAIN.PLC --script s.txt --cycles 20000 --format json {output}"
+        ));
+        assert_eq!(run.code(), 2, "{output}: {}", run.err());
+        assert!(run.json()["values"].is_object(), "{output}");
+        assert!(folder.read("good.txt").lines().count() > 1, "{output}");
+        std::fs::remove_file(folder.path("good.txt")).unwrap();
+    }
 }

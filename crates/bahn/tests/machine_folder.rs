@@ -218,7 +218,7 @@ fn wires_end_at_inputs_and_outputs_that_are_there() {
     let run = folder.bahn("machine check m");
     assert_eq!(run.code(), 1);
     for (wire, said) in [
-        ("\"I63\"", "no input I63; there are I0-I31"),
+        ("\"I63\"", "TNC 415 B has no input I63; there are I0-I31"),
         ("\"O127\"", "no output O127; there are O0-O30"),
     ] {
         let place = format!("plant.toml:{}:", line(&folder, "m/plant.toml", wire));
@@ -227,5 +227,71 @@ fn wires_end_at_inputs_and_outputs_that_are_there() {
             "{}",
             run.err()
         );
+    }
+}
+
+/// A jump in an open bracket: the bracket is shown where it was opened, as `plc check` shows it.
+#[test]
+fn faults_of_the_plc_program_show_what_was_opened() {
+    let folder = new("tnc360");
+    edit(
+        &folder,
+        "m/plc/MAIN.PLC",
+        "\n       EM",
+        "\n       L     M1\n       A[\n       JP    1\n       ]\n       =     M2\n       EM",
+    );
+    let opened = line(&folder, "m/plc/MAIN.PLC", "A[");
+    for command in ["plc check m/plc/MAIN.PLC --model tnc360", "machine check m"] {
+        let run = folder.bahn(command);
+        assert_eq!(run.code(), 1, "{command}: {}", run.err());
+        let shown = run.err();
+        let mark = shown
+            .find("opened here")
+            .unwrap_or_else(|| panic!("{command}: {shown}"));
+        assert!(
+            shown[..mark].contains(&format!("\n{opened} |        A[")),
+            "{command}: {shown}"
+        );
+    }
+}
+
+/// The TNC 151 and 155 have E0 to E62 and E64 to E126, A0 to A30 and A32 to A62 [001:297-323]; the others
+/// those of [000:11556-11567].
+#[test]
+fn each_model_has_its_own_inputs_and_outputs() {
+    for (model, there, missing) in [
+        ("tnc155", ["I40", "I126", "O62"], ["I128", "I160", "O64"]),
+        ("tnc151", ["I62", "I64", "O32"], ["I63", "I192", "O31"]),
+        ("tnc415b", ["I128", "I254", "O94"], ["I40", "I63", "O63"]),
+    ] {
+        let folder = new(model);
+        let plant = folder.read("m/plant.toml");
+        let [input, _, output] = ["input_second = \"I18\"", "", "output = \"O24\""];
+        assert_eq!(
+            (plant.matches(input).count(), plant.matches(output).count()),
+            (1, 1)
+        );
+        let wired = |wire: &str| {
+            let (from, key) = match wire.starts_with('I') {
+                true => (input, "input_second"),
+                false => (output, "output"),
+            };
+            folder.write(
+                "m/plant.toml",
+                plant.replace(from, &format!("{key} = \"{wire}\"")),
+            );
+            folder.bahn("machine check m").err()
+        };
+        for wire in there {
+            let said = wired(wire);
+            assert!(!said.contains("the wiring is wrong"), "{model} {wire}: {said}");
+        }
+        for wire in missing {
+            let said = wired(wire);
+            assert!(
+                said.contains(&format!("put {wire}; there are ")),
+                "{model} {wire}: {said}"
+            );
+        }
     }
 }

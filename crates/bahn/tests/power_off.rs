@@ -514,3 +514,88 @@ fn a_second_request_to_end_keeps_the_report() {
     assert!(names.contains(&"out.csv".to_owned()), "{names:?}");
     assert!(!names.iter().any(|name| name.ends_with(".tmp")), "{names:?}");
 }
+
+/// No output of a run replaces what its machine is made of.
+#[test]
+fn outputs_leave_the_machine_alone() {
+    let folder = run_once();
+    folder.write("m/programs/SUB.H", "BEGIN PGM SUB MM\nEND PGM SUB MM\n");
+    let names = [
+        "machine.toml",
+        "plant.toml",
+        "parameters.mp",
+        "tools.tsv",
+        "plc/MAIN.PLC",
+        "programs/CHANGES.H",
+        "programs/SUB.H",
+        "state/lock",
+        "state/plc.mem",
+        "state/control.toml",
+    ];
+    let files = || names.map(|name| fs::read(folder.path("m").join(name)).unwrap());
+    let before = files();
+    for name in names {
+        for option in ["--log", "--record"] {
+            let run = folder.bahn(&format!(
+                "run CHANGES.H --machine m --no-graphics {option} m/{name}"
+            ));
+            assert_eq!((run.code(), run.out().as_str()), (2, ""), "{option} {name}");
+            assert!(run.err().contains(name), "{}", run.err());
+        }
+    }
+    assert_eq!(files(), before);
+}
+
+/// Of retained memory that is gone it is said.
+#[test]
+fn missing_plc_memory_is_said() {
+    let folder = run_once();
+    fs::remove_file(folder.path("m/state/plc.mem")).unwrap();
+    let run = folder.bahn("run CHANGES.H --machine m --no-graphics");
+    assert_eq!(run.code(), 0);
+    assert!(run.err().contains("plc.mem is missing"), "{}", run.err());
+    let run = folder.bahn("run CHANGES.H --machine m --no-graphics");
+    assert_eq!((run.code(), run.err().as_str()), (0, ""));
+}
+
+/// What may not be read is refused, and stays as it is.
+#[cfg(unix)]
+#[test]
+fn a_state_that_may_not_be_read_is_kept() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
+    use std::os::unix::process::CommandExt;
+    /// Somebody who may read nothing of others.
+    const NOBODY: u32 = 65_534;
+    for name in ["control.toml", "plc.mem", "lock"] {
+        let folder = run_once();
+        let file = folder.path("m/state").join(name);
+        let before = fs::read(&file).unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o000)).unwrap();
+        let command = folder.path("bahn");
+        fs::copy(env!("CARGO_BIN_EXE_bahn"), &command).unwrap();
+        let mut command = std::process::Command::new(command);
+        command
+            .current_dir(&folder)
+            .args("run CHANGES.H --machine m --no-graphics".split(' '));
+        // Who is root may read everything.
+        if fs::metadata(&file).unwrap().uid() == 0 {
+            chown(folder.path("m/state"), Some(NOBODY), None).unwrap();
+            for other in ["control.toml", "plc.mem", "lock"].map(|other| folder.path("m/state").join(other)) {
+                chown(&other, (other != file).then_some(NOBODY), None).unwrap();
+            }
+            command.uid(NOBODY);
+        }
+        let output = command.output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), output.stdout), (Some(2), vec![]), "{said}");
+        assert!(said.contains(name) && said.contains("ermission denied"), "{said}");
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o600)).unwrap();
+        assert_eq!(fs::read(&file).unwrap(), before, "{name}");
+        let mut names: Vec<_> = fs::read_dir(folder.path("m/state"))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name())
+            .collect();
+        names.sort();
+        assert_eq!(names, ["control.toml", "lock", "plc.mem"]);
+    }
+}

@@ -3,10 +3,8 @@
 
 mod support;
 
-use std::path::{Path, PathBuf};
-
 use serde_json::{Value, json};
-use support::{Folder, Run, number, rows};
+use support::{Folder, Run, machines, number, rows};
 
 /// A pocket corner with a programmed stop: 40 mm in X, 20 mm deep arc, up again.
 const CORNER: &str = "
@@ -21,10 +19,6 @@ M0
 CC X+40 Y+20
 C X+40 Y+40 DR+ F1000
 L Z+50 FMAX M2";
-
-fn machines() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines")
-}
 
 /// `bahn run main.H` on the mill as it was delivered, with further arguments.
 fn run(folder: &Folder, arguments: &str) -> Run {
@@ -45,28 +39,6 @@ fn time_for(report: &Value, what: &str) -> f64 {
     let times = report["times"].as_array().unwrap();
     let share = times.iter().find(|share| share["what"] == what);
     share.map_or(0.0, |share| share["time_s"].as_f64().unwrap())
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        let target = to.join(path.file_name().unwrap());
-        match path.is_dir() {
-            true if path.ends_with("state") => {}
-            true => copy(&path, &target),
-            false => {
-                std::fs::copy(&path, target).unwrap();
-            }
-        }
-    }
-}
-
-/// A folder with the mill in `mill` and the program `main.H`.
-fn with_mill(blocks: &str) -> Folder {
-    let folder = Folder::with_program(blocks);
-    copy(&machines().join("mill"), &folder.path("mill"));
-    folder
 }
 
 #[test]
@@ -347,7 +319,7 @@ fn the_part_can_be_seen() {
 
 #[test]
 fn what_survives_power_off_is_kept_in_the_folder() {
-    let folder = with_mill("TOOL CALL 3 Z S1500\nFN 0: Q5 = +7.5\nL Z+50 R0 FMAX");
+    let folder = Folder::with_mill("TOOL CALL 3 Z S1500\nFN 0: Q5 = +7.5\nL Z+50 R0 FMAX");
     let first = folder.bahn("run main.H --machine mill");
     assert_eq!(first.code(), 0, "{}", first.err());
     let state = folder.read("mill/state/control.toml");
@@ -439,7 +411,7 @@ fn no_picture_without_a_blank() {
 /// with a right one the machine runs.
 #[test]
 fn compensation_tables_lie_in_the_folder() {
-    let folder = with_mill("TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX\nL X+100 Y+0 FMAX M2");
+    let folder = Folder::with_mill("TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX\nL X+100 Y+0 FMAX M2");
     let machine = folder.path("mill/machine.toml");
     let text = std::fs::read_to_string(&machine).unwrap();
     std::fs::write(

@@ -230,3 +230,22 @@ fn block_processing_time() {
     let (plain, simulated) = (test(""), test("--block-time"));
     assert!(simulated > plain && simulated >= 8.0, "{plain} {simulated}");
 }
+
+/// A log that is not as it was written repeats another run: it is said.
+#[test]
+fn a_damaged_log_is_said() {
+    let folder = Folder::with_program(PROGRAM);
+    assert_eq!(run(&folder, "--log a.log").code(), 0);
+    let replay = run(&folder, "--replay a.log");
+    assert_eq!((replay.code(), replay.err().as_str()), (0, ""));
+    let whole = folder.read("a.log");
+    let end = whole.lines().position(|line| line.ends_with(": end")).unwrap();
+    let cut: Vec<&str> = whole.lines().take(end).collect();
+    folder.write("a.log", cut.join("\n") + "\n");
+    let replay = run(&folder, "--replay a.log");
+    assert!(
+        replay.err().contains("a.log: the log is not as it was written"),
+        "{}",
+        replay.err()
+    );
+}

@@ -287,6 +287,260 @@ fn the_table_adds_up_to_the_report() {
 }
 
 #[test]
+fn stops_are_listed_and_passed_over() {
+    // M6 is a tool change, no stop for the operator.
+    let folder = Folder::with_program("L X+0 R0 F100\nSTOP M6\nL X+10 M6\nL X+20 M0\nM1\nL X+30");
+    let (code, report) = folder.test("");
+    assert_eq!(code, 0);
+    let stops = report["stops"].as_array().unwrap();
+    let seen: Vec<_> = stops
+        .iter()
+        .map(|stop| (&stop["block"], &stop["function"], &stop["line"]))
+        .collect();
+    assert_eq!(
+        seen,
+        [
+            (&json!(2), &json!("STOP"), &json!(3)),
+            (&json!(4), &json!("M0"), &json!(5))
+        ]
+    );
+    assert_near(number(&report, "/final_position/X"), 30.0);
+    let (code, report) = folder.test("--stop");
+    assert_eq!(
+        (code, &report["completed"], &report["error"]),
+        (0, &json!(false), &json!(null))
+    );
+    assert_near(number(&report, "/final_position/X"), 0.0);
+    assert_eq!(report["blocks_executed"], 2);
+    assert_eq!(report["stops"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn signs_that_disagree_are_a_warning_or_an_error() {
+    let folder = Folder::with_program(
+        "TOOL DEF 1 L+0 R+3\nTOOL CALL 1 Z S500\nCYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP 2\nCYCL DEF 1.2 DEPTH -10\n\
+         CYCL DEF 1.3 PECKG 5\nCYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\nL Z+2 R0 FMAX M3\nL X+0 Y+0 FMAX M99\nL X+9 FMAX M99",
+    );
+    let (code, report) = folder.test("");
+    assert_eq!(code, 0, "{report}");
+    let warnings = report["warnings"].as_array().unwrap();
+    assert!(
+        warnings
+            .iter()
+            .any(|warning| warning["message"].as_str().unwrap().contains("sign")),
+        "{report}"
+    );
+    let (code, report) = folder.test("--strict");
+    assert_eq!(
+        (code, &report["error"]["message"]),
+        (1, &json!("WRONG SIGN PROGRAMMED"))
+    );
+}
+
+#[test]
+fn repeated_warnings_are_counted() {
+    let folder = Folder::with_program("LBL 1\nTOOL CALL 9 Z S100\nCALL LBL 1 REP 4/4");
+    let (_, report) = folder.test("");
+    let warnings = report["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1, "{report}");
+    // Once and four repeats.
+    assert_eq!(
+        (&warnings[0]["block"], &warnings[0]["count"]),
+        (&json!(2), &json!(5))
+    );
+    assert_eq!(report["tool_calls"].as_array().unwrap().len(), 5);
+}
+
+#[test]
+fn rapid_cuts_are_reported() {
+    let folder = Folder::with_program(
+        "BLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+50 Y+50 Z+0\nTOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1\n\
+         L X+25 Y+25 Z+5 R0 FMAX M3\nL Z-5 FMAX\nL Z-15 F100",
+    );
+    let (_, report) = folder.test("");
+    let all: Vec<_> = report["warnings"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|w| (&w["block"], &w["message"]))
+        .collect();
+    assert_eq!(
+        all,
+        [
+            (&json!(6), &json!("material is removed in rapid traverse")),
+            (&json!(7), &json!("tool 1 is below the blank"))
+        ]
+    );
+    // Without graphics nothing is removed, and nothing known of it.
+    let (_, report) = folder.test("--no-graphics");
+    assert_eq!(
+        (&report["removed_mm3"], &report["warnings"]),
+        (&json!(null), &json!([]))
+    );
+}
+
+#[test]
+fn the_resolution_can_be_chosen() {
+    // A slot of 50 mm with a tool of radius 5 through the blank: 50 * 10 and a circle of 78.54, 2 mm deep.
+    let folder = Folder::with_program(
+        "BLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+100 Y+50 Z+0\nTOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1\n\
+         L X+20 Y+25 Z+5 R0 FMAX M3\nL Z-2 F100\nL X+70",
+    );
+    let exact = 2.0 * (500.0 + std::f64::consts::PI * 25.0);
+    for (option, tolerance) in [
+        ("", 0.002),
+        ("--resolution 0.05", 0.001),
+        ("--resolution 1", 0.05),
+    ] {
+        let removed = number(&folder.test(option).1, "/removed_mm3");
+        assert!(
+            (removed / exact - 1.0).abs() < tolerance,
+            "{option}: {removed}, exactly {exact}"
+        );
+    }
+    let run = folder.bahn("test main.H --resolution 0.000001");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("too fine"), "{}", run.err());
+    assert_eq!(folder.bahn("test main.H --resolution 0").code(), 2);
+}
+
+#[test]
+fn a_picture_needs_a_blank() {
+    let folder = Folder::with_program("L X+0 R0 F100");
+    let run = folder.bahn("test main.H --image part.png");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("no BLK FORM"), "{}", run.err());
+    assert_eq!(folder.names(), ["main.H"]);
+}
+
+#[test]
+fn the_probe_touches_the_part_as_machined() {
+    // A pocket of 3 mm depth is milled at the point that is then probed from above: the surface is at -3.
+    let blocks = "
+BLK FORM 0.1 Z X+0 Y+0 Z-20
+BLK FORM 0.2 X+40 Y+40 Z+0
+TOOL DEF 1 L+0 R+8
+TOOL CALL 1 Z S1000
+L X+20 Y+20 Z+10 R0 FMAX M3
+L Z-3 F100
+L Z+10 FMAX
+TCH PROBE 0.0 REF. PLANE Q10 Z-
+TCH PROBE 0.1 X+20 Y+20 Z+0
+L Z+20 FMAX";
+    let folder = Folder::with_program(blocks);
+    let (code, report) = folder.test("");
+    assert_eq!(code, 0, "{report}");
+    assert!((number(&report, "/q/10") + 3.0).abs() < 0.001, "{report}");
+    // Without a part there is nothing to touch.
+    let without = blocks
+        .lines()
+        .filter(|line| !line.starts_with("BLK"))
+        .collect::<Vec<_>>()
+        .join("\n");
+    folder.write("main.H", program(&without));
+    let (code, report) = folder.test("");
+    assert_eq!(
+        (code, &report["error"]["message"]),
+        (1, &json!("TOUCH POINT INACCESSIBLE"))
+    );
+}
+
+#[test]
+fn called_programs_are_found_beside_the_caller() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("parts")).unwrap();
+    folder.write(
+        "parts/main.H",
+        program("CALL PGM A\nCALL PGM B\nCALL PGM C\nCALL PGM D"),
+    );
+    for (name, x) in [("A", 1), ("B.H", 2), ("C.h", 3), ("D.I", 4)] {
+        folder.write(&format!("parts/{name}"), program(&format!("L X+{x} R0 F100")));
+    }
+    let run = folder.bahn("test parts/main.H --format json --path out.csv");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    // Four calls and four movements.
+    assert_eq!(run.json()["blocks_executed"], 8);
+    let table = folder.read("out.csv");
+    let ends: Vec<_> = rows(&table)
+        .iter()
+        .map(|row| (row[0].to_owned(), row[4].to_owned()))
+        .collect();
+    let expected = [("A", "1"), ("B.H", "2"), ("C.h", "3"), ("D.I", "4")];
+    assert_eq!(ends, expected.map(|(name, x)| (name.to_owned(), x.to_owned())));
+}
+
+#[test]
+fn errors_in_called_programs_name_them() {
+    let folder = Folder::with_program("CALL PGM SUB");
+    folder.write("SUB.H", program("\nL X+1 R0 F100\nCC X+0 Y+0\nC X+50 Y+50 DR+"));
+    let (code, report) = folder.test("");
+    assert_eq!(
+        (code, &report["error"]["program"], &report["error"]["block"]),
+        (1, &json!("SUB.H"), &json!(3))
+    );
+    assert!(folder.bahn("test main.H").err().contains("SUB.H:4"));
+}
+
+#[test]
+fn text_reports_say_the_same() {
+    let folder = Folder::with_program(SQUARE);
+    let run = folder.bahn("test main.H --path out.csv --set Q5=2.5");
+    assert_eq!(run.code(), 0);
+    let out = run.out();
+    for line in [
+        "main.H (mm), TNC415B",
+        "completed",
+        "mm feed",
+        "block 4: tool 1, 1000 rpm",
+        "Q5 = 2.5",
+        "out.csv",
+    ] {
+        assert!(out.contains(line), "{line} is not in\n{out}");
+    }
+}
+
+#[test]
+fn wrong_use_has_exit_code_2() {
+    let folder = Folder::with_program("L X+0 R0 F100");
+    for arguments in [
+        "",
+        "frobnicate",
+        "test",
+        "test nothing.H",
+        "test main.H --format xml",
+        "test main.H --path out.txt",
+        "test main.H --path nowhere/out.csv",
+        "test main.H --view plan",
+        "test main.H --max-blocks 0",
+        "test main.H --image part.png --size 5x5",
+        "test main.H --unknown",
+    ] {
+        let run = folder.bahn(arguments);
+        assert_eq!(run.code(), 2, "bahn {arguments}");
+        assert!(!run.err().is_empty() && run.out().is_empty(), "bahn {arguments}");
+    }
+    for arguments in [
+        "--help",
+        "help",
+        "help test",
+        "test --help",
+        "check --help",
+        "fmt --help",
+        "--version",
+    ] {
+        let run = folder.bahn(arguments);
+        assert_eq!(run.code(), 0, "bahn {arguments}");
+        assert!(run.err().is_empty() && !run.out().is_empty(), "bahn {arguments}");
+    }
+    assert!(
+        folder
+            .bahn("test --help")
+            .out()
+            .contains("bahn test part.h --image part.png --view 3d")
+    );
+}
+
+#[test]
 fn q_parameters_are_set() {
     let folder = Folder::with_program("FN1: Q3 = +Q1 + +Q2\nL X+Q3 R0 F100");
     for arguments in [
@@ -424,133 +678,6 @@ fn the_start_position_adds_the_first_way() {
 }
 
 #[test]
-fn stops_are_listed_and_passed_over() {
-    // M6 is a tool change, no stop for the operator.
-    let folder = Folder::with_program("L X+0 R0 F100\nSTOP M6\nL X+10 M6\nL X+20 M0\nM1\nL X+30");
-    let (code, report) = folder.test("");
-    assert_eq!(code, 0);
-    let stops = report["stops"].as_array().unwrap();
-    let seen: Vec<_> = stops
-        .iter()
-        .map(|stop| (&stop["block"], &stop["function"], &stop["line"]))
-        .collect();
-    assert_eq!(
-        seen,
-        [
-            (&json!(2), &json!("STOP"), &json!(3)),
-            (&json!(4), &json!("M0"), &json!(5))
-        ]
-    );
-    assert_near(number(&report, "/final_position/X"), 30.0);
-    let (code, report) = folder.test("--stop");
-    assert_eq!(
-        (code, &report["completed"], &report["error"]),
-        (0, &json!(false), &json!(null))
-    );
-    assert_near(number(&report, "/final_position/X"), 0.0);
-    assert_eq!(report["blocks_executed"], 2);
-    assert_eq!(report["stops"].as_array().unwrap().len(), 1);
-}
-
-#[test]
-fn signs_that_disagree_are_a_warning_or_an_error() {
-    let folder = Folder::with_program(
-        "TOOL DEF 1 L+0 R+3\nTOOL CALL 1 Z S500\nCYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP 2\nCYCL DEF 1.2 DEPTH -10\n\
-         CYCL DEF 1.3 PECKG 5\nCYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\nL Z+2 R0 FMAX M3\nL X+0 Y+0 FMAX M99\nL X+9 FMAX M99",
-    );
-    let (code, report) = folder.test("");
-    assert_eq!(code, 0, "{report}");
-    let warnings = report["warnings"].as_array().unwrap();
-    assert!(
-        warnings
-            .iter()
-            .any(|warning| warning["message"].as_str().unwrap().contains("sign")),
-        "{report}"
-    );
-    let (code, report) = folder.test("--strict");
-    assert_eq!(
-        (code, &report["error"]["message"]),
-        (1, &json!("WRONG SIGN PROGRAMMED"))
-    );
-}
-
-#[test]
-fn repeated_warnings_are_counted() {
-    let folder = Folder::with_program("LBL 1\nTOOL CALL 9 Z S100\nCALL LBL 1 REP 4/4");
-    let (_, report) = folder.test("");
-    let warnings = report["warnings"].as_array().unwrap();
-    assert_eq!(warnings.len(), 1, "{report}");
-    // Once and four repeats.
-    assert_eq!(
-        (&warnings[0]["block"], &warnings[0]["count"]),
-        (&json!(2), &json!(5))
-    );
-    assert_eq!(report["tool_calls"].as_array().unwrap().len(), 5);
-}
-
-#[test]
-fn rapid_cuts_are_reported() {
-    let folder = Folder::with_program(
-        "BLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+50 Y+50 Z+0\nTOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1\n\
-         L X+25 Y+25 Z+5 R0 FMAX M3\nL Z-5 FMAX\nL Z-15 F100",
-    );
-    let (_, report) = folder.test("");
-    let all: Vec<_> = report["warnings"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|w| (&w["block"], &w["message"]))
-        .collect();
-    assert_eq!(
-        all,
-        [
-            (&json!(6), &json!("material is removed in rapid traverse")),
-            (&json!(7), &json!("tool 1 is below the blank"))
-        ]
-    );
-    // Without graphics nothing is removed, and nothing known of it.
-    let (_, report) = folder.test("--no-graphics");
-    assert_eq!(
-        (&report["removed_mm3"], &report["warnings"]),
-        (&json!(null), &json!([]))
-    );
-}
-
-#[test]
-fn the_resolution_can_be_chosen() {
-    // A slot of 50 mm with a tool of radius 5 through the blank: 50 * 10 and a circle of 78.54, 2 mm deep.
-    let folder = Folder::with_program(
-        "BLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+100 Y+50 Z+0\nTOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S1\n\
-         L X+20 Y+25 Z+5 R0 FMAX M3\nL Z-2 F100\nL X+70",
-    );
-    let exact = 2.0 * (500.0 + std::f64::consts::PI * 25.0);
-    for (option, tolerance) in [
-        ("", 0.002),
-        ("--resolution 0.05", 0.001),
-        ("--resolution 1", 0.05),
-    ] {
-        let removed = number(&folder.test(option).1, "/removed_mm3");
-        assert!(
-            (removed / exact - 1.0).abs() < tolerance,
-            "{option}: {removed}, exactly {exact}"
-        );
-    }
-    let run = folder.bahn("test main.H --resolution 0.000001");
-    assert_eq!(run.code(), 2);
-    assert!(run.err().contains("too fine"), "{}", run.err());
-    assert_eq!(folder.bahn("test main.H --resolution 0").code(), 2);
-}
-
-#[test]
-fn a_picture_needs_a_blank() {
-    let folder = Folder::with_program("L X+0 R0 F100");
-    let run = folder.bahn("test main.H --image part.png");
-    assert_eq!(run.code(), 2);
-    assert!(run.err().contains("no BLK FORM"), "{}", run.err());
-    assert_eq!(folder.names(), ["main.H"]);
-}
-
-#[test]
 fn models_differ() {
     // Formulas came with the TNC 407; WRONG RPM is the text of the TNC 360.
     let folder = Folder::with_program("Q1 = SIN 30 + 2");
@@ -563,131 +690,4 @@ fn models_differ() {
         "WRONG SPINDLE SPEED"
     );
     assert_eq!(folder.bahn("test main.H --model tnc430").code(), 2);
-}
-
-#[test]
-fn the_probe_touches_the_part_as_machined() {
-    // A pocket of 3 mm depth is milled at the point that is then probed from above: the surface is at -3.
-    let blocks = "
-BLK FORM 0.1 Z X+0 Y+0 Z-20
-BLK FORM 0.2 X+40 Y+40 Z+0
-TOOL DEF 1 L+0 R+8
-TOOL CALL 1 Z S1000
-L X+20 Y+20 Z+10 R0 FMAX M3
-L Z-3 F100
-L Z+10 FMAX
-TCH PROBE 0.0 REF. PLANE Q10 Z-
-TCH PROBE 0.1 X+20 Y+20 Z+0
-L Z+20 FMAX";
-    let folder = Folder::with_program(blocks);
-    let (code, report) = folder.test("");
-    assert_eq!(code, 0, "{report}");
-    assert!((number(&report, "/q/10") + 3.0).abs() < 0.001, "{report}");
-    // Without a part there is nothing to touch.
-    let without = blocks
-        .lines()
-        .filter(|line| !line.starts_with("BLK"))
-        .collect::<Vec<_>>()
-        .join("\n");
-    folder.write("main.H", program(&without));
-    let (code, report) = folder.test("");
-    assert_eq!(
-        (code, &report["error"]["message"]),
-        (1, &json!("TOUCH POINT INACCESSIBLE"))
-    );
-}
-
-#[test]
-fn called_programs_are_found_beside_the_caller() {
-    let folder = Folder::new();
-    std::fs::create_dir(folder.path("parts")).unwrap();
-    folder.write(
-        "parts/main.H",
-        program("CALL PGM A\nCALL PGM B\nCALL PGM C\nCALL PGM D"),
-    );
-    for (name, x) in [("A", 1), ("B.H", 2), ("C.h", 3), ("D.I", 4)] {
-        folder.write(&format!("parts/{name}"), program(&format!("L X+{x} R0 F100")));
-    }
-    let run = folder.bahn("test parts/main.H --format json --path out.csv");
-    assert_eq!(run.code(), 0, "{}", run.err());
-    // Four calls and four movements.
-    assert_eq!(run.json()["blocks_executed"], 8);
-    let table = folder.read("out.csv");
-    let ends: Vec<_> = rows(&table)
-        .iter()
-        .map(|row| (row[0].to_owned(), row[4].to_owned()))
-        .collect();
-    let expected = [("A", "1"), ("B.H", "2"), ("C.h", "3"), ("D.I", "4")];
-    assert_eq!(ends, expected.map(|(name, x)| (name.to_owned(), x.to_owned())));
-}
-
-#[test]
-fn errors_in_called_programs_name_them() {
-    let folder = Folder::with_program("CALL PGM SUB");
-    folder.write("SUB.H", program("\nL X+1 R0 F100\nCC X+0 Y+0\nC X+50 Y+50 DR+"));
-    let (code, report) = folder.test("");
-    assert_eq!(
-        (code, &report["error"]["program"], &report["error"]["block"]),
-        (1, &json!("SUB.H"), &json!(3))
-    );
-    assert!(folder.bahn("test main.H").err().contains("SUB.H:4"));
-}
-
-#[test]
-fn text_reports_say_the_same() {
-    let folder = Folder::with_program(SQUARE);
-    let run = folder.bahn("test main.H --path out.csv --set Q5=2.5");
-    assert_eq!(run.code(), 0);
-    let out = run.out();
-    for line in [
-        "main.H (mm), TNC415B",
-        "completed",
-        "mm feed",
-        "block 4: tool 1, 1000 rpm",
-        "Q5 = 2.5",
-        "out.csv",
-    ] {
-        assert!(out.contains(line), "{line} is not in\n{out}");
-    }
-}
-
-#[test]
-fn wrong_use_has_exit_code_2() {
-    let folder = Folder::with_program("L X+0 R0 F100");
-    for arguments in [
-        "",
-        "frobnicate",
-        "test",
-        "test nothing.H",
-        "test main.H --format xml",
-        "test main.H --path out.txt",
-        "test main.H --path nowhere/out.csv",
-        "test main.H --view plan",
-        "test main.H --max-blocks 0",
-        "test main.H --image part.png --size 5x5",
-        "test main.H --unknown",
-    ] {
-        let run = folder.bahn(arguments);
-        assert_eq!(run.code(), 2, "bahn {arguments}");
-        assert!(!run.err().is_empty() && run.out().is_empty(), "bahn {arguments}");
-    }
-    for arguments in [
-        "--help",
-        "help",
-        "help test",
-        "test --help",
-        "check --help",
-        "fmt --help",
-        "--version",
-    ] {
-        let run = folder.bahn(arguments);
-        assert_eq!(run.code(), 0, "bahn {arguments}");
-        assert!(run.err().is_empty() && !run.out().is_empty(), "bahn {arguments}");
-    }
-    assert!(
-        folder
-            .bahn("test --help")
-            .out()
-            .contains("bahn test part.h --image part.png --view 3d")
-    );
 }

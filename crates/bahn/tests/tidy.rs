@@ -1,6 +1,7 @@
 //! The order of the house: arrows between rooms, file lengths, unfinished work.
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -53,6 +54,70 @@ const ROOMS: &[(&str, &[&str])] = &[
 
 /// Longer files hold more than one idea.
 const LINES_MAX: usize = 700;
+
+/// Files that use each other in a circle. None should; a circle that is opened leaves the list.
+const CIRCLES: &[(&str, &[&str])] = &[
+    (
+        "bahn",
+        &[
+            "cli",
+            "conformance",
+            "cutting",
+            "manual",
+            "progress",
+            "report_text",
+            "run",
+            "scope",
+            "settings",
+            "shelf",
+            "test_run",
+        ],
+    ),
+    (
+        "control",
+        &[
+            "compensation",
+            "control",
+            "feeder",
+            "functions",
+            "handshake",
+            "life",
+            "manual",
+            "plc_link",
+            "positioning",
+            "probing",
+            "reference",
+            "restore",
+            "run",
+            "setup",
+            "spindle",
+            "tables",
+            "test_run",
+            "thread",
+            "tools",
+            "upkeep",
+        ],
+    ),
+    (
+        "interpreter",
+        &[
+            "availability",
+            "cycles",
+            "functions",
+            "modal",
+            "positioning",
+            "probe",
+            "run",
+            "settings",
+        ],
+    ),
+    ("workpiece", &["round", "sweep"]),
+    ("workpiece", &["view::colouring", "view::shade"]),
+    (
+        "workpiece",
+        &["view::edges", "view::plan", "view::solid", "view::way"],
+    ),
+];
 
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];
 
@@ -120,6 +185,251 @@ fn nothing_outside_a_crate_is_compiled_into_it() {
             assert!(target.starts_with(own), "{} includes {path}", file.display());
         }
     }
+}
+
+/// The differences of the control models are data of the room `parameters`: nobody else asks which model it is.
+#[test]
+fn models_are_compared_in_one_room() {
+    let comparisons = ["ControlModel::Tnc", "== model", "model() =="];
+    let mut faults = Vec::new();
+    for file in source_files(&root().join("crates")) {
+        let path = file.to_string_lossy();
+        if !path.contains("/src/") || path.contains("crates/parameters/") || path.ends_with("/tests.rs") {
+            continue;
+        }
+        let code = code_of(&file);
+        for (number, line) in (1..).zip(code.lines()) {
+            // The model that is taken when nobody names one.
+            let default = path.ends_with("plc/src/compile/mod.rs") && line.contains("model: ControlModel::");
+            if comparisons.iter().any(|mark| line.contains(mark)) && !default {
+                faults.push(format!("{path}:{number}: {}", line.trim()));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Machine parameters have typed getters: their numbers stand in the room `parameters`.
+#[test]
+fn parameter_numbers_stand_in_one_room() {
+    let mut faults = Vec::new();
+    for file in source_files(&root().join("crates")) {
+        let path = file.to_string_lossy();
+        if !path.contains("/src/") || path.contains("crates/parameters/") {
+            continue;
+        }
+        let code = code_of(&file);
+        for (number, line) in (1..).zip(code.lines()) {
+            let raw = line.split(".get(").skip(1).any(|rest| {
+                let first = rest.split([',', ')']).next().unwrap_or_default();
+                rest[first.len()..].starts_with(',') && first.parse::<u16>().is_ok()
+            });
+            if raw {
+                faults.push(format!("{path}:{number}: {}", line.trim()));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Arrows point down within a room, too: no file uses one that uses it, but for the circles that are known.
+#[test]
+fn files_use_each_other_in_no_circle() {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(root().join("crates")).unwrap() {
+        let folder = entry.unwrap().path();
+        let room = folder.file_name().unwrap().to_string_lossy().into_owned();
+        for circle in Uses::of(&folder.join("src")).circles() {
+            found.push((room.clone(), circle));
+        }
+    }
+    let known: Vec<(String, Vec<String>)> = CIRCLES
+        .iter()
+        .map(|(room, files)| {
+            (
+                (*room).to_owned(),
+                files.iter().map(|file| (*file).to_owned()).collect(),
+            )
+        })
+        .collect();
+    let mut faults = Vec::new();
+    for (room, files) in &found {
+        let is_known = known
+            .iter()
+            .any(|(of, known)| of == room && files.iter().all(|file| known.contains(file)));
+        if !is_known {
+            faults.push(format!("a new circle in {room}: {}", files.join(", ")));
+        }
+    }
+    for circle in &known {
+        if !found.contains(circle) {
+            faults.push(format!("this circle is no more as listed: {circle:?}"));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Which file of a room uses which.
+struct Uses(BTreeMap<String, BTreeSet<String>>);
+
+impl Uses {
+    fn of(folder: &Path) -> Uses {
+        let name = |file: &Path| {
+            let relative = file.strip_prefix(folder).unwrap().with_extension("");
+            let parts: Vec<_> = relative.iter().map(|part| part.to_str().unwrap()).collect();
+            parts.join("::").trim_end_matches("::mod").to_owned()
+        };
+        let files: BTreeMap<String, PathBuf> = source_files(folder)
+            .into_iter()
+            .map(|file| (name(&file), file))
+            .filter(|(name, _)| name != "lib" && name != "main")
+            .collect();
+        let uses = files.iter().map(|(name, file)| {
+            let code = code_of(file);
+            let used = paths(&code, name)
+                .iter()
+                .filter_map(|path| {
+                    (1..=path.len())
+                        .rev()
+                        .map(|count| path[..count].join("::"))
+                        .find(|p| files.contains_key(p))
+                })
+                // A file and the files below it are one.
+                .filter(|used| {
+                    !format!("{used}::").starts_with(&format!("{name}::"))
+                        && !format!("{name}::").starts_with(&format!("{used}::"))
+                })
+                .collect();
+            (name.clone(), used)
+        });
+        Uses(uses.collect())
+    }
+
+    /// Files that reach each other, two and more.
+    fn circles(&self) -> Vec<Vec<String>> {
+        let reach: BTreeMap<&String, BTreeSet<&String>> =
+            self.0.keys().map(|file| (file, self.reached(file))).collect();
+        let mut circles: Vec<Vec<String>> = Vec::new();
+        for (file, reached) in &reach {
+            if circles.iter().any(|circle| circle.contains(file)) {
+                continue;
+            }
+            let circle: Vec<String> = reached
+                .iter()
+                .filter(|other| reach[**other].contains(file))
+                .map(|other| (*other).clone())
+                .collect();
+            if circle.len() > 1 {
+                circles.push(circle);
+            }
+        }
+        circles
+    }
+
+    fn reached<'a>(&'a self, from: &'a String) -> BTreeSet<&'a String> {
+        let mut reached = BTreeSet::new();
+        let mut waiting = vec![from];
+        while let Some(file) = waiting.pop() {
+            waiting.extend(self.0[file].iter().filter(|next| reached.insert(*next)));
+        }
+        reached
+    }
+}
+
+/// The paths below `crate` and `super` that a file names, from the root of its crate.
+fn paths<'a>(code: &'a str, file: &'a str) -> Vec<Vec<&'a str>> {
+    let above: Vec<&str> = file.split("::").collect();
+    let mut found = Vec::new();
+    for mark in ["crate::", "super::"] {
+        for (at, _) in code.match_indices(mark) {
+            let before = code[..at].chars().next_back();
+            if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == ':') {
+                continue;
+            }
+            let mut written = Vec::new();
+            names(&code[at..], &mut Vec::new(), &mut written);
+            found.extend(written.into_iter().map(|path| from_root(&path, &above)));
+        }
+    }
+    found
+}
+
+/// The names of a path, of each branch where it ends in braces; what is left behind it.
+fn names<'a>(text: &'a str, before: &mut Vec<&'a str>, found: &mut Vec<Vec<&'a str>>) -> &'a str {
+    let depth = before.len();
+    let mut rest = text;
+    loop {
+        let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_'));
+        let (name, behind) = rest.split_at(end.unwrap_or(rest.len()));
+        if !name.is_empty() {
+            before.push(name);
+        }
+        rest = behind;
+        if let Some(more) = behind.strip_prefix("::") {
+            rest = more;
+            if let Some(mut group) = more.strip_prefix('{') {
+                while let Some(branch) = group.trim_start().strip_prefix(',').or(Some(group.trim_start())) {
+                    let branch = branch.trim_start();
+                    if branch.is_empty() || branch.starts_with('}') {
+                        rest = branch.strip_prefix('}').unwrap_or(branch);
+                        break;
+                    }
+                    let behind = names(branch, before, found);
+                    // Renamed: `as other`.
+                    group = behind.find([',', '}']).map_or("", |at| &behind[at..]);
+                }
+                break;
+            }
+            continue;
+        }
+        found.push(before.clone());
+        break;
+    }
+    before.truncate(depth);
+    rest
+}
+
+/// A path from the root of its crate, as the file below `above` writes it.
+fn from_root<'a>(path: &[&'a str], above: &[&'a str]) -> Vec<&'a str> {
+    let mut base = above.len();
+    let mut own = Vec::new();
+    for part in path {
+        match *part {
+            "crate" => base = 0,
+            "super" => base = base.saturating_sub(1),
+            part => own.push(part),
+        }
+    }
+    [&above[..base], &own].concat()
+}
+
+#[test]
+fn paths_are_found_in_groups() {
+    let code = "use crate::{UsageError, files::{self, NewFile as N}, mp};\nlet x = super::emit::cost();";
+    let found: Vec<String> = paths(code, "plc::run")
+        .iter()
+        .map(|path| path.join("::"))
+        .collect();
+    assert_eq!(
+        found,
+        [
+            "UsageError",
+            "files::self",
+            "files::NewFile",
+            "mp",
+            "plc::emit::cost"
+        ]
+    );
+}
+
+/// The text of a file without comments and without its tests.
+fn code_of(file: &Path) -> String {
+    let text = fs::read_to_string(file).unwrap();
+    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+    text.lines()
+        .map(|line| line.split("//").next().unwrap_or_default())
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 fn source_files(folder: &Path) -> Vec<PathBuf> {

@@ -3,9 +3,8 @@
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::AxisParameters;
 use bahn_path::Axis;
-use bahn_servo::{Axis as Servo, Method, Timing};
+use bahn_servo::{Axis as Servo, Gantry, Method, Timing};
 
-use crate::gantry::Coupling;
 use crate::panel::Direction;
 
 /// So far below 0 an axis counts as being at 0, degrees.
@@ -29,6 +28,16 @@ pub(crate) enum Mover {
     Plc,
     /// Free rotation.
     Rotation,
+}
+
+/// The coupling of a slave.
+#[derive(Debug)]
+pub(crate) struct Coupling {
+    /// Place of its master.
+    pub master: usize,
+    pub gantry: Gantry,
+    /// The relation of the two at switch-on was taken.
+    pub switched_on: bool,
 }
 
 /// An axis.

@@ -97,6 +97,8 @@ pub enum Command {
     Speed(f64),
     /// `datum AXIS VALUE`: the actual position of the axis becomes this value, mm or degrees.
     Datum(Axis, f64),
+    /// `tool-life T MIN`: the current life of a tool (CUR.TIME), minutes; 0 begins anew [000:9185].
+    ToolLife(u32, f64),
     /// `jog MM`: the jog increment, mm.
     JogIncrement(f64),
     /// `handwheel AXIS FACTOR`: axis of the handwheel and its interpolation factor 0 to 10.
@@ -119,6 +121,8 @@ pub enum Command {
     OffsetAdjustment(bool),
 }
 
+/// Where CUR.TIME of a tool ends, minutes (inferred).
+pub(crate) const CURRENT_MAX_MIN: f64 = 9999.0;
 /// Largest coordinate, mm or degrees: 99 999.9999.
 const COORDINATE_MAX: f64 = 999_999_999.0 / 10_000.0;
 
@@ -168,6 +172,12 @@ impl FromStr for Command {
             "datum" => {
                 let (axis, rest) = axis(name, rest)?;
                 value(name, rest, -COORDINATE_MAX, COORDINATE_MAX).map(|value| Command::Datum(axis, value))
+            }
+            "tool-life" => {
+                let (tool, minutes) = rest.split_once(' ').unwrap_or((rest, ""));
+                let tool = number(name, tool, 0, u32::MAX)?;
+                value(name, minutes.trim(), 0.0, CURRENT_MAX_MIN)
+                    .map(|minutes| Command::ToolLife(tool, minutes))
             }
             "handwheel" => {
                 let (axis, rest) = axis(name, rest)?;
@@ -233,6 +243,7 @@ impl fmt::Display for Command {
             Command::MFunction(m) => write!(f, "m {m}"),
             Command::Speed(rpm) => write!(f, "s {rpm}"),
             Command::Datum(axis, value) => write!(f, "datum {axis} {value}"),
+            Command::ToolLife(tool, minutes) => write!(f, "tool-life {tool} {minutes}"),
             Command::JogIncrement(mm) => write!(f, "jog {mm}"),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
             Command::ManualOperation => write!(f, "manual-operation"),
@@ -258,6 +269,7 @@ mod tests {
         for text in [
             "mode reference",
             "ce",
+            "tool-life 12 0.5",
             "stop",
             "select 4711.H",
             "goto 12",

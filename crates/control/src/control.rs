@@ -15,6 +15,7 @@ use crate::command::{Command, Mode};
 use crate::emergency::EmergencyStop;
 use crate::feeder::{Offsets, Programs};
 use crate::handshake::{Handshakes, Transfer};
+use crate::life::LifeCount;
 use crate::manual::Manual;
 use crate::markers::AXES;
 use crate::message::{Message, Messages};
@@ -29,10 +30,6 @@ use crate::spindle::SpindleUnit;
 use crate::thread::Tapping;
 use crate::tools::Tools;
 use crate::upkeep::Upkeep;
-
-/// PLC cycles, µs [000:239] [000:10260].
-const PLC_CYCLE_US: u64 = 20_000;
-const PLC_CYCLE_407_US: u64 = 24_000;
 
 /// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
 const MILLISECOND_US: u32 = 1000;
@@ -94,6 +91,8 @@ pub struct Control {
     keeps: bool,
     /// What is to be stored has changed since [`Control::stored`].
     pub(crate) unsaved: bool,
+    /// Of the tool in the spindle.
+    pub(crate) life: LifeCount,
     /// What F counts in a program in inches, when that is not what it counts on the model.
     pub(crate) inch_feed: Option<InchFeed>,
     pub(crate) programs: Arc<dyn Programs>,
@@ -161,10 +160,10 @@ impl Control {
         }
         mirror_parameters(&parameters, &mut exchange);
         let path_limits = path_limits(&parameters, &axes);
-        let bits = |area: BitArea, count: usize| {
-            (0..count)
-                .filter_map(|number| Some((number, Bit::new(area, u16::try_from(number).ok()?)?)))
-                .filter(|(_, bit)| bit.is_listed())
+        let bits = |area: BitArea, boards: &[(u16, u16)]| {
+            let numbers = boards.iter().flat_map(|(first, last)| *first..=*last);
+            numbers
+                .filter_map(|number| Some((usize::from(number), Bit::new(area, number)?)))
                 .collect()
         };
         let datums = remembered.datums.map(|datum| datum.0);
@@ -184,11 +183,7 @@ impl Control {
             plc: PlcUnit {
                 machine: Machine::new(plc, Start::PowerOn),
                 due_us: 0,
-                period_us: if model == ControlModel::Tnc407 {
-                    PLC_CYCLE_407_US
-                } else {
-                    PLC_CYCLE_US
-                },
+                period_us: model.limits().plc_cycle_us.into(),
                 scans: 0,
             },
             emergency: EmergencyStop::new(model, operation.power_interrupted),
@@ -220,6 +215,7 @@ impl Control {
             test: None,
             keeps: false,
             unsaved: false,
+            life: LifeCount::default(),
             inch_feed,
             programs,
             q: remembered.q,
@@ -227,8 +223,8 @@ impl Control {
             log: None,
             inputs: [false; INPUTS],
             outputs: [false; OUTPUTS],
-            output_bits: bits(BitArea::O, OUTPUTS),
-            input_bits: bits(BitArea::I, INPUTS),
+            output_bits: bits(BitArea::O, model.limits().outputs),
+            input_bits: bits(BitArea::I, model.limits().inputs),
             letters,
             axes,
         };
@@ -421,9 +417,11 @@ impl Control {
         {
             self.tools.inserted(&self.exchange);
         }
+        self.count_tool_life();
         if std::mem::take(&mut self.tools.changed) {
             self.mirror_pockets();
             self.unsaved = true;
+            self.life.changed = true;
         }
         let waits = self.keeps && self.unsaved;
         if !waits {

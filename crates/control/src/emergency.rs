@@ -4,7 +4,7 @@
 //! voltage, drops the output, and the acknowledgement must fall in time; then the output comes on again.
 //! The TNC 415 and 425 have three processors that do so in turn, the others one [000:6175-6228].
 
-use bahn_parameters::ControlModel;
+use bahn_parameters::{ControlModel, EmergencyStopTest};
 
 /// What the circuit says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,46 +25,9 @@ pub(crate) enum Circuit {
     VoltageBack,
 }
 
-/// Times and repetitions of the test, as data of the models.
-struct Test {
-    /// How often it is done: by each processor in turn, or by the only one again.
-    times: u8,
-    /// From the voltage to the output dropped: at most 66 or 70 ms, µs.
-    recognise_us: u64,
-    /// In which the acknowledgement must fall, µs.
-    fall_us: u64,
-    /// From the fallen acknowledgement to the output on again: at most 20 or 24 ms, µs.
-    restore_us: u64,
-}
-
-fn test_of(model: ControlModel) -> Test {
-    match model {
-        ControlModel::Tnc415b | ControlModel::Tnc425 => Test {
-            times: 3,
-            recognise_us: 60_000,
-            fall_us: 114_000,
-            restore_us: 18_000,
-        },
-        // Twice within 200 ms [001:929-932]; the other times are not given (inferred).
-        ControlModel::Tnc151 | ControlModel::Tnc155 => Test {
-            times: 2,
-            recognise_us: 60_000,
-            fall_us: 200_000,
-            restore_us: 18_000,
-        },
-        // The manual of the TNC 360 gives no times (inferred).
-        ControlModel::Tnc360 | ControlModel::Tnc407 => Test {
-            times: 1,
-            recognise_us: 60_000,
-            fall_us: 146_000,
-            restore_us: 18_000,
-        },
-    }
-}
-
 /// The circuit, step by step.
 pub(crate) struct EmergencyStop {
-    test: Test,
+    test: EmergencyStopTest,
     state: State,
 }
 
@@ -109,7 +72,7 @@ const WAITING: State = State::Waiting {
 impl EmergencyStop {
     pub fn new(model: ControlModel, power_interrupted: bool) -> EmergencyStop {
         EmergencyStop {
-            test: test_of(model),
+            test: model.limits().emergency_stop_test,
             state: if power_interrupted {
                 State::PowerInterrupted
             } else {

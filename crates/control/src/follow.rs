@@ -1,6 +1,7 @@
 //! The axes along the path of a program, contour cycle by contour cycle: gates, stops, functions.
 
 use bahn_motion::{Drive, State, Stop};
+use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, Curve, PathElement, Position};
 use bahn_servo::Plant;
 
@@ -40,6 +41,7 @@ impl Control {
         let percent = self.program_override_percent();
         let settled = self.path_in_position();
         let [back, on] = self.way_out();
+        let worn = self.would_replace_tool();
         let stopped = self.run.state != RunState::Running && !on && !self.runs_out_of_thread();
         let drive = Drive {
             feed_override_percent: percent,
@@ -53,7 +55,7 @@ impl Control {
             hold: stopped
                 || self.handshakes.is_crowded()
                 || self.path.is_coupled() && !self.spindle.is_enabled(),
-            single_block: self.mode == Mode::SingleBlock || on || self.handshakes.inhibit_read_in(),
+            single_block: self.mode == Mode::SingleBlock || on || worn || self.handshakes.inhibit_read_in(),
             in_position: settled,
             clamped: self.clamped_axes(),
             clamping: self.clamping_axes(),
@@ -79,7 +81,10 @@ impl Control {
             State::Master => self.prepare_thread(),
             State::Clamped => self.ask_to_unclamp(drive.clamped),
             State::BlockEnd if settled && self.run.state == RunState::Running => {
-                if self.mode == Mode::SingleBlock {
+                if worn {
+                    self.show(Message::Plain(MessageId::MaxToolLifeExpired), false);
+                }
+                if self.mode == Mode::SingleBlock || worn {
                     self.run.state = RunState::BlockEnd;
                 } else if !self.handshakes.inhibit_read_in() {
                     self.path.go_on();

@@ -55,6 +55,9 @@ impl Target<'_> {
                 unit.servo.set_second_set(code == 105);
             }
         }
+        if matches!(code, 101 | 102) {
+            self.tools.replaces_worn = code == 101;
+        }
         if code <= M_MAX
             && let Ok(code) = u8::try_from(code)
         {

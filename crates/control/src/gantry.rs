@@ -2,17 +2,7 @@
 
 use bahn_servo::{Gantry, Timing};
 
-use crate::axes::AxisUnit;
-
-/// The coupling of a slave.
-#[derive(Debug)]
-pub(crate) struct Coupling {
-    /// Place of its master.
-    pub master: usize,
-    pub gantry: Gantry,
-    /// The relation of the two at switch-on was taken.
-    switched_on: bool,
-}
+use crate::axes::{AxisUnit, Coupling};
 
 /// Couples the slaves among the axes (MP850) to their masters. A slave whose master does not exist stays an
 /// axis of its own (inferred).

@@ -28,6 +28,7 @@ mod follow;
 mod functions;
 mod gantry;
 mod handshake;
+mod life;
 mod loops;
 mod manual;
 mod markers;
@@ -62,6 +63,7 @@ pub use compensation::{CompensationAssignment, CompensationError, CompensationTa
 pub use control::Control;
 pub use feeder::Programs;
 pub use handshake::{Handshake, Transfer, Waiting};
+pub use life::ToolLife;
 pub use manual::HANDWHEEL_STEPS;
 pub use message::{Message, Shown};
 pub use plc_link::NcFiles;

@@ -39,6 +39,10 @@ impl Control {
                 self.manual.increment = mm;
                 true
             }
+            Command::ToolLife(tool, minutes) => {
+                self.unsaved = true;
+                self.set_tool_life(tool, minutes)
+            }
             Command::Handwheel(axis, factor) => self.choose_handwheel(axis, factor),
             Command::ManualOperation => self.manual_operation(),
             Command::RestorePosition => self.restore_position(),

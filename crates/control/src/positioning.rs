@@ -2,7 +2,6 @@
 
 use bahn_exchange::signal;
 use bahn_motion::Aim;
-use bahn_parameters::ControlModel;
 use bahn_plc::PlcAxisCommand;
 
 use crate::axes::Mover;
@@ -11,9 +10,6 @@ use crate::markers::{AXES, PLC_POSITIONING, POSITIONING_FEED, TRANSFER};
 
 /// Position words count in 1/10 000 mm [000:4026].
 pub(crate) const PER_MM: f64 = 10_000.0;
-
-/// Axes that the PLC of a TNC 407 positions at once [000:4011].
-const AXES_AT_ONCE_407: usize = 3;
 
 /// What the PLC commanded.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,11 +62,7 @@ impl Control {
         let free = !self.run.is_running() || self.handshakes.strobe_is_set();
         let keys = self.panel.axis_keys.iter().any(Option::is_some);
         let free = free && !keys && !self.stop_given();
-        let most = if self.model == ControlModel::Tnc407 {
-            AXES_AT_ONCE_407
-        } else {
-            AXES
-        };
+        let most = usize::from(self.model.limits().plc_positioning_axes_max);
         let mut running = self.positioning.targets.iter().flatten().count();
         for index in 0..AXES {
             let (Some(strobe), Some(target), Some(feed)) = (

@@ -12,10 +12,6 @@ use crate::message::Message;
 use crate::panel::Direction;
 use crate::run::{Resume, RunState};
 
-/// Touch probe [000:7654].
-const MP_PROBE: u16 = 6010;
-const TS_511: f64 = 1.0;
-
 /// What M2502 makes of the stylus.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Stylus {
@@ -146,7 +142,7 @@ impl Control {
     /// when it is free (inferred).
     fn watch_stylus(&mut self, plant: &mut dyn Plant) {
         let guards = self.exchange.nc().bit(signal::NC_STOP_ON_STYLUS_DEFLECTION)
-            && self.link.list().get(MP_PROBE, 0) != Some(TS_511);
+            && !self.link.list().probe().on_standby;
         if !guards && !self.stylus.stops {
             return;
         }

@@ -22,8 +22,6 @@ use crate::run::RunState;
 const BUDGET: usize = 1000;
 
 /// Simulated tool change position, and the axes for which it counts [000:6783-6832].
-const MP_TOOL_CHANGE: u16 = 951;
-const MP_AXES: u16 = 7450;
 
 /// Where a return is.
 #[derive(Debug)]
@@ -216,11 +214,11 @@ impl Control {
                 Function::Tool(call) => Some(*call),
                 _ => None,
             });
-        let axes = self.link.list().get(MP_AXES, 0).unwrap_or(0.0) as u32;
+        let places = self.operation.restart.tool_change;
         let (Some(call), Some(feeder)) = (call, &mut self.run.feeder) else {
             return;
         };
-        if axes == 0 {
+        if places.iter().all(Option::is_none) {
             return;
         }
         let offsets = Offsets {
@@ -229,9 +227,8 @@ impl Control {
             ..self.offsets
         };
         let mut position = element.end;
-        for unit in self.axes.iter().filter(|unit| axes >> unit.index & 1 != 0) {
-            let index = u8::try_from(unit.index).unwrap_or(u8::MAX);
-            if let Some(place) = self.link.list().get(MP_TOOL_CHANGE, index) {
+        for unit in &self.axes {
+            if let Some(Some(place)) = places.get(unit.index) {
                 position[unit.axis] = place - offsets.of(unit.axis);
             }
         }

@@ -8,6 +8,7 @@ use bahn_motion::FunctionOutput;
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, LiveData, Position};
 use bahn_program::Program;
+use bahn_servo::Rotation;
 
 use crate::axes::{AxisUnit, Mover};
 use crate::block_time::BlockTime;
@@ -247,6 +248,7 @@ impl Control {
     /// Interprets ahead; begins a run.
     pub(crate) fn prepare_run(&mut self) {
         self.close_run();
+        self.take_tool_states();
         if self.run.begin_wanted && self.axes_stand() {
             self.run.begin_wanted = false;
             self.begin_run();
@@ -289,7 +291,8 @@ impl Control {
         }
     }
 
-    /// Module 9150 without a program: the TOOL CALL is executed at once [000:16063-16067].
+    /// Module 9150 without a program: the TOOL CALL is executed at once; a wrong one is passed over without a message
+    /// [000:16063-16075].
     fn call_inserted_tool(&mut self) {
         let Some(inserted) = self.tools.inserted_call.take() else {
             return;
@@ -297,6 +300,10 @@ impl Control {
         let Some(call) = self.tools.tool_call(&inserted, self.offsets.tool_axis) else {
             return;
         };
+        let called = inserted.tool.is_some() && call.tool != 0;
+        if called && !self.tools.may_be_called(call.tool) {
+            return;
+        }
         let mut target = crate::functions::Target {
             spindle: &mut self.spindle,
             tools: &mut self.tools,
@@ -404,6 +411,9 @@ impl Control {
         } else {
             match self.open_program() {
                 Ok(program) => {
+                    // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
+                    self.tools.counts &= self.mode == Mode::Mdi;
+                    self.tools.replaces_worn &= self.mode == Mode::Mdi;
                     let feeder = self.new_feeder(program, &machine, limits);
                     self.run.feeder = Some(feeder);
                 }
@@ -428,6 +438,13 @@ impl Control {
         if status.tool() != Some(self.tools.number) {
             status.cancel_tool();
         }
+        let spindle = self.spindle.state();
+        let clockwise = match spindle.rotation {
+            Rotation::M3 => Some(true),
+            Rotation::M4 => Some(false),
+            Rotation::M5 => None,
+        };
+        status.take_spindle(clockwise, spindle.programmed_rpm);
         let mut feeder = self.new_feeder_from(program, block, machine, limits, status);
         feeder.set_tap(self.run.tap);
         feeder

@@ -10,6 +10,7 @@ use bahn_path::{Axis, Position, ToolShape};
 use bahn_plc::{PlcProgram, TableKind};
 
 use crate::feeder::Programs;
+use crate::life::ToolLife;
 use crate::plc_link::NcFiles;
 
 /// A tool of the tool table.
@@ -23,8 +24,20 @@ pub struct Tool {
     pub special: bool,
     /// It cuts when the spindle turns counter-clockwise (M4): DIRECT [000:9028].
     pub left_hand: bool,
+    /// TL: it is locked and must not be called.
+    pub locked: bool,
+    /// How long it may work.
+    pub life: ToolLife,
+}
+
+impl Tool {
     /// Whether it may be called.
-    pub state: ToolState,
+    pub fn state(&self) -> ToolState {
+        match self.locked {
+            true => ToolState::Locked,
+            false => self.life.state(),
+        }
+    }
 }
 
 /// How programs are taken that use what is not executed here.

@@ -5,19 +5,25 @@ use bahn_path::ToolShape;
 use bahn_plc::{MemoryTable, TableFile, TableKind};
 
 use crate::control::Control;
+use crate::life::ToolLife;
 use crate::setup::{Tool, WrittenElement};
 
 /// Elements of the tool table [000:15431-15454].
 const L: usize = 0;
 const R: usize = 1;
+const RT: usize = 3;
+const TIME1: usize = 5;
+const TIME2: usize = 6;
+pub(crate) const CURRENT_TIME: usize = 7;
 const R2: usize = 8;
 const DL: usize = 9;
 const DR: usize = 10;
 const DR2: usize = 11;
+const TL: usize = 12;
 /// Elements of the pocket table [000:15422-15429].
 const T: usize = 0;
 const ST: usize = 1;
-/// No tool in a pocket.
+/// No tool in a pocket, no replacement tool.
 const NO_TOOL: f64 = -1.0;
 
 /// The tables as they were loaded: what differs from them was written.
@@ -34,8 +40,17 @@ impl LoadedTables {
             MemoryTable::with_lines(TableKind::Tool, tools.clone().map(|(number, _)| line(number)));
         let mut magazine = MemoryTable::with_lines(TableKind::Pocket, (0..=last).map(i32::from));
         for (number, tool) in tools {
-            let shape = tool.shape;
-            for (element, value) in [(L, shape.length), (R, shape.radius), (R2, shape.corner_radius)] {
+            let (shape, life) = (tool.shape, tool.life);
+            for (element, value) in [
+                (L, shape.length),
+                (R, shape.radius),
+                (R2, shape.corner_radius),
+                (RT, life.replacement.map_or(NO_TOOL, f64::from)),
+                (TIME1, life.time1_min),
+                (TIME2, life.time2_min),
+                (CURRENT_TIME, life.current_min),
+                (TL, f64::from(u8::from(tool.locked))),
+            ] {
                 table.set_value(line(number), element, value);
             }
             if let Some(pocket) = tool.pocket {
@@ -118,13 +133,25 @@ impl Control {
         self.tools.take(|number, loaded| {
             let line = i32::try_from(number).ok()?;
             let value = |element| table.value(line, element);
-            Some(ToolShape {
-                length: value(L)? + value(DL)?,
-                radius: value(R)? + value(DR)?,
-                corner_radius: value(R2)? + value(DR2)?,
+            let replacement = value(RT)?;
+            Some(Tool {
+                shape: ToolShape {
+                    length: value(L)? + value(DL)?,
+                    radius: value(R)? + value(DR)?,
+                    corner_radius: value(R2)? + value(DR2)?,
+                    ..loaded.shape
+                },
+                locked: value(TL)? != 0.0,
+                life: ToolLife {
+                    time1_min: value(TIME1)?,
+                    time2_min: value(TIME2)?,
+                    current_min: value(CURRENT_TIME)?,
+                    replacement: (replacement >= 0.0).then_some(replacement as u32),
+                },
                 ..loaded
             })
         });
+        self.life.changed = true;
         self.tools.empty_magazine();
         let mut line = magazine.next_line(0);
         while let Some(pocket) = line {

@@ -10,6 +10,7 @@ use bahn_plc::ToolCallBlock;
 
 use crate::feeder::Offsets;
 use crate::handshake::{Handshakes, Transfer};
+use crate::life::ToolLife;
 use crate::setup::{MovedTool, Remembered, Tool};
 
 /// W262 for a tool without pocket [000:9273-9283].
@@ -30,6 +31,10 @@ pub(crate) struct Tools {
     held: Option<(f64, Axis)>,
     /// Tool or pockets have changed: to be stored.
     pub changed: bool,
+    /// A tool was called since the program began: its life counts.
+    pub counts: bool,
+    /// M101: a tool whose life is over while it works is replaced.
+    pub replaces_worn: bool,
     /// The PLC waits at M2717 for the geometry that it activated.
     geometry_taken: bool,
     /// Tool of the last TOOL DEF.
@@ -67,6 +72,8 @@ impl Tools {
             called: remembered.tool,
             held: None,
             changed: false,
+            counts: false,
+            replaces_worn: false,
             geometry_taken: false,
             defined: None,
             inserted_call: None,
@@ -101,8 +108,16 @@ impl Tools {
     /// The tools that must not be called, for the interpreter.
     pub fn barred(&self) -> BTreeMap<u32, ToolState> {
         let tools = self.table.iter().flatten();
-        let states = tools.map(|(number, tool)| (*number, tool.state));
+        let states = tools.map(|(number, tool)| (*number, tool.state()));
         states.filter(|(_, state)| *state != ToolState::Usable).collect()
+    }
+
+    /// Whether the table has a tool and lets it be called; without a table the programs know.
+    pub fn may_be_called(&self, number: u32) -> bool {
+        let Some(table) = &self.table else { return true };
+        table
+            .get(&number)
+            .is_some_and(|tool| tool.state() == ToolState::Usable)
     }
 
     /// All tools of the table.
@@ -116,10 +131,20 @@ impl Tools {
         self.tool(number).shape.length
     }
 
-    /// Takes the shapes of the tools as a table has them.
-    pub fn take(&mut self, shape: impl Fn(u32, bahn_path::ToolShape) -> Option<bahn_path::ToolShape>) {
+    /// The lives of a tool.
+    pub fn life(&self, number: u32) -> ToolLife {
+        self.tool(number).life
+    }
+
+    /// The lives of a tool that the table has.
+    pub fn life_mut(&mut self, number: u32) -> Option<&mut ToolLife> {
+        self.table.as_mut()?.get_mut(&number).map(|tool| &mut tool.life)
+    }
+
+    /// Takes the tools as a table has them.
+    pub fn take(&mut self, read: impl Fn(u32, Tool) -> Option<Tool>) {
         for (number, tool) in self.table.iter_mut().flatten() {
-            tool.shape = shape(*number, tool.shape).unwrap_or(tool.shape);
+            *tool = read(*number, *tool).unwrap_or(*tool);
         }
     }
 
@@ -201,6 +226,7 @@ impl Tools {
         let output = self.parameters.call;
         let (old, changed) = (self.called, self.called != number);
         self.called = number;
+        self.counts = true;
         self.mark(number, exchange);
         if output.what == ToolOutputKind::None || !(changed || output.always) {
             self.number = number;
@@ -274,7 +300,7 @@ impl Tools {
             (signal::ACTIVE_TOOL_HAS_POCKET, by_pocket && has_pocket),
             (signal::ACTIVE_TOOL_HAS_NO_POCKET, by_pocket && !has_pocket),
             (signal::ACTIVE_TOOL_IS_SPECIAL, self.tool(number).special),
-            // Replacement at the end of tool life is not built.
+            // No tool is called by itself: M101 interrupts the run instead.
             (signal::TOOL_CALL_ORIGIN, false),
         ] {
             if exchange.nc().bit(marker) != value {

@@ -1,6 +1,7 @@
 //! What the control looks after beside the movements: offsets of the drives, lubrication, axis errors,
 //! machine parameters that the PLC changed.
 
+use bahn_interpreter::Rules;
 use bahn_motion::Interpolator;
 use bahn_plc::mirror_parameters;
 use bahn_servo::{Gantry, OffsetInterval};
@@ -145,13 +146,17 @@ impl Control {
         self.manual.offsets_shown.then_some(units)
     }
 
-    /// Module 9031 changed machine parameters: they take effect now, those of the path with the next run.
+    /// Module 9031 changed machine parameters: they take effect now, in a program that runs with the blocks that are
+    /// not yet read; those of the path with the next run.
     pub(crate) fn take_changed_parameters(&mut self) {
         if !std::mem::take(&mut self.link.requests.parameters_changed) {
             return;
         }
         let list = self.link.list();
         mirror_parameters(list, &mut self.exchange);
+        if let Some(feeder) = &mut self.run.feeder {
+            feeder.interpreter_mut().set_rules(Rules::of(list));
+        }
         self.plc_parameters = list.plc_parameters();
         let overrides = self.operation.overrides;
         self.operation = list.operation_parameters();

@@ -70,6 +70,11 @@ impl Control {
         self.feed_override.percent()
     }
 
+    /// Spindle.
+    pub fn spindle(&self) -> crate::spindle::SpindleState {
+        self.spindle.state()
+    }
+
     /// No axis is commanded to move.
     pub fn stands(&self) -> bool {
         self.axes.iter().all(crate::axes::AxisUnit::stands)

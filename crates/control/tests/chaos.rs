@@ -213,10 +213,25 @@ fn no_key_breaks_the_control() {
     }
 }
 
+/// Whatever has failed, EMERGENCY STOP takes the power from all drives and the voltage from all outputs.
 #[test]
-fn no_fault_breaks_the_simulation() {
+fn no_fault_keeps_the_power_on() {
     for seed in 1..=40 {
-        live(seed, 80, true);
+        let mut rig = live(seed, 80, true);
+        rig.event("emergency press");
+        rig.seconds(4.0);
+        for axis in rig.machine.axes() {
+            assert!(
+                !axis.powered && axis.volts == 0.0,
+                "seed {seed}: {axis:?} {:?}",
+                rig.messages()
+            );
+        }
+        let spindle = rig.machine.spindle().unwrap();
+        assert!(
+            !spindle.powered && spindle.volts.abs() < 0.01,
+            "seed {seed}: {spindle:?}"
+        );
     }
 }
 

@@ -319,3 +319,24 @@ fn dwell() {
     let time = (rig.control.time_us() - begin) as f64 * 1e-6;
     assert!((1.5..1.56).contains(&time), "{time}");
 }
+
+/// The functions that the manual leaves to the machine builder, M15 to M18, M20 to M29, M31 to M88, each with its
+/// code at a strobe, and no other [000:7095-7171].
+#[test]
+fn free_functions_go_to_the_plc() {
+    // M60 and M89 stand for themselves.
+    let free: Vec<i32> = (15..=18).chain(20..=29).chain(31..=59).chain(61..=88).collect();
+    let blocks: Vec<String> = free.iter().map(|code| format!("M{code}")).collect();
+    let mut rig = bench_with(ACKNOWLEDGE, &blocks.join("\n"));
+    rig.start();
+    let (mut codes, mut before) = (Vec::new(), false);
+    for _ in 0..10_000 {
+        rig.cycle();
+        let strobe = rig.bit("M2045");
+        if strobe && !before {
+            codes.push(rig.number("W260"));
+        }
+        before = strobe;
+    }
+    assert_eq!(codes, free);
+}

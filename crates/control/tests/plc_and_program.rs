@@ -5,7 +5,7 @@
 mod stand;
 mod support;
 
-use bahn_control::RunState;
+use bahn_control::{RunState, Tool};
 use stand::*;
 
 fn m_functions(lines: &str) -> String {
@@ -253,4 +253,44 @@ LBL INSERT
     assert_eq!(rig.control.snapshot().tool, 2);
     near(display(&rig, 'Z'), 50.0);
     near(rig.machine_position('Z'), z + 95.0);
+}
+
+/// Without a program module 9150 calls a tool at once, but none that is locked, nor one that the table lacks; there is
+/// no message [000:16063-16075].
+#[test]
+fn no_inserted_call_of_a_locked_tool() {
+    for (tool, expected) in [(2, 2), (3, 0), (4, 0)] {
+        let plc = format!(
+            "{ACKNOWLEDGE}
+       L     I20
+       AN    M0
+       = M1
+       L     I20
+       = M0
+       L     M1
+       CMT   INSERT
+       EM
+LBL INSERT
+       L     K+1
+       = B200
+       L     K+{tool}
+       = W202
+       PS    K+0
+       PS    K+200
+       CM    9150
+       PL    B204
+"
+        );
+        let mut build = bench(&plc).program("1.H", "L X+60 R0 F6000");
+        let locked = Tool {
+            locked: true,
+            ..Tool::default()
+        };
+        build.tools = Some([(2, Tool::default()), (3, locked)].into());
+        let mut rig = ready(build);
+        rig.event("key A press");
+        rig.seconds(0.5);
+        assert_eq!(rig.control.tool(), expected, "tool {tool}");
+        assert_eq!(rig.messages(), [""; 0]);
+    }
 }

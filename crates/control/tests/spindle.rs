@@ -473,6 +473,28 @@ LBL ORIENT
     assert!((nominal - actual - lag).abs() <= 1 && reference == actual);
 }
 
+/// A program that finds the spindle turning knows it, whoever has switched it on: Q110 is 1 with M4 by hand
+/// [003:7614-7619].
+#[test]
+fn the_program_knows_how_the_spindle_turns() {
+    for (m, q110) in [(3, 0.0), (4, 1.0), (5, -1.0)] {
+        let build = diagram(&with_gear()).program("1.H", "FN 0: Q1 = +Q110\nL IX+1 R0 F6000");
+        let mut rig = ready(build);
+        rig.command("mode manual");
+        rig.command(&format!("m {m}"));
+        rig.start();
+        rig.seconds(0.5);
+        rig.command("mode full");
+        run(&mut rig, 2.0);
+        let q = rig.control.remember().q;
+        let q1 = q
+            .iter()
+            .find(|(number, _)| *number == 1)
+            .map_or(0.0, |(_, value)| *value);
+        assert_eq!(q1, q110, "M{m}");
+    }
+}
+
 /// M2004 is 1 while the voltage is not on a ramp, M2005 while it is 0 [000:5532-5536] [000:10538]: S3000 are
 /// 8 V, at 0.01 V/ms 0.8 s.
 #[test]

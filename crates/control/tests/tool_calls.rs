@@ -38,6 +38,7 @@ fn build(parameters: &[&str], plc: &str, program: &str) -> Rig {
 }
 
 /// MP7480: what goes out for a TOOL CALL of another tool, and for the same one again; for TOOL DEF likewise.
+/// Without the acknowledgements M2483 and M2484 the program would not end.
 #[test]
 fn outputs_of_mp7480() {
     let program = "TOOL CALL 1 Z S0\nTOOL CALL 2 Z S0\nTOOL CALL 2 Z S0\nTOOL DEF 1\nTOOL DEF 1";

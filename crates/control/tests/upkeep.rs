@@ -201,6 +201,54 @@ LBL 60
     close(rig.table('X'), 120.0, 0.005);
 }
 
+/// A machine parameter that the PLC may change while a program runs counts for the blocks that are not yet read: during
+/// the strobe of M70 MP7246 disables the paraxial block behind it.
+#[test]
+fn changed_parameters_reach_the_program() {
+    let change = "
+       L I28
+       A M2045
+       AN M80
+       CMT 50
+       L I28
+       A M2045
+       = M80
+       L I28
+       A M2045
+       AN M83
+       R M2482
+       LN M2045
+       R M83
+LBL 50
+       SUBM 60
+       = B200
+       EM
+LBL 60
+       PS K+7246
+       PS K+0
+       PS K+1
+       CM 9031
+       PL B201
+       L M83
+       ON M83
+       S M83
+       EM
+";
+    for changes in [false, true] {
+        let mut rig = bench(change)
+            .program("1.H", "L IX+1 R0 F600\nM70\nIX+1 R0")
+            .ready();
+        rig.command("mode full");
+        rig.command("select 1.H");
+        rig.input("I28", changes);
+        rig.start();
+        rig.seconds(2.0);
+        assert_eq!((rig.number("B201"), rig.bit("M2045")), (0, false));
+        assert_eq!(rig.control.has_ended(), !changes, "{:?}", rig.messages());
+        assert_eq!(rig.messages().len(), usize::from(changes), "{:?}", rig.messages());
+    }
+}
+
 /// Voltages come in steps of 100 mV, W496 ff. of the first extension and W464 ff. of the second, where MP4410
 /// activates it [000:8449-8484].
 #[test]

@@ -1,12 +1,12 @@
 //! Which functions of a program are executed here, as the registry of the control models says it
 //! ([`bahn_parameters::conformance`]): nothing is passed over in silence.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use bahn_parameters::conformance::{Effect, Entry, Kind, find};
 use bahn_parameters::{ControlModel, MessageId};
-use bahn_program::{CycleBlock, CycleWord, InvalidBlock};
+use bahn_program::{CycleBlock, CycleWord, InputSteps, InvalidBlock, Unit};
 
 use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
@@ -95,9 +95,14 @@ enum Judgement {
     Refused(String),
 }
 
-/// What was said of the functions of a run, each once: a function is looked up where it first stands.
+/// What was said in a run, each thing once.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Said(BTreeMap<Feature, bool>);
+pub(crate) struct Said {
+    /// Functions, and whether they are executed: each is looked up where it first stands.
+    features: BTreeMap<Feature, bool>,
+    /// Programs with numbers that were rounded.
+    rounded: BTreeSet<u16>,
+}
 
 impl Run {
     /// Whether a function is to be executed. Where it is met first, the user is told when it is not, or not
@@ -106,7 +111,7 @@ impl Run {
     /// # Errors
     /// FUNCTION NOT AVAILABLE ON THIS CONTROL for what must not be passed over.
     pub(crate) fn executes(&mut self, feature: Feature, settings: &Settings) -> Result<bool, Fault> {
-        if let Some(executes) = self.said.0.get(&feature) {
+        if let Some(executes) = self.said.features.get(&feature) {
             return Ok(*executes);
         }
         let executes = match feature.judge(settings.model, settings.strict) {
@@ -125,8 +130,32 @@ impl Run {
             }
             Judgement::Refused(text) => return Err(Fault::new(MessageId::BlockNotKnown, text)),
         };
-        self.said.0.insert(feature, executes);
+        self.said.features.insert(feature, executes);
         Ok(executes)
+    }
+
+    /// The block has numbers that were rounded: the user is told at the first of each program.
+    ///
+    /// # Errors
+    /// ENTRY VALUE INCORRECT where checking is strict.
+    #[cold]
+    pub(crate) fn tell_rounded(&mut self, settings: &Settings) -> Result<(), Fault> {
+        let steps = InputSteps::of(settings.model, self.unit);
+        let unit = match self.unit {
+            Unit::Mm => "mm",
+            Unit::Inch => "inch",
+        };
+        let step = format!("{} {unit} and {}°", steps.length(), steps.angle());
+        let first = self.said.rounded.insert(self.block.program);
+        // A rehearsal goes on after an error, and says this one once, too.
+        if settings.strict && (first || !self.rehearsal) {
+            let detail = format!("the input step of this control is {step}");
+            return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
+        }
+        if first {
+            self.warn(WarningKind::Rounded { step });
+        }
+        Ok(())
     }
 
     /// A block that could not be read. With [`Settings::skip_unknown`] a word that nothing knows is left

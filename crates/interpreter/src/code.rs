@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_program::{Block, Chunk, Program};
+use bahn_parameters::ControlModel;
+use bahn_program::{Block, Chunk, InputSteps, Program};
 
 /// Where called programs come from.
 pub trait Library {
@@ -28,6 +29,7 @@ const CHUNKS_KEPT: usize = 128;
 
 /// The programs of a run; index 0 is the main program.
 pub(crate) struct Code {
+    model: ControlModel,
     programs: Vec<Loaded>,
     /// Programs that were called at least once, and the main program.
     called: usize,
@@ -39,12 +41,51 @@ pub(crate) struct Code {
 
 struct Loaded {
     program: Arc<Program>,
-    chunks: Vec<Option<Box<Chunk>>>,
+    chunks: Vec<Option<Box<Decoded>>>,
+}
+
+/// Blocks as the control takes them in.
+struct Decoded {
+    chunk: Chunk,
+    /// Blocks with numbers that were rounded, bit by bit.
+    rounded: [u64; ROUNDED_WORDS],
+}
+
+const WORD_BITS: usize = u64::BITS as usize;
+const ROUNDED_WORDS: usize = (Program::CHUNK_SIZE as usize).div_ceil(WORD_BITS);
+
+impl Decoded {
+    fn new(mut chunk: Chunk, steps: InputSteps) -> Decoded {
+        let mut rounded = [0; ROUNDED_WORDS];
+        for (place, block) in chunk.blocks.iter_mut().enumerate() {
+            if steps.round(&mut block.operation)
+                && let Some(word) = rounded.get_mut(place / WORD_BITS)
+            {
+                *word |= 1 << (place % WORD_BITS);
+            }
+        }
+        Decoded { chunk, rounded }
+    }
+
+    fn is_rounded(&self, place: usize) -> bool {
+        let word = self.rounded.get(place / WORD_BITS);
+        word.is_some_and(|word| word >> (place % WORD_BITS) & 1 != 0)
+    }
+}
+
+/// A block to be executed.
+pub(crate) struct Fetched<'a> {
+    pub block: &'a Block,
+    /// The one after it, where that is at hand.
+    pub next: Option<&'a Block>,
+    /// It has numbers that were rounded to the input step.
+    pub rounded: bool,
 }
 
 impl Code {
-    pub fn new(main: Arc<Program>) -> Code {
+    pub fn new(main: Arc<Program>, model: ControlModel) -> Code {
         let mut code = Code {
+            model,
             programs: Vec::new(),
             called: 1,
             kept: VecDeque::new(),
@@ -123,9 +164,9 @@ impl Code {
             .map(|loaded| &loaded.program)
     }
 
-    /// The block at a place, and the one after it where that is at hand; `None` behind the last one.
+    /// The block at a place; `None` behind the last one.
     #[inline]
-    pub fn block(&mut self, program: u16, number: u32) -> Option<(&Block, Option<&Block>)> {
+    pub fn block(&mut self, program: u16, number: u32) -> Option<Fetched<'_>> {
         let loaded = self.programs.get_mut(usize::from(program))?;
         let chunk = (number / Program::CHUNK_SIZE) as usize;
         let offset = (number % Program::CHUNK_SIZE) as usize;
@@ -133,8 +174,13 @@ impl Code {
             self.load(program, chunk);
         }
         let loaded = self.programs.get(usize::from(program))?;
-        let blocks = &loaded.chunks.get(chunk)?.as_ref()?.blocks;
-        Some((blocks.get(offset)?, blocks.get(offset + 1)))
+        let decoded = loaded.chunks.get(chunk)?.as_ref()?;
+        let blocks = &decoded.chunk.blocks;
+        Some(Fetched {
+            block: blocks.get(offset)?,
+            next: blocks.get(offset + 1),
+            rounded: decoded.is_rounded(offset),
+        })
     }
 
     #[cold]
@@ -149,7 +195,8 @@ impl Code {
             *slot = None;
         }
         if let Some(loaded) = self.programs.get_mut(usize::from(program)) {
-            let decoded = Box::new(loaded.program.decode(chunk as u32));
+            let steps = InputSteps::of(self.model, loaded.program.unit());
+            let decoded = Box::new(Decoded::new(loaded.program.decode(chunk as u32), steps));
             if let Some(slot) = loaded.chunks.get_mut(chunk) {
                 *slot = Some(decoded);
                 self.kept.push_back((program, chunk));

@@ -199,6 +199,12 @@ pub enum WarningKind {
         /// The words, or the function and why.
         what: String,
     },
+    /// Numbers finer than the input step of the control are rounded in this block, and where others follow in its
+    /// program.
+    Rounded {
+        /// The steps of lengths and angles.
+        step: String,
+    },
     /// The feeds of a program in inches look ten times too small or too great.
     InchFeed {
         /// What F is taken to count.
@@ -222,6 +228,12 @@ impl std::fmt::Display for WarningKind {
             }
             WarningKind::Function { text } => f.write_str(text),
             WarningKind::PassedOver { what } => write!(f, "passed over: {what}"),
+            WarningKind::Rounded { step } => {
+                write!(
+                    f,
+                    "numbers finer than the input step of this control, {step}, are rounded"
+                )
+            }
             WarningKind::BlankIncomplete => write!(f, "BLK FORM 0.2 is missing: there is no blank"),
             WarningKind::BlankEmpty => write!(f, "BLK FORM has no size: there is no blank"),
             WarningKind::BlankInCalledProgram => {

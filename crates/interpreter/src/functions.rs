@@ -51,10 +51,19 @@ pub(crate) fn acts_at_end(m: u16) -> bool {
     matches!(m, 0..=2 | 5 | 6 | 9 | 10 | 12 | 19 | 30 | 32..=35 | 52..=54 | 60 | 63..=70 | 95..=99)
 }
 
-/// M functions that act inside the control and are not output [000:7080-7186]. M105 and M106 go out all the
-/// same, for the position loops.
+/// M functions that act inside the control and are not output [000:7080-7186]. Those of [`inside`] go with the path
+/// all the same.
 fn is_internal(m: u16) -> bool {
     matches!(m, 90..=99) || m > M_PLC_MAX
+}
+
+/// A function that acts in the control when the path comes to it, without a stop.
+fn inside(code: u16) -> TechnologyFunction {
+    TechnologyFunction {
+        function: Function::M(code),
+        at: At::Start,
+        synchronisation: Synchronisation::Mos,
+    }
 }
 
 impl Run {
@@ -162,11 +171,9 @@ impl Run {
                 });
             }
             113 => self.modal.corner_arcs = None,
-            105 | 106 if rules.m105_enabled => block.output.push(TechnologyFunction {
-                function: Function::M(code),
-                at: At::Start,
-                synchronisation: Synchronisation::Mos,
-            }),
+            // For who counts tool lives, and for the position loops.
+            101 | 102 => block.output.push(inside(code)),
+            105 | 106 if rules.m105_enabled => block.output.push(inside(code)),
             _ => {}
         }
         if matches!(code, 13 | 14) {
@@ -180,7 +187,7 @@ impl Run {
         Ok(())
     }
 
-    fn set_spindle(&mut self, spindle: Spindle) {
+    pub(crate) fn set_spindle(&mut self, spindle: Spindle) {
         self.modal.spindle = spindle;
         self.q.preassign(preassigned::SPINDLE, spindle.q110());
     }

@@ -6,6 +6,7 @@ use bahn_path::BlockRef;
 use bahn_program::{Block, MFunctions, Operation, Program};
 
 use crate::Interpreter;
+use crate::code::Fetched;
 use crate::run::Run;
 
 impl Interpreter {
@@ -36,7 +37,7 @@ impl Interpreter {
             return false;
         }
         let is_last_of_chunk = (at.block + 1).is_multiple_of(Program::CHUNK_SIZE);
-        let Some((block, next)) = self.code.block(at.program, at.block) else {
+        let Some(Fetched { block, next, .. }) = self.code.block(at.program, at.block) else {
             return true;
         };
         if next.is_none() && !is_last_of_chunk {

@@ -26,6 +26,7 @@ mod functions;
 mod growing;
 mod modal;
 mod output;
+mod outside;
 mod path_functions;
 mod positioning;
 mod probe;
@@ -41,7 +42,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
-use bahn_program::{Block, MotionKind, Operation, Program, Value};
+use bahn_program::{Block, MotionKind, Operation, Program};
 
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
@@ -56,9 +57,9 @@ pub use settings::{
 pub use work::{Done, Work};
 
 use crate::checkpoints::{Kept, acts};
-use crate::code::Code;
+use crate::code::{Code, Fetched};
 use crate::contour::Contour;
-use crate::cycles::{ContourJob, Halt, Watch, contour_plane};
+use crate::cycles::{ContourJob, Halt, contour_plane};
 use crate::error::Fault;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
@@ -119,11 +120,11 @@ impl Interpreter {
     /// Prepares the run of a main program.
     pub fn new(main: Arc<Program>, settings: Settings, library: Box<dyn Library + Send>) -> Interpreter {
         let run = Run::new(&settings, main.unit());
-        let position = settings.start;
+        let (position, model) = (settings.start, settings.model);
         let mut interpreter = Interpreter {
             settings,
             library,
-            code: Code::new(main),
+            code: Code::new(main, model),
             run,
             ended: None,
             waiting: None,
@@ -280,40 +281,6 @@ impl Interpreter {
         self.enter_unit();
     }
 
-    /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
-    pub fn set_machine_zero(&mut self, zero: Position) {
-        self.settings.rules.machine_zero = zero;
-    }
-
-    /// Sets a Q parameter from outside: the PLC, or the operator.
-    pub fn set_q(&mut self, number: u16, value: f64) {
-        self.run.q.preassign(number, value);
-    }
-
-    /// Executes a TOOL CALL that is in no program before the next block: tool number, tool axis, spindle speed
-    /// in rpm, and DL and DR in mm; what is `None` stays as it is.
-    pub fn insert_tool_call(
-        &mut self,
-        tool: Option<f64>,
-        axis: Option<Axis>,
-        speed_rpm: Option<f64>,
-        oversize_mm: [f64; 2],
-    ) {
-        let at = self.run.at.block_ref();
-        let current = self.run.modal.tool.map(|tool| f64::from(tool.number));
-        let unit = self.run.unit_mm;
-        let result = self.run.tool_call(
-            tool.or(current).map(Value::Number),
-            axis,
-            speed_rpm.map(Value::Number),
-            oversize_mm.map(|mm| Some(Value::Number(mm / unit))),
-            &self.settings,
-        );
-        if let Err(fault) = result {
-            self.fail(fault, at);
-        }
-    }
-
     /// The block that is executed next.
     pub fn at(&self) -> BlockRef {
         self.run.at.block_ref()
@@ -364,7 +331,7 @@ impl Interpreter {
         if self.code.is_growing() && self.must_wait(at) {
             return Ok(());
         }
-        let Some((block, next)) = self.code.block(at.program, at.block) else {
+        let Some(Fetched { block, next, rounded }) = self.code.block(at.program, at.block) else {
             return self.end_of_program();
         };
         self.run.line_follows = next.is_some_and(is_line);
@@ -386,6 +353,9 @@ impl Interpreter {
             self.work = self.work.map(|work| work.saturating_sub(STATE_COST - 1));
         }
         self.run.block = at;
+        if rounded {
+            self.run.tell_rounded(&self.settings)?;
+        }
         if !matches!(
             block.operation,
             Operation::Begin(_) | Operation::End(_) | Operation::Comment(_)
@@ -434,19 +404,11 @@ impl Interpreter {
             Flow::EndOfProgram => return self.end_of_program(),
             Flow::EndOfRun => return self.end_of_run(),
             Flow::ContourCycle if self.run.rehearsal => self.rehearse_contours()?,
-            Flow::ContourCycle => {
-                let job = self.record_contours()?;
-                if self.defers {
-                    self.pending = Pending::Waiting(Box::new(job));
-                    return Ok(());
-                }
-                let watch = Watch::new(self.interrupt.as_deref());
-                match self.run.contour_cycle(&job, &self.settings, &watch) {
-                    Ok(()) => self.run.at.block += 1,
-                    Err(Halt::Fault(fault)) => return Err(fault),
-                    Err(Halt::Interrupted) => {}
-                }
-            }
+            Flow::ContourCycle => match self.contour_cycle() {
+                Err(Halt::Fault(fault)) => return Err(fault),
+                // Its block is executed anew when the run goes on.
+                Ok(()) | Err(Halt::Interrupted) => {}
+            },
         }
         Ok(())
     }
@@ -561,10 +523,10 @@ impl Interpreter {
 
     /// Executes the contour subprograms of cycle 14 aside and records their geometry; nothing else of them
     /// has an effect [003:5389-5454].
-    fn record_contours(&mut self) -> Result<ContourJob, Fault> {
+    fn record_contours(&mut self) -> Result<ContourJob, Halt> {
         let labels = self.run.modal.contour_labels.clone();
         if labels.is_empty() {
-            return Err(no_contours());
+            return Err(no_contours().into());
         }
         let mut recorder = self.run.clone();
         recorder.contour = Contour::recorder();
@@ -590,7 +552,7 @@ impl Interpreter {
         Ok(())
     }
 
-    fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Fault> {
+    fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Halt> {
         let home = self.run.at.clone();
         let mut job = None;
         for &label in labels {
@@ -599,11 +561,16 @@ impl Interpreter {
             let target = self.label(label)?;
             self.run.at.call(label, target, self.settings.model.limits())?;
             while self.run.at.depth() > home.depth() {
+                if self.is_interrupted() {
+                    return Err(Halt::Interrupted);
+                }
                 let at = self.run.at.block_ref();
                 self.step().map_err(|fault| fault.at(at))?;
                 if self.ended.take().is_some() {
                     let detail = format!("the contour subprogram LBL {label} does not end with LBL 0");
-                    return Err(Fault::new(MessageId::ExcessiveSubprogramming, detail).at(at));
+                    return Err(Fault::new(MessageId::ExcessiveSubprogramming, detail)
+                        .at(at)
+                        .into());
                 }
             }
             let moves = self.run.contour.take_recorded(&mut self.run.out)?;

@@ -116,9 +116,26 @@ pub struct Status {
     /// Transformations with their plane, and the feed.
     programmed: Option<(Frame, Option<f64>)>,
     tool: Option<Tool>,
+    /// How the spindle of the machine turns, and its programmed speed, rpm.
+    spindle: Option<(Spindle, f64)>,
 }
 
 impl Status {
+    /// The spindle turns already, clockwise as with M3 or the other way, for the operator or the PLC has switched it
+    /// on; or it stands. Its speed as it was programmed last, rpm.
+    pub fn take_spindle(&mut self, clockwise: Option<bool>, speed_rpm: f64) {
+        let spindle = match clockwise {
+            Some(true) => Spindle::Clockwise,
+            Some(false) => Spindle::CounterClockwise,
+            None => Spindle::Undefined,
+        };
+        self.spindle = Some((spindle, speed_rpm));
+    }
+
+    pub(crate) fn spindle(&self) -> Option<(Spindle, f64)> {
+        self.spindle
+    }
+
     /// Cancels transformations and feed.
     pub fn cancel_programmed(&mut self) {
         self.programmed = None;
@@ -150,6 +167,7 @@ impl Modal {
         Status {
             programmed: Some((self.frame, self.feed_mm_min)),
             tool: self.tool,
+            spindle: None,
         }
     }
 

@@ -173,8 +173,8 @@ impl Rehearser {
             .run
             .code
             .block(at.program, at.block)
-            .filter(|(block, _)| !(block.skip && skips))
-            .map(|(block, _)| block.operation.clone());
+            .filter(|fetched| !(fetched.block.skip && skips))
+            .map(|fetched| fetched.block.operation.clone());
         let effect = operation.as_ref().map(|operation| self.effect(operation));
         let result = self.run.step().and_then(|()| self.touch());
         self.run.run.out = Output::default();

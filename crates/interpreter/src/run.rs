@@ -115,6 +115,10 @@ impl Run {
             self.modal.feed_mm_min = feed;
             self.modal.take_plane(frame.plane);
         }
+        if let Some((spindle, speed_rpm)) = status.spindle() {
+            self.modal.speed_rpm = speed_rpm;
+            self.set_spindle(spindle);
+        }
         if let Some(tool) = status.tool_data() {
             self.modal.tool = Some(tool);
             self.preassign_tool(tool.shape.length, tool.radius);

@@ -86,8 +86,8 @@ pub enum ToolState {
     Locked,
     /// CUR.TIME is greater than TIME2, and no replacement tool is named.
     Expired,
-    /// CUR.TIME is greater than TIME2: the control takes the replacement tool of column RT.
-    Replaced,
+    /// CUR.TIME is greater than TIME2: the control takes this replacement tool, that of column RT.
+    Replaced(u32),
 }
 
 impl Settings {

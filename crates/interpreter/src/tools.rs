@@ -30,7 +30,9 @@ impl Run {
     ) -> Result<(), Fault> {
         let number = self.tool_number(tool, settings)?;
         if length.is_none() && radius.is_none() {
-            return self.output_function(Function::NextTool(number), true);
+            // What TOOL CALL will call is made ready (inferred).
+            let next = usable(number, 0, settings).map_or(number, |(next, _)| next);
+            return self.output_function(Function::NextTool(next), true);
         }
         let length = length
             .map(|length| self.length(length))
@@ -93,7 +95,7 @@ impl Run {
         };
         self.finish_contour()?;
         let (number, index) = self.indexed_tool_number(tool, settings)?;
-        check_state(number, index, settings)?;
+        let (number, index) = usable(number, index, settings)?;
         let (mut shape, defined) = self.tool_shape(number, index, settings)?;
         let has_oversize = oversize.iter().any(Option::is_some);
         let executed = !has_oversize || self.executes(Feature::Word(words::OVERSIZE), settings)?;
@@ -392,22 +394,42 @@ impl Run {
     }
 }
 
-/// Refuses a tool that the table locks, and one whose life is over [000:9168-9172].
-fn check_state(number: u32, index: u8, settings: &Settings) -> Result<(), Fault> {
-    let state = settings
-        .barred_tools
-        .get(&tool_key(number, index))
-        .copied()
-        .unwrap_or_default();
-    let fault = |message, what: &str| Err(Fault::new(message, format!("tool {number}: {what}")));
-    match state {
-        ToolState::Usable => Ok(()),
-        ToolState::Locked => fault(MessageId::ToolLocked, "column TL of the tool table locks it"),
-        ToolState::Expired => fault(MessageId::MaxToolLifeExpired, "CUR.TIME is greater than TIME2"),
-        ToolState::Replaced if settings.skip_unknown => Ok(()),
-        ToolState::Replaced => fault(
-            MessageId::BlockNotKnown,
-            "CUR.TIME is greater than TIME2, and the replacement tool of column RT is not called here",
-        ),
+/// The tool that a TOOL CALL calls: the replacement tool of one whose life is over, or that one's. Refused is a
+/// tool that the table locks, and one whose life is over without a replacement [000:9168-9172].
+fn usable(number: u32, index: u8, settings: &Settings) -> Result<(u32, u8), Fault> {
+    let mut called = (number, index);
+    let fault = |message, (tool, _): (u32, u8), what: &str| {
+        let of = match tool == number {
+            true => String::new(),
+            false => format!(", which replaces tool {number}"),
+        };
+        Err(Fault::new(message, format!("tool {tool}{of}: {what}")))
+    };
+    // In a longer chain a tool stands twice.
+    for _ in 0..=settings.barred_tools.len() {
+        let state = settings.barred_tools.get(&tool_key(called.0, called.1));
+        called = match state.copied().unwrap_or_default() {
+            ToolState::Usable => return Ok(called),
+            ToolState::Replaced(replacement) => (replacement, 0),
+            ToolState::Locked => {
+                return fault(
+                    MessageId::ToolLocked,
+                    called,
+                    "column TL of the tool table locks it",
+                );
+            }
+            ToolState::Expired => {
+                return fault(
+                    MessageId::MaxToolLifeExpired,
+                    called,
+                    "CUR.TIME is greater than TIME2",
+                );
+            }
+        };
     }
+    fault(
+        MessageId::MaxToolLifeExpired,
+        (number, index),
+        "its replacement tools replace each other, and the lives of all are over",
+    )
 }

@@ -1,7 +1,7 @@
 //! Computations that take long: they can be done beside, on a thread of whoever drives the interpreter.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::Interpreter;
 use crate::cycles::{ContourJob, Halt, Watch};
@@ -15,8 +15,17 @@ pub(crate) enum Pending {
     None,
     /// It waits for somebody to do it.
     Waiting(Box<ContourJob>),
-    /// Somebody does it; the mark tells it from others.
-    Taken(Arc<()>),
+    /// Somebody does it.
+    Taken(Wanted),
+}
+
+/// Tells a computation from others, and that nobody wants it any more: dropped, it ends it.
+pub(crate) struct Wanted(Arc<AtomicBool>);
+
+impl Drop for Wanted {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 /// A computation of an interpreter, to be done on any thread: the path of an SL cycle.
@@ -25,28 +34,33 @@ pub struct Work {
     settings: Settings,
     job: Box<ContourJob>,
     interrupt: Option<Arc<AtomicBool>>,
-    mark: Arc<()>,
+    given_up: Arc<AtomicBool>,
 }
 
 /// What a [`Work`] came to, for the interpreter that it is of.
 pub struct Done {
     run: Box<Run>,
     result: Result<(), Halt>,
-    mark: Arc<()>,
+    given_up: Arc<AtomicBool>,
 }
 
 impl Work {
-    /// Does it.
+    /// Does it. It ends soon when the interpreter gives it up meanwhile, or is dropped.
     pub fn compute(self) -> Done {
         let Work {
             mut run,
             settings,
             job,
             interrupt,
-            mark,
+            given_up,
         } = self;
-        let result = run.contour_cycle(&job, &settings, &Watch::new(interrupt.as_deref()));
-        Done { run, result, mark }
+        let watch = Watch::new([interrupt.as_deref(), Some(&given_up)]);
+        let result = run.contour_cycle(&job, &settings, &watch);
+        Done {
+            run,
+            result,
+            given_up,
+        }
     }
 }
 
@@ -56,7 +70,7 @@ impl Pending {
     }
 
     pub fn is_of(&self, done: &Done) -> bool {
-        matches!(self, Pending::Taken(mark) if Arc::ptr_eq(mark, &done.mark))
+        matches!(self, Pending::Taken(wanted) if Arc::ptr_eq(&wanted.0, &done.given_up))
     }
 
     /// Hands the computation out.
@@ -69,8 +83,8 @@ impl Pending {
         let Pending::Waiting(job) = std::mem::take(self) else {
             return None;
         };
-        let mark = Arc::new(());
-        *self = Pending::Taken(Arc::clone(&mark));
+        let given_up = Arc::new(AtomicBool::new(false));
+        *self = Pending::Taken(Wanted(Arc::clone(&given_up)));
         let warnings = std::mem::take(&mut run.warnings);
         let copy = Box::new(run.clone());
         run.warnings = warnings;
@@ -79,7 +93,7 @@ impl Pending {
             settings: settings.clone(),
             job,
             interrupt: interrupt.cloned(),
-            mark,
+            given_up,
         })
     }
 
@@ -128,5 +142,18 @@ impl Interpreter {
             // Its block is executed anew when the run goes on.
             Some(Err(Halt::Interrupted)) | None => {}
         }
+    }
+
+    /// Runs an SL cycle, or leaves it to whoever drives.
+    pub(crate) fn contour_cycle(&mut self) -> Result<(), Halt> {
+        let job = self.record_contours()?;
+        if self.defers {
+            self.pending = Pending::Waiting(Box::new(job));
+            return Ok(());
+        }
+        let watch = Watch::new([self.interrupt.as_deref(), None]);
+        self.run.contour_cycle(&job, &self.settings, &watch)?;
+        self.run.at.block += 1;
+        Ok(())
     }
 }

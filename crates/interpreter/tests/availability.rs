@@ -6,6 +6,7 @@ use bahn_interpreter::{Settings, ToolState, WarningKind};
 use bahn_parameters::ControlModel::{self, Tnc155, Tnc360, Tnc407, Tnc415b, Tnc425};
 use bahn_parameters::MessageId::{BlockNotKnown, MaxToolLifeExpired, ToolLocked, WrongAxisProgrammed};
 use bahn_parameters::{MessageId, ParameterList};
+use bahn_path::{Function, ToolShape};
 use support::*;
 
 fn with(blocks: &str, change: impl FnOnce(&mut Settings)) -> Run {
@@ -180,7 +181,46 @@ fn tools_that_are_locked_or_worn() {
     assert_eq!(state(ToolState::Usable), None);
     assert_eq!(state(ToolState::Locked), Some((ToolLocked, 2)));
     assert_eq!(state(ToolState::Expired), Some((MaxToolLifeExpired, 2)));
-    assert_eq!(state(ToolState::Replaced), Some((BlockNotKnown, 2)));
+    // The replacement tool is called; where it replaces itself there is none.
+    assert_eq!(state(ToolState::Replaced(3)), None);
+    assert_eq!(state(ToolState::Replaced(2)), Some((MaxToolLifeExpired, 2)));
+}
+
+/// The tools that TOOL DEF and TOOL CALL name to the PLC when tool 2 is worn: its replacement, or what replaces
+/// that one [000:9168-9172].
+#[test]
+fn the_replacement_tool_is_called() {
+    let called = |barred: &[(u32, ToolState)]| {
+        let run = with(
+            "TOOL DEF 2\nTOOL CALL 2 Z S100\nL X+5 Y+5 Z+0 R0 FMAX",
+            |settings| {
+                let shape = |radius| ToolShape {
+                    radius,
+                    ..ToolShape::default()
+                };
+                settings.tools = Some([2, 3, 4].map(|tool| (tool, shape(f64::from(tool)))).into());
+                settings.barred_tools = barred.iter().copied().collect();
+            },
+        );
+        let functions = run.elements.iter().flat_map(|element| element.functions());
+        let called: Vec<(u32, f64)> = functions
+            .filter_map(|function| match &function.function {
+                Function::Tool(call) => Some((call.tool, call.shape.radius)),
+                Function::NextTool(tool) => Some((*tool, 0.0)),
+                _ => None,
+            })
+            .collect();
+        (called, run.message())
+    };
+    use ToolState::{Expired, Locked, Replaced};
+    assert_eq!(called(&[]), (vec![(2, 0.0), (2, 2.0)], None));
+    assert_eq!(called(&[(2, Replaced(3))]), (vec![(3, 0.0), (3, 3.0)], None));
+    let chain = [(2, Replaced(3)), (3, Replaced(4))];
+    assert_eq!(called(&chain), (vec![(4, 0.0), (4, 4.0)], None));
+    let end = |state| called(&[(2, Replaced(3)), (3, state)]).1;
+    assert_eq!(end(Expired), Some((MaxToolLifeExpired, 2)));
+    assert_eq!(end(Locked), Some((ToolLocked, 2)));
+    assert_eq!(end(Replaced(2)), Some((MaxToolLifeExpired, 2)));
 }
 
 /// MP7245.0 bit n inhibits cycle n, MP7245.1 bit n cycle 16 + n [000:6655-6698]; MP7246 paraxial blocks

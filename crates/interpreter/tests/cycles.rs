@@ -457,3 +457,22 @@ fn slot_along_a_parallel_axis() {
     close(far, 10.0, 1e-9);
     assert!(run.moves().all(|e| e.end[Axis::X] == 1.0));
 }
+
+/// The spindle of the machine turns with M4 and S500 before the program begins: the thread of cycle 17 is left-handed
+/// and its feed 500 · 1.5.
+#[test]
+fn tapping_with_the_spindle_that_turns_already() {
+    let blocks = "TOOL DEF 1 L+0 R+4\nTOOL CALL 1 Z\nCYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP -3\n\
+        CYCL DEF 17.2 DEPTH -20\nCYCL DEF 17.3 PITCH -1.5\nL X+0 Y+0 Z+3 R0 FMAX\nCYCL CALL";
+    let run = Job::new(program(blocks))
+        .with(|settings| settings.status.take_spindle(Some(false), 500.0))
+        .run();
+    run.assert_completed();
+    let thread = run.moves().find(|element| element.thread().is_some()).unwrap();
+    assert_eq!(thread.feed, FeedRate::Programmed(750.0));
+    let stops = run
+        .functions()
+        .into_iter()
+        .any(|(_, function)| *function == Function::M(5));
+    assert!(stops, "the spindle is stopped before it is led");
+}

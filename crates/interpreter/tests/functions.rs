@@ -306,3 +306,42 @@ fn machine_positions_without_a_machine_lead_away() {
     run.assert_completed();
     assert!(run.moves().all(|e| !e.length().is_nan()));
 }
+
+/// M93: the coordinates of the block count from where the tool is, those of the next block from the datum
+/// [003:7481].
+#[test]
+fn m93_counts_from_the_tool() {
+    let run = run("L X+10 Y+7 R0 FMAX\nL X+5 FMAX M93\nL X+6 Y+2 FMAX");
+    let ends: Vec<[f64; 3]> = run.moves().skip(1).map(|e| xyz(&e.end)).collect();
+    assert_eq!(ends[0][..2], [15.0, 7.0]);
+    assert_eq!(ends[1][..2], [6.0, 2.0]);
+}
+
+/// M94: 730 degrees count as 10, and C+20 turns by 10 degrees; under M127 and without it by -710 [003:7482] [000:836].
+#[test]
+fn m94_takes_whole_turns_off() {
+    use bahn_parameters::ControlModel::Tnc415b;
+    let turn = |m: &str| {
+        let text = program(&format!(
+            "L X+0 C+0 FMAX\nL C+730 F360\nL X+1 FMAX {m}\nL C+20 F360"
+        ));
+        let run = Job::new(text).with(|s| s.model = Tnc415b).run();
+        run.assert_completed();
+        let last = run.moves().last().unwrap().clone();
+        last.end[Axis::C] - last.start[Axis::C]
+    };
+    assert_eq!(turn("M94"), 10.0);
+    assert_eq!(turn("M127"), -710.0);
+    assert_eq!(turn(""), -710.0);
+}
+
+/// M13 and M14 are M3 and M4 with M8: Q110 and Q111 [000:7093-7094].
+#[test]
+fn m13_and_m14_switch_the_coolant_on() {
+    for (m, spindle) in [("M13", 0.0), ("M14", 1.0)] {
+        let run = run(&format!(
+            "TOOL DEF 1 L+0 R+1\nTOOL CALL 1 Z S100\nL X+0 FMAX {m}\nL X+1 FMAX"
+        ));
+        assert_eq!((run.q[110], run.q[111]), (spindle, 1.0), "{m}");
+    }
+}

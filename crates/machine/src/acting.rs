@@ -1,11 +1,9 @@
 //! Doing what events say: the hands of the operator, and what breaks.
 
-use bahn_servo::INPUTS;
-
 use crate::axis::Axis;
 use crate::device::DeviceFault;
 use crate::encoder::EncoderFault;
-use crate::event::{Event, EventError, Fault, KeyAction};
+use crate::event::{Event, EventError, Fault, KeyAction, input_number};
 use crate::machine::{Machine, set};
 use crate::probe::Probe;
 use crate::spindle::Spindle;
@@ -216,15 +214,6 @@ impl Machine {
         axis.set_encoder_fault(None);
         Ok(())
     }
-}
-
-/// `I12`.
-pub(crate) fn input_number(text: &str) -> Option<usize> {
-    let digits = text.strip_prefix('I')?;
-    if !digits.bytes().all(|byte| byte.is_ascii_digit()) {
-        return None;
-    }
-    digits.parse().ok().filter(|input| *input < INPUTS)
 }
 
 fn no<'a>(what: &'static str, name: &str, known: impl Iterator<Item = &'a str>) -> EventError {

@@ -1,9 +1,14 @@
 //! What an operator, a script or a test does to the machine, as text.
 
+use bahn_servo::INPUTS;
+
 use crate::axis::DriveFault;
 use crate::chain::RelayFault;
 use crate::device::DeviceFault;
 use crate::encoder::EncoderFault;
+
+/// Analogue inputs and Pt 100 inputs of two PLC boards.
+pub(crate) const ANALOGUE_INPUTS: usize = 8;
 
 /// What can be done to a machine. The text form is in the table of [`Event::HELP`].
 #[derive(Clone, Debug, PartialEq)]
@@ -245,7 +250,7 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
         )),
         ["input", input, state] => {
             const FORM: &str = "fault input I12 0|1";
-            let input = crate::acting::input_number(input).ok_or(EventError::Form(FORM))?;
+            let input = input_number(input).ok_or(EventError::Form(FORM))?;
             match *state {
                 "0" => Ok(Fault::Input(input, false)),
                 "1" => Ok(Fault::Input(input, true)),
@@ -283,11 +288,20 @@ fn letter(text: &str, form: &'static str) -> Result<char, EventError> {
     }
 }
 
+/// `I12`.
+pub(crate) fn input_number(text: &str) -> Option<usize> {
+    let digits = text.strip_prefix('I')?;
+    if !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    digits.parse().ok().filter(|input| *input < INPUTS)
+}
+
 fn analogue_input(text: &str) -> Result<usize, EventError> {
     text.parse()
         .ok()
-        .filter(|input| *input < crate::machine::ANALOGUE_INPUTS)
-        .ok_or_else(|| EventError::Number(text.to_owned(), 0, crate::machine::ANALOGUE_INPUTS as i64 - 1))
+        .filter(|input| *input < ANALOGUE_INPUTS)
+        .ok_or_else(|| EventError::Number(text.to_owned(), 0, ANALOGUE_INPUTS as i64 - 1))
 }
 
 fn number(text: &str, min: i64, max: i64) -> Result<f64, EventError> {

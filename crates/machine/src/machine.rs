@@ -5,13 +5,12 @@ use bahn_servo::{Encoder, INPUTS, OUTPUTS, OperatorInputs, Plant};
 use crate::axis::{Axis, AxisState};
 use crate::chain::Chain;
 use crate::device::{Device, DeviceState};
+use crate::event::ANALOGUE_INPUTS;
 use crate::panel::Panel;
 use crate::probe::Probe;
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 
-/// Analogue inputs and Pt 100 inputs of two PLC boards.
-pub(crate) const ANALOGUE_INPUTS: usize = 8;
 /// Contacts, relays and things move once in so many µs.
 const TICK_US: u32 = 1000;
 

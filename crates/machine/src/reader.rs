@@ -69,9 +69,15 @@ impl Coil {
     }
 }
 
+/// Faults that are named at most, and wires whose places are kept.
+const FAULTS_MAX: usize = 1000;
+const WIRES_MAX: usize = 10_000;
+
 /// The text being read and what was found wrong in it.
 pub(crate) struct Reader<'t> {
     text: &'t str,
+    /// Where each line begins.
+    lines: Vec<usize>,
     faults: RefCell<Vec<PlantError>>,
     /// The inputs given away: where, which, to whom.
     taken: RefCell<Vec<(usize, usize, String)>>,
@@ -82,6 +88,10 @@ impl<'t> Reader<'t> {
     pub fn new(text: &'t str) -> Reader<'t> {
         Reader {
             text,
+            lines: [0]
+                .into_iter()
+                .chain(text.match_indices('\n').map(|(at, _)| at + 1))
+                .collect(),
             faults: RefCell::default(),
             taken: RefCell::default(),
             wires: RefCell::default(),
@@ -90,6 +100,9 @@ impl<'t> Reader<'t> {
 
     /// Notes an input or output that something is wired to.
     pub fn wire(&self, at: usize, operand: String) {
+        if self.wires.borrow().len() == WIRES_MAX {
+            return self.fault(at, "too many wires".to_owned());
+        }
         let (line, column) = self.place(at);
         self.wires.borrow_mut().push(Wire {
             line,
@@ -115,8 +128,13 @@ impl<'t> Reader<'t> {
         table
     }
 
-    /// Notes a fault at a place of the text, in bytes.
+    /// Notes a fault at a place of the text, in bytes. The last one that is noted says that there are more.
     pub fn fault(&self, at: usize, message: String) {
+        let message = match self.faults.borrow().len() {
+            ..FAULTS_MAX => message,
+            FAULTS_MAX => "too many faults: further ones are not named".to_owned(),
+            _ => return,
+        };
         let (line, column) = self.place(at);
         self.faults.borrow_mut().push(PlantError {
             line,
@@ -127,10 +145,10 @@ impl<'t> Reader<'t> {
 
     /// Line and column of a place of the text, from 1.
     fn place(&self, at: usize) -> (usize, usize) {
-        let before = self.text.get(..at).unwrap_or(self.text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let column = before.get(line_start..).map_or(0, |line| line.chars().count()) + 1;
-        (before.matches('\n').count() + 1, column)
+        let line = self.lines.partition_point(|start| *start <= at);
+        let start = self.lines.get(line.saturating_sub(1)).copied().unwrap_or(0);
+        let before = self.text.get(start..at).unwrap_or_default();
+        (line.max(1), before.chars().count() + 1)
     }
 
     /// All faults in the order of the text.

@@ -3,7 +3,7 @@
 
 mod common;
 
-use bahn_machine::{Event, Machine};
+use bahn_machine::{Event, Machine, MachineFolder};
 use bahn_servo::{Encoder, Plant};
 use common::{BASE, milliseconds, running};
 use proptest::prelude::*;
@@ -125,4 +125,17 @@ fn the_seed_is_the_noise() {
     let text = rough(500.0, 100.0, 0.0, 0.0, 50.0);
     assert_eq!(position(&text), position(&text));
     assert_ne!(position(&text), position(&text.replace("seed = 7", "seed = 8")));
+}
+
+/// A file that describes no machine has a fault in each of its lines: a thousand are named, in no time.
+#[test]
+fn a_thousand_faults_are_named() {
+    let started = std::time::Instant::now();
+    let keys: String = (0..90_000).map(|key| format!("key{key} = 1\n")).collect();
+    let (_, faults) = MachineFolder::read(&keys);
+    assert_eq!(faults.len(), 1001);
+    assert!(faults.iter().any(|fault| fault.message.starts_with("too many")));
+    let faults = Machine::from_toml(&keys).unwrap_err();
+    assert_eq!(faults.len(), 1001);
+    assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
 }

@@ -96,6 +96,8 @@ limits! {
     resolution_mm: f64 = 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4;
     /// Input step of angles, degrees [003:7825] [000:6419-6424]; TNC 151/155 (inferred).
     resolution_deg: f64 = 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4;
+    /// Input step of cycle 13, degrees [003:6528]; TNC 151/155 and 407/415/425 (inferred).
+    orientation_step_deg: f64 = 0.1, 0.1, 0.1, 1e-3, 1e-4, 1e-4;
     /// Axes that a machine can have [001:1089-1103] [003:7751] [000:133].
     axes_max: u8 = 4, 4, 4, 5, 5, 5;
     /// Axes that move together on a straight line [001:167-173] [003:7761-7763] [000:139].
@@ -138,6 +140,51 @@ limits! {
     /// Bits of the converter behind a nominal value output, for 10 V of either sign: 16 [000:4863], 14
     /// [000:4863], TNC 151/155 steps of 2.44 mV [001:2573-2585]; TNC 360 as TNC 407 (inferred).
     output_bits: u8 = 12, 12, 14, 14, 16, 16;
+
+    // PLC, EMERGENCY STOP.
+
+    /// Period of the PLC, µs [000:239] [000:10260] [000:11185] [001:3283]; TNC 360 (inferred).
+    plc_cycle_us: u32 = 20_000, 20_000, 20_000, 24_000, 20_000, 20_000;
+    /// Code of all files of a PLC program together, bytes: 128 KB, 64 KB on the TNC 407 [000:14606]; TNC 151/155/360
+    /// (inferred).
+    plc_code_max_bytes: u32 = 131_072, 131_072, 131_072, 65_536, 131_072, 131_072;
+    /// Axes that the PLC positions at once [000:4011]; others than TNC 407 (inferred).
+    plc_positioning_axes_max: u8 = 5, 5, 5, 3, 5, 5;
+    /// The test of the EMERGENCY STOP circuit at power-on.
+    emergency_stop_test: EmergencyStopTest = STOP_TEST_151, STOP_TEST_151, STOP_TEST_407, STOP_TEST_407, STOP_TEST_415,
+        STOP_TEST_415;
+    /// How the machine parameters are numbered.
+    numbering: Numbering = OLD, OLD, NEW, NEW, NEW, NEW;
+
+    // Terminals.
+
+    /// Inputs that machines are wired to, first and last of each board: TNC 151/155 E0-E62, E64-E126
+    /// [001:297]; [000:11556-11567] and those of the handwheel [000:8276-8281]; TNC 360 as these (inferred).
+    inputs: &'static [(u16, u16)] = INPUTS_151, INPUTS_151, INPUTS, INPUTS, INPUTS, INPUTS;
+    /// Outputs in the same way: TNC 151/155 A0-A30, A32-A62 [001:311].
+    outputs: &'static [(u16, u16)] = OUTPUTS_151, OUTPUTS_151, OUTPUTS, OUTPUTS, OUTPUTS, OUTPUTS;
+}
+
+/// Times and repetitions of the test of the EMERGENCY STOP circuit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EmergencyStopTest {
+    /// How often it is done: by each processor in turn, or by the only one again.
+    pub times: u8,
+    /// From the voltage to the output dropped: at most 66 or 70 ms, µs.
+    pub recognise_us: u64,
+    /// In which the acknowledgement must fall, µs.
+    pub fall_us: u64,
+    /// From the fallen acknowledgement to the output on again: at most 20 or 24 ms, µs.
+    pub restore_us: u64,
+}
+
+/// How the machine parameters of a model are numbered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numbering {
+    /// 0 to 263, without indices: TNC 151/155 [001:1580-1950].
+    Old,
+    /// 10 to 7690, with indices.
+    New,
 }
 
 /// Zero of the coordinates in a block with M91.
@@ -190,6 +237,32 @@ impl Limits {
     }
 }
 
+const OLD: Numbering = Numbering::Old;
+const NEW: Numbering = Numbering::New;
+/// Twice within 200 ms [001:929-932]; the other times are not given (inferred).
+const STOP_TEST_151: EmergencyStopTest = EmergencyStopTest {
+    times: 2,
+    recognise_us: 60_000,
+    fall_us: 200_000,
+    restore_us: 18_000,
+};
+/// The manual of the TNC 360 gives no times (inferred).
+const STOP_TEST_407: EmergencyStopTest = EmergencyStopTest {
+    times: 1,
+    recognise_us: 60_000,
+    fall_us: 146_000,
+    restore_us: 18_000,
+};
+const STOP_TEST_415: EmergencyStopTest = EmergencyStopTest {
+    times: 3,
+    recognise_us: 60_000,
+    fall_us: 114_000,
+    restore_us: 18_000,
+};
+const INPUTS_151: &[(u16, u16)] = &[(0, 62), (64, 126)];
+const INPUTS: &[(u16, u16)] = &[(0, 31), (64, 126), (128, 152), (160, 175), (192, 254)];
+const OUTPUTS_151: &[(u16, u16)] = &[(0, 30), (32, 62)];
+const OUTPUTS: &[(u16, u16)] = &[(0, 30), (32, 62), (64, 94), (96, 111)];
 const TENTHS: InchFeed = InchFeed::Tenths;
 const WHOLE: InchFeed = InchFeed::Whole;
 const SCALE: MachineZero = MachineZero::ScaleDatum;

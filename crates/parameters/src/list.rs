@@ -80,13 +80,13 @@ impl ParameterList {
         .map(|_| ())
     }
 
-    /// Sets one value from text: `7420=4`, `1010.0=5000`, `MP7440=%00110`.
+    /// Sets one value from text: `7420=4`, `1010.0=5000`, `MP7440=%00110`. Returns which.
     ///
     /// # Errors
     /// When it is no assignment, the model has no such parameter, or the value is outside its range.
-    pub fn assign(&mut self, assignment: &str) -> Result<(), ParameterError> {
+    pub fn assign(&mut self, assignment: &str) -> Result<ParameterId, ParameterError> {
         let found = read_assignment(self.model, assignment, 0).map_err(|(error, _)| error)?;
-        self.set_id(found.id, found.value).map(|_| ())
+        self.set_id(found.id, found.value).map(|_| found.id)
     }
 
     /// Reads the text of a list over the values of this one. Parsing never fails: what can be read is

@@ -33,12 +33,12 @@ pub use spindle_parameters::{
     SpindlePolarity, SpindleRamps, TappingParameters,
 };
 
-use crate::{ControlModel, ParameterList};
+use crate::{Numbering, ParameterList};
 
 impl ParameterList {
     /// Whether the list has the numbers of the TNC 151/155.
     pub(crate) fn has_old_numbers(&self) -> bool {
-        matches!(self.model(), ControlModel::Tnc151 | ControlModel::Tnc155)
+        self.model().limits().numbering == Numbering::Old
     }
 
     /// A value under the number of the new or the old list. Every model has every parameter asked for

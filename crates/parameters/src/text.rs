@@ -30,7 +30,12 @@ pub struct ListText {
     lines: Vec<usize>,
     entries: Vec<Entry>,
     faults: Vec<ListError>,
+    /// Faults beyond [`LISTED_MAX`].
+    not_listed: usize,
 }
+
+/// Faults of a list that are kept: a file that is no list has one in each of a million lines.
+const LISTED_MAX: usize = 1000;
 
 /// A line of a list that holds a value.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +63,7 @@ impl ListText {
             lines: Vec::new(),
             entries: Vec::new(),
             faults: Vec::new(),
+            not_listed: 0,
         };
         text.read();
         text
@@ -74,9 +80,14 @@ impl ListText {
         &self.entries
     }
 
-    /// What cannot be read, in the order of lines.
+    /// What cannot be read, in the order of lines; the first thousand.
     pub fn faults(&self) -> &[ListError] {
         &self.faults
+    }
+
+    /// How many further lines cannot be read.
+    pub fn not_listed(&self) -> usize {
+        self.not_listed
     }
 
     /// What keeps the control from taking the list: what cannot be read, and every parameter of the model
@@ -207,6 +218,11 @@ impl ListText {
     fn read(&mut self) {
         let mut first_lines = BTreeMap::new();
         let (mut lines, mut entries, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+        let mut not_listed = 0;
+        let mut list = |fault| match faults.len() < LISTED_MAX {
+            true => faults.push(fault),
+            false => not_listed += 1,
+        };
         let mut start = 0;
         for (index, bytes) in self.bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
             lines.push(start);
@@ -230,16 +246,17 @@ impl ListText {
                             id: found.id,
                             first_line,
                         };
-                        faults.push(fault(error, line, &text, found.id_at));
+                        list(fault(error, line, &text, found.id_at));
                     }
                 },
-                Err((error, at)) => faults.push(fault(error, line, &text, at)),
+                Err((error, at)) => list(fault(error, line, &text, at)),
             }
             start += bytes.len();
         }
         self.lines = lines;
         self.entries = entries;
         self.faults = faults;
+        self.not_listed = not_listed;
     }
 }
 

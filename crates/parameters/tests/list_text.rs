@@ -274,3 +274,15 @@ proptest! {
         prop_assert_eq!(text.missing().count(), 0);
     }
 }
+
+/// A file that is no list has a fault in each of its lines: a thousand are kept, the others counted, and what can
+/// be read is read.
+#[test]
+fn a_thousand_faults_are_listed() {
+    let list = format!("{}MP7430 : 0.9\n", "junk\n".repeat(2500));
+    let text = ListText::from_bytes(ControlModel::Tnc415b, list.as_bytes());
+    assert_eq!((text.faults().len(), text.not_listed()), (1000, 1500));
+    assert_eq!(text.entries().len(), 1);
+    let text = ListText::from_bytes(ControlModel::Tnc415b, b"junk\n");
+    assert_eq!((text.faults().len(), text.not_listed()), (1, 0));
+}

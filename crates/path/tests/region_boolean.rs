@@ -175,6 +175,26 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-4
 }
 
+/// A point on the chord of an arc, from where the ray that counts runs along the chord: it is inside or not as
+/// the arc bulges, whichever way the contour goes.
+#[test]
+fn points_on_chords_are_where_the_arc_leaves_them() {
+    for (up, inside) in [(true, Location::Inside), (false, Location::Outside)] {
+        // From (-1, 0) over (0, +-1) to (1, 0), and around by (1, -4) and (-1, -4).
+        let contour = Contour::start_at([-1.0, 0.0])
+            .arc_to([0.0, 0.0], [1.0, 0.0], !up)
+            .line_to([1.0, -4.0])
+            .line_to([-1.0, -4.0])
+            .line_to([-1.0, 0.0]);
+        for contour in [contour.reversed(), contour] {
+            for x in [-0.75, 0.0, 0.25] {
+                assert_eq!(contour.locate([x, 0.0]), inside, "{x} {up}");
+                assert_eq!(Region::from_contour(&contour).locate([x, 0.0]), inside);
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1000, ..ProptestConfig::default() })]
 

@@ -1,6 +1,7 @@
 //! A picture and what is drawn on it.
 
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use thiserror::Error;
 
@@ -29,8 +30,14 @@ pub struct Label {
 
 /// Why a picture could not be written.
 #[derive(Debug, Error)]
-#[error("the picture cannot be written: {0}")]
-pub struct ImageError(#[from] png::EncodingError);
+pub enum ImageError {
+    /// The writer failed.
+    #[error("the picture cannot be written: {0}")]
+    Writer(#[from] png::EncodingError),
+    /// The work was stopped.
+    #[error("stopped")]
+    Stopped,
+}
 
 /// Pictures are equal when their pixels are.
 impl PartialEq for Image {
@@ -62,12 +69,28 @@ impl Image {
     /// # Errors
     /// When the writer fails.
     pub fn write_png(&self, writer: impl Write) -> Result<(), ImageError> {
+        self.write_png_until(writer, &AtomicBool::new(false))
+    }
+
+    /// As [`Image::write_png`], row by row until `stop` is set.
+    ///
+    /// # Errors
+    /// When the writer fails, and when it was stopped.
+    pub fn write_png_until(&self, writer: impl Write, stop: &AtomicBool) -> Result<(), ImageError> {
         let mut encoder = png::Encoder::new(writer, self.width, self.height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::Balanced);
         let mut png = encoder.write_header()?;
-        png.write_image_data(self.pixels.as_flattened())?;
+        let mut rows = png.stream_writer()?;
+        for row in self.pixels.chunks((self.width as usize).max(1)) {
+            if stop.load(Ordering::Relaxed) {
+                return Err(ImageError::Stopped);
+            }
+            rows.write_all(row.as_flattened())
+                .map_err(png::EncodingError::from)?;
+        }
+        rows.finish()?;
         png.finish()?;
         Ok(())
     }

@@ -131,31 +131,32 @@ pub trait Nc {
 }
 
 /// Puts the machine parameters that are meant for the PLC into its words and markers: MP4210 (in 1/10 000),
-/// MP4220 and MP4310, the last also as markers M2192-M2239 and M3200-M3263 [000:11665-11742]. Parameters
-/// that the model does not have leave their operands alone.
+/// MP4220 and MP4310, the last also as markers M2192-M2239 and M3200-M3263 [000:11665-11742]; TNC 151/155 their
+/// MP126-156, MP163-166 and MP158, 249, 250. What the model does not have is 0.
 pub fn mirror_parameters(parameters: &ParameterList, exchange: &mut Exchange) {
+    let values = parameters.plc_parameters();
     let numbers = signal::all().iter().filter_map(|signal| match signal.operand {
         signal::SignalOperand::Number(number) => Some((parameter_of(signal.name)?, number)),
         _ => None,
     });
     for ((parameter, index), number) in numbers {
-        let Some(value) = parameters.get(parameter, index) else {
-            continue;
+        let index = usize::from(index);
+        let value = match parameter {
+            4210 => values.positions_mm.get(index).map(|position| position * 10_000.0),
+            4220 => values.feeds_mm_min.get(index).copied(),
+            4310 => values.words.get(index).map(|word| f64::from(*word)),
+            _ => None,
         };
-        let scaled = if parameter == 4210 {
-            value * 10_000.0
-        } else {
-            value
-        };
-        exchange.nc_set_number(number, scaled.round() as i32);
+        if let Some(value) = value {
+            exchange.nc_set_number(number, value.round() as i32);
+        }
     }
     let markers = signal::MP4310_0_TO_2_BITS
         .iter()
         .chain(signal::MP4310_3_TO_6_BITS.iter());
     for (position, marker) in markers.enumerate() {
-        let index = u8::try_from(position / 16).unwrap_or(u8::MAX);
-        if let Some(value) = parameters.get(4310, index) {
-            exchange.nc_set(marker, (value as u32) >> (position % 16) & 1 != 0);
+        if let Some(word) = values.words.get(position / 16) {
+            exchange.nc_set(marker, word >> (position % 16) & 1 != 0);
         }
     }
 }

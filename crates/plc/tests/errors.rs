@@ -450,3 +450,51 @@ fn errors_name_what_was_opened() {
     );
     assert_eq!(opened("]\nEM\n", 13), None);
 }
+
+/// Each control has its inputs and outputs: the TNC 151 and 155 E0 to E62, E64 to E126, A0 to A30, A32 to A62
+/// [001:297-323], the others those of the directory [000:11556-11567].
+#[test]
+fn inputs_and_outputs_are_those_of_the_control() {
+    let is_read = |operand: &str, model| {
+        let source = format!("L {operand}\n= M1\nEM");
+        let files = MemoryFiles::from([("MAIN.PLC", source.as_str())]);
+        Compilation::compile(&files, "MAIN.PLC", Options::for_model(model))
+            .errors
+            .is_empty()
+    };
+    for (old, new) in [
+        (["I40", "I62", "O62"], ["I128", "I254", "O94"]),
+        (["E32", "A32", "A30"], ["I152", "O64", "O111"]),
+    ]
+    .into_iter()
+    .flat_map(|(old, new)| old.into_iter().zip(new))
+    {
+        for model in [ControlModel::Tnc151, ControlModel::Tnc155] {
+            assert!(
+                is_read(old, model) && !is_read(new, model),
+                "{model}: {old}, {new}"
+            );
+        }
+        let only_old = ["I40", "I62", "E32"].contains(&old);
+        for model in [ControlModel::Tnc360, ControlModel::Tnc407, ControlModel::Tnc425] {
+            assert!(
+                is_read(old, model) != only_old && is_read(new, model),
+                "{model}: {old}, {new}"
+            );
+        }
+    }
+    let limits = ControlModel::Tnc415b.limits();
+    assert_eq!(limits.inputs, bahn_exchange::BitArea::I.ranges());
+    assert_eq!(limits.outputs, bahn_exchange::BitArea::O.ranges());
+}
+
+/// A file that is no PLC program has an error in each of its lines: a thousand are listed, the others counted.
+#[test]
+fn a_thousand_errors_are_listed() {
+    let compilation = compile(&format!("{}EM\n", "JUNK\n".repeat(4000)));
+    assert_eq!((compilation.errors.len(), compilation.not_listed), (1000, 3000));
+    assert!(compilation.program.is_none());
+    let compilation = compile(&format!("{}EM\n", "LM 4\n= M5\n".repeat(2500)));
+    assert!(compilation.program.is_some(), "{:?}", compilation.errors.first());
+    assert_eq!((compilation.warnings.len(), compilation.not_listed), (1000, 1500));
+}

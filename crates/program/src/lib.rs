@@ -10,6 +10,7 @@
 //! - [`BlockError`]: what is wrong with a block that cannot be read, and where;
 //! - [`Program::diagnostics`]: all faults of a program in one pass; [`check_limits`] for one block;
 //! - [`FeedDoubt`]: feeds of programs in inches that look ten times off;
+//! - [`InputSteps`]: how fine the numbers of a program may be;
 //! - [`format_program`]: the normalised listing.
 //!
 //! ```
@@ -47,6 +48,7 @@ mod parse;
 mod plain;
 mod program;
 mod rope;
+mod rounding;
 mod sequence;
 mod survey;
 mod text;
@@ -63,3 +65,4 @@ pub use lines::{BlockText, Lines, RawBlock};
 pub use operation::*;
 pub use plain::PlainLanguage;
 pub use program::{Chunk, NumberedBlock, Program};
+pub use rounding::InputSteps;

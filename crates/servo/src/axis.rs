@@ -6,6 +6,7 @@ use crate::characteristic::Characteristic;
 use crate::fault::Fault;
 use crate::interpolation::{FineInterpolation, Transient};
 use crate::measuring::{Mark, MeasuringSystem};
+use crate::method::Method;
 use crate::monitor::{Monitor, Sample};
 use crate::offset::Offset;
 use crate::plant::Encoder;
@@ -24,18 +25,9 @@ const POSITION_MAX_MM: f64 = 1e9;
 const STANDING_MM: f64 = 1e-9;
 /// So far may the nominal position of an axis in position go without being a movement, mm.
 const REST_MM: f64 = 1e-6;
-/// Counting steps in a contour cycle up to which an axis cannot be told from one that stands (inferred).
+/// Counting steps in a contour cycle, and steps of the converter, up to which an axis cannot be told from one that
+/// stands (inferred).
 const STANDING_STEPS: f64 = 1.5;
-
-/// How an axis is positioned [000:4714-4733].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// With servo lag: the velocity is kv times the lag [000:4735-4776].
-    Lag,
-    /// With feed pre-control: the velocity of the nominal position, and kv times what lag is left
-    /// [000:4929-4975].
-    Precontrol,
-}
 
 /// The position loop of one axis: nominal position in, voltage out.
 ///
@@ -323,10 +315,21 @@ impl Axis {
     /// Whether the actual position is within the window; with pre-control only when the axis itself is slower than
     /// MP1525 [000:813] [000:5304-5318].
     fn is_in_window(&self) -> bool {
-        let unseen = STANDING_STEPS * self.measuring.step_mm().abs() / self.timing.contour_min();
-        let slow = self.actual_mm_min.abs() < self.parameters.precontrol.window_mm_min.max(unseen);
+        let slow = self.actual_mm_min.abs()
+            < self
+                .parameters
+                .precontrol
+                .window_mm_min
+                .max(self.standing_mm_min());
         let window = self.window_mm.unwrap_or(self.parameters.monitoring.window_mm);
         (slow || self.method == Method::Lag) && self.lag_mm().abs() <= window
+    }
+
+    /// The velocity that a loop at rest goes to and fro with, for neither encoder nor converter is finer, mm/min.
+    fn standing_mm_min(&self) -> f64 {
+        let seen = self.measuring.step_mm().abs() / self.timing.contour_min();
+        let full = self.parameters.motion.rapid_mm_min / self.parameters.output.rapid_volts;
+        STANDING_STEPS * seen.max(self.timing.resolution_volts() * full)
     }
 
     /// Whether a voltage is put out at all.

@@ -2,8 +2,8 @@
 
 use bahn_parameters::AxisParameters;
 
-use crate::axis::Method;
 use crate::fault::{Fault, GrossFault};
+use crate::method::Method;
 use crate::timing::{OUTPUT_VOLTS, Timing};
 
 /// Time over which the way is compared with the calculated one, s (inferred: "several servo cycles"

@@ -43,7 +43,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     )?;
     save(
         "plan-continuous.png",
-        part.plan_view(&page("plan view"), &PlanView { levels: 0 }),
+        part.plan_view(
+            &page("plan view"),
+            &PlanView {
+                levels: 0,
+                ..PlanView::default()
+            },
+        ),
     )?;
     save(
         "three-planes.png",

@@ -61,7 +61,7 @@ impl Batch {
         }
         self.segments
             .par_iter()
-            .map(Track::new)
+            .map(|segment| Track::new(segment, grid))
             .collect_into_vec(&mut self.tracks);
         let (segments, rapid, marks, tracks) = (&self.segments, &self.rapid, &self.marks, &self.tracks);
         let mut marked = marked.map(|marked| marked.chunks_mut(BAND_ROWS * grid.nx));
@@ -133,7 +133,7 @@ fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32
         ..*segment
     };
     let rows = thinner.rows_in(grid, &rows);
-    Track::new(&thinner).sweep(None, grid, rows, &mut detect);
+    Track::new(&thinner, grid).sweep(None, grid, rows, &mut detect);
     detect.found
 }
 
@@ -169,6 +169,18 @@ impl Sink for Cut<'_> {
             *cell = if height < *cell { height } else { *cell };
         }
     }
+
+    #[inline]
+    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {
+        let start = (row - self.first_row) * self.width;
+        let cells = self
+            .cells
+            .get_mut(start + columns.start..start + columns.end)
+            .unwrap_or_default();
+        for (cell, height) in cells.iter_mut().zip(heights) {
+            *cell = if *height < *cell { *height } else { *cell };
+        }
+    }
 }
 
 /// Finds out whether any column is higher than the tool.
@@ -197,5 +209,11 @@ impl Sink for Detect<'_> {
             .iter()
             .enumerate()
             .any(|(k, cell)| *cell > height(k as f32) + RAPID_CUT_MM);
+    }
+
+    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {
+        self.shaped(row, columns, |k| {
+            heights.get(k as usize).copied().unwrap_or(f32::INFINITY)
+        });
     }
 }

@@ -14,36 +14,46 @@ const STEP: f64 = 1.0;
 impl Part {
     /// The part with such rectangles made level.
     pub(crate) fn coarse(&self, go_on: GoOn) -> Result<Part, MeshError> {
-        let mut coarse = self.clone();
         let mut merging = Merging {
             part: self,
             step: (STEP * self.grid.cell()) as f32,
-            done: vec![false; self.heights.len()],
+            heights: self.heights.clone(),
         };
         for j in 0..self.grid.ny {
             go_on()?;
             for i in 0..self.grid.nx {
                 if merging.is_free(i, j) {
-                    merging.merge(i, j, &mut coarse.heights);
+                    merging.merge(i, j);
                 }
             }
         }
-        Ok(coarse)
+        let mut heights = merging.heights;
+        for height in &mut heights {
+            *height = height.abs();
+        }
+        // A mesh has no colours and no path.
+        Ok(Part {
+            setup: self.setup,
+            grid: self.grid,
+            heights,
+            cutters: None,
+            trail: None,
+        })
     }
 }
 
 struct Merging<'a> {
     part: &'a Part,
     step: f32,
-    /// Columns that belong to a rectangle.
-    done: Vec<bool>,
+    /// The new heights; less than 0 where a column belongs to a rectangle.
+    heights: Vec<f32>,
 }
 
 impl Merging<'_> {
     /// Whether a column can become part of a rectangle: it is no hole, nor part of a level floor.
     fn is_free(&self, i: usize, j: usize) -> bool {
         let (nx, ny) = (self.part.grid.nx, self.part.grid.ny);
-        if i >= nx || j >= ny || self.done.get(j * nx + i).is_none_or(|done| *done) {
+        if i >= nx || j >= ny || self.heights.get(j * nx + i).is_none_or(|height| *height < 0.0) {
             return false;
         }
         let height = self.part.height(i, j);
@@ -54,7 +64,7 @@ impl Merging<'_> {
     }
 
     /// Grows a rectangle from a column to both sides in turn, and makes it level.
-    fn merge(&mut self, i: usize, j: usize, heights: &mut [f32]) {
+    fn merge(&mut self, i: usize, j: usize) {
         let nx = self.part.grid.nx;
         let (mut right, mut bottom) = (i + 1, j + 1);
         let first = self.part.height(i, j);
@@ -76,8 +86,8 @@ impl Merging<'_> {
         let sum: f64 = columns().map(|(i, j)| f64::from(self.part.height(i, j))).sum();
         let mean = (sum / ((right - i) * (bottom - j)) as f64) as f32;
         for (i, j) in columns() {
-            if let (Some(done), Some(height)) = (self.done.get_mut(j * nx + i), heights.get_mut(j * nx + i)) {
-                (*done, *height) = (true, mean);
+            if let Some(height) = self.heights.get_mut(j * nx + i) {
+                *height = -mean;
             }
         }
     }

@@ -122,6 +122,12 @@ impl Sink for Mark<'_> {
             }
         }
     }
+
+    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {
+        self.shaped(row, columns, |k| {
+            heights.get(k as usize).copied().unwrap_or(f32::INFINITY)
+        });
+    }
 }
 
 #[cfg(test)]

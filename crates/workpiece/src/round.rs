@@ -10,7 +10,7 @@
 use std::ops::Range;
 
 use crate::grid::Grid;
-use crate::sweep::{BAND_ROWS, Borders, End, Row, Sink, Track, least, nearest, positive};
+use crate::sweep::{BAND_ROWS, Borders, End, Raster, Row, Sink, Track, least, positive};
 
 /// Curves flatter than this part of the radius are taken for this flat: the tool is lower by less than the
 /// precision of the map.
@@ -18,6 +18,9 @@ const FLATTEST: f64 = 1e-3;
 
 /// Columns that are cut side by side: a register of the x86-64 base line.
 const GROUP: i32 = 4;
+
+/// Columns of a row whose heights are kept at once.
+const AT_ONCE: usize = 64;
 
 /// Columns farther from the tool than any map is wide.
 const FAR: i64 = 1 << 29;
@@ -42,34 +45,15 @@ impl Track {
         // Sine of the slope: so far before the axis lies the lowest point of the moving ball.
         let lag = self.sine() as f32;
         let wanted = self.wanted(before, grid, &rows);
-        for (k, row) in rows.enumerate() {
-            for columns in wanted.each_ref().map(|part| part.row(k)) {
-                if columns.is_empty() {
-                    continue;
-                }
-                let Row {
-                    x,
-                    dx,
-                    ux,
-                    uy,
-                    along,
-                    across,
-                    length,
-                    slope,
-                    low,
-                } = self.row(grid, columns.start, row);
-                let low = low + radius;
-                sink.shaped(row, columns, move |k| {
-                    let x = x + k * dx;
-                    let b = x * uy - across;
-                    let chord = positive((radius - b) * (radius + b));
-                    let a = x * ux + along;
-                    let s = least(positive(a - lag * chord.sqrt()), length);
-                    let e = a - s;
-                    positive(low + slope * s - positive(chord - e * e).sqrt())
-                });
+        self.present(&wanted, grid, rows, sink, |row| {
+            move |k| {
+                let [a, b] = row.place(k);
+                let chord = positive((radius - b) * (radius + b));
+                let s = least(positive(a - lag * chord.sqrt()), row.length);
+                let e = a - s;
+                positive(row.low + radius + row.slope * s - positive(chord - e * e).sqrt())
             }
-        }
+        });
     }
 
     pub(super) fn sweep_torus(
@@ -79,53 +63,77 @@ impl Track {
         rows: Range<usize>,
         sink: &mut impl Sink,
     ) {
-        let flat = self.tool.flat() as f32;
-        let corner = self.tool.corner as f32;
-        let radius = self.tool.radius as f32;
+        let mut heights = [0.0; AT_ONCE];
         let wanted = self.wanted(before, grid, &rows);
         for (k, row) in rows.enumerate() {
             for columns in wanted.each_ref().map(|part| part.row(k)) {
-                if columns.is_empty() {
-                    continue;
-                }
-                let width = columns.len();
-                let Row {
-                    x,
-                    dx,
-                    ux,
-                    uy,
-                    along,
-                    across,
-                    length,
-                    slope,
-                    low,
-                } = self.row(grid, columns.start, row);
-                let height = move |a: f32, b: f32, lead: f32| {
-                    let s = least(positive(a - lead), length);
-                    let e = a - s;
-                    let rise = positive((b * b + e * e).sqrt() - flat);
-                    positive(low + slope * s + corner - positive((corner - rise) * (corner + rise)).sqrt())
-                };
-                let chord = move |b: f32| positive((radius - b) * (radius + b)).sqrt();
-                let parallel = uy.abs() * width as f32 * dx <= FLATTEST as f32 * radius;
-                match &self.leads {
-                    Some(leads) if !parallel => sink.shaped(row, columns, move |k| {
-                        let x = x + k * dx;
-                        let b = x * uy - across;
-                        height(x * ux + along, b, leads.at(chord(b) / radius))
-                    }),
-                    leads => {
-                        let middle = (x + 0.5 * width as f32 * dx) * uy - across;
-                        let lead = leads
-                            .as_ref()
-                            .map_or(0.0, |leads| leads.at(chord(middle) / radius));
-                        sink.shaped(row, columns, move |k| {
-                            let x = x + k * dx;
-                            height(x * ux + along, x * uy - across, lead)
-                        });
+                let middle = self.middle(grid, row, &columns);
+                for (columns, is_middle) in [
+                    (columns.start..middle.start, false),
+                    (middle.clone(), true),
+                    (middle.end..columns.end, false),
+                ] {
+                    for first in columns.clone().step_by(AT_ONCE) {
+                        let columns = first..columns.end.min(first + AT_ONCE);
+                        let heights = heights.get_mut(..columns.len()).unwrap_or_default();
+                        let row_of = self.row(grid, first, row);
+                        if is_middle {
+                            self.middle_heights(&row_of, heights);
+                        } else {
+                            self.torus_heights(&row_of, heights);
+                        }
+                        sink.listed(row, columns, heights);
                     }
                 }
             }
+        }
+    }
+
+    /// The heights of neighbouring columns of a row.
+    #[inline]
+    fn torus_heights(&self, row: &Row, heights: &mut [f32]) {
+        let [flat, corner] = [self.tool.flat(), self.tool.corner].map(|value| value as f32);
+        match &self.leads {
+            Some(leads) => leads.fill(row, heights),
+            None => heights.fill(0.0),
+        }
+        let low = row.low + corner;
+        // What is a lead becomes the height.
+        for (k, height) in heights.iter_mut().enumerate() {
+            let [a, b] = row.place(k as i32 as f32);
+            let s = least(positive(a - *height), row.length);
+            let e = a - s;
+            let rise = positive((b * b + e * e).sqrt() - flat);
+            *height = positive(low + row.slope * s - positive((corner - rise) * (corner + rise)).sqrt());
+        }
+    }
+
+    /// The columns of a row that are touched surely between the ends of the track: there the height is that of
+    /// the axis and a share that depends on the place across the track alone.
+    fn middle(&self, grid: &Grid, row: usize, columns: &Range<usize>) -> Range<usize> {
+        let Some(fan) = self.leads.as_ref().and_then(|leads| leads.fan.as_ref()) else {
+            return columns.start..columns.start;
+        };
+        if fan.heights.is_empty() || columns.is_empty() {
+            return columns.start..columns.start;
+        }
+        let Row { dx, ux, uy, .. } = self.row(grid, columns.start, row);
+        let [a, b] = self.row(grid, columns.start, row).place(0.0);
+        let along = between(a, dx * ux, self.outer().ahead as f32..self.length as f32);
+        let across = between(b, dx * uy, -fan.beside..fan.beside);
+        let first = along[0].max(across[0]).clamp(0.0, columns.len() as f32);
+        let end = along[1].min(across[1]).clamp(first, columns.len() as f32);
+        columns.start + first as usize..columns.start + end as usize
+    }
+
+    #[inline]
+    fn middle_heights(&self, row: &Row, heights: &mut [f32]) {
+        if let Some(fan) = self.leads.as_ref().and_then(|leads| leads.fan.as_ref()) {
+            fan.fill_heights(row, heights);
+        }
+        for (k, height) in heights.iter_mut().enumerate() {
+            let [a, _] = row.place(k as i32 as f32);
+            *height = positive(row.low + row.slope * a + *height);
         }
     }
 
@@ -170,12 +178,7 @@ impl Track {
     /// The columns that the cap at a place of the track holds, in each of the rows, side by side as in
     /// [`Track::spans`].
     fn behind(&self, place: f64, cap: Cap, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
-        let offset = (self.low[0] / grid.dx - base as f64) as f32;
-        let per_mm = (1.0 / grid.dx) as f32;
-        let (first_y, dy) = (
-            ((rows.start as f64 + 0.5) * grid.dy - self.low[1]) as f32,
-            grid.dy as f32,
-        );
+        let raster = Raster::new(self, base, grid, rows);
         let [ux, uy] = self.u.map(|u| u as f32);
         let (place, beside) = (place as f32, cap.beside as f32);
         // The ellipse as a circle: lengths along the track are stretched.
@@ -190,11 +193,10 @@ impl Track {
             PARALLEL.copysign(uy)
         };
         let (per_y, side) = (ux / steep, beside / steep.abs());
-        let column = |x: f32| nearest(x * per_mm + offset);
         const NOWHERE: f32 = 1e6;
         let mut borders = Borders::new(base, grid);
         for (k, (start, end)) in borders.start.iter_mut().zip(&mut borders.end).enumerate() {
-            let y = first_y + k as i32 as f32 * dy;
+            let y = raster.y(k);
             let (p, q) = ((y * uy - place) * stretch, -y * ux);
             let cross = step[0] * q - step[1] * p;
             let inside = beside * beside / per_step - cross * cross;
@@ -206,8 +208,8 @@ impl Track {
             };
             let (left, right) = (y * per_y - side, y * per_y + side);
             let is_strip = |x: f32| x * ux + y * uy <= place;
-            *start = column(if is_strip(left) { left } else { middle - half });
-            *end = column(if is_strip(right) { right } else { middle + half });
+            *start = raster.column(if is_strip(left) { left } else { middle - half });
+            *end = raster.column(if is_strip(right) { right } else { middle + half });
         }
         borders
     }
@@ -351,12 +353,84 @@ pub(crate) struct Leads {
     /// Bounds of the lead as part of the half chord.
     least: f32,
     most: f32,
+    radius: f32,
+    /// By the steps of a row from column to column.
+    fan: Option<Fan>,
+}
+
+/// Leads across the whole track from one side to the other, as far apart as the columns of a row lie across the
+/// track: in every row they are met one after the other, each row at another place between them.
+#[derive(Clone, Debug)]
+struct Fan {
+    leads: Vec<f32>,
+    /// What the height is over that of the axis between the ends of the track; nothing for a short one.
+    heights: Vec<f32>,
+    /// From column to column across the track, mm.
+    step: f32,
+    /// So far from the track the heights are sure, mm: at the sides they change too fast.
+    beside: f32,
+}
+
+impl Fan {
+    /// Columns beyond either side of the track.
+    const BEYOND: usize = 16;
+    /// Columns at either side whose heights are not sure.
+    const SIDE: f32 = 6.0;
+    /// Bounds of the step as part of the radius: a finer one takes too long to make, a coarser one loses the curve.
+    const STEPS: Range<f32> = 1.0 / 256.0..1.0 / 32.0;
+
+    /// Where the columns of a row from `b` on lie: the place before the first one, and how far behind it that is.
+    #[inline]
+    fn place(&self, radius: f32, row: &Row) -> (usize, f32) {
+        let [_, b] = row.place(0.0);
+        // What is to the right of the track is to the left as well.
+        let b = if row.uy < 0.0 { -b } else { b };
+        let place = positive((b + radius) / self.step + Fan::BEYOND as f32);
+        let first = place as i32;
+        (first as usize, place - first as f32)
+    }
+
+    /// Heights between four places of the fan (Lagrange): in a row all with the same shares.
+    fn fill_heights(&self, row: &Row, heights: &mut [f32]) {
+        let radius = self.beside + Fan::SIDE * self.step;
+        let (first, t) = self.place(radius, row);
+        let shares = [
+            -t * (t - 1.0) * (t - 2.0) / 6.0,
+            (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
+            -(t + 1.0) * t * (t - 2.0) / 2.0,
+            (t + 1.0) * t * (t - 1.0) / 6.0,
+        ];
+        let from = |k: usize| {
+            self.heights
+                .get((first + k).saturating_sub(1)..)
+                .unwrap_or_default()
+        };
+        heights.fill(f32::INFINITY);
+        let near = from(0).iter().zip(from(1)).zip(from(2)).zip(from(3));
+        for (height, (((a, b), c), d)) in heights.iter_mut().zip(near) {
+            *height = a * shares[0] + b * shares[1] + c * shares[2] + d * shares[3];
+        }
+    }
+}
+
+/// The first and the last number of steps from `start` that lie in a range.
+fn between(start: f32, step: f32, range: Range<f32>) -> [f32; 2] {
+    if step == 0.0 {
+        let is_inside = range.contains(&start);
+        return if is_inside {
+            [0.0, f32::INFINITY]
+        } else {
+            [0.0, 0.0]
+        };
+    }
+    let ends = [(range.start - start) / step, (range.end - start) / step];
+    [ends[0].min(ends[1]).ceil(), ends[0].max(ends[1]).floor() + 1.0]
 }
 
 impl Leads {
     const COUNT: usize = 64;
 
-    pub fn new(flat: f32, corner: f32, slope: f32) -> Leads {
+    pub fn new([flat, corner]: [f32; 2], slope: f32, length: f32, step: f32) -> Leads {
         let radius = flat + corner;
         let points: [(f32, f32); Leads::COUNT + 1] = std::array::from_fn(|k| {
             let cos = 1.0 - k as i32 as f32 / Leads::COUNT as f32;
@@ -370,6 +444,8 @@ impl Leads {
             leads: [0.0; Leads::COUNT + 1],
             least: f32::INFINITY,
             most: 0.0,
+            radius,
+            fan: None,
         };
         let mut next = 1;
         for (k, lead) in leads.leads.iter_mut().enumerate().rev() {
@@ -390,7 +466,66 @@ impl Leads {
                 leads.most = leads.most.max(part);
             }
         }
+        let step = step.abs();
+        if Fan::STEPS.contains(&(step / radius)) {
+            let first = -radius - Fan::BEYOND as f32 * step;
+            let mut fan = vec![0.0; (2.0 * radius / step) as usize + 2 * Fan::BEYOND];
+            leads.look_up(first, step, &mut fan);
+            let is_long = length > 2.0 * leads.most * radius;
+            let height = |(k, lead): (usize, &f32)| {
+                let b = first + k as i32 as f32 * step;
+                let rise = positive((b * b + lead * lead).sqrt() - flat);
+                corner - positive((corner - rise) * (corner + rise)).sqrt() - slope * lead
+            };
+            leads.fan = Some(Fan {
+                heights: if is_long {
+                    fan.iter().enumerate().map(height).collect()
+                } else {
+                    Vec::new()
+                },
+                leads: fan,
+                step,
+                beside: radius - Fan::SIDE * step,
+            });
+        }
         leads
+    }
+
+    /// The leads of neighbouring columns of a row.
+    #[inline]
+    fn fill(&self, row: &Row, leads: &mut [f32]) {
+        let [_, b] = row.place(0.0);
+        let step = row.dx * row.uy;
+        let width = step.abs() * leads.len() as f32;
+        if width <= FLATTEST as f32 * self.radius {
+            let middle = b + 0.5 * step * leads.len() as f32;
+            let chord = positive((self.radius - middle) * (self.radius + middle)).sqrt();
+            leads.fill(self.at(chord / self.radius));
+            return;
+        }
+        if let Some(fan) = &self.fan {
+            let (first, share) = fan.place(self.radius, row);
+            if let Some([_, next @ ..]) = fan.leads.get(first..first + leads.len() + 1) {
+                let near = fan.leads.get(first..).unwrap_or_default();
+                for ((lead, near), next) in leads.iter_mut().zip(near).zip(next) {
+                    *lead = near + (next - near) * share;
+                }
+                return;
+            }
+        }
+        self.look_up(b, step, leads);
+    }
+
+    /// As [`Leads::fill`], without a fan.
+    fn look_up(&self, b: f32, step: f32, leads: &mut [f32]) {
+        let per_radius = 1.0 / self.radius;
+        for (k, lead) in leads.iter_mut().enumerate() {
+            let b = b + k as i32 as f32 * step;
+            *lead = positive((self.radius - b) * (self.radius + b)).sqrt() * per_radius;
+        }
+        for lead in leads {
+            *lead = self.at(*lead);
+        }
     }
 
     #[inline]

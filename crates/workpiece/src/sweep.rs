@@ -46,6 +46,8 @@ pub(crate) trait Sink {
     fn level(&mut self, row: usize, columns: Range<usize>, height: f32);
     /// As [`Sink::level`] with a height for each column, by its distance from `columns.start`.
     fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32);
+    /// As [`Sink::level`] with a list of heights.
+    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]);
 }
 
 impl Segment {
@@ -128,7 +130,7 @@ const GROUP: usize = 8;
 const PLUNGE_MM: f64 = 1e-9;
 
 impl Track {
-    pub fn new(segment: &Segment) -> Track {
+    pub fn new(segment: &Segment, grid: &Grid) -> Track {
         let rises = segment.rises();
         let (low, high) = if rises {
             (segment.from, segment.to)
@@ -154,8 +156,11 @@ impl Track {
         };
         let end = if segment.followed { End::Other } else { End::Own };
         let (low_end, high_end) = if rises { (start, end) } else { (end, start) };
-        let leads = (tool.bottom() == Bottom::Torus && slope > 0.0)
-            .then(|| Box::new(Leads::new(tool.flat() as f32, tool.corner as f32, slope as f32)));
+        let leads = (tool.bottom() == Bottom::Torus && slope > 0.0).then(|| {
+            let bottom = [tool.flat(), tool.corner].map(|value| value as f32);
+            let step = u[1] * grid.dx;
+            Box::new(Leads::new(bottom, slope as f32, length as f32, step as f32))
+        });
         Track {
             low,
             u,
@@ -185,17 +190,10 @@ impl Track {
     /// The columns that the tool covers in each of the rows.
     ///
     /// At either side of the capsule the outermost disc is the one whose edge point has the track's
-    /// normal there, or the end disc next to it. All rows are reckoned side by side in the precision of
-    /// the map, from a column near the lower end, so that no digits are lost in a great blank.
+    /// normal there, or the end disc next to it.
     pub(super) fn spans(&self, grid: &Grid, rows: &Range<usize>) -> Spans {
-        let base = (self.low[0] / grid.dx).floor();
-        let offset = (self.low[0] / grid.dx - base) as f32;
-        let base = base as i64;
-        let per_mm = (1.0 / grid.dx) as f32;
-        let (first_y, dy) = (
-            ((rows.start as f64 + 0.5) * grid.dy - self.low[1]) as f32,
-            grid.dy as f32,
-        );
+        let base = (self.low[0] / grid.dx).floor() as i64;
+        let raster = Raster::new(self, base, grid, rows);
         let [ux, uy] = self.u.map(|u| u as f32);
         let (length, radius) = (self.length as f32, self.tool.radius as f32);
         // Where on the track the outermost disc of the row at y is: y * per_y + left or right.
@@ -209,21 +207,20 @@ impl Track {
         } else {
             (0.0, length, 0.0)
         };
-        let column = |x: f32| nearest(x * per_mm + offset);
         let mut spans = Spans {
             all: Borders::new(base, grid),
             low: Borders::new(base, grid),
         };
         for k in 0..BAND_ROWS {
-            let y = first_y + k as i32 as f32 * dy;
+            let y = raster.y(k);
             let half_chord = |y: f32| positive((radius - y) * (radius + y)).sqrt();
             let s = least(positive(y * per_y + at_left), length);
             let t = least(positive(y * per_y + at_right), length);
-            spans.all.start[k] = column(s * ux - half_chord(y - s * uy));
-            spans.all.end[k] = column(t * ux + half_chord(y - t * uy));
+            spans.all.start[k] = raster.column(s * ux - half_chord(y - s * uy));
+            spans.all.end[k] = raster.column(t * ux + half_chord(y - t * uy));
             let half = half_chord(y);
-            spans.low.start[k] = column(-half);
-            spans.low.end[k] = column(half);
+            spans.low.start[k] = raster.column(-half);
+            spans.low.end[k] = raster.column(half);
         }
         spans
     }
@@ -264,24 +261,12 @@ impl Track {
     }
 
     fn flat_height(&self, row: Row) -> impl Fn(f32) -> f32 + use<> {
-        let Row {
-            x,
-            dx,
-            ux,
-            uy,
-            along,
-            across,
-            length,
-            slope,
-            low,
-        } = row;
         let radius = self.tool.radius as f32;
         move |k| {
-            let x = x + k * dx;
-            let b = x * uy - across;
+            let [a, b] = row.place(k);
             let half = positive((radius - b) * (radius + b)).sqrt();
-            let s = least(positive(x * ux + along - half), length);
-            positive(low + slope * s)
+            let s = least(positive(a - half), row.length);
+            positive(row.low + row.slope * s)
         }
     }
 
@@ -292,32 +277,35 @@ impl Track {
         let sine = self.slope as f32 / rise;
         let lead = (sine < 1.0).then(|| sine / ((1.0 - sine) * (1.0 + sine)).sqrt());
         let spans = self.spans(grid, &rows);
-        for (k, row) in rows.enumerate() {
-            let columns = spans.all.row(k);
-            if columns.is_empty() {
-                continue;
-            }
-            let Row {
-                x,
-                dx,
-                ux,
-                uy,
-                along,
-                across,
-                length,
-                slope,
-                low,
-            } = self.row(grid, columns.start, row);
-            sink.shaped(row, columns, move |k| {
-                let x = x + k * dx;
-                let b = x * uy - across;
-                let a = x * ux + along;
+        self.present(&[spans.all], grid, rows, sink, |row| {
+            move |k| {
+                let [a, b] = row.place(k);
                 let chord = positive((radius - b) * (radius + b)).sqrt();
                 let ahead = lead.map_or(chord, |lead| least(lead * b.abs(), chord));
-                let s = least(positive(a - ahead), length);
+                let s = least(positive(a - ahead), row.length);
                 let e = a - s;
-                positive(low + slope * s + rise * (b * b + e * e).sqrt())
-            });
+                positive(row.low + row.slope * s + rise * (b * b + e * e).sqrt())
+            }
+        });
+    }
+
+    /// Presents the columns of some parts of the rows with the heights that `shape` gives a row.
+    #[inline(always)]
+    pub(super) fn present<Height: Fn(f32) -> f32>(
+        &self,
+        parts: &[Borders],
+        grid: &Grid,
+        rows: Range<usize>,
+        sink: &mut impl Sink,
+        shape: impl Fn(Row) -> Height,
+    ) {
+        for (k, row) in rows.enumerate() {
+            for columns in parts.iter().map(|part| part.row(k)) {
+                if !columns.is_empty() {
+                    let height = shape(self.row(grid, columns.start, row));
+                    sink.shaped(row, columns, height);
+                }
+            }
         }
     }
 
@@ -351,6 +339,47 @@ pub(super) struct Row {
     pub length: f32,
     pub slope: f32,
     pub low: f32,
+}
+
+impl Row {
+    /// Place along and across the track of the column number `k`.
+    #[inline(always)]
+    pub fn place(&self, k: f32) -> [f32; 2] {
+        let x = self.x + k * self.dx;
+        [x * self.ux + self.along, x * self.uy - self.across]
+    }
+}
+
+/// Some rows seen from a track, reckoned side by side in the precision of the map, from a column near its lower end,
+/// so that no digits are lost in a great blank.
+pub(super) struct Raster {
+    first_y: f32,
+    dy: f32,
+    offset: f32,
+    per_mm: f32,
+}
+
+impl Raster {
+    pub fn new(track: &Track, base: i64, grid: &Grid, rows: &Range<usize>) -> Raster {
+        Raster {
+            first_y: ((rows.start as f64 + 0.5) * grid.dy - track.low[1]) as f32,
+            dy: grid.dy as f32,
+            offset: (track.low[0] / grid.dx - base as f64) as f32,
+            per_mm: (1.0 / grid.dx) as f32,
+        }
+    }
+
+    /// Place of the row number `k` from the lower end of the track, mm.
+    #[inline(always)]
+    pub fn y(&self, k: usize) -> f32 {
+        self.first_y + k as i32 as f32 * self.dy
+    }
+
+    /// The border between columns that is nearest to a place.
+    #[inline(always)]
+    pub fn column(&self, x: f32) -> i32 {
+        nearest(x * self.per_mm + self.offset)
+    }
 }
 
 /// The columns under the tool in some rows.

@@ -5,9 +5,11 @@
 mod common;
 
 use std::collections::HashSet;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_path::{Axis, Blank, Plane};
-use bahn_picture::Image;
+use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{
     Colouring, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d, Workpiece,
 };
@@ -147,8 +149,20 @@ fn odd_blanks_have_pictures() {
             let part = Workpiece::new(&Blank { plane, min, max }, resolution)
                 .unwrap()
                 .finished();
-            part.plan_view(&page(), &PlanView { levels: 0 });
-            part.plan_view(&page(), &PlanView { levels: 255 });
+            part.plan_view(
+                &page(),
+                &PlanView {
+                    levels: 0,
+                    ..PlanView::default()
+                },
+            );
+            part.plan_view(
+                &page(),
+                &PlanView {
+                    levels: 255,
+                    ..PlanView::default()
+                },
+            );
             part.three_planes(&page(), &ThreePlanes::default());
             part.view_3d(&page(), &View3d::default());
             assert_eq!(part.removed_mm3(), 0.0);
@@ -310,6 +324,129 @@ fn every_tool_has_its_colour_and_rapid_cuts_are_red() {
     // Nobody asked before the cut: nothing is claimed.
     let plain = cut(false).view_3d(&page, &options);
     assert!(!plain.labels().iter().any(|label| label.text == "T5"));
+}
+
+/// Two slots, equally large, one of each tool; the path is remembered.
+fn two_slots() -> Part {
+    let mut workpiece = workpiece(0.5);
+    workpiece.remember_tools();
+    workpiece.remember_path();
+    for (tool, x) in [(5, 25.0), (7, 75.0)] {
+        workpiece.take_tool(Some(tool));
+        workpiece.cut(&line(at(x, 20.0, -5.0), at(x, 60.0, -5.0)), &flat(8.0), Axis::Z);
+    }
+    workpiece.finished()
+}
+
+/// The colours of the 3D view, seen from above: first and second tool, skin and machined surface.
+#[test]
+fn plan_view_and_three_planes_take_the_colouring() {
+    let part = two_slots();
+    let page = Page::new(600, 500, "", "").unwrap();
+    let views = |colouring| {
+        let plan = PlanView {
+            colouring,
+            ..PlanView::default()
+        };
+        let planes = ThreePlanes {
+            colouring,
+            ..ThreePlanes::default()
+        };
+        [part.plan_view(&page, &plan), part.three_planes(&page, &planes)]
+    };
+    for image in views(Colouring::Tool) {
+        let [first, second] = [[232, 190, 106], [64, 168, 150]].map(|colour| count(&image, colour));
+        // Each of the swatches of the legend too is as large as the other.
+        assert!(
+            first > 500 && first.abs_diff(second) * 20 < first,
+            "{first} {second}"
+        );
+        for text in ["T5", "T7"] {
+            assert!(image.labels().iter().any(|label| label.text == text), "{text}");
+        }
+        assert_legible(&image, "colours of tools");
+    }
+    for image in views(Colouring::Part) {
+        // 16 x 40 mm and two half circles each: 2 (640 + pi 64) = 1682 of 8000 mm². Their rims are darker.
+        let [steel, brass] = [[134, 152, 176], [232, 204, 146]].map(|colour| count(&image, colour) as f64);
+        let part = brass / (brass + steel);
+        assert!(
+            brass > 500.0 && (part - 1682.0 / 8000.0).abs() < 0.04,
+            "{brass} {steel}"
+        );
+    }
+    let defaults = [
+        part.plan_view(&page, &PlanView::default()),
+        part.three_planes(&page, &ThreePlanes::default()),
+    ];
+    assert!(views(Colouring::Depth) == defaults);
+}
+
+/// The path is a line of 40 mm in either slot, of 100 mm that take more than 200 pixels.
+#[test]
+fn plan_view_and_three_planes_show_the_path() {
+    let part = two_slots();
+    let page = Page::new(600, 500, "", "").unwrap();
+    let changed = |with: &Image, without: &Image| {
+        let pairs = with.pixels().iter().zip(without.pixels());
+        pairs.filter(|(a, b)| a != b).count()
+    };
+    let plan = |tool_path| {
+        let options = PlanView {
+            tool_path,
+            ..PlanView::default()
+        };
+        part.plan_view(&page, &options)
+    };
+    let drawn = changed(&plan(true), &plan(false));
+    assert!((2 * 80..2 * 400).contains(&drawn), "{drawn}");
+    for projection in [Projection::FirstAngle, Projection::ThirdAngle] {
+        let planes = |tool_path| {
+            let options = ThreePlanes {
+                projection,
+                tool_path,
+                ..ThreePlanes::default()
+            };
+            part.three_planes(&page, &options)
+        };
+        // In the plan twice, from the side once, from the front two points.
+        let drawn = changed(&planes(true), &planes(false));
+        assert!((3 * 60..3 * 300).contains(&drawn), "{drawn}");
+    }
+}
+
+/// A flag that is set stops every view before it draws the part, and a picture before its next row.
+#[test]
+fn a_stopped_view_draws_nothing_and_is_not_written() {
+    let stop = Arc::new(AtomicBool::new(true));
+    let part = two_slots();
+    let page = Page::new(600, 500, "", "").unwrap();
+    let stopped = page.clone().stopped_by(stop.clone());
+    let slot = |image: &Image| count(image, [20, 46, 84]);
+    let plan = |page: &Page| part.plan_view(page, &PlanView::default());
+    let planes = |page: &Page| part.three_planes(page, &ThreePlanes::default());
+    for (view, pixels) in [
+        (&plan as &dyn Fn(&Page) -> Image, 2000),
+        (&planes as &dyn Fn(&Page) -> Image, 1000),
+    ] {
+        // What is left is in the legend.
+        let (with, without) = (slot(&view(&page)), slot(&view(&stopped)));
+        assert!(with > without + pixels, "{with} {without}");
+    }
+    /// Sets the flag as soon as something is written.
+    struct First(Arc<AtomicBool>);
+    impl std::io::Write for First {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.0.store(true, Ordering::Relaxed);
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    stop.store(false, Ordering::Relaxed);
+    let written = plan(&page).write_png_until(First(stop.clone()), &stop);
+    assert!(matches!(written, Err(ImageError::Stopped)));
 }
 
 #[test]

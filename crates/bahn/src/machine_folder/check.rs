@@ -76,7 +76,7 @@ fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report,
         .filter(|fault| fault.severity == Severity::Error)
         .count();
     if format == Format::Text {
-        faults.iter().for_each(FileFault::print);
+        diagnostics::print_faults(&faults);
         let what = loaded
             .as_ref()
             .map_or("cannot be switched on".to_owned(), |machine| {

@@ -4,7 +4,7 @@ use bahn_machine::Event;
 
 use super::load::load;
 use super::options::ListOptions;
-use crate::diagnostics::FileFault;
+use crate::diagnostics;
 use crate::diagnostics::printable;
 use crate::run::Expectation;
 use crate::{Outcome, UsageError, console};
@@ -20,6 +20,7 @@ mdi BLOCK                           a block for MDI; \\n separates several
 m N                                 an M function in manual operation, output with NC start
 s RPM                               a spindle speed, likewise
 datum AXIS VALUE                    the actual position becomes this value
+tool-life T MIN                     current life of a tool (CUR.TIME), minutes
 jog MM                              jog increment
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
 manual-operation                    axes may be moved while a run is interrupted
@@ -37,7 +38,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     let machine = match load(&options.folder)? {
         Ok(machine) => machine,
         Err(faults) => {
-            faults.iter().for_each(FileFault::print);
+            diagnostics::print_faults(&faults);
             return Ok(Outcome::ProgramError);
         }
     };

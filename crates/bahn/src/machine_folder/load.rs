@@ -11,6 +11,7 @@ use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::{Axis, Position};
 use bahn_plc::{Options, PlcProgram, ProgramMemory};
 
+use super::state;
 use crate::diagnostics::{FileFault, Marked, Severity};
 use crate::{UsageError, files, mp, plc, tool_table};
 
@@ -38,6 +39,22 @@ pub(crate) struct LoadedMachine {
 }
 
 impl LoadedMachine {
+    /// The files that were read, and the lock of the state.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let folder = &self.folder;
+        let named = [&folder.parameters, &folder.plc, &folder.plant].map(Some);
+        let further = [
+            &folder.plc_messages,
+            &folder.plc_dialogues,
+            &folder.compensation,
+            &folder.tools,
+        ];
+        let named = named.into_iter().chain(further.map(Option::as_ref)).flatten();
+        let files = named.map(|name| self.root.join(name));
+        let lock = self.root.join(&folder.state).join(state::LOCK);
+        files.chain([lock]).collect()
+    }
+
     /// The datum of `machine.toml`, for the axes that it names.
     pub fn datum(&self) -> Position {
         let mut datum = Position::ZERO;
@@ -60,7 +77,7 @@ fn axis(letter: char) -> Option<Axis> {
 /// [`UsageError`] when there is no such folder or no `machine.toml` in it.
 pub(crate) fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
     let file = root.join(MachineFolder::FILE);
-    let bytes = files::read_table(&file).map_err(|error| {
+    let bytes = files::read_description(&file).map_err(|error| {
         UsageError::new(format!(
             "{error}\na machine is a folder with {}; `bahn machine new` makes one",
             MachineFolder::FILE
@@ -105,7 +122,7 @@ impl Loader<'_> {
     fn load(&mut self, folder: MachineFolder) -> Option<LoadedMachine> {
         self.stays_inside("state", &folder.state);
         let model = self.model(&folder.model);
-        let plant = self.plant(&folder);
+        let plant = self.plant(&folder, model);
         let tools = self.tools(&folder);
         let plc_messages = self.texts("plc_messages", folder.plc_messages.as_deref(), MESSAGES);
         let plc_dialogues = self.texts("plc_dialogues", folder.plc_dialogues.as_deref(), 4096);
@@ -157,11 +174,20 @@ impl Loader<'_> {
 
     /// The bytes of a file that `machine.toml` names.
     fn read(&mut self, key: &str, name: &str) -> Option<(PathBuf, Vec<u8>)> {
+        self.read_with(key, name, files::read_table)
+    }
+
+    fn read_with(
+        &mut self,
+        key: &str,
+        name: &str,
+        reading: fn(&Path) -> Result<Vec<u8>, UsageError>,
+    ) -> Option<(PathBuf, Vec<u8>)> {
         if name.is_empty() {
             return None;
         }
         let path = self.root.join(name);
-        match files::read_table(&path) {
+        match reading(&path) {
             Ok(bytes) => Some((path, bytes)),
             Err(error) => {
                 self.fault_at_key(key, &error.to_string());
@@ -209,23 +235,24 @@ impl Loader<'_> {
         let parameters = parameters
             .cloned()
             .unwrap_or_else(|| ParameterList::reference(model));
-        let memory = match parameters.get(4010, 0) {
-            Some(0.0) => ProgramMemory::Eprom,
-            _ => ProgramMemory::Ram,
+        let memory = match parameters.plc_parameters().from_eprom {
+            true => ProgramMemory::Eprom,
+            false => ProgramMemory::Ram,
         };
         let options = Options::for_model(model).stored_in(memory);
         let mut source = plc::Source::compile_for(&path, parameters, options);
-        let found = source.errors().into_iter().chain(source.warnings()).collect();
-        self.sort(found);
+        self.sort(source.faults());
         source.compilation.program.take().map(Arc::new)
     }
 
-    fn plant(&mut self, folder: &MachineFolder) -> Option<Machine> {
-        let (path, bytes) = self.read("plant", &folder.plant)?;
+    fn plant(&mut self, folder: &MachineFolder, model: Option<ControlModel>) -> Option<Machine> {
+        let (path, bytes) = self.read_with("plant", &folder.plant, files::read_description)?;
         let text = decode(&bytes);
         match Machine::from_toml(&text) {
             Ok(machine) => {
-                self.wiring(&path, &text, &machine);
+                if let Some(model) = model {
+                    self.wiring(&path, &text, &machine, model);
+                }
                 Some(machine)
             }
             Err(faults) => {
@@ -244,25 +271,33 @@ impl Loader<'_> {
         }
     }
 
-    /// Every wire ends at an input or output that the control has [000:11556-11567].
-    fn wiring(&mut self, path: &Path, text: &str, machine: &Machine) {
-        for wire in machine.wires() {
-            let Ok(bit) = wire.operand.parse::<Bit>() else {
-                continue;
-            };
-            if bit.is_listed() {
-                continue;
-            }
+    /// Every wire ends at an input or output that the control has.
+    fn wiring(&mut self, path: &Path, text: &str, machine: &Machine, model: ControlModel) {
+        /// Faults of the wiring that are named at most.
+        const FAULTS_MAX: usize = 1000;
+        let limits = model.limits();
+        let boards = |bit: Bit| match bit.area() {
+            BitArea::O => limits.outputs,
+            _ => limits.inputs,
+        };
+        let is_missing = |bit: &Bit| {
+            let mut boards = boards(*bit).iter();
+            !boards.any(|(first, last)| (*first..=*last).contains(&bit.number()))
+        };
+        let bits = machine.wires().iter();
+        let bits = bits.filter_map(|wire| Some((wire, wire.operand.parse::<Bit>().ok()?)));
+        for (wire, bit) in bits.filter(|(_, bit)| is_missing(bit)).take(FAULTS_MAX) {
             let (what, area) = match bit.area() {
                 BitArea::O => ("output", "O"),
                 _ => ("input", "I"),
             };
-            let ranges = bit.area().ranges().iter();
-            let there: Vec<String> = ranges
+            let there: Vec<String> = boards(bit)
+                .iter()
                 .map(|(first, last)| format!("{area}{first}-{area}{last}"))
                 .collect();
             let message = format!(
-                "the control has no {what} {}; there are {}",
+                "{} has no {what} {}; there are {}",
+                model.name(),
                 wire.operand,
                 there.join(", ")
             );
@@ -456,6 +491,7 @@ fn file_fault(
         },
         label: message.to_owned(),
         help: None,
+        opened: None,
     }
 }
 

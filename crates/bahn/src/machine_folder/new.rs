@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use bahn_parameters::{ControlModel, ListText, ParameterError, ParameterId, ParameterList};
+use bahn_parameters::{ControlModel, ListText, Numbering, ParameterError, ParameterId, ParameterList};
 
 use super::options::NewOptions;
 use crate::files::{self, NewFile};
@@ -26,14 +26,8 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         .into_owned();
     let name = options.name.clone().unwrap_or(own_name);
     let model = options.model;
-    let (shipped, shipped_model) = match model {
-        ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425 => {
-            (bahn_machines::MILL, ControlModel::Tnc415b)
-        }
-        ControlModel::Tnc151 | ControlModel::Tnc155 | ControlModel::Tnc360 => {
-            (bahn_machines::MILL_TNC360, ControlModel::Tnc360)
-        }
-    };
+    let (shipped, shipped_model) = shipped_for(model)
+        .ok_or_else(|| UsageError::new(format!("no machine to start from is shipped for the {model}")))?;
     let files = shipped
         .files
         .iter()
@@ -42,6 +36,7 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         let text = text
             .replace(shipped_model.name(), model.name())
             .replace("../FOLDER.md", "FOLDER.md");
+        let text = inputs_of_panel(&text, model);
         let content = match *file {
             "machine.toml" => description(&text, &name, model),
             "parameters.mp" => parameters(&text, model),
@@ -144,9 +139,37 @@ fn parameters(text: &str, model: ControlModel) -> String {
         .collect()
 }
 
-fn is_old(model: ControlModel) -> bool {
-    matches!(model, ControlModel::Tnc151 | ControlModel::Tnc155)
+/// The shipped machine that is a start for a model, and its own model.
+fn shipped_for(model: ControlModel) -> Option<(bahn_machines::ShippedMachine, ControlModel)> {
+    let shipped = bahn_machines::ALL
+        .into_iter()
+        .find(|shipped| shipped.models.contains(&model.id()))?;
+    let own = shipped.models.first()?.parse().ok()?;
+    Some((shipped, own))
 }
+
+fn is_old(model: ControlModel) -> bool {
+    model.limits().numbering == Numbering::Old
+}
+
+/// The operating panel is wired to I128 ff. where the control has inputs of its own for it, otherwise to the
+/// second board, I64 ff.
+fn inputs_of_panel(text: &str, model: ControlModel) -> String {
+    if !is_old(model) {
+        return text.to_owned();
+    }
+    (PANEL_INPUTS..PANEL_INPUTS + 25).fold(text.to_owned(), |text, input| {
+        text.replace(
+            &format!("I{input}"),
+            &format!("I{}", input - PANEL_INPUTS + SECOND_BOARD),
+        )
+    })
+}
+
+/// First input of the operating panel [000:11556-11567].
+const PANEL_INPUTS: u16 = 128;
+/// First input of the second board of the TNC 151 and 155 [001:297].
+const SECOND_BOARD: u16 = 64;
 
 /// The TNC 151 and 155 count 20 steps to a signal period: 1 µm with one of 20 µm [001:1616-1625]; they take
 /// the first reference mark of each axis, so there is one.

@@ -10,14 +10,14 @@ use bahn_exchange::Exchange;
 
 use super::remembered;
 use crate::files::{self, NewFile};
-use crate::{UsageError, kept, plc};
+use crate::{UsageError, diagnostics, kept, plc};
 
 /// The journal of retained markers and bytes.
 const JOURNAL: &str = "plc.mem";
 /// What the control remembers.
 const CONTROL: &str = "control.toml";
 /// Held while a control is on.
-const LOCK: &str = "lock";
+pub(super) const LOCK: &str = "lock";
 /// How often changes are looked for that nothing waits for.
 const PERIOD: Duration = Duration::from_millis(200);
 
@@ -63,6 +63,12 @@ impl State {
             Some((text, remembered)) => (text, Some(remembered)),
             None => (String::new(), None),
         };
+        if remembered.is_some() && kept::open(&journal)?.is_none() {
+            diagnostics::print_line(&format!(
+                "warning: {} is missing: all retained markers and bytes begin with 0",
+                journal.display()
+            ));
+        }
         let journal = plc::Retained::open(&journal)?;
         let exchange = journal.restore();
         Ok(Found {

@@ -78,6 +78,8 @@ struct Report {
     /// Entries that act in part here.
     acting_partly: usize,
     errors: Vec<Item>,
+    /// Errors beyond those.
+    not_listed: usize,
     warnings: Vec<Item>,
 }
 
@@ -107,12 +109,16 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
         without_effect: entries_with(&text, Effect::None),
         acting_partly: entries_with(&text, Effect::Partly),
         errors: faults.iter().map(error_item).collect(),
+        not_listed: text.not_listed(),
         warnings: warnings(&text, options.partial || !faults.is_empty()),
     };
     if options.format == Format::Text {
-        for fault in faults.iter().filter(|fault| !is_missing(fault)) {
-            file_fault(fault, &text, path).print();
-        }
+        let unreadable: Vec<FileFault> = faults
+            .iter()
+            .filter(|fault| !is_missing(fault))
+            .map(|fault| file_fault(fault, &text, path))
+            .collect();
+        diagnostics::print_faults(&unreadable);
         let missing: Vec<&ListError> = faults.iter().filter(|fault| is_missing(fault)).collect();
         if let Some(first) = missing.first() {
             print_missing(&missing, first);
@@ -121,13 +127,17 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
             file_warning(warning, &text, path).print();
         }
         diagnostics::print_line(&format!(
-            "{}: {}, {} ({} without effect here, {} in part), {}, {}",
+            "{}: {}, {} ({} without effect here, {} in part), {}{}, {}",
             report.file,
             report.model,
             count(report.entries, "parameter"),
             report.without_effect,
             report.acting_partly,
             count(report.errors.len(), "error"),
+            match report.not_listed {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            },
             count(report.warnings.len(), "warning"),
         ));
     }
@@ -201,6 +211,7 @@ fn file_fault(fault: &ListError, text: &ListText, path: &Path) -> FileFault {
         },
         label: fault.error.to_string(),
         help: help(fault, text),
+        opened: None,
     }
 }
 
@@ -285,5 +296,6 @@ fn file_warning(warning: &Item, text: &ListText, path: &Path) -> FileFault {
         },
         label: warning.detail.clone(),
         help: None,
+        opened: None,
     }
 }

@@ -202,12 +202,11 @@ pub(super) fn set_operands(options: &BenchOptions) -> Result<Vec<Assignment>, Us
 
 /// The PLC cycle time [000:11185].
 fn cycle_time(model: ControlModel) -> Duration {
-    Duration::from_millis(match model {
-        ControlModel::Tnc407 => 24,
-        _ => 20,
-    })
+    Duration::from_micros(model.limits().plc_cycle_us.into())
 }
 
 fn assign(list: &mut ParameterList, text: &str) -> Result<(), String> {
-    list.assign(text).map_err(|error| format!("MP{text}: {error}"))
+    list.assign(text)
+        .map(drop)
+        .map_err(|error| format!("MP{text}: {error}"))
 }

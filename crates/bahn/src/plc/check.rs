@@ -16,6 +16,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
         ok: compilation.program.is_some(),
         errors: compilation.errors.iter().map(Entry::new).collect(),
         warnings: compilation.warnings.iter().map(Entry::new).collect(),
+        not_listed: compilation.not_listed,
         size_bytes: compilation.size_bytes,
         nominal_percent: compilation.nominal_percent(),
     };
@@ -28,10 +29,11 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
                 _ => format!("{number} {what}s"),
             };
             diagnostics::print_text(&format!(
-                "{}: {}, {}, {} bytes, nominal cycle time {:.2} %",
+                "{}: {}, {}{}, {} bytes, nominal cycle time {:.2} %",
                 options.program.file.display(),
                 count(report.errors.len(), "error"),
                 count(report.warnings.len(), "warning"),
+                more(report.not_listed),
                 report.size_bytes,
                 report.nominal_percent,
             ));
@@ -44,13 +46,27 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     })
 }
 
+/// How many errors and warnings there are besides.
+fn more(not_listed: usize) -> String {
+    match not_listed {
+        0 => String::new(),
+        count => format!(", {count} more of both"),
+    }
+}
+
 #[derive(Debug, serde::Serialize)]
 struct Report {
     ok: bool,
     errors: Vec<Entry>,
     warnings: Vec<Entry>,
+    #[serde(skip_serializing_if = "is_zero")]
+    not_listed: usize,
     size_bytes: u32,
     nominal_percent: f64,
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// An error or a warning.

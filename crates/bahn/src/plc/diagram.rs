@@ -6,11 +6,11 @@ use std::io::Write;
 use bahn_exchange::Exchange;
 
 use super::bench::Bench;
-use super::drawing;
+use super::drawing::{self, Diagram};
+use super::failure;
 use super::operand::{Assignment, Content, Operand};
 use super::options::DiagramOptions;
 use super::print_json;
-use super::run;
 use super::source::Source;
 use crate::cli::Format;
 use crate::files::{self, NewFile};
@@ -56,7 +56,7 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
             break;
         }
         if let Err(error) = bench.scan(None) {
-            run::print_error(bench.machine.program(), &error);
+            failure::print(bench.machine.program(), &error);
             outcome = Outcome::ProgramError;
             break;
         }
@@ -131,33 +131,5 @@ impl Report<'_> {
             trigger_cycle: diagram.trigger,
             operands: diagram.operands.iter().enumerate().map(course).collect(),
         }
-    }
-}
-
-/// What is drawn.
-pub(super) struct Diagram {
-    pub operands: Vec<Operand>,
-    /// The first cycle.
-    pub first: u64,
-    /// The cycle that triggered.
-    pub trigger: Option<u64>,
-    /// The operands after each cycle.
-    pub samples: Vec<Vec<Content>>,
-}
-
-impl Diagram {
-    /// Stretches of cycles over which an operand keeps its content: first sample, number of samples.
-    pub fn stretches(&self, operand: usize) -> Vec<(usize, usize, &Content)> {
-        let mut stretches: Vec<(usize, usize, &Content)> = Vec::new();
-        for (at, sample) in self.samples.iter().enumerate() {
-            let Some(content) = sample.get(operand) else {
-                continue;
-            };
-            match stretches.last_mut() {
-                Some((_, count, last)) if *last == content => *count += 1,
-                _ => stretches.push((at, 1, content)),
-            }
-        }
-        stretches
     }
 }

@@ -1,6 +1,5 @@
 //! Logic diagrams as text and as SVG.
 
-use super::diagram::Diagram;
 use super::operand::{Content, Operand};
 
 /// Cycles in a line of text.
@@ -12,6 +11,34 @@ const ROW: usize = 28;
 const CHARACTER: usize = 8;
 /// Width of the names in the drawing.
 const NAMES: usize = 70;
+
+/// What is drawn.
+pub(super) struct Diagram {
+    pub operands: Vec<Operand>,
+    /// The first cycle.
+    pub first: u64,
+    /// The cycle that triggered.
+    pub trigger: Option<u64>,
+    /// The operands after each cycle.
+    pub samples: Vec<Vec<Content>>,
+}
+
+impl Diagram {
+    /// Stretches of cycles over which an operand keeps its content: first sample, number of samples.
+    pub fn stretches(&self, operand: usize) -> Vec<(usize, usize, &Content)> {
+        let mut stretches: Vec<(usize, usize, &Content)> = Vec::new();
+        for (at, sample) in self.samples.iter().enumerate() {
+            let Some(content) = sample.get(operand) else {
+                continue;
+            };
+            match stretches.last_mut() {
+                Some((_, count, last)) if *last == content => *count += 1,
+                _ => stretches.push((at, 1, content)),
+            }
+        }
+        stretches
+    }
+}
 
 /// For the terminal: a high line for 1, a low one for 0. Numbers and texts stand where they change; where
 /// there is no room for one, least, greatest and last number are given at the end of the row.

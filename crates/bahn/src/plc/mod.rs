@@ -10,6 +10,7 @@ mod bench;
 mod check;
 mod diagram;
 mod drawing;
+mod failure;
 mod list;
 mod operand;
 mod options;

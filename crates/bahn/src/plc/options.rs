@@ -1,6 +1,6 @@
 //! Options and help texts of `bahn plc`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bahn_parameters::ControlModel;
 use clap::{Args, Subcommand, ValueHint};
@@ -49,8 +49,8 @@ Examples:
   bahn plc check MAIN.PLC --model tnc407 --format json
   bahn plc check MAIN.PLC --parameters machine.MP
 
-JSON: ok, errors and warnings (number, file, line, column, message), size_bytes, nominal_percent
-(100 % are 5 ms). Files that the program links with USES lie beside the main file, or in a folder EPROM
+JSON: ok, errors and warnings (number, file, line, column, message; a thousand of each at most, then also
+not_listed), size_bytes, nominal_percent (100 % are 5 ms). Files that the program links with USES lie beside the main file, or in a folder EPROM
 beside it.
 Exit codes: 0 no error, 1 errors, 2 wrong use.";
 
@@ -71,8 +71,8 @@ Values are decimal, $2A hexadecimal or \"text\". Text behind ; or # is a comment
 Without --cycles the run ends with the last cycle of the script.
 
 JSON: cycles, values, processing_percent (current, maximum), error (number, file, line, or null); with
---trace also trace, with failed expectations also failed_expectations (cycle, line, operand,
-expected, found).
+--trace also trace (the first 100000 executed lines) and trace_left_off (how many follow), with failed
+expectations also failed_expectations (cycle, line, operand, expected, found).
 Exit codes: 0 fine, 1 compile error, run-time error or failed expectation, 2 wrong use, 130 ended by Ctrl-C
 (with the report so far).";
 
@@ -175,6 +175,23 @@ pub(crate) struct RunOptions {
     /// How the result is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
+}
+
+impl RunOptions {
+    /// Files that are read.
+    pub fn inputs(&self) -> Vec<&Path> {
+        let all = [&self.bench.script, &self.program.parameters, &self.retain];
+        let all = all.into_iter().flatten().map(PathBuf::as_path);
+        all.chain([self.program.file.as_path()]).collect()
+    }
+
+    /// Files that are written, with their options; --retain goes on with the file that is there.
+    pub fn written(&self) -> Vec<(&'static str, &Path)> {
+        let all = [("--record", &self.record), ("--junit", &self.junit)];
+        all.into_iter()
+            .filter_map(|(option, path)| Some((option, path.as_deref()?)))
+            .collect()
+    }
 }
 
 /// Options of `bahn plc trace`.

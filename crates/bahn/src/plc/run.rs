@@ -1,12 +1,14 @@
 //! `bahn plc run`: cycle by cycle, with stimuli and expectations.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use bahn_exchange::Exchange;
-use bahn_plc::{PlcProgram, ProcessingTime, RuntimeError};
+use bahn_plc::ProcessingTime;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::bench::{Bench, Failure};
+use super::failure;
 use super::operand::{Content, Operand};
 use super::options::RunOptions;
 use super::print_json;
@@ -15,13 +17,14 @@ use super::retain::Retained;
 use super::source::Source;
 use super::trace::{Line, Trace};
 use crate::cli::Format;
-use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::diagnostics::{self, PRINTED_MAX};
 use crate::interrupt::Interrupt;
 use crate::junit::{self, Case, Verdict};
-use crate::{Outcome, UsageError, console};
+use crate::{Outcome, UsageError, console, files};
 
 /// Runs a program and shows what came out.
 pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
+    files::keep_inputs(&options.inputs(), &options.written())?;
     let source = Source::compile(&options.program)?;
     let first_error = source.compilation.errors.first().map(|fault| Stop {
         number: fault.error.number(),
@@ -55,13 +58,14 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     }
     let mut report = Report::not_run(None);
     let mut trace = Trace::default();
+    let mut written = Ok(());
     let interrupt = Interrupt::on_ctrl_c();
     while bench.cycle < cycles && !interrupt.is_requested() {
         trace.cycle = bench.cycle + 1;
         let traced = options.trace.is_some_and(|range| range.contains(trace.cycle));
         let result = bench.scan(traced.then_some(&mut trace));
         if let Err(error) = result {
-            print_error(bench.machine.program(), &error);
+            failure::print(bench.machine.program(), &error);
             report.error = Some(Stop {
                 number: error.error.number(),
                 file: error.file,
@@ -71,19 +75,21 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         }
         report.cycles += 1;
         report.failed_expectations.extend(bench.failures());
-        if let Some(record) = &mut record {
-            record.cycle(&bench)?;
-        }
+        written = record.as_mut().map_or(Ok(()), |record| record.cycle(&bench));
         if let Some(retained) = &mut retained {
-            retained.tick(bench.exchange.plc())?;
+            written = written.and(retained.tick(bench.exchange.plc()));
+        }
+        if written.is_err() {
+            break;
         }
     }
+    // A file that cannot be written loses neither the others nor the report.
     if let Some(retained) = &mut retained {
-        retained.flush(bench.exchange.plc())?;
+        written = written.and(retained.flush(bench.exchange.plc()));
     }
-    record.map_or(Ok(()), Record::finish)?;
+    written = written.and(record.map_or(Ok(()), Record::finish));
 
-    for failure in &report.failed_expectations {
+    for failure in report.failed_expectations.iter().take(PRINTED_MAX) {
         let title = failure.to_string();
         let found = format!("found {}", failure.found);
         let fault = bench
@@ -91,8 +97,9 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
             .failure(failure.line, &failure.operand, &title, found);
         fault.print();
     }
+    diagnostics::print_rest(report.failed_expectations.len().saturating_sub(PRINTED_MAX));
     if let Some(path) = &options.junit {
-        write_junit(path, options, &bench, &report)?;
+        written = written.and(write_junit(path, options, &bench, &report));
     }
     report.values = Values(
         options
@@ -105,12 +112,13 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     let fine = report.error.is_none() && report.failed_expectations.is_empty();
     match options.format {
         Format::Json => {
+            report.trace_left_off = options.trace.map(|_| trace.left_off);
             report.trace = options.trace.map(|_| trace.lines);
             print_json(&report)?;
         }
         Format::Text => console::print(&(trace.text() + &report.text()))?,
     }
-    Ok(match fine {
+    written.map(|()| match fine {
         true if interrupt.is_requested() => Outcome::Interrupted,
         true => Outcome::Fine,
         false => Outcome::ProgramError,
@@ -119,12 +127,14 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
 
 /// The expectations of the script for a build server.
 fn write_junit(path: &Path, options: &RunOptions, bench: &Bench, report: &Report) -> Result<(), UsageError> {
+    // The first failure counts where a line expects the same operand twice.
+    let failed = report.failed_expectations.iter().rev();
+    let failed: HashMap<_, _> = failed
+        .map(|failure| ((failure.cycle, failure.line, failure.operand.as_str()), failure))
+        .collect();
     let cases = bench.script.expectations().map(|(cycle, expected)| {
         let operand = expected.operand.to_string();
-        let mut failed = report.failed_expectations.iter();
-        let failed = failed.find(|failure| {
-            (failure.cycle, failure.line, &failure.operand) == (cycle, expected.line, &operand)
-        });
+        let failed = failed.get(&(cycle, expected.line, operand.as_str()));
         Case {
             place: bench.script.place(expected.line),
             name: format!("cycle {cycle}: {operand} = {}", expected.content),
@@ -138,38 +148,6 @@ fn write_junit(path: &Path, options: &RunOptions, bench: &Bench, report: &Report
     let stopped = report.error.as_ref().map(Stop::to_string);
     let suite = options.program.file.to_string_lossy();
     junit::write(path, &suite, &cases.collect::<Vec<_>>(), stopped.as_deref())
-}
-
-/// Prints a run-time error with its line.
-pub(super) fn print_error(program: &PlcProgram, error: &RuntimeError) {
-    let file = program.files.iter().find(|file| file.name == error.file);
-    let index = (error.line as usize).saturating_sub(1);
-    let text = file
-        .and_then(|file| file.lines.get(index))
-        .cloned()
-        .unwrap_or_default();
-    let code = super::list::split_comment(&text).0;
-    let start = code.chars().take_while(|c| c.is_whitespace()).count();
-    let length = code.trim().chars().count();
-    diagnostics::print(&Diagnostic {
-        severity: Severity::Error,
-        title: &format!("{} {}", error.error.number(), error.error.text()),
-        path: &error.file,
-        marked: Marked {
-            line: error.line,
-            columns: Some((
-                u32::try_from(start + 1).unwrap_or(1),
-                u32::try_from(length).unwrap_or(1),
-            )),
-            text,
-        },
-        label: match error.job {
-            Some(job) => format!("submit job {job} stopped the PLC here"),
-            None => "the PLC stopped here".to_owned(),
-        },
-        help: Some(&format!("{} {}", error.error.cause(), error.error.cure())),
-    });
-    diagnostics::print_line("");
 }
 
 /// The columns of `--record`.
@@ -192,6 +170,8 @@ struct Report {
     failed_expectations: Vec<Failure>,
     #[serde(skip_serializing_if = "Option::is_none")]
     trace: Option<Vec<Line>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    trace_left_off: Option<u64>,
 }
 
 #[derive(Debug, serde::Serialize)]
@@ -245,6 +225,7 @@ impl Report {
             error,
             failed_expectations: Vec::new(),
             trace: None,
+            trace_left_off: None,
         }
     }
 

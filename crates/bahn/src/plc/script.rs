@@ -123,6 +123,7 @@ impl Script {
             marked: Marked { line, text, columns },
             label: found,
             help: None,
+            opened: None,
         }
     }
 

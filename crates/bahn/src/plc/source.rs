@@ -7,7 +7,7 @@ use bahn_parameters::ParameterList;
 use bahn_plc::{Compilation, Diagnostic as Fault, Options, PlcProgram, ProgramMemory, SourceFiles};
 
 use super::options::ProgramOptions;
-use crate::diagnostics::{FileFault, Marked, Severity};
+use crate::diagnostics::{self, FileFault, Marked, PRINTED_MAX, Severity};
 use crate::{UsageError, files, settings};
 
 /// A compiled program with the folder it comes from.
@@ -25,8 +25,8 @@ impl Source {
         let bytes = files::read_table(&options.file)?;
         let parameters = settings::parameter_list(options.model, options.parameters.as_deref())?;
         // Only the list of a machine says that it has an EPROM.
-        let memory = match (&options.parameters, parameters.get(4010, 0)) {
-            (Some(_), Some(0.0)) => ProgramMemory::Eprom,
+        let memory = match &options.parameters {
+            Some(_) if parameters.plc_parameters().from_eprom => ProgramMemory::Eprom,
             _ => ProgramMemory::Ram,
         };
         let mut compile_options = Options::for_model(options.model).stored_in(memory);
@@ -69,29 +69,19 @@ impl Source {
 
     /// Prints errors and warnings as rustc does.
     pub fn print_faults(&self) {
-        let errors = self
-            .compilation
-            .errors
-            .iter()
-            .map(|fault| (Severity::Error, fault));
-        let warnings = self.compilation.warnings.iter();
-        for (severity, fault) in errors.chain(warnings.map(|fault| (Severity::Warning, fault))) {
-            let opened = fault.opened.map(|place| self.marked(&fault.file, place));
-            self.fault(severity, fault).print_with(opened.as_ref());
-        }
+        let faults = self.faults();
+        faults.iter().take(PRINTED_MAX).for_each(FileFault::print);
+        let rest = faults.len().saturating_sub(PRINTED_MAX);
+        diagnostics::print_rest(rest + self.compilation.not_listed);
     }
 
-    /// What keeps the program from running.
-    pub fn errors(&self) -> Vec<FileFault> {
+    /// What keeps the program from running, then what is accepted although the printed rules refuse it.
+    pub fn faults(&self) -> Vec<FileFault> {
         let errors = self.compilation.errors.iter();
-        errors.map(|fault| self.fault(Severity::Error, fault)).collect()
-    }
-
-    /// What is accepted although the printed rules refuse it.
-    pub fn warnings(&self) -> Vec<FileFault> {
+        let errors = errors.map(|fault| self.fault(Severity::Error, fault));
         let warnings = self.compilation.warnings.iter();
-        warnings
-            .map(|fault| self.fault(Severity::Warning, fault))
+        errors
+            .chain(warnings.map(|fault| self.fault(Severity::Warning, fault)))
             .collect()
     }
 
@@ -113,6 +103,7 @@ impl Source {
             marked: self.marked(&fault.file, (fault.line, fault.column)),
             label: detail.trim_start_matches(':').trim().to_owned(),
             help: Some(format!("{} {}", fault.error.cause(), fault.error.cure())),
+            opened: fault.opened.map(|place| self.marked(&fault.file, place)),
         }
     }
 

@@ -4,12 +4,15 @@ use bahn_exchange::Exchange;
 use bahn_plc::{OperandContent, TraceStep, Tracer};
 
 use super::bench::Bench;
+use super::failure;
 use super::options::TraceOptions;
 use super::print_json;
-use super::run;
 use super::source::Source;
 use crate::cli::Format;
-use crate::{Outcome, UsageError, console};
+use crate::{Outcome, UsageError, console, diagnostics};
+
+/// Lines that are shown at most: what is executed from one cycle to the next has no end.
+const LINES_MAX: usize = 100_000;
 
 /// Runs up to a cycle and shows its executed lines.
 pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
@@ -31,12 +34,17 @@ pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
     }
     match options.format {
         Format::Text => console::print(&trace.text())?,
-        Format::Json => print_json(&trace.lines)?,
+        Format::Json => {
+            print_json(&trace.lines)?;
+            if let Some(more) = trace.more() {
+                diagnostics::print_line(&format!("warning: {more}"));
+            }
+        }
     }
     match result {
         Ok(()) => Ok(Outcome::Fine),
         Err(error) => {
-            run::print_error(bench.machine.program(), &error);
+            failure::print(bench.machine.program(), &error);
             Ok(Outcome::ProgramError)
         }
     }
@@ -47,7 +55,10 @@ pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
 pub(super) struct Trace {
     /// The cycle that is being executed.
     pub cycle: u64,
+    /// The first [`LINES_MAX`].
     pub lines: Vec<Line>,
+    /// How many were executed behind those.
+    pub left_off: u64,
     /// Whether numbers of the table are hexadecimal [000:11422].
     hex: bool,
 }
@@ -77,6 +88,10 @@ enum Shown {
 
 impl Tracer for Trace {
     fn executed(&mut self, step: &TraceStep<'_>) {
+        if self.lines.len() >= LINES_MAX {
+            self.left_off += 1;
+            return;
+        }
         let operand = step.operand().map(|content| match content {
             OperandContent::Bit(bit) => Shown::Bit(bit.into()),
             OperandContent::Number(value) => Shown::Number(value),
@@ -130,7 +145,20 @@ impl Trace {
                 number(line.word)
             );
         }
+        if let Some(more) = self.more() {
+            text += &format!("{more}\n");
+        }
         text
+    }
+
+    /// What is said when lines are left off.
+    fn more(&self) -> Option<String> {
+        (self.left_off > 0).then(|| {
+            format!(
+                "{} more lines were executed; {LINES_MAX} are shown at most",
+                self.left_off
+            )
+        })
     }
 }
 

@@ -12,6 +12,7 @@ mod background;
 mod cause;
 mod deviation;
 mod expectation;
+mod listed;
 mod log;
 mod operator;
 mod options;
@@ -21,11 +22,12 @@ mod report;
 mod script;
 mod session;
 mod times;
+mod turning;
 
 pub(crate) use expectation::Expectation;
 pub(crate) use options::{EXAMPLES, RunMachineOptions};
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_control::{Checking, Control, Mode, Position0, Remembered, Setup, Signal};
@@ -57,6 +59,9 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         Ok(machine) => machine,
         Err(faults) => return refused(&faults, options),
     };
+    let inputs = machine.inputs();
+    let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+    files::keep_inputs(&inputs, &options.written())?;
     let folder = machine.root.join(&machine.folder.programs);
     let programs = Arc::new(FolderPrograms::new(&folder, options.file.as_deref())?);
     let script = match load_script(options, &machine.plant)? {
@@ -73,10 +78,8 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             ))
         })?;
     }
-    for assignment in &options.run.mp {
-        let changed = machine.parameters.assign(assignment);
-        changed.map_err(|error| UsageError::new(format!("--mp {assignment}: {error}")))?;
-    }
+    settings::assign(&mut machine.parameters, &options.run.mp)?;
+    settings::say_without_effect(&machine.parameters, &options.run.mp);
     let mut plant = machine.plant.clone();
     let mut log = options
         .run
@@ -150,20 +153,22 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let blocks = programs.main().map_or(0, |main| main.block_count());
     let mut progress = Progress::new(blocks);
     let interrupt = Interrupt::on_ctrl_c();
+    // A file that cannot be written loses no report.
     let ended = session.run(&interrupt, &mut progress);
+    let ended = ended.unwrap_or_else(|error| Ended::Failed(error.to_string()));
     drop(progress);
     let switched_off = match &mut session.writers.state {
         Some(state) => state.flush(&session.control),
         None => Ok(()),
     };
     // What could not be stored loses no report.
-    let outcome = finish(session, ended?, &machine, &programs, options, &interrupt)?;
+    let outcome = finish(session, ended, &machine, &programs, options, &interrupt)?;
     switched_off.map(|()| outcome)
 }
 
 /// Prints the faults of files that keep a machine from being switched on.
 fn refused(faults: &[FileFault], options: &RunMachineOptions) -> Result<Outcome, UsageError> {
-    faults.iter().for_each(FileFault::print);
+    diagnostics::print_faults(faults);
     if options.format == Format::Json {
         print_json(&Refusal::of(faults))?;
     }
@@ -174,10 +179,19 @@ fn load_script(
     options: &RunMachineOptions,
     plant: &Machine,
 ) -> Result<Result<Script, Vec<FileFault>>, UsageError> {
-    match options.run.script.as_ref().or(options.run.replay.as_ref()) {
-        Some(path) => Script::load(path, plant),
-        None => Ok(Ok(Script::default())),
+    let (path, is_log) = match (&options.run.script, &options.run.replay) {
+        (Some(path), _) => (path, false),
+        (None, Some(path)) => (path, true),
+        (None, None) => return Ok(Ok(Script::default())),
+    };
+    let bytes = files::read_table(path)?;
+    if is_log && !log::is_whole(&bytes) {
+        diagnostics::print_text(&format!(
+            "warning: {}: the log is not as it was written: damaged, cut off or edited",
+            path.display()
+        ));
     }
+    Ok(Script::of(path, &bytes, plant))
 }
 
 /// What the control remembers, or what it begins with.
@@ -257,17 +271,8 @@ fn finish(
     interrupt: &Interrupt,
 ) -> Result<Outcome, UsageError> {
     let model = machine.parameters.model();
-    session.writers.outputs.finish()?;
-    if let Some(recording) = session.writers.recording.take() {
-        recording.finish()?;
-    }
-    if let Some(log) = session.writers.log.take() {
-        log.finish()?;
-    }
-    for failure in session.failures() {
-        failure.print();
-    }
-    let expectations = session.expectations();
+    let mut written = session.writers.finish();
+    diagnostics::print_faults(&session.failures());
     let part = session
         .cutting
         .take()
@@ -281,6 +286,7 @@ fn finish(
         | Ended::Broken(_)
         | Ended::Hangs(..)
         | Ended::NotStored(_)
+        | Ended::Failed(_)
         | Ended::Restart(_) => End::Failed(Box::new(error(&session, &ended))),
     };
     let failure = match &end {
@@ -310,6 +316,11 @@ fn finish(
             diagnostics::print_line("interrupted: the report so far");
             Outcome::Interrupted
         }
+        // What could not be written was said.
+        Ended::Failed(_) => {
+            written = Ok(());
+            Outcome::WrongUse
+        }
         _ => Outcome::ProgramError,
     };
     if let Ended::Hangs(what, _) = &ended {
@@ -321,7 +332,7 @@ fn finish(
     if let Some(path) = &options.run.junit {
         let suite = programs.main_name().unwrap_or("no program");
         let stopped = failure.as_ref().map(|error| error.message.as_str());
-        junit::write(path, suite, &expectations, stopped)?;
+        written = written.and(junit::write(path, suite, &session.expectations(), stopped));
     }
     let projection = if machine.parameters.graphics().third_angle {
         Projection::ThirdAngle
@@ -331,8 +342,9 @@ fn finish(
     let title = format!("PGM {}", programs.main_name().unwrap_or_default());
     let stop = interrupt.after_run();
     let drawn = cutting::write(part.as_ref(), &options.output, &title, projection, &stop);
-    let all = matches!(drawn, Ok(Written::All));
+    let all = matches!(drawn, Ok(Written::All)) && written.is_ok();
     print_report(&report, result, model, options, all)?;
+    written?;
     Ok(match drawn? {
         Written::All => outcome,
         Written::Interrupted => Outcome::Interrupted,
@@ -377,6 +389,7 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
             "what survives power-off cannot be stored".to_owned(),
             what.clone(),
         ),
+        Ended::Failed(what) => ("the run was broken off".to_owned(), what.clone()),
         _ => ("the run was broken off".to_owned(), String::new()),
     };
     let place = run.map(|run| Place::of(run, at));

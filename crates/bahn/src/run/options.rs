@@ -88,9 +88,15 @@ impl RunMachineOptions {
     /// Files that are written, with their options.
     pub fn written(&self) -> Vec<(&'static str, &Path)> {
         let log = self.run.log.iter().map(|path| ("--log", path.as_path()));
+        let junit = self.run.junit.iter().map(|path| ("--junit", path.as_path()));
         let record = self.recording.record.iter();
         let record = record.map(|path| ("--record", path.as_path()));
-        self.output.written().chain(log).chain(record).collect()
+        self.output
+            .written()
+            .chain(log)
+            .chain(junit)
+            .chain(record)
+            .collect()
     }
 }
 
@@ -107,7 +113,7 @@ pub(crate) struct RunControl {
     /// Write what was done to control and machine, to be repeated with --replay.
     #[arg(long, value_name = "LOG", value_hint = ValueHint::FilePath)]
     pub log: Option<PathBuf>,
-    /// Repeat a run from its log.
+    /// Repeat a run from its log; a log that was damaged, cut off or edited is warned of.
     #[arg(long, value_name = "LOG", value_hint = ValueHint::FilePath, conflicts_with = "script")]
     pub replay: Option<PathBuf>,
     /// What the operator who stands by does.

@@ -8,10 +8,12 @@ use bahn_machine::{Event, Machine};
 use super::expectation::Expectation;
 use crate::diagnostics::{FileFault, Marked, Severity};
 use crate::machine_folder::decode;
-use crate::{UsageError, files};
 
 /// The last second that a script may speak of: eleven days.
 const SECONDS_MAX: f64 = 1e6;
+
+/// Faulty lines that are named; behind them reading ends.
+const FAULTS_MAX: usize = 1000;
 
 /// What a time counts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,9 +66,8 @@ impl Script {
     ///
     /// # Errors
     /// All faults of the script.
-    pub fn load(path: &Path, machine: &Machine) -> Result<Result<Script, Vec<FileFault>>, UsageError> {
-        let bytes = files::read_table(path)?;
-        Ok(Script::read(path, &decode(&bytes), machine))
+    pub fn of(path: &Path, bytes: &[u8], machine: &Machine) -> Result<Script, Vec<FileFault>> {
+        Script::read(path, &decode(bytes), machine)
     }
 
     fn read(path: &Path, text: &str, machine: &Machine) -> Result<Script, Vec<FileFault>> {
@@ -82,6 +83,11 @@ impl Script {
             let content = without_comment(line);
             if content.trim().is_empty() {
                 continue;
+            }
+            if faults.len() == FAULTS_MAX {
+                let message = "too many faults: what follows is not read";
+                faults.push(script.fault_at(number, &wrong(line, line, message)));
+                break;
             }
             match read_line(content, last, &mut machine) {
                 Ok((base, offset_us, action)) => {
@@ -116,6 +122,7 @@ impl Script {
             },
             label: wrong.message.clone(),
             help: None,
+            opened: None,
         }
     }
 
@@ -132,6 +139,7 @@ impl Script {
             },
             label,
             help: None,
+            opened: None,
         }
     }
 

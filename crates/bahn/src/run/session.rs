@@ -1,21 +1,22 @@
 //! Control and machine, switched on: cycle after cycle until the run ends.
 
-use std::collections::VecDeque;
+use std::collections::{HashMap, HashSet, VecDeque};
 
 use bahn_control::{Command, Control, Message, RunState, Shown};
 use bahn_machine::{Event, KeyAction, Machine};
-use bahn_path::{Axis, BlockRef, FeedRate, PathElement};
+use bahn_path::{BlockRef, FeedRate, PathElement};
 
 use super::background::Background;
 use super::deviation::Deviation;
 use super::expectation::run_name;
+use super::listed::{Confirmed, FailedExpectation, Said};
 use super::log::Log;
 use super::operator::{Deed, Operator, Phase, Why};
 use super::pace::Pace;
 use super::recording::Recording;
-use super::report::{Confirmed, FailedExpectation, Said};
 use super::script::{Action, Base, Line, Script};
 use super::times::Times;
+use super::turning::{ElementId, Turning};
 use crate::UsageError;
 use crate::cutting::Cutting;
 use crate::diagnostics::FileFault;
@@ -51,6 +52,8 @@ pub(super) enum Ended {
     Restart(String),
     /// What survives power-off cannot be stored; why.
     NotStored(String),
+    /// A file of the run cannot be written, or what the script wants cannot be done; why.
+    Failed(String),
 }
 
 /// What the session writes while it goes on.
@@ -59,6 +62,18 @@ pub(super) struct Writers {
     pub log: Option<Log>,
     pub outputs: Outputs,
     pub state: Option<State>,
+}
+
+impl Writers {
+    /// Completes all files, also behind one that cannot be written.
+    ///
+    /// # Errors
+    /// The first of those.
+    pub fn finish(&mut self) -> Result<(), UsageError> {
+        let recording = self.recording.take().map_or(Ok(()), Recording::finish);
+        let log = self.log.take().map_or(Ok(()), Log::finish);
+        self.outputs.finish().and(recording).and(log)
+    }
 }
 
 /// What is known of a session, while it runs and in the end.
@@ -89,6 +104,7 @@ pub(super) struct Session {
     start_us: Option<u64>,
     /// Elements that were prepared and not yet executed.
     ahead: VecDeque<PathElement>,
+    turning: Turning,
     /// The element that was executed last, with the way that was left of it.
     last_seen: Option<(ElementId, f64)>,
     moved_us: u64,
@@ -109,22 +125,6 @@ pub(super) struct Parts {
     pub realtime: bool,
     pub max_time_s: f64,
     pub max_wait_s: f64,
-}
-
-/// What tells an element from all others of its run. Axes without a position are equal, too, bit by bit.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct ElementId {
-    sequence: u64,
-    ends: [[u64; Axis::COUNT]; 2],
-}
-
-impl ElementId {
-    fn of(element: &PathElement) -> ElementId {
-        ElementId {
-            sequence: element.sequence,
-            ends: [element.start, element.end].map(|position| position.values().map(f64::to_bits)),
-        }
-    }
 }
 
 impl Session {
@@ -166,6 +166,7 @@ impl Session {
             plc_percent: (0.0, 0, 0.0),
             start_us: None,
             ahead: VecDeque::new(),
+            turning: Turning::default(),
             last_seen: None,
             moved_us: 0,
             last_stop: false,
@@ -353,6 +354,7 @@ impl Session {
         if running {
             self.program_us += cycle_us;
             self.times.cycle(&self.control);
+            self.turning.cycle(&self.control, &self.machine);
             let feed = self.control.element().map(|element| element.feed);
             self.deviation
                 .cycle(&self.control, matches!(feed, Some(FeedRate::Programmed(_))));
@@ -451,7 +453,11 @@ impl Session {
             return Ok(());
         };
         self.record.path(&element);
+        let spindle = self.turning.take(&element);
         if let Some(cutting) = &mut self.cutting {
+            if let Some(spindle) = spindle {
+                cutting.see(spindle);
+            }
             cutting.element(&element, &mut self.record)?;
         }
         if let Some(run) = self
@@ -572,13 +578,15 @@ impl Session {
     pub fn expectations(&self) -> Vec<Case> {
         let expectations = self.script.lines.iter();
         let expectations = expectations.filter(|line| matches!(line.action, Action::Expect(_)));
-        let waits = |number| self.waiting.iter().flatten().any(|line| line.number == number);
+        let waiting: HashSet<u32> = self.waiting.iter().flatten().map(|line| line.number).collect();
+        let failed: HashMap<u32, &FailedExpectation> =
+            self.failed.iter().map(|failed| (failed.line, failed)).collect();
         let cases = expectations.map(|line| Case {
             place: self.script.place(line.number),
             name: self.script.line_text(line.number).trim().to_owned(),
-            verdict: match self.failed.iter().find(|failed| failed.line == line.number) {
+            verdict: match failed.get(&line.number) {
                 Some(failed) => Verdict::Failed(failed.actual.clone()),
-                None if waits(line.number) => Verdict::NotReached,
+                None if waiting.contains(&line.number) => Verdict::NotReached,
                 None => Verdict::Held,
             },
         });

@@ -4,12 +4,14 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
+use bahn_path::Position;
+
 use super::row::{Row, Verdict};
-use super::{Shelf, csv};
-use crate::cutting::Columns;
+use super::{COLUMNS, Shelf, csv};
 use crate::report_text::clock;
+use crate::settings::Equipment;
 use crate::test_run::{Bench, TestOptions};
-use crate::{UsageError, files, machine_folder, tool_table};
+use crate::{UsageError, files, tool_table};
 
 /// What the programs are compared with.
 pub(super) enum Other {
@@ -20,9 +22,19 @@ pub(super) enum Other {
 }
 
 /// Reads what `--against` names.
-pub(super) fn load(path: &Path, options: &TestOptions, columns: Columns) -> Result<Other, UsageError> {
+///
+/// The workpiece lies where it lies in the run that is compared.
+pub(super) fn load(path: &Path, options: &TestOptions, datum: &Position) -> Result<Other, UsageError> {
+    let bench = |equipment: Equipment| {
+        let equipment = Equipment {
+            datum: *datum,
+            ..equipment
+        };
+        let bench = Bench::new(options, equipment, COLUMNS)?;
+        Ok(Other::Bench(Box::new(bench)))
+    };
     if path.is_dir() {
-        return folder(path, options, columns);
+        return bench(Equipment::of_folder("--against", path)?);
     }
     if let Err(error) = fs::metadata(path) {
         return Err(files::cannot("read", path, &error));
@@ -49,34 +61,12 @@ pub(super) fn load(path: &Path, options: &TestOptions, columns: Columns) -> Resu
     } else {
         machine.parameters = Some(path.to_owned());
     }
-    let bench = Bench::new(options, &machine, columns).map_err(|error| {
+    let equipment = Equipment::of(options.model, &machine).map_err(|error| {
         UsageError::new(format!(
             "--against takes a parameter list, a tool table, a folder of a machine or an earlier report; {error}"
         ))
     })?;
-    Ok(Other::Bench(Box::new(bench)))
-}
-
-/// Parameters, model and tools of a machine.
-fn folder(path: &Path, options: &TestOptions, columns: Columns) -> Result<Other, UsageError> {
-    let machine = machine_folder::load(path)?.map_err(|faults| {
-        let first = faults
-            .first()
-            .map(|fault| fault.title.clone())
-            .unwrap_or_default();
-        UsageError::new(format!(
-            "--against {}: {first}; `bahn machine check` shows all",
-            path.display()
-        ))
-    })?;
-    let bench = Bench::on(
-        options,
-        &options.machine,
-        machine.parameters,
-        machine.tools,
-        columns,
-    )?;
-    Ok(Other::Bench(Box::new(bench)))
+    bench(equipment)
 }
 
 /// What changes from one run to the next, in words.

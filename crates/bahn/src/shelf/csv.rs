@@ -3,6 +3,7 @@
 use bahn_path::Axis;
 
 use super::row::{Fault, Row, Said, Travel, Use, Verdict};
+use crate::diagnostics::printable;
 use crate::path_csv::push_number;
 
 const COLUMNS: [&str; 22] = [
@@ -62,10 +63,12 @@ impl Style {
     }
 
     fn field(self, text: &str) -> String {
+        let lines: Vec<String> = text.split('\n').map(printable).collect();
+        let text = lines.join("\n");
         if text.contains([self.separator(), '"', '\n', '\r']) {
             format!("\"{}\"", text.replace('"', "\"\""))
         } else {
-            text.to_owned()
+            text
         }
     }
 }

@@ -25,6 +25,7 @@ use crate::cli::Format;
 use crate::cutting::Columns;
 use crate::files::NewFile;
 use crate::interrupt::Interrupt;
+use crate::settings::Equipment;
 use crate::test_run::{Bench, ReportFile, TestOptions, Tested};
 use crate::{Outcome, UsageError, console, diagnostics, files};
 use against::Other;
@@ -93,15 +94,16 @@ impl Totals {
 }
 
 /// Runs all programs and writes the table.
-pub(crate) fn command(options: &TestOptions) -> Result<Outcome, UsageError> {
+pub(crate) fn command(options: &TestOptions, equipment: Equipment) -> Result<Outcome, UsageError> {
     refuse_single_outputs(options)?;
     let files = collect::programs(&options.files, &options.table.ext)?;
     let inputs: Vec<&Path> = files.iter().map(AsRef::as_ref).collect();
     files::keep_inputs(&inputs, &options.written())?;
-    let bench = Bench::new(options, &options.machine, COLUMNS)?;
+    let datum = equipment.datum;
+    let bench = Bench::new(options, equipment, COLUMNS)?;
     let other = options.table.against.as_deref();
     let other = other
-        .map(|path| against::load(path, options, COLUMNS))
+        .map(|path| against::load(path, options, &datum))
         .transpose()?;
     let (before, report) = match other {
         Some(Other::Bench(bench)) => (Some(*bench), None),

@@ -1,10 +1,9 @@
 //! One program run to its end: nothing is printed here, so that many can run side by side.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use bahn_control::Tool;
 use bahn_interpreter::{Interpreter, ProgramError};
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
@@ -16,13 +15,13 @@ use super::options::TestOptions;
 use super::outputs::Outputs;
 use super::survey::Survey;
 use crate::block_time::BlockTime;
-use crate::cli::MachineOptions;
 use crate::cutting::{Columns, Cutting, Memory};
 use crate::diagnostics::Marked;
 use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Stop;
 use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Notice, Place, Record, Report};
+use crate::settings::Equipment;
 use crate::shelf::Row;
 use crate::{UsageError, settings};
 
@@ -64,37 +63,21 @@ pub(crate) struct Tested {
 
 impl Bench {
     /// What the options say; `columns` are those of the part unless they give a resolution.
-    pub fn new(
-        options: &TestOptions,
-        machine: &MachineOptions,
-        columns: Columns,
-    ) -> Result<Bench, UsageError> {
-        let list = settings::parameters(options.model, machine)?;
-        let tools = settings::tools(machine)?;
-        Bench::on(options, machine, list, tools, columns)
-    }
-
-    /// Likewise with the parameters and tools of a machine.
-    pub fn on(
-        options: &TestOptions,
-        machine: &MachineOptions,
-        list: ParameterList,
-        tools: Option<BTreeMap<u32, Tool>>,
-        columns: Columns,
-    ) -> Result<Bench, UsageError> {
+    pub fn new(options: &TestOptions, equipment: Equipment, columns: Columns) -> Result<Bench, UsageError> {
+        let machine = &options.machine;
         let wanted = options.output.resolution.map_or(columns, Columns::Millimetres);
-        let mut settings = settings::interpreter(&list, tools.as_ref(), &options.run)?;
+        let mut settings = settings::interpreter(&equipment, &options.run)?;
         settings.point_angles_deg = machine.point_angle.iter().copied().collect();
         Ok(Bench {
             settings,
-            left_hand: settings::left_hand(tools.as_ref()),
-            limits: settings::limits(&list, machine),
+            left_hand: settings::left_hand(equipment.tools.as_ref()),
+            limits: settings::limits(&equipment.list, machine),
             times: settings::times(machine),
             memory: Memory::of(&options.output),
             columns: (!options.output.no_graphics).then_some(wanted),
             ends_at_stop: options.run.stop,
             block_time: machine.block_time,
-            list,
+            list: equipment.list,
         })
     }
 

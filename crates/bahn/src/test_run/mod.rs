@@ -27,19 +27,23 @@ use crate::cutting::{self, Columns, Written};
 use crate::diagnostics::{self, Diagnostic, Marked, Severity};
 use crate::interrupt::{Interrupt, Stop};
 use crate::report::{End, ErrorReport, Report};
+use crate::settings::{self, Equipment};
 use crate::{Outcome, UsageError, console, files, report_text, shelf};
 
 /// Runs a program and reports, or all programs of a shelf.
-pub(crate) fn command(options: &TestOptions) -> Result<Outcome, UsageError> {
+pub(crate) fn command(mut options: TestOptions) -> Result<Outcome, UsageError> {
     files::keep_inputs(&options.inputs(), &options.written())?;
+    let equipment = Equipment::of(options.model, &options.machine)?;
+    options.model = equipment.list.model();
+    settings::say_without_effect(&equipment.list, &options.machine.mp);
     match options.single() {
-        Some(file) => single(options, file),
-        None => shelf::command(options),
+        Some(file) => single(&options, equipment, file),
+        None => shelf::command(&options, equipment),
     }
 }
 
-fn single(options: &TestOptions, file: &Path) -> Result<Outcome, UsageError> {
-    let bench = Bench::new(options, &options.machine, Columns::BySize)?;
+fn single(options: &TestOptions, equipment: Equipment, file: &Path) -> Result<Outcome, UsageError> {
+    let bench = Bench::new(options, equipment, Columns::BySize)?;
     let interrupt = Interrupt::on_ctrl_c();
     let stop = Stop::by(&interrupt);
     if let Some(limit) = options.run.time_limit {

@@ -44,13 +44,16 @@ Tool table (--tools): a text file with a line of column names and one line for e
   2  62    4    4   BALL D8
 T is the number, L the length, R the radius, R2 the corner radius (0 flat end, as great as R ball
 end), in mm; DL, DR, DR2 are added to them; T-ANGLE is the angle of a drill's point in degrees, DIRECT
-is - for M3, + for M4. A tool that is locked (TL) or whose life is over (CUR.TIME greater than TIME2)
-must not be called; other columns are ignored. Columns are separated by blanks, tabs, commas or
+is - for M3, + for M4. A tool that is locked (TL) must not be called; in place of one whose life is over
+(CUR.TIME greater than TIME2, minutes) its replacement RT is called. Other columns are ignored. Columns are separated by blanks, tabs, commas or
 semicolons. TOOL.T files of later controls (first line BEGIN TOOL .T MM or INCH, fixed columns) load
 too.
 
 Machine parameters (--parameters): a text file with lines like `MP7430 : 1.2 ;overlap`. They replace
 values of the reference list of the model; --mp replaces single ones after that.
+
+Machine (--machine): the control model, parameters, tools, datum and PLC texts (FN14) of a folder; --parameters,
+--mp, --tools and --datum replace its own.
 
 JSON report (--format json), lengths in mm: program, unit, completed, error (message, program, block,
 line, detail, or null), machining_time_s (null when the feed is 0), path_mm (feed, rapid),

@@ -8,6 +8,7 @@ use bahn_path::{Function, PathElement};
 
 use crate::UsageError;
 use crate::cli::{OutputOptions, PathFile};
+use crate::diagnostics::printable;
 use crate::files::{self, NewFile};
 use crate::path_csv::PathTable;
 use crate::path_svg::PathDrawing;
@@ -20,7 +21,7 @@ pub(crate) struct Outputs {
     drawings: Vec<(PathDrawing, NewFile)>,
     /// What FN15 puts out.
     print: Option<(NewFile, PathBuf)>,
-    /// Short names of the programs of the run by number.
+    /// Short names of the programs of the run by number, with nothing in them that steers a terminal.
     names: Vec<String>,
 }
 
@@ -61,7 +62,7 @@ impl Outputs {
             let program = run.program(self.names.len() as u16);
             self.names.push(
                 program
-                    .map(|program| files::short_name(program).to_owned())
+                    .map(|program| printable(files::short_name(program)))
                     .unwrap_or_default(),
             );
         }
@@ -86,18 +87,23 @@ impl Outputs {
         Ok(())
     }
 
+    /// Completes all files, also behind one that cannot be written.
+    ///
+    /// # Errors
+    /// The first of those.
     pub fn finish(&mut self) -> Result<(), UsageError> {
+        let mut written = Ok(());
         for (table, _) in self.tables.drain(..) {
-            table.into_file().finish()?;
+            written = written.and(table.into_file().finish());
         }
         if let Some((file, _)) = self.print.take() {
-            file.finish()?;
+            written = written.and(file.finish());
         }
         let title = self.names.first().cloned().unwrap_or_default();
         for (drawing, mut file) in self.drawings.drain(..) {
-            drawing.write(&title, &mut file)?;
-            file.finish()?;
+            let drawn = drawing.write(&title, &mut file);
+            written = written.and(drawn.and_then(|()| file.finish()));
         }
-        Ok(())
+        written
     }
 }

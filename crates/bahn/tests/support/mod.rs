@@ -32,6 +32,13 @@ impl Folder {
         folder
     }
 
+    /// A folder with a program and the mill in `mill`, as it was delivered.
+    pub fn with_mill(blocks: &str) -> Folder {
+        let folder = Folder::with_program(blocks);
+        copy(&machines().join("mill"), &folder.path("mill"));
+        folder
+    }
+
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
@@ -86,6 +93,27 @@ impl Drop for Folder {
 impl AsRef<Path> for Folder {
     fn as_ref(&self) -> &Path {
         &self.0
+    }
+}
+
+/// The shipped machines.
+pub fn machines() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines")
+}
+
+/// Copies a folder, without what a control in it remembers.
+pub fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        match path.is_dir() {
+            true if path.ends_with("state") => {}
+            true => copy(&path, &target),
+            false => {
+                std::fs::copy(&path, target).unwrap();
+            }
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Arc, Curve, FeedRate, PathElement, Plane, Point2};
 
-use super::corner::{Ending, corner, transition};
+use super::corner::{Ending, bare, corner, transition};
 use super::flat::{self, Flat, SAME_POINT_MM};
 use super::{ContourMove, FeedLaw, Side, Smooth};
 use crate::error::{Cause, Fault};
@@ -483,16 +483,4 @@ fn apply_feed_law(element: &mut PathElement, law: FeedLaw, contour_radius: f64, 
         FeedLaw::Edge => edge,
         FeedLaw::EdgeReduced => edge.min(feed),
     });
-}
-
-/// A copy of an element without functions and dwell, for the pieces that the control inserts.
-pub(super) fn bare(element: &PathElement, curve: Curve) -> PathElement {
-    PathElement {
-        curve,
-        functions: None,
-        dwell_s: 0.0,
-        constant_speed: false,
-        tangential_end: false,
-        ..element.clone()
-    }
 }

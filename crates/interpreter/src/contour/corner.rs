@@ -3,7 +3,6 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Arc, BlockRef, Curve, PathElement, Point2};
 
-use super::compensation::bare;
 use super::flat::{self, Flat, SAME_POINT_MM};
 use super::{ContourMove, Corner, Side};
 use crate::error::Fault;
@@ -143,4 +142,16 @@ pub(crate) fn transition(
     before.plane.set(&mut element.end, joint.start);
     element.tangential_end = matches!(curve, Curve::Arc(_));
     element
+}
+
+/// A copy of an element without functions and dwell, for the pieces that the control inserts.
+pub(super) fn bare(element: &PathElement, curve: Curve) -> PathElement {
+    PathElement {
+        curve,
+        functions: None,
+        dwell_s: 0.0,
+        constant_speed: false,
+        tangential_end: false,
+        ..element.clone()
+    }
 }

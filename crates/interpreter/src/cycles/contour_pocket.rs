@@ -5,7 +5,8 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_path::region::{
-    Contour as PlaneContour, Effort, HatchPattern, Merge, PocketArea, Segment, SubContour, Superposition,
+    Contour as PlaneContour, Effort, HatchPattern, Merge, Outline, Pass, PocketArea, Segment, SubContour,
+    Superposition,
 };
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2};
 
@@ -38,16 +39,17 @@ impl<F: Into<Fault>> From<F> for Halt {
     }
 }
 
-/// Watches what the contours of a cycle cost.
+/// Watches what the contours of a cycle cost, and whether somebody wants them no more.
 pub(crate) struct Watch<'a> {
-    interrupt: Option<&'a AtomicBool>,
+    ends: [Option<&'a AtomicBool>; 2],
     spent: Cell<usize>,
 }
 
 impl<'a> Watch<'a> {
-    pub fn new(interrupt: Option<&'a AtomicBool>) -> Watch<'a> {
+    /// Each of the flags ends the computation.
+    pub fn new(ends: [Option<&'a AtomicBool>; 2]) -> Watch<'a> {
         Watch {
-            interrupt,
+            ends,
             spent: Cell::new(0),
         }
     }
@@ -57,9 +59,10 @@ impl Effort for Watch<'_> {
     type Stop = Halt;
 
     fn spend(&self, steps: usize) -> Result<(), Halt> {
-        /// About a minute; a contour of 20,000 elements takes a hundredth of it.
+        /// About a minute, or 300,000 crossings; a contour of 20,000 elements takes a tenth of it.
         const STEPS_MAX: usize = 1_000_000_000;
-        if self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        let mut ends = self.ends.into_iter().flatten();
+        if ends.any(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Halt::Interrupted);
         }
         self.spent.set(self.spent.get().saturating_add(steps));
@@ -163,11 +166,16 @@ impl Run {
         let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
             return Err(MessageId::CyclIncomplete.into());
         };
-        match definition.number {
+        let queued = self.out.queue.len();
+        let result = match definition.number {
             6 => self.rough_out(job, &definition, settings, watch),
             15 => self.pilot_drilling(job, &definition, settings, watch),
             _ => self.contour_milling(job, &definition, settings, watch),
+        };
+        if let Err(Halt::Interrupted) = result {
+            self.out.queue.truncate(queued);
         }
+        result
     }
 
     /// Cycle 6 ROUGH-OUT [003:5477-5521].
@@ -210,22 +218,12 @@ impl Run {
         };
         for (area, passes) in areas.iter().zip(&clearing) {
             for depths in &rounds {
-                let channel = |trace: &mut Tracer<'_>| {
-                    for outline in &area.outlines {
-                        mill.outline(trace, &outline.contour, depths);
-                    }
-                };
-                let clear = |trace: &mut Tracer<'_>| {
-                    for depth in *depths {
-                        mill.clear(trace, passes, *depth);
-                    }
-                };
                 if rules.clear_first {
-                    clear(&mut trace);
-                    channel(&mut trace);
+                    mill.clear(&mut trace, passes, depths, watch)?;
+                    mill.outlines(&mut trace, &area.outlines, depths, watch)?;
                 } else {
-                    channel(&mut trace);
-                    clear(&mut trace);
+                    mill.outlines(&mut trace, &area.outlines, depths, watch)?;
+                    mill.clear(&mut trace, passes, depths, watch)?;
                 }
             }
         }
@@ -248,6 +246,7 @@ impl Run {
         let mut trace = self.tracer();
         trace.set_plane(job.plane);
         for outline in areas.iter().flat_map(|area| &area.outlines) {
+            watch.spend(pecks.len())?;
             trace.rapid_to(outline.infeed());
             super::drilling::peck(&mut trace, &heights, &pecks, feed, 0.0);
         }
@@ -276,8 +275,8 @@ impl Run {
         };
         let mut trace = self.tracer();
         trace.set_plane(job.plane);
-        for outline in areas.iter().flat_map(|area| &area.outlines) {
-            mill.outline(&mut trace, &outline.contour, &pecks);
+        for area in &areas {
+            mill.outlines(&mut trace, &area.outlines, &pecks, watch)?;
         }
         Ok(finish(trace, settings)?)
     }
@@ -347,44 +346,71 @@ struct Milling {
 }
 
 impl Milling {
-    /// One outline at all given depths: the tool comes back to the infeed point and is advanced there.
-    fn outline(&self, trace: &mut Tracer<'_>, contour: &PlaneContour, depths: &[f64]) {
-        let contour = if self.reversed {
-            contour.reversed()
-        } else {
-            contour.clone()
-        };
-        trace.rapid_to(contour.start());
-        for depth in depths {
-            if trace.is_full() {
-                return;
+    /// Each outline at all given depths: the tool comes back to the infeed point and is advanced there.
+    fn outlines(
+        &self,
+        trace: &mut Tracer<'_>,
+        outlines: &[Outline],
+        depths: &[f64],
+        watch: &Watch<'_>,
+    ) -> Result<(), Halt> {
+        for outline in outlines {
+            let contour = if self.reversed {
+                outline.contour.reversed()
+            } else {
+                outline.contour.clone()
+            };
+            trace.rapid_to(contour.start());
+            for depth in depths {
+                if trace.is_full() {
+                    return Ok(());
+                }
+                watch.spend(contour.segments().len())?;
+                trace.feed_height(self.heights.at_depth(*depth), self.plunge_feed);
+                for segment in contour.segments() {
+                    self.segment(trace, segment);
+                }
             }
-            trace.feed_height(self.heights.at_depth(*depth), self.plunge_feed);
-            for segment in contour.segments() {
-                self.segment(trace, segment);
-            }
+            trace.rapid_height(self.heights.clearance);
         }
-        trace.rapid_height(self.heights.clearance);
+        Ok(())
     }
 
-    /// Parallel passes; where a link would leave the area the tool jumps over the island.
-    fn clear(&self, trace: &mut Tracer<'_>, passes: &[bahn_path::region::Pass], depth: f64) {
-        for pass in passes {
-            match &pass.link {
-                Some(way) => {
-                    for segment in way {
-                        self.segment(trace, segment);
-                    }
+    /// Parallel passes at all given depths; where a link would leave the area the tool jumps over the island.
+    fn clear(
+        &self,
+        trace: &mut Tracer<'_>,
+        passes: &[Pass],
+        depths: &[f64],
+        watch: &Watch<'_>,
+    ) -> Result<(), Halt> {
+        for depth in depths {
+            for pass in passes {
+                if trace.is_full() {
+                    return Ok(());
                 }
-                None => {
-                    trace.rapid_height(self.heights.clearance);
-                    trace.rapid_to(pass.from);
-                    trace.feed_height(self.heights.at_depth(depth), self.plunge_feed);
+                watch.spend(1 + pass.link.as_ref().map_or(0, Vec::len))?;
+                self.pass(trace, pass, *depth);
+            }
+            trace.rapid_height(self.heights.clearance);
+        }
+        Ok(())
+    }
+
+    fn pass(&self, trace: &mut Tracer<'_>, pass: &Pass, depth: f64) {
+        match &pass.link {
+            Some(way) => {
+                for segment in way {
+                    self.segment(trace, segment);
                 }
             }
-            trace.line_to(pass.to, self.feed);
+            None => {
+                trace.rapid_height(self.heights.clearance);
+                trace.rapid_to(pass.from);
+                trace.feed_height(self.heights.at_depth(depth), self.plunge_feed);
+            }
         }
-        trace.rapid_height(self.heights.clearance);
+        trace.line_to(pass.to, self.feed);
     }
 
     fn segment(&self, trace: &mut Tracer<'_>, segment: &Segment) {

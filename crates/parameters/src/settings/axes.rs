@@ -3,11 +3,32 @@
 use bahn_path::{Axis, AxisSet};
 
 use super::bit_of;
-use crate::ParameterList;
+use crate::{ControlModel, Numbering, ParameterList};
 
 /// The 4th axis' and the 5th axis' index.
 const FOURTH: u8 = 3;
 const FIFTH: u8 = 4;
+
+impl ControlModel {
+    /// The parameters that hold the positive and the negative software limits of an axis, named by its letter or as
+    /// `IV`: `MP46`, or one of each traverse range, `MP910.1` [000:3453-3467] [001:3188-3195].
+    pub fn limit_parameters(self, axis: &str) -> [Vec<String>; 2] {
+        let index = "XYZ".find(|letter| axis.starts_with(letter));
+        match self.limits().numbering {
+            Numbering::Old => {
+                let plus = index.unwrap_or(3) * 2 + 44;
+                [plus, plus + 1].map(|number| vec![format!("MP{number}")])
+            }
+            Numbering::New => {
+                let index = index.map_or("3 or .4".to_owned(), |index| index.to_string());
+                [910, 920].map(|first: u16| {
+                    let ranges = first..first + 3;
+                    ranges.map(|number| format!("MP{number}.{index}")).collect()
+                })
+            }
+        }
+    }
+}
 
 impl ParameterList {
     /// The index of an axis in the list: X, Y, Z, then the 4th and 5th axis with the letters of MP410.3

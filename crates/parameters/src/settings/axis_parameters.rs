@@ -144,7 +144,7 @@ pub struct PrecontrolParameters {
     /// Damping of the transient when accelerating: MP1530, 0.01 to 0.999 (old MP64) [000:4977-4979].
     pub damping: f64,
     /// Velocity below which the positioning window is checked, mm/min: MP1525, 0.1 to 10; 0.5 before it
-    /// existed [000:5306-5318].
+    /// existed [000:5306-5318]. Infinite on the TNC 151/155, of which no manual says so.
     pub window_mm_min: f64,
     /// Deviation at which POSITIONING ERROR comes, mm: MP1410, 0.001 to 30, recommended 0.5 (old MP56)
     /// [000:5244-5249].
@@ -403,7 +403,10 @@ fn precontrol(axis: &AxisReader) -> PrecontrolParameters {
         kv_m105: axis.new_or(1515, || kv),
         transient_m_min: axis.common(1520, 53),
         damping: axis.common(1530, 64),
-        window_mm_min: axis.list().get(1525, 0).unwrap_or(WINDOW_MM_MIN),
+        window_mm_min: axis.list().get(1525, 0).unwrap_or(match axis.list().model() {
+            ControlModel::Tnc151 | ControlModel::Tnc155 => f64::INFINITY,
+            _ => WINDOW_MM_MIN,
+        }),
         monitoring_mm: axis.old_common(1410, 56),
         emergency_mm: axis.old_common(1420, 57),
     }

@@ -76,6 +76,8 @@ pub struct ProbeSettings {
     /// The data of the last tool stay in use, the calibrated data of the probe do not replace them: MP7411
     /// [003:7365-7369]. TNC 151/155: replaced (inferred).
     pub keeps_tool_data: bool,
+    /// The probe sends without a cable and is on standby between probings, a TS 511: MP6010 [000:7654].
+    pub on_standby: bool,
 }
 
 /// Settings of the graphics: MP7310 (old MP236) [000:6368-6409] [001:1654].
@@ -215,6 +217,7 @@ impl ParameterList {
             clearance_mm: self.value((6140, 0), (235, 0)),
             rapid_mm_min: self.value((6150, 0), (251, 0)),
             keeps_tool_data: self.get(7411, 0) == Some(1.0),
+            on_standby: self.get_new(6010, 0) == Some(1.0),
         }
     }
 

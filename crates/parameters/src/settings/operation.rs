@@ -78,7 +78,7 @@ pub struct OverrideParameters {
 }
 
 /// Return to the contour and block scan: MP7680 bits 1 to 5; old: neither [000:6785-6812].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestartParameters {
     /// Return to the contour works.
     pub return_to_contour: bool,
@@ -90,6 +90,9 @@ pub struct RestartParameters {
     pub ignores_dwell: bool,
     /// The scan starts at the begin of the program, not at the cursor.
     pub from_start: bool,
+    /// Where a tool change leaves the axes whose movement by the scan is calculated, machine coordinates, mm or
+    /// degrees: MP7450, MP951 [000:6783-6832].
+    pub tool_change: [Option<f64>; 5],
 }
 
 /// When and how a tool is handed to the PLC: MP7480 (old MP61, MP157) [000:9231-9283].
@@ -224,6 +227,10 @@ impl ParameterList {
                 passes_stops: multi(3),
                 ignores_dwell: multi(4),
                 from_start: multi(5),
+                tool_change: [0, 1, 2, 3, 4].map(|axis| {
+                    let calculated = bit_of(self.get_new(7450, 0).unwrap_or_default(), axis.into());
+                    self.get_new(951, axis).filter(|_| calculated)
+                }),
             },
             tools: self.tool_parameters(),
             datums: self.datum_parameters(),

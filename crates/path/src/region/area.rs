@@ -169,7 +169,7 @@ impl Region {
         if holes.is_empty() {
             return Ok(Region { contours: outer });
         }
-        let outlines = Outlines::new(&outer);
+        let outlines = Outlines::new(&outer, effort)?;
         let mut parts: Vec<Vec<Contour>> = outer.into_iter().map(|c| vec![c]).collect();
         for hole in holes {
             let holder = outlines.holder(&hole, effort)?;
@@ -192,15 +192,15 @@ struct Outlines {
 }
 
 impl Outlines {
-    fn new(outer: &[Contour]) -> Outlines {
+    fn new<E: Effort>(outer: &[Contour], effort: &E) -> Result<Outlines, E::Stop> {
         let numbered = outer.iter().enumerate();
-        Outlines {
-            index: Index::new(outer.iter().flat_map(Contour::segments).copied()),
+        Ok(Outlines {
+            index: Index::new(outer.iter().flat_map(Contour::segments).copied(), effort)?,
             of: numbered
                 .flat_map(|(k, c)| std::iter::repeat_n(k, c.segments().len()))
                 .collect(),
             areas: outer.iter().map(Contour::area).collect(),
-        }
+        })
     }
 
     /// The smallest contour that holds a loop which crosses none; they may touch in points.

@@ -45,7 +45,7 @@ pub(super) fn overlay<E: Effort>(
     };
     let mut best: Option<(f64, Faces, Windings)> = None;
     for tolerance in TOLERANCES_MM {
-        let faces = Faces::new(edges(segments(), tolerance, effort)?);
+        let faces = Faces::new(edges(segments(), tolerance, effort)?, effort)?;
         let windings = faces.windings(operands, effort)?;
         let tangled = faces.tangled_length(&windings);
         if best.as_ref().is_none_or(|(least, ..)| tangled < *least) {
@@ -55,8 +55,8 @@ pub(super) fn overlay<E: Effort>(
             break;
         }
     }
-    Ok(best.map_or(Vec::new(), |(_, faces, windings)| {
+    best.map_or(Ok(Vec::new()), |(_, faces, windings)| {
         let holds = |face: usize| inside(windings.of(face));
-        faces.boundary(&(0..faces.count()).map(holds).collect::<Vec<bool>>())
-    }))
+        faces.boundary(&(0..faces.count()).map(holds).collect::<Vec<bool>>(), effort)
+    })
 }

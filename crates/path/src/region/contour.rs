@@ -62,8 +62,17 @@ impl Contour {
 
     /// Adds a segment; a gap between the chain and the segment is bridged by a line. Segments shorter
     /// than [`RESOLUTION_MM`](super::RESOLUTION_MM) and such that are not finite are left out. Ends that are
-    /// one point within the resolution are made equal.
+    /// one point within the resolution are made equal. An arc whose end is not on the circle of its start
+    /// becomes one through both, see [`Segment::arc`], or gets a short line at its end.
     pub fn push(&mut self, segment: Segment) {
+        segment
+            .mended()
+            .into_iter()
+            .flatten()
+            .for_each(|s| self.append(s));
+    }
+
+    fn append(&mut self, segment: Segment) {
         if !segment.is_proper() {
             return;
         }
@@ -82,11 +91,17 @@ impl Contour {
 
     /// The chain of the segments, see [`Contour::push`]; `None` when there are none.
     pub fn from_segments(segments: impl IntoIterator<Item = Segment>) -> Option<Contour> {
-        let mut segments = segments.into_iter();
-        let first = segments.next()?;
-        let mut contour = Contour::start_at(first.from());
-        contour.push(first);
+        let mut segments = segments.into_iter().peekable();
+        let mut contour = Contour::start_at(segments.peek()?.from());
         segments.for_each(|segment| contour.push(segment));
+        Some(contour)
+    }
+
+    /// The chain of segments that an overlay gave: its arcs are as true as its tolerance.
+    pub(super) fn chained(segments: impl IntoIterator<Item = Segment>) -> Option<Contour> {
+        let mut segments = segments.into_iter().peekable();
+        let mut contour = Contour::start_at(segments.peek()?.from());
+        segments.for_each(|segment| contour.append(segment));
         Some(contour)
     }
 

@@ -23,11 +23,12 @@ pub(super) struct Edge {
     pub both_ways: bool,
 }
 
-/// A piece of an input segment between two vertices.
+/// A piece of input segments between two vertices, with what it will be as an [`Edge`].
 struct Piece {
     segment: Segment,
-    operand: usize,
     ends: [usize; 2],
+    weights: Vec<(usize, i32)>,
+    both_ways: bool,
     /// Made by the last cut.
     fresh: bool,
 }
@@ -45,56 +46,46 @@ pub(super) fn edges<E: Effort>(
     };
     let mut pieces: Vec<Piece> = Vec::new();
     for (operand, segment) in segments {
+        effort.spend(1)?;
         for segment in segment.pieces() {
             let ends = [vertices.at(segment.from()), vertices.at(segment.to())];
-            let segment = segment.with_ends(vertices.point(ends[0]), vertices.point(ends[1]));
             pieces.push(Piece {
-                segment,
-                operand,
+                segment: segment.with_ends(vertices.point(ends[0]), vertices.point(ends[1])),
                 ends,
+                weights: vec![(operand, 1)],
+                both_ways: false,
                 fresh: true,
             });
         }
     }
     // A cut moves the pieces onto the vertex, by which they may come to cross others a little beside
-    // it. Mostly the second round finds nothing more.
+    // it. Mostly the second round finds nothing more. What coincides is one before it is cut: contours that
+    // are run through again and again cost no more than once.
     const ROUNDS: usize = 5;
     for _ in 0..ROUNDS {
-        let count = pieces.len();
-        pieces = cut(pieces, &mut vertices, effort)?;
+        let united = unite_coincident(pieces, tolerance, effort)?;
+        let count = united.len();
+        pieces = cut(united, &mut vertices, effort)?;
         if pieces.len() == count {
             break;
         }
     }
-    Ok(unite_coincident(&pieces, tolerance))
+    let pieces = unite_coincident(pieces, tolerance, effort)?.into_iter();
+    let kept = pieces.filter(|piece| piece.weights.iter().any(|(_, weight)| *weight != 0));
+    Ok(kept.map(|piece| piece.edge(tolerance)).collect())
 }
 
 /// The pieces cut where they meet: first finds all common points, then cuts every piece at every vertex
 /// that it passes within the tolerance, so that no edge runs by a vertex it should end in.
 fn cut<E: Effort>(pieces: Vec<Piece>, vertices: &mut Vertices, effort: &E) -> Result<Vec<Piece>, E::Stop> {
-    let tolerance = vertices.tolerance;
     let boxes: Vec<Bounds> = pieces.iter().map(|piece| Bounds::of(&piece.segment)).collect();
-    let tree = Tree::new(boxes.iter().copied());
-    let mut beside = Vec::new();
-    for (place, (a, bounds)) in pieces.iter().zip(&boxes).enumerate() {
-        let steps = tree.touching(&bounds.grown(tolerance), |other| {
-            if other > place {
-                beside.push(other);
-            }
-        });
-        effort.spend(steps)?;
-        for b in beside.drain(..).filter_map(|other| pieces.get(other)) {
-            // What the last cut left as it was has its common points already, and ends are vertices.
-            if a.fresh || b.fresh {
-                for point in crossings(&a.segment, &b.segment, tolerance).into_iter().flatten() {
-                    vertices.at(point);
-                }
-            }
-        }
-    }
+    add_crossings(&pieces, &boxes, vertices, effort)?;
     // A common point is that near to the segment, and its vertex again that near to the point.
-    let reach = 2.0 * tolerance;
-    let points = Tree::new(vertices.points.iter().map(|point| Bounds::of_point(*point)));
+    let reach = 2.0 * vertices.tolerance;
+    let points = Tree::new(
+        vertices.points.iter().map(|point| Bounds::of_point(*point)),
+        effort,
+    )?;
     let mut result = Vec::with_capacity(pieces.len());
     let mut stops = Vec::new();
     for (piece, bounds) in pieces.into_iter().zip(&boxes) {
@@ -109,42 +100,115 @@ fn cut<E: Effort>(pieces: Vec<Piece>, vertices: &mut Vertices, effort: &E) -> Re
                 stops.push((t, vertex));
             }
         });
-        effort.spend(steps)?;
-        if stops.is_empty() {
-            if piece.ends[0] != piece.ends[1] {
-                result.push(Piece {
-                    fresh: false,
-                    ..piece
-                });
-            }
-            continue;
-        }
-        stops.push((1.0, piece.ends[1]));
-        stops.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let mut last = (0.0, piece.ends[0]);
-        for stop in &stops {
-            let ((t0, start), (t1, end)) = (last, *stop);
-            last = *stop;
-            if start != end {
-                let (from, to) = (vertices.point(start), vertices.point(end));
-                result.push(Piece {
-                    segment: part_between(&piece.segment, t1 - t0, from, to),
-                    operand: piece.operand,
-                    ends: [start, end],
-                    fresh: true,
-                });
-            }
+        effort.spend(steps + E::KEPT * stops.len())?;
+        if !stops.is_empty() {
+            piece.cut_at(&mut stops, vertices, &mut result);
+        } else if piece.ends[0] != piece.ends[1] {
+            result.push(Piece {
+                fresh: false,
+                ..piece
+            });
         }
     }
     Ok(result)
 }
 
-/// The edges that the pieces make, coincident ones united; edges that cancel are left out.
-fn unite_coincident(pieces: &[Piece], tolerance: f64) -> Vec<Edge> {
-    // Edges with the same ends that bulge less than this apart are one.
-    let coincidence = 4.0 * tolerance;
-    let mut edges: Vec<Edge> = Vec::with_capacity(pieces.len());
-    // The last edge between two vertices, and for each edge the one before it between the same.
+/// Makes vertices of all points in which pieces cross or touch.
+fn add_crossings<E: Effort>(
+    pieces: &[Piece],
+    boxes: &[Bounds],
+    vertices: &mut Vertices,
+    effort: &E,
+) -> Result<(), E::Stop> {
+    let tolerance = vertices.tolerance;
+    let tree = Tree::new(boxes.iter().copied(), effort)?;
+    let mut beside = Vec::new();
+    for (place, (a, bounds)) in pieces.iter().zip(boxes).enumerate() {
+        let known = vertices.points.len();
+        let steps = tree.touching(&bounds.grown(tolerance), |other| {
+            if other > place {
+                beside.push(other);
+            }
+        });
+        for b in beside.drain(..).filter_map(|other| pieces.get(other)) {
+            // What the last cut left as it was has its common points already, and ends are vertices.
+            if (a.fresh || b.fresh) && !a.meets_at_end(b) {
+                for point in crossings(&a.segment, &b.segment, tolerance).into_iter().flatten() {
+                    vertices.at(point);
+                }
+            }
+        }
+        effort.spend(steps + E::KEPT * (vertices.points.len() - known))?;
+    }
+    Ok(())
+}
+
+impl Piece {
+    /// Adds the parts between the given vertices, each with its fraction of the piece.
+    fn cut_at(&self, stops: &mut Vec<(f64, usize)>, vertices: &Vertices, parts: &mut Vec<Piece>) {
+        stops.push((1.0, self.ends[1]));
+        stops.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut last = (0.0, self.ends[0]);
+        for stop in stops.iter() {
+            let ((t0, start), (t1, end)) = (last, *stop);
+            last = *stop;
+            if start != end {
+                let (from, to) = (vertices.point(start), vertices.point(end));
+                parts.push(Piece {
+                    segment: part_between(&self.segment, t1 - t0, from, to),
+                    ends: [start, end],
+                    weights: self.weights.clone(),
+                    both_ways: self.both_ways,
+                    fresh: true,
+                });
+            }
+        }
+    }
+
+    /// Whether both are lines from one vertex, which have no other common point.
+    fn meets_at_end(&self, other: &Piece) -> bool {
+        let lines = |piece: &Piece| matches!(piece.segment, Segment::Line { .. });
+        other.ends.iter().any(|end| self.ends.contains(end)) && lines(self) && lines(other)
+    }
+
+    /// Takes up a piece that coincides with this one.
+    fn unite(&mut self, other: &Piece) {
+        let sign = if self.ends == other.ends { 1 } else { -1 };
+        self.both_ways |= other.both_ways || sign < 0;
+        for (operand, weight) in &other.weights {
+            match self.weights.iter_mut().find(|(o, _)| o == operand) {
+                Some((_, own)) => *own += sign * weight,
+                None => self.weights.push((*operand, sign * weight)),
+            }
+        }
+    }
+
+    fn edge(self, tolerance: f64) -> Edge {
+        let chord = Segment::line(self.segment.from(), self.segment.to());
+        let flat = distance(chord.point(0.5), self.segment.point(0.5)) <= coincidence(tolerance);
+        Edge {
+            ends: self.ends,
+            course: if flat { chord } else { self.segment },
+            segment: self.segment,
+            weights: self.weights,
+            both_ways: self.both_ways,
+        }
+    }
+}
+
+/// Pieces with the same ends that bulge less than this apart are one, mm.
+fn coincidence(tolerance: f64) -> f64 {
+    4.0 * tolerance
+}
+
+/// The pieces with coincident ones united, in the order of the first of each.
+fn unite_coincident<E: Effort>(
+    pieces: Vec<Piece>,
+    tolerance: f64,
+    effort: &E,
+) -> Result<Vec<Piece>, E::Stop> {
+    let mut united: Vec<Piece> = Vec::with_capacity(pieces.len());
+    // The last piece between two vertices, and for each piece the one before it between the same.
     let mut between: HashMap<[usize; 2], usize, Mixing> = HashMap::default();
     let mut before: Vec<Option<usize>> = Vec::with_capacity(pieces.len());
     for piece in pieces {
@@ -152,37 +216,26 @@ fn unite_coincident(pieces: &[Piece], tolerance: f64) -> Vec<Edge> {
         key.sort_unstable();
         let middle = piece.segment.point(0.5);
         let last = between.get(&key).copied();
-        let mut same = last;
+        let (mut same, mut steps) = (last, 1);
         while let Some(c) = same
-            && edges
+            && united
                 .get(c)
-                .is_some_and(|edge| distance(edge.segment.point(0.5), middle) > coincidence)
+                .is_some_and(|other| distance(other.segment.point(0.5), middle) > coincidence(tolerance))
         {
             same = before.get(c).copied().flatten();
+            steps += 1;
         }
-        if let Some(edge) = same.and_then(|c| edges.get_mut(c)) {
-            let sign = if edge.ends == piece.ends { 1 } else { -1 };
-            edge.both_ways |= sign < 0;
-            match edge.weights.iter_mut().find(|(o, _)| *o == piece.operand) {
-                Some((_, weight)) => *weight += sign,
-                None => edge.weights.push((piece.operand, sign)),
-            }
-            continue;
+        effort.spend(steps)?;
+        if let Some(other) = same.and_then(|c| united.get_mut(c)) {
+            other.unite(&piece);
+            other.fresh |= piece.fresh;
+        } else {
+            between.insert(key, united.len());
+            before.push(last);
+            united.push(piece);
         }
-        between.insert(key, edges.len());
-        before.push(last);
-        let chord = Segment::line(piece.segment.from(), piece.segment.to());
-        let flat = distance(chord.point(0.5), middle) <= coincidence;
-        edges.push(Edge {
-            ends: piece.ends,
-            segment: piece.segment,
-            course: if flat { chord } else { piece.segment },
-            weights: vec![(piece.operand, 1)],
-            both_ways: false,
-        });
     }
-    edges.retain(|edge| edge.weights.iter().any(|(_, weight)| *weight != 0));
-    edges
+    Ok(united)
 }
 
 /// The part of a segment that is `share` of it, between vertices near its ends.

@@ -10,6 +10,9 @@ pub trait Effort {
     /// Why a computation is given up.
     type Stop;
 
+    /// What a common point of two segments or a part cut off counts, in steps: they take memory, too.
+    const KEPT: usize = 1000;
+
     /// Called again and again in the course of a computation, with the steps since the last call.
     ///
     /// # Errors

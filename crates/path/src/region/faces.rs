@@ -22,7 +22,7 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    pub fn new(edges: Vec<Edge>) -> Faces {
+    pub fn new<E: Effort>(edges: Vec<Edge>, effort: &E) -> Result<Faces, E::Stop> {
         let mut faces = Faces {
             next: vec![0; 2 * edges.len()],
             face: Vec::new(),
@@ -30,6 +30,7 @@ impl Faces {
             edges,
         };
         for half_edges in leaving(&faces.edges) {
+            effort.spend(half_edges.len())?;
             let around = faces.counter_clockwise(half_edges);
             // Arriving against one half-edge, the face on the left goes on along the one clockwise of it.
             for (clockwise, half_edge) in around.iter().zip(around.iter().cycle().skip(1)) {
@@ -38,8 +39,8 @@ impl Faces {
                 }
             }
         }
-        faces.trace();
-        faces
+        faces.trace(effort)?;
+        Ok(faces)
     }
 
     pub fn edges(&self) -> &[Edge] {
@@ -88,29 +89,29 @@ impl Faces {
             .chain(&angles)
             .zip(&angles)
             .map(|(before, angle)| (angle - before, before));
-        let widest = gaps
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .map_or(0.0, |(gap, before)| before + 0.5 * gap);
-        let reference = [widest.cos(), widest.sin()];
+        let widest = gaps.enumerate().max_by(|a, b| a.1.0.total_cmp(&b.1.0));
+        let (first, middle) = widest.map_or((0, 0.0), |(first, (gap, before))| (first, before + 0.5 * gap));
+        let reference = [middle.cos(), middle.sin()];
+        leaving.rotate_left(first);
+        // Tangents put nearly all in order.
         let mut sorted: Vec<(f64, Segment, usize)> = Vec::with_capacity(leaving.len());
         for candidate in leaving {
-            let place = sorted
-                .iter()
-                .take_while(|other| !is_before(&candidate.1, &other.1, reference))
-                .count();
-            sorted.insert(place, candidate);
+            let behind = sorted.iter().rev();
+            let before = behind.take_while(|other| is_before(&candidate.1, &other.1, reference));
+            sorted.insert(sorted.len() - before.count(), candidate);
         }
         sorted.into_iter().map(|(_, _, h)| h).collect()
     }
 
     /// Numbers the faces.
-    fn trace(&mut self) {
+    fn trace<E: Effort>(&mut self, effort: &E) -> Result<(), E::Stop> {
         const NONE: usize = usize::MAX;
         self.face = vec![NONE; self.next.len()];
         for first in 0..self.next.len() {
             if self.face.get(first) != Some(&NONE) {
                 continue;
             }
+            effort.spend(1)?;
             let (mut half_edge, mut longest) = (first, (0.0, first));
             while let Some(face) = self.face.get_mut(half_edge).filter(|face| **face == NONE) {
                 *face = self.longest.len();
@@ -122,13 +123,14 @@ impl Faces {
             }
             self.longest.push(longest);
         }
+        Ok(())
     }
 
     /// The winding numbers of the operands in every face. They are counted once for all faces that hang
     /// together, at the longest half-edge of them, where that is safest; from there they change at every edge
     /// by what runs along it, over long edges first: where directions were mistaken edges are short.
     pub fn windings<E: Effort>(&self, operands: usize, effort: &E) -> Result<Windings, E::Stop> {
-        let index = Index::new(self.edges.iter().map(|edge| edge.course));
+        let index = Index::new(self.edges.iter().map(|edge| edge.course), effort)?;
         let mut windings = Windings {
             operands,
             numbers: vec![0; operands * self.count()],
@@ -197,7 +199,10 @@ impl Faces {
     }
 
     /// The loops around the faces that are told to be inside, interior on the left.
-    pub fn boundary(&self, inside: &[bool]) -> Vec<Contour> {
+    ///
+    /// # Errors
+    /// When the effort ends it.
+    pub fn boundary<E: Effort>(&self, inside: &[bool], effort: &E) -> Result<Vec<Contour>, E::Stop> {
         let holds = |half_edge: usize| inside.get(self.left_of(half_edge)).copied().unwrap_or(false);
         let on_boundary = |half_edge: usize| holds(half_edge) && !holds(half_edge ^ 1);
         let mut used = vec![false; self.next.len()];
@@ -207,6 +212,7 @@ impl Faces {
             let mut half_edge = first;
             while let Some(used) = used.get_mut(half_edge).filter(|used| !**used) {
                 *used = true;
+                effort.spend(1)?;
                 splitter.push(half_edge, &mut loops);
                 // Around the corner of the interior: edges that have it on both sides are passed over.
                 half_edge = self.following(half_edge);
@@ -216,7 +222,7 @@ impl Faces {
             }
             splitter.clear();
         }
-        loops
+        Ok(loops)
     }
 
     fn following(&self, half_edge: usize) -> usize {
@@ -341,7 +347,7 @@ impl Splitter<'_> {
         let ring = self.open.split_off(start);
         ring.iter()
             .for_each(|h| self.place(self.faces.start_of(*h), None));
-        if let Some(contour) = Contour::from_segments(ring.iter().map(|h| self.faces.segment(*h))) {
+        if let Some(contour) = Contour::chained(ring.iter().map(|h| self.faces.segment(*h))) {
             // What is thinner than the resolution is no area, and what is not much larger all
             // around comes of moved vertices.
             let length = contour.length();

@@ -80,7 +80,7 @@ impl Region {
             return Ok(Vec::new());
         }
         let (sin, cos) = sin_cos_deg(angle_deg);
-        let area = Area::new(self);
+        let area = Area::new(self, effort)?;
         let lines = area.spans([cos, sin], stepover, effort)?;
         match pattern {
             HatchPattern::Zigzag => area.zigzag(lines, stepover, effort),
@@ -105,16 +105,16 @@ struct Area<'a> {
 }
 
 impl Area<'_> {
-    fn new(region: &Region) -> Area<'_> {
+    fn new<'a, E: Effort>(region: &'a Region, effort: &E) -> Result<Area<'a>, E::Stop> {
         let contours = region.contours();
         let numbered = contours.iter().enumerate();
-        Area {
+        Ok(Area {
             contours,
-            index: Index::new(contours.iter().flat_map(Contour::segments).copied()),
+            index: Index::new(contours.iter().flat_map(Contour::segments).copied(), effort)?,
             places: numbered
                 .flat_map(|(c, contour)| (0..contour.segments().len()).map(move |k| (c, k)))
                 .collect(),
-        }
+        })
     }
 
     /// The parts of the hatch lines that lie inside, line by line in the direction of the angle.

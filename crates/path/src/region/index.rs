@@ -151,7 +151,7 @@ struct Node {
 const LEAF: usize = 6;
 
 impl Tree {
-    pub fn new(boxes: impl IntoIterator<Item = Bounds>) -> Tree {
+    pub fn new<E: Effort>(boxes: impl IntoIterator<Item = Bounds>, effort: &E) -> Result<Tree, E::Stop> {
         let items: Vec<(usize, Bounds)> = boxes.into_iter().enumerate().collect();
         let mut tree = Tree {
             nodes: Vec::with_capacity(items.len() / 2),
@@ -159,13 +159,15 @@ impl Tree {
         };
         let all = 0..tree.items.len();
         if !all.is_empty() {
-            tree.add(all);
+            tree.add(all, effort)?;
         }
-        tree
+        Ok(tree)
     }
 
     /// Adds the node of some items and all below it. The halves keep it no deeper than the logarithm.
-    fn add(&mut self, range: std::ops::Range<usize>) -> usize {
+    fn add<E: Effort>(&mut self, range: std::ops::Range<usize>, effort: &E) -> Result<usize, E::Stop> {
+        // To sort an item into its half is far less than a test.
+        effort.spend(range.len() / 16)?;
         let items = self.items.get_mut(range.clone()).unwrap_or_default();
         let bounds = Bounds::around(items);
         let place = self.nodes.len();
@@ -183,13 +185,13 @@ impl Tree {
                 (min[0] + max[0]) * dot(*axis, across) + (min[1] + max[1]) * cross(*axis, across)
             };
             items.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)).then(a.0.cmp(&b.0)));
-            self.add(range.start..range.start + half);
-            let second = self.add(range.start + half..range.end);
+            self.add(range.start..range.start + half, effort)?;
+            let second = self.add(range.start + half..range.end, effort)?;
             if let Some(node) = self.nodes.get_mut(place) {
                 node.second = second;
             }
         }
-        place
+        Ok(place)
     }
 
     /// Calls `found` for every item for whose box, and that of the nodes above, `wanted` holds. The
@@ -272,10 +274,10 @@ pub(super) struct Index {
 }
 
 impl Index {
-    pub fn new(segments: impl IntoIterator<Item = Segment>) -> Index {
+    pub fn new<E: Effort>(segments: impl IntoIterator<Item = Segment>, effort: &E) -> Result<Index, E::Stop> {
         let segments: Vec<Segment> = segments.into_iter().collect();
-        let tree = Tree::new(segments.iter().map(Bounds::of));
-        Index { segments, tree }
+        let tree = Tree::new(segments.iter().map(Bounds::of), effort)?;
+        Ok(Index { segments, tree })
     }
 
     pub fn segments(&self) -> &[Segment] {

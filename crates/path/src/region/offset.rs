@@ -42,7 +42,7 @@ impl Region {
             false => self.contours().to_vec(),
         };
         let covering = Covering {
-            index: Index::new(contours.iter().flat_map(Contour::segments).copied()),
+            index: Index::new(contours.iter().flat_map(Contour::segments).copied(), effort)?,
             radius: distance.abs(),
         };
         let mut moved = Vec::new();
@@ -186,6 +186,12 @@ impl Covering {
     }
 
     /// The loops around what is not covered, which is on their left.
+    ///
+    /// A tolerance serves when nothing speaks against its loops that is more than the tolerance: every edge
+    /// that was taken away because it ends nowhere runs along a kept one ([`strayed_length`]), so that
+    /// nothing of the true boundary is missing by more; and every face whose edges disagree is a sliver
+    /// ([`free_faces`]), so that nothing is told wrongly that is thicker. Every kept edge is covered by no more
+    /// than is granted. Together the loops are the boundary within what is granted, wherever it is.
     fn free_loops<E: Effort>(&self, moved: &[Segment], effort: &E) -> Result<Vec<Contour>, E::Stop> {
         let mut best: Option<(f64, Faces, Vec<bool>)> = None;
         'tolerances: for tolerance in TOLERANCES_MM {
@@ -200,34 +206,32 @@ impl Covering {
             // Cutting moved the edges a little; as little as will do is granted.
             for granted in [tolerance, 4.0 * tolerance] {
                 let pairs = edges.iter().zip(&depths);
-                let mut kept = pairs
+                let kept = pairs
                     .filter(|(_, depth)| **depth <= granted)
                     .map(|(e, _)| e.clone())
                     .collect();
-                let lost = remove_ends(&mut kept);
-                let faces = Faces::new(kept);
-                let (free, doubtful) = free_faces(&faces);
-                let tangled = lost.max(doubtful);
+                let (kept, removed) = without_ends(kept);
+                let strayed = strayed_length(&removed, &kept, granted, effort)?;
+                let faces = Faces::new(kept, effort)?;
+                let (free, doubtful) = free_faces(&faces, granted);
+                let tangled = strayed.max(doubtful);
                 if best.as_ref().is_none_or(|(least, ..)| tangled < *least) {
                     best = Some((tangled, faces, free));
                 }
-                // Elements that cross at a flat angle are one within the tolerance for so long.
-                if tangled <= (8.0 * self.radius * tolerance).sqrt() {
+                if tangled == 0.0 {
                     break 'tolerances;
                 }
             }
         }
-        Ok(best.map_or(Vec::new(), |(_, faces, free)| faces.boundary(&free)))
+        best.map_or(Ok(Vec::new()), |(_, faces, free)| faces.boundary(&free, effort))
     }
 }
 
-/// Takes away edges that end nowhere, one after the other. The answer is the length of the longest, mm:
-/// they should be no longer than rounding makes them.
-fn remove_ends(edges: &mut Vec<Edge>) -> f64 {
-    let leaving = leaving(edges);
+/// The edges without those that end nowhere, taken away one after the other, and these.
+fn without_ends(edges: Vec<Edge>) -> (Vec<Edge>, Vec<Edge>) {
+    let leaving = leaving(&edges);
     let mut degree: Vec<usize> = leaving.iter().map(Vec::len).collect();
     let mut gone = vec![false; edges.len()];
-    let mut longest = 0.0f64;
     let mut open: Vec<usize> = (0..degree.len()).filter(|v| degree.get(*v) == Some(&1)).collect();
     while let Some(vertex) = open.pop() {
         let half_edges = leaving.get(vertex).map_or(&[][..], Vec::as_slice);
@@ -236,7 +240,6 @@ fn remove_ends(edges: &mut Vec<Edge>) -> f64 {
         };
         if let (Some(gone), Some(edge)) = (gone.get_mut(last / 2), edges.get(last / 2)) {
             *gone = true;
-            longest = longest.max(edge.segment.length());
             for end in edge.ends {
                 if let Some(degree) = degree.get_mut(end) {
                     *degree -= 1;
@@ -247,28 +250,76 @@ fn remove_ends(edges: &mut Vec<Edge>) -> f64 {
             }
         }
     }
-    let mut gone = gone.into_iter();
-    edges.retain(|_| !gone.next().unwrap_or(false));
-    longest
+    let (removed, kept): (Vec<_>, Vec<_>) = edges.into_iter().zip(gone).partition(|(_, gone)| *gone);
+    let edges = |pairs: Vec<(Edge, bool)>| pairs.into_iter().map(|(edge, _)| edge).collect();
+    (edges(kept), edges(removed))
+}
+
+/// Thinner than this times what is granted is the tolerance's doing. Edges that cross at a flat angle are
+/// both kept behind the crossing until one is covered by more than is granted, which brings them no farther
+/// apart than that; cutting moved each by twice the tolerance.
+const SLIVER: f64 = 4.0;
+
+/// Length of the longest edge that was taken away and along which no edge is kept, mm.
+fn strayed_length<E: Effort>(
+    removed: &[Edge],
+    kept: &[Edge],
+    granted: f64,
+    effort: &E,
+) -> Result<f64, E::Stop> {
+    let reach = SLIVER * granted;
+    let long = |edge: &&Edge| edge.segment.length() > reach;
+    if !removed.iter().any(|edge| long(&edge)) {
+        return Ok(0.0);
+    }
+    let index = Index::new(kept.iter().map(|edge| edge.segment), effort)?;
+    let mut longest = 0.0f64;
+    for edge in removed.iter().filter(long) {
+        if index.nearest(edge.segment.point(0.5), reach, effort)?.is_none() {
+            longest = longest.max(edge.segment.length());
+        }
+    }
+    Ok(longest)
 }
 
 /// Which faces are free, and the greatest length that speaks against it, mm: the left of every edge is
-/// free and its right covered, so that every half-edge tells about its face. They disagree in slivers as
-/// thin as the resolution, and where directions at a vertex were mistaken.
-fn free_faces(faces: &Faces) -> (Vec<bool>, f64) {
-    let mut told = vec![(0.0, 0.0); faces.count()];
+/// free and its right covered, so that every half-edge tells about its face. They may disagree in slivers
+/// and in faces that are as small all around; elsewhere directions at a vertex were mistaken, or edges are
+/// missing between two faces.
+fn free_faces(faces: &Faces, granted: f64) -> (Vec<bool>, f64) {
+    #[derive(Clone, Copy, Default)]
+    struct Told {
+        free: f64,
+        covered: f64,
+        area: f64,
+    }
+    let mut told = vec![Told::default(); faces.count()];
+    // Areas far from the datum lose no digits.
+    let origin = faces
+        .edges()
+        .first()
+        .map_or([0.0, 0.0], |edge| edge.segment.from());
     for (place, edge) in faces.edges().iter().enumerate() {
         let length = edge.segment.length();
-        if let Some((free, _)) = told.get_mut(faces.left_of(2 * place)) {
-            *free += length;
+        let area = edge.segment.moved(scale(origin, -1.0)).area_to_origin();
+        if let Some(left) = told.get_mut(faces.left_of(2 * place)) {
+            left.free += length;
+            left.area += area;
         }
-        if let Some((_, covered)) = told.get_mut(faces.left_of(2 * place + 1)) {
-            *covered += length;
+        if let Some(right) = told.get_mut(faces.left_of(2 * place + 1)) {
+            right.covered += length;
+            right.area -= area;
         }
     }
-    let doubtful = told.iter().map(|(free, covered)| f64::min(*free, *covered));
-    let doubtful = doubtful.fold(0.0, f64::max);
-    let free = told.iter().map(|(free, covered)| *free > 2.0 * covered);
+    let width = SLIVER * granted;
+    let doubtful = told.iter().filter(|told| {
+        let around = told.free + told.covered;
+        told.area.abs() > 0.5 * width * around && around > 25.0 * width
+    });
+    let doubtful = doubtful
+        .map(|told| f64::min(told.free, told.covered))
+        .fold(0.0, f64::max);
+    let free = told.iter().map(|told| told.free > 2.0 * told.covered);
     (free.collect(), doubtful)
 }
 
@@ -317,11 +368,15 @@ fn moved_left(segment: &Segment, by: f64) -> Option<Segment> {
             centre,
             sweep_deg,
         } => {
-            let moved = segment.radius()? - by * sweep_deg.signum();
-            let point = |p: Point2| along(centre, unit(sub(p, centre)), moved);
-            (moved > 0.0).then(|| Segment::Arc {
-                from: point(from),
-                to: point(to),
+            // Each end from where it is, so that the arcs about corners begin there even if the radii
+            // differ a little.
+            let point = |p: Point2| {
+                let moved = distance(p, centre) - by * sweep_deg.signum();
+                (moved > 0.0).then(|| along(centre, unit(sub(p, centre)), moved))
+            };
+            Some(Segment::Arc {
+                from: point(from)?,
+                to: point(to)?,
                 centre,
                 sweep_deg,
             })

@@ -20,7 +20,8 @@ pub enum Segment {
         /// End point.
         to: Point2,
     },
-    /// A circular arc. `from` equal to `to` with a sweep of +-360 degrees is a full circle.
+    /// A circular arc. `from` equal to `to` with a sweep of +-360 degrees is a full circle. Both ends
+    /// are as far from the centre; [`Contour::push`](super::Contour::push) mends what rounding made of that.
     Arc {
         /// Start point.
         from: Point2,
@@ -40,21 +41,62 @@ impl Segment {
     }
 
     /// An arc about `centre` in the given sense; equal points give a full circle [003:2803]. When the
-    /// two radii differ a little, the centre is moved along the chord until they agree.
+    /// two radii differ a little, the centre is moved along the chord until they agree, unless that
+    /// moves the arc by more than twice the difference: nearly a full circle.
     pub fn arc(from: Point2, to: Point2, centre: Point2, counter_clockwise: bool) -> Segment {
-        let sweep_deg = sweep_deg(centre, from, to, counter_clockwise);
-        let chord = sub(to, from);
-        let along_chord = dot(sub(middle(from, to), centre), unit(chord));
-        let centre = if sweep_deg.abs() < 360.0 {
-            along(centre, unit(chord), along_chord)
-        } else {
-            centre
+        let about = |centre: Point2| Segment::Arc {
+            from,
+            to,
+            centre,
+            sweep_deg: sweep_deg(centre, from, to, counter_clockwise),
         };
-        Segment::Arc {
+        let given = about(centre);
+        let chord = unit(sub(to, from));
+        let aside = dot(sub(middle(from, to), centre), chord);
+        // Up to a half circle no point is moved farther than an end; beyond, one opposite the chord is.
+        let near = |sweep: f64| sweep <= 180.0 || aside.abs() <= 2.0 * given.radii_differ();
+        match given {
+            Segment::Arc { sweep_deg, .. } if sweep_deg.abs() < 360.0 && near(sweep_deg.abs()) => {
+                about(along(centre, chord, aside))
+            }
+            given => given,
+        }
+    }
+
+    /// An arc whose radii differ by more than the resolution, as they do between rounded coordinates
+    /// (MP7431 allows 0.016 mm), as one whose radii are the same, and the line to its end that may be left.
+    pub(super) fn mended(&self) -> [Option<Segment>; 2] {
+        let Segment::Arc {
             from,
             to,
             centre,
             sweep_deg,
+        } = *self
+        else {
+            return [Some(*self), None];
+        };
+        if self.radii_differ() <= RESOLUTION_MM {
+            return [Some(*self), None];
+        }
+        let mended = Segment::arc(from, to, centre, sweep_deg > 0.0);
+        if mended.radii_differ() <= RESOLUTION_MM {
+            return [Some(mended), None];
+        }
+        let end = along(centre, unit(sub(to, centre)), distance(from, centre));
+        let arc = Segment::Arc {
+            from,
+            to: end,
+            centre,
+            sweep_deg,
+        };
+        [Some(arc), Some(Segment::line(end, to))]
+    }
+
+    /// How much the radii at both ends of an arc differ, mm.
+    fn radii_differ(&self) -> f64 {
+        match *self {
+            Segment::Line { .. } => 0.0,
+            Segment::Arc { from, to, centre, .. } => (distance(from, centre) - distance(to, centre)).abs(),
         }
     }
 
@@ -237,8 +279,9 @@ impl Segment {
     /// from the point by its crossing with the ray along `ray`, and the circular segment if the
     /// point lies between chord and arc.
     ///
-    /// The chord counts half open (a chord end exactly on the ray belongs to one side), and both tests
-    /// use the same side of the chord, so that contributions of a closed chain always add up.
+    /// The chord counts half open (a chord end exactly on the ray belongs to one side, as if the point
+    /// were a trifle to the left of the ray), and both tests use the same side of the chord, so that
+    /// contributions of a closed chain always add up.
     pub(super) fn winding(&self, point: Point2, ray: Point2) -> i32 {
         let (a, b) = (sub(self.from(), point), sub(self.to(), point));
         let (above_a, above_b) = (cross(ray, a) > 0.0, cross(ray, b) > 0.0);
@@ -258,7 +301,9 @@ impl Segment {
         let counter_clockwise = sweep_deg > 0.0;
         // A counter-clockwise arc of any sweep lies right of its chord.
         let in_circle = distance(point, centre) < radius;
-        let on_arc_side = (side > 0.0) != counter_clockwise;
+        // A chord through the point along the ray lies as a trifle tells.
+        let left_of_chord = side > 0.0 || (side == 0.0 && above_a == above_b && dot(sub(b, a), ray) > 0.0);
+        let on_arc_side = left_of_chord != counter_clockwise;
         let inside = in_circle && (on_arc_side || self.is_full_circle());
         match (inside, counter_clockwise) {
             (false, _) => chord,

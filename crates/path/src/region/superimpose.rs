@@ -160,15 +160,15 @@ impl Superposition {
             Merge::ProgrammedContours => combine(&programmed)?.offset_within(-distance, effort)?,
         };
         let pairs = subcontours.iter().zip(&compensated);
+        let indices = subcontours
+            .iter()
+            .map(|s| Index::new(s.contour.segments().iter().copied(), effort));
         let sources = Sources {
             starts: pairs
                 .clone()
                 .map(|(s, region)| compensated_start(s, region, distance))
                 .collect(),
-            contours: subcontours
-                .iter()
-                .map(|s| Index::new(s.contour.segments().iter().copied()))
-                .collect(),
+            contours: indices.collect::<Result<_, _>>()?,
             distance,
         };
         let mut areas: Vec<PocketArea> = Vec::new();
@@ -213,7 +213,8 @@ impl Relations {
             overlaps: vec![vec![false; count]; count],
         };
         for (b, region) in programmed.iter().enumerate() {
-            let index = Index::new(region.contours().iter().flat_map(Contour::segments).copied());
+            let segments = region.contours().iter().flat_map(Contour::segments);
+            let index = Index::new(segments.copied(), effort)?;
             let rows = relations.starts_inside.iter_mut();
             for (row, subcontour) in rows.zip(subcontours) {
                 if let Some(inside) = row.get_mut(b) {

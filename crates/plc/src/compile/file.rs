@@ -71,7 +71,7 @@ pub(super) fn translate(
     };
     for (number, line) in lines.iter().enumerate() {
         translator.place.line = u32::try_from(number.saturating_add(1)).unwrap_or(u32::MAX);
-        match parse(line) {
+        match parse(line, options.model) {
             Ok(None) => {}
             Ok(Some(command)) => translator.command(&command),
             Err(error) => translator.unreadable(&error),
@@ -195,7 +195,7 @@ impl Translator<'_> {
 
     /// Emits an instruction with the cost of its form.
     pub(super) fn emit(&mut self, op: Op, command: &Command) {
-        let cost = super::emit::cost_of(command);
+        let cost = super::cost::cost_of(command);
         self.emit_with(op, cost);
     }
 
@@ -416,7 +416,7 @@ impl Translator<'_> {
                 self.out.bytes = self
                     .out
                     .bytes
-                    .saturating_add(super::emit::cost_of(command).bytes.into());
+                    .saturating_add(super::cost::cost_of(command).bytes.into());
             }
             (Some(Table::Case { table, place }), Mnemonic::EndCase, _) => {
                 let entries = self.out.cases.get(table).map_or(0, Vec::len);
@@ -482,7 +482,7 @@ impl Translator<'_> {
                     Op::Return {
                         condition: Condition::Always,
                     },
-                    super::emit::end_cost(),
+                    super::cost::end_cost(),
                 );
             } else {
                 self.report_at(

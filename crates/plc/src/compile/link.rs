@@ -42,6 +42,7 @@ pub(super) fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> 
         program,
         errors: Reports::sorted(reports.errors),
         warnings: Reports::sorted(reports.warnings),
+        not_listed: reports.not_listed,
         files: texts,
         size_bytes,
     }

@@ -1,6 +1,7 @@
 //! From source files to a program.
 
 mod chain;
+mod cost;
 mod emit;
 mod file;
 mod labels;
@@ -56,12 +57,9 @@ impl Options {
         Options { memory, ..self }
     }
 
-    /// Bytes of code of all files together: 128 KB, 64 KB on the TNC 407 [000:14606].
+    /// Bytes of code of all files together.
     fn code_bytes_max(self) -> u32 {
-        match self.model {
-            ControlModel::Tnc407 => 64 * 1024,
-            _ => 128 * 1024,
-        }
+        self.model.limits().plc_code_max_bytes
     }
 }
 
@@ -80,10 +78,12 @@ impl Options {
 pub struct Compilation {
     /// The program, when there is no error.
     pub program: Option<PlcProgram>,
-    /// All errors of all files, by file in the order of linking, then by line.
+    /// The errors of all files, by file in the order of linking, then by line; the first thousand of them.
     pub errors: Vec<Diagnostic>,
-    /// What is accepted although the printed rules refuse it, in the same order.
+    /// What is accepted although the printed rules refuse it, in the same order, the first thousand.
     pub warnings: Vec<Diagnostic>,
+    /// Errors and warnings beyond those.
+    pub not_listed: usize,
     /// The files that were read, main file first, also when there are errors.
     pub files: Vec<SourceText>,
     /// Length of the code in bytes, as far as it was read.
@@ -105,11 +105,19 @@ impl Compilation {
     }
 }
 
+/// Errors that are listed at most, and warnings: a file that is no PLC program has one in each of a million
+/// lines.
+const LISTED_MAX: usize = 1000;
+
 /// Errors and warnings while they are collected.
 #[derive(Debug, Default)]
 struct Reports {
     errors: Vec<(usize, Diagnostic)>,
     warnings: Vec<(usize, Diagnostic)>,
+    /// Those beyond [`LISTED_MAX`].
+    not_listed: usize,
+    /// The error that came last is listed.
+    last_is_listed: bool,
 }
 
 /// Where a report belongs.
@@ -121,20 +129,29 @@ struct Place {
 
 impl Reports {
     fn error(&mut self, file: (usize, &str), place: Place, error: PlcError, detail: &str) {
-        self.errors
-            .push((file.0, diagnostic(file.1, place, error, detail)));
+        self.last_is_listed = self.errors.len() < LISTED_MAX;
+        if self.last_is_listed {
+            self.errors
+                .push((file.0, diagnostic(file.1, place, error, detail)));
+        } else {
+            self.not_listed += 1;
+        }
     }
 
     /// The last error comes from what was opened at a place.
     fn opened_at(&mut self, place: Place) {
-        if let Some((_, error)) = self.errors.last_mut() {
+        if let Some((_, error)) = self.errors.last_mut().filter(|_| self.last_is_listed) {
             error.opened = Some((place.line, place.column));
         }
     }
 
     fn warning(&mut self, file: (usize, &str), place: Place, error: PlcError, detail: &str) {
-        self.warnings
-            .push((file.0, diagnostic(file.1, place, error, detail)));
+        if self.warnings.len() < LISTED_MAX {
+            self.warnings
+                .push((file.0, diagnostic(file.1, place, error, detail)));
+        } else {
+            self.not_listed += 1;
+        }
     }
 
     /// By file in the order of linking, then by line and column.

@@ -3,21 +3,15 @@
 //! The manual's own listings are typed loosely: `LBL230`, `OM 500`, `B 128`, `K + 0`, `X[`. Such lines are
 //! read, with a note that becomes a warning, or an error in strict checking.
 
+use bahn_parameters::ControlModel;
+
 use super::form::{Class, Mnemonic, TNC_355};
-use super::memory::{Scanner, memory_operand};
+use super::memory::memory_operand;
+use super::operand::{LineError, Operand, Scanner, label};
 use crate::PlcError;
-use crate::operand::{BitOperand, NumberOperand, TextOperand};
 
 /// Longest line in characters [000:11940].
 const LINE_LENGTH_MAX: usize = 128;
-/// Characters that tell labels apart [000:14004].
-const LABEL_SIGNIFICANT: usize = 16;
-/// Longest label.
-const LABEL_LENGTH_MAX: usize = 32;
-/// Highest label number [000:14002].
-const LABEL_NUMBER_MAX: u32 = 511;
-/// Numbers of internal modules.
-pub(crate) const MODULE_NUMBERS: std::ops::RangeInclusive<u32> = 9000..=9255;
 
 /// A command with its operand.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,40 +27,9 @@ pub(crate) struct Command {
     pub tnc355: bool,
 }
 
-/// The operand of a command.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Operand {
-    None,
-    Bit(BitOperand),
-    Number(NumberOperand),
-    Constant(i32),
-    Text(TextOperand),
-    Field(String),
-    Label(String),
-    File(String),
-}
-
-/// An error in a line, or a deviation.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct LineError {
-    pub error: PlcError,
-    pub column: u32,
-    pub detail: String,
-}
-
-impl LineError {
-    pub(crate) fn new(error: PlcError, at: usize, detail: impl Into<String>) -> LineError {
-        LineError {
-            error,
-            column: u32::try_from(at.saturating_add(1)).unwrap_or(u32::MAX),
-            detail: detail.into(),
-        }
-    }
-}
-
-/// Reads a line. `Ok(None)` is an empty line or a comment. A line that is too long is read all the same; the
+/// Reads a line for a control. `Ok(None)` is an empty line or a comment. A line that is too long is read all the same; the
 /// error stands in the notes of the command, or is the error of the line.
-pub(crate) fn parse(line: &str) -> Result<Option<Command>, LineError> {
+pub(crate) fn parse(line: &str, model: ControlModel) -> Result<Option<Command>, LineError> {
     let characters: Vec<char> = line.chars().collect();
     let code = code_part(&characters);
     let start = code.iter().position(|c| !c.is_whitespace());
@@ -77,7 +40,7 @@ pub(crate) fn parse(line: &str) -> Result<Option<Command>, LineError> {
     let Some(start) = start else {
         return too_long.map_or(Ok(None), Err);
     };
-    let mut command = read_command(code, start)?;
+    let mut command = read_command(code, start, model)?;
     command.notes.extend(too_long);
     Ok(Some(command))
 }
@@ -106,7 +69,7 @@ fn code_part(characters: &[char]) -> &[char] {
 
 /// Tries every command that the text begins with, the longest first, and takes the first that fits its
 /// operand; otherwise reports the error of the one that the text names completely.
-fn read_command(code: &[char], start: usize) -> Result<Command, LineError> {
+fn read_command(code: &[char], start: usize, model: ControlModel) -> Result<Command, LineError> {
     let word_end = code
         .iter()
         .skip(start)
@@ -118,7 +81,7 @@ fn read_command(code: &[char], start: usize) -> Result<Command, LineError> {
         let Some(end) = match_spelling(code, start, spelling) else {
             continue;
         };
-        match read_operand(mnemonic, code, start, end, tnc355) {
+        match read_operand(mnemonic, code, (start, end), tnc355, model) {
             Ok(command) => return Ok(command),
             Err(error) => {
                 if end >= word_end && named.is_none() {
@@ -169,9 +132,9 @@ fn match_spelling(code: &[char], start: usize, spelling: &str) -> Option<usize> 
 fn read_operand(
     mnemonic: Mnemonic,
     code: &[char],
-    start: usize,
-    end: usize,
+    (start, end): (usize, usize),
     tnc355: bool,
+    model: ControlModel,
 ) -> Result<Command, LineError> {
     let mut scanner = Scanner::new(code, end);
     scanner.skip_blanks();
@@ -196,7 +159,7 @@ fn read_operand(
         }
         (Operand::Label(label(&mut scanner)?), false)
     } else {
-        memory_operand(mnemonic, &mut scanner)?
+        memory_operand(mnemonic, &mut scanner, model)?
     };
     scanner.skip_blanks();
     if let Some(character) = scanner.peek() {
@@ -217,34 +180,6 @@ fn read_operand(
     })
 }
 
-/// A label: a number, or a name of which 16 characters count [000:14002-14006].
-pub(super) fn label(scanner: &mut Scanner) -> Result<String, LineError> {
-    let at = scanner.at();
-    let word = scanner.take_while(|c| !c.is_whitespace() && c != '[');
-    let error = |error, detail: &str| Err(LineError::new(error, at, detail));
-    if word.is_empty() {
-        return error(PlcError::OperandNotFound, "label expected");
-    }
-    if word.bytes().all(|byte| byte.is_ascii_digit()) {
-        return match word.parse::<u32>() {
-            Ok(number) if number <= LABEL_NUMBER_MAX || MODULE_NUMBERS.contains(&number) => {
-                Ok(number.to_string())
-            }
-            _ => error(PlcError::OperandOutOfRange, "label numbers are 0 to 511"),
-        };
-    }
-    if !word.is_ascii() {
-        return error(PlcError::InvalidOperandType, "label names are ASCII");
-    }
-    if word.len() > LABEL_LENGTH_MAX {
-        return error(
-            PlcError::OperandOutOfRange,
-            "label names have at most 32 characters",
-        );
-    }
-    Ok(word.chars().take(LABEL_SIGNIFICANT).collect())
-}
-
 fn file_name(scanner: &mut Scanner) -> Result<String, LineError> {
     let at = scanner.at();
     let name = scanner.take_while(|c| !c.is_whitespace());
@@ -262,12 +197,14 @@ fn file_name(scanner: &mut Scanner) -> Result<String, LineError> {
 mod tests {
     use super::*;
 
+    const MODEL: ControlModel = ControlModel::Tnc415b;
+
     fn read(line: &str) -> Command {
-        parse(line).unwrap().unwrap()
+        parse(line, MODEL).unwrap().unwrap()
     }
 
     fn error(line: &str) -> u8 {
-        match parse(line) {
+        match parse(line, MODEL) {
             Err(error) => error.error.number(),
             Ok(command) => panic!("{line} is read as {command:?}"),
         }
@@ -299,7 +236,7 @@ mod tests {
         same("LBL ABCDEFGHIJKLMNOPQ", "LBL ABCDEFGHIJKLMNOP");
         same("CM 015", "CM 15");
         assert!(read("L M5").notes.is_empty() && !read("LBL230").notes.is_empty());
-        assert!(parse("   ;nothing").unwrap().is_none() && parse("").unwrap().is_none());
+        assert!(parse("   ;nothing", MODEL).unwrap().is_none() && parse("", MODEL).unwrap().is_none());
     }
 
     #[test]

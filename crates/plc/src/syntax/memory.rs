@@ -1,9 +1,10 @@
 //! Operands in memory, constants and strings.
 
 use bahn_exchange::{Bit, BitArea, Number, STRINGS, Size};
+use bahn_parameters::ControlModel;
 
 use super::form::{Class, Mnemonic};
-use super::line::{LineError, Operand, label};
+use super::operand::{LineError, Operand, Scanner, label};
 use crate::PlcError;
 use crate::operand::{BitOperand, NumberOperand, TextOperand};
 
@@ -13,110 +14,12 @@ const LITERAL_LENGTH_MAX: usize = 37;
 const MESSAGE_LINE_MAX: u16 = 999;
 const DIALOGUE_LINE_MAX: u16 = 4095;
 
-/// Walks over the characters of a line.
-pub(super) struct Scanner<'a> {
-    characters: &'a [char],
-    at: usize,
-}
-
-impl<'a> Scanner<'a> {
-    pub(super) fn new(characters: &'a [char], at: usize) -> Scanner<'a> {
-        Scanner { characters, at }
-    }
-
-    pub(super) fn at(&self) -> usize {
-        self.at
-    }
-
-    pub(super) fn peek(&self) -> Option<char> {
-        self.characters.get(self.at).copied()
-    }
-
-    pub(super) fn skip_blanks(&mut self) {
-        while self.peek().is_some_and(char::is_whitespace) {
-            self.at += 1;
-        }
-    }
-
-    pub(super) fn take_while(&mut self, wanted: impl Fn(char) -> bool) -> String {
-        let mut taken = String::new();
-        while let Some(character) = self.peek().filter(|c| wanted(*c)) {
-            taken.push(character);
-            self.at += 1;
-        }
-        taken
-    }
-
-    /// Takes a character when it comes next, after blanks.
-    fn take(&mut self, wanted: char) -> bool {
-        let mut ahead = self.at;
-        while self.characters.get(ahead).is_some_and(|c| c.is_whitespace()) {
-            ahead += 1;
-        }
-        let found = self
-            .characters
-            .get(ahead)
-            .is_some_and(|c| c.eq_ignore_ascii_case(&wanted));
-        if found {
-            self.at = ahead + 1;
-        }
-        found
-    }
-
-    /// Takes all of some characters, or none.
-    fn take_all(&mut self, wanted: &str) -> bool {
-        let start = self.at;
-        let found = wanted.chars().all(|character| self.take(character));
-        if !found {
-            self.at = start;
-        }
-        found
-    }
-
-    /// A decimal number behind blanks; `None` when it is larger than any address.
-    fn digits(&mut self, expected: &str) -> Result<Option<u16>, LineError> {
-        self.skip_blanks();
-        let at = self.at;
-        let digits = self.take_while(|c| c.is_ascii_digit());
-        if digits.is_empty() {
-            return Err(LineError::new(PlcError::OperandNotFound, at, expected));
-        }
-        Ok(digits.parse().ok())
-    }
-
-    /// The value behind `K`: `+54`, `-1`, `$FF`. All 32 bits may be given; `$` is two's complement.
-    pub(super) fn constant(&mut self) -> Result<i32, LineError> {
-        self.skip_blanks();
-        let at = self.at;
-        let out_of_range = || LineError::new(PlcError::OperandOutOfRange, at, "constants have 32 bits");
-        let missing = || LineError::new(PlcError::OperandNotFound, at, "value expected");
-        let negative = self.take('-');
-        if !negative {
-            self.take('+');
-        }
-        if self.take('$') {
-            let digits = self.take_while(|c| c.is_ascii_hexdigit());
-            if digits.is_empty() {
-                return Err(missing());
-            }
-            let value = u32::from_str_radix(&digits, 16).map_err(|_| out_of_range())? as i32;
-            return Ok(if negative { value.wrapping_neg() } else { value });
-        }
-        self.skip_blanks();
-        let digits = self.take_while(|c| c.is_ascii_digit());
-        if digits.is_empty() {
-            return Err(missing());
-        }
-        let value: i64 = digits.parse().map_err(|_| out_of_range())?;
-        i32::try_from(if negative { -value } else { value }).map_err(|_| out_of_range())
-    }
-}
-
 /// Reads an operand that is a memory cell, constant, string or field. Also tells whether its letter is one
 /// of the TNC 355: E for I, A for O, Z for C [000:16189-16202].
 pub(super) fn memory_operand(
     mnemonic: Mnemonic,
     scanner: &mut Scanner,
+    model: ControlModel,
 ) -> Result<(Operand, bool), LineError> {
     let at = scanner.at();
     let letter = scanner
@@ -136,7 +39,7 @@ pub(super) fn memory_operand(
             if let Some(error) = wrong_type(Class::Bit) {
                 return Err(error);
             }
-            bit_operand(mnemonic, area(letter), scanner, at)?
+            bit_operand(mnemonic, (area(letter), model), scanner, at)?
         }
         'B' | 'W' | 'D' => {
             let (size, class) = match letter {
@@ -212,16 +115,22 @@ fn width(mnemonic: Mnemonic) -> u16 {
 /// boards by number, but may not leave the area (inferred).
 fn bit_operand(
     mnemonic: Mnemonic,
-    area: BitArea,
+    (area, model): (BitArea, ControlModel),
     scanner: &mut Scanner,
     at: usize,
 ) -> Result<Operand, LineError> {
+    let ranges = ranges(area, model);
+    let is_listed = |bit: &Bit| {
+        let number = bit.number();
+        ranges
+            .iter()
+            .any(|(first, last)| (*first..=*last).contains(&number))
+    };
     let number = scanner.digits("number expected")?;
     let last = number.and_then(|number| number.checked_add(width(mnemonic) - 1));
-    let bit = number
-        .and_then(|number| Bit::new(area, number))
-        .filter(|bit| bit.is_listed());
-    match (bit, last.filter(|last| *last <= area.last())) {
+    let bit = number.and_then(|number| Bit::new(area, number)).filter(is_listed);
+    let end = ranges.last().map_or(0, |(_, last)| *last);
+    match (bit, last.filter(|last| *last <= end)) {
         (Some(bit), Some(_)) => Ok(Operand::Bit(BitOperand {
             bit,
             indexed: scanner.take_all("[X]"),
@@ -229,20 +138,28 @@ fn bit_operand(
         _ => Err(LineError::new(
             PlcError::OperandOutOfRange,
             at,
-            bit_range(area, number),
+            bit_range(area, ranges, number),
         )),
     }
 }
 
-fn bit_range(area: BitArea, number: Option<u16>) -> String {
+/// The numbers of an area; inputs and outputs are those of the control.
+fn ranges(area: BitArea, model: ControlModel) -> &'static [(u16, u16)] {
+    match area {
+        BitArea::I => model.limits().inputs,
+        BitArea::O => model.limits().outputs,
+        BitArea::M | BitArea::T | BitArea::C => area.ranges(),
+    }
+}
+
+fn bit_range(area: BitArea, ranges: &[(u16, u16)], number: Option<u16>) -> String {
     if let (BitArea::M, Some(macro_number @ 3264..=3267)) = (area, number) {
         let module = 200 + (macro_number - 3264) * 10;
         return format!(
             "the TNC 355 macro M{macro_number} is replaced by a module, as module {module} of the manual"
         );
     }
-    let ranges: Vec<String> = area
-        .ranges()
+    let ranges: Vec<String> = ranges
         .iter()
         .map(|(first, last)| format!("{0}{first}-{0}{last}", area.letter()))
         .collect();

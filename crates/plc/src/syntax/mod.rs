@@ -3,6 +3,8 @@
 mod form;
 mod line;
 mod memory;
+mod operand;
 
 pub(crate) use form::{CASE_ENTRY_BYTES, Class, Cost, Mnemonic};
-pub(crate) use line::{Command, LineError, MODULE_NUMBERS, Operand, parse};
+pub(crate) use line::{Command, parse};
+pub(crate) use operand::{LineError, MODULE_NUMBERS, Operand};

@@ -1,13 +1,14 @@
-//! What the colours of the 3D view mean.
+//! What the colours of the views mean.
 
-use super::legend::{DepthShade, Legend, Swatch};
+use super::INK;
+use super::legend::{DepthShade, Legend, Swatch, hatched};
 use super::raycast::{Face, Hit, Vector};
-use super::shade::{is_outline, to_linear};
+use super::shade::{is_outline, screen, to_linear};
 use crate::cutters::Cutter;
 use crate::part::Part;
 use bahn_picture::{Colour, mix};
 
-/// What the colours of the 3D view tell.
+/// What the colours of a view tell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Colouring {
     /// The skin of the blank and what was machined.
@@ -28,12 +29,36 @@ pub(super) struct Palette<'a> {
 }
 
 impl<'a> Palette<'a> {
-    pub fn new(part: &'a Part, colouring: Colouring) -> Palette<'a> {
+    /// `levels` of brightness for depths, 0 for a continuous scale.
+    pub fn new(part: &'a Part, colouring: Colouring, levels: u8) -> Palette<'a> {
         Palette {
             part,
             colouring,
-            depths: DepthShade::new(part, 0),
+            depths: DepthShade::new(part, levels),
         }
+    }
+
+    /// Colour of a column seen from above; `stripe` counts pixels along a diagonal, for the hatching of holes.
+    pub fn column_colour(&self, i: usize, j: usize, stripe: usize) -> Colour {
+        let part = self.part;
+        let height = part.height(i, j);
+        if height <= 0.0 {
+            return hatched(stripe);
+        }
+        let colour = match self.colouring {
+            Colouring::Depth => self.depths.colour(height),
+            _ if height >= part.top() => screen(SKIN),
+            Colouring::Part => screen(CUT),
+            Colouring::Tool => self.cutter_of(i, j).map_or(screen(CUT), tool_colour),
+        };
+        // A line of shadow where a wall stands, so that neighbours of one level do not run together.
+        let wall = 6.0 * part.grid.cell() as f32;
+        let higher = |i: usize, j: usize| part.height(i, j) > height + wall;
+        let edge = higher(i + 1, j)
+            || higher(i, j + 1)
+            || (i > 0 && higher(i - 1, j))
+            || (j > 0 && higher(i, j - 1));
+        if edge { mix(colour, INK, 0.4) } else { colour }
     }
 
     /// Colour of the material that a ray meets: linear red, green, blue.
@@ -65,7 +90,11 @@ impl<'a> Palette<'a> {
                 *at + 1
             };
         }
-        self.part.cutters.as_ref()?.at(column[1] * grid.nx + column[0])
+        self.cutter_of(column[0], column[1])
+    }
+
+    fn cutter_of(&self, i: usize, j: usize) -> Option<Cutter> {
+        self.part.cutters.as_ref()?.at(j * self.part.grid.nx + i)
     }
 
     /// What the colours mean, when they need a word.

@@ -4,9 +4,11 @@
 //! where this is more than roughness: seen over some pixels, the surface has to bend or to break off. Steps of a
 //! finishing cut and the border of a slope that just turns away stay without dashes.
 
+use super::Page;
 use super::shade::{SAMPLES, Seen, dot};
 use super::solid::Camera;
 use bahn_picture::{Colour, Image, mix};
+use rayon::prelude::*;
 
 /// What the lines are made from, for one pixel.
 #[derive(Clone, Copy)]
@@ -67,12 +69,15 @@ fn edge(seen: &[Option<Seen>; SAMPLES * SAMPLES], camera: &Camera) -> f64 {
 }
 
 /// Draws the lines, softened over the neighbouring pixels; `spots` are rows of the whole picture.
-pub(super) fn draw(image: &mut Image, spots: &[Spot]) {
+pub(super) fn draw(image: &mut Image, spots: &[Spot], page: &Page) {
     /// Darkness of the lines.
     const DARKNESS: f64 = 0.4;
     let width = image.width() as usize;
-    let weights = weights(spots, width);
+    let weights = weights(spots, width, page);
     for (y, row) in image.rows_mut().enumerate() {
+        if page.is_stopped() {
+            return;
+        }
         for (x, pixel) in row.iter_mut().enumerate() {
             let at = y * width + x;
             let value = |index: Option<usize>| index.and_then(|k| weights.get(k)).copied().unwrap_or(0.0);
@@ -89,12 +94,13 @@ pub(super) fn draw(image: &mut Image, spots: &[Spot]) {
 }
 
 /// How much of a line goes through each pixel, 0..1.
-pub(super) fn weights(spots: &[Spot], width: usize) -> Vec<f32> {
+pub(super) fn weights(spots: &[Spot], width: usize, page: &Page) -> Vec<f32> {
     let weight = |(at, spot): (usize, &Spot)| match spot.edge {
         0.0 => 0.0,
+        _ if page.is_stopped() => 0.0,
         edge => edge * relief(spots, width, at),
     };
-    spots.iter().enumerate().map(weight).collect()
+    spots.par_iter().enumerate().map(weight).collect()
 }
 
 /// How much the surface bends or breaks off about a pixel, from 0 to 1: how far the pixel lies off the straight line

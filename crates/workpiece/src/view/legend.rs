@@ -93,23 +93,6 @@ impl DepthShade {
         }
     }
 
-    /// Colour of a column; `stripe` counts pixels along a diagonal, for the hatching of holes.
-    pub fn at(&self, part: &Part, i: usize, j: usize, stripe: usize) -> Colour {
-        let height = part.height(i, j);
-        if height <= 0.0 {
-            return hatched(stripe);
-        }
-        let colour = self.colour(height);
-        // A line of shadow where a wall stands, so that neighbours of one level do not run together.
-        let wall = 6.0 * part.grid.cell() as f32;
-        let higher = |i: usize, j: usize| part.height(i, j) > height + wall;
-        let edge = higher(i + 1, j)
-            || higher(i, j + 1)
-            || (i > 0 && higher(i - 1, j))
-            || (j > 0 && higher(i, j - 1));
-        if edge { mix(colour, INK, 0.4) } else { colour }
-    }
-
     /// Colour of a height.
     pub fn colour(&self, height: f32) -> Colour {
         let share = |k: usize, count: usize| k as f64 / count.saturating_sub(1).max(1) as f64;
@@ -289,7 +272,7 @@ fn rectangle([left, top]: [f64; 2], [right, bottom]: [f64; 2]) -> [[f64; 2]; 5] 
 }
 
 /// Hatching where nothing is left, by the count of pixels along a diagonal.
-fn hatched(stripe: usize) -> Colour {
+pub(super) fn hatched(stripe: usize) -> Colour {
     if stripe % 8 < 2 {
         THROUGH_STRIPE
     } else {

@@ -1,10 +1,11 @@
-//! Plan view: the deeper, the darker.
+//! Plan view: the part from above.
 
-use super::legend::DepthShade;
+use super::colouring::{Colouring, Palette};
 use super::scale::Ruler;
-use super::{Area, BACKGROUND, INK, Page};
+use super::{Area, BACKGROUND, INK, Page, way};
 use crate::part::Part;
-use bahn_picture::Image;
+use bahn_picture::{Colour, Image};
+use rayon::prelude::*;
 
 /// Options of the plan view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,34 +13,48 @@ pub struct PlanView {
     /// Number of brightness levels between the upper face and the deepest point; 0 for a continuous
     /// scale. The control has 7 [003:882-883]. A part with few depths has a level for each.
     pub levels: u8,
+    /// What the colours tell.
+    pub colouring: Colouring,
+    /// The way of the tool is drawn over the part; nothing unless
+    /// [`Workpiece::remember_path`](crate::Workpiece::remember_path) was called.
+    pub tool_path: bool,
 }
 
 impl Default for PlanView {
     fn default() -> Self {
-        PlanView { levels: 7 }
+        PlanView {
+            levels: 7,
+            colouring: Colouring::Depth,
+            tool_path: false,
+        }
     }
 }
 
 impl Part {
-    /// The part seen against the tool axis. Brightness tells the height: the deeper the contour, the
-    /// darker the image [003:878-882].
+    /// The part seen against the tool axis. Unless colours are wanted otherwise brightness tells the height: the
+    /// deeper the contour, the darker the image [003:878-882].
     pub fn plan_view(&self, page: &Page, options: &PlanView) -> Image {
         let (mut image, area) = page.start(BACKGROUND);
         let size = page.text_size();
-        let shade = DepthShade::new(self, options.levels);
-        let legend = shade.legend();
+        let palette = Palette::new(self, options.colouring, options.levels);
+        let legend = palette.legend();
         let beside = 3.0 * size;
-        let right = beside + legend.width(size) + size;
+        let right = beside + legend.as_ref().map_or(0.0, |legend| legend.width(size) + size);
         let inner = area.shrunk(5.0 * size, 2.5 * size, right, 3.5 * size);
         let drawing = fit([self.setup.size[0], self.setup.size[1]], &inner);
-        draw_plan(&mut image, self, &drawing, &shade);
+        draw_plan(&mut image, self, &drawing, &palette, page);
+        if options.tool_path {
+            draw_way(&mut image, self, &drawing, page);
+        }
         frame(&mut image, &drawing, page);
         rulers(&mut image, self, &drawing, size);
         let room = Area {
             min: [drawing.max[0] + beside, area.min[1] + 0.9 * size],
             max: [area.max[0], area.max[1] - size],
         };
-        legend.draw(&mut image, &room, drawing.min[1] - 1.6 * size, size);
+        if let Some(legend) = legend {
+            legend.draw(&mut image, &room, drawing.min[1] - 1.6 * size, size);
+        }
         image
     }
 }
@@ -59,36 +74,55 @@ pub(super) fn fit(size: [f64; 2], area: &Area) -> Area {
 }
 
 /// Draws the columns of the part from above, second axis upward.
-pub(super) fn draw_plan(image: &mut Image, part: &Part, drawing: &Area, shade: &DepthShade) {
+pub(super) fn draw_plan(image: &mut Image, part: &Part, drawing: &Area, palette: &Palette, page: &Page) {
+    let [width, height] = drawing.size().map(|side| side as usize);
+    let [left, top] = drawing.min.map(|value| value as usize);
+    let rows = image.rows_mut().skip(top).take(height).enumerate();
+    rows.par_bridge().for_each(|(py, row)| {
+        if page.is_stopped() {
+            return;
+        }
+        let pixels = row.iter_mut().skip(left).take(width);
+        for (px, pixel) in pixels.enumerate() {
+            *pixel = plan_pixel(part, drawing, palette, [px, py]);
+        }
+    });
+}
+
+/// Colour of a pixel of the plan view, by its place in the drawing.
+fn plan_pixel(part: &Part, drawing: &Area, palette: &Palette, [px, py]: [usize; 2]) -> Colour {
     /// Samples along each side of a pixel.
     const SAMPLES: usize = 3;
     let [width, height] = drawing.size();
     let [sx, sy] = [part.setup.size[0] / width, part.setup.size[1] / height];
-    let steps = (SAMPLES * SAMPLES) as f64;
-    for py in 0..height as usize {
-        for px in 0..width as usize {
-            let mut sum = [0.0; 3];
-            for k in 0..SAMPLES * SAMPLES {
-                let offset = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
-                let x = (px as f64 + offset(k % SAMPLES)) * sx;
-                let y = part.setup.size[1] - (py as f64 + offset(k / SAMPLES)) * sy;
-                let colour = match part.grid.cell_at(x, y) {
-                    Some((i, j)) => shade.at(part, i, j, px + py),
-                    None => BACKGROUND,
-                };
-                for (sum, part) in sum.iter_mut().zip(colour) {
-                    *sum += f64::from(part);
-                }
-            }
-            let colour = sum.map(|value| (value / steps).round() as u8);
-            image.blend(
-                drawing.min[0] as i64 + px as i64,
-                drawing.min[1] as i64 + py as i64,
-                colour,
-                1.0,
-            );
+    let mut sum = [0.0; 3];
+    for k in 0..SAMPLES * SAMPLES {
+        let offset = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
+        let x = (px as f64 + offset(k % SAMPLES)) * sx;
+        let y = part.setup.size[1] - (py as f64 + offset(k / SAMPLES)) * sy;
+        let colour = match part.grid.cell_at(x, y) {
+            Some((i, j)) => palette.column_colour(i, j, px + py),
+            None => BACKGROUND,
+        };
+        for (sum, part) in sum.iter_mut().zip(colour) {
+            *sum += f64::from(part);
         }
     }
+    sum.map(|value| (value / (SAMPLES * SAMPLES) as f64).round() as u8)
+}
+
+/// Draws the way of the tool from above: nothing of the part is over the tool.
+pub(super) fn draw_way(image: &mut Image, part: &Part, drawing: &Area, page: &Page) {
+    let Some(trail) = &part.trail else { return };
+    let ([width, height], size) = (drawing.size(), part.setup.size);
+    let project = |[x, y, _]: [f64; 3]| {
+        [
+            drawing.min[0] + width * x / size[0],
+            drawing.max[1] - height * y / size[1],
+            0.0,
+        ]
+    };
+    way::draw(image, trail, project, &[], drawing, page);
 }
 
 pub(super) fn frame(image: &mut Image, drawing: &Area, page: &Page) {

@@ -48,14 +48,21 @@ impl Part {
     pub fn view_3d(&self, page: &Page, options: &View3d) -> Image {
         let (mut image, area) = page.start(BACKGROUND_TOP);
         let size = page.text_size();
-        let palette = Palette::new(self, options.colouring);
+        let palette = Palette::new(self, options.colouring, 0);
         let legend = palette.legend();
         let beside = legend.as_ref().map_or(0.0, |legend| legend.width(size) + size);
         let free = area.shrunk(2.5 * size, 2.5 * size, 2.5 * size + beside, 4.5 * size);
         let camera = Camera::new(self, options, &free);
         let spots = self.render(&mut image, &area, &camera, &palette, page);
         if let (true, Some(trail)) = (options.tool_path, &self.trail) {
-            way::draw(&mut image, trail, &camera, &spots, &area, page.line_width());
+            way::draw(
+                &mut image,
+                trail,
+                |point| camera.project(point),
+                &spots,
+                &area,
+                page,
+            );
         }
         if let Some(legend) = legend {
             let room = Area {
@@ -121,7 +128,7 @@ impl Part {
                 (*pixel, *spot) = pixel_at(camera, &shader, [x, row + first], background);
             }
         });
-        edges::draw(image, &spots);
+        edges::draw(image, &spots, page);
         spots
     }
 }
@@ -170,7 +177,9 @@ pub(super) struct Camera {
 impl Camera {
     fn new(part: &Part, options: &View3d, area: &Area) -> Camera {
         let finite = |value: f64, otherwise: f64| if value.is_finite() { value } else { otherwise };
-        let (sin_a, cos_a) = finite(options.azimuth_deg, 0.0).to_radians().sin_cos();
+        // Whole turns go first: so many times around is the same picture to the last pixel.
+        let azimuth = finite(options.azimuth_deg, 0.0).rem_euclid(360.0);
+        let (sin_a, cos_a) = azimuth.to_radians().sin_cos();
         let (sin_e, cos_e) = finite(options.elevation_deg, 90.0)
             .clamp(-90.0, 90.0)
             .to_radians()
@@ -324,9 +333,9 @@ mod tests {
         };
         let (mut image, area) = page.start(BACKGROUND_TOP);
         let camera = Camera::new(part, &options, &area);
-        let palette = Palette::new(part, Colouring::Part);
+        let palette = Palette::new(part, Colouring::Part, 0);
         let spots = part.render(&mut image, &area, &camera, &palette, &page);
-        let weights = edges::weights(&spots, 300);
+        let weights = edges::weights(&spots, 300, &page);
         (105..165)
             .flat_map(|y| (105..195).map(move |x| y * 300 + x))
             .filter(|at| weights[*at] > 0.1)

@@ -1,9 +1,9 @@
 //! Projection in three planes: plan view and two sections.
 
-use super::legend::DepthShade;
-use super::plan::{draw_plan, frame};
+use super::colouring::{Colouring, Palette};
+use super::plan::{draw_plan, draw_way, frame};
 use super::scale::{Ruler, label_width, number};
-use super::{Area, BACKGROUND, FAINT, INK, Page};
+use super::{Area, BACKGROUND, FAINT, INK, Page, way};
 use crate::part::Part;
 use bahn_picture::Anchor;
 use bahn_picture::{Colour, Image, mix};
@@ -21,7 +21,7 @@ pub enum Projection {
 }
 
 /// Options of the projection in three planes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreePlanes {
     /// Arrangement of the views.
     pub projection: Projection,
@@ -30,17 +30,49 @@ pub struct ThreePlanes {
     pub sections: [Option<f64>; 2],
     /// Brightness levels of the plan view, as in [`PlanView`](super::PlanView).
     pub levels: u8,
+    /// What the colours of the plan view tell.
+    pub colouring: Colouring,
+    /// The way of the tool is drawn over all three views; nothing unless
+    /// [`Workpiece::remember_path`](crate::Workpiece::remember_path) was called.
+    pub tool_path: bool,
+}
+
+impl Default for ThreePlanes {
+    fn default() -> Self {
+        ThreePlanes {
+            projection: Projection::default(),
+            sections: [None; 2],
+            levels: 0,
+            colouring: Colouring::Depth,
+            tool_path: false,
+        }
+    }
 }
 
 impl Part {
     /// Plan view and two sections as in a technical drawing [003:891-895].
     pub fn three_planes(&self, page: &Page, options: &ThreePlanes) -> Image {
         let (mut image, area) = page.start(BACKGROUND);
-        let sheet = Sheet::new(self, page, options, &area);
-        let shade = DepthShade::new(self, options.levels);
-        draw_plan(&mut image, self, &sheet.plan, &shade);
-        sheet.draw_front(&mut image);
-        sheet.draw_side(&mut image);
+        let size = page.text_size();
+        let palette = Palette::new(self, options.colouring, options.levels);
+        // The sections tell the depths.
+        let legend = palette.legend().filter(|_| options.colouring == Colouring::Tool);
+        let beside = legend.as_ref().map_or(0.0, |legend| legend.width(size) + size);
+        let sheet = Sheet::new(self, page, options, &area.shrunk(0.0, 0.0, beside, 0.0));
+        draw_plan(&mut image, self, &sheet.plan, &palette, page);
+        sheet.draw_front(&mut image, page);
+        sheet.draw_side(&mut image, page);
+        if options.tool_path {
+            draw_way(&mut image, self, &sheet.plan, page);
+            sheet.draw_ways(&mut image, page);
+        }
+        if let Some(legend) = legend {
+            let room = Area {
+                min: [area.max[0] - beside, area.min[1] + size],
+                max: [area.max[0], area.max[1] - size],
+            };
+            legend.draw(&mut image, &room, room.min[1], size);
+        }
         for drawing in [&sheet.plan, &sheet.front, &sheet.side] {
             frame(&mut image, drawing, page);
         }
@@ -118,10 +150,10 @@ impl<'a> Sheet<'a> {
     }
 
     /// Front view: the section at the second axis, looking along it.
-    fn draw_front(&self, image: &mut Image) {
+    fn draw_front(&self, image: &mut Image, page: &Page) {
         let grid = &self.part.grid;
         let row = ((self.sections[1] / grid.dy) as usize).min(grid.ny - 1);
-        self.draw_section(image, &self.front, |share, back| {
+        self.draw_section(image, &self.front, page, |share, back| {
             let i = ((share * grid.nx as f64) as usize).min(grid.nx - 1);
             (row + back < grid.ny).then(|| self.part.height(i, row + back))
         });
@@ -129,15 +161,15 @@ impl<'a> Sheet<'a> {
 
     /// Side view: the section at the first axis, looking along it from the left (first angle) or
     /// against it from the right (third angle).
-    fn draw_side(&self, image: &mut Image) {
+    fn draw_side(&self, image: &mut Image, page: &Page) {
         let grid = &self.part.grid;
         let column = ((self.sections[0] / grid.dx) as usize).min(grid.nx - 1);
         let row = |share: f64| ((share * grid.ny as f64) as usize).min(grid.ny - 1);
         match self.projection {
-            Projection::FirstAngle => self.draw_section(image, &self.side, |share, back| {
+            Projection::FirstAngle => self.draw_section(image, &self.side, page, |share, back| {
                 (column + back < grid.nx).then(|| self.part.height(column + back, row(1.0 - share)))
             }),
-            Projection::ThirdAngle => self.draw_section(image, &self.side, |share, back| {
+            Projection::ThirdAngle => self.draw_section(image, &self.side, page, |share, back| {
                 column.checked_sub(back).map(|i| self.part.height(i, row(share)))
             }),
         }
@@ -145,11 +177,20 @@ impl<'a> Sheet<'a> {
 
     /// Draws a section and what is seen behind it. `height(share, back)` is the height at a share of
     /// the drawing's width, so many columns behind the section.
-    fn draw_section(&self, image: &mut Image, drawing: &Area, height: impl Fn(f64, usize) -> Option<f32>) {
+    fn draw_section(
+        &self,
+        image: &mut Image,
+        drawing: &Area,
+        page: &Page,
+        height: impl Fn(f64, usize) -> Option<f32>,
+    ) {
         let [width, tall] = drawing.size();
         let per_mm = tall / self.part.setup.size[2];
         let depth = self.part.grid.nx.max(self.part.grid.ny) as f64;
         for px in 0..width as usize {
+            if page.is_stopped() {
+                return;
+            }
             let x = drawing.min[0] + px as f64;
             let share = (px as f64 + 0.5) / width;
             let pixel = |height: f32| drawing.max[1] - f64::from(height) * per_mm;
@@ -166,6 +207,27 @@ impl<'a> Sheet<'a> {
             }
         }
         self.contour(image, drawing, |share| height(share, 0));
+    }
+
+    /// The way of the tool in front and side view, also before and behind the sections.
+    fn draw_ways(&self, image: &mut Image, page: &Page) {
+        let Some(trail) = &self.part.trail else { return };
+        let size = self.part.setup.size;
+        let up = |view: &Area, z: f64| view.max[1] - view.size()[1] * z / size[2];
+        let front = |[x, _, z]: [f64; 3]| {
+            let view = &self.front;
+            [view.min[0] + view.size()[0] * x / size[0], up(view, z), 0.0]
+        };
+        way::draw(image, trail, front, &[], &self.front, page);
+        let side = |[_, y, z]: [f64; 3]| {
+            let (view, share) = (&self.side, y / size[1]);
+            let share = match self.projection {
+                Projection::FirstAngle => 1.0 - share,
+                Projection::ThirdAngle => share,
+            };
+            [view.min[0] + view.size()[0] * share, up(view, z), 0.0]
+        };
+        way::draw(image, trail, side, &[], &self.side, page);
     }
 
     /// Hatching at 45 degrees of the cut face in one column of pixels.

@@ -1,33 +1,37 @@
-//! The way of the tool over the 3D view: feed solid, rapid traverse dashed, nothing where the part hides it.
+//! The way of the tool over a view: feed solid, rapid traverse dashed, nothing where the part hides it.
 
-use super::Area;
 use super::edges::Spot;
-use super::solid::Camera;
+use super::raycast::Vector;
+use super::{Area, Page};
 use crate::trail::{Move, Trail};
 use bahn_picture::{Colour, Image};
 
 /// A point of the picture and its distance from the eye, pixels.
 type Seen = [f64; 3];
 
-/// Draws the way in an area of the picture.
+/// Draws the way in an area of the picture, all of it where there are no spots. `project` gives a point of the
+/// blank its place in the picture.
 pub(super) fn draw(
     image: &mut Image,
     trail: &Trail,
-    camera: &Camera,
+    project: impl Fn(Vector) -> Seen,
     spots: &[Spot],
     area: &Area,
-    width: f64,
+    page: &Page,
 ) {
     let mut pen = Pen {
         area: *area,
         spots,
         columns: image.width() as usize,
         image,
-        width,
+        width: page.line_width(),
     };
     for movement in trail.moves() {
+        if page.is_stopped() {
+            return;
+        }
         let Move { from, to, rapid } = movement;
-        let [from, to] = [from, to].map(|point| camera.project(point.map(f64::from)));
+        let [from, to] = [from, to].map(|point| project(point.map(f64::from)));
         pen.line(from, to, *rapid);
     }
 }

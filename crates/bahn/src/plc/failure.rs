@@ -1,0 +1,37 @@
+//! Run-time errors of a PLC program, at their lines.
+
+use bahn_plc::{PlcProgram, RuntimeError};
+
+use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+
+/// Prints a run-time error with its line.
+pub(super) fn print(program: &PlcProgram, error: &RuntimeError) {
+    let file = program.files.iter().find(|file| file.name == error.file);
+    let index = (error.line as usize).saturating_sub(1);
+    let text = file
+        .and_then(|file| file.lines.get(index))
+        .cloned()
+        .unwrap_or_default();
+    let code = super::list::split_comment(&text).0;
+    let start = code.chars().take_while(|c| c.is_whitespace()).count();
+    let length = code.trim().chars().count();
+    diagnostics::print(&Diagnostic {
+        severity: Severity::Error,
+        title: &format!("{} {}", error.error.number(), error.error.text()),
+        path: &error.file,
+        marked: Marked {
+            line: error.line,
+            columns: Some((
+                u32::try_from(start + 1).unwrap_or(1),
+                u32::try_from(length).unwrap_or(1),
+            )),
+            text,
+        },
+        label: match error.job {
+            Some(job) => format!("submit job {job} stopped the PLC here"),
+            None => "the PLC stopped here".to_owned(),
+        },
+        help: Some(&format!("{} {}", error.error.cause(), error.error.cure())),
+    });
+    diagnostics::print_line("");
+}

@@ -1,0 +1,88 @@
+//! `bahn test` on the control of a machine, and with parameters of the command line.
+#![allow(clippy::panic, reason = "a helper that panics fails its test")]
+
+mod support;
+
+use support::Folder;
+
+/// FN14 shows the texts of the machine: 300 is PLC message 0, 400 dialogue 0 [003:4364-4367].
+#[test]
+fn fn14_shows_the_texts_of_the_machine() {
+    let folder = Folder::with_program("FN14: ERROR= 302");
+    let message = |options: &str| {
+        let run = folder.bahn(&format!("test main.H --format json {options}"));
+        run.json()["error"]["message"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned()
+    };
+    let made = folder.bahn("machine new m --model tnc360");
+    assert_eq!(made.code(), 0, "{}", made.err());
+    let description = folder.read("m/machine.toml");
+    let texts = |key: &str| {
+        let name = description
+            .lines()
+            .find_map(|line| {
+                line.strip_prefix(key)?
+                    .trim()
+                    .strip_prefix('=')?
+                    .trim()
+                    .strip_prefix('"')
+            })
+            .map(|name| name.trim_end_matches('"').to_owned());
+        name.unwrap_or_else(|| panic!("{key} in {description}"))
+    };
+    let file = format!("m/{}", texts("plc_messages"));
+    folder.write(&file, "NONE\nONE\nCLOSE THE DOOR\n");
+    assert_eq!(message("--model tnc360"), "PLC ERROR 02");
+    assert_eq!(message("--machine m"), "CLOSE THE DOOR");
+    // Model, parameters and tools are those of the machine, too.
+    let run = folder.bahn("test main.H --machine m --model tnc360");
+    assert_eq!(run.code(), 2, "{}", run.err());
+    folder.write(
+        "main.H",
+        "BEGIN PGM MAIN MM\nTOOL CALL 77 Z S500\nEND PGM MAIN MM\n",
+    );
+    assert_eq!(message("--machine m"), "TOOL NOT DEFINED");
+    let text = folder.bahn("test main.H --machine m --report shelf.json");
+    assert!(
+        text.out().contains("TOOL NOT DEFINED"),
+        "{}{}",
+        text.out(),
+        text.err()
+    );
+    folder.write("m/plc/MAIN.PLC", "EM X\n");
+    let broken = folder.bahn("test main.H --machine m");
+    assert_eq!(broken.code(), 2);
+    assert!(
+        broken.err().contains("`bahn machine check` shows all"),
+        "{}",
+        broken.err()
+    );
+}
+
+/// A parameter of the command line that does nothing here, or only part of it, is told so.
+#[test]
+fn parameters_of_the_command_line_say_what_they_do_not() {
+    let folder = Folder::with_program("L X+1 R0 FMAX");
+    let made = folder.bahn("machine new m --model tnc415b");
+    assert_eq!(made.code(), 0, "{}", made.err());
+    for command in [
+        "test main.H",
+        "test main.H --report shelf.json",
+        "run main.H --machine m --fresh --no-graphics",
+    ] {
+        let run = folder.bahn(&format!("{command} --mp 7350=5,7680=1,1060.0=2"));
+        assert_eq!(run.code(), 0, "{command}: {}", run.err());
+        let said = run.err();
+        assert!(
+            said.contains("warning: --mp 7350=5: MP7350 has no effect here: colours of the screen"),
+            "{command}: {said}"
+        );
+        assert!(
+            said.contains("--mp 7680=1: MP7680 acts in part here, without: "),
+            "{command}: {said}"
+        );
+        assert!(!said.contains("MP1060"), "{command}: {said}");
+    }
+}

@@ -1,0 +1,225 @@
+//! Numbers that are written finer than a control takes them.
+//!
+//! The manuals give the input resolutions [003:7825] [000:6419-6424] and not what becomes of a program from elsewhere
+//! that is finer: its numbers are rounded, half steps away from zero *(inferred)*. Q parameters are calculated with
+//! and keep what they have.
+
+use bahn_parameters::ControlModel;
+use bahn_path::Axis;
+
+use crate::{Coordinates, CycleBlock, CycleWord, Feed, Operation, Unit, Value, Word};
+
+/// Input steps in an inch are ten times as fine as in a millimetre: 0.0001 inch for 1 um [003:7825]; others than TNC
+/// 360 *(inferred)*.
+const INCH_FACTOR: f64 = 10.0;
+/// Part of a step that comes from reading decimals.
+const SAME: f64 = 1e-3;
+/// What is so near to half a step is half a step.
+const HALF: f64 = 1e-6;
+/// Added and taken away again it leaves the nearest whole number of what is below 2^51.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
+/// Steps of a dwell time in a second [003:6474]; others than TNC 360 *(inferred)*.
+const DWELL_STEPS: f64 = 1000.0;
+
+/// The input steps of a control, for programs of one unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InputSteps {
+    /// Steps in a millimetre or inch. F counts in them, too *(inferred)*.
+    length: f64,
+    /// Steps in a degree.
+    angle: f64,
+    /// Steps in a degree of cycle 13.
+    orientation: f64,
+}
+
+impl InputSteps {
+    /// Those of a model.
+    pub fn of(model: ControlModel, unit: Unit) -> InputSteps {
+        let limits = model.limits();
+        let steps = |step: f64| (1.0 / step).round();
+        InputSteps {
+            length: match unit {
+                Unit::Mm => steps(limits.resolution_mm),
+                Unit::Inch => steps(limits.resolution_mm) * INCH_FACTOR,
+            },
+            angle: steps(limits.resolution_deg),
+            orientation: steps(limits.orientation_step_deg),
+        }
+    }
+
+    /// The step of lengths, mm or inches.
+    pub fn length(&self) -> f64 {
+        1.0 / self.length
+    }
+
+    /// The step of angles, degrees.
+    pub fn angle(&self) -> f64 {
+        1.0 / self.angle
+    }
+
+    /// Rounds the numbers of a block to the input steps. Whether one was finer.
+    ///
+    /// ```
+    /// use bahn_parameters::ControlModel;
+    /// use bahn_program::{InputSteps, Program, Unit};
+    ///
+    /// let program = |x| Program::from_bytes("1.H", format!("BEGIN PGM 1 MM\nL X{x}\n").into_bytes());
+    /// let mut block = program("+1.0006").decode(0).blocks[1].clone();
+    /// assert!(InputSteps::of(ControlModel::Tnc360, Unit::Mm).round(&mut block.operation));
+    /// assert_eq!(block, program("+1.001").decode(0).blocks[1]);
+    /// ```
+    pub fn round(&self, operation: &mut Operation) -> bool {
+        let length = |value: &mut Value| round(value, self.length);
+        match operation {
+            Operation::Motion(motion) => {
+                let mut finer = self.coordinates(&mut motion.coordinates);
+                if let Some(word) = &mut motion.polar_radius {
+                    finer |= length(&mut word.value);
+                }
+                if let Some(word) = &mut motion.polar_angle {
+                    finer |= round(&mut word.value, self.angle);
+                }
+                if let Some(Feed::Value(feed)) = &mut motion.feed {
+                    finer |= length(feed);
+                }
+                finer | each(&mut motion.radius, length)
+            }
+            Operation::BlankMin(coordinates, _)
+            | Operation::BlankMax(coordinates)
+            | Operation::CircleCentre(coordinates) => self.coordinates(coordinates),
+            Operation::ToolDefinition {
+                length: a, radius: b, ..
+            }
+            | Operation::ToolCall {
+                delta_length: a,
+                delta_radius: b,
+                ..
+            } => each(a, length) | each(b, length),
+            Operation::Rounding { radius: a, feed: b } | Operation::Chamfer { length: a, feed: b } => {
+                length(a) | each(b, length)
+            }
+            Operation::Cycle(block) | Operation::Probe(block) => self.cycle(block),
+            _ => false,
+        }
+    }
+
+    fn coordinates(&self, coordinates: &mut Coordinates) -> bool {
+        let parameters = coordinates.parameters();
+        let mut finer = false;
+        for axis in coordinates
+            .axes()
+            .iter()
+            .filter(|axis| !parameters.contains(*axis))
+        {
+            let number = coordinates.numbers()[axis.index()];
+            if let Some(value) = rounded(number, self.of_axis(axis)) {
+                let incremental = coordinates.incremental().contains(axis);
+                let value = Value::Number(value);
+                coordinates.set(axis, Word { value, incremental });
+                finer = true;
+            }
+        }
+        finer
+    }
+
+    fn of_axis(&self, axis: Axis) -> f64 {
+        if axis.is_rotary() { self.angle } else { self.length }
+    }
+
+    fn cycle(&self, block: &mut CycleBlock) -> bool {
+        // Angles of pockets and contours have the steps of their lengths in programs in mm, and finer ones in inches.
+        let numbers = match block.number {
+            1..=6 | 15..=18 | 20..=25 | 27 => Some(self.length),
+            9 => Some(DWELL_STEPS),
+            10 | 19 => Some(self.angle),
+            13 => Some(self.orientation),
+            // Factors, names, and what means something else.
+            _ => None,
+        };
+        let mut finer = false;
+        for word in &mut block.words {
+            finer |= match word {
+                CycleWord::Number(value) => numbers.is_some_and(|steps| round(value, steps)),
+                CycleWord::Coordinate(axis, word) => round(&mut word.value, self.of_axis(*axis)),
+                CycleWord::Feed(Feed::Value(value)) => round(value, self.length),
+                _ => false,
+            };
+        }
+        finer
+    }
+}
+
+fn each(value: &mut Option<Value>, round: impl FnMut(&mut Value) -> bool) -> bool {
+    value.as_mut().is_some_and(round)
+}
+
+/// Rounds a number that stands in the program.
+fn round(value: &mut Value, steps: f64) -> bool {
+    let Value::Number(number) = value else {
+        return false;
+    };
+    match rounded(*number, steps) {
+        Some(near) => {
+            *number = near;
+            true
+        }
+        None => false,
+    }
+}
+
+/// The nearest number of whole steps, when a number is none.
+#[inline]
+fn rounded(number: f64, steps: f64) -> Option<f64> {
+    let count = number * steps;
+    // Nearly all numbers are whole, and this is asked of each one: no call of a function for them.
+    let nearest = (count + WHOLE) - WHOLE;
+    if (count - nearest).abs() <= SAME {
+        return None;
+    }
+    finer(count, steps)
+}
+
+#[cold]
+fn finer(count: f64, steps: f64) -> Option<f64> {
+    let whole = (count + HALF.copysign(count)).round();
+    ((count - whole).abs() > SAME).then(|| whole / steps)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+    use super::*;
+
+    #[test]
+    fn half_steps_go_away_from_zero() {
+        for (number, expected) in [
+            (1.00005, Some(1.0001)),
+            (-1.00005, Some(-1.0001)),
+            (1.000_04, Some(1.0)),
+            (1.0001, None),
+            (99_999.999_9, None),
+            (99_999.999_96, Some(100_000.0)),
+            (0.000_01, Some(0.0)),
+            (f64::NAN, None),
+            (1e300, None),
+        ] {
+            assert_eq!(rounded(number, 1e4), expected, "{number}");
+        }
+    }
+
+    /// All that can be written with as many places as the control takes stays as it is.
+    #[test]
+    fn what_is_no_finer_stays() {
+        for count in (-999_999_999i64..=999_999_999).step_by(7919) {
+            let number: f64 = format!(
+                "{}{:05}.{:04}",
+                if count < 0 { "-" } else { "+" },
+                count.abs() / 10_000,
+                count.abs() % 10_000
+            )
+            .parse()
+            .unwrap();
+            assert_eq!(rounded(number, 1e4), None, "{number}");
+        }
+    }
+}
