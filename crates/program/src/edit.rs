@@ -8,7 +8,7 @@ use bahn_parameters::MessageId;
 use crate::language::{Landmark, WordKind};
 use crate::lines::{RawBlock, lines};
 use crate::rope::{Rope, pieces};
-use crate::text::{BYTE_ORDER_MARK, is_blank};
+use crate::text::{BYTE_ORDER_MARK, is_blank, trim};
 use crate::{Block, FormatOptions, Operation, Program};
 
 /// The character of a byte-order mark, which is no text wherever it stands.
@@ -141,8 +141,11 @@ impl Program {
 
     /// Takes from the end of whole lines what would join the text behind them.
     fn unjoin(&self, text: &mut Vec<u8>, behind: &[u8]) {
+        let Some(next) = lines(behind).find(|line| !trim(line).is_empty()) else {
+            return;
+        };
         let length = text.len();
-        text.extend_from_slice(lines(behind).next().unwrap_or_default());
+        text.extend_from_slice(next);
         let last = self.language.cut(text, 1).last().copied();
         text.truncate(length);
         let Some(last) = last.filter(|last| last.start < length) else {

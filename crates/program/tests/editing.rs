@@ -218,6 +218,25 @@ fn who_runs_a_version_keeps_it() {
     assert_eq!(String::from_utf8(renumbered.to_bytes()).unwrap(), expected);
 }
 
+/// A rule of `~` joins nothing, and stays.
+#[test]
+fn comments_around_an_edit_stay() {
+    let program = read("; ~~~\n; a ~\n3 L X+1\n");
+    let text = "\n\nL Y+1";
+    let edited = program.edit(&Edit::Insert { before: 2, text }).unwrap();
+    assert_eq!(
+        (edited.text_of(1), edited.text_of(2)),
+        ("; ~~~".into(), "L Y+1".into())
+    );
+    // What would join the new text joins nothing.
+    let edited = program.edit(&Edit::Insert { before: 3, text }).unwrap();
+    assert_eq!(
+        (edited.text_of(2), edited.text_of(3)),
+        ("; a".into(), "L Y+1".into())
+    );
+    is_as_read(&edited);
+}
+
 /// At the front of a file it would be no text any more.
 #[test]
 fn byte_order_marks_are_no_text() {
