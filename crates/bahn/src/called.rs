@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use bahn_program::FILE_TYPES;
+
 /// The file that CALL PGM with this name means in a folder, called from a file with some ending: the name as
 /// written, then with `.H`, `.I` and the ending of the caller. Case does not matter, but the name as it is
 /// written goes before others.
@@ -44,7 +46,8 @@ fn candidates(name: &str, callers_ending: &str) -> Vec<String> {
     if name.is_empty() || name == "." || name == ".." {
         return Vec::new();
     }
-    let mut names = vec![name.to_owned(), format!("{name}.H"), format!("{name}.I")];
+    let mut names = vec![name.to_owned()];
+    names.extend(FILE_TYPES.iter().map(|of| format!("{name}.{}", of.extension)));
     if !callers_ending.is_empty() {
         names.push(format!("{name}.{callers_ending}"));
     }

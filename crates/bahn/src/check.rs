@@ -158,7 +158,7 @@ fn examine(program: Arc<Program>, settings: &Settings, interrupt: &Interrupt) ->
         limits: settings.model.limits(),
         inch_feed: settings.inch_feed(),
     }));
-    if program.is_din_iso() || faults.len() >= MAX_DIAGNOSTICS {
+    if program.refused().is_some() || faults.len() >= MAX_DIAGNOSTICS {
         // Not a program that can be executed.
         return (
             vec![program],

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use bahn_path::{Barrier, BlockRef, Position};
+use bahn_program::Operation;
 
 use crate::run::Run;
 use crate::{Ended, Interpreter};
@@ -110,4 +111,20 @@ impl Interpreter {
     pub fn checkpoints(&self) -> usize {
         self.kept.as_ref().map_or(0, Kept::count)
     }
+}
+
+/// Whether a block can move or output something.
+pub(crate) fn acts(operation: &Operation) -> bool {
+    !matches!(
+        operation,
+        Operation::Calculate { .. }
+            | Operation::Formula { .. }
+            | Operation::Jump { .. }
+            | Operation::Label(_)
+            | Operation::CallLabel { .. }
+            | Operation::Comment(_)
+            | Operation::Begin(_)
+            | Operation::End(_)
+            | Operation::CircleCentre(_)
+    )
 }

@@ -35,6 +35,8 @@ pub(crate) struct Code {
     called: usize,
     /// Chunks in memory in the order they came: the oldest goes first.
     kept: VecDeque<(u16, usize)>,
+    /// More of the main program may come.
+    growing: bool,
 }
 
 struct Loaded {
@@ -87,6 +89,7 @@ impl Code {
             programs: Vec::new(),
             called: 1,
             kept: VecDeque::new(),
+            growing: main.is_growing(),
         };
         code.add(main);
         code
@@ -133,6 +136,26 @@ impl Code {
         let new = usize::from(index) >= self.called;
         self.called = self.called.max(usize::from(index) + 1);
         new
+    }
+
+    /// Whether more of the main program may come.
+    #[inline]
+    pub fn is_growing(&self) -> bool {
+        self.growing
+    }
+
+    /// A later version of the main program. The chunk at the end of what was known is decoded again.
+    pub fn grow(&mut self, program: Arc<Program>) {
+        self.growing = program.is_growing();
+        let Some(main) = self.programs.first_mut() else {
+            return;
+        };
+        let known = (main.program.known().end / Program::CHUNK_SIZE) as usize;
+        main.chunks.truncate(known);
+        main.chunks.resize_with(program.chunk_count() as usize, || None);
+        main.program = program;
+        self.kept
+            .retain(|(program, chunk)| *program != 0 || *chunk < known);
     }
 
     pub fn program(&self, index: u16) -> Option<&Arc<Program>> {

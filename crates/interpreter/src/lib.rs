@@ -23,6 +23,7 @@ mod cycles;
 mod error;
 mod flow;
 mod functions;
+mod growing;
 mod modal;
 mod output;
 mod outside;
@@ -55,7 +56,7 @@ pub use settings::{
 };
 pub use work::{Done, Work};
 
-use crate::checkpoints::Kept;
+use crate::checkpoints::{Kept, acts};
 use crate::code::{Code, Fetched};
 use crate::contour::Contour;
 use crate::cycles::{ContourJob, Halt, contour_plane};
@@ -97,6 +98,8 @@ pub struct Interpreter {
     /// Long computations are left to whoever drives, and the one that is pending.
     defers: bool,
     pending: Pending,
+    /// A main program that is still being transferred has no block to go on with.
+    starved: bool,
     /// End of the last element that was handed out.
     position: Position,
 }
@@ -130,6 +133,7 @@ impl Interpreter {
             work: None,
             defers: false,
             pending: Pending::None,
+            starved: false,
             position,
         };
         interpreter.look_at_feeds(0);
@@ -292,6 +296,9 @@ impl Interpreter {
             if let Err(fault) = self.step() {
                 self.fail(fault, at);
             }
+            if self.starved {
+                return;
+            }
             // A contour that was broken off leaves its block where it is.
             let stays = self.run.at.block_ref() == at;
             if (stays || self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD)) && self.is_interrupted() {
@@ -321,6 +328,9 @@ impl Interpreter {
     #[inline]
     fn step(&mut self) -> Result<(), Fault> {
         let at = self.run.at.block_ref();
+        if self.code.is_growing() && self.must_wait(at) {
+            return Ok(());
+        }
         let Some(Fetched { block, next, rounded }) = self.code.block(at.program, at.block) else {
             return self.end_of_program();
         };
@@ -581,22 +591,6 @@ fn no_contours() -> Fault {
     Fault::new(
         MessageId::CyclIncomplete,
         "cycle 14 CONTOUR GEOMETRY is not defined",
-    )
-}
-
-/// Whether a block can move or output something.
-fn acts(operation: &Operation) -> bool {
-    !matches!(
-        operation,
-        Operation::Calculate { .. }
-            | Operation::Formula { .. }
-            | Operation::Jump { .. }
-            | Operation::Label(_)
-            | Operation::CallLabel { .. }
-            | Operation::Comment(_)
-            | Operation::Begin(_)
-            | Operation::End(_)
-            | Operation::CircleCentre(_)
     )
 }
 

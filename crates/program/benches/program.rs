@@ -8,7 +8,7 @@
 
 use std::fmt::Write;
 
-use bahn_program::{Block, Chunk, FormatOptions, Operation, Program, format_program};
+use bahn_program::{Block, Chunk, Edit, FormatOptions, Operation, Program, format_program};
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
 
@@ -111,4 +111,38 @@ fn format(bencher: Bencher, name: &str) {
         write!(listing, "{}", format_program(&program, FormatOptions::default())).unwrap();
         black_box(&listing);
     });
+}
+
+/// Edits in the middle of a program of a million blocks, as long as the longest in use, and of one of a tenth of
+/// that; the new version finds its labels.
+#[divan::bench(args = [100_000, 1_000_000], sample_count = 100)]
+fn edit(bencher: Bencher, blocks: usize) {
+    let program = labelled(blocks);
+    let middle = blocks as u32 / 2;
+    bencher.bench_local(|| {
+        let text = "L X+1 Y+2 R0 FMAX";
+        let edit = Edit::Insert { before: middle, text };
+        let edited = program.edit(&edit).ok();
+        black_box(edited.as_ref().and_then(|edited| edited.label(1)));
+        edited
+    });
+}
+
+#[divan::bench(args = [100_000], sample_count = 20)]
+fn renumber(bencher: Bencher, blocks: usize) {
+    let program = labelled(blocks);
+    bencher.bench_local(|| program.edit(&Edit::Renumber).ok());
+}
+
+/// A program with a subprogram for every hundred blocks.
+fn labelled(blocks: usize) -> Program {
+    let mut text = String::from("BEGIN PGM BENCH MM\n");
+    for (number, line) in short_lines().lines().skip(1).take(blocks).enumerate() {
+        match number % 100 {
+            0 => writeln!(text, "LBL {}", number / 100 % 60_000 + 1).unwrap(),
+            _ => writeln!(text, "{line}").unwrap(),
+        }
+    }
+    text.push_str("END PGM BENCH MM\n");
+    Program::from_bytes("BENCH.H", text.into_bytes())
 }

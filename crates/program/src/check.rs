@@ -4,8 +4,8 @@ use bahn_parameters::MessageId::{self, BlockNotKnown, EntryValueIncorrect};
 use bahn_parameters::{InchFeed, Limits};
 
 use crate::{
-    Calculation, Coordinates, CycleBlock, CycleWord, Expression, Feed, Motion, MotionKind, Operation, Unit,
-    Value,
+    Calculation, Coordinates, CycleBlock, CycleFunction, CycleWord, Expression, Feed, Motion, MotionKind,
+    Operation, Quantity, Unit, Value, cycle,
 };
 
 /// Greatest Q parameter number of any control; a greater one is a fault whatever the model.
@@ -146,22 +146,28 @@ impl Check<'_> {
                 format!("the control has no cycle {}", block.number),
             );
         }
-        block.words.iter().find_map(|word| match (block.number, word) {
-            (_, CycleWord::Feed(feed)) => self.feed(Some(*feed)),
-            (_, CycleWord::Coordinate(axis, word)) => {
+        let cycle = cycle(CycleFunction::Definition, block.number);
+        // Parameters of machining cycles are judged at their call.
+        let acting = cycle.filter(|cycle| cycle.acts_at_definition);
+        let parameters = acting.map_or(&[][..], |cycle| cycle.block(block.sub));
+        let quantity = parameters.first().map(|parameter| parameter.quantity);
+        block.words.iter().find_map(|word| match word {
+            CycleWord::Feed(feed) => self.feed(Some(*feed)),
+            CycleWord::Coordinate(axis, word) => {
                 let max = self.limits.coordinate_max;
                 let scale = if axis.is_rotary() { 1.0 } else { self.mm() };
                 self.within(&axis.to_string(), word.value, -max, max, scale)
             }
-            (_, CycleWord::Labels(labels)) => self.contour_labels(labels),
-            (9, CycleWord::Number(value)) => self.within("9.1", *value, 0.0, self.limits.dwell_max_s, 1.0),
-            (10, CycleWord::Number(value)) => {
-                let max = self.limits.rotation_max_deg;
-                self.within("10.1", *value, -max, max, 1.0)
-            }
-            (11, CycleWord::Number(value)) => {
-                let [min, max] = self.limits.scaling_range;
-                self.within("11.1", *value, min, max, 1.0)
+            CycleWord::Labels(labels) => self.contour_labels(labels),
+            CycleWord::Number(value) => {
+                let [min, max] = match quantity? {
+                    Quantity::Dwell => [0.0, self.limits.dwell_max_s],
+                    Quantity::Rotation => [-self.limits.rotation_max_deg, self.limits.rotation_max_deg],
+                    Quantity::Factor => self.limits.scaling_range,
+                    _ => return None,
+                };
+                let address = format!("{}.{}", block.number, block.sub);
+                self.within(&address, *value, min, max, 1.0)
             }
             _ => None,
         })

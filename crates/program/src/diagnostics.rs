@@ -7,12 +7,9 @@ use bahn_parameters::MessageId::{
     LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
 };
 
-use crate::lines::line_at;
-use crate::parse::whole_program;
-use crate::program::text_start;
 use crate::sequence::{Sequence, SequenceFault};
 use crate::text::trim_continuation;
-use crate::{CycleWord, Header, NumberedBlock, Operation, Program, Reading, check_limits};
+use crate::{BlockError, CycleWord, Header, NumberedBlock, Operation, Program, Reading, check_limits};
 
 /// Most diagnostics of one program; with more it is not a program at all.
 pub const MAX_DIAGNOSTICS: usize = 1000;
@@ -87,9 +84,9 @@ impl Program {
             found: Vec::new(),
             more: Uncounted::default(),
         };
-        if self.is_din_iso() {
+        if let Some(reason) = self.refused() {
             // One line says all.
-            pass.error(BlockNotSupported, 1, "", &whole_program());
+            pass.error(BlockNotSupported, 1, "", reason);
             return (pass.found, pass.more);
         }
         pass.around_the_front();
@@ -124,20 +121,6 @@ impl Program {
             help: message.remedy(),
         }
     }
-
-    /// A line of the file without its line end, numbered from 1.
-    pub fn text_of_line(&self, line: u32) -> String {
-        // The last chunk that begins at or before the line, so that only some lines are passed over.
-        let chunks = &self.index().chunks;
-        let chunk = chunks.partition_point(|start| start.line <= line).checked_sub(1);
-        let start = chunk
-            .and_then(|chunk| chunks.get(chunk))
-            .filter(|start| start.line > 1);
-        let front = (text_start(self.file()), 1);
-        let (byte, first) = start.map_or(front, |start| (start.byte as usize, start.line));
-        let rest = self.file().get(byte..).unwrap_or_default();
-        line_at(rest, line.saturating_sub(first))
-    }
 }
 
 struct Pass<'a> {
@@ -150,7 +133,7 @@ struct Pass<'a> {
 
 impl Pass<'_> {
     fn around_the_front(&mut self) {
-        if let Some((_, line)) = self.program.index().leading {
+        if let Some(line) = self.program.frame.leading {
             self.at_line(0, line, "text before BEGIN PGM is no part of the program");
         }
         if let Some(unit) = self.program.begin().and_then(Header::unknown_unit) {
@@ -165,6 +148,7 @@ impl Pass<'_> {
     fn around_the_end(&mut self) {
         let last = self.program.block_count().saturating_sub(1);
         match (self.program.begin(), self.program.end()) {
+            (_, None) if self.program.is_growing() => {}
             (_, None) => {
                 let detail = "the program does not end with END PGM";
                 self.at_word(EndOfProgramMissing, Severity::Warning, last, "", detail);
@@ -179,7 +163,7 @@ impl Pass<'_> {
             }
             _ => {}
         }
-        if let Some((_, line)) = self.program.index().trailing {
+        if let Some(line) = self.program.trailing_line() {
             self.at_line(last, line, "text behind END PGM is no part of the program");
         }
     }
@@ -191,20 +175,7 @@ impl Pass<'_> {
         }
         match &block.operation {
             Operation::Invalid(invalid) => {
-                let error = &invalid.error;
-                if self.is_full(Severity::Error) {
-                    return;
-                }
-                self.found.push(Diagnostic {
-                    message: error.message,
-                    severity: Severity::Error,
-                    block: *number,
-                    line: line.saturating_add(error.line),
-                    column: error.column,
-                    length: error.length,
-                    detail: error.detail.clone(),
-                    help: error.help.unwrap_or(error.message.remedy()),
-                });
+                self.unreadable(*number, *line, &invalid.error);
                 return;
             }
             Operation::Label(label) if *label > 0 => {
@@ -231,6 +202,33 @@ impl Pass<'_> {
             .and_then(|reading| check_limits(&block.operation, unit, reading));
         if let Some(fault) = fault {
             self.error(fault.message, *number, &fault.address, &fault.detail);
+        }
+    }
+
+    /// The faults of a block that cannot be read; the first is known.
+    fn unreadable(&mut self, number: u32, line: u32, first: &BlockError) {
+        let place = self.program.place(number);
+        let mut faults = place.map_or_else(Vec::new, |(piece, raw)| {
+            let text = raw.text(piece.text());
+            self.program.language().faults(text, number == 0)
+        });
+        if faults.is_empty() {
+            faults.push(first.clone());
+        }
+        for error in faults {
+            if self.is_full(Severity::Error) {
+                continue;
+            }
+            self.found.push(Diagnostic {
+                message: error.message,
+                severity: Severity::Error,
+                block: number,
+                line: line.saturating_add(error.line),
+                column: error.column,
+                length: error.length,
+                help: error.help.unwrap_or(error.message.remedy()),
+                detail: error.detail,
+            });
         }
     }
 

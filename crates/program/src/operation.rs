@@ -16,6 +16,15 @@ pub struct Block {
     pub comment: Option<Box<str>>,
 }
 
+impl Block {
+    /// A block to be overwritten.
+    pub const EMPTY: Block = Block {
+        skip: false,
+        operation: Operation::Label(0),
+        comment: None,
+    };
+}
+
 /// What a block does. Blocks that cannot be read are [`Operation::Invalid`]: an error when executed,
 /// not a refusal to load.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,15 +1,22 @@
-//! A part program as a file: its bytes, a light index, and blocks decoded on demand.
+//! A part program as a file: its text in pieces, and blocks decoded on demand.
 
-use crate::index::{CHUNK_SIZE, ChunkStart, Index};
-use crate::lines::{RawBlock, RawBlocks, stands_alone};
-use crate::parse::{EMPTY_BLOCK, parse_block, parse_block_into};
-use crate::text::{BYTE_ORDER_MARK, blank_lone_returns, to_text, without_utf16};
+use std::sync::{Arc, OnceLock};
+
+use crate::bulk::Bulk;
+use crate::grow::Growth;
+use crate::labels::Labels;
+use crate::language::Language;
+use crate::lines::{RawBlock, line_at};
+use crate::plain::PlainLanguage;
+use crate::rope::{PIECE_BLOCKS, Piece, Rope};
+use crate::survey::Frame;
+use crate::text::{settle_line_ends, text_start, to_text, without_utf16};
 use crate::{Block, Header, Operation, Unit};
 
-/// A part program in plain language.
+/// A version of a part program.
 ///
-/// It holds the bytes of its file and an index of some ten bytes for every 256 blocks; blocks are decoded
-/// a chunk at a time. A block's number is its number in the normalised listing: `BEGIN PGM` is 0 and every
+/// It holds the bytes of its file in pieces of 256 blocks, about a hundred bytes for each, which the versions
+/// that [`Program::edit`] makes share; blocks are decoded a chunk at a time. A block's number is its number in the normalised listing: `BEGIN PGM` is 0 and every
 /// line with text is one block, lines joined by `~` together. Where the file lacks `BEGIN PGM` or
 /// `END PGM`, the block is implied. Text before the first `BEGIN PGM` and behind `END PGM` is no part of
 /// the program.
@@ -22,11 +29,17 @@ use crate::{Block, Header, Operation, Unit};
 /// assert_eq!(program.label(7), Some(1));
 /// assert!(matches!(program.decode(0).blocks[2].operation, Operation::Motion(_)));
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Program {
-    name: Box<str>,
-    file: Vec<u8>,
-    index: Index,
+    pub(crate) name: Box<str>,
+    pub(crate) language: &'static dyn Bulk,
+    pub(crate) rope: Rope,
+    pub(crate) frame: Frame,
+    /// What ends the lines of the file.
+    pub(crate) line_end: &'static str,
+    /// What is known of a program that is still coming.
+    pub(crate) growth: Option<Growth>,
+    labels: OnceLock<Labels>,
 }
 
 /// Some blocks of a program.
@@ -51,22 +64,55 @@ pub struct NumberedBlock {
 
 impl Program {
     /// Blocks in a chunk; the last one may have fewer.
-    pub const CHUNK_SIZE: u32 = CHUNK_SIZE;
+    pub const CHUNK_SIZE: u32 = PIECE_BLOCKS;
     /// Largest file that can be indexed. Callers refuse larger ones.
     pub const MAX_BYTES: u64 = u32::MAX as u64 - 1;
 
-    /// Takes a file of any bytes. What cannot be read becomes [`Operation::Invalid`] when it is decoded;
-    /// bytes beyond [`Program::MAX_BYTES`] are cut off.
+    /// Takes a file of any bytes in plain language. What cannot be read becomes [`Operation::Invalid`] when it is
+    /// decoded; bytes beyond [`Program::MAX_BYTES`] are cut off.
     pub fn from_bytes(name: impl Into<Box<str>>, bytes: Vec<u8>) -> Program {
+        Program::in_language(name, bytes, &PlainLanguage)
+    }
+
+    /// [`Program::from_bytes`] in any language.
+    pub fn in_language<L: Language>(
+        name: impl Into<Box<str>>,
+        bytes: Vec<u8>,
+        language: &'static L,
+    ) -> Program {
+        Program::of_bytes(name.into(), bytes, language)
+    }
+
+    pub(crate) fn of_bytes(name: Box<str>, bytes: Vec<u8>, language: &'static dyn Bulk) -> Program {
         let mut file = without_utf16(bytes);
         file.truncate(usize::try_from(Program::MAX_BYTES).unwrap_or(usize::MAX));
-        blank_lone_returns(&mut file);
-        let index = Index::new(&file, text_start(&file));
+        let line_end = settle_line_ends(&mut file);
+        let file = Arc::new(file);
+        let (rope, frame) = language.survey(&file, text_start(&file));
+        Program::of(name, language, rope, frame, line_end)
+    }
+
+    pub(crate) fn of(
+        name: Box<str>,
+        language: &'static dyn Bulk,
+        rope: Rope,
+        frame: Frame,
+        line_end: &'static str,
+    ) -> Program {
         Program {
-            name: name.into(),
-            file,
-            index,
+            name,
+            language,
+            rope,
+            frame,
+            line_end,
+            growth: None,
+            labels: OnceLock::new(),
         }
+    }
+
+    /// The language that it is written in.
+    pub fn language(&self) -> &'static dyn Language {
+        self.language
     }
 
     /// The name that the program was opened by.
@@ -81,55 +127,61 @@ impl Program {
 
     /// The BEGIN PGM block, if the file has one.
     pub fn begin(&self) -> Option<&Header> {
-        self.index.begin.as_ref()
+        self.frame.begin.as_ref()
     }
 
     /// Whether the file begins with BEGIN PGM, comments apart: that of a file which is no program does not,
     /// even if it quotes one.
     pub fn begins_with_header(&self) -> bool {
-        let Some(begin) = self.index.chunks.first().filter(|_| self.begin().is_some()) else {
-            return false;
-        };
-        RawBlocks::from(&self.file, text_start(&self.file), 1)
-            .take_while(|raw| raw.start < begin.byte as usize)
-            .all(|raw| stands_alone(raw.bytes(&self.file)))
+        let in_front = self.rope.pieces().get(..self.rope.body().start);
+        let front = in_front.unwrap_or_default().first();
+        let front = front.map_or(&[][..], |piece| piece.text());
+        let text = front.get(text_start(front)..).unwrap_or_default();
+        let alone = |raw: RawBlock| self.language.stands_alone(raw.text(text));
+        self.begin().is_some() && self.language.cut(text, 1).into_iter().all(alone)
     }
 
     /// The END PGM block, if the file has one.
     pub fn end(&self) -> Option<&Header> {
-        self.index.end.as_ref()
+        self.frame.end.as_ref()
     }
 
-    /// Whether the program is written in DIN/ISO, which is not read here yet: every block is invalid.
-    pub fn is_din_iso(&self) -> bool {
-        self.index.din_iso
+    /// Why the program is none of its language, such as one in DIN/ISO, which is not read here yet: every block
+    /// is invalid.
+    pub fn refused(&self) -> Option<&str> {
+        self.frame.refused.as_deref()
     }
 
     /// Number of blocks, BEGIN and END included.
     pub fn block_count(&self) -> u32 {
-        self.index.block_count
+        self.rope.end().saturating_add(u32::from(self.implies_end()))
+    }
+
+    /// Whether the END block is not in the file, and will not come.
+    fn implies_end(&self) -> bool {
+        self.end().is_none() && self.growth.is_none()
     }
 
     /// Number of chunks.
     pub fn chunk_count(&self) -> u32 {
-        self.block_count().div_ceil(CHUNK_SIZE)
+        self.block_count().div_ceil(Program::CHUNK_SIZE)
     }
 
     /// Block that sets a label, the first one if several do.
     #[inline]
     pub fn label(&self, label: u16) -> Option<u32> {
-        self.index.label(label)
+        self.label_list().block(label)
     }
 
     /// All labels but 0 in ascending order, with the block that first sets them.
     pub fn labels(&self) -> impl Iterator<Item = (u16, u32)> {
-        self.index.labels()
+        self.label_list().all()
     }
 
     /// Blocks that set a label which an earlier block has set: label and block. At most a thousand are
     /// kept.
     pub fn repeated_labels(&self) -> &[(u16, u32)] {
-        &self.index.repeated_labels
+        self.label_list().repeated()
     }
 
     /// The blocks of a chunk; none beyond the last.
@@ -141,120 +193,155 @@ impl Program {
 
     /// [`Program::decode`] into a chunk whose memory is used again.
     pub fn decode_into(&self, chunk: u32, decoded: &mut Chunk) {
-        decoded.blocks.clear();
-        decoded.first_block = chunk.saturating_mul(CHUNK_SIZE);
-        let count = self.blocks_in(chunk);
-        decoded.blocks.reserve(count as usize);
+        let blocks = &mut decoded.blocks;
+        blocks.clear();
+        decoded.first_block = chunk.saturating_mul(Program::CHUNK_SIZE);
+        let count = self.blocks_in(chunk) as usize;
+        blocks.reserve(count);
         if chunk == 0 && self.begin().is_none() {
-            decoded.blocks.push(implied(Operation::Begin));
+            blocks.push(implied(Operation::Begin));
         }
-        let remaining = (count as usize).saturating_sub(decoded.blocks.len());
-        for raw in self.raw_blocks(chunk).take(remaining) {
-            let number = decoded.first_block + decoded.blocks.len() as u32;
-            decoded.blocks.push(EMPTY_BLOCK);
-            if let Some(block) = decoded.blocks.last_mut() {
-                parse_block_into(&self.file, raw, number == 0, block);
+        while blocks.len() < count {
+            let number = decoded.first_block + blocks.len() as u32;
+            if number < self.rope.first() {
+                blocks.push(forgotten());
+                continue;
             }
-        }
-        if decoded.blocks.len() < count as usize {
-            decoded.blocks.push(implied(Operation::End));
+            let Some((piece, index)) = self.piece_of(number) else {
+                blocks.push(implied(Operation::End));
+                break;
+            };
+            let skip = number - self.rope.start(index).0;
+            let wanted = count - blocks.len();
+            self.language
+                .read_all(piece.text(), skip as usize, wanted, number == 0, blocks);
         }
     }
 
     /// All blocks in order.
     pub fn blocks(&self) -> impl Iterator<Item = NumberedBlock> {
-        self.places().map(|(number, line, raw)| NumberedBlock {
-            number,
-            line,
-            block: match raw {
-                Some(raw) => parse_block(&self.file, raw, number == 0),
-                None if number == 0 => implied(Operation::Begin),
-                None => implied(Operation::End),
-            },
-        })
+        let begin = NumberedBlock {
+            number: 0,
+            line: 1,
+            block: implied(Operation::Begin),
+        };
+        let end = || NumberedBlock {
+            number: self.rope.end(),
+            line: self.last_line(),
+            block: implied(Operation::End),
+        };
+        let in_file = self.rope.pieces().iter().enumerate().flat_map(|(index, piece)| {
+            let (first, line) = self.rope.start(index);
+            let count = piece.blocks as usize;
+            (first..)
+                .zip(self.places(piece, line).into_iter().take(count))
+                .map(|(number, raw)| {
+                    let mut block = Block::EMPTY;
+                    self.language
+                        .read(raw.text(piece.text()), number == 0, &mut block);
+                    NumberedBlock {
+                        number,
+                        line: raw.line,
+                        block,
+                    }
+                })
+        });
+        let begin = self.begin().is_none().then_some(begin);
+        let end = std::iter::repeat_with(end).take(usize::from(self.implies_end()));
+        begin.into_iter().chain(in_file).chain(end)
     }
 
     /// Line in the file where a block begins, from 1.
     pub fn line_of(&self, block: u32) -> u32 {
-        self.place(block).map_or(1, |(line, _)| line)
+        match self.place(block) {
+            Some((_, raw)) => raw.line,
+            None if block > 0 && block < self.block_count() => self.last_line(),
+            None => 1,
+        }
     }
 
     /// The block as it stands in the file, its lines trimmed at their ends; empty for an implied block.
     pub fn text_of(&self, block: u32) -> String {
-        let raw = self.place(block).and_then(|(_, raw)| raw);
-        raw.map_or_else(String::new, |raw| to_text(raw.bytes(&self.file)))
+        self.place(block)
+            .map_or_else(String::new, |(piece, raw)| to_text(raw.text(piece.text()).bytes))
     }
 
-    /// Bytes of the file.
-    pub(crate) fn file(&self) -> &[u8] {
-        &self.file
+    /// The text of the file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let texts: Vec<&[u8]> = self.rope.pieces().iter().map(|piece| piece.text()).collect();
+        texts.concat()
     }
 
-    pub(crate) fn index(&self) -> &Index {
-        &self.index
+    /// A line of the file without its line end, numbered from 1.
+    pub fn text_of_line(&self, line: u32) -> String {
+        let found = self.rope.of_line(line);
+        let Some((index, piece)) = found.and_then(|index| Some((index, self.rope.pieces().get(index)?)))
+        else {
+            return String::new();
+        };
+        let mut text = piece.text();
+        if index == 0 {
+            text = text.get(text_start(text)..).unwrap_or_default();
+        }
+        line_at(text, line.saturating_sub(self.rope.start(index).1))
+    }
+
+    /// The text before BEGIN and behind END.
+    pub(crate) fn around(&self) -> (&[u8], &[u8]) {
+        let pieces = self.rope.pieces();
+        let leading = self.frame.leading.and(pieces.first());
+        let behind = pieces.get(self.rope.body().end);
+        let trailing = behind.filter(|_| self.frame.trailing);
+        (
+            leading.map_or(&[], |piece| piece.text()),
+            trailing.map_or(&[], |piece| piece.text()),
+        )
+    }
+
+    /// Line of the text behind END.
+    pub(crate) fn trailing_line(&self) -> Option<u32> {
+        self.frame
+            .trailing
+            .then(|| self.rope.start(self.rope.body().end).1)
+    }
+
+    fn label_list(&self) -> &Labels {
+        self.labels.get_or_init(|| Labels::of(&self.rope))
     }
 
     fn blocks_in(&self, chunk: u32) -> u32 {
         self.block_count()
-            .saturating_sub(chunk.saturating_mul(CHUNK_SIZE))
-            .min(CHUNK_SIZE)
+            .saturating_sub(chunk.saturating_mul(Program::CHUNK_SIZE))
+            .min(Program::CHUNK_SIZE)
     }
 
-    /// The blocks in the file from the start of a chunk on.
-    fn raw_blocks(&self, chunk: u32) -> RawBlocks<'_> {
-        let end = ChunkStart {
-            byte: u32::MAX,
-            line: 1,
-        };
-        let start = self.index.chunks.get(chunk as usize).copied().unwrap_or(end);
-        RawBlocks::from(&self.file, start.byte as usize, start.line)
+    /// The piece that holds a block, and its index.
+    pub(crate) fn piece_of(&self, block: u32) -> Option<(&Arc<Piece>, usize)> {
+        let index = self.rope.of_block(block)?;
+        Some((self.rope.pieces().get(index)?, index))
     }
 
-    /// Number, line and place in the file of all blocks; implied ones have none.
-    fn places(&self) -> impl Iterator<Item = (u32, u32, Option<RawBlock>)> {
-        let implied_begin = self.begin().is_none().then_some((1, None));
-        let in_file = self.raw_blocks(0).map(|raw| (raw.line, Some(raw)));
-        let behind = std::iter::repeat_with(|| (self.last_line(), None));
-        (0..self.block_count())
-            .zip(implied_begin.into_iter().chain(in_file).chain(behind))
-            .map(|(number, (line, raw))| (number, line, raw))
+    /// The places of the blocks of a piece that begins with a line.
+    fn places(&self, piece: &Piece, line: u32) -> Vec<RawBlock> {
+        self.language.cut(piece.text(), line)
     }
 
-    /// Line and place in the file of a block.
-    fn place(&self, block: u32) -> Option<(u32, Option<RawBlock>)> {
-        if block >= self.block_count() {
-            return None;
-        }
-        let mut offset = block % CHUNK_SIZE;
-        if block < CHUNK_SIZE && self.begin().is_none() {
-            if block == 0 {
-                return Some((1, None));
-            }
-            offset -= 1;
-        }
-        match self.raw_blocks(block / CHUNK_SIZE).nth(offset as usize) {
-            Some(raw) => Some((raw.line, Some(raw))),
-            None => Some((self.last_line(), None)),
-        }
+    /// The place of a block that stands in the file.
+    pub(crate) fn place(&self, block: u32) -> Option<(&Arc<Piece>, RawBlock)> {
+        let (piece, index) = self.piece_of(block)?;
+        let (first, line) = self.rope.start(index);
+        let raw = self
+            .places(piece, line)
+            .into_iter()
+            .nth(block.checked_sub(first)? as usize)?;
+        Some((piece, raw))
     }
 
     /// Line of the last block that stands in the file.
     fn last_line(&self) -> u32 {
-        let last_chunks = (0..self.chunk_count()).rev();
-        last_chunks
-            .filter_map(|chunk| self.raw_blocks(chunk).last())
-            .map(|raw| raw.line)
-            .next()
-            .unwrap_or(1)
-    }
-}
-
-/// Where the text begins, behind a byte-order mark.
-pub(crate) fn text_start(file: &[u8]) -> usize {
-    if file.starts_with(BYTE_ORDER_MARK) {
-        BYTE_ORDER_MARK.len()
-    } else {
-        0
+        let last = self.rope.end().checked_sub(1);
+        let place = last.and_then(|last| self.place(last));
+        place.map_or(1, |(_, raw)| raw.line)
     }
 }
 
@@ -269,5 +356,13 @@ fn implied(kind: fn(Box<Header>) -> Operation) -> Block {
         skip: false,
         operation: kind(Box::new(header)),
         comment: None,
+    }
+}
+
+/// In the place of a block whose text is forgotten.
+fn forgotten() -> Block {
+    Block {
+        operation: Operation::Comment("".into()),
+        ..Block::EMPTY
     }
 }

@@ -78,21 +78,45 @@ pub(crate) fn without_utf16(bytes: Vec<u8>) -> Vec<u8> {
 }
 
 /// Makes a blank of every CR that stands alone in a file whose lines end otherwise: there it is no line end.
-pub(crate) fn blank_lone_returns(file: &mut [u8]) {
+/// With as many of one as of the other nobody knows; both then end lines, and one kind of line end is left, so that
+/// an edited file reads the same again. The line end of the file is returned.
+pub(crate) fn settle_line_ends(file: &mut [u8]) -> &'static str {
     let lone = |file: &[u8], at: usize| file.get(at + 1) != Some(&b'\n');
     let feeds = memchr::memchr_iter(b'\n', file).count();
-    let returns: Vec<usize> = memchr::memchr_iter(b'\r', file)
-        .filter(|&at| lone(file, at))
-        .take(feeds)
-        .collect();
-    // With as many of one as of the other nobody knows; both then end lines.
-    if returns.len() >= feeds {
-        return;
-    }
-    for at in returns {
-        if let Some(byte) = file.get_mut(at) {
-            *byte = b' ';
+    let returns = memchr::memchr_iter(b'\r', file).filter(|&at| lone(file, at));
+    let instead = if returns.take(feeds).count() < feeds {
+        b' '
+    } else {
+        b'\n'
+    };
+    let mut from = 0;
+    while feeds > 0
+        && let Some(at) = memchr::memchr(b'\r', file.get(from..).unwrap_or_default())
+    {
+        from += at + 1;
+        let is_lone = lone(file, from - 1);
+        if let Some(byte) = file.get_mut(from - 1).filter(|_| is_lone) {
+            *byte = instead;
         }
+    }
+    line_end_of(file)
+}
+
+/// What ends the first line of a text.
+pub(crate) fn line_end_of(text: &[u8]) -> &'static str {
+    match memchr::memchr2(b'\n', b'\r', text).map(|at| text.get(at..).unwrap_or_default()) {
+        Some([b'\r', b'\n', ..]) => "\r\n",
+        Some([b'\r', ..]) => "\r",
+        _ => "\n",
+    }
+}
+
+/// Where the text begins, behind a byte-order mark.
+pub(crate) fn text_start(file: &[u8]) -> usize {
+    if file.starts_with(BYTE_ORDER_MARK) {
+        BYTE_ORDER_MARK.len()
+    } else {
+        0
     }
 }
 
@@ -121,13 +145,20 @@ mod tests {
     fn a_lone_return_among_other_line_ends_is_a_blank() {
         let blanked = |text: &str| {
             let mut file = text.as_bytes().to_vec();
-            blank_lone_returns(&mut file);
-            String::from_utf8(file).unwrap()
+            let line_end = settle_line_ends(&mut file);
+            (String::from_utf8(file).unwrap(), line_end)
         };
-        assert_eq!(blanked("L X+1\rY+2\nL X+3\n"), "L X+1 Y+2\nL X+3\n");
-        assert_eq!(blanked("L X+1\r\r\nL X+3\r\n"), "L X+1 \r\nL X+3\r\n");
-        assert_eq!(blanked("A\rB\rC\r\n"), "A\rB\rC\r\n");
-        assert_eq!(blanked("A\rB\r"), "A\rB\r");
+        let settled = |text: &str, line_end| (text.to_owned(), line_end);
+        assert_eq!(
+            blanked("L X+1\rY+2\nL X+3\n"),
+            settled("L X+1 Y+2\nL X+3\n", "\n")
+        );
+        assert_eq!(
+            blanked("L X+1\r\r\nL X+3\r\n"),
+            settled("L X+1 \r\nL X+3\r\n", "\r\n")
+        );
+        assert_eq!(blanked("A\rB\rC\r\n"), settled("A\nB\nC\r\n", "\n"));
+        assert_eq!(blanked("A\rB\r"), settled("A\rB\r", "\r"));
     }
 
     #[test]

@@ -207,3 +207,49 @@ fn the_index_is_small() {
     assert_eq!(p.chunk_count(), 100_002_u32.div_ceil(256));
     assert_eq!(p.block_count(), 100_002);
 }
+
+/// A program that comes in pieces of any size is the whole program: blocks, lines and labels.
+#[test]
+fn growing_programs() {
+    let body =
+        "front\n\n0 BEGIN PGM 1 MM\n1 ; a ~\n b\n2 LBL 5\nL X+5 ~\n Y+6\n\nL X+7\nLBL 0\nEND PGM 1 MM\n";
+    for line_end in ["\n", "\r\n", "\r"] {
+        let text = body.replace('\n', line_end);
+        let whole = Program::from_bytes("1.H", text.clone().into_bytes());
+        for size in [1, 2, 7, 100] {
+            let mut program = Program::growing("1.H");
+            for bytes in text.as_bytes().chunks(size) {
+                let before = program.known().end;
+                program = program.more(bytes);
+                assert!(program.known().end >= before);
+            }
+            assert!(!program.is_growing(), "END ends it");
+            assert!(program.blocks().eq(whole.blocks()), "{line_end:?} {size}");
+            assert_eq!((program.begin(), program.end()), (whole.begin(), whole.end()));
+            assert!(program.labels().eq(whole.labels()));
+        }
+    }
+    // Without BEGIN and END.
+    let open = Program::growing("1.H").more(b"L X+1\nL X+2");
+    assert_eq!((open.known(), open.completed().known()), (0..0, 0..4));
+    let begun = Program::growing("1.H").more(b"BEGIN PGM 1 MM\nL X+1\nL X+2");
+    assert_eq!((begun.known(), begun.completed().known()), (0..2, 0..4));
+}
+
+/// A long program that is forgotten behind the block being executed stays small, and its numbers and lines stay.
+#[test]
+fn forgotten_blocks() {
+    let mut program = Program::growing("1.H").more(b"BEGIN PGM 1 MM\n");
+    for at in 1..=20_000 {
+        program = program.more(format!("L X+{at}\n").as_bytes());
+        program = program.forget(program.known().end.saturating_sub(10));
+        assert!(program.known().len() < 600, "{:?}", program.known());
+    }
+    program = program.more(b"END PGM 1 MM\n");
+    assert_eq!(
+        (program.text_of(20_000), program.line_of(20_000)),
+        ("L X+20000".to_owned(), 20_001)
+    );
+    assert_eq!(program.text_of(3), "");
+    assert!(program.to_bytes().len() < 20_000);
+}

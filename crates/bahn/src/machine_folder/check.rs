@@ -137,7 +137,7 @@ fn programs(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut programs: Vec<PathBuf> = entries
         .map(|entry| entry.path())
-        .filter(|path| path.extension().is_some_and(|own| own.eq_ignore_ascii_case("h")))
+        .filter(|path| bahn_program::language_of(&path.to_string_lossy()).is_some())
         .collect();
     programs.sort();
     programs

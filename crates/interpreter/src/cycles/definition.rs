@@ -15,6 +15,14 @@ pub(crate) struct CycleData {
     pub effective: Collector,
 }
 
+impl CycleData {
+    /// Whether a cycle call machines the contours of cycle 14.
+    pub fn is_contour_cycle(&self) -> bool {
+        let definition = self.machining.definition.as_ref();
+        definition.is_some_and(|definition| super::is_contour_cycle(definition.number))
+    }
+}
+
 /// Collects the blocks n.0, n.1, ... of a definition.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Collector {

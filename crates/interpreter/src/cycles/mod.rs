@@ -11,7 +11,7 @@ mod pockets;
 mod transformation;
 
 use bahn_parameters::MessageId;
-use bahn_program::{CycleBlock, CycleWord, Value};
+use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
 pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
 pub(crate) use self::definition::{CycleData, Definition, Resolved};
@@ -106,7 +106,7 @@ impl Run {
             3 => self.slot_milling(&definition, settings)?,
             4 => self.pocket_milling(&definition, settings)?,
             5 => self.circular_pocket(&definition, settings)?,
-            6 | 15 | 16 => return Ok(Flow::ContourCycle),
+            number if is_contour_cycle(number) => return Ok(Flow::ContourCycle),
             17 => self.rigid_tapping(&definition, settings)?,
             number => {
                 let detail = format!("cycle {number} is read but not executed by this control");
@@ -148,5 +148,10 @@ fn is_inhibited(number: u16, settings: &Settings) -> bool {
 }
 
 fn is_effective_at_definition(number: u16) -> bool {
-    matches!(number, 7..=11 | 13 | 14 | 19 | 26)
+    cycle(CycleFunction::Definition, number).is_some_and(|cycle| cycle.acts_at_definition)
+}
+
+/// Cycles that machine the contours of cycle 14.
+fn is_contour_cycle(number: u16) -> bool {
+    matches!(number, 6 | 15 | 16)
 }

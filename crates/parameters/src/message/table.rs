@@ -260,6 +260,11 @@ messages! {
         remedy "Change the tool and reset its time.";
         source "[000:9171]";
 
+    ProtectedPgm: "PROTECTED PGM";
+        cause "The program is protected against erasing and editing: P stands behind its first and last block.";
+        remedy "Take the protection away with code number 86357, or work on a copy.";
+        source "[000:17235] [003:1015-1023] [003:7028]";
+
     // Messages that no manual prints: files and programs that a real control would never hold.
 
     BlockNotKnown: "FUNCTION NOT AVAILABLE ON THIS CONTROL";

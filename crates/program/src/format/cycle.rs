@@ -2,14 +2,25 @@
 
 use super::Output;
 use super::path::direction_text;
-use crate::parse::FIRST_PARAMETER_CYCLE;
-use crate::{CycleBlock, CycleWord, Direction, Value};
+use crate::cycles::FIRST_PARAMETER_CYCLE;
+use crate::{CycleBlock, CycleFunction, CycleParameter, CycleWord, Direction, Quantity, Sign, Value, cycle};
 
-/// Cycle blocks whose values are printed without `+`: dwell times, radii, scaling factor, spindle angle
-/// [003:4978] [003:5381] [003:6434].
-const UNSIGNED_CYCLE_BLOCKS: &[(u16, u16)] = &[(1, 4), (2, 3), (4, 6), (5, 4), (9, 1), (11, 1), (13, 1)];
-/// Probe blocks whose values are printed without `+` [003:6690-6696] [003:6810-6818].
-const UNSIGNED_PROBE_BLOCKS: &[(u16, u16)] = &[(6, 2), (7, 1), (7, 3)];
+/// The parameters of a block.
+fn parameters(function: CycleFunction, block: &CycleBlock) -> &'static [CycleParameter] {
+    cycle(function, block.number).map_or(&[], |cycle| cycle.block(block.sub))
+}
+
+/// Whether its numbers are printed without `+` [003:4978] [003:5381] [003:6434].
+fn is_unsigned(parameters: &[CycleParameter]) -> bool {
+    let is_number = |parameter: &&CycleParameter| {
+        !matches!(
+            parameter.quantity,
+            Quantity::Feed | Quantity::Labels | Quantity::Program
+        )
+    };
+    let mut numbers = parameters.iter().filter(is_number);
+    numbers.any(|parameter| parameter.sign == Sign::Unsigned)
+}
 
 impl Output {
     pub(super) fn cycle(&mut self, block: &CycleBlock) {
@@ -23,10 +34,9 @@ impl Output {
             self.text.push('.');
             self.integer(u32::from(block.sub));
         }
-        if block.number == 12 && block.sub > 0 {
-            self.word("PGM");
-        }
-        let unsigned = UNSIGNED_CYCLE_BLOCKS.contains(&(block.number, block.sub));
+        let parameters = parameters(CycleFunction::Definition, block);
+        self.program_word(parameters);
+        let unsigned = is_unsigned(parameters);
         self.cycle_words(&block.words, |_| unsigned);
     }
 
@@ -35,14 +45,22 @@ impl Output {
         self.integer(u32::from(block.number));
         self.text.push('.');
         self.integer(u32::from(block.sub));
-        if (block.number, block.sub) == (5, 1) {
-            self.word("PGM NAME:");
-        }
-        let unsigned = UNSIGNED_PROBE_BLOCKS.contains(&(block.number, block.sub));
+        let parameters = parameters(CycleFunction::Probe, block);
+        self.program_word(parameters);
+        let unsigned = is_unsigned(parameters);
         // An unsigned Q would be the parameter for the result.
         self.cycle_words(&block.words, |value| {
             unsigned && matches!(value, Value::Number(_))
         });
+    }
+
+    /// What stands before the name of a program.
+    fn program_word(&mut self, parameters: &[CycleParameter]) {
+        if let [parameter, ..] = parameters
+            && parameter.quantity == Quantity::Program
+        {
+            self.word(parameter.name);
+        }
     }
 
     fn cycle_words(&mut self, words: &[CycleWord], unsigned: impl Fn(Value) -> bool) {

@@ -6,7 +6,6 @@ mod number;
 mod path;
 
 use std::fmt::{self, Display};
-use std::ops::Range;
 
 use crate::lines::lines;
 use crate::parse::rest_of_word;
@@ -41,14 +40,21 @@ pub fn format_program(program: &Program, options: FormatOptions) -> impl Display
     Listing { program, options }
 }
 
-/// A block as the listing shows it, without number and line end.
+/// A block as the listing shows it in plain language, without number and line end.
 pub fn format_block(block: &Block, options: FormatOptions) -> String {
+    let mut text = String::new();
+    write_block(block, options, &mut text);
+    text
+}
+
+/// [`format_block`] behind other text.
+pub(crate) fn write_block(block: &Block, options: FormatOptions, text: &mut String) {
     let mut out = Output {
-        text: String::new(),
+        text: std::mem::take(text),
         options,
     };
     out.block(block);
-    out.text
+    *text = out.text;
 }
 
 struct Listing<'a> {
@@ -58,46 +64,38 @@ struct Listing<'a> {
 
 impl Display for Listing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let file = self.program.file();
-        let index = self.program.index();
-        if let (Some((start, _)), Some(begin)) = (index.leading, index.chunks.first()) {
-            verbatim(f, file, start as usize..begin.byte as usize)?;
-        }
-        let mut out = Output {
-            text: String::new(),
-            options: self.options,
-        };
+        let (leading, trailing) = self.program.around();
+        verbatim(f, leading)?;
+        let language = self.program.language();
+        let mut text = String::new();
         for NumberedBlock { number, block, .. } in self.program.blocks() {
-            out.text.clear();
-            out.integer(number);
-            out.text.push(' ');
-            out.block(&block);
-            out.text.push('\n');
-            f.write_str(&out.text)?;
+            text.clear();
+            push_integer(&mut text, u64::from(number), 1);
+            text.push(' ');
+            language.write(&block, self.options, &mut text);
+            text.push('\n');
+            f.write_str(&text)?;
         }
-        if let Some((start, _)) = index.trailing {
-            let end = file
-                .iter()
-                .rposition(|&b| !is_blank(b))
-                .map_or(0, |last| last + 1);
-            verbatim(f, file, start as usize..end)?;
-        }
-        Ok(())
+        let end = trailing
+            .iter()
+            .rposition(|&b| !is_blank(b))
+            .map_or(0, |last| last + 1);
+        verbatim(f, trailing.get(..end).unwrap_or_default())
     }
 }
 
-/// Writes the lines that begin in a range of the file as they are, without blanks at their ends. Empty ones
-/// stay: they keep a `~` before them from joining more.
-fn verbatim(f: &mut fmt::Formatter<'_>, file: &[u8], mut range: Range<usize>) -> fmt::Result {
-    // At the front of a file blanks and byte-order marks are no text.
-    while let Some(rest) = file.get(range.clone()).filter(|rest| !rest.is_empty()) {
-        match rest {
-            _ if rest.starts_with(BYTE_ORDER_MARK) => range.start += BYTE_ORDER_MARK.len(),
-            [first, ..] if is_blank(*first) => range.start += 1,
-            _ => break,
+/// Writes lines as they are, without blanks at their ends. Empty ones stay: they keep a `~` before them from
+/// joining more.
+fn verbatim(f: &mut fmt::Formatter<'_>, mut text: &[u8]) -> fmt::Result {
+    // At the front blanks and byte-order marks are no text.
+    while let Some(first) = text.first() {
+        match text.strip_prefix(BYTE_ORDER_MARK) {
+            Some(behind) => text = behind,
+            None if is_blank(*first) => text = text.get(1..).unwrap_or_default(),
+            None => break,
         }
     }
-    lines(file, range)
+    lines(text)
         .map(trim)
         .try_for_each(|line| writeln!(f, "{}", to_text(line)))
 }

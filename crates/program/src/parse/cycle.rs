@@ -8,13 +8,10 @@ use super::cursor::{Cursor, Parsed, WRITE_A_NUMBER, with_help};
 use super::m_function::m_functions;
 use super::path::{direction, feed_word};
 use crate::check::ANY_LABEL_MAX;
+use crate::cycles::{self as table, FIRST_PARAMETER_CYCLE};
 use crate::text::{is_blank, to_words};
-use crate::{CycleBlock, CycleWord, Dialog, Direction, Operation, Word};
+use crate::{CycleBlock, CycleFunction, CycleWord, Dialog, Direction, Operation, Quantity, Word};
 
-/// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
-pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
-/// Cycle 7: its blocks hold axes only, or the number of a datum behind `#`.
-const DATUM_SHIFT: u16 = 7;
 /// Most dialog texts of an OEM cycle, its name and 14 parameters [000:17742].
 const MAX_DIALOGS: usize = 15;
 /// Greatest number of a dialog text [000:17742].
@@ -41,14 +38,20 @@ pub(super) fn cycle(c: &mut Cursor) -> Parsed<Option<Operation>> {
 
 fn definition(c: &mut Cursor) -> Parsed<CycleBlock> {
     let (number, sub) = numbers(c)?;
-    let words = match (number, sub) {
+    let words = match holds(CycleFunction::Definition, number, sub) {
         // The name of a cycle is decoration, whatever it looks like.
-        (..FIRST_PARAMETER_CYCLE, 0) => text_word(c.name()),
-        (12, _) => program_name(c),
-        (14, _) => label_list(c)?,
-        _ => words(c, Scope::Cycle(number))?,
+        _ if sub == 0 && number < FIRST_PARAMETER_CYCLE => text_word(c.name()),
+        Some(Quantity::Program) => program_name(c),
+        Some(Quantity::Labels) => label_list(c)?,
+        quantity => words(c, Scope::Cycle(quantity))?,
     };
     Ok(CycleBlock { number, sub, words })
+}
+
+/// What the first parameter of a block is.
+pub(super) fn holds(function: CycleFunction, number: u16, sub: u16) -> Option<Quantity> {
+    let parameters = table::cycle(function, number)?.block(sub);
+    parameters.first().map(|parameter| parameter.quantity)
 }
 
 /// `n.m`, with blanks anywhere; `n` alone is `n.0`.
@@ -119,8 +122,8 @@ fn label_list(c: &mut Cursor) -> Parsed<Vec<CycleWord>> {
 /// What kind of block words stand in.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Scope {
-    /// CYCL DEF of this number.
-    Cycle(u16),
+    /// CYCL DEF whose first parameter in the block is this.
+    Cycle(Option<Quantity>),
     /// TCH PROBE.
     Probe,
 }
@@ -137,7 +140,7 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
         }
         let start = c.position();
         let Some(word) = address(c, scope)? else {
-            let datum_shift = scope == Scope::Cycle(DATUM_SHIFT) && c.peek() != b'#';
+            let datum_shift = scope == Scope::Cycle(Some(Quantity::Shift)) && c.peek() != b'#';
             if datum_shift || is_broken_number(c) {
                 let fault = c.fault_at_word(EntryValueIncorrect, "this is no number");
                 return with_help(fault, WRITE_A_NUMBER);
@@ -241,7 +244,7 @@ fn axis_word(c: &mut Cursor, start: usize, axis: Axis, scope: Scope) -> Parsed<O
         .iter()
         .take(letters)
         .all(|&b| Axis::from_letter(b).is_some());
-    if letters > 1 && !(all_axes && scope == Scope::Cycle(8)) {
+    if letters > 1 && !(all_axes && scope == Scope::Cycle(Some(Quantity::Axes))) {
         return Ok(None);
     }
     let direction = match c.peek_at(1) {

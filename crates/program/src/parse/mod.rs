@@ -4,6 +4,7 @@
 mod blank;
 mod cursor;
 mod cycle;
+mod faults;
 mod foreign;
 mod formula;
 mod header;
@@ -15,43 +16,32 @@ mod probe;
 mod q_parameter;
 mod tool;
 mod unknown;
+mod words;
+
+use std::io::Write;
 
 use bahn_parameters::MessageId;
 
-use crate::lines::{RawBlock, lines, stands_alone};
+use crate::lines::{BlockText, lines, stands_alone};
 use crate::text::{character_count, to_text, trim, trim_continuation};
 use crate::{Block, BlockError, InvalidBlock, Operation};
 use cursor::{Cursor, Fault, Parsed, code_length, with_help};
-pub(crate) use cycle::FIRST_PARAMETER_CYCLE;
+pub(crate) use faults::faults;
 pub(crate) use foreign::{is_din_iso, whole_program};
 pub(crate) use formula::FUNCTIONS;
 pub(crate) use m_function::rest_of_word;
+pub(crate) use words::block_words;
 
-/// Reads the block that lies at `raw` in the file. `BEGIN PGM` is a fault where it is not permitted.
-pub(crate) fn parse_block(file: &[u8], raw: RawBlock, may_begin: bool) -> Block {
-    let mut block = EMPTY_BLOCK;
-    parse_block_into(file, raw, may_begin, &mut block);
-    block
-}
-
-/// [`parse_block`] into a place where a block, best an [`EMPTY_BLOCK`], stands already, so that the large
-/// positioning blocks are not copied.
+/// Reads a block into a place where one, best [`Block::EMPTY`], stands already, so that the large positioning blocks
+/// are not copied. `BEGIN PGM` is a fault where it is not permitted.
 #[inline]
-pub(crate) fn parse_block_into(file: &[u8], raw: RawBlock, may_begin: bool, block: &mut Block) {
-    let bytes = raw.bytes(file);
-    if raw.joined {
-        *block = parse_joined(bytes, may_begin);
+pub(crate) fn read_block(text: BlockText<'_>, may_begin: bool, block: &mut Block) {
+    if text.joined {
+        *block = parse_joined(text.bytes, may_begin);
     } else {
-        parse_line(bytes, may_begin, block);
+        parse_line(text.bytes, may_begin, block);
     }
 }
-
-/// A block to be overwritten.
-pub(crate) const EMPTY_BLOCK: Block = Block {
-    skip: false,
-    operation: Operation::Label(0),
-    comment: None,
-};
 
 /// Reads a block that stands in one line.
 #[inline]
@@ -96,6 +86,27 @@ fn invalid(line: &[u8], start: usize, fault: &Fault) -> Operation {
     Operation::Invalid(Box::new(InvalidBlock { text, error }))
 }
 
+/// Whether a line may be LBL, BEGIN or END by its first letters.
+#[inline]
+pub(crate) fn frames_or_labels(line: &[u8]) -> bool {
+    let letter_from = |start: usize| {
+        let rest = line.get(start..).unwrap_or_default();
+        let found = rest.iter().position(|b| b.is_ascii_alphabetic());
+        found.map_or(line.len(), |found| start + found)
+    };
+    let mut first = letter_from(0);
+    if matches!(line.get(first..), Some([b'N' | b'n', b'0'..=b'9', ..])) {
+        first = letter_from(first + 1);
+    }
+    let at = |offset: usize| line.get(first + offset).map_or(b' ', u8::to_ascii_uppercase);
+    match at(0) {
+        b'L' => at(1) == b'B' && at(2) == b'L',
+        b'B' => at(1) == b'E',
+        b'E' => at(1) == b'N',
+        _ => false,
+    }
+}
+
 /// Reads optional block number, perhaps behind N, and `/`, in either order, and the blanks behind; whether the block is
 /// optional.
 #[inline]
@@ -120,6 +131,16 @@ fn prefix(c: &mut Cursor) -> bool {
         c.skip_blanks();
     }
     skip
+}
+
+/// Appends a block's text with another number before it.
+pub(crate) fn renumber(text: &[u8], number: u32, new: &mut Vec<u8>) {
+    let mut c = Cursor::new(text);
+    let skip = prefix(&mut c);
+    // Writing to a vector cannot fail.
+    let _ = write!(new, "{number}");
+    new.extend_from_slice(if skip { b" / " } else { b" " });
+    new.extend_from_slice(c.rest());
 }
 
 /// Reads a block that is no function: comment, structuring, or nothing but a block number.
@@ -232,7 +253,7 @@ fn parse_joined(bytes: &[u8], may_begin: bool) -> Block {
     let mut joined = Vec::new();
     let mut comments = String::new();
     let mut skip = false;
-    for (index, line) in lines(bytes, 0..bytes.len()).enumerate() {
+    for (index, line) in lines(bytes).enumerate() {
         let mut c = Cursor::new(line);
         if index == 0 {
             skip = prefix(&mut c);
@@ -360,13 +381,13 @@ mod test {
 
     pub(super) fn block(text: &str) -> Block {
         let joined = text.contains('\n');
-        let raw = RawBlock {
-            start: 0,
-            end: text.len(),
-            line: 1,
+        let text = BlockText {
+            bytes: text.as_bytes(),
             joined,
         };
-        parse_block(text.as_bytes(), raw, true)
+        let mut block = Block::EMPTY;
+        read_block(text, true, &mut block);
+        block
     }
 
     /// What the text does; it must be a valid block.

@@ -3,8 +3,8 @@
 use bahn_parameters::MessageId::BlockNotKnown;
 
 use super::cursor::{Cursor, Parsed};
-use super::cycle::{Scope, numbers, words};
-use crate::{CycleBlock, CycleWord, Operation};
+use super::cycle::{Scope, holds, numbers, words};
+use crate::{CycleBlock, CycleFunction, CycleWord, Operation, Quantity};
 
 /// Probe cycles from this number on belong to later controls.
 const FIRST_LATER_PROBE: u16 = 400;
@@ -20,10 +20,9 @@ pub(super) fn probe(c: &mut Cursor) -> Parsed<Option<Operation>> {
     if number >= FIRST_LATER_PROBE {
         return c.fault_from(start, BlockNotKnown, "no control here knows this probe cycle");
     }
-    let words = if (number, sub) == (5, 1) {
-        digitizing_file(c)
-    } else {
-        words(c, Scope::Probe)?
+    let words = match holds(CycleFunction::Probe, number, sub) {
+        Some(Quantity::Program) => digitizing_file(c),
+        _ => words(c, Scope::Probe)?,
     };
     Ok(Some(Operation::Probe(Box::new(CycleBlock {
         number,

@@ -1,0 +1,245 @@
+//! The table of cycles and probe functions: what stands in which block of them. Reading, writing, checking and
+//! executing derive from it what they have to know of one.
+
+use CycleFunction::{Definition, Probe};
+use Sign::{Signed, Unsigned, Working};
+
+/// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
+pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
+
+/// Which blocks a cycle is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CycleFunction {
+    /// `CYCL DEF`.
+    Definition,
+    /// `TCH PROBE`.
+    Probe,
+}
+
+/// What a parameter is given in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A length, program units.
+    Length,
+    /// Coordinates, program units or degrees.
+    Coordinates,
+    /// An axis with the length along it, program units.
+    Side,
+    /// A datum shift: coordinates only, or the line of a datum table behind `#`.
+    Shift,
+    /// Letters of axes, which may touch each other.
+    Axes,
+    /// Axes with their directions.
+    Directions,
+    /// Seconds.
+    Dwell,
+    /// Milliseconds.
+    Milliseconds,
+    /// Degrees of a rotation.
+    Rotation,
+    /// Degrees.
+    Angle,
+    /// A factor.
+    Factor,
+    /// Feed, mm/min or what F counts in inches.
+    Feed,
+    /// Sense of rotation.
+    Turn,
+    /// Label numbers.
+    Labels,
+    /// The name of a program.
+    Program,
+}
+
+/// The sign of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// Any, and it is always printed.
+    Signed,
+    /// The sign of the working direction, the same for all such parameters of a cycle [003:4902].
+    Working,
+    /// None; `+` is not printed.
+    Unsigned,
+}
+
+/// A parameter of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CycleParameter {
+    /// The word before it in listings of the TNC 360, which also names it in dialogues.
+    pub name: &'static str,
+    /// What it is given in.
+    pub quantity: Quantity,
+    /// Its sign.
+    pub sign: Sign,
+    /// Whether the block may stand without it.
+    pub optional: bool,
+}
+
+/// A cycle or probe function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cycle {
+    /// What opens its blocks.
+    pub function: CycleFunction,
+    /// Its number.
+    pub number: u16,
+    /// Its name, as block n.0 shows it.
+    pub name: &'static str,
+    /// Whether it acts when it is defined instead of when it is called [003:4849-4857].
+    pub acts_at_definition: bool,
+    /// The parameters of the blocks n.1, n.2, ...; none where they are not known here.
+    pub blocks: &'static [&'static [CycleParameter]],
+}
+
+impl Cycle {
+    /// The parameters of a block n.1, n.2, ...; blocks behind the last one repeat it.
+    pub fn block(&self, sub: u16) -> &'static [CycleParameter] {
+        let index = usize::from(sub).checked_sub(1);
+        let block = index.and_then(|index| self.blocks.get(index).or(self.blocks.last()));
+        block.copied().unwrap_or_default()
+    }
+
+    /// Number of the last block that the cycle needs; `None` where its blocks are not known here.
+    pub fn last_block(&self) -> Option<u16> {
+        (!self.blocks.is_empty()).then_some(self.blocks.len() as u16)
+    }
+}
+
+/// The cycle of a number.
+///
+/// ```
+/// use bahn_program::{CycleFunction, cycle};
+///
+/// let pecking = cycle(CycleFunction::Definition, 1).unwrap();
+/// let names: Vec<_> = pecking.blocks.iter().map(|block| block[0].name).collect();
+/// assert_eq!(names, ["SET UP", "DEPTH", "PECKG", "DWELL", "F"]);
+/// ```
+pub fn cycle(function: CycleFunction, number: u16) -> Option<&'static Cycle> {
+    CYCLES
+        .iter()
+        .find(|cycle| cycle.function == function && cycle.number == number)
+}
+
+const fn parameter(name: &'static str, quantity: Quantity, sign: Sign) -> CycleParameter {
+    CycleParameter {
+        name,
+        quantity,
+        sign,
+        optional: false,
+    }
+}
+
+const SET_UP: CycleParameter = parameter("SET UP", Quantity::Length, Working);
+const DEPTH: CycleParameter = parameter("DEPTH", Quantity::Length, Working);
+const PECKG: CycleParameter = parameter("PECKG", Quantity::Length, Working);
+const DWELL: CycleParameter = parameter("DWELL", Quantity::Dwell, Unsigned);
+const FEED: CycleParameter = parameter("F", Quantity::Feed, Unsigned);
+const SIDE: CycleParameter = parameter("", Quantity::Side, Signed);
+const TURN: CycleParameter = optional(parameter("DR", Quantity::Turn, Signed));
+const ALLOW: CycleParameter = optional(parameter("ALLOW", Quantity::Length, Signed));
+const RADIUS: CycleParameter = parameter("RADIUS", Quantity::Length, Unsigned);
+const TRAVEL: CycleParameter = parameter("TRAVEL:", Quantity::Length, Unsigned);
+const SPACING: CycleParameter = parameter("L.SPAC:", Quantity::Length, Unsigned);
+const INTERVAL: CycleParameter = parameter("P.P. INT:", Quantity::Length, Unsigned);
+const POINT: CycleParameter = parameter("", Quantity::Coordinates, Signed);
+
+const fn optional(parameter: CycleParameter) -> CycleParameter {
+    CycleParameter {
+        optional: true,
+        ..parameter
+    }
+}
+
+const fn row(
+    function: CycleFunction,
+    number: u16,
+    name: &'static str,
+    acts_at_definition: bool,
+    blocks: &'static [&'static [CycleParameter]],
+) -> Cycle {
+    Cycle {
+        function,
+        number,
+        name,
+        acts_at_definition,
+        blocks,
+    }
+}
+
+/// A cycle that acts at its call.
+const fn called(number: u16, name: &'static str, blocks: &'static [&'static [CycleParameter]]) -> Cycle {
+    row(Definition, number, name, false, blocks)
+}
+
+/// A cycle that acts at its definition.
+const fn defined(number: u16, name: &'static str, blocks: &'static [&'static [CycleParameter]]) -> Cycle {
+    row(Definition, number, name, true, blocks)
+}
+
+/// A probe function.
+const fn probe(number: u16, name: &'static str, blocks: &'static [&'static [CycleParameter]]) -> Cycle {
+    row(Probe, number, name, false, blocks)
+}
+
+/// The table.
+#[rustfmt::skip]
+pub const CYCLES: &[Cycle] = &[
+    // [003:4929-4941] [003:4979-4983]
+    called(1, "PECKING", &[&[SET_UP], &[DEPTH], &[PECKG], &[DWELL], &[FEED]]),
+    // [003:5007-5016] [003:5057-5062]
+    called(2, "TAPPING", &[&[SET_UP], &[DEPTH], &[DWELL], &[FEED]]),
+    // [003:5134-5146] [003:5197-5202]
+    called(3, "SLOT MILLING", &[&[SET_UP], &[DEPTH], &[PECKG, FEED], &[SIDE], &[SIDE], &[FEED]]),
+    // [003:5234-5258] [003:5299-5304]
+    called(4, "POCKET MILLING", &[
+        &[SET_UP], &[DEPTH], &[PECKG, FEED], &[SIDE], &[SIDE], &[FEED, TURN, optional(RADIUS)],
+    ]),
+    // [003:5324-5336] [003:5377-5382]
+    called(5, "CIRCULAR POCKET", &[&[SET_UP], &[DEPTH], &[PECKG, FEED], &[RADIUS], &[FEED, TURN]]),
+    // [003:5503-5514] [003:5572-5575]
+    called(6, "ROUGH-OUT", &[
+        &[SET_UP, DEPTH], &[PECKG, FEED, ALLOW], &[parameter("ANGLE", Quantity::Angle, Signed), FEED],
+    ]),
+    // [003:6222]
+    defined(7, "DATUM SHIFT", &[&[parameter("", Quantity::Shift, Signed)]]),
+    // Without an axis it cancels the mirror image [003:6292-6294].
+    defined(8, "MIRROR IMAGE", &[&[optional(parameter("", Quantity::Axes, Signed))]]),
+    // [003:6462-6474]
+    defined(9, "DWELL TIME", &[&[DWELL]]),
+    // [003:6313-6333]
+    defined(10, "ROTATION", &[&[parameter("ROT", Quantity::Rotation, Signed)]]),
+    // [003:6385-6412]
+    defined(11, "SCALING", &[&[parameter("SCL", Quantity::Factor, Unsigned)]]),
+    // [003:6476-6490]
+    called(12, "PGM CALL", &[&[parameter("PGM", Quantity::Program, Signed)]]),
+    // [003:6500-6528]
+    defined(13, "ORIENTATION", &[&[parameter("ANGLE", Quantity::Angle, Unsigned)]]),
+    // [003:5460-5470]
+    defined(14, "CONTOUR GEOMETRY", &[&[parameter("CONTOUR LABEL", Quantity::Labels, Unsigned)]]),
+    // [003:6001-6014] [003:6143-6148]
+    called(15, "PILOT DRILLING", &[&[SET_UP, DEPTH], &[PECKG, FEED, ALLOW]]),
+    // [003:6043-6066] [003:6167-6171]
+    called(16, "CONTOUR MILLING", &[&[SET_UP, DEPTH], &[PECKG, FEED, TURN, FEED]]),
+    // [003:5094-5099]
+    called(17, "RIGID TAPPING", &[&[SET_UP], &[DEPTH], &[parameter("PITCH", Quantity::Length, Signed)]]),
+    // [000:147]
+    defined(19, "WORKING PLANE", &[]),
+    // [000:6655-6699]
+    defined(26, "AXIS-SPEC. SCALING", &[]),
+    // [003:4414-4428]
+    probe(0, "REF. PLANE", &[&[POINT]]),
+    // [003:6617-6625]
+    probe(5, "RANGE", &[
+        &[parameter("PGM NAME:", Quantity::Program, Signed)],
+        &[parameter("", Quantity::Axes, Signed), POINT],
+        &[POINT],
+        &[parameter("HEIGHT:", Quantity::Length, Signed)],
+    ]),
+    // [003:6690-6696] [000:7854]
+    probe(6, "MEANDER", &[&[parameter("DIRECTN:", Quantity::Axes, Signed)], &[TRAVEL, SPACING, INTERVAL]]),
+    // [003:6810-6818]
+    probe(7, "CONTOUR LINES", &[
+        &[parameter("TIME:", Quantity::Milliseconds, Unsigned), POINT],
+        &[parameter("ORDER", Quantity::Directions, Signed)],
+        &[TRAVEL, SPACING, INTERVAL],
+    ]),
+];

@@ -1,0 +1,201 @@
+//! Programs that are still coming: their text is appended, and what was executed may be forgotten [003:1640-1690].
+
+use std::ops::Range;
+
+use crate::language::Landmark;
+use crate::plain::PlainLanguage;
+use crate::rope::{PIECE_BLOCKS, Rope, pieces};
+use crate::survey::Frame;
+use crate::text::{line_end_of, text_start};
+use crate::{Header, Program};
+
+/// Bytes that may come before BEGIN; with more the program has none *(inferred)*.
+const LEADING_MAX: usize = 1 << 16;
+
+/// What a program that is still coming has besides its known blocks.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Growth {
+    /// Text from the block on that may go on in what comes.
+    pending: Vec<u8>,
+    /// BEGIN has come, or will not.
+    began: bool,
+}
+
+impl Program {
+    /// A program in plain language of which nothing has come yet.
+    ///
+    /// ```
+    /// use bahn_program::Program;
+    ///
+    /// let program = Program::growing("1.H").more(b"BEGIN PGM 1 MM\nL X+5\nL X+");
+    /// assert_eq!(program.known(), 0..2); // nobody knows yet where X+ leads to
+    /// let program = program.more(b"10\nEND PGM 1 MM\n");
+    /// assert_eq!((program.known(), program.is_growing()), (0..4, false));
+    /// assert_eq!(program.text_of(2), "L X+10");
+    /// ```
+    pub fn growing(name: impl Into<Box<str>>) -> Program {
+        let rope = Rope::new(Vec::new(), 0, 1);
+        let mut program = Program::of(name.into(), &PlainLanguage, rope, Frame::default(), "\n");
+        program.growth = Some(Growth::default());
+        program
+    }
+
+    /// Whether more of the program may come: its blocks behind the known ones are not known yet. END PGM ends it.
+    pub fn is_growing(&self) -> bool {
+        self.growth.is_some()
+    }
+
+    /// The blocks that have come and are not forgotten. The last one is known when the one behind it begins.
+    pub fn known(&self) -> Range<u32> {
+        let first = match self.rope.first() {
+            // The implied BEGIN.
+            1 => 0,
+            first => first,
+        };
+        first..self.block_count()
+    }
+
+    /// The program with more of its text; text behind END PGM is no part of it.
+    pub fn more(&self, bytes: &[u8]) -> Program {
+        self.grown(bytes, false)
+    }
+
+    /// The program when nothing more comes.
+    pub fn completed(&self) -> Program {
+        self.grown(&[], true)
+    }
+
+    /// The program without the text of blocks before one, in pieces of some hundred. What refers to them finds
+    /// nothing any more: only programs that do not jump back can be forgotten.
+    pub fn forget(&self, before: u32) -> Program {
+        let body = self.rope.body();
+        let done = |index: &usize| self.rope.start(index + 1).0 <= before;
+        let Some(last) = body.clone().take_while(done).last() else {
+            return self.clone();
+        };
+        let (first, line) = self.rope.start(last + 1);
+        let rest = self.rope.pieces().get(last + 1..).unwrap_or_default();
+        let rope = Rope::new(rest.to_vec(), first, line);
+        self.with_rope(rope, self.frame.clone(), self.growth.clone())
+    }
+
+    fn grown(&self, bytes: &[u8], complete: bool) -> Program {
+        let Some(growth) = &self.growth else {
+            return self.clone();
+        };
+        let mut text = growth.pending.clone();
+        text.extend_from_slice(bytes);
+        if growth.began {
+            return self.appended(text, complete);
+        }
+        if complete {
+            // All of it is here.
+            return Program::of_bytes(self.name.clone(), text, self.language);
+        }
+        let start = text_start(&text);
+        let raws = self.language.cut(text.get(start..).unwrap_or_default(), 1);
+        let settled = raws.get(..raws.len().saturating_sub(1)).unwrap_or_default();
+        let begin = settled.iter().find_map(|raw| {
+            let block = raw.text(text.get(start..)?);
+            match self.language.landmark(block) {
+                Some(Landmark::Begin(header)) => Some((*raw, header)),
+                _ => None,
+            }
+        });
+        let mut frame = Frame::default();
+        match begin {
+            Some((raw, header)) => {
+                frame.begin = Some(*header);
+                frame.leading = raws
+                    .first()
+                    .map(|first| first.line)
+                    .filter(|line| *line < raw.line);
+                let began = self.with_rope(Rope::new(Vec::new(), 0, raw.line), frame, self.growth.clone());
+                began.appended(text.split_off(start + raw.start), false)
+            }
+            None if text.len() < LEADING_MAX => {
+                let growth = Growth {
+                    pending: text,
+                    began: false,
+                };
+                self.with_rope(self.rope.clone(), frame, Some(growth))
+            }
+            None => {
+                let first = raws.first().copied();
+                let block = first.map(|raw| raw.text(text.get(start..).unwrap_or_default()));
+                frame.refused = block.and_then(|block| self.language.refuses(block));
+                let began = self.with_rope(Rope::new(Vec::new(), 1, 1), frame, self.growth.clone());
+                began.appended(text.split_off(start), false)
+            }
+        }
+    }
+
+    /// The program with text behind its last known block.
+    fn appended(&self, mut text: Vec<u8>, complete: bool) -> Program {
+        blank_returns(&mut text);
+        let body = self.rope.body();
+        // The last piece is filled before another one is begun.
+        let last = self
+            .rope
+            .pieces()
+            .get(..body.end)
+            .and_then(|pieces| pieces.last());
+        let open = last.filter(|piece| piece.blocks < PIECE_BLOCKS);
+        let from = body.end - usize::from(open.is_some());
+        let mut region = open.map_or_else(Vec::new, |piece| piece.text().to_vec());
+        region.append(&mut text);
+        let raws = self.language.cut(&region, 1);
+        let (_, end) = self.language.landmarks(&region, &raws);
+        let end = end.map(|at| at as usize);
+        // END ends the program as soon as its line does.
+        let ends = |at: &usize| complete || raws.get(*at).is_some_and(|raw| raw.end < region.len());
+        let (settled, ended) = match end.filter(ends) {
+            Some(at) => (at + 1, true),
+            None if complete => (raws.len(), true),
+            None => (raws.len().saturating_sub(1), false),
+        };
+        let behind = raws.get(settled);
+        let end_line = behind.map_or(u32::MAX, |raw| raw.line);
+        let seam = behind.map_or(region.len(), |raw| raw.start);
+        let pending = region.split_off(seam);
+        let raws = raws.get(..settled).unwrap_or_default();
+        let (labels, _) = self.language.landmarks(&region, raws);
+        let mut frame = self.frame.clone();
+        frame.end = self.header_at(&region, raws, end.filter(|at| *at < settled));
+        let growth = (!ended).then_some(Growth { pending, began: true });
+        let line_end = line_end_of(&region);
+        let rope = self
+            .rope
+            .splice(from..body.end, pieces(region, raws, &labels, end_line));
+        let mut program = self.with_rope(rope, frame, growth);
+        program.line_end = line_end;
+        program
+    }
+
+    fn header_at(&self, text: &[u8], raws: &[crate::RawBlock], at: Option<usize>) -> Option<Header> {
+        match self.language.landmark(raws.get(at?)?.text(text))? {
+            Landmark::End(header) => Some(*header),
+            _ => None,
+        }
+    }
+
+    fn with_rope(&self, rope: Rope, frame: Frame, growth: Option<Growth>) -> Program {
+        let mut program = Program::of(self.name.clone(), self.language, rope, frame, self.line_end);
+        program.growth = growth;
+        program
+    }
+}
+
+/// Makes a blank of every CR that stands alone before other text, in text whose lines end with LF or CR LF.
+fn blank_returns(text: &mut [u8]) {
+    if line_end_of(text) == "\r" {
+        return;
+    }
+    for at in 0..text.len() {
+        if let Some([byte @ b'\r', next]) = text.get_mut(at..at + 2)
+            && *next != b'\n'
+        {
+            *byte = b' ';
+        }
+    }
+}
