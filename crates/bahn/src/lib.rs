@@ -23,6 +23,7 @@ mod block_time;
 mod called;
 mod check;
 mod cli;
+mod columns;
 mod conformance;
 mod console;
 mod cutting;
@@ -61,7 +62,7 @@ pub use scope::check_recording;
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
 #[doc(hidden)]
 pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
-    let faults = |faults: Vec<tool_table::TableFault>| faults.iter().map(|fault| fault.line).collect();
+    let faults = |faults: Vec<columns::TableFault>| faults.iter().map(|fault| fault.line).collect();
     tool_table::parse(text).map(drop).map_err(faults)
 }
 

@@ -3,11 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use bahn_control::Tool;
+use bahn_control::{Tool, datum_shifts};
 use bahn_interpreter::{MachineTexts, Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
 use bahn_parameters::{ControlModel, ParameterList, conformance};
 use bahn_path::{Axis, Position};
+use bahn_plc::MemoryTable;
 
 use crate::UsageError;
 use crate::options::{MachineOptions, RunOptions};
@@ -19,6 +20,8 @@ pub(crate) struct Equipment {
     /// `None` when tools are those that the program defines.
     pub tools: Option<BTreeMap<u32, Tool>>,
     pub texts: MachineTexts,
+    /// The datum table of the machine with M status.
+    pub datum_table: Option<MemoryTable>,
     /// Where the workpiece lies unless the options say it.
     pub datum: Position,
 }
@@ -32,6 +35,7 @@ impl Equipment {
                 list: ParameterList::reference(model),
                 tools: None,
                 texts: MachineTexts::default(),
+                datum_table: None,
                 datum: Position::UNKNOWN,
             },
         };
@@ -61,6 +65,7 @@ impl Equipment {
                 dialogues: machine.plc_dialogues.as_slice().into(),
             },
             datum: machine.datum(),
+            datum_table: machine.datum_table().cloned(),
             list: machine.parameters,
             tools: machine.tools,
         })
@@ -144,6 +149,10 @@ pub(crate) fn interpreter(
     Ok(bahn_interpreter::Settings {
         model,
         rules,
+        datum_table: equipment
+            .datum_table
+            .as_ref()
+            .map(|table| datum_shifts(table, list).into()),
         texts: equipment.texts.clone(),
         barred_tools: tool_table::barred(tools.into_iter().flatten()),
         tools: tools.map(|tools| tools.iter().map(|(number, tool)| (*number, tool.shape)).collect()),

@@ -12,6 +12,7 @@ use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
 
 use crate::axes::AxisUnit;
 use crate::command::{Command, Mode};
+use crate::datums::{LoadedDatums, PalletSelection};
 use crate::emergency::EmergencyStop;
 use crate::feeder::{Offsets, Programs};
 use crate::handshake::{Handshakes, Transfer};
@@ -99,6 +100,7 @@ pub struct Control {
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
     pub(crate) loaded_tables: crate::tables::LoadedTables,
+    pub(crate) loaded_datums: LoadedDatums,
     /// The commands, when somebody wants them.
     log: Option<Vec<(u64, Command)>>,
     pub(crate) inputs: [bool; INPUTS],
@@ -220,6 +222,7 @@ impl Control {
             programs,
             q: remembered.q,
             loaded_tables: crate::tables::LoadedTables::default(),
+            loaded_datums: LoadedDatums::default(),
             log: None,
             inputs: [false; INPUTS],
             outputs: [false; OUTPUTS],
@@ -232,6 +235,11 @@ impl Control {
         if let Some(name) = remembered.program {
             control.run.selected = Some(name);
         }
+        control.link.pallet = PalletSelection {
+            line: remembered.pallet_line,
+            datum_table: remembered.datum_table,
+        };
+        control.set_up_datums(&remembered.written_datums);
         control.set_up_tables(&remembered.written);
         control.select_range(0);
         let active = control
@@ -598,6 +606,9 @@ impl Control {
             offsets_volts: self.offset_volts(),
             parameter_list: self.link.selected_list.clone(),
             program: self.run.selected.clone(),
+            pallet_line: self.link.pallet.line,
+            datum_table: self.link.pallet.datum_table.clone(),
+            written_datums: self.written_datums(),
         }
     }
 

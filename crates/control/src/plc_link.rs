@@ -14,6 +14,7 @@ use bahn_plc::{
 };
 
 use crate::compensation::{CompensationAssignment, CompensationTable};
+use crate::datums::{PalletRequest, PalletSelection};
 use crate::markers::AXES;
 
 /// Files and tables of the NC memory that modules read.
@@ -21,10 +22,14 @@ use crate::markers::AXES;
 pub struct NcFiles {
     /// Names with extension.
     pub names: BTreeSet<String>,
-    /// Lines of the pallet file with M status.
-    pub pallet: Option<Vec<PalletLine>>,
-    /// Tool, pocket and datum table with M status.
+    /// Lines of the pallet file with M status by their number.
+    pub pallet: Option<BTreeMap<i32, PalletLine>>,
+    /// Tool and pocket table with M status.
     pub tables: BTreeMap<TableKind, MemoryTable>,
+    /// The datum tables by their name with extension.
+    pub datum_tables: BTreeMap<String, MemoryTable>,
+    /// The datum table with M status until module 9090 selects another one.
+    pub datum_table: Option<String>,
     /// Machine parameter lists by name; `None` for a faulty one.
     pub parameter_lists: BTreeMap<String, Option<ParameterList>>,
     /// The compensation assignment (.CMA).
@@ -71,7 +76,7 @@ pub(crate) struct Requests {
     pub geometry: bool,
     pub restart: bool,
     pub compensation_line: Option<i32>,
-    pub program: Option<(String, Option<String>)>,
+    pub pallet: Option<PalletRequest>,
     pub status: StatusChanges,
     pub parameters_changed: bool,
 }
@@ -105,6 +110,8 @@ pub(crate) struct PlcLink {
     pub requests: Requests,
     /// The list that module 9033 has selected.
     pub selected_list: Option<String>,
+    /// What module 9090 has selected.
+    pub pallet: PalletSelection,
 }
 
 impl PlcLink {
@@ -136,6 +143,7 @@ impl PlcLink {
             orienting: false,
             requests: Requests::default(),
             selected_list: None,
+            pallet: PalletSelection::default(),
         }
     }
 
@@ -237,15 +245,19 @@ impl Nc for PlcLink {
 
     fn pallet_line(&self, line: i32) -> Result<PalletLine, LineFault> {
         let lines = self.files.pallet.as_ref().ok_or(LineFault::NoFile)?;
-        nth(lines, line).cloned().ok_or(LineFault::NoLine)
+        lines.get(&line).cloned().ok_or(LineFault::NoLine)
     }
 
     fn has_file(&self, name: &str) -> bool {
         self.files.names.contains(name)
     }
 
-    fn select_program(&mut self, program: &str, datum_table: Option<&str>) {
-        self.requests.program = Some((program.to_owned(), datum_table.map(str::to_owned)));
+    fn select_program(&mut self, line: i32, program: &str, datum_table: Option<&str>) {
+        self.requests.pallet = Some(PalletRequest {
+            line,
+            program: program.to_owned(),
+            datum_table: datum_table.map(str::to_owned),
+        });
     }
 
     fn compensation_line(&self, line: i32) -> Result<Vec<Option<usize>>, LineFault> {
@@ -263,7 +275,7 @@ impl Nc for PlcLink {
     }
 
     fn table(&mut self, kind: TableKind) -> Option<&mut dyn TableFile> {
-        let table = self.files.tables.get_mut(&kind)?;
+        let table = self.selected_table(kind)?;
         Some(table)
     }
 

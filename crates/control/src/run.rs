@@ -249,6 +249,7 @@ impl Control {
     pub(crate) fn prepare_run(&mut self) {
         self.close_run();
         self.take_tool_states();
+        self.take_datums();
         if self.run.begin_wanted && self.axes_stand() {
             self.run.begin_wanted = false;
             self.begin_run();
@@ -470,6 +471,7 @@ impl Control {
             texts: self.link.machine_texts().clone(),
             tools: self.tools.shapes(),
             barred_tools: self.tools.barred(),
+            datum_table: self.datum_table(),
             strict: self.checking.strict,
             skip_unknown: self.checking.skip_unknown,
             q_values: self.q.clone(),

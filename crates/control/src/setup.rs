@@ -99,6 +99,12 @@ pub struct Remembered {
     pub parameter_list: Option<String>,
     /// Name of the selected program.
     pub program: Option<String>,
+    /// The line of the pallet file that module 9090 has selected.
+    pub pallet_line: Option<i32>,
+    /// Name of the datum table that module 9090 has selected.
+    pub datum_table: Option<String>,
+    /// What the PLC wrote with module 9094 into datum tables, by their names.
+    pub written_datums: Vec<(String, WrittenElement)>,
 }
 
 /// A tool that is not in the pocket of the tool table any more.
@@ -112,18 +118,18 @@ pub struct MovedTool {
     pub table: Option<u16>,
 }
 
-/// An element of the tool or pocket table that the PLC has written with module 9094.
+/// An element of a table that the PLC has written with module 9094.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenElement {
     /// The table.
     pub table: TableKind,
-    /// Tool or pocket number.
+    /// Number of tool, vector or pocket.
     pub line: i32,
-    /// Number of the element [000:15422-15454].
+    /// Number of the element [000:15414-15454].
     pub element: usize,
     /// Its value.
     pub value: f64,
-    /// Its value in the file of the tool table. Where that says another one, the file counts.
+    /// Its value in the file of the table. Where that says another one, the file counts.
     pub file: f64,
 }
 

@@ -221,8 +221,8 @@ impl Control {
         if let Some(call) = self.link.requests.tool_call.take() {
             self.tools.inserted_call = Some(call);
         }
-        if let Some((name, _)) = self.link.requests.program.take() {
-            self.execute(Command::Select(name));
+        if let Some(request) = self.link.requests.pallet.take() {
+            self.select_pallet(request);
         }
         if let Some(volts) = self.link.requests.spindle_volts.take() {
             self.spindle.set_plc_volts(volts);
@@ -237,6 +237,7 @@ impl Control {
         self.take_changed_parameters();
         if std::mem::take(&mut self.link.requests.geometry) {
             self.initialise_geometry();
+            self.datums_written();
             self.unsaved = true;
         }
     }

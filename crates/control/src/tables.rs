@@ -170,20 +170,25 @@ impl Control {
             let Some(table) = self.link.files.tables.get(&loaded.kind()) else {
                 continue;
             };
-            for (line, element, value) in table.elements() {
-                let by_tools = loaded.kind() == TableKind::Pocket && matches!(element, T | ST);
-                match loaded.value(line, element) {
-                    Some(file) if file != value && !by_tools => written.push(WrittenElement {
-                        table: loaded.kind(),
-                        line,
-                        element,
-                        value,
-                        file,
-                    }),
-                    _ => {}
-                }
-            }
+            written.extend(differences(loaded, table).filter(|row| {
+                // The tools say those.
+                row.table != TableKind::Pocket || !matches!(row.element, T | ST)
+            }));
         }
         written
     }
+}
+
+/// The elements of a table that are not as they were loaded.
+pub(crate) fn differences(loaded: &MemoryTable, table: &MemoryTable) -> impl Iterator<Item = WrittenElement> {
+    table.elements().filter_map(|(line, element, value)| {
+        let file = loaded.value(line, element).filter(|file| *file != value)?;
+        Some(WrittenElement {
+            table: loaded.kind(),
+            line,
+            element,
+            value,
+            file,
+        })
+    })
 }

@@ -51,8 +51,8 @@ pub use modal::Status;
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    ContourPocketRules, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules, ToolState,
-    ToolTable, tool_key,
+    ContourPocketRules, DatumTable, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules,
+    ToolState, ToolTable, tool_key,
 };
 pub use work::{Done, Work};
 

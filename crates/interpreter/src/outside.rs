@@ -1,12 +1,13 @@
 //! What a control tells a run from outside, while it goes on.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use bahn_path::{Axis, Position};
 use bahn_program::Value;
 
 use crate::Interpreter;
-use crate::settings::{Rules, ToolState};
+use crate::settings::{DatumTable, Rules, ToolState};
 
 impl Interpreter {
     /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
@@ -27,6 +28,11 @@ impl Interpreter {
     /// The tools that must not be called, or are replaced, for the blocks that are read from now on.
     pub fn set_barred_tools(&mut self, barred: BTreeMap<u32, ToolState>) {
         self.settings.barred_tools = barred;
+    }
+
+    /// The datum table, for the blocks that are read from now on.
+    pub fn set_datum_table(&mut self, table: Option<Arc<DatumTable>>) {
+        self.settings.datum_table = table;
     }
 
     /// Sets a Q parameter from outside: the PLC, or the operator.

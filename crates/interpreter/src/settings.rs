@@ -21,6 +21,8 @@ pub struct Settings {
     pub point_angles_deg: BTreeMap<u32, f64>,
     /// Tools of the table that must not be called.
     pub barred_tools: BTreeMap<u32, ToolState>,
+    /// The datum table of `CYCL DEF 7.1 #n`; `None` when none is selected.
+    pub datum_table: Option<Arc<DatumTable>>,
     /// Texts of the machine for FN14 and FN15.
     pub texts: MachineTexts,
     /// Q parameters set before the start: number, value.
@@ -60,6 +62,7 @@ impl Default for Settings {
             tools: None,
             point_angles_deg: BTreeMap::new(),
             barred_tools: BTreeMap::new(),
+            datum_table: None,
             texts: MachineTexts::default(),
             q_values: Vec::new(),
             start: Position::UNKNOWN,
@@ -120,6 +123,9 @@ impl MachineTexts {
     }
 }
 
+/// Datums by their line, mm and degrees; axes without a position are not shifted.
+pub type DatumTable = BTreeMap<i32, Position>;
+
 /// Tools by their [`tool_key`].
 pub type ToolTable = BTreeMap<u32, ToolShape>;
 
@@ -153,6 +159,8 @@ pub struct Rules {
     /// MP960: machine zero of M91 from the workpiece datum of the run, mm or degrees [000:6244]. An axis
     /// whose machine zero is not known leaves the workpiece with M91 and M92 and has no position then.
     pub machine_zero: Position,
+    /// MP7475 = 1: datum tables count from the machine datum, not from the workpiece datum [000:6900-6902].
+    pub datums_from_machine: bool,
     /// MP1060: acceleration of each axis, m/s²: limits the rounding arcs of M112 [000:5140-5152].
     pub acceleration_m_s2: [f64; Axis::COUNT],
     /// MP1070: radial acceleration, m/s².
@@ -201,6 +209,7 @@ impl Rules {
                 spindle: Some(list.spindle_parameters()),
                 orients: tapping.orientation,
             },
+            datums_from_machine: list.operation_parameters().datums.table_from_machine,
             acceleration_m_s2: Axis::ALL.map(|axis| list.acceleration_m_s2(axis)),
             radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
             machine_datum: Axis::ALL.map(|axis| list.m92_datum(axis)).into(),
@@ -234,6 +243,7 @@ impl Default for Rules {
             spindle_orientation_deg: 0.0,
             machine_datum: Position::ZERO,
             machine_zero: Position::ZERO,
+            datums_from_machine: false,
             acceleration_m_s2: [1.0; Axis::COUNT],
             radial_acceleration_m_s2: 1.0,
             probe: ProbeRules::default(),

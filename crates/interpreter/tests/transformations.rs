@@ -247,3 +247,81 @@ fn machine_coordinates() {
     assert_eq!(x, [101.0, -199.0, -169.0, 101.0]);
     assert!(run.moves().all(|e| e.curve == Curve::Line));
 }
+
+/// A datum table: line 3 shifts X, Y and C, line 4 is all 0.
+fn datum_table() -> bahn_interpreter::DatumTable {
+    let line = |x: f64, y: f64, c: f64| {
+        let mut datum = Position::UNKNOWN;
+        (datum[Axis::X], datum[Axis::Y], datum[Axis::C]) = (x, y, c);
+        datum
+    };
+    [(3, line(40.0, -7.5, 30.0)), (4, line(0.0, 0.0, 0.0))].into()
+}
+
+/// `CYCL DEF 7.1 #n`: the axes of the table are shifted as its line says, absolute, the others stay; the number may
+/// be a Q parameter. With MP7475 = 1 the values count from the machine datum [000:6898-6904].
+#[test]
+fn a_line_of_the_datum_table_shifts() {
+    let shift = |words: &str| format!("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 {words}\n");
+    let blocks = format!(
+        "{}{}L X+1 Y+2 Z+3 FMAX\nQ5 = 4\n{}L X+1 Y+2 Z+3 FMAX",
+        shift("X+1\nCYCL DEF 7.2 Z+100"),
+        shift("#3"),
+        shift("#Q5"),
+    );
+    for from_machine in [false, true] {
+        let run = Job::new(program(&blocks))
+            .with(|settings| {
+                settings.model = bahn_parameters::ControlModel::Tnc415b;
+                settings.datum_table = Some(std::sync::Arc::new(datum_table()));
+                settings.rules.datums_from_machine = from_machine;
+                settings.rules.machine_zero = [-200.0; Axis::COUNT].into();
+            })
+            .run();
+        run.assert_completed();
+        let zero = if from_machine { -200.0 } else { 0.0 };
+        let ends: Vec<[f64; 3]> = run.moves().map(|element| xyz(&element.end)).collect();
+        let expected = [
+            [zero + 40.0 + 1.0, zero - 7.5 + 2.0, 103.0],
+            [zero + 1.0, zero + 2.0, 103.0],
+        ];
+        close_points(&ends, &expected, 1e-12);
+    }
+}
+
+/// A line that is not there, no table, a datum of the machine that nobody knows: errors of the block.
+#[test]
+fn a_datum_that_is_missing_is_an_error() {
+    let with = |words: &str, change: &dyn Fn(&mut bahn_interpreter::Settings)| {
+        let blocks = format!("L X+1 FMAX\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 {words}\nL X+2 FMAX");
+        Job::new(program(&blocks))
+            .with(|settings| {
+                settings.model = bahn_parameters::ControlModel::Tnc415b;
+                settings.datum_table = Some(std::sync::Arc::new(datum_table()));
+                change(settings);
+            })
+            .run()
+    };
+    let wrong = Some((bahn_parameters::MessageId::EntryValueIncorrect, 3));
+    for words in ["#5", "#-1", "#3.5", "#", "##3", "X+5 #3", "#3 X+5", "#3 #4"] {
+        assert_eq!(
+            with(words, &|_| {}).message().map(|(id, _)| id),
+            wrong.map(|(id, _)| id),
+            "{words}"
+        );
+    }
+    let unknown = with("#3", &|settings| {
+        settings.rules.datums_from_machine = true;
+        settings.rules.machine_zero = Position::UNKNOWN;
+    });
+    assert_eq!(unknown.message(), wrong);
+    let none = with("#3", &|settings| settings.datum_table = None);
+    assert_eq!(none.message(), wrong);
+    // Passed over where that is wanted: the rest of the program runs where it is.
+    let passed = with("#3", &|settings| {
+        settings.datum_table = None;
+        settings.skip_unknown = true;
+    });
+    passed.assert_completed();
+    assert_eq!((passed.warnings.len(), passed.position[Axis::X]), (1, 2.0));
+}

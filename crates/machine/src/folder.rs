@@ -32,8 +32,12 @@ pub struct MachineFolder {
     pub plant: String,
     /// Tool table.
     pub tools: Option<String>,
-    /// Folder of the part programs.
+    /// Folder of the part programs, and of the tables that belong to them.
     pub programs: String,
+    /// The pallet file (.P) with M status, in the folder of the part programs [000:15332-15334].
+    pub pallets: Option<String>,
+    /// The datum table (.D) with M status until module 9090 selects another one, in the same folder.
+    pub datum_table: Option<String>,
     /// Folder of what survives power-off.
     pub state: String,
     /// Workpiece datum in machine coordinates, mm or degrees, as long as the state holds no other.
@@ -106,6 +110,8 @@ impl MachineFolder {
             plant: needed("plant"),
             tools: optional("tools"),
             programs: optional("programs").unwrap_or_else(|| "programs".to_owned()),
+            pallets: optional("pallets"),
+            datum_table: optional("datum_table"),
             state: optional("state").unwrap_or_else(|| "state".to_owned()),
             datum: root.section("datum").map(read_datum).unwrap_or_default(),
             operator: root.section("operator").map(read_operator).unwrap_or_default(),

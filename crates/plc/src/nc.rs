@@ -80,8 +80,9 @@ pub trait Nc {
     /// Whether the NC memory has a file of this name with extension.
     fn has_file(&self, name: &str) -> bool;
 
-    /// Selects an existing NC program and perhaps an existing datum table for execution (9090).
-    fn select_program(&mut self, program: &str, datum_table: Option<&str>);
+    /// Selects an existing NC program and perhaps an existing datum table for execution, as a line of the
+    /// pallet file says (9090).
+    fn select_program(&mut self, line: i32, program: &str, datum_table: Option<&str>);
 
     /// A line of the compensation assignment (.CMA): the points of each table that it names, `None` for a
     /// table that does not exist (9095).

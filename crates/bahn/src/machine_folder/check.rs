@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use bahn_control::datum_shifts;
 use bahn_interpreter::{Rules, Settings};
 
 use super::load::{LoadedMachine, load};
@@ -117,6 +118,9 @@ fn check_programs(
             model: machine.parameters.model(),
             rules: Rules::of(&machine.parameters),
             barred_tools: tool_table::barred(tools.into_iter().flatten()),
+            datum_table: machine
+                .datum_table()
+                .map(|table| datum_shifts(table, &machine.parameters).into()),
             tools: tools.map(|tools| tools.iter().map(|(number, tool)| (*number, tool.shape)).collect()),
             ..Settings::default()
         },

@@ -9,7 +9,7 @@ use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::{Axis, Position};
-use bahn_plc::{Options, PlcProgram, ProgramMemory};
+use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
 
 use super::state;
 use crate::diagnostics::{FileFault, Marked, Severity};
@@ -34,6 +34,8 @@ pub(crate) struct LoadedMachine {
     pub tools: Option<BTreeMap<u32, Tool>>,
     /// Files that PLC modules and compensation read.
     pub files: NcFiles,
+    /// Pallet file and datum tables.
+    pub tables: Vec<PathBuf>,
     /// What is accepted, but looks wrong.
     pub warnings: Vec<FileFault>,
 }
@@ -52,7 +54,12 @@ impl LoadedMachine {
         let named = named.into_iter().chain(further.map(Option::as_ref)).flatten();
         let files = named.map(|name| self.root.join(name));
         let lock = self.root.join(&folder.state).join(state::LOCK);
-        files.chain([lock]).collect()
+        files.chain(self.tables.iter().cloned()).chain([lock]).collect()
+    }
+
+    /// The datum table of `machine.toml`.
+    pub fn datum_table(&self) -> Option<&MemoryTable> {
+        self.files.datum_tables.get(self.files.datum_table.as_ref()?)
     }
 
     /// The datum of `machine.toml`, for the axes that it names.
@@ -109,9 +116,9 @@ pub(crate) fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>,
     })
 }
 
-struct Loader<'a> {
-    root: &'a Path,
-    faults: Vec<FileFault>,
+pub(super) struct Loader<'a> {
+    pub root: &'a Path,
+    pub faults: Vec<FileFault>,
     warnings: Vec<FileFault>,
     /// `machine.toml`: its path and text.
     description: (PathBuf, String),
@@ -131,6 +138,7 @@ impl Loader<'_> {
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
         let mut files = files?;
+        let tables = self.nc_memory(&folder, &parameters, &mut files);
         self.further_lists(&mut files, model?);
         self.agree(&folder, &plant);
         Some(LoadedMachine {
@@ -142,6 +150,7 @@ impl Loader<'_> {
             plant,
             tools: tools?,
             files,
+            tables,
             warnings: Vec::new(),
             folder,
         })
@@ -449,7 +458,7 @@ impl Loader<'_> {
             .map(|index| index + 1)
     }
 
-    fn fault_at_key(&mut self, key: &str, message: &str) {
+    pub(super) fn fault_at_key(&mut self, key: &str, message: &str) {
         let line = self.line_of(key).unwrap_or(1);
         self.fault_in_description(line, 1, message.to_owned());
     }
@@ -463,7 +472,7 @@ impl Loader<'_> {
 }
 
 /// A fault at a line of a text, at a column or as a whole.
-fn file_fault(
+pub(super) fn file_fault(
     path: &Path,
     text: &str,
     (line, column): (usize, Option<usize>),

@@ -1,12 +1,13 @@
 //! `bahn machine`: the folder of a machine.
 //!
-//! - `load`: everything in it, all faults at once; `programs`: its part programs; `state`: what survives
+//! - `load`: everything in it, all faults at once; `nc_memory`: its tables; `programs`: its part programs; `state`: what survives
 //!   power-off, `remembered` as a file;
 //! - `options`, `new`, `check`, `list`: the subcommands.
 
 mod check;
 mod list;
 mod load;
+mod nc_memory;
 mod new;
 mod options;
 mod programs;

@@ -17,6 +17,8 @@ struct Form {
     tool_axis: Option<char>,
     parameter_list: Option<String>,
     program: Option<String>,
+    pallet_line: Option<i32>,
+    datum_table: Option<String>,
     offsets_volts: [f64; 5],
     datum: [BTreeMap<char, f64>; 3],
     /// Pocket now and pocket in the tool table, by tool; -1 is none.
@@ -25,6 +27,9 @@ struct Form {
     /// Table (T tools, P pockets), line, element, value, value in the file.
     #[serde(default)]
     written: Vec<(char, i32, usize, f64, f64)>,
+    /// Datum table, line, element, value, value in the file.
+    #[serde(default)]
+    written_datums: Vec<(String, i32, usize, f64, f64)>,
     #[serde(default)]
     q: BTreeMap<String, f64>,
 }
@@ -82,17 +87,27 @@ fn text(remembered: &Remembered) -> String {
     if let Some(program) = &remembered.program {
         line("program", toml::Value::from(program.as_str()).to_string());
     }
+    if let Some(number) = remembered.pallet_line {
+        line("pallet_line", number.to_string());
+    }
+    if let Some(table) = &remembered.datum_table {
+        line("datum_table", toml::Value::from(table.as_str()).to_string());
+    }
     if !remembered.written.is_empty() {
-        let rows = remembered.written.iter().map(|row| {
-            let letter = letter_of(row.table);
-            let (value, file) = (number(row.value), number(row.file));
-            format!(
-                "\n  [\"{letter}\", {}, {}, {value}, {file}],",
-                row.line, row.element
-            )
-        });
+        let rows = remembered
+            .written
+            .iter()
+            .map(|row| element_of(letter_of(row.table).to_string(), row));
         line(
             "# Elements of tool (T) and pocket (P) table that the PLC wrote: line, element, value, value in the file\nwritten",
+            format!("[{}\n]", rows.collect::<String>()),
+        );
+    }
+    if !remembered.written_datums.is_empty() {
+        let rows = remembered.written_datums.iter();
+        let rows = rows.map(|(table, row)| element_of(table.clone(), row));
+        line(
+            "# Elements of datum tables that the PLC wrote: line, element, value, value in the file\nwritten_datums",
             format!("[{}\n]", rows.collect::<String>()),
         );
     }
@@ -130,6 +145,13 @@ const TABLES: [(TableKind, char); 3] = [
     (TableKind::Datum, 'D'),
     (TableKind::Pocket, 'P'),
 ];
+
+/// An element that the PLC wrote, as a row of a list.
+fn element_of(table: String, row: &WrittenElement) -> String {
+    let (value, file) = (number(row.value), number(row.file));
+    let table = toml::Value::from(table);
+    format!("\n  [{table}, {}, {}, {value}, {file}],", row.line, row.element)
+}
 
 fn letter_of(table: TableKind) -> char {
     TABLES
@@ -186,14 +208,12 @@ fn content_of(text: &str) -> Result<Remembered, String> {
     for (letter, line, element, value, file) in form.written {
         let table = TABLES.into_iter().find(|(_, known)| *known == letter);
         let (table, _) = table.ok_or_else(|| format!("`{letter}` is no table"))?;
-        let (value, file) = (finite(value)?, finite(file)?);
-        written.push(WrittenElement {
-            table,
-            line,
-            element,
-            value,
-            file,
-        });
+        written.push(written_element(table, line, element, [value, file])?);
+    }
+    let mut written_datums = Vec::new();
+    for (name, line, element, value, file) in form.written_datums {
+        let row = written_element(TableKind::Datum, line, element, [value, file])?;
+        written_datums.push((name, row));
     }
     let mut q = Vec::new();
     for (name, value) in &form.q {
@@ -215,6 +235,24 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         offsets_volts: form.offsets_volts,
         parameter_list: form.parameter_list,
         program: form.program,
+        pallet_line: form.pallet_line,
+        datum_table: form.datum_table,
+        written_datums,
+    })
+}
+
+fn written_element(
+    table: TableKind,
+    line: i32,
+    element: usize,
+    [value, file]: [f64; 2],
+) -> Result<WrittenElement, String> {
+    Ok(WrittenElement {
+        table,
+        line,
+        element,
+        value: finite(value)?,
+        file: finite(file)?,
     })
 }
 
@@ -274,6 +312,18 @@ mod tests {
             offsets_volts: [0.0, 0.0015, 0.0, 0.0, 0.0],
             parameter_list: Some("LATHE.MP".to_owned()),
             program: Some("7432.H".to_owned()),
+            pallet_line: Some(3),
+            datum_table: Some("ZERO \"1\".D".to_owned()),
+            written_datums: vec![(
+                "ZERO.D".to_owned(),
+                WrittenElement {
+                    table: TableKind::Datum,
+                    line: 7,
+                    element: 1,
+                    value: -12.5,
+                    file: 0.25,
+                },
+            )],
         }
     }
 
@@ -343,6 +393,17 @@ mod tests {
             assert!(read(&whole[..length]).is_err(), "{length} bytes");
         }
         assert_eq!(read(&whole), Ok(full()));
+    }
+
+    /// What was written before there were pallets and datum tables is read.
+    #[test]
+    fn an_older_file_is_read() {
+        let text = "tool = 3\ntool_length = 81.25\nprogram = \"1.H\"\noffsets_volts = [0.0, 0.0, 0.0, 0.0, 0.0]\n\
+            datum = [{ X = 12.5 }, {  }, {  }]\n";
+        let remembered = read((text.to_owned() + &end_mark(text.as_bytes())).as_bytes()).unwrap();
+        assert_eq!((remembered.tool, remembered.program.as_deref()), (3, Some("1.H")));
+        assert_eq!(remembered.datums[0].0[Axis::X], 12.5);
+        assert_eq!((remembered.pallet_line, remembered.datum_table), (None, None));
     }
 
     /// Who has mended a file says so in its last line; what he wrote is read as strictly.

@@ -78,6 +78,14 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             ))
         })?;
     }
+    if let Some(name) = &remembered.datum_table
+        && !machine.files.datum_tables.contains_key(name)
+    {
+        return Err(UsageError::new(format!(
+            "{name}, the datum table that module 9090 selected, is missing in {}",
+            folder.display()
+        )));
+    }
     settings::assign(&mut machine.parameters, &options.run.mp)?;
     settings::say_without_effect(&machine.parameters, &options.run.mp);
     let mut plant = machine.plant.clone();

@@ -243,6 +243,7 @@ pub fn bench(instructions: &str) -> Build {
         programs: Shelf::default(),
         tools: Some(BTreeMap::new()),
         remembered: Remembered::default(),
+        files: bahn_control::NcFiles::default(),
     }
 }
 

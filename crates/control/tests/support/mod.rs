@@ -50,6 +50,7 @@ pub struct Build {
     pub programs: Shelf,
     pub tools: Option<BTreeMap<u32, Tool>>,
     pub remembered: Remembered,
+    pub files: NcFiles,
 }
 
 pub fn folder(name: &str) -> PathBuf {
@@ -84,6 +85,7 @@ impl Build {
             programs: Shelf::default(),
             tools: Some([(1, tool(70.0, 31.5)), (2, tool(95.0, 10.0)), (3, tool(85.0, 5.0))].into()),
             remembered: Remembered::default(),
+            files: NcFiles::default(),
         }
     }
 
@@ -134,7 +136,7 @@ impl Build {
             checking: Default::default(),
             inch_feed: None,
             programs: Arc::new(self.programs),
-            files: NcFiles::default(),
+            files: self.files,
             remembered: self.remembered,
             exchange: Exchange::default(),
         };

@@ -4,7 +4,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{Axis, Curve, FeedRate, Function};
 
 use super::Resolved;
-use crate::error::Fault;
+use crate::error::{Fault, WarningKind};
 use crate::run::Run;
 use crate::settings::Settings;
 
@@ -12,6 +12,10 @@ impl Run {
     /// Cycle 7 DATUM SHIFT: absolute to the set datum, incremental to the last valid one [003:6222].
     pub(super) fn datum_shift(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
         let max = settings.model.limits().coordinate_max;
+        let is_mark = |word: &Resolved| matches!(word, Resolved::Text(text) if text.starts_with('#'));
+        if words.iter().any(is_mark) {
+            return self.datum_from_table(words, settings);
+        }
         for word in words {
             let Resolved::Coordinate {
                 axis,
@@ -35,6 +39,50 @@ impl Run {
             }
             self.modal.frame.shift[*axis] = shift;
         }
+        self.transformed();
+        Ok(())
+    }
+
+    /// `CYCL DEF 7.1 #n`: a line of the selected datum table shifts all axes of the table. Its values count from
+    /// the workpiece datum, or with MP7475 = 1 from the machine datum [000:6898-6904]. No manual prints a message
+    /// for what is missing: it is that of a wrong entry (inferred).
+    fn datum_from_table(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
+        let wrong = |detail: String| Fault::new(MessageId::EntryValueIncorrect, detail);
+        let Some(table) = &settings.datum_table else {
+            let detail = "no datum table is selected (`datum_table` in machine.toml, or module 9090)";
+            return match settings.skip_unknown {
+                true => {
+                    self.warn(WarningKind::PassedOver { what: detail.into() });
+                    Ok(())
+                }
+                false => Err(wrong(detail.into())),
+            };
+        };
+        let number = match words {
+            [Resolved::Text(mark), Resolved::Number(number)] if &**mark == "#" => *number,
+            _ => {
+                return Err(wrong(
+                    "# takes the number of a line of the datum table, and nothing else".into(),
+                ));
+            }
+        };
+        let datum = match number.fract() == 0.0 {
+            true => table.get(&(number as i32)),
+            false => None,
+        };
+        let datum = *datum.ok_or_else(|| wrong(format!("the datum table has no line {number}")))?;
+        let mut shift = self.modal.frame.shift;
+        for axis in datum.known().iter() {
+            shift[axis] = match settings.rules.datums_from_machine {
+                true => datum[axis] + settings.rules.machine_zero[axis],
+                false => datum[axis],
+            };
+            if shift[axis].is_nan() {
+                let what = format!("MP7475 counts from the machine datum, which is not known for {axis}");
+                return Err(wrong(what));
+            }
+        }
+        self.modal.frame.shift = shift;
         self.transformed();
         Ok(())
     }

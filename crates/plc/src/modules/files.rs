@@ -50,7 +50,7 @@ fn pallet(call: &mut Call<'_>, line: i32) -> Result<(), i32> {
     if datum_table.as_deref().is_some_and(|name| !call.nc.has_file(name)) {
         return Err(NO_DATUM_TABLE);
     }
-    call.nc.select_program(&program, datum_table.as_deref());
+    call.nc.select_program(line, &program, datum_table.as_deref());
     Ok(())
 }
 

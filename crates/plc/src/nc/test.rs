@@ -337,7 +337,7 @@ impl Nc for TestNc {
         self.files.contains(name)
     }
 
-    fn select_program(&mut self, program: &str, datum_table: Option<&str>) {
+    fn select_program(&mut self, _line: i32, program: &str, datum_table: Option<&str>) {
         self.program = Some(program.to_owned());
         if let Some(name) = datum_table {
             self.datum_table = Some(name.to_owned());

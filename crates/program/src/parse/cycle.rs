@@ -138,10 +138,14 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
             c.advance(1);
             continue;
         }
+        // `#3`, `#Q5`: a line of a datum table.
+        if scope == Scope::Cycle(Some(Quantity::Shift)) && c.accept(b'#') {
+            text.push(b'#');
+            continue;
+        }
         let start = c.position();
         let Some(word) = address(c, scope)? else {
-            let datum_shift = scope == Scope::Cycle(Some(Quantity::Shift)) && c.peek() != b'#';
-            if datum_shift || is_broken_number(c) {
+            if scope == Scope::Cycle(Some(Quantity::Shift)) || is_broken_number(c) {
                 let fault = c.fault_at_word(EntryValueIncorrect, "this is no number");
                 return with_help(fault, WRITE_A_NUMBER);
             }
@@ -606,6 +610,7 @@ mod tests {
             assert_eq!((message, found), (EntryValueIncorrect, column), "{text}");
         }
         assert_eq!(words_of("CYCL DEF 7.1 #3"), [text("#"), Number(N(3.0))]);
+        assert_eq!(words_of("CYCL DEF 7.1 #Q5"), [text("#"), Number(q(5))]);
         assert_eq!(words_of("CYCL DEF 4.6 F100RADIUS0").len(), 3);
     }
 

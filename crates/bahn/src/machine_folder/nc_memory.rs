@@ -1,0 +1,230 @@
+//! The NC memory: the files in the folder of part programs, its pallet file and its datum tables. The manuals tell
+//! what these tables hold [000:15332-15340] [000:15414-15420], not how they look as text: they are written as tool
+//! tables are (inferred).
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use bahn_control::NcFiles;
+use bahn_machine::MachineFolder;
+use bahn_parameters::ParameterList;
+use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};
+
+use super::load::{Loader, decode, file_fault};
+use crate::columns::{self, Form, Row, TableFault};
+use crate::files;
+
+/// The greatest number of a line: MP7226 gives a table 255 lines at most [000:6892-6896].
+const LINE_MAX: i32 = 254;
+
+/// Elements of a datum table by their columns [000:15414-15420].
+const DATUMS: [&str; 5] = ["X", "Y", "Z", "4", "5"];
+
+const DATUM_TABLE: Form = Form {
+    needed: &["NR"],
+    known: Some(&["NR", "X", "Y", "Z", "4", "5", "DOC"]),
+    example: "NR X Y Z 4 5",
+};
+
+const PALLET_FILE: Form = Form {
+    needed: &["NR", "PGM"],
+    known: Some(&["NR", "PGM", "DATUM", "DOC"]),
+    example: "NR PGM DATUM",
+};
+
+/// Reads a datum table, with the elements that turn and so have no unit of length.
+pub(super) fn datum_table(text: &str, turns: [bool; 5]) -> Result<MemoryTable, Vec<TableFault>> {
+    let mut lines: BTreeMap<i32, [f64; 5]> = BTreeMap::new();
+    columns::read(text, &DATUM_TABLE, |row| {
+        let mut values = [0.0; 5];
+        let columns = TableKind::Datum.columns().iter().flatten();
+        for (((value, name), turns), column) in values.iter_mut().zip(DATUMS).zip(turns).zip(columns) {
+            let unit = if turns { 1.0 } else { row.unit_mm };
+            *value = row.number(name)? * unit;
+            if !(column.min..=column.max).contains(value) {
+                return Err(format!("{name}: {} is too large", row.text(name)));
+            }
+        }
+        insert(&mut lines, row, values)
+    })?;
+    let mut table = MemoryTable::with_lines(TableKind::Datum, lines.keys().copied());
+    for (line, values) in lines {
+        for (element, value) in values.into_iter().enumerate() {
+            table.set_value(line, element, value);
+        }
+    }
+    Ok(table)
+}
+
+/// Reads a pallet file.
+pub(super) fn pallet_file(text: &str) -> Result<BTreeMap<i32, PalletLine>, Vec<TableFault>> {
+    let mut lines = BTreeMap::new();
+    columns::read(text, &PALLET_FILE, |row| {
+        let name = |column: &str| {
+            let name = row.text(column).to_uppercase();
+            (!matches!(name.as_str(), "" | "-")).then_some(name)
+        };
+        let line = PalletLine {
+            program: name("PGM").ok_or("PGM: the name of the program is missing")?,
+            datum_table: name("DATUM"),
+        };
+        insert(&mut lines, row, line)
+    })?;
+    Ok(lines)
+}
+
+/// A line of a table by its number.
+fn insert<T>(lines: &mut BTreeMap<i32, T>, row: &Row<'_>, line: T) -> Result<(), String> {
+    let text = row.text("NR");
+    let number = text.parse().ok().filter(|number| (0..=LINE_MAX).contains(number));
+    let number = number.ok_or_else(|| format!("NR: `{text}` is no line from 0 to {LINE_MAX}"))?;
+    match lines.insert(number, line) {
+        Some(_) => Err(format!("line {number} is there twice")),
+        None => Ok(()),
+    }
+}
+
+impl Loader<'_> {
+    /// Reads the NC memory; the paths of the tables that were read. Names are in capitals, as the control knows no
+    /// others.
+    pub(super) fn nc_memory(
+        &mut self,
+        folder: &MachineFolder,
+        list: &ParameterList,
+        memory: &mut NcFiles,
+    ) -> Vec<PathBuf> {
+        let mut read = Vec::new();
+        let mut turns = [false; 5];
+        for axis in list.axes().iter().filter(|axis| axis.is_rotary()) {
+            if let Some(turns) = list
+                .axis_index(axis)
+                .and_then(|index| turns.get_mut(usize::from(index)))
+            {
+                *turns = true;
+            }
+        }
+        let mut paths = BTreeMap::new();
+        let entries = std::fs::read_dir(self.root.join(&folder.programs));
+        for entry in entries.into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().to_uppercase();
+            if entry.path().is_file()
+                && let Some(other) = paths.insert(name.clone(), entry.path())
+                && name.ends_with(".D")
+            {
+                let message = format!("the datum table {} has the same name", other.display());
+                self.fault_in_table(&entry.path(), "", vec![TableFault { line: 0, message }]);
+            }
+        }
+        for (name, path) in paths.iter().filter(|(name, _)| name.ends_with(".D")) {
+            if let Some(table) = self.table(path, |text| datum_table(text, turns)) {
+                memory.datum_tables.insert(name.clone(), table);
+                read.push(path.clone());
+            }
+        }
+        if let Some(name) = folder.datum_table.as_ref().map(|name| name.to_uppercase()) {
+            if !paths.contains_key(&name) || !name.ends_with(".D") {
+                let message = format!("there is no datum table {name} in {}", folder.programs);
+                self.fault_at_key("datum_table", &message);
+            }
+            memory.datum_table = Some(name);
+        }
+        if let Some(name) = folder.pallets.as_ref().map(|name| name.to_uppercase()) {
+            match paths.get(&name).filter(|_| name.ends_with(".P")) {
+                Some(path) => {
+                    memory.pallet = self.table(path, pallet_file);
+                    read.push(path.clone());
+                }
+                None => {
+                    let message = format!("there is no pallet file {name} in {}", folder.programs);
+                    self.fault_at_key("pallets", &message);
+                }
+            }
+        }
+        memory.names = paths.into_keys().collect();
+        read
+    }
+
+    fn table<T>(&mut self, path: &Path, read: impl FnOnce(&str) -> Result<T, Vec<TableFault>>) -> Option<T> {
+        let bytes = match files::read_table(path) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                let message = error.to_string();
+                self.fault_in_table(path, "", vec![TableFault { line: 0, message }]);
+                return None;
+            }
+        };
+        let text = decode(&bytes);
+        read(&text)
+            .map_err(|faults| self.fault_in_table(path, &text, faults))
+            .ok()
+    }
+
+    fn fault_in_table(&mut self, path: &Path, text: &str, faults: Vec<TableFault>) {
+        for fault in faults {
+            let place = (fault.line.max(1) as usize, None);
+            self.faults.push(file_fault(
+                path,
+                text,
+                place,
+                "the table is wrong",
+                &fault.message,
+            ));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    const LENGTHS: [bool; 5] = [false; 5];
+
+    /// Values of a line of a datum table.
+    fn line(table: &MemoryTable, number: i32) -> Option<Vec<f64>> {
+        (0..5).map(|element| table.value(number, element)).collect()
+    }
+
+    #[test]
+    fn datum_tables_are_read() {
+        let text = "NR\tX\tY\tZ\t4\tDOC\n0\t0\t0\t0\t0\tvice\n12\t-1.5\t2,25\t\t90\t\n";
+        let table = datum_table(text, LENGTHS).unwrap();
+        assert_eq!(line(&table, 12), Some(vec![-1.5, 2.25, 0.0, 90.0, 0.0]));
+        assert_eq!((line(&table, 0), line(&table, 1)), (Some(vec![0.0; 5]), None));
+        // As a control writes it, in inches: degrees stay.
+        let text = "BEGIN ZERO .D INCH\nNR   X      4\n3    +1     -30\n[END]\n";
+        let table = datum_table(text, [false, false, false, true, false]).unwrap();
+        assert_eq!(line(&table, 3), Some(vec![25.4, 0.0, 0.0, -30.0, 0.0]));
+    }
+
+    #[test]
+    fn faults_of_datum_tables_have_their_lines() {
+        let found = |text: &str| -> Vec<u32> {
+            let faults = datum_table(text, LENGTHS).err().unwrap_or_default();
+            faults.iter().map(|fault| fault.line).collect()
+        };
+        assert_eq!(
+            found("NR X\n0 1\n0 2\n255 1\nx 1\n3 nan\n4 1e9\n5 7\n"),
+            [3, 4, 5, 6, 7]
+        );
+        // A column that nobody reads would be a datum that nobody shifts.
+        assert_eq!(found("NR X B\n0 1 30\n"), [0]);
+        assert_eq!((found("X Y\n0 1\n"), found("")), (vec![0], vec![0]));
+    }
+
+    #[test]
+    fn pallet_files_are_read() {
+        let text = "NR PGM DATUM\n0 part.h zero\n1 7432 -\n4 B.I\n";
+        let lines = pallet_file(text).unwrap();
+        let lines: Vec<_> = lines
+            .iter()
+            .map(|(number, line)| (*number, line.program.as_str(), line.datum_table.as_deref()))
+            .collect();
+        assert_eq!(
+            lines,
+            [(0, "PART.H", Some("ZERO")), (1, "7432", None), (4, "B.I", None)]
+        );
+        let faults = pallet_file("NR PGM DATUM\n0 A\n1\n0 B\n").unwrap_err();
+        assert_eq!(faults.iter().map(|fault| fault.line).collect::<Vec<_>>(), [3, 4]);
+    }
+}
