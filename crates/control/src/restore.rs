@@ -21,8 +21,6 @@ use crate::run::RunState;
 /// Elements that one call of prepare passes at most.
 const BUDGET: usize = 1000;
 
-/// Simulated tool change position, and the axes for which it counts [000:6783-6832].
-
 /// Where a return is.
 #[derive(Debug)]
 pub(crate) enum Restore {
