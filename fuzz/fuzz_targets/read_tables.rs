@@ -1,5 +1,5 @@
-//! Any text is a tool table or faults with their lines; any text is a compensation table, an assignment, or an
-//! error with its line.
+//! Any text is a tool table, a datum table, a pallet file, or faults with their lines; any text is a compensation
+//! table, an assignment, or an error with its line.
 //!
 //! ```text
 //! cargo +nightly fuzz run read_tables
@@ -13,7 +13,9 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
     let lines = text.lines().count();
-    if let Err(faults) = bahn::check_tool_table(text) {
+    let [datums, pallets] = bahn::check_nc_tables(text);
+    let results = [bahn::check_tool_table(text), datums, pallets];
+    for faults in results.into_iter().filter_map(Result::err) {
         assert!(!faults.is_empty() && faults.iter().all(|line| *line as usize <= lines));
     }
     let errors = [

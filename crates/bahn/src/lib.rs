@@ -53,7 +53,7 @@ mod test_run;
 mod tool_table;
 
 #[doc(hidden)]
-pub use machine_folder::check_state;
+pub use machine_folder::{check_nc_tables, check_state};
 #[doc(hidden)]
 pub use plc::check_script;
 #[doc(hidden)]

@@ -40,8 +40,12 @@ fn mill(file: &str) -> &'static str {
     bahn_machines::MILL.file(file).unwrap()
 }
 
-fn tool_table(text: &str) -> Result<(), TestCaseError> {
-    if let Err(faults) = bahn::check_tool_table(text) {
+fn tables(text: &str) -> Result<(), TestCaseError> {
+    let [datums, pallets] = bahn::check_nc_tables(text);
+    for faults in [bahn::check_tool_table(text), datums, pallets]
+        .into_iter()
+        .filter_map(Result::err)
+    {
         let lines = text.lines().count();
         prop_assert!(!faults.is_empty() && faults.iter().all(|line| *line as usize <= lines));
     }
@@ -53,7 +57,9 @@ proptest! {
 
     #[test]
     fn any_text(text in text()) {
-        tool_table(&text)?;
+        tables(&text)?;
+        tables(&format!("NR X Y 4\n{text}"))?;
+        tables(&format!("NR PGM DATUM\n{text}"))?;
         let lines = text.lines().count();
         for line in [
             CompensationTable::read(&text).err().map(|error| error.line),
@@ -77,6 +83,6 @@ proptest! {
         if let Err(faults) = Machine::from_toml(&plant) {
             prop_assert!(!faults.is_empty() && faults.iter().all(|fault| fault.line >= 1));
         }
-        tool_table(&tools)?;
+        tables(&tools)?;
     }
 }

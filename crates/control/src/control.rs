@@ -12,7 +12,6 @@ use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
 
 use crate::axes::AxisUnit;
 use crate::command::{Command, Mode};
-use crate::datums::{LoadedDatums, PalletSelection};
 use crate::emergency::EmergencyStop;
 use crate::feeder::{Offsets, Programs};
 use crate::handshake::{Handshakes, Transfer};
@@ -22,12 +21,13 @@ use crate::markers::AXES;
 use crate::message::{Message, Messages};
 use crate::overrides::Override;
 use crate::panel::Panel;
-use crate::plc_link::PlcLink;
+use crate::plc_link::{PalletSelection, PlcLink};
 use crate::positioning::Positioning;
 use crate::reference::ReferenceRun;
 use crate::run::ProgramRun;
 use crate::setup::{Checking, Remembered, Setup};
 use crate::spindle::SpindleUnit;
+use crate::tables::{LoadedDatums, LoadedTables};
 use crate::thread::Tapping;
 use crate::tools::Tools;
 use crate::upkeep::Upkeep;
@@ -99,7 +99,7 @@ pub struct Control {
     pub(crate) programs: Arc<dyn Programs>,
     /// Q parameters between runs.
     pub(crate) q: Vec<(u16, f64)>,
-    pub(crate) loaded_tables: crate::tables::LoadedTables,
+    pub(crate) loaded_tables: LoadedTables,
     pub(crate) loaded_datums: LoadedDatums,
     /// The commands, when somebody wants them.
     log: Option<Vec<(u64, Command)>>,
@@ -221,7 +221,7 @@ impl Control {
             inch_feed,
             programs,
             q: remembered.q,
-            loaded_tables: crate::tables::LoadedTables::default(),
+            loaded_tables: LoadedTables::default(),
             loaded_datums: LoadedDatums::default(),
             log: None,
             inputs: [false; INPUTS],

@@ -1,7 +1,6 @@
 //! Datum tables and what module 9090 selects: the selected table is that of `CYCL DEF 7.1 #n` and of modules
 //! 9092 to 9094 [000:15328-15545].
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_interpreter::DatumTable;
@@ -12,6 +11,7 @@ use bahn_plc::{MemoryTable, TableFile, TableKind};
 use crate::command::Command;
 use crate::control::Control;
 use crate::markers::AXES;
+use crate::plc_link::{PalletRequest, PlcLink};
 use crate::setup::WrittenElement;
 use crate::tables::differences;
 
@@ -34,31 +34,6 @@ pub fn datum_shifts(table: &MemoryTable, list: &ParameterList) -> DatumTable {
         line = number.checked_add(1).and_then(|next| table.next_line(next));
     }
     shifts
-}
-
-/// What module 9090 has selected beside the program.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct PalletSelection {
-    /// The line of the pallet file.
-    pub line: Option<i32>,
-    /// The datum table of that line, or of one before it [000:15338].
-    pub datum_table: Option<String>,
-}
-
-/// A line of the pallet file that module 9090 wants.
-#[derive(Clone, Debug)]
-pub(crate) struct PalletRequest {
-    pub line: i32,
-    pub program: String,
-    pub datum_table: Option<String>,
-}
-
-/// The datum tables as their files say: what differs from them was written.
-#[derive(Debug, Default)]
-pub(crate) struct LoadedDatums {
-    tables: BTreeMap<String, MemoryTable>,
-    /// Blocks that are read from now on find other datums.
-    changed: bool,
 }
 
 impl Control {
@@ -120,7 +95,7 @@ impl Control {
     }
 }
 
-impl crate::plc_link::PlcLink {
+impl PlcLink {
     /// The datum table with M status.
     pub fn datum_table_name(&self) -> Option<&String> {
         self.pallet

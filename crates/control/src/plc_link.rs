@@ -14,7 +14,6 @@ use bahn_plc::{
 };
 
 use crate::compensation::{CompensationAssignment, CompensationTable};
-use crate::datums::{PalletRequest, PalletSelection};
 use crate::markers::AXES;
 
 /// Files and tables of the NC memory that modules read.
@@ -79,6 +78,23 @@ pub(crate) struct Requests {
     pub pallet: Option<PalletRequest>,
     pub status: StatusChanges,
     pub parameters_changed: bool,
+}
+
+/// What module 9090 has selected beside the program.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PalletSelection {
+    /// The line of the pallet file.
+    pub line: Option<i32>,
+    /// The datum table of that line, or of one before it [000:15338].
+    pub datum_table: Option<String>,
+}
+
+/// A line of the pallet file that module 9090 wants.
+#[derive(Clone, Debug)]
+pub(crate) struct PalletRequest {
+    pub line: i32,
+    pub program: String,
+    pub datum_table: Option<String>,
 }
 
 /// Kinds of coordinates that modules read.

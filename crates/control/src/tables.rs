@@ -1,6 +1,8 @@
 //! Tool and pocket table as modules 9092 to 9094 see them [000:15375-15545]: what the PLC writes there counts
 //! at once and survives power-off.
 
+use std::collections::BTreeMap;
+
 use bahn_path::ToolShape;
 use bahn_plc::{MemoryTable, TableFile, TableKind};
 
@@ -60,6 +62,14 @@ impl LoadedTables {
         }
         LoadedTables(vec![table, magazine])
     }
+}
+
+/// The datum tables as their files say: what differs from them was written.
+#[derive(Debug, Default)]
+pub(crate) struct LoadedDatums {
+    pub tables: BTreeMap<String, MemoryTable>,
+    /// Blocks that are read from now on find other datums.
+    pub changed: bool,
 }
 
 impl Control {

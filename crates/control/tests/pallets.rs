@@ -98,6 +98,7 @@ fn run_to_end(rig: &mut Rig) -> [f64; 2] {
     ['X', 'Y'].map(|axis| display(rig, axis))
 }
 
+/// Module 9090: program and datum table of a line, and its faults; what is selected is there after power-off.
 #[test]
 fn a_pallet_selects_program_and_datum_table() {
     let mut rig = ready(build(Remembered::default()));
@@ -144,6 +145,7 @@ fn a_pallet_selects_program_and_datum_table() {
     assert_eq!((rig.number("D100"), rig.number("W104")), (-150_000, 0));
 }
 
+/// Modules 9092, 9093 and 9094 on the selected datum table; what is written counts at once and after power-off.
 #[test]
 fn the_selected_datum_table_is_read_and_written() {
     let mut rig = ready(build(Remembered::default()));

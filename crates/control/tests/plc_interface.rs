@@ -145,7 +145,8 @@ fn the_last_change_of_status_holds() {
 /// handwheel [000:14899-14933].
 #[test]
 fn the_plc_reads_the_status() {
-    let items = [1, 5, 6, 9, 10, 11, 13];
+    // Nothing lies over a mode, $MDI is a .H, the display is in mm, no plane is tilted: 0.
+    let items = [1, 5, 6, 9, 10, 11, 13, 2, 3, 16, 17, 18];
     let read = |(place, item): (usize, u8)| {
         let to = 100 + 2 * place;
         format!("       PS    K+{item}\n       CM    9035\n       PL    W{to}\n")
@@ -163,14 +164,14 @@ fn the_plc_reads_the_status() {
     rig.command("handwheel Z 7");
     rig.command("handwheel X 3");
     // Full sequence is 5; a .H is selected, none is tested; the handwheel moves X.
-    assert_eq!(status(&mut rig), [5, 0, 1, 0, 1, 3, 7]);
+    assert_eq!(status(&mut rig), [5, 0, 1, 0, 1, 3, 7, 0, 0, 0, 0, 0]);
     rig.command("mode handwheel");
     rig.command("handwheel Z 6");
-    assert_eq!(status(&mut rig), [2, 0, 1, 2, 4, 3, 6]);
+    assert_eq!(status(&mut rig), [2, 0, 1, 2, 4, 3, 6, 0, 0, 0, 0, 0]);
     rig.command("mode single");
     rig.command("test 1.H");
     rig.command("select 2.I");
-    assert_eq!(status(&mut rig), [4, 1, 2, 2, 4, 3, 6]);
+    assert_eq!(status(&mut rig), [4, 1, 2, 2, 4, 3, 6, 0, 0, 0, 0, 0]);
 }
 
 /// A tool change that is broken off before the PLC has acknowledged it: the old tool is in the spindle, with

@@ -19,6 +19,7 @@ pub(crate) use options::MachineFolderOptions;
 pub(crate) use programs::FolderPrograms;
 pub(crate) use state::State;
 
+use crate::columns::TableFault;
 use crate::{Outcome, UsageError};
 use options::MachineCommand;
 
@@ -28,6 +29,16 @@ use options::MachineCommand;
 pub fn check_state(file: &[u8]) -> Option<bool> {
     let read = remembered::read(file).ok()?;
     Some(remembered::read(remembered::write(&read).as_bytes()).as_ref() == Ok(&read))
+}
+
+/// Reads a text as datum table and as pallet file, for fuzzing: the lines of the faults, 0 is the table as a whole.
+#[doc(hidden)]
+pub fn check_nc_tables(text: &str) -> [Result<(), Vec<u32>>; 2] {
+    let lines = |faults: Vec<TableFault>| faults.iter().map(|fault| fault.line).collect();
+    [
+        nc_memory::datum_table(text, [false; 5]).map(drop).map_err(lines),
+        nc_memory::pallet_file(text).map(drop).map_err(lines),
+    ]
 }
 
 /// Executes a subcommand of `bahn machine`.
