@@ -28,7 +28,7 @@ enum Reach {
 
 /// The tool's centre is nowhere nearer to the contour than its radius, and beside each element exactly as far.
 fn keeps_its_distance(contour: &Contour, reach: Reach) -> Result<(), TestCaseError> {
-    let run = Job::new(contour.program(Spelling::Absolute)).run();
+    let run = Job::exact(&contour.program(Spelling::Absolute)).run();
     prop_assume!(run.error.is_none());
     let blocks = contour.element_blocks();
     let last = blocks.len() - 1;
@@ -158,7 +158,7 @@ proptest! {
     /// Transition arcs begin and end tangentially, roundings too; no joint has a gap.
     #[test]
     fn tangential_joints_are_tangential(contour in contours(true)) {
-        let run = Job::new(contour.program(Spelling::Absolute)).run();
+        let run = Job::exact(&contour.program(Spelling::Absolute)).run();
         let moves: Vec<&PathElement> = run.moves().collect();
         for pair in moves.windows(2) {
             let (a, b) = (pair[0], pair[1]);
@@ -184,30 +184,30 @@ proptest! {
     ) {
         let (text, frame) = transformation([shift.0, shift.1], mirror, rotation, scale);
         let plain = Contour { tool_radius: contour.tool_radius / scale, ..contour.clone() };
-        let a = Job::new(plain.program(Spelling::Absolute)).run();
-        let b = Job::new(contour.program_with(Spelling::Absolute, &text)).run();
+        let a = Job::exact(&plain.program(Spelling::Absolute)).run();
+        let b = Job::exact(&contour.program_with(Spelling::Absolute, &text)).run();
         let turns = if frame.reverses(Plane::XY) { -1.0 } else { 1.0 };
         same_path(&a, &b, |p| frame.to_outer(p), turns)?;
     }
 
     #[test]
     fn incremental_points_are_the_same(contour in contours(true)) {
-        let a = Job::new(contour.program(Spelling::Absolute)).run();
-        let b = Job::new(contour.program(Spelling::Incremental)).run();
+        let a = Job::exact(&contour.program(Spelling::Absolute)).run();
+        let b = Job::exact(&contour.program(Spelling::Incremental)).run();
         same_path(&a, &b, unchanged, 1.0)?;
     }
 
     #[test]
     fn polar_points_are_the_same(contour in contours(true)) {
-        let a = Job::new(contour.program(Spelling::Absolute)).run();
-        let b = Job::new(contour.program(Spelling::Polar)).run();
+        let a = Job::exact(&contour.program(Spelling::Absolute)).run();
+        let b = Job::exact(&contour.program(Spelling::Polar)).run();
         same_path(&a, &b, unchanged, 1.0)?;
     }
 
     #[test]
     fn a_program_in_inches_is_the_same(contour in contours(true)) {
-        let a = Job::new(contour.program(Spelling::Absolute)).run();
-        let b = Job::new(contour.program(Spelling::Inch)).run();
+        let a = Job::exact(&contour.program(Spelling::Absolute)).run();
+        let b = Job::exact(&contour.program(Spelling::Inch)).run();
         same_path(&a, &b, unchanged, 1.0)?;
         for (p, q) in a.moves().zip(b.moves()) {
             match (p.feed, q.feed) {
@@ -220,8 +220,8 @@ proptest! {
     /// Machined from the other end with the other side, the tool runs the same way backwards.
     #[test]
     fn the_reversed_contour_is_the_reversed_path(contour in contours(false)) {
-        let a = Job::new(contour.program(Spelling::Absolute)).run();
-        let b = Job::new(reversed(&contour).program(Spelling::Absolute)).run();
+        let a = Job::exact(&contour.program(Spelling::Absolute)).run();
+        let b = Job::exact(&reversed(&contour).program(Spelling::Absolute)).run();
         prop_assert_eq!(a.error.is_some(), b.error.is_some());
         prop_assume!(a.error.is_none());
         // Without approach and departure.
@@ -341,8 +341,8 @@ proptest! {
                  LBL 2\nCC X+10 Y+15\nL X+0 Y+15 RR\nC X+0 Y+15 DR+\nLBL 0\nEND PGM 1 MM\n"
             )
         };
-        let a = Job::new(program(tool_radius / scale, "")).run();
-        let b = Job::new(program(tool_radius, &text)).run();
+        let a = Job::exact(&program(tool_radius / scale, "")).run();
+        let b = Job::exact(&program(tool_radius, &text)).run();
         let message = |run: &Run| run.error.as_ref().map(|error| error.message.clone());
         prop_assert_eq!(message(&a), message(&b));
         let (first, second): (Vec<_>, Vec<_>) = (a.moves().collect(), b.moves().collect());

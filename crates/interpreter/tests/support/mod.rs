@@ -44,15 +44,51 @@ pub struct Job {
     pub settings: Settings,
     library: BTreeMap<String, String>,
     surfaces: Vec<f64>,
+    /// Q parameters from the start.
+    q: Vec<(u16, f64)>,
 }
 
 impl Job {
+    /// A program whose numbers count to their last decimal: those finer than any input step, which would be rounded,
+    /// come by Q parameters, which are not.
+    pub fn exact(text: &str) -> Job {
+        let mut free = (1..100).chain(120..300);
+        let mut q: Vec<(u16, f64)> = Vec::new();
+        let mut exact = String::new();
+        let mut rest = text;
+        while let Some(at) = rest.find(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-')) {
+            let (before, number) = rest.split_at(at);
+            let end = number
+                .find(|c: char| !(c.is_ascii_digit() || matches!(c, '+' | '-' | '.')))
+                .unwrap_or(number.len());
+            let (number, behind) = number.split_at(end);
+            exact.push_str(before);
+            let decimals = number.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+            if decimals > 4 && !before.ends_with("SCL ") {
+                let value: f64 = number.parse().unwrap();
+                let known = q.iter().find(|(_, known)| *known == value).map(|(name, _)| *name);
+                let name = known.unwrap_or_else(|| {
+                    let name = free.next().expect("a free Q parameter");
+                    q.push((name, value));
+                    name
+                });
+                exact.push_str(&format!("+Q{name}"));
+            } else {
+                exact.push_str(number);
+            }
+            rest = behind;
+        }
+        exact.push_str(rest);
+        Job { q, ..Job::new(exact) }
+    }
+
     pub fn new(text: impl Into<Vec<u8>>) -> Job {
         Job {
             text: text.into(),
             settings: Settings::default(),
             library: BTreeMap::new(),
             surfaces: Vec::new(),
+            q: Vec::new(),
         }
     }
 
@@ -86,6 +122,9 @@ impl Job {
                 .collect(),
         );
         let mut interpreter = Interpreter::new(main, self.settings, Box::new(library));
+        for (number, value) in self.q {
+            interpreter.set_q(number, value);
+        }
         let mut run = Run::new();
         let mut surfaces = self.surfaces.into_iter();
         loop {
