@@ -111,7 +111,6 @@ const CIRCLES: &[(&str, &[&str])] = &[
             "settings",
         ],
     ),
-    ("workpiece", &["round", "sweep"]),
     ("workpiece", &["view::colouring", "view::shade"]),
     (
         "workpiece",
