@@ -184,15 +184,21 @@ impl Leads {
             leads.fill(self.at(chord / self.radius));
             return;
         }
-        // At the rim the leads change too fast for a straight line between places of the fan.
-        let holds = |fan: &Fan| b.abs().max((b + step * leads.len() as f32).abs()) <= fan.beside;
-        if let Some(fan) = self.fan.as_ref().filter(|fan| holds(fan)) {
+        if let Some(fan) = &self.fan {
             let (first, share) = fan.place(self.radius, row);
             if let Some([_, next @ ..]) = fan.leads.get(first..first + leads.len() + 1) {
                 let near = fan.leads.get(first..).unwrap_or_default();
                 for ((lead, near), next) in leads.iter_mut().zip(near).zip(next) {
                     *lead = near + (next - near) * share;
                 }
+                // At the rim the leads change too fast for a straight line between places of the fan.
+                let count = leads.len();
+                let inside = between(b, step, -fan.beside..fan.beside);
+                let [start, end] = inside.map(|k| (k.max(0.0) as usize).min(count));
+                let (before, rest) = leads.split_at_mut(start);
+                self.look_up(b, step, before);
+                let behind = rest.get_mut(end.max(start) - start..).unwrap_or_default();
+                self.look_up(b + end.max(start) as f32 * step, step, behind);
                 return;
             }
         }
