@@ -95,7 +95,6 @@ const CIRCLES: &[(&str, &[&str])] = &[
             "settings",
         ],
     ),
-    ("workpiece", &["round", "sweep"]),
 ];
 
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];

@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use crate::cutters::Mark;
 use crate::grid::Grid;
-use crate::sweep::{BAND_ROWS, Segment, Sink, Start, Track};
+use crate::raster::{BAND_ROWS, GROUP};
+use crate::track::{Segment, Sink, Start, Track};
 
 /// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
 const RAPID_CUT_MM: f32 = 0.002;
@@ -170,6 +171,32 @@ impl Sink for Cut<'_> {
         }
     }
 
+    #[inline(always)]
+    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
+        let start = (row - self.first_row) * self.width;
+        let cells = self
+            .cells
+            .get_mut(start + columns.start..start + columns.end)
+            .unwrap_or_default();
+        let (groups, rest) = cells.as_chunks_mut::<GROUP>();
+        let first_of_rest = GROUP * groups.len();
+        for (n, group) in groups.iter_mut().enumerate() {
+            let heights = heights(GROUP * n);
+            *group = std::array::from_fn(|k| {
+                if heights[k] < group[k] {
+                    heights[k]
+                } else {
+                    group[k]
+                }
+            });
+        }
+        if !rest.is_empty() {
+            for (cell, height) in rest.iter_mut().zip(heights(first_of_rest)) {
+                *cell = if height < *cell { height } else { *cell };
+            }
+        }
+    }
+
     #[inline]
     fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {
         let start = (row - self.first_row) * self.width;
@@ -209,6 +236,10 @@ impl Sink for Detect<'_> {
             .iter()
             .enumerate()
             .any(|(k, cell)| *cell > height(k as f32) + RAPID_CUT_MM);
+    }
+
+    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
+        self.shaped(row, columns, |k| heights(k as usize)[0]);
     }
 
     fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::sweep::Sink;
+use crate::raster::GROUP;
+use crate::track::Sink;
 
 /// Kept only for pictures that ask for it: one byte for each column.
 #[derive(Clone, Debug)]
@@ -121,6 +122,10 @@ impl Sink for Mark<'_> {
                 *mark = self.mark;
             }
         }
+    }
+
+    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
+        self.shaped(row, columns, |k| heights(k as usize)[0]);
     }
 
     fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {

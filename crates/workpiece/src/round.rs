@@ -10,20 +10,12 @@
 use std::ops::Range;
 
 use crate::grid::Grid;
-use crate::sweep::{BAND_ROWS, Borders, End, Raster, Row, Sink, Track, least, positive};
-
-/// Curves flatter than this part of the radius are taken for this flat: the tool is lower by less than the
-/// precision of the map.
-const FLATTEST: f64 = 1e-3;
-
-/// Columns that are cut side by side: a register of the x86-64 base line.
-const GROUP: i32 = 4;
+use crate::leads::{FLATTEST, between};
+use crate::raster::{BAND_ROWS, Borders, GROUP, Raster, Row, least, positive};
+use crate::track::{End, Sink, Track};
 
 /// Columns of a row whose heights are kept at once.
 const AT_ONCE: usize = 64;
-
-/// Columns farther from the tool than any map is wide.
-const FAR: i64 = 1 << 29;
 
 /// The half of an ellipse before a place on the track, and the strip behind it: `ahead` long, `beside` to
 /// either side, mm.
@@ -63,29 +55,32 @@ impl Track {
         rows: Range<usize>,
         sink: &mut impl Sink,
     ) {
-        let mut heights = [0.0; AT_ONCE];
         let wanted = self.wanted(before, grid, &rows);
         for (k, row) in rows.enumerate() {
             for columns in wanted.each_ref().map(|part| part.row(k)) {
-                let middle = self.middle(grid, row, &columns);
-                for (columns, is_middle) in [
-                    (columns.start..middle.start, false),
-                    (middle.clone(), true),
-                    (middle.end..columns.end, false),
-                ] {
-                    for first in columns.clone().step_by(AT_ONCE) {
-                        let columns = first..columns.end.min(first + AT_ONCE);
-                        let heights = heights.get_mut(..columns.len()).unwrap_or_default();
-                        let row_of = self.row(grid, first, row);
-                        if is_middle {
-                            self.middle_heights(&row_of, heights);
-                        } else {
-                            self.torus_heights(&row_of, heights);
-                        }
-                        sink.listed(row, columns, heights);
-                    }
+                if columns.is_empty() {
+                    continue;
                 }
+                let Some(middle) = self.middle(grid, row, &columns) else {
+                    self.sweep_ends(grid, row, columns, sink);
+                    continue;
+                };
+                self.sweep_ends(grid, row, columns.start..middle.start, sink);
+                self.sweep_ends(grid, row, middle.end..columns.end, sink);
+                self.sweep_middle(grid, row, middle, sink);
             }
+        }
+    }
+
+    /// Columns of a row that may be touched anywhere on the track.
+    #[inline]
+    fn sweep_ends(&self, grid: &Grid, row: usize, columns: Range<usize>, sink: &mut impl Sink) {
+        let mut heights = [0.0; AT_ONCE];
+        for first in columns.clone().step_by(AT_ONCE) {
+            let columns = first..columns.end.min(first + AT_ONCE);
+            let heights = heights.get_mut(..columns.len()).unwrap_or_default();
+            self.torus_heights(&self.row(grid, first, row), heights);
+            sink.listed(row, columns, heights);
         }
     }
 
@@ -110,30 +105,39 @@ impl Track {
 
     /// The columns of a row that are touched surely between the ends of the track: there the height is that of
     /// the axis and a share that depends on the place across the track alone.
-    fn middle(&self, grid: &Grid, row: usize, columns: &Range<usize>) -> Range<usize> {
-        let Some(fan) = self.leads.as_ref().and_then(|leads| leads.fan.as_ref()) else {
-            return columns.start..columns.start;
-        };
-        if fan.heights.is_empty() || columns.is_empty() {
-            return columns.start..columns.start;
-        }
+    fn middle(&self, grid: &Grid, row: usize, columns: &Range<usize>) -> Option<Range<usize>> {
+        let leads = self.leads.as_ref().filter(|leads| leads.is_long)?;
         let Row { dx, ux, uy, .. } = self.row(grid, columns.start, row);
         let [a, b] = self.row(grid, columns.start, row).place(0.0);
-        let along = between(a, dx * ux, self.outer().ahead as f32..self.length as f32);
-        let across = between(b, dx * uy, -fan.beside..fan.beside);
+        let beside = if uy == 0.0 {
+            self.tool.radius as f32
+        } else {
+            leads.fan.as_ref()?.beside
+        };
+        let along = between(a, dx * ux, leads.longest()..self.length as f32);
+        let across = between(b, dx * uy, -beside..beside);
         let first = along[0].max(across[0]).clamp(0.0, columns.len() as f32);
         let end = along[1].min(across[1]).clamp(first, columns.len() as f32);
-        columns.start + first as usize..columns.start + end as usize
+        Some(columns.start + first as usize..columns.start + end as usize)
     }
 
     #[inline]
-    fn middle_heights(&self, row: &Row, heights: &mut [f32]) {
-        if let Some(fan) = self.leads.as_ref().and_then(|leads| leads.fan.as_ref()) {
-            fan.fill_heights(row, heights);
-        }
-        for (k, height) in heights.iter_mut().enumerate() {
-            let [a, _] = row.place(k as i32 as f32);
-            *height = positive(row.low + row.slope * a + *height);
+    fn sweep_middle(&self, grid: &Grid, at: usize, columns: Range<usize>, sink: &mut impl Sink) {
+        let Some(leads) = self.leads.as_ref().filter(|_| !columns.is_empty()) else {
+            return;
+        };
+        let row = &self.row(grid, columns.start, at);
+        let heights = |k: usize, shares: [f32; GROUP]| middle_group(row, k, shares);
+        match &leads.fan {
+            Some(fan) => {
+                let found = fan.heights_of(row);
+                sink.grouped(at, columns, |k| heights(k, found.group(k)));
+            }
+            // Along the rows.
+            None => {
+                let share = leads.height_at(row.place(0.0)[1]);
+                sink.grouped(at, columns, |k| heights(k, [share; GROUP]));
+            }
         }
     }
 
@@ -150,7 +154,7 @@ impl Track {
             None => self.sine() * self.tool.corner / radius,
         };
         Cap {
-            ahead: share.max(FLATTEST) * radius,
+            ahead: share.max(f64::from(FLATTEST)) * radius,
             beside: radius,
         }
     }
@@ -162,7 +166,7 @@ impl Track {
             Some(leads) => {
                 let middle = self.tool.flat() + self.tool.corner * self.sine();
                 let cap = Cap {
-                    ahead: f64::from(leads.least).max(FLATTEST) * radius,
+                    ahead: f64::from(leads.least).max(f64::from(FLATTEST)) * radius,
                     beside: radius,
                 };
                 let disc = Cap {
@@ -178,7 +182,7 @@ impl Track {
     /// The columns that the cap at a place of the track holds, in each of the rows, side by side as in
     /// [`Track::spans`].
     fn behind(&self, place: f64, cap: Cap, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
-        let raster = Raster::new(self, base, grid, rows);
+        let raster = Raster::new([self.low[0], self.low[1]], base, grid, rows);
         let [ux, uy] = self.u.map(|u| u as f32);
         let (place, beside) = (place as f32, cap.beside as f32);
         // The ellipse as a circle: lengths along the track are stretched.
@@ -266,274 +270,13 @@ impl Track {
     }
 }
 
-/// Arithmetic of borders, all rows side by side.
-impl Borders {
-    fn nothing(&self) -> Borders {
-        Borders {
-            start: [0; BAND_ROWS],
-            end: [0; BAND_ROWS],
-            ..*self
-        }
+/// Heights of neighbouring columns by what they are over the axis.
+#[inline(always)]
+fn middle_group(row: &Row, k: usize, shares: [f32; GROUP]) -> [f32; GROUP] {
+    let mut heights = [0.0; GROUP];
+    for n in 0..GROUP {
+        let [a, _] = row.place(k as i32 as f32 + n as i32 as f32);
+        heights[n] = positive(row.low + row.slope * a + shares[n]);
     }
-
-    /// Only the columns of the map.
-    fn clip_to_map(&mut self) {
-        let border = |of: i64| (of - self.base).clamp(-FAR, FAR) as i32;
-        let (first, last) = (border(0), border(self.columns));
-        for (start, end) in self.start.iter_mut().zip(&mut self.end) {
-            *start = (*start).max(first).min(last);
-            *end = (*end).max(*start).min(last);
-        }
-    }
-
-    /// Only the columns that are in `other` too, by `margin` within it.
-    fn clip(&mut self, other: &Borders, margin: i32) {
-        for k in 0..BAND_ROWS {
-            self.start[k] = self.start[k].max(other.start[k] + margin);
-            self.end[k] = self.end[k].min(other.end[k] - margin);
-        }
-    }
-
-    fn widen(&mut self, margin: i32) {
-        for k in 0..BAND_ROWS {
-            let margin = if self.start[k] < self.end[k] { margin } else { 0 };
-            self.start[k] -= margin;
-            self.end[k] += margin;
-        }
-    }
-
-    /// The columns of both, and those between them.
-    fn join(&mut self, other: &Borders) {
-        for k in 0..BAND_ROWS {
-            let (start, end) = (self.start[k], self.end[k]);
-            let (from, to) = (other.start[k], other.end[k]);
-            let (is_empty, is_more) = (start >= end, from < to);
-            self.start[k] = if is_empty || is_more && from < start {
-                from
-            } else {
-                start
-            };
-            self.end[k] = if is_empty || is_more && to > end { to } else { end };
-        }
-    }
-
-    /// What is left and right of the columns `but`; some columns of these as well, so that whole groups go
-    /// without leftovers, which are slow. Nowhere under the tool, in `all`, does it harm to look at a column.
-    fn without(&self, but: &Borders, all: &Borders) -> [Borders; 2] {
-        let whole = |length: i32| (length.max(0) + GROUP - 1) & !(GROUP - 1);
-        let (mut left, mut right) = (*self, *self);
-        for k in 0..BAND_ROWS {
-            let (start, end) = (self.start[k], self.end[k]);
-            let (from, to) = (but.start[k].max(start), but.end[k].min(end));
-            let before = (start + whole(from - start)).min(end);
-            let after = (end - whole(end - to)).max(start);
-            let is_one = from >= to || before > after;
-            let last = (start + whole(end - start)).min(all.end[k]);
-            let first = (last - whole(end - start)).max(all.start[k]);
-            left.start[k] = if is_one { first.min(start) } else { start };
-            left.end[k] = if is_one { last } else { before };
-            right.start[k] = if is_one { end } else { after };
-        }
-        [left, right]
-    }
-}
-
-/// How far before its axis a tool with a corner radius touches what it leaves on a slope, by the
-/// distance across the track.
-///
-/// The bottom of the moving tool is touched where its normal is perpendicular to the movement. At the
-/// angle `p` from the track the point of the corner with the tangent `slope / cos p` is such a point:
-/// `(flat + corner * sin) * cos p` before the axis and `(flat + corner * sin) * sin p` beside it. The
-/// height that follows from the place has its minimum there, so a small error of the place does not
-/// count.
-#[derive(Clone, Debug)]
-pub(crate) struct Leads {
-    /// By equal steps of the half chord as part of the radius, which straightens the curve.
-    leads: [f32; Leads::COUNT + 1],
-    /// Bounds of the lead as part of the half chord.
-    least: f32,
-    most: f32,
-    radius: f32,
-    /// By the steps of a row from column to column.
-    fan: Option<Fan>,
-}
-
-/// Leads across the whole track from one side to the other, as far apart as the columns of a row lie across the
-/// track: in every row they are met one after the other, each row at another place between them.
-#[derive(Clone, Debug)]
-struct Fan {
-    leads: Vec<f32>,
-    /// What the height is over that of the axis between the ends of the track; nothing for a short one.
-    heights: Vec<f32>,
-    /// From column to column across the track, mm.
-    step: f32,
-    /// So far from the track the heights are sure, mm: at the sides they change too fast.
-    beside: f32,
-}
-
-impl Fan {
-    /// Columns beyond either side of the track.
-    const BEYOND: usize = 16;
-    /// Columns at either side whose heights are not sure.
-    const SIDE: f32 = 6.0;
-    /// Bounds of the step as part of the radius: a finer one takes too long to make, a coarser one loses the curve.
-    const STEPS: Range<f32> = 1.0 / 256.0..1.0 / 32.0;
-
-    /// Where the columns of a row from `b` on lie: the place before the first one, and how far behind it that is.
-    #[inline]
-    fn place(&self, radius: f32, row: &Row) -> (usize, f32) {
-        let [_, b] = row.place(0.0);
-        // What is to the right of the track is to the left as well.
-        let b = if row.uy < 0.0 { -b } else { b };
-        let place = positive((b + radius) / self.step + Fan::BEYOND as f32);
-        let first = place as i32;
-        (first as usize, place - first as f32)
-    }
-
-    /// Heights between four places of the fan (Lagrange): in a row all with the same shares.
-    fn fill_heights(&self, row: &Row, heights: &mut [f32]) {
-        let radius = self.beside + Fan::SIDE * self.step;
-        let (first, t) = self.place(radius, row);
-        let shares = [
-            -t * (t - 1.0) * (t - 2.0) / 6.0,
-            (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
-            -(t + 1.0) * t * (t - 2.0) / 2.0,
-            (t + 1.0) * t * (t - 1.0) / 6.0,
-        ];
-        let from = |k: usize| {
-            self.heights
-                .get((first + k).saturating_sub(1)..)
-                .unwrap_or_default()
-        };
-        heights.fill(f32::INFINITY);
-        let near = from(0).iter().zip(from(1)).zip(from(2)).zip(from(3));
-        for (height, (((a, b), c), d)) in heights.iter_mut().zip(near) {
-            *height = a * shares[0] + b * shares[1] + c * shares[2] + d * shares[3];
-        }
-    }
-}
-
-/// The first and the last number of steps from `start` that lie in a range.
-fn between(start: f32, step: f32, range: Range<f32>) -> [f32; 2] {
-    if step == 0.0 {
-        let is_inside = range.contains(&start);
-        return if is_inside {
-            [0.0, f32::INFINITY]
-        } else {
-            [0.0, 0.0]
-        };
-    }
-    let ends = [(range.start - start) / step, (range.end - start) / step];
-    [ends[0].min(ends[1]).ceil(), ends[0].max(ends[1]).floor() + 1.0]
-}
-
-impl Leads {
-    const COUNT: usize = 64;
-
-    pub fn new([flat, corner]: [f32; 2], slope: f32, length: f32, step: f32) -> Leads {
-        let radius = flat + corner;
-        let points: [(f32, f32); Leads::COUNT + 1] = std::array::from_fn(|k| {
-            let cos = 1.0 - k as i32 as f32 / Leads::COUNT as f32;
-            let sine = slope / (slope * slope + cos * cos).sqrt();
-            let r = flat + corner * sine;
-            // radius² - (r sin p)², without its loss of digits at the rim.
-            let chord = positive((radius - r) * (radius + r) + r * r * cos * cos).sqrt() / radius;
-            (chord, r * cos)
-        });
-        let mut leads = Leads {
-            leads: [0.0; Leads::COUNT + 1],
-            least: f32::INFINITY,
-            most: 0.0,
-            radius,
-            fan: None,
-        };
-        let mut next = 1;
-        for (k, lead) in leads.leads.iter_mut().enumerate().rev() {
-            let chord = k as i32 as f32 / Leads::COUNT as f32;
-            while next < Leads::COUNT && points[next].0 > chord {
-                next += 1;
-            }
-            let (near, far) = (points[next - 1], points[next]);
-            let share = if near.0 > far.0 {
-                (near.0 - chord) / (near.0 - far.0)
-            } else {
-                0.0
-            };
-            *lead = near.1 + (far.1 - near.1) * least(positive(share), 1.0);
-            if k > 0 {
-                let part = *lead / (chord * radius);
-                leads.least = leads.least.min(part);
-                leads.most = leads.most.max(part);
-            }
-        }
-        let step = step.abs();
-        if Fan::STEPS.contains(&(step / radius)) {
-            let first = -radius - Fan::BEYOND as f32 * step;
-            let mut fan = vec![0.0; (2.0 * radius / step) as usize + 2 * Fan::BEYOND];
-            leads.look_up(first, step, &mut fan);
-            let is_long = length > 2.0 * leads.most * radius;
-            let height = |(k, lead): (usize, &f32)| {
-                let b = first + k as i32 as f32 * step;
-                let rise = positive((b * b + lead * lead).sqrt() - flat);
-                corner - positive((corner - rise) * (corner + rise)).sqrt() - slope * lead
-            };
-            leads.fan = Some(Fan {
-                heights: if is_long {
-                    fan.iter().enumerate().map(height).collect()
-                } else {
-                    Vec::new()
-                },
-                leads: fan,
-                step,
-                beside: radius - Fan::SIDE * step,
-            });
-        }
-        leads
-    }
-
-    /// The leads of neighbouring columns of a row.
-    #[inline]
-    fn fill(&self, row: &Row, leads: &mut [f32]) {
-        let [_, b] = row.place(0.0);
-        let step = row.dx * row.uy;
-        let width = step.abs() * leads.len() as f32;
-        if width <= FLATTEST as f32 * self.radius {
-            let middle = b + 0.5 * step * leads.len() as f32;
-            let chord = positive((self.radius - middle) * (self.radius + middle)).sqrt();
-            leads.fill(self.at(chord / self.radius));
-            return;
-        }
-        if let Some(fan) = &self.fan {
-            let (first, share) = fan.place(self.radius, row);
-            if let Some([_, next @ ..]) = fan.leads.get(first..first + leads.len() + 1) {
-                let near = fan.leads.get(first..).unwrap_or_default();
-                for ((lead, near), next) in leads.iter_mut().zip(near).zip(next) {
-                    *lead = near + (next - near) * share;
-                }
-                return;
-            }
-        }
-        self.look_up(b, step, leads);
-    }
-
-    /// As [`Leads::fill`], without a fan.
-    fn look_up(&self, b: f32, step: f32, leads: &mut [f32]) {
-        let per_radius = 1.0 / self.radius;
-        for (k, lead) in leads.iter_mut().enumerate() {
-            let b = b + k as i32 as f32 * step;
-            *lead = positive((self.radius - b) * (self.radius + b)).sqrt() * per_radius;
-        }
-        for lead in leads {
-            *lead = self.at(*lead);
-        }
-    }
-
-    #[inline]
-    fn at(&self, chord: f32) -> f32 {
-        let place = chord * Leads::COUNT as f32;
-        // A cast that needs no care for what does not fit; the place is between 0 and COUNT.
-        let k = (place as i32 as usize).min(Leads::COUNT - 1);
-        let (a, b) = (self.leads[k], self.leads[k + 1]);
-        a + (b - a) * (place - k as f32)
-    }
+    heights
 }

@@ -12,8 +12,8 @@ use crate::event::{Event, EventKind, EventLog};
 use crate::grid::{Grid, Resolution};
 use crate::part::Part;
 use crate::setup::{Local, Setup};
-use crate::sweep::{Segment, Start};
 use crate::tool::Tool;
+use crate::track::{Segment, Start};
 
 /// Why there can be no workpiece.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]

@@ -1,0 +1,131 @@
+//! Heights of whole chains of movements against the lowest height of the tool, column by column.
+
+#![expect(clippy::unwrap_used, reason = "a test may stop")]
+
+mod common;
+
+use bahn_path::{Axis, Blank, Plane, ToolShape};
+use bahn_workpiece::{Resolution, Workpiece};
+use common::*;
+use proptest::prelude::*;
+
+type Point = [f64; 3];
+
+const BOTTOM: f64 = -20.0;
+/// Columns nearer to the rim of the tool may fall to either side, and the height changes too fast there, mm.
+const RIM_MM: f64 = 0.02;
+
+/// The lowest height of a tool that moves straight from `a` to `b` over a point; `None` where it is not, `Some(None)`
+/// for the rim.
+///
+/// The bottom of the tool is convex, so over the piece of the line where the tool covers the point its height is so too,
+/// and thirds of it can be thrown away.
+fn lowest(a: Point, b: Point, point: [f64; 2], tool: &ToolShape) -> Option<Option<f64>> {
+    let delta = [0, 1, 2].map(|k| b[k] - a[k]);
+    let length = delta[0].hypot(delta[1]);
+    let u = [delta[0] / length, delta[1] / length];
+    let d = [point[0] - a[0], point[1] - a[1]];
+    let (along, across) = (d[0] * u[0] + d[1] * u[1], d[0] * u[1] - d[1] * u[0]);
+    let nearest = (along - along.clamp(0.0, length)).hypot(across);
+    if (nearest - tool.radius).abs() < RIM_MM {
+        return Some(None);
+    }
+    if nearest > tool.radius {
+        return None;
+    }
+    let chord = (tool.radius * tool.radius - across * across).max(0.0).sqrt();
+    let height = |s: f64| {
+        let (flat, corner) = (tool.radius - tool.corner_radius, tool.corner_radius);
+        let rise = ((along - s).hypot(across) - flat).clamp(0.0, corner);
+        a[2] + delta[2] * s / length + corner - (corner * corner - rise * rise).sqrt()
+    };
+    let (mut from, mut to) = ((along - chord).max(0.0), (along + chord).min(length));
+    for _ in 0..60 {
+        let (s, t) = (from + (to - from) / 3.0, to - (to - from) / 3.0);
+        if height(s) <= height(t) {
+            to = t;
+        } else {
+            from = s;
+        }
+    }
+    Some(Some(height(0.5 * (from + to))))
+}
+
+/// The greatest deviation of a column from what a chain of movements leaves there, and where.
+fn deviation(chain: &[Point], tool: &ToolShape, mm: f64) -> (f64, [f64; 2]) {
+    let blank = Blank {
+        plane: Plane::XY,
+        min: [0.0, 0.0, BOTTOM],
+        max: [40.0, 40.0, 0.0],
+    };
+    let mut workpiece = Workpiece::new(&blank, Resolution::Millimetres(mm)).unwrap();
+    for pair in chain.windows(2) {
+        let [from, to] = [pair[0], pair[1]].map(|p| at(p[0], p[1], p[2]));
+        workpiece.cut(&line(from, to), tool, Axis::Z);
+    }
+    let part = workpiece.part();
+    let [columns, rows] = part.columns();
+    let mut worst = (0.0, [0.0; 2]);
+    for j in 0..rows {
+        for i in 0..columns {
+            let point = [(i as f64 + 0.5) * mm, (j as f64 + 0.5) * mm];
+            let heights: Option<Vec<f64>> = chain
+                .windows(2)
+                .filter_map(|pair| lowest(pair[0], pair[1], point, tool))
+                .collect();
+            let Some(heights) = heights else { continue };
+            let expected = heights.into_iter().fold(0.0f64, f64::min).max(BOTTOM);
+            let height = part.height_at(point).unwrap_or(BOTTOM);
+            if (height - expected).abs() > worst.0 {
+                worst = ((height - expected).abs(), point);
+            }
+        }
+    }
+    worst
+}
+
+/// Long tracks in all directions, steep and faint: half a micrometre, most of which the table of the leads takes on faint
+/// slopes.
+#[test]
+fn long_tracks_of_a_corner_radius_are_exact() {
+    const ERROR_MM: f64 = 5e-4;
+    for corner in [0.5, 1.0, 3.0, 4.0] {
+        for slope in [0.0, 1e-4, 0.01, 0.3, 1.5] {
+            for degrees in [0.0, 1.0, 30.0, 60.0, 90.0, 200.0, 315.0] {
+                let (sin, cos) = f64::to_radians(degrees).sin_cos();
+                let end = |s: f64| [20.0 + s * cos, 20.0 + s * sin, -9.0 + s * slope];
+                let chain = [end(-9.7), end(9.7)];
+                let (error, point) = deviation(&chain, &torus(4.0, corner), 0.2);
+                assert!(
+                    error <= ERROR_MM,
+                    "{error} mm at {point:?}: corner {corner}, slope {slope}, {degrees} degrees"
+                );
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Movements that share what lies where they meet leave no column between them.
+    #[test]
+    fn chains_leave_the_lowest_height(
+        corner in prop_oneof![0.1..1.0f64, Just(1.0)], falls in any::<bool>(), step in 0.1..6.0f64,
+        fine in any::<bool>(),
+        turns in prop::collection::vec((0.0..360.0f64, prop_oneof![Just(0.0), 0.0..0.02f64, 0.0..1.5f64]), 1..8),
+    ) {
+        const ERROR_MM: f64 = 1e-3;
+        let mut chain = vec![[20.0, 20.0, if falls { -1.0 } else { -15.0 }]];
+        let mut direction = 0.0;
+        for (turn, slope) in &turns {
+            direction += if step < 1.0 { 0.2 * (turn - 180.0) } else { *turn };
+            let (sin, cos) = f64::to_radians(direction).sin_cos();
+            let last = chain[chain.len() - 1];
+            let rise = if falls { -slope * step } else { slope * step };
+            chain.push([last[0] + step * cos, last[1] + step * sin, last[2] + rise]);
+        }
+        let (error, point) = deviation(&chain, &torus(4.0, 4.0 * corner), if fine { 0.1 } else { 0.2 });
+        prop_assert!(error <= ERROR_MM, "{} mm at {:?} of {:?}", error, point, chain);
+    }
+}
