@@ -394,6 +394,18 @@ fn a_full_medium_loses_no_report() {
         assert!(folder.read("good.txt").lines().count() > 1, "{output}");
         std::fs::remove_file(folder.path("good.txt")).unwrap();
     }
+    let way: String = (0..3000)
+        .map(|x| format!("L X+{x} Y+{} R0 F1000\n", x % 7))
+        .collect();
+    folder.write("long.H", program(&way));
+    for name in ["main.H", "long.H"] {
+        let run = folder.bahn(&format!(
+            "test {name} --no-graphics --format json --path full.csv"
+        ));
+        assert_eq!(run.code(), 2, "{name}: {}", run.err());
+        assert!(run.err().contains("No space left"), "{name}: {}", run.err());
+        assert_eq!(run.json()["completed"], true, "{name}");
+    }
     for output in [
         "--record full.csv --junit good.txt",
         "--junit full.csv --record good.txt",

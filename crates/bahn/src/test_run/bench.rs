@@ -56,6 +56,8 @@ pub(crate) struct Tested {
     /// `None` without a blank, or without graphics.
     pub part: Option<Part>,
     pub survey: Option<Survey>,
+    /// Why a file of the path is not whole. The run went on without it.
+    pub unwritten: Option<UsageError>,
     /// The programs of the run, for places.
     pub interpreter: Interpreter,
 }
@@ -88,7 +90,7 @@ impl Bench {
     /// Runs the program of a file.
     ///
     /// # Errors
-    /// When the file cannot be read, an output cannot be written, or the resolution is too fine.
+    /// When the file cannot be read, or the resolution is too fine.
     pub fn test(&self, file: &Path, company: Company) -> Result<Tested, UsageError> {
         let (program, fault) = match files::load_program(file)? {
             Loaded::Program(program) => (program, None),
@@ -113,6 +115,7 @@ impl Bench {
                 .map(|columns| Cutting::new(columns, self.memory, self.left_hand.clone())),
             progress,
             company,
+            unwritten: None,
             ends_at_stop: self.ends_at_stop,
             block_time: self.block_time.then(|| BlockTime::of(self.list.model())),
             last_stop: None,
@@ -133,6 +136,7 @@ struct TestRun {
     /// `None` for a run without graphics.
     cutting: Option<Cutting>,
     company: Company,
+    unwritten: Option<UsageError>,
     progress: Option<Progress>,
     ends_at_stop: bool,
     block_time: Option<BlockTime>,
@@ -194,9 +198,12 @@ impl TestRun {
             cutting.element(element, &mut self.record)?;
         }
         if !self.company.outputs.is_empty() {
-            self.company
-                .outputs
-                .element(element, self.planner.source(), &mut self.record)?;
+            let outputs = &mut self.company.outputs;
+            let written = outputs.element(element, self.planner.source(), &mut self.record);
+            if let Err(error) = written {
+                self.unwritten = Some(error);
+                self.company.outputs = Outputs::default();
+            }
         }
         if let Some(progress) = &mut self.progress {
             let block = (element.block.program == 0).then_some(element.block.block);
@@ -290,7 +297,7 @@ impl TestRun {
     /// Writes the path and makes the report.
     fn finish(mut self, end: End) -> Result<Tested, UsageError> {
         drop(self.progress);
-        self.company.outputs.finish()?;
+        let written = self.company.outputs.finish();
         let part = self.cutting.and_then(|cutting| cutting.finish(&mut self.record));
         let removed_mm3 = part.as_ref().map(Part::removed_mm3);
         let report = self
@@ -301,6 +308,7 @@ impl TestRun {
             report,
             part,
             survey: self.company.survey,
+            unwritten: self.unwritten.or(written.err()),
             interpreter: self.planner.into_source(),
         })
     }

@@ -58,9 +58,11 @@ fn single(options: &TestOptions, equipment: Equipment, file: &Path) -> Result<Ou
         survey: None,
         stop: stop.clone(),
     };
-    let tested = bench.test(file, company)?;
+    let mut tested = bench.test(file, company)?;
     stop.run_is_over();
-    say(&tested, &bench, options, file, &interrupt.after_run())
+    let unwritten = tested.unwritten.take();
+    let outcome = say(&tested, &bench, options, file, &interrupt.after_run())?;
+    unwritten.map_or(Ok(outcome), Err)
 }
 
 /// Prints the report and writes picture and mesh.
