@@ -1,9 +1,10 @@
 //! Long computations of the control on a thread of their own: the machine goes on, or Ctrl-C counts, meanwhile.
 
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, sync_channel};
+use std::thread::Builder;
 use std::time::Duration;
 
-use bahn_control::{Control, Done};
+use bahn_control::{Control, Done, Work};
 
 use crate::interrupt::Interrupt;
 
@@ -25,10 +26,15 @@ impl Background {
             if self.result.is_none()
                 && let Some(work) = control.take_work()
             {
-                let (sender, receiver) = sync_channel(1);
-                // The run may be over before the result is there: then nobody takes it.
-                std::thread::spawn(move || sender.send(work.compute()));
-                self.result = Some(receiver);
+                match worker() {
+                    Some((giver, result)) => {
+                        // It waits for it.
+                        let _ = giver.send(work);
+                        self.result = Some(result);
+                    }
+                    // Without another thread the machine waits.
+                    None => control.finish_work(work.compute()),
+                }
             }
             let Some(result) = &self.result else { return };
             let done = if realtime {
@@ -50,4 +56,18 @@ impl Background {
             }
         }
     }
+}
+
+/// A thread for one computation; `None` when there is none to be had.
+fn worker() -> Option<(SyncSender<Work>, Receiver<Done>)> {
+    let (giver, taker) = sync_channel::<Work>(1);
+    let (sender, receiver) = sync_channel(1);
+    let compute = move || {
+        if let Ok(work) = taker.recv() {
+            // The run may be over before the result is there: then nobody takes it.
+            let _ = sender.send(work.compute());
+        }
+    };
+    Builder::new().spawn(compute).ok()?;
+    Some((giver, receiver))
 }
