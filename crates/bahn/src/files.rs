@@ -111,9 +111,7 @@ pub(crate) fn keep_inputs(inputs: &[&Path], outputs: &[(&str, &Path)]) -> Result
                 path.display()
             )));
         }
-        let ending = file.extension().and_then(|ending| ending.to_str());
-        let is_kept = ending.is_some_and(|ending| KEPT.contains(&ending.to_ascii_lowercase().as_str()));
-        if is_kept && file.exists() {
+        if KEPT.contains(&extension(&file).as_str()) && file.exists() {
             return Err(UsageError::new(format!(
                 "{option} {}: an output does not replace a file of this kind",
                 path.display()
@@ -144,6 +142,14 @@ fn program_name(path: &Path) -> String {
         .unwrap_or_else(|_| path.to_owned())
         .to_string_lossy()
         .into_owned()
+}
+
+/// What a name ends with behind its last dot, in small letters; empty without one.
+pub(crate) fn extension(path: &Path) -> String {
+    path.extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase()
 }
 
 /// The name of a program in reports: that of its file, without folders.

@@ -6,6 +6,8 @@ use bahn_parameters::{ControlModel, InchFeed};
 use bahn_workpiece::Colouring;
 use clap::{Args, ValueEnum, ValueHint};
 
+use crate::files;
+
 pub(crate) const CHECK_EXAMPLES: &str = "\
 Examples:
   bahn check *.h
@@ -364,12 +366,7 @@ pub(crate) fn override_percent(text: &str) -> Result<f64, String> {
 
 fn path_file(text: &str) -> Result<PathFile, String> {
     let path = PathBuf::from(text);
-    let extension = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase();
-    match extension.as_str() {
+    match files::extension(&path).as_str() {
         "csv" => Ok(PathFile::Csv(path)),
         "svg" => Ok(PathFile::Svg(path)),
         _ => Err("the name must end in .csv or .svg".to_owned()),

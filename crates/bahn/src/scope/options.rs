@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
+use crate::files;
 use crate::options::{Format, image_size, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -111,12 +112,7 @@ pub(crate) enum Picture {
 
 fn picture(text: &str) -> Result<Picture, String> {
     let path = PathBuf::from(text);
-    let extension = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase();
-    match extension.as_str() {
+    match files::extension(&path).as_str() {
         "svg" => Ok(Picture::Svg(path)),
         "png" => Ok(Picture::Png(path)),
         _ => Err("the name must end in .svg or .png".to_owned()),

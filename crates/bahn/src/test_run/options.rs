@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use bahn_parameters::ControlModel;
 use clap::{Args, ValueHint};
 
+use crate::files;
 use crate::options::{Format, MachineOptions, OutputOptions, PathFile, RunOptions, model_parser, positive};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -170,8 +171,7 @@ impl OutputOptions {
 
 fn report_file(text: &str) -> Result<ReportFile, String> {
     let path = PathBuf::from(text);
-    let extension = path.extension().unwrap_or_default().to_string_lossy();
-    match extension.to_ascii_lowercase().as_str() {
+    match files::extension(&path).as_str() {
         "csv" => Ok(ReportFile::Csv(path)),
         "json" => Ok(ReportFile::Json(path)),
         "html" | "htm" => Ok(ReportFile::Html(path)),
