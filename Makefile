@@ -8,20 +8,23 @@ SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M248
 
 .PHONY: run test bench doc pictures conformance trails tools clean
 
+# Built for the first look: without the screen of `bahn plc watch`, and with the profile for it.
+BAHN := $(CARGO) run --quiet --profile quick -p bahn --no-default-features --
+
 # The main job: a program without a machine, then the programs of a machine on it, in closed loop with its
 # PLC; reports on the screen, pictures beside them.
 run:
 	@mkdir -p $(OUT)
-	$(CARGO) run --quiet --profile quick -p bahn -- test examples/housing.H \
+	$(BAHN) test examples/housing.H \
 		--view 3d --image $(OUT)/housing.png --path $(OUT)/housing.svg --mesh $(OUT)/housing.stl
 	@for program in BRACKET INDEX SADDLE; do \
 		echo; \
 		image=; \
 		if grep -q "BLK FORM" machines/mill/programs/$$program.H; then image="--image $(OUT)/$$program.png"; fi; \
-		$(CARGO) run --quiet --profile quick -p bahn -- run $$program.H --machine machines/mill --fresh \
+		$(BAHN) run $$program.H --machine machines/mill --fresh \
 			$$image --record $(OUT)/$$program.csv --signals $(SIGNALS) || exit 1; \
 		echo; \
-		$(CARGO) run --quiet --profile quick -p bahn -- scope $(OUT)/$$program.csv -o $(OUT)/$$program-scope.png \
+		$(BAHN) scope $(OUT)/$$program.csv -o $(OUT)/$$program-scope.png \
 			--title "$$program.H on machines/mill" || exit 1; \
 	done
 	@echo
@@ -32,6 +35,7 @@ run:
 test: tools
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
+	$(CARGO) clippy -p bahn --no-default-features --locked -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked --quiet
 	PROPTEST_RNG_SEED=$(SEED) $(CARGO) test --workspace --locked --quiet
 	CUSTOM_LIBFUZZER_PATH=none/libnone.a CARGO_TARGET_DIR=$${CARGO_TARGET_DIR:-$(CURDIR)/target} \

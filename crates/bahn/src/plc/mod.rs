@@ -6,6 +6,10 @@
 //! - `bench`: program, memory and stand-in for the control together;
 //! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
 
+#[cfg_attr(
+    not(feature = "watch"),
+    expect(dead_code, reason = "what steps a program serves the screen alone")
+)]
 mod bench;
 mod check;
 mod diagram;
@@ -21,6 +25,7 @@ mod script;
 mod signals;
 mod source;
 mod trace;
+#[cfg(feature = "watch")]
 mod watch;
 mod xref;
 
@@ -38,6 +43,7 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
         PlcCommand::Run(options) => run::command(options),
         PlcCommand::Trace(options) => trace::command(options),
         PlcCommand::Diagram(options) => diagram::command(options),
+        #[cfg(feature = "watch")]
         PlcCommand::Watch(options) => watch::command(options),
         PlcCommand::List(options) => list::command(options),
         PlcCommand::Xref(options) => xref::command(options),

@@ -31,6 +31,7 @@ pub(crate) enum PlcCommand {
     #[command(after_help = DIAGRAM_EXAMPLES)]
     Diagram(DiagramOptions),
     /// Watch and set operands while the program runs or is stepped (full screen).
+    #[cfg(feature = "watch")]
     #[command(after_help = WATCH_KEYS)]
     Watch(WatchOptions),
     /// Print the program as formatted listing, with errors below their lines.
@@ -86,6 +87,7 @@ Examples:
   bahn plc diagram MAIN.PLC --script door.txt --show I4,T48,O2 --cycles 60
   bahn plc diagram MAIN.PLC --show M100,O2 --trigger O2=1 --cycles 40 --before 10 --svg door.svg";
 
+#[cfg(feature = "watch")]
 const WATCH_KEYS: &str = "\
 Keys: r run, s stop, c one cycle, l one line, n start the program and the script anew, up and down choose
 an operand, enter set it, space turn a bit over, a add operands, d remove one, b set or clear a breakpoint
@@ -249,6 +251,7 @@ pub(crate) struct DiagramOptions {
 }
 
 /// Options of `bahn plc watch`.
+#[cfg(feature = "watch")]
 #[derive(Args, Debug)]
 pub(crate) struct WatchOptions {
     #[command(flatten)]
