@@ -142,13 +142,7 @@ impl Definition {
 
     /// A dwell time, s.
     pub fn dwell(&self, sub: u16, settings: &Settings) -> Result<f64, Fault> {
-        let max = settings.model.limits().dwell_max_s;
-        let dwell = self.number(sub, 0)?;
-        if dwell <= max {
-            return Ok(dwell);
-        }
-        let detail = format!("a dwell time is at most {max} s");
-        Err(Fault::new(MessageId::EntryValueIncorrect, detail))
+        dwell_time(self.number(sub, 0)?, settings)
     }
 
     pub fn optional_number(&self, sub: u16, index: usize) -> Option<f64> {
@@ -203,6 +197,16 @@ impl Definition {
             .block(sub)
             .contains(&Resolved::Direction(Direction::Clockwise))
     }
+}
+
+/// Refuses dwell times, s, that the model does not take.
+pub(super) fn dwell_time(seconds: f64, settings: &Settings) -> Result<f64, Fault> {
+    let max = settings.model.limits().dwell_max_s;
+    if (0.0..=max).contains(&seconds) {
+        return Ok(seconds);
+    }
+    let detail = format!("dwell takes 0 to {max} s");
+    Err(Fault::new(MessageId::EntryValueIncorrect, detail))
 }
 
 /// Refuses lengths that no machine has.
