@@ -288,6 +288,9 @@ impl Interpreter {
 
     /// Executes blocks until a step is finished or the run ends.
     fn advance(&mut self) {
+        if self.pending.is_lost() {
+            self.give_up_work();
+        }
         while self.run.out.queue.is_empty() && self.ended.is_none() && self.pending.is_none() {
             if !self.spend(1) {
                 return;

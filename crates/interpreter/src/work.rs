@@ -69,19 +69,28 @@ impl Pending {
         matches!(self, Pending::None)
     }
 
+    /// Whether it was taken and can come back no more: the [`Work`] or the [`Done`] was dropped.
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Pending::Taken(wanted) if Arc::strong_count(&wanted.0) == 1)
+    }
+
     pub fn is_of(&self, done: &Done) -> bool {
         matches!(self, Pending::Taken(wanted) if Arc::ptr_eq(&wanted.0, &done.given_up))
     }
 
-    /// Hands the computation out.
+    /// Hands the computation out, once.
     pub fn take(
         &mut self,
         run: &mut Run,
         settings: &Settings,
         interrupt: Option<&Arc<AtomicBool>>,
     ) -> Option<Work> {
-        let Pending::Waiting(job) = std::mem::take(self) else {
-            return None;
+        let job = match std::mem::take(self) {
+            Pending::Waiting(job) => job,
+            other => {
+                *self = other;
+                return None;
+            }
         };
         let given_up = Arc::new(AtomicBool::new(false));
         *self = Pending::Taken(Wanted(Arc::clone(&given_up)));
@@ -118,7 +127,8 @@ impl Interpreter {
         self.defers = true;
     }
 
-    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to.
+    /// A long computation to be done beside; [`Interpreter::finish_work`] takes what it comes to. When it is
+    /// dropped instead, the next step finds that out, and it can be taken again.
     pub fn take_work(&mut self) -> Option<Work> {
         self.pending
             .take(&mut self.run, &self.settings, self.interrupt.as_ref())

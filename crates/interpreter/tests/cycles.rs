@@ -5,7 +5,7 @@ mod support;
 use std::f64::consts::PI;
 
 use bahn_interpreter::{Rules, Settings};
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{At, Axis, Curve, FeedRate, Function, OverrideLaw, PathElement, Thread};
 use support::*;
 
@@ -363,6 +363,21 @@ fn dwell_time() {
         .map(|e| e.dwell_s)
         .collect();
     assert_eq!(dwells, [2.5]);
+}
+
+/// No cycle dwells for less than no time.
+#[test]
+fn negative_dwell_time_is_refused() {
+    let pecking = |seconds: f64| {
+        let text = format!(
+            "TOOL DEF 1 L+0 R+2\nTOOL CALL 1 Z S1000\nL X+0 Y+0 Z+2 R0 FMAX M3\n\
+             CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\nCYCL DEF 1.2 DEPTH -4\nCYCL DEF 1.3 PECKG -4\n\
+             FN 0: Q1 = {seconds:+}\nCYCL DEF 1.4 DWELL Q1\nCYCL DEF 1.5 F80\nCYCL CALL"
+        );
+        Job::new(program(&text)).run().message()
+    };
+    assert_eq!(pecking(0.0), None);
+    assert_eq!(pecking(-0.5), Some((MessageId::EntryValueIncorrect, 11)));
 }
 
 /// Cycle 13 gives the angle of M19 [003:6500-6528].

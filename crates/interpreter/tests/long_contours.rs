@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use bahn_interpreter::{Interpreter, Message, NoLibrary, Settings};
+use bahn_interpreter::{Interpreter, Message, NoLibrary, Settings, Work};
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, ElementSource, Step};
 use bahn_program::Program;
@@ -115,6 +115,40 @@ fn a_computation_that_nobody_wants_ends() {
         let took = ended.duration_since(left);
         assert!(took < SOON, "{name}: {took:?}");
         assert!(run.is_none_or(|run| !run.waits_for(&done)), "{name}");
+    }
+}
+
+/// What was taken and never came back is to be computed again, be it that no thread could be had for it or that its
+/// result was lost.
+#[test]
+fn a_computation_that_is_lost_is_handed_out_again() {
+    let path = |run: &mut Interpreter| {
+        let mut ends = Vec::new();
+        loop {
+            match run.next() {
+                Step::Element(element) => ends.push(Axis::ALL.map(|axis| element.end[axis].to_bits())),
+                step => break (ends, step),
+            }
+        }
+    };
+    let expected = path(&mut rough_out(&star(51, 25)));
+    assert!(matches!(expected.1, Step::End), "{:?}", expected.1);
+    let lose: [(&str, fn(Work)); 2] = [("work", drop), ("result", |work| drop(work.compute()))];
+    for (name, lose) in lose {
+        let mut run = rough_out(&star(51, 25));
+        run.defer_work();
+        let (mut ends, step) = path(&mut run);
+        assert!(matches!(step, Step::Starved), "{name}: {step:?}");
+        lose(run.take_work().expect("the contour is to be computed"));
+        assert!(matches!(run.next(), Step::Starved), "{name}");
+        let work = run.take_work().expect("it is to be computed again");
+        assert!(matches!(run.next(), Step::Starved), "{name}: somebody has it");
+        assert!(run.take_work().is_none(), "{name}");
+        run.finish_work(work.compute());
+        let (rest, step) = path(&mut run);
+        ends.extend(rest);
+        assert!(matches!(step, Step::End), "{name}: {step:?}");
+        assert!(ends == expected.0, "{name}");
     }
 }
 

@@ -99,6 +99,44 @@ fn cycl_incomplete() {
     ]);
 }
 
+/// The parameter is named as in the dialogue, with its block.
+#[test]
+fn missing_parameters_of_cycles_are_named() {
+    const SLOT: &str = "CYCL DEF 3.0 SLOT\nCYCL DEF 3.1 SET UP -2\nCYCL DEF 3.2 DEPTH -10\nCYCL DEF 3.3 PECKG -5 F80\n\
+        CYCL DEF 3.4 X+50\nCYCL DEF 3.5 Y+15\nCYCL DEF 3.6 F200\nCYCL CALL";
+    for (cycle, block, without, detail) in [
+        (
+            DRILL,
+            "1.1 SET UP -2",
+            "1.1 SET UP",
+            "CYCL DEF 1.1: SET UP is missing",
+        ),
+        (
+            DRILL,
+            "1.4 DWELL 0",
+            "1.4 DWELL",
+            "CYCL DEF 1.4: DWELL is missing",
+        ),
+        (
+            SLOT,
+            "3.3 PECKG -5 F80",
+            "3.3 F80",
+            "CYCL DEF 3.3: PECKG is missing",
+        ),
+        (
+            SLOT,
+            "3.3 PECKG -5 F80",
+            "3.3 PECKG -5",
+            "CYCL DEF 3.3: F is missing",
+        ),
+        (SLOT, "3.5 Y+15", "3.5", "CYCL DEF 3.5: a value is missing"),
+    ] {
+        let text = program(&format!("{TOOL}{}", cycle.replace(block, without)));
+        let run = Job::new(text).run();
+        assert_eq!(run.error.map(|error| error.detail), Some(detail.to_owned()));
+    }
+}
+
 #[test]
 fn path_offset() {
     check_with_tool(&[

@@ -39,6 +39,8 @@ pub enum Quantity {
     Rotation,
     /// Degrees.
     Angle,
+    /// Degrees of the spindle.
+    Orientation,
     /// A factor.
     Factor,
     /// Feed, mm/min or what F counts in inches.
@@ -49,6 +51,17 @@ pub enum Quantity {
     Labels,
     /// The name of a program.
     Program,
+}
+
+impl Quantity {
+    /// Whether it is written as a number without an address.
+    pub fn is_number(self) -> bool {
+        use Quantity::{Angle, Dwell, Factor, Length, Milliseconds, Orientation, Rotation};
+        matches!(
+            self,
+            Length | Dwell | Milliseconds | Rotation | Angle | Orientation | Factor
+        )
+    }
 }
 
 /// The sign of a parameter.
@@ -119,6 +132,11 @@ pub fn cycle(function: CycleFunction, number: u16) -> Option<&'static Cycle> {
         .find(|cycle| cycle.function == function && cycle.number == number)
 }
 
+/// The parameters of a block `number.sub`; none where they are not known here.
+pub fn cycle_parameters(function: CycleFunction, number: u16, sub: u16) -> &'static [CycleParameter] {
+    cycle(function, number).map_or(&[], |cycle| cycle.block(sub))
+}
+
 const fn parameter(name: &'static str, quantity: Quantity, sign: Sign) -> CycleParameter {
     CycleParameter {
         name,
@@ -135,7 +153,7 @@ const DWELL: CycleParameter = parameter("DWELL", Quantity::Dwell, Unsigned);
 const FEED: CycleParameter = parameter("F", Quantity::Feed, Unsigned);
 const SIDE: CycleParameter = parameter("", Quantity::Side, Signed);
 const TURN: CycleParameter = optional(parameter("DR", Quantity::Turn, Signed));
-const ALLOW: CycleParameter = optional(parameter("ALLOW", Quantity::Length, Signed));
+const ALLOW: CycleParameter = parameter("ALLOW", Quantity::Length, Signed);
 const RADIUS: CycleParameter = parameter("RADIUS", Quantity::Length, Unsigned);
 const TRAVEL: CycleParameter = parameter("TRAVEL:", Quantity::Length, Unsigned);
 const SPACING: CycleParameter = parameter("L.SPAC:", Quantity::Length, Unsigned);
@@ -212,7 +230,7 @@ pub const CYCLES: &[Cycle] = &[
     // [003:6476-6490]
     called(12, "PGM CALL", &[&[parameter("PGM", Quantity::Program, Signed)]]),
     // [003:6500-6528]
-    defined(13, "ORIENTATION", &[&[parameter("ANGLE", Quantity::Angle, Unsigned)]]),
+    defined(13, "ORIENTATION", &[&[parameter("ANGLE", Quantity::Orientation, Unsigned)]]),
     // [003:5460-5470]
     defined(14, "CONTOUR GEOMETRY", &[&[parameter("CONTOUR LABEL", Quantity::Labels, Unsigned)]]),
     // [003:6001-6014] [003:6143-6148]

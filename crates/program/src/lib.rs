@@ -55,7 +55,7 @@ mod survey;
 mod text;
 
 pub use check::{LimitFault, Reading, check_limits, each_parameter};
-pub use cycles::{CYCLES, Cycle, CycleFunction, CycleParameter, Quantity, Sign, cycle};
+pub use cycles::{CYCLES, Cycle, CycleFunction, CycleParameter, Quantity, Sign, cycle, cycle_parameters};
 pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity, Uncounted};
 pub use edit::{Edit, EditError};
 pub use error::BlockError;

@@ -7,7 +7,10 @@
 use bahn_parameters::ControlModel;
 use bahn_path::Axis;
 
-use crate::{Coordinates, CycleBlock, CycleWord, Feed, Operation, Unit, Value, Word};
+use crate::{
+    Coordinates, CycleBlock, CycleFunction, CycleWord, Feed, Operation, Quantity, Unit, Value, Word,
+    cycle_parameters,
+};
 
 /// Input steps in an inch are ten times as fine as in a millimetre: 0.0001 inch for 1 um [003:7825]; others than TNC
 /// 360 *(inferred)*.
@@ -98,7 +101,8 @@ impl InputSteps {
             Operation::Rounding { radius: a, feed: b } | Operation::Chamfer { length: a, feed: b } => {
                 length(a) | each(b, length)
             }
-            Operation::Cycle(block) | Operation::Probe(block) => self.cycle(block),
+            Operation::Cycle(block) => self.cycle(CycleFunction::Definition, block),
+            Operation::Probe(block) => self.cycle(CycleFunction::Probe, block),
             _ => false,
         }
     }
@@ -126,26 +130,40 @@ impl InputSteps {
         if axis.is_rotary() { self.angle } else { self.length }
     }
 
-    fn cycle(&self, block: &mut CycleBlock) -> bool {
-        // Angles of pockets and contours have the steps of their lengths in programs in mm, and finer ones in inches.
-        let numbers = match block.number {
-            1..=6 | 15..=18 | 20..=25 | 27 => Some(self.length),
-            9 => Some(DWELL_STEPS),
-            10 | 19 => Some(self.angle),
-            13 => Some(self.orientation),
-            // Factors, names, and what means something else.
-            _ => None,
-        };
+    fn cycle(&self, function: CycleFunction, block: &mut CycleBlock) -> bool {
+        let parameters = cycle_parameters(function, block.number, block.sub);
+        // What stands in other blocks nobody can say.
+        if parameters.is_empty() {
+            return false;
+        }
+        let mut quantities = parameters
+            .iter()
+            .map(|parameter| parameter.quantity)
+            .filter(|quantity| quantity.is_number());
         let mut finer = false;
         for word in &mut block.words {
             finer |= match word {
-                CycleWord::Number(value) => numbers.is_some_and(|steps| round(value, steps)),
+                CycleWord::Number(value) => {
+                    let steps = quantities.next().and_then(|quantity| self.of_quantity(quantity));
+                    steps.is_some_and(|steps| round(value, steps))
+                }
                 CycleWord::Coordinate(axis, word) => round(&mut word.value, self.of_axis(*axis)),
                 CycleWord::Feed(Feed::Value(value)) => round(value, self.length),
                 _ => false,
             };
         }
         finer
+    }
+
+    /// `None` for factors and what is no number.
+    fn of_quantity(&self, quantity: Quantity) -> Option<f64> {
+        match quantity {
+            Quantity::Length => Some(self.length),
+            Quantity::Rotation | Quantity::Angle => Some(self.angle),
+            Quantity::Orientation => Some(self.orientation),
+            Quantity::Dwell => Some(DWELL_STEPS),
+            _ => None,
+        }
     }
 }
 
@@ -189,6 +207,7 @@ fn finer(count: f64, steps: f64) -> Option<f64> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
     use super::*;
+    use crate::Program;
 
     #[test]
     fn half_steps_go_away_from_zero() {
@@ -204,6 +223,61 @@ mod tests {
             (1e300, None),
         ] {
             assert_eq!(rounded(number, 1e4), expected, "{number}");
+        }
+    }
+
+    /// Each number has the steps of what it is, which differs from cycle to probe function and from unit to unit.
+    #[test]
+    fn numbers_of_cycles_have_the_steps_of_their_quantity() {
+        for (unit, text, expected) in [
+            (
+                "MM",
+                "TCH PROBE 5.4 HEIGHT: +100.0004",
+                "TCH PROBE 5.4 HEIGHT: +100",
+            ),
+            (
+                "MM",
+                "TCH PROBE 6.2 TRAVEL: 0.5004 L.SPAC: 0.2 P.P. INT: 0.8004",
+                "TCH PROBE 6.2 TRAVEL: 0.5 L.SPAC: 0.2 P.P. INT: 0.8",
+            ),
+            (
+                "MM",
+                "TCH PROBE 7.3 TRAVEL: 0.5 L.SPAC: 0.2004 P.P. INT: 0.8",
+                "TCH PROBE 7.3 TRAVEL: 0.5 L.SPAC: 0.2 P.P. INT: 0.8",
+            ),
+            (
+                "MM",
+                "TCH PROBE 7.1 TIME: 200 X+50.0004",
+                "TCH PROBE 7.1 TIME: 200 X+50",
+            ),
+            // 0.0001 inch, but 0.001 degree [003:7825].
+            (
+                "INCH",
+                "CYCL DEF 6.3 ANGLE +30.0004 F50",
+                "CYCL DEF 6.3 ANGLE +30 F50",
+            ),
+            (
+                "INCH",
+                "CYCL DEF 6.2 PECKG -0.50004 F50 ALLOW +0.0004",
+                "CYCL DEF 6.2 PECKG -0.5 F50 ALLOW +0.0004",
+            ),
+            ("MM", "CYCL DEF 9.1 DWELL 0.5004", "CYCL DEF 9.1 DWELL 0.5"),
+            // 0.1 degree [003:6528].
+            ("MM", "CYCL DEF 13.1 ANGLE 30.04", "CYCL DEF 13.1 ANGLE 30"),
+            // Factors.
+            ("MM", "CYCL DEF 11.1 SCL 0.999996", "CYCL DEF 11.1 SCL 0.999996"),
+            ("MM", "CYCL DEF 26.1 X+0.999996", "CYCL DEF 26.1 X+0.999996"),
+        ] {
+            let operation = |block| {
+                let text = format!("BEGIN PGM 1 {unit}\n{block}\n");
+                let program = Program::from_bytes("1.H", text.into_bytes());
+                let block = program.decode(0).blocks[1].clone();
+                (block.operation, program.unit())
+            };
+            let (mut rounded, unit) = operation(text);
+            let finer = InputSteps::of(ControlModel::Tnc360, unit).round(&mut rounded);
+            assert_eq!(rounded, operation(expected).0, "{text}");
+            assert_eq!(finer, text != expected, "{text}");
         }
     }
 

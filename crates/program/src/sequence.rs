@@ -1,7 +1,7 @@
 //! The order of the blocks of a cycle: `n.0`, `n.1`, ... without gaps, up to the last one that the cycle
 //! needs [003:7923-7928].
 
-use crate::{CycleBlock, CycleFunction, CycleWord, Operation, Quantity, cycle};
+use crate::{CycleBlock, CycleFunction, CycleWord, Operation, Quantity, cycle, cycle_parameters};
 
 /// A cycle that is not complete.
 #[derive(Debug)]
@@ -112,7 +112,7 @@ impl Sequence {
 
 /// A block of a known cycle that holds nothing but decoration.
 fn value_missing(number: u32, function: CycleFunction, block: &CycleBlock) -> Option<SequenceFault> {
-    let parameters = cycle(function, block.number)?.block(block.sub);
+    let parameters = cycle_parameters(function, block.number, block.sub);
     let only_text = block.words.iter().all(|word| matches!(word, CycleWord::Text(_)));
     let is_name = parameters
         .iter()

@@ -186,11 +186,11 @@ impl Run {
         settings: &Settings,
         watch: &Watch<'_>,
     ) -> Result<(), Halt> {
-        let pecking = d.length(2, 0, "PECKG")?;
-        let plunge_feed = d.feed(2, 0, "F for pecking")?;
-        let allowance = d.length(2, 1, "ALLOW")?;
-        let angle = d.number(3, 0, "ANGLE")?;
-        let feed = d.feed(3, 0, "F")?;
+        let pecking = d.length(2, 0)?;
+        let plunge_feed = d.feed(2, 0)?;
+        let allowance = d.length(2, 1)?;
+        let angle = d.number(3, 0)?;
+        let feed = d.feed(3, 0)?;
         let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
         let areas = self.areas(job, allowance, settings, watch)?;
         let rules = settings.rules.contour_pocket;
@@ -238,9 +238,9 @@ impl Run {
         settings: &Settings,
         watch: &Watch<'_>,
     ) -> Result<(), Halt> {
-        let pecking = d.length(2, 0, "PECKG")?;
-        let feed = d.feed(2, 0, "F")?;
-        let allowance = d.length(2, 1, "ALLOW")?;
+        let pecking = d.length(2, 0)?;
+        let feed = d.feed(2, 0)?;
+        let allowance = d.length(2, 1)?;
         let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
         let areas = self.areas(job, allowance, settings, watch)?;
         let mut trace = self.tracer();
@@ -261,9 +261,9 @@ impl Run {
         settings: &Settings,
         watch: &Watch<'_>,
     ) -> Result<(), Halt> {
-        let pecking = d.length(2, 0, "PECKG")?;
-        let plunge_feed = d.feed(2, 0, "F for pecking")?;
-        let feed = d.feed(2, 1, "F")?;
+        let pecking = d.length(2, 0)?;
+        let plunge_feed = d.feed(2, 0)?;
+        let feed = d.feed(2, 1)?;
         let climb = d.counter_clockwise(2) != (self.modal.spindle == Spindle::CounterClockwise);
         let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
         let areas = self.areas(job, 0.0, settings, watch)?;
@@ -287,8 +287,8 @@ impl Run {
         pecking: f64,
         settings: &Settings,
     ) -> Result<(Heights, Vec<f64>), Fault> {
-        let setup = d.length(1, 0, "SETUP")?;
-        let depth = d.length(1, 1, "DEPTH")?;
+        let setup = d.length(1, 0)?;
+        let depth = d.length(1, 1)?;
         let heights = self.heights(d, [setup, depth], Some(pecking), settings)?;
         Ok((
             heights,

@@ -2,7 +2,9 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, BlockRef};
-use bahn_program::{CycleBlock, CycleWord, Direction, Feed, Value};
+use bahn_program::{
+    CycleBlock, CycleFunction, CycleWord, Direction, Feed, Quantity, Value, cycle_parameters,
+};
 
 use crate::error::Fault;
 use crate::run::Run;
@@ -120,27 +122,27 @@ impl Definition {
         self.blocks.get(usize::from(sub)).map_or(&[], Vec::as_slice)
     }
 
-    fn missing(&self, what: &str) -> Fault {
-        Fault::new(
-            MessageId::CyclIncomplete,
-            format!("cycle {}: {what} is missing", self.number),
-        )
+    /// The `index`th of those parameters of a block that are given in something is missing.
+    fn missing(&self, sub: u16, index: usize, given_in: impl Fn(Quantity) -> bool) -> Fault {
+        let parameters = cycle_parameters(CycleFunction::Definition, self.number, sub);
+        let mut alike = parameters.iter().filter(|parameter| given_in(parameter.quantity));
+        let what = match alike.nth(index).map(|parameter| parameter.name) {
+            None | Some("") => "a value",
+            Some(name) => name,
+        };
+        let detail = format!("CYCL DEF {}.{sub}: {what} is missing", self.number);
+        Fault::new(MessageId::CyclIncomplete, detail)
     }
 
     /// The `index`th number of a block.
-    pub fn number(&self, sub: u16, index: usize, what: &str) -> Result<f64, Fault> {
-        self.optional_number(sub, index).ok_or_else(|| self.missing(what))
+    pub fn number(&self, sub: u16, index: usize) -> Result<f64, Fault> {
+        self.optional_number(sub, index)
+            .ok_or_else(|| self.missing(sub, index, Quantity::is_number))
     }
 
     /// A dwell time, s.
     pub fn dwell(&self, sub: u16, settings: &Settings) -> Result<f64, Fault> {
-        let max = settings.model.limits().dwell_max_s;
-        let dwell = self.number(sub, 0, "DWELL")?;
-        if dwell <= max {
-            return Ok(dwell);
-        }
-        let detail = format!("a dwell time is at most {max} s");
-        Err(Fault::new(MessageId::EntryValueIncorrect, detail))
+        dwell_time(self.number(sub, 0)?, settings)
     }
 
     pub fn optional_number(&self, sub: u16, index: usize) -> Option<f64> {
@@ -152,8 +154,8 @@ impl Definition {
     }
 
     /// The `index`th number of a block as a length, mm.
-    pub fn length(&self, sub: u16, index: usize, what: &str) -> Result<f64, Fault> {
-        in_range(self.number(sub, index, what)? * self.unit_mm)
+    pub fn length(&self, sub: u16, index: usize) -> Result<f64, Fault> {
+        in_range(self.number(sub, index)? * self.unit_mm)
     }
 
     pub fn optional_length(&self, sub: u16, index: usize) -> Option<f64> {
@@ -162,12 +164,16 @@ impl Definition {
     }
 
     /// The `index`th feed of a block, mm/min.
-    pub fn feed(&self, sub: u16, index: usize, what: &str) -> Result<f64, Fault> {
+    pub fn feed(&self, sub: u16, index: usize) -> Result<f64, Fault> {
         let feeds = self.block(sub).iter().filter_map(|word| match word {
             Resolved::Feed(feed) => *feed,
             _ => None,
         });
-        let feed = feeds.into_iter().nth(index).ok_or_else(|| self.missing(what))?;
+        let is_feed = |quantity| quantity == Quantity::Feed;
+        let feed = feeds
+            .into_iter()
+            .nth(index)
+            .ok_or_else(|| self.missing(sub, index, is_feed))?;
         if feed <= 0.0 {
             return Err(MessageId::FeedRateIsMissing.into());
         }
@@ -175,12 +181,13 @@ impl Definition {
     }
 
     /// The axis word of a block, mm.
-    pub fn coordinate(&self, sub: u16, what: &str) -> Result<(Axis, f64), Fault> {
+    pub fn coordinate(&self, sub: u16) -> Result<(Axis, f64), Fault> {
         let found = self.block(sub).iter().find_map(|word| match word {
             Resolved::Coordinate { axis, value, .. } => Some((*axis, *value * self.unit_mm)),
             _ => None,
         });
-        let (axis, value) = found.ok_or_else(|| self.missing(what))?;
+        let (axis, value) =
+            found.ok_or_else(|| self.missing(sub, 0, |quantity| quantity == Quantity::Side))?;
         Ok((axis, in_range(value)?))
     }
 
@@ -190,6 +197,16 @@ impl Definition {
             .block(sub)
             .contains(&Resolved::Direction(Direction::Clockwise))
     }
+}
+
+/// Refuses dwell times, s, that the model does not take.
+pub(super) fn dwell_time(seconds: f64, settings: &Settings) -> Result<f64, Fault> {
+    let max = settings.model.limits().dwell_max_s;
+    if (0.0..=max).contains(&seconds) {
+        return Ok(seconds);
+    }
+    let detail = format!("dwell takes 0 to {max} s");
+    Err(Fault::new(MessageId::EntryValueIncorrect, detail))
 }
 
 /// Refuses lengths that no machine has.

@@ -46,11 +46,11 @@ impl Run {
     /// Cycle 1 PECKING: feed to the first infeed, rapid back to the start, rapid down to the advanced stop
     /// distance, feed to the next infeed ..., dwell at the bottom, rapid back [003:4918-4948].
     pub(super) fn pecking(&mut self, definition: &Definition, settings: &Settings) -> Result<(), Fault> {
-        let setup = definition.length(1, 0, "SETUP")?;
-        let depth = definition.length(2, 0, "DEPTH")?;
-        let pecking = definition.length(3, 0, "PECKG")?;
+        let setup = definition.length(1, 0)?;
+        let depth = definition.length(2, 0)?;
+        let pecking = definition.length(3, 0)?;
         let dwell = definition.dwell(4, settings)?;
-        let feed = definition.feed(5, 0, "F")?;
+        let feed = definition.feed(5, 0)?;
         let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
         let scale = heights.depth / depth.abs();
         let mut trace = self.tracer();
@@ -68,10 +68,10 @@ impl Run {
     /// bottom, dwell (MP7120.0), M04, the programmed dwell, back with the same feed (inferred); above M05 and M03
     /// again. With M04 the other way round [003:4994-5062] [000:6060-6116].
     pub(super) fn tapping(&mut self, definition: &Definition, settings: &Settings) -> Result<(), Fault> {
-        let setup = definition.length(1, 0, "SETUP")?;
-        let depth = definition.length(2, 0, "DEPTH")?;
+        let setup = definition.length(1, 0)?;
+        let depth = definition.length(2, 0)?;
         let dwell = definition.dwell(3, settings)?;
-        let feed = definition.feed(4, 0, "F")?;
+        let feed = definition.feed(4, 0)?;
         let heights = self.heights(definition, [setup, depth], None, settings)?;
         let clockwise = !matches!(self.modal.spindle, Spindle::CounterClockwise);
         let (forward, back) = if clockwise { (3, 4) } else { (4, 3) };
@@ -105,9 +105,9 @@ impl Run {
         definition: &Definition,
         settings: &Settings,
     ) -> Result<(), Fault> {
-        let setup = definition.length(1, 0, "SETUP")?;
-        let depth = definition.length(2, 0, "DEPTH")?;
-        let pitch = definition.length(3, 0, "PITCH")?;
+        let setup = definition.length(1, 0)?;
+        let depth = definition.length(2, 0)?;
+        let pitch = definition.length(3, 0)?;
         let heights = self.heights(definition, [setup, depth], None, settings)?;
         let feed = self.modal.speed_rpm * pitch.abs();
         if feed <= 0.0 {

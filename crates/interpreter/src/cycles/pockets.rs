@@ -20,13 +20,13 @@ impl Run {
     /// to and fro with an infeed at each end, then finishing by a quarter circle and climb milling the
     /// contour [003:5110-5146] (geometry inferred from the example).
     pub(super) fn slot_milling(&mut self, definition: &Definition, settings: &Settings) -> Result<(), Fault> {
-        let setup = definition.length(1, 0, "SETUP")?;
-        let depth = definition.length(2, 0, "DEPTH")?;
-        let pecking = definition.length(3, 0, "PECKG")?;
-        let plunge_feed = definition.feed(3, 0, "F for pecking")?;
-        let (length_axis, length) = definition.coordinate(4, "slot length")?;
-        let (width_axis, width) = definition.coordinate(5, "slot width")?;
-        let feed = definition.feed(6, 0, "F")?;
+        let setup = definition.length(1, 0)?;
+        let depth = definition.length(2, 0)?;
+        let pecking = definition.length(3, 0)?;
+        let plunge_feed = definition.feed(3, 0)?;
+        let (length_axis, length) = definition.coordinate(4)?;
+        let (width_axis, width) = definition.coordinate(5)?;
+        let feed = definition.feed(6, 0)?;
         let along = self.plane_axis(length_axis)?;
         if self.plane_axis(width_axis)? == along {
             return Err(Fault::new(
@@ -82,13 +82,13 @@ impl Run {
         definition: &Definition,
         settings: &Settings,
     ) -> Result<(), Fault> {
-        let setup = definition.length(1, 0, "SETUP")?;
-        let depth = definition.length(2, 0, "DEPTH")?;
-        let pecking = definition.length(3, 0, "PECKG")?;
-        let plunge_feed = definition.feed(3, 0, "F for pecking")?;
-        let (first_axis, first) = definition.coordinate(4, "first side")?;
-        let (second_axis, second) = definition.coordinate(5, "second side")?;
-        let feed = definition.feed(6, 0, "F")?;
+        let setup = definition.length(1, 0)?;
+        let depth = definition.length(2, 0)?;
+        let pecking = definition.length(3, 0)?;
+        let plunge_feed = definition.feed(3, 0)?;
+        let (first_axis, first) = definition.coordinate(4)?;
+        let (second_axis, second) = definition.coordinate(5)?;
+        let feed = definition.feed(6, 0)?;
         let corner = definition.optional_length(6, 0).unwrap_or(0.0).abs() * self.plane_scale();
         let mut sides = [0.0; 2];
         for (axis, side) in [(first_axis, first), (second_axis, second)] {
@@ -127,12 +127,12 @@ impl Run {
         definition: &Definition,
         settings: &Settings,
     ) -> Result<(), Fault> {
-        let setup = definition.length(1, 0, "SETUP")?;
-        let depth = definition.length(2, 0, "DEPTH")?;
-        let pecking = definition.length(3, 0, "PECKG")?;
-        let plunge_feed = definition.feed(3, 0, "F for pecking")?;
-        let pocket_radius = definition.length(4, 0, "RADIUS")?.abs() * self.plane_scale();
-        let feed = definition.feed(5, 0, "F")?;
+        let setup = definition.length(1, 0)?;
+        let depth = definition.length(2, 0)?;
+        let pecking = definition.length(3, 0)?;
+        let plunge_feed = definition.feed(3, 0)?;
+        let pocket_radius = definition.length(4, 0)?.abs() * self.plane_scale();
+        let feed = definition.feed(5, 0)?;
         let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
         let radius = pocket_radius - self.modal.tool_radius();
         if radius < -SAME_MM {

@@ -3,7 +3,7 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Curve, FeedRate, Function};
 
-use super::Resolved;
+use super::definition::{Resolved, dwell_time};
 use crate::error::{Fault, WarningKind};
 use crate::run::Run;
 use crate::settings::Settings;
@@ -187,13 +187,7 @@ impl Run {
         let Some(seconds) = first_number(words) else {
             return Err(Fault::new(MessageId::CyclIncomplete, "the dwell time is missing"));
         };
-        let max = settings.model.limits().dwell_max_s;
-        if !(0.0..=max).contains(&seconds) {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                format!("dwell takes 0 to {max} s"),
-            ));
-        }
+        let seconds = dwell_time(seconds, settings)?;
         self.finish_contour()?;
         let centre = self.tool_centre();
         let mut element = self.element(Curve::Hold, centre, centre, FeedRate::Rapid);

@@ -3,23 +3,15 @@
 use super::Output;
 use super::path::direction_text;
 use crate::cycles::FIRST_PARAMETER_CYCLE;
-use crate::{CycleBlock, CycleFunction, CycleParameter, CycleWord, Direction, Quantity, Sign, Value, cycle};
-
-/// The parameters of a block.
-fn parameters(function: CycleFunction, block: &CycleBlock) -> &'static [CycleParameter] {
-    cycle(function, block.number).map_or(&[], |cycle| cycle.block(block.sub))
-}
+use crate::{
+    CycleBlock, CycleFunction, CycleParameter, CycleWord, Direction, Quantity, Sign, Value, cycle_parameters,
+};
 
 /// Whether its numbers are printed without `+` [003:4978] [003:5381] [003:6434].
 fn is_unsigned(parameters: &[CycleParameter]) -> bool {
-    let is_number = |parameter: &&CycleParameter| {
-        !matches!(
-            parameter.quantity,
-            Quantity::Feed | Quantity::Labels | Quantity::Program
-        )
-    };
-    let mut numbers = parameters.iter().filter(is_number);
-    numbers.any(|parameter| parameter.sign == Sign::Unsigned)
+    parameters
+        .iter()
+        .any(|parameter| parameter.quantity.is_number() && parameter.sign == Sign::Unsigned)
 }
 
 impl Output {
@@ -34,7 +26,7 @@ impl Output {
             self.text.push('.');
             self.integer(u32::from(block.sub));
         }
-        let parameters = parameters(CycleFunction::Definition, block);
+        let parameters = cycle_parameters(CycleFunction::Definition, block.number, block.sub);
         self.program_word(parameters);
         let unsigned = is_unsigned(parameters);
         self.cycle_words(&block.words, |_| unsigned);
@@ -45,7 +37,7 @@ impl Output {
         self.integer(u32::from(block.number));
         self.text.push('.');
         self.integer(u32::from(block.sub));
-        let parameters = parameters(CycleFunction::Probe, block);
+        let parameters = cycle_parameters(CycleFunction::Probe, block.number, block.sub);
         self.program_word(parameters);
         let unsigned = is_unsigned(parameters);
         // An unsigned Q would be the parameter for the result.

@@ -8,7 +8,7 @@ use super::cursor::{Cursor, Parsed, WRITE_A_NUMBER, with_help};
 use super::m_function::m_functions;
 use super::path::{direction, feed_word};
 use crate::check::ANY_LABEL_MAX;
-use crate::cycles::{self as table, FIRST_PARAMETER_CYCLE};
+use crate::cycles::{FIRST_PARAMETER_CYCLE, cycle_parameters};
 use crate::text::{is_blank, to_words};
 use crate::{CycleBlock, CycleFunction, CycleWord, Dialog, Direction, Operation, Quantity, Word};
 
@@ -50,8 +50,8 @@ fn definition(c: &mut Cursor) -> Parsed<CycleBlock> {
 
 /// What the first parameter of a block is.
 pub(super) fn holds(function: CycleFunction, number: u16, sub: u16) -> Option<Quantity> {
-    let parameters = table::cycle(function, number)?.block(sub);
-    parameters.first().map(|parameter| parameter.quantity)
+    let first = cycle_parameters(function, number, sub).first();
+    first.map(|parameter| parameter.quantity)
 }
 
 /// `n.m`, with blanks anywhere; `n` alone is `n.0`.
