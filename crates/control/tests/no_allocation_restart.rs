@@ -48,29 +48,8 @@ fn ended(rig: &Rig) -> bool {
 /// The PLC has moved Z during M70: the path is taken back and goes on from there, with the functions of its blocks.
 #[test]
 fn recall() {
-    let plc = format!(
-        "{ACKNOWLEDGE_BUT_M}
-       L     M2045
-       AN    M0
-       = M1
-       L     M2045
-       = M0
-       L     M1
-       IFT
-         L     K+800000
-         = D536
-         L     K+6000
-         = W564
-       ENDI
-       L     M1
-       S     M2706
-       L     M2045
-       AN    M2706
-       = M2482
-"
-    );
     let program = "L X+60 R0 F6000 M70\nL X+70\nL X+80 Y+60 M71\nL Z+40 M72\nL X+60";
-    let mut rig = bench_with(&plc, program);
+    let mut rig = bench_with(&plc_moves_z(), program);
     rig.start();
     until(&mut rig, 10.0, "PLC positioning and recall", ended);
     near(display(&rig, 'Z'), 40.0);

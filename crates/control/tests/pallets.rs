@@ -11,19 +11,6 @@ use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};
 use stand::*;
 use support::*;
 
-/// A call of a module.
-fn call(arguments: &[&str], module: u16, results: &[&str]) -> String {
-    let push: String = arguments
-        .iter()
-        .map(|value| format!("       PS    {value}\n"))
-        .collect();
-    let pull: String = results
-        .iter()
-        .map(|operand| format!("       PL    {operand}\n"))
-        .collect();
-    format!("{push}       CM    {module}\n{pull}")
-}
-
 /// Keys A and C: module 9090 with lines 0 and 1 of the pallet file, D with a line that is missing; the answer in
 /// W92. Key B: X of line 7 of the datum table is read and written 12.5 mm, and a line with Y = 30 mm is looked for.
 fn plc() -> String {

@@ -176,28 +176,7 @@ fn datum_correction() {
 /// there without a jump, and axes that it does not name stay [000:4005-4088].
 #[test]
 fn plc_positioning_in_a_strobe() {
-    let plc = m_functions(
-        "
-       L     M2045
-       AN    M0
-       = M1
-       L     M2045
-       = M0
-       L     M1
-       IFT
-         L     K+800000
-         = D536
-         L     K+6000
-         = W564
-       ENDI
-       L     M1
-       S     M2706
-       L     M2045
-       AN    M2706
-       = M2482
-",
-    );
-    let mut rig = bench_with(&plc, "L X+60 R0 F6000 M70\nL X+70\nL Z+40");
+    let mut rig = bench_with(&plc_moves_z(), "L X+60 R0 F6000 M70\nL X+70\nL Z+40");
     rig.start();
     rig.until(3.0, "M70", |rig| rig.bit("M2706"));
     rig.until(3.0, "the position", |rig| !rig.bit("M2706"));

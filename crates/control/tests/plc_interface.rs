@@ -238,24 +238,13 @@ fn a_broken_wire_of_the_acknowledgement_stops_the_axes() {
 /// counts at once, is stored, and is there after power-off. A tool table that says something else since counts.
 #[test]
 fn tables_of_the_control() {
-    let call = |arguments: &[i32], module: u16, results: &[&str]| {
-        let push: String = arguments
-            .iter()
-            .map(|value| format!("       PS    K{value:+}\n"))
-            .collect();
-        let pull: String = results
-            .iter()
-            .map(|operand| format!("       PL    {operand}\n"))
-            .collect();
-        format!("{push}       CM    {module}\n{pull}")
-    };
     // Pocket table: the line with tool 2; tool table: its length, then written 90.5 mm and the tool life 30 min.
     let job = [
-        call(&[2, 2, 0, 0], 9092, &["W100", "W102"]),
-        call(&[0, 2, 0], 9093, &["D104", "W108"]),
-        call(&[0, 2, 0, 905_000], 9094, &["W110"]),
-        call(&[0, 2, 7, 30], 9094, &["W112"]),
-        call(&[1, 0, 0], 9093, &["D116", "W114"]),
+        call(&["K+2", "K+2", "K+0", "K+0"], 9092, &["W100", "W102"]),
+        call(&["K+0", "K+2", "K+0"], 9093, &["D104", "W108"]),
+        call(&["K+0", "K+2", "K+0", "K+905000"], 9094, &["W110"]),
+        call(&["K+0", "K+2", "K+7", "K+30"], 9094, &["W112"]),
+        call(&["K+1", "K+0", "K+0"], 9093, &["D116", "W114"]),
     ];
     let plc = format!(
         "{ACKNOWLEDGE}       L     I20\n       AN    M0\n       CMT   ASK\n       L     I20\n       = M0\n       EM\nLBL ASK\n       SUBM  JOB\n       = B90\n       EM\nLBL JOB\n{}",

@@ -26,6 +26,18 @@ CYCL CALL
     Build::mill().program("1.H", &program)
 }
 
+/// The same with a floating holder: cycle 2.
+const FLOATING_HOLDER: &str = "TOOL CALL 3 Z S600
+CYCL DEF 2.0 TAPPING
+CYCL DEF 2.1 SET UP -3
+CYCL DEF 2.2 DEPTH -20
+CYCL DEF 2.3 DWELL 0.1
+CYCL DEF 2.4 F900
+L X+20 Y+20 R0 FMAX
+L Z+3 FMAX M3
+CYCL CALL
+L Z+50 FMAX M5";
+
 /// Power on, reference run, datum 100 mm below the tool; the program is selected.
 fn ready(build: Build) -> Rig {
     let mut rig = build.rig();
@@ -341,17 +353,7 @@ fn internal_stop_in_the_thread() {
 /// the run; by hand M4 and Z+ lead the tap out.
 #[test]
 fn emergency_stop_with_a_floating_holder() {
-    let program = "TOOL CALL 3 Z S600
-CYCL DEF 2.0 TAPPING
-CYCL DEF 2.1 SET UP -3
-CYCL DEF 2.2 DEPTH -20
-CYCL DEF 2.3 DWELL 0.1
-CYCL DEF 2.4 F900
-L X+20 Y+20 R0 FMAX
-L Z+3 FMAX M3
-CYCL CALL
-L Z+50 FMAX M5";
-    let mut rig = ready(Build::mill().program("1.H", program));
+    let mut rig = ready(Build::mill().program("1.H", FLOATING_HOLDER));
     rig.start();
     rig.until(60.0, "M2048", |rig| rig.bit("M2048"));
     let top = observe(&rig, "Z.nominal");
@@ -393,17 +395,7 @@ L Z+50 FMAX M5";
 /// out of the thread.
 #[test]
 fn tapping_with_a_floating_holder() {
-    let program = "TOOL CALL 3 Z S600
-CYCL DEF 2.0 TAPPING
-CYCL DEF 2.1 SET UP -3
-CYCL DEF 2.2 DEPTH -20
-CYCL DEF 2.3 DWELL 0.1
-CYCL DEF 2.4 F900
-L X+20 Y+20 R0 FMAX
-L Z+3 FMAX M3
-CYCL CALL
-L Z+50 FMAX M5";
-    let mut rig = ready(Build::mill().program("1.H", program));
+    let mut rig = ready(Build::mill().program("1.H", FLOATING_HOLDER));
     rig.start();
     rig.until(60.0, "M2048", |rig| rig.bit("M2048"));
     assert!(!rig.bit("M2095"));

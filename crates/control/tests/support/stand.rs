@@ -156,6 +156,44 @@ pub const ACKNOWLEDGE_BUT_M: &str = "
        = M2611
 ";
 
+/// An M function lets the PLC take Z to 80 mm from the machine datum; it is acknowledged when Z is there.
+pub fn plc_moves_z() -> String {
+    format!(
+        "{ACKNOWLEDGE_BUT_M}
+       L     M2045
+       AN    M0
+       = M1
+       L     M2045
+       = M0
+       L     M1
+       IFT
+         L     K+800000
+         = D536
+         L     K+6000
+         = W564
+       ENDI
+       L     M1
+       S     M2706
+       L     M2045
+       AN    M2706
+       = M2482
+"
+    )
+}
+
+/// A call of a module: what is pushed before it, and where its results go.
+pub fn call(arguments: &[&str], module: u16, results: &[&str]) -> String {
+    let push: String = arguments
+        .iter()
+        .map(|value| format!("       PS    {value}\n"))
+        .collect();
+    let pull: String = results
+        .iter()
+        .map(|operand| format!("       PL    {operand}\n"))
+        .collect();
+    format!("{push}       CM    {module}\n{pull}")
+}
+
 /// A bench with PLC lines of the test; modules of its own follow an `EM`.
 pub fn bench(plc: &str) -> Build {
     let mut build = Build::mill();
