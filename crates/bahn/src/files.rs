@@ -94,7 +94,9 @@ pub(crate) fn cannot(verb: &str, path: &Path, error: &io::Error) -> UsageError {
 
 /// Endings of files that commands read and none of these options writes: programs, PLC programs, lists and
 /// descriptions of machines, tables of tools, pallets, datums and compensation, memories.
-const KEPT: [&str; 11] = ["h", "i", "plc", "mp", "toml", "tsv", "p", "d", "cma", "com", "mem"];
+const KEPT: [&str; 11] = [
+    "h", "i", "plc", "mp", "toml", "tsv", "p", "d", "cma", "com", "mem",
+];
 
 /// Refuses outputs, given with their options, that would overwrite an input or each other, or a file of a kind
 /// that the command may read under way, as a program that another one calls.
