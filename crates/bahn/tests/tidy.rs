@@ -96,19 +96,6 @@ const CIRCLES: &[(&str, &[&str])] = &[
             "upkeep",
         ],
     ),
-    (
-        "interpreter",
-        &[
-            "availability",
-            "cycles",
-            "functions",
-            "modal",
-            "positioning",
-            "probe",
-            "run",
-            "settings",
-        ],
-    ),
 ];
 
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];
