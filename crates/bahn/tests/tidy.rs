@@ -33,6 +33,19 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "host",
+        &[
+            "path",
+            "parameters",
+            "program",
+            "interpreter",
+            "exchange",
+            "plc",
+            "machine",
+            "control",
+        ],
+    ),
+    (
         "bahn",
         &[
             "path",
@@ -48,6 +61,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "machine",
             "machines",
             "control",
+            "host",
         ],
     ),
 ];
