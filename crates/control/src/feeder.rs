@@ -95,6 +95,7 @@ impl Offsets {
 pub(crate) type Box2 = [Position; 2];
 
 /// Feeds the interpolator from a program.
+#[derive(Clone)]
 pub(crate) struct Feeder {
     interpreter: Interpreter,
     /// Offsets as of the last element handed out.

@@ -52,7 +52,7 @@ const STEP_US: u64 = 6_000_000;
 const US_PER_MIN: f64 = 60e6;
 
 /// The count of the tool in the spindle.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct LifeCount {
     /// Not yet in CUR.TIME, of which tool.
     uncounted_us: u64,

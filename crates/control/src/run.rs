@@ -45,7 +45,7 @@ pub enum RunState {
 }
 
 /// A run.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct ProgramRun {
     /// Name of the program that runs in single block and full sequence.
     pub selected: Option<String>,

@@ -17,7 +17,7 @@ use crate::setup::{MovedTool, Remembered, Tool};
 const NO_POCKET: i16 = 255;
 
 /// The tool table and the tool in the spindle.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Tools {
     table: Option<BTreeMap<u32, Tool>>,
     /// The pockets as the tool table has them.
