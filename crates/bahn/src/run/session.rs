@@ -408,6 +408,9 @@ impl Session {
 
     /// Hands on what was executed.
     fn take_path(&mut self) -> Result<(), UsageError> {
+        if let Some(dropped) = self.control.take_dropped_path() {
+            self.ahead.retain(|element| element.sequence < dropped);
+        }
         self.ahead.extend(self.control.take_path());
         for warning in self.control.take_warnings() {
             self.record
