@@ -156,6 +156,15 @@ impl Control {
         self.run.tap = keep;
     }
 
+    /// Of what [`Control::take_path`] has handed out so far, the elements from a sequence on are not executed: the tool
+    /// is replaced before them. To be asked for before it.
+    pub fn take_dropped_path(&mut self) -> Option<u64> {
+        self.run
+            .feeder
+            .as_mut()
+            .and_then(crate::feeder::Feeder::take_dropped)
+    }
+
     /// The path elements that were prepared since the last call, in workpiece coordinates.
     pub fn take_path(&mut self) -> Vec<bahn_path::PathElement> {
         self.run

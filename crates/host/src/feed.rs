@@ -66,9 +66,12 @@ pub struct Reader<T> {
     next: u64,
 }
 
-impl<T: Clone> Reader<T> {
-    /// The next item, or how many were missed; `None` when there is nothing new.
-    pub fn next(&mut self) -> Option<Next<T>> {
+/// The items that were not read yet, and how many were missed before them; it ends where there is nothing new and goes
+/// on when there is.
+impl<T: Clone> Iterator for Reader<T> {
+    type Item = Next<T>;
+
+    fn next(&mut self) -> Option<Next<T>> {
         let ring = lock(&self.ring);
         let first = ring.count - ring.items.len() as u64;
         if let Some(missed) = first.checked_sub(self.next).filter(|missed| *missed > 0) {
@@ -80,7 +83,9 @@ impl<T: Clone> Reader<T> {
         self.next += 1;
         Some(Next::Item(item))
     }
+}
 
+impl<T: Clone> Reader<T> {
     /// The latest item; everything before it is passed over.
     pub fn latest(&mut self) -> Option<T> {
         let ring = lock(&self.ring);
@@ -108,7 +113,7 @@ mod tests {
     use super::*;
 
     fn all(reader: &mut Reader<u32>) -> Vec<Next<u32>> {
-        std::iter::from_fn(|| reader.next()).collect()
+        reader.collect()
     }
 
     #[test]

@@ -386,6 +386,11 @@ impl<P: Operable> Host<P> {
         self.control.take_path()
     }
 
+    /// The first element that is executed no more, of those that were taken: see [`Control::take_dropped_path`].
+    pub fn take_dropped_path(&mut self) -> Option<u64> {
+        self.control.take_dropped_path()
+    }
+
     /// The interpreter's warnings since the last call.
     pub fn take_warnings(&mut self) -> Vec<Warning> {
         self.control.take_warnings()

@@ -86,7 +86,7 @@ impl<P: Operable + Clone> Host<P> {
                 break Err(error);
             }
             // Whoever follows the path has it already.
-            drop((self.control.take_path(), self.control.take_warnings()));
+            drop((self.take_dropped_path(), self.take_path(), self.take_warnings()));
         };
         self.repeats = false;
         self.reset_clock();

@@ -336,6 +336,10 @@ impl Interpreter {
     /// Executes the next block.
     #[inline]
     fn step(&mut self) -> Result<(), Fault> {
+        if self.run.comes_back.is_some() {
+            self.come_back();
+            return Ok(());
+        }
         let at = self.run.at.block_ref();
         if self.code.is_growing() && self.must_wait(at) {
             return Ok(());

@@ -43,6 +43,9 @@ impl Executed {
         if running {
             self.turning.cycle(host.control(), host.plant());
         }
+        if let Some(dropped) = host.take_dropped_path() {
+            self.ahead.retain(|element| element.sequence < dropped);
+        }
         self.ahead.extend(host.take_path());
         for warning in host.take_warnings() {
             self.record
