@@ -33,6 +33,19 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "host",
+        &[
+            "path",
+            "parameters",
+            "program",
+            "interpreter",
+            "exchange",
+            "plc",
+            "machine",
+            "control",
+        ],
+    ),
+    (
         "bahn",
         &[
             "path",
@@ -48,6 +61,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "machine",
             "machines",
             "control",
+            "host",
         ],
     ),
 ];
@@ -80,19 +94,6 @@ const CIRCLES: &[(&str, &[&str])] = &[
             "thread",
             "tools",
             "upkeep",
-        ],
-    ),
-    (
-        "interpreter",
-        &[
-            "availability",
-            "cycles",
-            "functions",
-            "modal",
-            "positioning",
-            "probe",
-            "run",
-            "settings",
         ],
     ),
 ];

@@ -8,13 +8,12 @@ use bahn_path::{
 use bahn_program::{Coordinates, Value};
 
 use crate::availability::{Feature, words};
+use crate::block_functions::BlockFunctions;
 use crate::error::{Cause, Fault, WarningKind};
-use crate::functions::BlockFunctions;
-use crate::modal::Tool;
 use crate::positioning::known;
-use crate::q_parameters::preassigned;
 use crate::run::Run;
 use crate::settings::{Settings, ToolState, ToolTable, tool_key};
+use crate::status::Tool;
 
 /// A tool number is meant to have an index when it is as near as this to a tenth.
 const INDEX_TOLERANCE: f64 = 1e-9;
@@ -176,13 +175,6 @@ impl Run {
         }
     }
 
-    /// Q parameters of the tool in use, in the unit of the main program.
-    pub(crate) fn preassign_tool(&mut self, length: f64, radius: f64) {
-        let unit = self.main_unit_mm();
-        self.q.preassign(preassigned::TOOL_RADIUS, radius / unit);
-        self.q.preassign(preassigned::TOOL_LENGTH, length / unit);
-    }
-
     /// The axes stand still at a tool change, so the tip of a longer tool stands lower: the position in the
     /// tool axis changes by the difference of the lengths, and the next block starts there.
     fn change_length(&mut self, axis: Axis, length: f64) {
@@ -328,25 +320,6 @@ impl Run {
         self.modal.take_plane(plane);
         self.preassign_tool_axis(axis);
         Ok(())
-    }
-
-    /// The Q parameter of the tool axis.
-    pub(crate) fn preassign_tool_axis(&mut self, axis: Axis) {
-        let number = match axis {
-            Axis::X => 0.0,
-            Axis::Y => 1.0,
-            Axis::Z => 2.0,
-            Axis::U => 6.0,
-            Axis::V => 7.0,
-            Axis::W => 8.0,
-            Axis::A | Axis::B | Axis::C => -1.0,
-        };
-        self.q.preassign(preassigned::TOOL_AXIS, number);
-    }
-
-    /// Millimetres of the unit of the main program, in which the control shows lengths.
-    pub(crate) fn main_unit_mm(&self) -> f64 {
-        self.main_unit.mm()
     }
 
     // Blank.
