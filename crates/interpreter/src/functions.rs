@@ -124,7 +124,7 @@ impl Run {
             112 => self.modal.corner_arcs = Some(self.corner_arcs(m, settings)?),
             113 => self.modal.corner_arcs = None,
             // For who counts tool lives, and for the position loops.
-            101 | 102 => block.output.push(inside(code)),
+            101 | 102 | 107 | 108 => block.output.push(inside(code)),
             105 | 106 if rules.m105_enabled => block.output.push(inside(code)),
             _ => {}
         }

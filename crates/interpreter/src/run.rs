@@ -72,6 +72,8 @@ pub(crate) struct Run {
     pub machine: bool,
     /// Nothing is moved: cycles are looked at but make no path, and the tool has no radius.
     pub rehearsal: bool,
+    /// The tool was replaced, and the path is still to come back to where it was, programmed and moved.
+    pub comes_back: Option<(Position, Position)>,
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
     /// A contour subprogram is being recorded for an SL cycle: M functions, feeds and cycle calls in it
@@ -112,6 +114,7 @@ impl Run {
             increments_from: None,
             machine: settings.machine,
             rehearsal: false,
+            comes_back: None,
             probing: None,
             recording: None,
         };
@@ -135,6 +138,20 @@ impl Run {
             self.preassign_tool(tool.shape.length, tool.radius);
             self.preassign_tool_axis(tool.axis);
         }
+    }
+
+    /// Whether a tool is in the spindle and works on no contour with radius compensation.
+    pub fn is_between_contours(&self, tool: u32) -> bool {
+        let modal = &self.modal;
+        modal.tool.is_some_and(|in_spindle| in_spindle.number == tool)
+            && modal.compensation == Compensation::Off
+            && modal.paraxial == Compensation::Off
+            && self.contour.is_between_contours()
+            && (modal.corner_arcs.is_none() || self.contour.is_empty())
+            && self.out.queue.is_empty()
+            && self.comes_back.is_none()
+            && self.probing.is_none()
+            && self.recording.is_none()
     }
 
     /// Notes a warning; the same one at the same block is counted, so that loops do not pile them up.

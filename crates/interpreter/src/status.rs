@@ -10,8 +10,27 @@ pub(crate) struct Tool {
     pub shape: ToolShape,
     /// Radius with the oversize of TOOL CALL, mm; negative ones must not be used.
     pub radius: f64,
+    /// DL and DR of TOOL CALL, mm.
+    pub oversize: [f64; 2],
     /// Its data are in the program or in the tool table.
     pub defined: bool,
+}
+
+impl Tool {
+    /// A tool with its data, and whether they were found, and the oversizes of its call, mm.
+    pub fn new(number: u32, axis: Axis, data: (ToolShape, bool), oversize: [f64; 2]) -> Tool {
+        let (mut shape, defined) = data;
+        let [length, radius] = oversize;
+        shape.length += length;
+        Tool {
+            number,
+            axis,
+            shape,
+            radius: shape.radius + radius,
+            oversize,
+            defined,
+        }
+    }
 }
 
 /// Spindle state as Q110 counts it [003:7616-7619].
