@@ -127,12 +127,6 @@ impl Sink for Mark<'_> {
     fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
         self.shaped(row, columns, |k| heights(k as usize)[0]);
     }
-
-    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {
-        self.shaped(row, columns, |k| {
-            heights.get(k as usize).copied().unwrap_or(f32::INFINITY)
-        });
-    }
 }
 
 #[cfg(test)]

@@ -10,12 +10,9 @@
 use std::ops::Range;
 
 use crate::grid::Grid;
-use crate::leads::{FLATTEST, between};
+use crate::leads::{FLATTEST, Spacing, between, half_chord};
 use crate::raster::{BAND_ROWS, Borders, GROUP, Raster, Row, least, positive};
 use crate::track::{End, Sink, Track};
-
-/// Columns of a row whose heights are kept at once.
-const AT_ONCE: usize = 64;
 
 /// The half of an ellipse before a place on the track, and the strip behind it: `ahead` long, `beside` to
 /// either side, mm.
@@ -74,32 +71,36 @@ impl Track {
 
     /// Columns of a row that may be touched anywhere on the track.
     #[inline]
-    fn sweep_ends(&self, grid: &Grid, row: usize, columns: Range<usize>, sink: &mut impl Sink) {
-        let mut heights = [0.0; AT_ONCE];
-        for first in columns.clone().step_by(AT_ONCE) {
-            let columns = first..columns.end.min(first + AT_ONCE);
-            let heights = heights.get_mut(..columns.len()).unwrap_or_default();
-            self.torus_heights(&self.row(grid, first, row), heights);
-            sink.listed(row, columns, heights);
+    fn sweep_ends(&self, grid: &Grid, at: usize, columns: Range<usize>, sink: &mut impl Sink) {
+        if columns.is_empty() {
+            return;
         }
-    }
-
-    /// The heights of neighbouring columns of a row.
-    #[inline]
-    fn torus_heights(&self, row: &Row, heights: &mut [f32]) {
-        let [flat, corner] = [self.tool.flat(), self.tool.corner].map(|value| value as f32);
-        match &self.leads {
-            Some(leads) => leads.fill(row, heights),
-            None => heights.fill(0.0),
-        }
-        let low = row.low + corner;
-        // What is a lead becomes the height.
-        for (k, height) in heights.iter_mut().enumerate() {
-            let [a, b] = row.place(k as i32 as f32);
-            let s = least(positive(a - *height), row.length);
-            let e = a - s;
-            let rise = positive((b * b + e * e).sqrt() - flat);
-            *height = positive(low + row.slope * s - positive((corner - rise) * (corner + rise)).sqrt());
+        let row = &self.row(grid, columns.start, at);
+        let bottom = [self.tool.flat(), self.tool.corner].map(|value| value as f32);
+        let end = |row: &Row, k: usize, parts: [f32; GROUP]| end_group(row, bottom, k, parts);
+        let Some(leads) = &self.leads else {
+            return sink.grouped(at, columns, |k| end(row, k, [0.0; GROUP]));
+        };
+        match leads.spacing {
+            Spacing::Fine(most) => {
+                for first in columns.clone().step_by(most) {
+                    let columns = first..columns.end.min(first + most);
+                    let row = &self.row(grid, first, at);
+                    let [part, change] = leads.line(row, columns.len());
+                    sink.grouped(at, columns, |k| {
+                        let parts = |n| part + change * (k as i32 as f32 + n as i32 as f32);
+                        end(row, k, std::array::from_fn(parts))
+                    });
+                }
+            }
+            Spacing::Equal => {
+                let near = leads.parts_of(row);
+                sink.grouped(at, columns, |k| end(row, k, near.equal(k)));
+            }
+            Spacing::Coarse(places) => {
+                let near = leads.parts_of(row);
+                sink.grouped(at, columns, |k| end(row, k, near.coarse(k, places)));
+            }
         }
     }
 
@@ -112,7 +113,7 @@ impl Track {
         let beside = if uy == 0.0 {
             self.tool.radius as f32
         } else {
-            leads.fan.as_ref()?.beside
+            leads.beside()?
         };
         let along = between(a, dx * ux, leads.longest()..self.length as f32);
         let across = between(b, dx * uy, -beside..beside);
@@ -128,16 +129,13 @@ impl Track {
         };
         let row = &self.row(grid, columns.start, at);
         let heights = |k: usize, shares: [f32; GROUP]| middle_group(row, k, shares);
-        match &leads.fan {
-            Some(fan) => {
-                let found = fan.heights_of(row);
-                sink.grouped(at, columns, |k| heights(k, found.group(k)));
-            }
-            // Along the rows.
-            None => {
-                let share = leads.height_at(row.place(0.0)[1]);
-                sink.grouped(at, columns, |k| heights(k, [share; GROUP]));
-            }
+        if row.uy == 0.0 {
+            let share = leads.height_at(row.place(0.0)[1]);
+            sink.grouped(at, columns, |k| heights(k, [share; GROUP]));
+        } else {
+            let near = leads.heights_of(row);
+            let found = near.curved();
+            sink.grouped(at, columns, |k| heights(k, found(k)));
         }
     }
 
@@ -268,6 +266,21 @@ impl Track {
         }
         outer.without(&but, &all)
     }
+}
+
+/// Heights of neighbouring columns of a row under a corner radius, with the leads as parts of the half chord.
+#[inline(always)]
+fn end_group(row: &Row, [flat, corner]: [f32; 2], k: usize, parts: [f32; GROUP]) -> [f32; GROUP] {
+    let mut heights = [0.0; GROUP];
+    for n in 0..GROUP {
+        let [a, b] = row.place(k as i32 as f32 + n as i32 as f32);
+        let s = least(positive(a - parts[n] * half_chord(flat + corner, b)), row.length);
+        let e = a - s;
+        let rise = positive((b * b + e * e).sqrt() - flat);
+        let up = corner - positive((corner - rise) * (corner + rise)).sqrt();
+        heights[n] = positive(row.low + row.slope * s + up);
+    }
+    heights
 }
 
 /// Heights of neighbouring columns by what they are over the axis.

@@ -42,8 +42,6 @@ pub(crate) trait Sink {
     fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32);
     /// As [`Sink::shaped`] for [`GROUP`] columns at once from a distance on; what is beyond the last column is not used.
     fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]);
-    /// As [`Sink::level`] with a list of heights.
-    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]);
 }
 
 impl Segment {
