@@ -15,7 +15,7 @@ pub(crate) const FLATTEST: f32 = 1e-3;
 /// angle `p` from the track the point of the corner with the tangent `slope / cos p` is such a point:
 /// `(flat + corner * sin) * cos p` before the axis and `(flat + corner * sin) * sin p` beside it. The
 /// height that follows from the place has its minimum there, so a small error of the place does not
-/// count.
+/// count: heights are too high by less than 1e-4 of the radius, most of it where a flat ends on a faint slope.
 ///
 /// The lead as part of the half chord of the tool has no steep place, up to the rim where both end. So these
 /// parts are kept at places across the track, as far apart as the columns of a row lie across it: in every row
@@ -30,6 +30,8 @@ pub(crate) struct Leads {
     /// From place to place, and of the first one, mm across the track.
     step: f32,
     first: f32,
+    /// Places on a millimetre.
+    per_mm: f32,
     pub spacing: Spacing,
     /// Bounds of the parts.
     pub least: f32,
@@ -88,39 +90,54 @@ impl Near<'_> {
         let Some(near) = self.values.get(k..k + GROUP + 1) else {
             return [0.0; GROUP];
         };
-        std::array::from_fn(|n| near[n] + (near[n + 1] - near[n]) * self.share)
+        let mut found = [0.0; GROUP];
+        for n in 0..GROUP {
+            found[n] = near[n] + (near[n + 1] - near[n]) * self.share;
+        }
+        found
     }
 
     /// The same, so many places apart.
     #[inline(always)]
     pub fn coarse(&self, k: usize, places: usize) -> [f32; GROUP] {
-        std::array::from_fn(|n| match self.values.get((k + n) * places..) {
-            Some([near, next, ..]) => near + (next - near) * self.share,
-            _ => 0.0,
-        })
+        let mut found = [0.0; GROUP];
+        for (n, found) in found.iter_mut().enumerate() {
+            if let Some([near, next, ..]) = self.values.get((k + n) * places..) {
+                *found = near + (next - near) * self.share;
+            }
+        }
+        found
     }
 
-    /// Heights between four places (Lagrange): in a row all with the same shares. Where the flat ends
-    /// the curvature jumps by `1 / corner`, which leaves up to a thirtieth of that times the square of the step.
+    /// What each of four places counts for a column between the middle ones (Lagrange): in a row all have the same.
     #[inline(always)]
-    pub fn curved(&self) -> impl Fn(usize) -> [f32; GROUP] {
+    pub fn weights(&self) -> [f32; 4] {
         let t = self.share;
-        let s = [
+        [
             -t * (t - 1.0) * (t - 2.0) / 6.0,
             (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
             -(t + 1.0) * t * (t - 2.0) / 2.0,
             (t + 1.0) * t * (t - 1.0) / 6.0,
-        ];
-        move |k| {
-            let Some(near) = self.values.get(k..k + GROUP + 3) else {
-                return [f32::INFINITY; GROUP];
-            };
-            std::array::from_fn(|n| near[n] * s[0] + near[n + 1] * s[1] + near[n + 2] * s[2] + near[n + 3] * s[3])
+        ]
+    }
+
+    /// As [`Near::equal`] between four places. Where the flat ends the curvature jumps by `1 / corner`, which leaves
+    /// up to a thirtieth of that times the square of the step.
+    #[inline(always)]
+    pub fn curved(&self, k: usize, weights: &[f32; 4]) -> [f32; GROUP] {
+        let mut found = [f32::INFINITY; GROUP];
+        if let Some(near) = self.values.get(k..k + GROUP + 3) {
+            for n in 0..GROUP {
+                let outer = near[n] * weights[0] + near[n + 3] * weights[3];
+                found[n] = outer + (near[n + 1] * weights[1] + near[n + 2] * weights[2]);
+            }
         }
+        found
     }
 }
 
 /// The first and the last number of steps from `start` that lie in a range.
+#[inline(always)]
 pub(crate) fn between(start: f32, step: f32, range: Range<f32>) -> [f32; 2] {
     if step == 0.0 {
         let is_inside = range.contains(&start);
@@ -161,6 +178,7 @@ impl Leads {
             heights: Vec::new(),
             step,
             first: -(aside as f32) * step,
+            per_mm: 1.0 / step,
             spacing,
             least,
             most,
@@ -192,23 +210,23 @@ impl Leads {
     }
 
     /// The place before one across the track, and how far behind it that is.
-    #[inline]
+    #[inline(always)]
     fn place(&self, b: f32) -> (usize, f32) {
-        let place = positive((b - self.first) / self.step);
+        let place = positive((b - self.first) * self.per_mm);
         // A cast that needs no care for what does not fit.
         let first = place as i32;
         (first as usize, place - first as f32)
     }
 
     /// The place of the first column of a row, seen from the side from which the columns come.
-    #[inline]
+    #[inline(always)]
     fn start(&self, row: &Row) -> (usize, f32) {
         let [_, b] = row.place(0.0);
         self.place(if row.uy < 0.0 { -b } else { b })
     }
 
     /// The parts near the columns of a row.
-    #[inline]
+    #[inline(always)]
     pub fn parts_of(&self, row: &Row) -> Near<'_> {
         let (first, share) = self.start(row);
         let values = self.parts.get(first..).unwrap_or_default();
@@ -216,7 +234,7 @@ impl Leads {
     }
 
     /// The heights near the columns of a row: from the place before the first one on.
-    #[inline]
+    #[inline(always)]
     pub fn heights_of(&self, row: &Row) -> Near<'_> {
         let (first, share) = self.start(row);
         let values = self.heights.get(first.saturating_sub(1)..).unwrap_or_default();
@@ -224,13 +242,13 @@ impl Leads {
     }
 
     /// The part at the first of some columns of a row, and its change from column to column.
-    #[inline]
+    #[inline(always)]
     pub fn line(&self, row: &Row, columns: usize) -> [f32; 2] {
         let [part, end] = [0.0, columns as i32 as f32].map(|k| self.part(row.place(k)[1]));
         [part, (end - part) / columns as i32 as f32]
     }
 
-    #[inline]
+    #[inline(always)]
     fn part(&self, b: f32) -> f32 {
         let (first, share) = self.place(b);
         match self.parts.get(first..) {
@@ -315,7 +333,9 @@ impl Curve {
             while self.squares.get(next).is_some_and(|end| *end <= square) {
                 next += 1;
                 rise = match (self.squares.get(next - 1..), self.parts.get(next - 1..)) {
-                    (Some([from, to, ..]), Some([first, last, ..])) if to > from => (last - first) / (to - from),
+                    (Some([from, to, ..]), Some([first, last, ..])) if to > from => {
+                        (last - first) / (to - from)
+                    }
                     _ => 0.0,
                 };
             }

@@ -168,6 +168,7 @@ impl Track {
     ///
     /// At either side of the capsule the outermost disc is the one whose edge point has the track's
     /// normal there, or the end disc next to it.
+    #[inline(always)]
     pub(crate) fn spans(&self, grid: &Grid, rows: &Range<usize>) -> Spans {
         let base = (self.low[0] / grid.dx).floor() as i64;
         let raster = Raster::new([self.low[0], self.low[1]], base, grid, rows);
@@ -222,7 +223,7 @@ impl Track {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn row(&self, grid: &Grid, first: usize, row: usize) -> Row {
         let y = (row as f64 + 0.5) * grid.dy - self.low[1];
         Row {

@@ -84,8 +84,8 @@ fn deviation(chain: &[Point], tool: &ToolShape, mm: f64) -> (f64, [f64; 2]) {
     worst
 }
 
-/// Long tracks in all directions, steep and faint: a ball and small corners to 5e-5 mm, a corner that is most of the radius
-/// to 1e-4 mm, since its flat ends between few places of the table. Where the columns of a row lie close across the
+/// Long tracks in all directions, steep and faint: to 5e-5 mm, a small corner on the faintest slope to 2e-4 mm,
+/// since its flat ends between two places of the leads. Where the columns of a row lie close across the
 /// track, heights go through four of them: the curvature jumps by `1 / corner` where the flat ends, and a cubic through
 /// four values a step apart is off there by at most 0.0642 of half the jump times the square of the step.
 #[test]
