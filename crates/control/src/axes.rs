@@ -31,7 +31,7 @@ pub(crate) enum Mover {
 }
 
 /// The coupling of a slave.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Coupling {
     /// Place of its master.
     pub master: usize,
@@ -41,7 +41,7 @@ pub(crate) struct Coupling {
 }
 
 /// An axis.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct AxisUnit {
     /// Axis index of markers and machine parameters.
     pub index: usize,

@@ -45,6 +45,8 @@ const LOG_MAX: usize = 100_000;
 ///
 /// [`Control::prepare`] interprets and plans ahead and may allocate; [`Control::cycle`] spends one contour
 /// cycle and does not. Both are called in turn. The same setup, commands and plant give the same bits.
+/// A copy goes on from the same state.
+#[derive(Clone)]
 pub struct Control {
     pub(crate) model: ControlModel,
     pub(crate) timing: Timing,
@@ -111,6 +113,7 @@ pub struct Control {
 }
 
 /// The PLC and its clock.
+#[derive(Clone)]
 pub(crate) struct PlcUnit {
     pub machine: Machine,
     pub due_us: u64,

@@ -1,7 +1,6 @@
 //! The axes along the path of a program, contour cycle by contour cycle: gates, stops, functions.
 
 use bahn_motion::{Drive, State, Stop};
-use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, Curve, PathElement, Position};
 use bahn_servo::Plant;
 
@@ -41,7 +40,7 @@ impl Control {
         let percent = self.program_override_percent();
         let settled = self.path_in_position();
         let [back, on] = self.way_out();
-        let worn = self.would_replace_tool();
+        let wear = self.tools.wear().message();
         let stopped = self.run.state != RunState::Running && !on && !self.runs_out_of_thread();
         let drive = Drive {
             feed_override_percent: percent,
@@ -55,7 +54,11 @@ impl Control {
             hold: stopped
                 || self.handshakes.is_crowded()
                 || self.path.is_coupled() && !self.spindle.is_enabled(),
-            single_block: self.mode == Mode::SingleBlock || on || worn || self.handshakes.inhibit_read_in(),
+            single_block: self.mode == Mode::SingleBlock
+                || on
+                || wear.is_some()
+                || self.handshakes.inhibit_read_in(),
+            stop_before: self.replacement_place(),
             in_position: settled,
             clamped: self.clamped_axes(),
             clamping: self.clamping_axes(),
@@ -81,10 +84,12 @@ impl Control {
             State::Master => self.prepare_thread(),
             State::Clamped => self.ask_to_unclamp(drive.clamped),
             State::BlockEnd if settled && self.run.state == RunState::Running => {
-                if worn {
-                    self.show(Message::Plain(MessageId::MaxToolLifeExpired), false);
+                if let Some(message) = wear {
+                    self.show(Message::Plain(message), false);
                 }
-                if self.mode == Mode::SingleBlock || worn {
+                if self.replaces_here() {
+                    // What follows is given by the next preparation.
+                } else if self.mode == Mode::SingleBlock || wear.is_some() {
                     self.run.state = RunState::BlockEnd;
                 } else if !self.handshakes.inhibit_read_in() {
                     self.path.go_on();

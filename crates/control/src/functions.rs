@@ -58,6 +58,9 @@ impl Target<'_> {
         if matches!(code, 101 | 102) {
             self.tools.replaces_worn = code == 101;
         }
+        if matches!(code, 107 | 108) {
+            self.tools.takes_larger = code == 107;
+        }
         if code <= M_MAX
             && let Ok(code) = u8::try_from(code)
         {
@@ -72,7 +75,7 @@ impl Target<'_> {
             return;
         }
         let before = (self.offsets.tool_length, self.offsets.tool_axis);
-        self.tools.call(call.tool, self.exchange, self.handshakes);
+        self.tools.call(call, self.exchange, self.handshakes);
         self.tools.hold_geometry(before.0, before.1);
         self.offsets.tool_axis = call.axis;
         self.offsets.tool_length = call.shape.length;

@@ -160,7 +160,7 @@ impl std::fmt::Display for Waiting {
 }
 
 /// The transfers in their order, one at a time.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Handshakes {
     queue: VecDeque<Transfer>,
     active: Option<Transfer>,

@@ -3,11 +3,13 @@
 
 use bahn_exchange::signal;
 use bahn_interpreter::ToolState;
+use bahn_parameters::MessageId;
 use bahn_plc::{TableFile, TableKind};
 
 use crate::command::{CURRENT_MAX_MIN, Mode};
 use crate::control::Control;
 use crate::tables;
+use crate::tools::Tools;
 
 /// The lives of a tool in the tool table, minutes; 0 is no limit (inferred).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,9 +52,11 @@ impl ToolLife {
 /// How finely CUR.TIME is counted: 0.1 minutes (inferred; the table shows whole ones).
 const STEP_US: u64 = 6_000_000;
 const US_PER_MIN: f64 = 60e6;
+/// Radii that differ by less are the same, mm.
+const SAME_RADIUS_MM: f64 = 1e-6;
 
 /// The count of the tool in the spindle.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct LifeCount {
     /// Not yet in CUR.TIME, of which tool.
     uncounted_us: u64,
@@ -61,6 +65,10 @@ pub(crate) struct LifeCount {
     told: Option<u32>,
     /// The lives have changed: the interpreter is to know.
     pub changed: bool,
+    /// The block before which a worn tool is to be replaced, by its place in the order of execution.
+    replace_before: Option<u64>,
+    /// The path stands there.
+    due: bool,
 }
 
 impl Control {
@@ -120,13 +128,96 @@ impl Control {
         }
     }
 
-    /// M101 would now take the replacement tool into the spindle [000:9175]. Nothing here returns to the contour
-    /// with it: the run stops at the end of each block, until another tool is called or the life is reset.
-    pub(crate) fn would_replace_tool(&self) -> bool {
-        self.tools.replaces_worn
-            && self.tools.counts
-            && !self.checking.skip_unknown
-            && self.tools.life(self.tools.number).is_worn()
+    /// The path stands at the end of a block: the tool is replaced there, outside the cycle, when it may be.
+    pub(crate) fn replaces_here(&mut self) -> bool {
+        let block_end = self.path.element().zip(self.path.next_element());
+        self.life.due = self.run.waiting.is_empty()
+            && !self.handshakes.inhibit_read_in()
+            && self
+                .life
+                .replace_before
+                .zip(block_end)
+                .is_some_and(|(block, (last, next))| last.sequence < block && block <= next.sequence);
+        self.life.due
+    }
+
+    /// The block before which a worn tool is to be replaced.
+    pub(crate) fn replacement_place(&self) -> Option<u64> {
+        self.life.replace_before
+    }
+
+    /// Replaces a worn tool where the path has stopped for it, or finds where it is to stop, outside the cycle.
+    pub(crate) fn prepare_replacement(&mut self) {
+        let due = std::mem::take(&mut self.life.due);
+        self.life.replace_before = None;
+        let (Wear::Replace(tool), Some(feeder)) = (self.tools.wear(), &mut self.run.feeder) else {
+            return;
+        };
+        let Some(behind) = self.path.element().map(|element| element.sequence) else {
+            return;
+        };
+        self.life.replace_before = feeder.next_replacement(behind, self.tools.number);
+        let next = self.path.next_element().map(|element| element.sequence);
+        if let Some((place, next)) = self.life.replace_before.zip(next)
+            && due
+            && place <= next
+        {
+            self.path.clear();
+            feeder.replace_tool_before(place, tool, self.offsets);
+            self.life.replace_before = None;
+        }
+    }
+}
+
+/// What M101 makes of the tool in the spindle [000:9175].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wear {
+    /// It works on.
+    None,
+    /// Its life is over: this tool replaces it.
+    Replace(u32),
+    /// Its life is over, and no tool replaces it.
+    Expired,
+    /// The tool that replaces it is larger, and M107 is not in force.
+    TooLarge,
+}
+
+impl Wear {
+    /// Why the run cannot go on with it behind the block.
+    pub fn message(self) -> Option<MessageId> {
+        match self {
+            Wear::None | Wear::Replace(_) => None,
+            Wear::Expired => Some(MessageId::MaxToolLifeExpired),
+            Wear::TooLarge => Some(MessageId::ToolRadiusTooLarge),
+        }
+    }
+}
+
+impl Tools {
+    /// The first of its replacement tools, and of theirs, that may be called and is not worn itself takes its place
+    /// (inferred). Programs count on its radius: a smaller one leaves material, a larger one is refused unless M107
+    /// allows it [000:9175-9177].
+    pub(crate) fn wear(&self) -> Wear {
+        let worn = self.number;
+        if !self.replaces_worn || !self.counts || self.is_changing() || !self.life(worn).is_worn() {
+            return Wear::None;
+        }
+        let mut tool = worn;
+        // In a longer chain a tool stands twice.
+        for _ in 0..self.count() {
+            let Some(replacement) = self.life(tool).replacement else {
+                return Wear::Expired;
+            };
+            tool = replacement;
+            if self.may_be_called(tool) && !self.life(tool).is_worn() {
+                let larger = self.radius(tool) > self.radius(worn) + SAME_RADIUS_MM;
+                return match larger && !self.takes_larger {
+                    true => Wear::TooLarge,
+                    false => Wear::Replace(tool),
+                };
+            }
+        }
+        Wear::Expired
     }
 }
 

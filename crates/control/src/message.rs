@@ -155,7 +155,7 @@ pub struct Shown {
 }
 
 /// The messages that are shown, and their history.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Messages {
     shown: Vec<Shown>,
     /// What came up since somebody asked.

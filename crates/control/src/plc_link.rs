@@ -103,7 +103,7 @@ const KINDS: usize = CoordinateKind::ALL.len();
 const ITEMS: usize = StatusItem::ALL.len();
 
 /// The control as its PLC sees it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct PlcLink {
     /// The list in force, with what 9031 changed.
     parameters: ParameterList,

@@ -22,7 +22,7 @@ use crate::run::RunState;
 const BUDGET: usize = 1000;
 
 /// Where a return is.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Restore {
     /// The scan runs towards a block of the main program.
     Scan {

@@ -15,6 +15,7 @@ use crate::block_time::BlockTime;
 use crate::command::Mode;
 use crate::control::Control;
 use crate::feeder::{Box2, Feeder};
+use crate::life::Wear;
 use crate::message::Message;
 use crate::probing::Probing;
 use crate::q_transfer::QTransfer;
@@ -45,7 +46,7 @@ pub enum RunState {
 }
 
 /// A run.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct ProgramRun {
     /// Name of the program that runs in single block and full sequence.
     pub selected: Option<String>,
@@ -263,6 +264,8 @@ impl Control {
         let limits = self.traverse_box();
         let zero = self.machine_zero();
         let here = self.offsets.to_path(&self.machine_position());
+        self.prepare_replacement();
+        let wear = self.tools.wear();
         // A block scan reads the blocks itself.
         let scans = self.run.restore.as_ref().is_some_and(Restore::scans);
         if let Some(feeder) = &mut self.run.feeder
@@ -275,13 +278,18 @@ impl Control {
             }
             feeder.set_datum(self.offsets.datum, zero, limits);
             if let Some(answer) = self.run.answer.take() {
-                if answer.touch.is_none() {
+                let probed = answer.touch.is_some();
+                if !probed {
                     // The PLC may have moved the axes, or corrected the datum [000:8914].
                     feeder.interpreter_mut().stand_at(&here);
                 }
                 self.path.resume(feeder, answer);
                 if let Some(call) = self.tools.inserted_call.take() {
                     feeder.insert(&call);
+                } else if let Wear::Replace(tool) = wear
+                    && !probed
+                {
+                    feeder.replace_tool(self.tools.number, tool);
                 }
             }
             if let Some(element) = self.path.element() {
@@ -418,6 +426,7 @@ impl Control {
                     // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
                     self.tools.counts &= self.mode == Mode::Mdi;
                     self.tools.replaces_worn &= self.mode == Mode::Mdi;
+                    self.tools.takes_larger &= self.mode == Mode::Mdi;
                     let feeder = self.new_feeder(program, &machine, limits);
                     self.run.feeder = Some(feeder);
                 }

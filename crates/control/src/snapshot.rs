@@ -2,6 +2,7 @@
 
 use bahn_path::BlockRef;
 
+use crate::axes::AxisUnit;
 use crate::command::Mode;
 use crate::control::Control;
 use crate::handshake::Waiting;
@@ -78,44 +79,65 @@ pub struct Snapshot {
 impl Control {
     /// The state as of now.
     pub fn snapshot(&self) -> Snapshot {
+        self.snapshot_in(Vec::new(), Vec::new(), None)
+    }
+
+    /// The state as of now, in the memory of an earlier one: it does not allocate unless another program or
+    /// message is shown.
+    pub fn snapshot_again(&self, earlier: Snapshot) -> Snapshot {
+        self.snapshot_in(earlier.axes, earlier.messages, earlier.program)
+    }
+
+    fn snapshot_in(
+        &self,
+        mut axes: Vec<AxisState>,
+        mut messages: Vec<Shown>,
+        mut program: Option<String>,
+    ) -> Snapshot {
         let time = self.plc.machine.time();
+        axes.clear();
+        axes.extend(self.axes.iter().map(|unit| self.axis_state(unit)));
+        if messages != self.messages.shown() {
+            messages = self.messages.shown().to_vec();
+        }
+        if program != self.run.selected {
+            program.clone_from(&self.run.selected);
+        }
         Snapshot {
             time_us: self.now_us,
             mode: self.mode,
             run: self.run.state,
             ended: self.run.ended,
-            program: self.run.selected.clone(),
+            program,
             block: self.path.element().map(|element| element.block),
-            axes: self
-                .axes
-                .iter()
-                .map(|unit| {
-                    let offset = self.offsets.of(unit.axis);
-                    AxisState {
-                        letter: unit.axis.letter(),
-                        index: unit.index,
-                        actual: unit.shown(unit.servo.actual_mm() - offset),
-                        nominal: unit.shown(unit.nominal - offset),
-                        machine: unit.shown(unit.servo.actual_mm()),
-                        lag: unit.lag_mm(),
-                        max_lag: unit.max_lag,
-                        distance_to_go: self.distance_to_go(unit),
-                        referenced: unit.referenced,
-                        closed: unit.servo.closed(),
-                        enabled: unit.enabled,
-                        in_position: unit.in_position,
-                    }
-                })
-                .collect(),
+            axes,
             feed_mm_min: self.run.speed * 60.0,
             programmed_feed_mm_min: self.programmed_feed(),
             feed_override_percent: self.feed_override.percent(),
             spindle_override_percent: self.spindle_override.percent(),
             spindle: self.spindle.state(),
             tool: self.tools.number,
-            messages: self.messages.shown().to_vec(),
+            messages,
             waiting: self.handshakes.waiting(self.exchange.nc()),
             plc_percent: [time.current_percent(), time.maximum_percent()],
+        }
+    }
+
+    fn axis_state(&self, unit: &AxisUnit) -> AxisState {
+        let offset = self.offsets.of(unit.axis);
+        AxisState {
+            letter: unit.axis.letter(),
+            index: unit.index,
+            actual: unit.shown(unit.servo.actual_mm() - offset),
+            nominal: unit.shown(unit.nominal - offset),
+            machine: unit.shown(unit.servo.actual_mm()),
+            lag: unit.lag_mm(),
+            max_lag: unit.max_lag,
+            distance_to_go: self.distance_to_go(unit),
+            referenced: unit.referenced,
+            closed: unit.servo.closed(),
+            enabled: unit.enabled,
+            in_position: unit.in_position,
         }
     }
 
@@ -132,6 +154,15 @@ impl Control {
     /// Keeps the path elements of runs that begin from now on, for [`Control::take_path`].
     pub fn keep_path(&mut self, keep: bool) {
         self.run.tap = keep;
+    }
+
+    /// Of what [`Control::take_path`] has handed out so far, the elements from a sequence on are not executed: the tool
+    /// is replaced before them. To be asked for before it.
+    pub fn take_dropped_path(&mut self) -> Option<u64> {
+        self.run
+            .feeder
+            .as_mut()
+            .and_then(crate::feeder::Feeder::take_dropped)
     }
 
     /// The path elements that were prepared since the last call, in workpiece coordinates.

@@ -42,7 +42,7 @@ pub struct SpindleState {
 }
 
 /// The spindle.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct SpindleUnit {
     parameters: SpindleParameters,
     servo: Spindle,

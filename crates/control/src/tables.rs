@@ -29,7 +29,7 @@ const ST: usize = 1;
 const NO_TOOL: f64 = -1.0;
 
 /// The tables as they were loaded: what differs from them was written.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct LoadedTables(Vec<MemoryTable>);
 
 impl LoadedTables {
@@ -65,7 +65,7 @@ impl LoadedTables {
 }
 
 /// The datum tables as their files say: what differs from them was written.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct LoadedDatums {
     pub tables: BTreeMap<String, MemoryTable>,
     /// Blocks that are read from now on find other datums.

@@ -13,6 +13,7 @@ use crate::message::Message;
 const BUDGET: usize = 500;
 
 /// A test run.
+#[derive(Clone)]
 pub(crate) struct TestRun {
     program: String,
     feeder: Box<Feeder>,

@@ -14,7 +14,7 @@ use crate::overrides::Override;
 use crate::panel::Direction;
 
 /// What is looked after.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Upkeep {
     /// When the offsets are adjusted next (MP1220).
     interval: OffsetInterval,

@@ -31,7 +31,7 @@ impl Checkpoint {
 
 /// States before the blocks whose elements are on their way. Blocks that left nothing have none, so a loop
 /// without movements does not pile them up.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Kept {
     states: VecDeque<Checkpoint>,
     /// Sequence of the last element that was handed out.
@@ -78,6 +78,11 @@ impl Kept {
         let state = found.and_then(|at| self.states.swap_remove_back(at));
         self.states.clear();
         state
+    }
+
+    /// What is kept, in its order.
+    pub fn states(&self) -> impl Iterator<Item = &Checkpoint> {
+        self.states.iter()
     }
 
     /// States that are kept.

@@ -9,18 +9,21 @@
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
 //! What is executed here, and what the user is told, `availability` asks of the registry of the control models.
-//! A block is executed by `run`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
+//! A block is executed by `execute`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
 //! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished
 //! steps.
 //! Nothing here knows of time or of the machine's axes.
 
 mod arc;
 mod availability;
+mod block_functions;
 mod checkpoints;
 mod code;
 mod contour;
 mod cycles;
+mod definition;
 mod error;
+mod execute;
 mod flow;
 mod functions;
 mod growing;
@@ -34,11 +37,12 @@ mod q_parameters;
 mod rehearsal;
 mod run;
 mod settings;
+mod status;
 mod tools;
 mod work;
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
@@ -47,13 +51,13 @@ use bahn_program::{Block, MotionKind, Operation, Program};
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
-pub use modal::Status;
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
     ContourPocketRules, DatumTable, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules,
     ToolState, ToolTable, tool_key,
 };
+pub use status::Status;
 pub use work::{Done, Work};
 
 use crate::checkpoints::{Kept, acts};
@@ -83,9 +87,11 @@ use crate::work::Pending;
 /// }
 /// assert_eq!(ends, [10.0, 30.0]);
 /// ```
+#[derive(Clone)]
 pub struct Interpreter {
     settings: Settings,
-    library: Box<dyn Library + Send>,
+    /// Shared with all copies.
+    library: Arc<Mutex<Box<dyn Library + Send>>>,
     code: Code,
     run: Run,
     ended: Option<Ended>,
@@ -123,7 +129,7 @@ impl Interpreter {
         let (position, model) = (settings.start, settings.model);
         let mut interpreter = Interpreter {
             settings,
-            library,
+            library: Arc::new(Mutex::new(library)),
             code: Code::new(main, model),
             run,
             ended: None,
@@ -330,6 +336,10 @@ impl Interpreter {
     /// Executes the next block.
     #[inline]
     fn step(&mut self) -> Result<(), Fault> {
+        if self.run.comes_back.is_some() {
+            self.come_back();
+            return Ok(());
+        }
         let at = self.run.at.block_ref();
         if self.code.is_growing() && self.must_wait(at) {
             return Ok(());
@@ -458,10 +468,10 @@ impl Interpreter {
 
     fn call_program(&mut self, name: &str) -> Result<(), Fault> {
         let caller = self.run.at.program;
-        let found = self
-            .code
-            .open(name, caller, self.library.as_mut())
-            .map_err(|reason| Fault::new(MessageId::ProgramNotFound, reason))?;
+        let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = self.code.open(name, caller, library.as_mut());
+        drop(library);
+        let found = found.map_err(|reason| Fault::new(MessageId::ProgramNotFound, reason))?;
         let Some(index) = found else {
             return Err(Fault::new(
                 MessageId::ProgramNotFound,

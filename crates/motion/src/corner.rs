@@ -51,7 +51,7 @@ pub(crate) enum Joint {
 }
 
 /// A corner to pass. Its speed is known when the way to the next corner is.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Corner {
     /// Speed that both motions allow, mm/s.
     speed: f64,

@@ -26,7 +26,7 @@ use stops::Stops;
 /// cycle of time and never does. Both are called in turn, `prepare` as often as there is time for it:
 /// where it falls behind, the path comes to a stop at the end of what is known and goes on when more
 /// is. At an override that does not change the path runs as a [`Planner`](crate::Planner) plans it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Interpolator<E> {
     ring: Ring,
     cycle_s: f64,
@@ -53,7 +53,7 @@ pub struct Interpolator<E> {
     recalled: Option<Executed>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum After<E> {
     Open,
     Stop(Stop<E>),
@@ -351,7 +351,7 @@ impl<E> Interpolator<E> {
                 return Some(State::Clamping);
             }
             // Whether the block has ended is known when the next element is, or that none comes.
-            if self.stops.is_block_end(item) {
+            if self.stops.is_block_end(item, self.ring.following()) {
                 self.phase = Phase::BlockEnd;
                 return None;
             }
@@ -560,6 +560,11 @@ impl<E> Interpolator<E> {
     /// The element that is executed, or was last.
     pub fn element(&self) -> Option<&PathElement> {
         self.ring.current().map(|item| &item.element)
+    }
+
+    /// The element after it, as far as it is known.
+    pub fn next_element(&self) -> Option<&PathElement> {
+        self.ring.following().map(|item| &item.element)
     }
 
     /// Path length to the end of that element, mm.

@@ -1,0 +1,67 @@
+//! The host: a machine from its folder, and what it keeps on the medium.
+//!
+//! - [`LoadedMachine`] is everything in the folder of a machine, with all faults of all files at once
+//!   ([`FileFault`]);
+//! - [`State`] is what survives power-off: it is on the medium before the control goes on;
+//! - [`FolderPrograms`] are the part programs of a machine;
+//! - [`files`] reads programs and tables and writes files that are whole or not there; [`lists`] and
+//!   [`PlcSource`] say where in a file of machine parameters or of a PLC program a fault is.
+//!
+//! Nothing is printed here: what there is to be said is data, its words are the caller's.
+
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "citations as [000:7188] look like links"
+)]
+
+mod background;
+mod called;
+mod columns;
+mod deed;
+mod error;
+mod fault;
+mod feed;
+pub mod files;
+mod host;
+mod journal;
+mod kept;
+pub mod lists;
+mod log;
+mod machine_folder;
+mod notice;
+mod operator;
+mod orders;
+mod pace;
+mod plc_source;
+mod power_on;
+mod retained;
+mod saved;
+mod text;
+pub mod tool_table;
+
+pub use columns::TableFault;
+pub use deed::{Answer, Deed, DeedError, Operable, Source};
+pub use error::HostError;
+pub use fault::{FileFault, Marked, Severity};
+pub use feed::{Next, Reader};
+pub use host::Host;
+pub use log::{Log, LogFile, Sink, is_whole};
+pub use machine_folder::{FolderPrograms, Found, LoadedMachine, State, decode};
+/// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
+#[doc(hidden)]
+pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
+    let faults = |faults: Vec<TableFault>| faults.iter().map(|fault| fault.line).collect();
+    tool_table::parse(text).map(drop).map_err(faults)
+}
+
+#[doc(hidden)]
+pub use machine_folder::{check_nc_tables, check_state};
+pub use notice::{Notice, Stamped, Why};
+pub use operator::{Attendance, Job, Operator, Phase};
+pub use orders::{Desk, Order, When};
+pub use pace::{Clock, Lateness};
+pub use plc_source::PlcSource;
+pub use power_on::PowerOn;
+pub use retained::Retained;
+pub use saved::{Saved, Timeline};
+pub use text::printable;
