@@ -2,7 +2,7 @@
 
 use bahn_servo::{Gantry, Timing};
 
-use crate::axes::{AxisUnit, Coupling};
+use crate::axis::{AxisUnit, Coupling};
 
 /// Couples the slaves among the axes (MP850) to their masters. A slave whose master does not exist stays an
 /// axis of its own (inferred).

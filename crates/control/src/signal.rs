@@ -5,8 +5,6 @@ use std::str::FromStr;
 
 use bahn_exchange::{Bit, Number};
 
-use crate::control::Control;
-
 /// What of an axis is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisSignal {
@@ -137,35 +135,6 @@ impl Signal {
             Signal::SpindleRpm => "rpm",
             Signal::SpindleAngle => "degrees",
             Signal::Block | Signal::Bit(_) | Signal::Number(_) => "",
-        }
-    }
-}
-
-impl Control {
-    /// The value of a signal now; an axis that the machine does not have reads 0.
-    pub fn observe(&self, signal: &Signal) -> f64 {
-        match signal {
-            Signal::Axis(letter, signal) => {
-                let unit = self.axes.iter().find(|unit| unit.axis.letter() == *letter);
-                unit.map_or(0.0, |unit| match signal {
-                    AxisSignal::Actual => unit.servo.actual_mm(),
-                    AxisSignal::Nominal => unit.servo.nominal_mm(),
-                    AxisSignal::Lag => unit.servo.lag_mm(),
-                    AxisSignal::Speed => unit.servo.actual_velocity_mm_min(),
-                    AxisSignal::NominalSpeed => unit.speed * 60.0,
-                    AxisSignal::Volts => unit.servo.volts(),
-                })
-            }
-            Signal::PathSpeed => self.run.speed * 60.0,
-            Signal::Block => self
-                .path
-                .element()
-                .map_or(0.0, |element| element.block.block.into()),
-            Signal::SpindleRpm => self.spindle.state().actual_rpm,
-            Signal::SpindleVolts => self.spindle.state().volts,
-            Signal::SpindleAngle => self.spindle.turned_deg(),
-            Signal::Bit(bit) => f64::from(u8::from(self.exchange.plc().bit(*bit))),
-            Signal::Number(number) => self.exchange.plc().number(*number).into(),
         }
     }
 }

@@ -95,6 +95,21 @@ impl Code {
         code
     }
 
+    /// The same programs; their blocks are decoded anew.
+    pub fn fork(&self) -> Code {
+        let programs = self.programs.iter().map(|loaded| Loaded {
+            program: Arc::clone(&loaded.program),
+            chunks: loaded.chunks.iter().map(|_| None).collect(),
+        });
+        Code {
+            model: self.model,
+            programs: programs.collect(),
+            called: self.called,
+            kept: VecDeque::new(),
+            growing: self.growing,
+        }
+    }
+
     fn add(&mut self, program: Arc<Program>) -> u16 {
         let chunks = program.chunk_count() as usize;
         self.programs.push(Loaded {

@@ -74,6 +74,15 @@ impl Pending {
         matches!(self, Pending::Taken(wanted) if Arc::strong_count(&wanted.0) == 1)
     }
 
+    /// The computation for a second interpreter: what somebody does already is lost to it.
+    pub fn fork(&self) -> Pending {
+        match self {
+            Pending::None => Pending::None,
+            Pending::Waiting(job) => Pending::Waiting(job.clone()),
+            Pending::Taken(_) => Pending::Taken(Wanted(Arc::default())),
+        }
+    }
+
     pub fn is_of(&self, done: &Done) -> bool {
         matches!(self, Pending::Taken(wanted) if Arc::ptr_eq(&wanted.0, &done.given_up))
     }

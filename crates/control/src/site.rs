@@ -1,0 +1,154 @@
+//! Where a channel acts, and what the functions of a program do there when the path comes to them.
+
+use bahn_exchange::Exchange;
+use bahn_path::{Axis, Function, Position, ToolCall};
+
+use crate::axes::OwnAxes;
+use crate::command::Mode;
+use crate::handshake::{Handshakes, Transfer};
+use crate::kinematics::Chain;
+use crate::markers::{AXES, TOOL_AXIS};
+use crate::message::Messages;
+use crate::panel::Direction;
+use crate::positioning::Positioning;
+use crate::spindle::SpindleUnit;
+use crate::tools::Tools;
+
+/// Highest M function that goes to the PLC [000:7206].
+const M_MAX: u16 = 99;
+
+/// What holds for all that is done in a contour cycle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Now {
+    /// The contour cycle, s.
+    pub time_s: f64,
+    /// Time since power-on, µs.
+    pub us: u64,
+    pub mode: Mode,
+    /// NC start was pressed and not yet used.
+    pub start: bool,
+    /// NC stop is given by the PLC, the circuit, a flashing message or a fault of an axis.
+    pub stop: bool,
+    /// The PLC gives NC stop (M2488 = 0).
+    pub stop_pressed: bool,
+    /// The control voltage is on: nothing is stopped for good.
+    pub ready: bool,
+    /// The loops were closed since the control voltage came on.
+    pub loops_closed: bool,
+    /// Feed override, %: for itself, and as it acts on programs.
+    pub feed_percent: f64,
+    pub program_percent: f64,
+    /// The direction keys that are pressed, by axis index.
+    pub axis_keys: [Option<Direction>; AXES],
+    /// Rapid traverse as PLC and probe limit it, mm/min.
+    pub rapid_limit_mm_min: f64,
+}
+
+/// Where a channel acts: its axes, its spindle and tools, its part of the PLC's memory, the messages. Who
+/// executes blocks or functions is given this, and nothing else of machine and channel.
+pub(crate) struct Site<'a> {
+    pub now: Now,
+    pub axes: OwnAxes<'a>,
+    pub spindle: &'a mut SpindleUnit,
+    pub tools: &'a mut Tools,
+    pub chain: &'a mut Chain,
+    pub handshakes: &'a mut Handshakes,
+    pub positioning: &'a mut Positioning,
+    pub exchange: &'a mut Exchange,
+    pub messages: &'a mut Messages,
+}
+
+impl Site<'_> {
+    /// The path position at which the axes stand.
+    pub fn here(&self) -> Position {
+        self.chain.to_path(&self.axes.machine_position())
+    }
+
+    /// Outputs a function: its effect in the control, and what goes to the PLC. FN19 says whether its program is
+    /// in inches.
+    pub fn output(&mut self, function: &Function, inch: bool) {
+        match function {
+            Function::M(code) => self.m(*code),
+            Function::Tool(call) => self.tool(call),
+            Function::NextTool(tool) => {
+                if let Some(transfer) = self.tools.define(*tool) {
+                    self.handshakes.push(transfer);
+                }
+            }
+            Function::SpindleSpeed(rpm) => self.speed(*rpm, true),
+            Function::OrientationAngle(angle) => self.spindle.set_cycle_angle(*angle, self.exchange),
+            Function::Plc(values) => self.handshakes.push(Transfer::Plc {
+                values: values.map(|value| value.map(|value| value.round() as i32)),
+                inch,
+            }),
+            // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
+            // printing and the blank concern nothing that moves.
+            Function::Stop | Function::SpindleOrientation(_) | Function::Print(_) | Function::Blank(_) => {}
+        }
+    }
+
+    fn m(&mut self, code: u16) {
+        // M105 chooses the second set of kv and reversal peaks, M106 the first [000:7251-7305].
+        if matches!(code, 105 | 106) {
+            for unit in self.axes.iter_mut() {
+                unit.servo.set_second_set(code == 105);
+            }
+        }
+        if matches!(code, 101 | 102) {
+            self.tools.replaces_worn = code == 101;
+        }
+        if code <= M_MAX
+            && let Ok(code) = u8::try_from(code)
+        {
+            self.handshakes.push(Transfer::M(code));
+        }
+    }
+
+    /// TOOL CALL: the tool goes to the PLC, then its speed; length and axis count from here on.
+    fn tool(&mut self, call: &ToolCall) {
+        if !self.spindle.judge(call.speed_rpm, self.exchange) {
+            // The call is refused as a whole.
+            return;
+        }
+        let before = (self.chain.offsets.tool_length, self.chain.offsets.tool_axis);
+        self.tools.call(call.tool, self.exchange, self.handshakes);
+        self.tools.hold_geometry(before.0, before.1);
+        self.chain.offsets.tool_axis = call.axis;
+        self.chain.offsets.tool_length = call.shape.length;
+        let axes = [Axis::X, Axis::Y, Axis::Z];
+        for (place, marker) in TOOL_AXIS.iter().enumerate() {
+            let set = axes
+                .get(place)
+                .map_or(!axes.contains(&call.axis), |axis| *axis == call.axis);
+            self.exchange.nc_put(*marker, set);
+        }
+        self.speed(call.speed_rpm, true);
+    }
+
+    /// Module 9150 without a program: the TOOL CALL is executed at once; a wrong one is passed over without a message
+    /// [000:16063-16075].
+    pub fn call_inserted_tool(&mut self) {
+        let Some(inserted) = self.tools.inserted_call.take() else {
+            return;
+        };
+        let Some(call) = self.tools.tool_call(&inserted, self.chain.offsets.tool_axis) else {
+            return;
+        };
+        let called = inserted.tool.is_some() && call.tool != 0;
+        if called && !self.tools.may_be_called(call.tool) {
+            return;
+        }
+        match inserted.tool {
+            Some(_) => self.tool(&call),
+            None if inserted.speed.is_some() => self.speed(call.speed_rpm, true),
+            None => {}
+        }
+    }
+
+    /// A speed: gear range or S code, by MP3010.
+    pub fn speed(&mut self, rpm: f64, tool_call: bool) {
+        if let Some(transfer) = self.spindle.program(rpm, tool_call, self.exchange) {
+            self.handshakes.push(transfer);
+        }
+    }
+}
