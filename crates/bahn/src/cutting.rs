@@ -368,7 +368,7 @@ pub(crate) fn write(
                 is_stopped(path);
                 return Ok(Written::Interrupted);
             }
-            Err(error) => return Err(files::cannot("write", path, &std::io::Error::other(error))),
+            Err(error) => return Err(files::cannot("write", path, &std::io::Error::other(error)).into()),
         }
     }
     if let Some(path) = &options.mesh {
@@ -380,7 +380,7 @@ pub(crate) fn write(
                 is_stopped(path);
                 return Ok(Written::Interrupted);
             }
-            Err(MeshError::Io(error)) => return Err(files::cannot("write", path, &error)),
+            Err(MeshError::Io(error)) => return Err(files::cannot("write", path, &error).into()),
             Err(error) => return Err(UsageError::new(format!("--mesh: {error}"))),
         }
     }

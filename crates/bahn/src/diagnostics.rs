@@ -1,10 +1,9 @@
 //! Errors as rustc prints them: message, place, the line with a mark, what to do.
 
 use std::io::{self, IsTerminal, Write};
-use std::path::PathBuf;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
-use bahn_program::{Operation, Program};
+pub(crate) use bahn_host::{FileFault, Marked, Severity};
 
 /// Faults of a file that are printed; the others are counted.
 pub(crate) const PRINTED_MAX: usize = 100;
@@ -27,39 +26,23 @@ pub(crate) struct Diagnostic<'a> {
     pub help: Option<&'a str>,
 }
 
-/// Something to be said about a place in a file, kept until all files are read.
-#[derive(Clone, Debug)]
-pub(crate) struct FileFault {
-    pub severity: Severity,
-    pub title: String,
-    pub path: PathBuf,
-    pub marked: Marked,
-    /// What exactly is wrong; may be empty.
-    pub label: String,
-    pub help: Option<String>,
-    /// Where that was opened which is meant, in the same file.
-    pub opened: Option<Marked>,
-}
-
-impl FileFault {
-    /// Prints it as rustc does, with an empty line behind it.
-    pub fn print(&self) {
-        let diagnostic = Diagnostic {
-            severity: self.severity,
-            title: &self.title,
-            path: &self.path.to_string_lossy(),
-            marked: self.marked.clone(),
-            label: self.label.clone(),
-            help: self.help.as_deref(),
-        };
-        print_line(&diagnostic.render_with(self.opened.as_ref(), is_styled()));
-        print_line("");
-    }
+/// Prints a fault as rustc does, with an empty line behind it.
+pub(crate) fn print_fault(fault: &FileFault) {
+    let diagnostic = Diagnostic {
+        severity: fault.severity,
+        title: &fault.title,
+        path: &fault.path.to_string_lossy(),
+        marked: fault.marked.clone(),
+        label: fault.label.clone(),
+        help: fault.help.as_deref(),
+    };
+    print_line(&diagnostic.render_with(fault.opened.as_ref(), is_styled()));
+    print_line("");
 }
 
 /// Prints the first [`PRINTED_MAX`] faults, and how many there are besides.
 pub(crate) fn print_faults(faults: &[FileFault]) {
-    faults.iter().take(PRINTED_MAX).for_each(FileFault::print);
+    faults.iter().take(PRINTED_MAX).for_each(print_fault);
     print_rest(faults.len().saturating_sub(PRINTED_MAX));
 }
 
@@ -70,66 +53,25 @@ pub(crate) fn print_rest(count: usize) {
     }
 }
 
-/// A line of a file with the characters that are meant.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Marked {
-    /// Line in the file, from 1.
-    pub line: u32,
-    /// Its text.
-    pub text: String,
-    /// First character, from 1, and number of characters; `None` for the whole line.
-    pub columns: Option<(u32, u32)>,
-}
-
-impl Marked {
-    /// The line of a block, and what of it cannot be read if that is so.
-    pub fn of_block(program: &Program, block: u32) -> Marked {
-        let chunk = program.decode(block / Program::CHUNK_SIZE);
-        let (line, columns) = match chunk
-            .blocks
-            .get((block % Program::CHUNK_SIZE) as usize)
-            .map(|b| &b.operation)
-        {
-            Some(Operation::Invalid(invalid)) => (
-                invalid.error.line,
-                Some((invalid.error.column, invalid.error.length)),
-            ),
-            _ => (0, None),
-        };
-        let line = program.line_of(block) + line;
-        Marked {
-            line,
-            text: program.text_of_line(line),
-            columns,
+/// The text as it is shown, and the bytes of it that are marked.
+fn shown(marked: &Marked) -> (String, std::ops::Range<usize>) {
+    // Cut first: the line of a broken file may have millions of NULs.
+    let text: String = marked.text.chars().take(MAX_COLUMNS).collect();
+    let text = printable(text.trim_end_matches(|c: char| c.is_whitespace() || c.is_control()));
+    let text = text.as_str();
+    let byte_of = |character: usize| {
+        text.char_indices()
+            .nth(character)
+            .map_or(text.len(), |(byte, _)| byte)
+    };
+    let range = match marked.columns {
+        Some((column, length)) => {
+            let start = column.saturating_sub(1) as usize;
+            byte_of(start)..byte_of(start.saturating_add(length.max(1) as usize))
         }
-    }
-
-    /// The text as it is shown, and the bytes of it that are marked.
-    fn shown(&self) -> (String, std::ops::Range<usize>) {
-        // Cut first: the line of a broken file may have millions of NULs.
-        let text: String = self.text.chars().take(MAX_COLUMNS).collect();
-        let text = printable(text.trim_end_matches(|c: char| c.is_whitespace() || c.is_control()));
-        let text = text.as_str();
-        let byte_of = |character: usize| {
-            text.char_indices()
-                .nth(character)
-                .map_or(text.len(), |(byte, _)| byte)
-        };
-        let range = match self.columns {
-            Some((column, length)) => {
-                let start = column.saturating_sub(1) as usize;
-                byte_of(start)..byte_of(start.saturating_add(length.max(1) as usize))
-            }
-            None => text.len() - text.trim_start().len()..text.len(),
-        };
-        (text.to_owned(), range)
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Severity {
-    Error,
-    Warning,
+        None => text.len() - text.trim_start().len()..text.len(),
+    };
+    (text.to_owned(), range)
 }
 
 impl Diagnostic<'_> {
@@ -144,14 +86,14 @@ impl Diagnostic<'_> {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
-        let (source, range) = self.marked.shown();
+        let (source, range) = shown(&self.marked);
         let mut snippet = Snippet::source(source)
             .line_start(self.marked.line as usize)
             .path(printable(self.path))
             .annotation(AnnotationKind::Primary.span(range).label(printable(&self.label)));
         let mut other = None;
         if let Some(opened) = opened {
-            let (source, range) = opened.shown();
+            let (source, range) = shown(opened);
             let mark = AnnotationKind::Context.span(range).label("opened here");
             if opened.line == self.marked.line {
                 snippet = snippet.annotation(mark);
@@ -231,12 +173,11 @@ mod tests {
     use super::*;
 
     fn marked(text: &str, columns: Option<(u32, u32)>) -> (String, String) {
-        let (shown, range) = Marked {
+        let (shown, range) = shown(&Marked {
             line: 1,
             text: text.into(),
             columns,
-        }
-        .shown();
+        });
         let mark = shown[range].to_owned();
         (shown, mark)
     }
@@ -347,7 +288,7 @@ mod tests {
 
     #[test]
     fn errors_look_like_those_of_rustc() {
-        let program = Program::from_bytes("1.H", b"BEGIN PGM 1 MM\nL X+1 ~\n  Ynan".to_vec());
+        let program = bahn_program::Program::from_bytes("1.H", b"BEGIN PGM 1 MM\nL X+1 ~\n  Ynan".to_vec());
         let diagnostic = Diagnostic {
             severity: Severity::Error,
             title: "ENTRY VALUE INCORRECT",

@@ -65,5 +65,5 @@ fn write(path: &Path, listing: &str) -> Result<(), UsageError> {
     let mut file = NewFile::create(path)?;
     file.write_all(listing.as_bytes())
         .map_err(|error| files::cannot("write", path, &error))?;
-    file.finish()
+    Ok(file.finish()?)
 }

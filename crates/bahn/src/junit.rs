@@ -35,7 +35,7 @@ pub(crate) fn write(
     let mut file = NewFile::create(path)?;
     file.write_all(xml(suite, cases, stopped).as_bytes())
         .map_err(|error| files::cannot("write", path, &error))?;
-    file.finish()
+    Ok(file.finish()?)
 }
 
 fn xml(suite: &str, cases: &[Case], stopped: Option<&str>) -> String {

@@ -4,26 +4,22 @@
 //! code. `bahn --help` shows the subcommands, `bahn help test` the options of the test run with examples.
 //!
 //! Where things are:
-//! - `cli`: options and help texts; `settings` and `tool_table` turn them into the settings of the
-//!   other rooms;
+//! - `cli`: options and help texts; `settings` turns them into the settings of the other rooms;
 //! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
-//! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` loads and
-//!   makes folders of machines;
+//! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
+//!   checks folders of machines;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
 //!   `bahn plc`, `bahn mp`;
-//! - `files`: reading programs, finding called ones, writing without half-written files;
-//!   `kept`: files that survive power-off;
+//! - `files`: outputs that replace no input;
 //! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
 //!
 //! Exit codes: 0 fine, 1 the program has an error, 2 wrong use, 130 ended by Ctrl-C.
 
 mod block_time;
-mod called;
 mod check;
 mod cli;
-mod columns;
 mod conformance;
 mod console;
 mod cutting;
@@ -33,7 +29,6 @@ mod files;
 mod format;
 mod interrupt;
 mod junit;
-mod kept;
 mod machine_folder;
 mod manual;
 mod mp;
@@ -50,25 +45,19 @@ mod scope;
 mod settings;
 mod shelf;
 mod test_run;
-mod tool_table;
 
 #[doc(hidden)]
-pub use machine_folder::{check_nc_tables, check_state};
+pub use bahn_host::{check_nc_tables, check_state, check_tool_table};
 #[doc(hidden)]
 pub use plc::check_script;
 #[doc(hidden)]
 pub use scope::check_recording;
 
-/// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
-#[doc(hidden)]
-pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
-    let faults = |faults: Vec<columns::TableFault>| faults.iter().map(|fault| fault.line).collect();
-    tool_table::parse(text).map(drop).map_err(faults)
-}
-
 use std::ffi::OsString;
 use std::fmt;
 use std::process::ExitCode;
+
+use bahn_host::HostError;
 
 /// Executes the command line and prints what it has to say.
 ///
@@ -140,6 +129,17 @@ struct UsageError(String);
 impl UsageError {
     fn new(text: impl Into<String>) -> UsageError {
         UsageError(text.into())
+    }
+}
+
+impl From<HostError> for UsageError {
+    fn from(error: HostError) -> UsageError {
+        match error {
+            HostError::SwitchedOn(_) => {
+                UsageError(format!("{error}; --fresh runs beside it without its state"))
+            }
+            HostError::File(text) => UsageError(text),
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use bahn_control::{Tool, datum_shifts};
+use bahn_host::tool_table;
 use bahn_interpreter::{MachineTexts, Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
 use bahn_parameters::{ControlModel, ParameterList, conformance};
@@ -12,7 +13,7 @@ use bahn_plc::MemoryTable;
 
 use crate::UsageError;
 use crate::options::{MachineOptions, RunOptions};
-use crate::{diagnostics, files, machine_folder, tool_table};
+use crate::{diagnostics, files, machine_folder};
 
 /// What programs run on without a machine: its parameters, its tools, its texts.
 pub(crate) struct Equipment {

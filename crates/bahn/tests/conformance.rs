@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use bahn_parameters::conformance::{Effect, Entry, Kind, all};
-use bahn_parameters::{ControlModel, MessageId};
+use bahn_parameters::{ControlModel, Definition, MessageId};
 use support::Folder;
 
 fn root() -> PathBuf {
@@ -107,6 +107,23 @@ fn names_parameter(text: &str, number: &str) -> bool {
     })
 }
 
+/// Whether a table of titles in a test has a parameter: `Rapid traverse * | ..`, where `*` is an axis or a number.
+fn names_title(text: &str, number: &str) -> bool {
+    let patterns = text.lines().filter_map(|line| line.split_once(" | "));
+    let patterns: Vec<&str> = patterns.map(|(pattern, _)| pattern).collect();
+    let definitions = ControlModel::ALL.into_iter().flat_map(Definition::all);
+    let mut titles = definitions
+        .filter(|definition| definition.id.number.to_string() == number)
+        .map(|definition| format!("{}, {}", definition.name, definition.axis));
+    titles.any(|title| {
+        let title = title.trim_end_matches(", ");
+        patterns.iter().any(|pattern| match pattern.split_once('*') {
+            Some((before, behind)) => title.starts_with(before) && title.ends_with(behind),
+            None => *pattern == title,
+        })
+    })
+}
+
 /// Whether a proof is about its row: it says the number or the name. Of a row of signals, one for each
 /// axis, direction or key, it may take any. Programs stand beside their tests.
 fn is_about(entry: &Entry, source: &Source) -> bool {
@@ -125,7 +142,7 @@ fn is_about(entry: &Entry, source: &Source) -> bool {
         Kind::MachineParameter => {
             let digits = entry.name.trim_start_matches("MP");
             let number = digits.split(['.', '-']).next().unwrap_or_default();
-            names_parameter(test, number)
+            names_parameter(test, number) || names_title(test, number)
         }
         Kind::MFunction => codes("M").iter().any(|code| {
             let spelled = [code.clone(), code.replacen('M', "M0", 1)];
@@ -314,10 +331,10 @@ fn the_table_can_be_narrowed() {
 /// The same program in all three commands: refused, strict, passed over.
 #[test]
 fn the_commands_say_what_is_not_done() {
-    let folder = Folder::with_program("L X+1 R0 FMAX\nL X+2 R0 FMAX M107\nL X+3 R0 FMAX M114");
+    let folder = Folder::with_program("L X+1 R0 FMAX\nL X+2 R0 FMAX M117\nL X+3 R0 FMAX M114");
     let check = folder.bahn("check main.H");
     assert_eq!(check.code(), 1);
-    assert!(check.err().contains("M107 has no effect here"), "{}", check.err());
+    assert!(check.err().contains("M117 has no effect here"), "{}", check.err());
     assert!(check.err().ends_with("1 error, 1 warning\n"), "{}", check.err());
     assert!(
         folder
@@ -343,7 +360,7 @@ fn the_commands_say_what_is_not_done() {
 
 #[test]
 fn the_machine_says_it_too() {
-    let folder = Folder::with_program("L X+10 R0 FMAX\nL X+12 R0 FMAX M107\nL X+13 R0 FMAX M114");
+    let folder = Folder::with_program("L X+10 R0 FMAX\nL X+12 R0 FMAX M117\nL X+13 R0 FMAX M114");
     let mill = root().join("machines/mill");
     let run = |options: &str| {
         let mill = mill.display();
@@ -357,7 +374,7 @@ fn the_machine_says_it_too() {
     assert_eq!(skipped.code(), 0, "{}", skipped.err());
     let text = skipped.out();
     assert!(
-        text.contains("M107 has no effect here") && text.contains("passed over: M114"),
+        text.contains("M117 has no effect here") && text.contains("passed over: M114"),
         "{text}"
     );
 }

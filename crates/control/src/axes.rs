@@ -1,7 +1,9 @@
 //! The servo axes of the machine, and those of them that a channel moves.
 
+use bahn_motion::Aim;
+use bahn_parameters::ParameterList;
 use bahn_path::{Axis, Position};
-use bahn_servo::{Plant, Timing};
+use bahn_servo::{Gantry, Plant, Timing};
 
 use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::gantry;
@@ -182,6 +184,49 @@ impl OwnAxes<'_> {
         let moves =
             |unit: &AxisUnit| !unit.is_at_rest() && unit.mover != Mover::Rotation && !unit.is_plc_axis();
         !self.iter().any(moves)
+    }
+
+    /// Chooses lag or feed pre-control for a kind of operation; whether all have it.
+    pub fn choose_methods(&mut self, automatic: bool, rigid: bool) -> bool {
+        self.iter_mut()
+            .fold(true, |ready, unit| unit.choose_method(automatic, rigid) && ready)
+    }
+
+    /// Those that nobody moves any more come down to a standstill.
+    pub fn slow_down(&mut self, time_s: f64) {
+        for unit in self.iter_mut() {
+            if unit.mover == Mover::None && !unit.stands() && unit.coupling.is_none() {
+                unit.drive(time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
+            }
+        }
+    }
+
+    /// No path leads them: those that stand count within one turn, and nothing is left to go back to.
+    pub fn settle(&mut self) {
+        for unit in self.iter_mut() {
+            unit.left_at = None;
+            if unit.mover == Mover::None && unit.stands() {
+                unit.wrap();
+            }
+        }
+    }
+
+    /// Goes over to changed machine parameters, with the limits of a traverse range.
+    pub fn set_parameters(&mut self, list: &ParameterList, range: usize) {
+        for unit in self.iter_mut() {
+            let Ok(index) = u8::try_from(unit.index) else {
+                continue;
+            };
+            let mut parameters = list.axis_parameters(index);
+            let coupled = unit.coupling.is_some();
+            if let Some(master) = unit.parameters.synchronization.master.filter(|_| coupled) {
+                parameters = Gantry::slave_parameters(&parameters, &list.axis_parameters(master));
+            }
+            unit.set_parameters(parameters);
+            if let Some(limits) = parameters.travel.ranges_mm.get(range) {
+                unit.limits = *limits;
+            }
+        }
     }
 
     /// Those that something moves belong to nobody.

@@ -4,7 +4,7 @@
 use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Warning, Work};
 use bahn_parameters::{MessageId, ParameterList};
-use bahn_path::{BlockRef, PathElement};
+use bahn_path::PathElement;
 use bahn_plc::mirror_parameters;
 use bahn_servo::{Plant, Timing};
 
@@ -23,7 +23,7 @@ use crate::per_channel::PerChannel;
 use crate::plc_link::{PalletSelection, PlcLink};
 use crate::progress::RunState;
 use crate::setup::{Remembered, Setup};
-use crate::signal::{AxisSignal, Signal};
+use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::source::Reading;
 use crate::spindle::{SpindleState, SpindleUnit, SpindleWiring};
@@ -354,7 +354,9 @@ impl Control {
 
     /// Breaks a test run off, or clears its result.
     pub fn end_test(&mut self) {
-        self.channels.first_mut().execute(Command::EndTest, &mut self.machine);
+        self.channels
+            .first_mut()
+            .execute(Command::EndTest, &mut self.machine);
     }
 
     /// The test run that was started last.
@@ -425,7 +427,7 @@ impl Control {
 
     /// The state as of now.
     pub fn snapshot(&self) -> Snapshot {
-        self.channels.first().snapshot(self.now_us, &self.machine)
+        Snapshot::of(self.channels.first(), &self.machine)
     }
 
     /// The messages that came up since the last call, in their order.
@@ -444,6 +446,13 @@ impl Control {
         self.channels.first_mut().run.source.tap = keep;
     }
 
+    /// Of what [`Control::take_path`] has handed out so far, the elements from a sequence on are not executed: the tool
+    /// is replaced before them. To be asked for before it.
+    pub fn take_dropped_path(&mut self) -> Option<u64> {
+        let feeder = self.channels.first_mut().run.source.feeder_mut();
+        feeder.and_then(|feeder| feeder.take_dropped())
+    }
+
     /// The path elements that were prepared since the last call, in workpiece coordinates.
     pub fn take_path(&mut self) -> Vec<PathElement> {
         let feeder = self.channels.first_mut().run.source.feeder_mut();
@@ -458,7 +467,7 @@ impl Control {
 
     /// Operating mode.
     pub fn mode(&self) -> Mode {
-        self.channels.first().mode()
+        self.channels.first().desk().mode()
     }
 
     /// State of the run.
@@ -514,7 +523,7 @@ impl Control {
 
     /// Feed override in force, %.
     pub fn feed_override_percent(&self) -> f64 {
-        self.channels.first().feed_override_percent()
+        self.channels.first().desk().feed_percent()
     }
 
     /// Spindle.
@@ -539,38 +548,7 @@ impl Control {
 
     /// The value of a signal now; an axis that the machine does not have reads 0.
     pub fn observe(&self, signal: &Signal) -> f64 {
-        let run = &self.channels.first().run;
-        let plc = self.machine.memory.first().plc();
-        let spindle = self.machine.spindles.first();
-        match signal {
-            Signal::Axis(letter, signal) => {
-                let mut axes = self.machine.axes.owned(0);
-                axes.find(|unit| unit.axis.letter() == *letter)
-                    .map_or(0.0, |unit| observe_axis(unit, *signal))
-            }
-            Signal::PathSpeed => run.track.speed_mm_s() * 60.0,
-            Signal::Block => block_number(run.track.path.element().map(|element| element.block)),
-            Signal::SpindleRpm => spindle.state().actual_rpm,
-            Signal::SpindleVolts => spindle.state().volts,
-            Signal::SpindleAngle => spindle.turned_deg(),
-            Signal::Bit(bit) => f64::from(u8::from(plc.bit(*bit))),
-            Signal::Number(number) => plc.number(*number).into(),
-        }
-    }
-}
-
-fn block_number(block: Option<BlockRef>) -> f64 {
-    block.map_or(0.0, |block| block.block.into())
-}
-
-fn observe_axis(unit: &AxisUnit, signal: AxisSignal) -> f64 {
-    match signal {
-        AxisSignal::Actual => unit.servo.actual_mm(),
-        AxisSignal::Nominal => unit.servo.nominal_mm(),
-        AxisSignal::Lag => unit.servo.lag_mm(),
-        AxisSignal::Speed => unit.servo.actual_velocity_mm_min(),
-        AxisSignal::NominalSpeed => unit.speed * 60.0,
-        AxisSignal::Volts => unit.servo.volts(),
+        signal.value(self.channels.first(), &self.machine)
     }
 }
 

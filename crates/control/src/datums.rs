@@ -1,10 +1,13 @@
 //! The workpiece datums, the traverse range and the datum correction of a channel.
 
+use std::sync::Arc;
+
 use bahn_path::{Axis, Position};
 
 use crate::axes::OwnAxes;
-use crate::kinematics::Offsets;
+use crate::kinematics::{Chain, Kinematics, Offsets};
 use crate::markers::AXES;
+use crate::setup::Remembered;
 
 /// Datums, traverse range and datum correction.
 #[derive(Clone, Debug)]
@@ -17,15 +20,26 @@ pub(crate) struct Datums {
     range: usize,
     /// Each traverse range has its datum (MP7490).
     pub each_range: bool,
+    /// The kinematics with the datum and the tool in force.
+    pub chain: Chain,
 }
 
 impl Datums {
-    pub fn new(points: [Position; 3], each_range: bool) -> Datums {
+    /// The datums and the tool that are remembered.
+    pub fn new(remembered: &Remembered, each_range: bool, kinematics: Arc<dyn Kinematics>) -> Datums {
+        let points = remembered.datums.map(|datum| datum.0);
+        let [first, ..] = points;
+        let offsets = Offsets {
+            datum: first,
+            tool_axis: remembered.tool_axis.unwrap_or(Axis::Z),
+            tool_length: remembered.tool_length,
+        };
         Datums {
             points,
             correction: [0.0; AXES],
             range: 0,
             each_range,
+            chain: Chain::new(kinematics, offsets),
         }
     }
 
@@ -40,28 +54,29 @@ impl Datums {
     }
 
     /// Makes a traverse range active, with its datum where each has one (MP7490).
-    pub fn select_range(&mut self, range: usize, axes: &mut OwnAxes, offsets: &mut Offsets) {
+    pub fn select_range(&mut self, range: usize, axes: &mut OwnAxes) {
         self.range = range;
         for unit in axes.iter_mut() {
             if let Some(limits) = unit.parameters.travel.ranges_mm.get(range) {
                 unit.limits = *limits;
             }
         }
-        offsets.datum = self.active(axes);
+        self.chain.offsets.datum = self.active(axes);
     }
 
     /// Datum correction by the PLC: each replaces the last one.
-    pub fn correct(&mut self, correction: [f64; AXES], axes: &OwnAxes, offsets: &mut Offsets) {
+    pub fn correct(&mut self, correction: [f64; AXES], axes: &OwnAxes) {
         self.correction = correction;
-        offsets.datum = self.active(axes);
+        self.chain.offsets.datum = self.active(axes);
     }
 
     /// DATUM SET: the actual position becomes a value. `false` for an axis for which that is inhibited.
-    pub fn set(&mut self, axis: Axis, value: f64, axes: &OwnAxes, offsets: &mut Offsets) -> bool {
+    pub fn set(&mut self, axis: Axis, value: f64, axes: &OwnAxes) -> bool {
         let unit = axes.at(axis);
         let Some(unit) = unit.filter(|unit| !unit.parameters.travel.datum_inhibited) else {
             return false;
         };
+        let offsets = &self.chain.offsets;
         let length = if axis == offsets.tool_axis {
             offsets.tool_length
         } else {
@@ -73,7 +88,7 @@ impl Datums {
         if let Some(points) = self.points.get_mut(place) {
             points[axis] = datum;
         }
-        offsets.datum = self.active(axes);
+        self.chain.offsets.datum = self.active(axes);
         true
     }
 

@@ -5,9 +5,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use bahn_interpreter::{Interpreter, ProgramError, Settings};
-use bahn_path::{
-    Axis, Barrier, BlockRef, Curve, ElementSource, LiveData, PathElement, Position, Step,
-};
+use bahn_path::{Axis, Barrier, BlockRef, Curve, ElementSource, LiveData, PathElement, Position, Step};
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
 
@@ -50,6 +48,8 @@ pub(crate) struct Feeder {
     read: u64,
     /// Executed elements for whoever wants to see the path.
     tap: Option<Vec<PathElement>>,
+    /// What was handed out from this sequence on is not executed.
+    dropped_from: Option<u64>,
 }
 
 impl Feeder {
@@ -73,6 +73,7 @@ impl Feeder {
             refused: None,
             read: 0,
             tap: None,
+            dropped_from: None,
         }
     }
 
@@ -106,6 +107,34 @@ impl Feeder {
             .insert_tool_call(tool, axis, call.speed, oversize);
     }
 
+    /// The first block that was read behind a sequence before which the tool may be replaced.
+    pub fn next_replacement(&mut self, behind: u64, tool: u32) -> Option<u64> {
+        self.interpreter.next_replacement(behind, tool)
+    }
+
+    /// Replaces the tool before such a block: what was read from there on is read again. With the kinematics and offsets of where
+    /// the path stands.
+    pub fn replace_tool_before(&mut self, sequence: u64, tool: u32, chain: &Chain) {
+        self.interpreter
+            .go_back(|checkpoint| checkpoint.sequence() == sequence);
+        self.found.clear();
+        self.refused = None;
+        self.fault = None;
+        self.chain.clone_from(chain);
+        if let Some(tap) = &mut self.tap {
+            tap.retain(|element| element.sequence < sequence);
+            self.dropped_from = Some(sequence);
+        }
+        self.interpreter.replace_tool(tool);
+    }
+
+    /// Replaces the tool in the spindle before the next block, if it may be.
+    pub fn replace_tool(&mut self, worn: u32, tool: u32) {
+        if self.found.is_empty() && self.refused.is_none() && self.interpreter.may_replace_tool(worn) {
+            self.interpreter.replace_tool(tool);
+        }
+    }
+
     /// Gives elements back, to come again before all others.
     pub fn put_back(&mut self, elements: impl DoubleEndedIterator<Item = PathElement>) {
         let refused = self.refused.take().map(|(element, _)| element);
@@ -127,6 +156,11 @@ impl Feeder {
     /// The elements handed out since the last call.
     pub fn take_tap(&mut self) -> Vec<PathElement> {
         self.tap.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Of what was handed out before these: what comes from a sequence on is not executed.
+    pub fn take_dropped(&mut self) -> Option<u64> {
+        self.dropped_from.take()
     }
 
     /// What is executed now: nobody goes back behind it.
@@ -237,6 +271,7 @@ impl Clone for Feeder {
             refused: self.refused.clone(),
             read: self.read,
             tap: self.tap.clone(),
+            dropped_from: self.dropped_from,
         }
     }
 }

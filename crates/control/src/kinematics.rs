@@ -65,7 +65,9 @@ impl Kinematics for Cartesian {
     }
 
     fn bounds(&self, curve: &Curve, start: &Position, end: &Position, offsets: &Offsets) -> [Position; 2] {
-        curve.bounds(start, end).map(|corner| self.to_axes(&corner, offsets))
+        curve
+            .bounds(start, end)
+            .map(|corner| self.to_axes(&corner, offsets))
     }
 }
 

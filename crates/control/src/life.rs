@@ -5,6 +5,7 @@ use bahn_exchange::{Exchange, signal};
 use bahn_plc::{TableFile, TableKind};
 
 use crate::command::CURRENT_MAX_MIN;
+use crate::handshake::{Handshakes, Transfer};
 use crate::plc_link::NcFiles;
 use crate::tables;
 use crate::tools::Tools;
@@ -23,11 +24,46 @@ pub(crate) struct LifeCount {
     told: Option<u32>,
 }
 
+/// What counts in a contour cycle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counting {
+    pub cycle_us: u32,
+    /// Blocks of a program are executed.
+    pub runs: bool,
+}
+
 impl LifeCount {
-    /// One contour cycle. `runs`: blocks of a program are executed, whose time counts. The tool whose life has
-    /// changed, with its life in minutes.
-    pub fn cycle(&mut self, cycle_us: u32, runs: bool, tools: &mut Tools, exchange: &mut Exchange) -> Option<(u32, f64)> {
-        let counts = tools.counts && runs && !tools.is_changing();
+    /// One contour cycle: the tool that was changed is in the spindle, its time is counted, and the tables say so.
+    /// Whether something has changed that is to be stored.
+    pub fn follow(
+        &mut self,
+        counting: Counting,
+        tools: &mut Tools,
+        handshakes: &Handshakes,
+        exchange: &mut Exchange,
+        files: &mut NcFiles,
+    ) -> bool {
+        // What a tool change leads to is on the medium before the PLC sees its end.
+        if let Some(Transfer::ToolCall { more: false, .. }) = handshakes.acknowledged(exchange.nc())
+            && tools.is_changing()
+        {
+            tools.inserted(exchange);
+        }
+        if let Some((tool, minutes)) = self.count(counting, tools) {
+            write_life(files, tool, minutes);
+        }
+        self.tell_time1(tools, exchange);
+        let changed = std::mem::take(&mut tools.changed);
+        if changed {
+            tables::mirror_pockets(tools, files);
+            tools.states_changed = true;
+        }
+        changed
+    }
+
+    /// Counts a cycle. The tool whose life has changed, with its life in minutes.
+    fn count(&mut self, counting: Counting, tools: &mut Tools) -> Option<(u32, f64)> {
+        let counts = tools.counts && counting.runs && !tools.is_changing();
         let goes_on = counts && self.tool == tools.number;
         let due = if goes_on { STEP_US } else { 1 };
         let mut counted = None;
@@ -39,9 +75,8 @@ impl LifeCount {
         }
         self.tool = tools.number;
         if counts {
-            self.uncounted_us += u64::from(cycle_us);
+            self.uncounted_us += u64::from(counting.cycle_us);
         }
-        self.tell_time1(tools, exchange);
         counted
     }
 

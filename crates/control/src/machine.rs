@@ -7,12 +7,13 @@ use bahn_path::BlockRef;
 use bahn_plc::{Machine, PlcProgram, Start, mirror_parameters};
 use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
 
-use crate::axes::{Axes, OwnAxes};
+use crate::axes::Axes;
 use crate::axis::AxisId;
 use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::emergency::{Circuit, EmergencyStop};
 use crate::message::{Message, Messages};
+use crate::now::Facts;
 use crate::per_channel::PerChannel;
 use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
@@ -153,9 +154,15 @@ impl MachineSide {
         }
     }
 
-    /// The axes of a channel.
-    pub fn axes_of(&mut self, channel: usize) -> OwnAxes<'_> {
-        self.axes.of(channel)
+    /// What holds now for a channel whose loops have a fault, or not.
+    pub fn facts(&self, fault: bool) -> Facts {
+        Facts {
+            time_s: f64::from(self.timing.contour_us()) * 1e-6,
+            us: self.messages.time_us(),
+            ready: self.emergency.circuit() == Circuit::Ready,
+            loops_closed: self.loops_closed,
+            fault: fault || self.messages.is_fatal(),
+        }
     }
 
     /// Letters of the axes, by their numbers.
@@ -362,10 +369,7 @@ impl MachineSide {
 
     /// Once in each contour cycle, behind all movements.
     pub fn look_after(&mut self) {
-        let off = self
-            .spindles
-            .iter()
-            .all(|spindle| spindle.state().volts == 0.0);
+        let off = self.spindles.iter().all(|spindle| spindle.state().volts == 0.0);
         self.offsets
             .adjust_cyclically(self.timing.contour_us(), off, &mut self.axes);
         self.compensation.correct(&mut self.axes);

@@ -11,9 +11,10 @@ use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::markers::AXES;
 use crate::message::{Message, Messages};
+use crate::now::Now;
 use crate::panel::{Direction, Panel};
 use crate::plc_link::StatusChanges;
-use crate::site::{Now, Site};
+use crate::site::Site;
 
 /// Counting steps of a turn of the handwheel (inferred).
 pub const HANDWHEEL_STEPS: f64 = 1000.0;
@@ -302,7 +303,8 @@ impl Manual {
             unit.at_limit = None;
         }
         if let Some(direction) = reached {
-            reach.messages
+            reach
+                .messages
                 .show(Message::limit(id, direction), false, reach.block);
         } else if let Some(direction) = left {
             reach.messages.remove(&Message::limit(id, direction));
@@ -378,11 +380,7 @@ impl Manual {
                 .max(least)
                 .max(reach.rules.handwheel.factor_min.first().copied().unwrap_or(0));
             let travel = TRAVEL_MM / f64::from(1u32 << factor.min(FACTOR_MAX));
-            let sign = if reach.rules.handwheel.positive {
-                1.0
-            } else {
-                -1.0
-            };
+            let sign = if reach.rules.handwheel.positive { 1.0 } else { -1.0 };
             let from = self.wheel.map_or(unit.nominal, |(_, target)| target);
             let target = from + sign * steps as f64 / HANDWHEEL_STEPS * travel;
             let (target, pushed) = within(unit, target);

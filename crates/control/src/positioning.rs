@@ -7,6 +7,7 @@ use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
 use crate::markers::{AXES, PLC_POSITIONING, POSITIONING_FEED, TRANSFER};
+use crate::now::Now;
 use crate::plc_link::Requests;
 
 /// Position words count in 1/10 000 mm [000:4026].
@@ -32,20 +33,14 @@ struct PlcAxis {
     override_percent: f64,
 }
 
-/// The conditions of a cycle in which the PLC moves axes.
+/// A cycle in which the PLC moves axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moving {
-    pub time_s: f64,
-    /// NC stop is given.
-    pub stop: bool,
+    pub now: Now,
     /// A program runs or is interrupted.
     pub active: bool,
     /// Axes are being brought back to the contour.
     pub restores: bool,
-    /// The control voltage is on.
-    pub ready: bool,
-    pub feed_percent: f64,
-    pub rapid_limit_mm_min: f64,
 }
 
 impl Default for PlcAxis {
@@ -107,13 +102,14 @@ impl Positioning {
     }
 
     /// Moves what the PLC positions; the NC resets the strobe at the end, or when it is broken off.
-    pub fn moves(&mut self, axes: &mut OwnAxes, exchange: &mut Exchange, now: &Moving) {
+    pub fn moves(&mut self, axes: &mut OwnAxes, exchange: &mut Exchange, moving: &Moving) {
+        let now = &moving.now;
         // NC stop ends it in Manual and Handwheel; in the automatic modes only with internal stop.
-        let broken_off = now.stop && !now.active;
+        let broken_off = now.stop && !moving.active;
         let mut reached = [false; AXES];
         for unit in axes.iter_mut() {
             let Some((target, feed)) = self.targets.get(unit.index).copied().flatten() else {
-                if unit.mover == Mover::Positioning && !now.restores {
+                if unit.mover == Mover::Positioning && !moving.restores {
                     unit.drive(now.time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
                     if unit.stands() {
                         unit.mover = Mover::None;
@@ -166,10 +162,7 @@ impl Positioning {
 
     /// What modules 9120 to 9124 asked for in a scan.
     pub fn take_requests(&mut self, requests: &mut Requests) {
-        let wanted = requests
-            .plc_axes
-            .iter_mut()
-            .zip(&mut requests.plc_axis_override);
+        let wanted = requests.plc_axes.iter_mut().zip(&mut requests.plc_axis_override);
         for (axis, (command, percent)) in self.plc_axes.iter_mut().zip(wanted) {
             if let Some(command) = command.take() {
                 axis.command = Some(command);
@@ -183,17 +176,11 @@ impl Positioning {
 
     /// PLC axes: modules 9120 to 9124. Always with servo lag, no override but that of 9124, no software
     /// limits in the reference run [000:4094-4116] [000:15938-16000].
-    pub fn move_plc_axes(
-        &mut self,
-        axes: &mut OwnAxes,
-        statuses: &mut [PlcAxisStatus; AXES],
-        now: &Moving,
-    ) {
+    pub fn move_plc_axes(&mut self, axes: &mut OwnAxes, statuses: &mut [PlcAxisStatus; AXES], now: &Now) {
         for unit in axes.iter_mut().filter(|unit| unit.is_plc_axis()) {
-            if let (Some(axis), Some(status)) = (
-                self.plc_axes.get_mut(unit.index),
-                statuses.get_mut(unit.index),
-            ) {
+            if let (Some(axis), Some(status)) =
+                (self.plc_axes.get_mut(unit.index), statuses.get_mut(unit.index))
+            {
                 axis.moves(unit, now);
                 *status = PlcAxisStatus {
                     positioning: axis.command.is_some(),
@@ -222,7 +209,7 @@ impl Positioning {
     }
 
     /// Turns the axes of the free rotation, at W566 or W568 with the override W754, 0 to 300 %.
-    pub fn move_rotation(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Moving) {
+    pub fn move_rotation(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Now) {
         let percent = f64::from(nc.number(signal::FREE_ROTATION_FEED_OVERRIDE).clamp(0, 300));
         for unit in axes.iter_mut() {
             let Some(rotation) = self.rotation.get(unit.index).copied() else {
@@ -253,7 +240,7 @@ impl Positioning {
 
 impl PlcAxis {
     /// Moves its axis for a cycle.
-    fn moves(&mut self, unit: &mut AxisUnit, now: &Moving) {
+    fn moves(&mut self, unit: &mut AxisUnit, now: &Now) {
         let rapid = unit.parameters.motion.rapid_mm_min;
         let able = unit.servo.closed() && unit.enabled;
         let mut stop = !able || !now.ready;

@@ -251,8 +251,7 @@ impl Probe {
             return Probed::Refused(message, probing.block);
         }
         let deflected = plant.probe_deflected();
-        site.exchange
-            .nc_put(signal::STYLUS_ALREADY_DEFLECTED, deflected);
+        site.exchange.nc_put(signal::STYLUS_ALREADY_DEFLECTED, deflected);
         if deflected {
             let from = probing.from;
             return self.finish(Some(from), site);

@@ -12,7 +12,7 @@ use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
 use crate::gantry;
 use crate::markers::REFERENCE_CAM;
-use crate::site::Now;
+use crate::now::Now;
 
 /// The reference run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

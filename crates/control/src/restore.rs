@@ -104,8 +104,7 @@ impl Restoration {
             None if may => site.chain.to_axes(&track.path.position()),
             _ => return false,
         };
-        site.exchange
-            .nc_put(signal::MANUAL_OPERATION_PRESSED, false);
+        site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
         site.exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, false);
         site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, true);
         self.0 = Some(Restore::Armed { target });
@@ -252,8 +251,7 @@ fn lead_to(target: &Position, site: &mut Site) -> bool {
             !raise || tool_there
         };
         unit.mover = Mover::Positioning;
-        let feed =
-            (unit.parameters.motion.plc_mm_min * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
+        let feed = (unit.parameters.motion.plc_mm_min * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
         if now.stop || !turn {
             unit.drive(now.time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
         } else {

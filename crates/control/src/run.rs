@@ -17,6 +17,7 @@ use crate::probing::{Probe, Probed};
 use crate::programs::Selection;
 use crate::progress::{Progress, RunState};
 use crate::q_transfer::QTransfer;
+use crate::replacement::{Replacement, Wear};
 use crate::restore::{Restoration, ScanEnd};
 use crate::site::Site;
 use crate::source::{Basis, Resume, Source, machine_zero};
@@ -42,6 +43,8 @@ pub(crate) struct ProgramRun {
     q_transfer: QTransfer,
     /// The source goes on with this at the next preparation.
     answer: Option<LiveData>,
+    /// Of a tool that is worn, under M101.
+    replacement: Replacement,
     /// Block processing time that is simulated.
     pub block_time: BlockTime,
 }
@@ -58,6 +61,7 @@ impl ProgramRun {
             tapping: Tapping::default(),
             q_transfer: QTransfer::default(),
             answer: None,
+            replacement: Replacement::default(),
             block_time: BlockTime::default(),
         }
     }
@@ -135,8 +139,7 @@ impl ProgramRun {
                     _ if self.track.path.is_coupled() => {
                         // Led out of a thread by hand.
                         self.track.path.go_on();
-                        site.exchange
-                            .nc_put(signal::MANUAL_OPERATION_PRESSED, false);
+                        site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
                     }
                     _ => {}
                 }
@@ -197,8 +200,7 @@ impl ProgramRun {
         site.tools.take_back(&mut site.chain.offsets);
         site.positioning.end_all(site.exchange);
         site.axes.release(|mover| mover == Mover::Path);
-        site.exchange
-            .nc_put(signal::MANUAL_OPERATION_PRESSED, false);
+        site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
         site.exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, false);
     }
 
@@ -258,6 +260,9 @@ impl ProgramRun {
         if !self.is_active() && site.handshakes.is_idle() {
             site.call_inserted_tool();
         }
+        self.replacement
+            .prepare(self.source.feeder_mut(), &mut self.track, site);
+        let wear = Wear::of(site.tools);
         let scans = self.restoration.scans();
         let Some(feeder) = self
             .source
@@ -273,13 +278,18 @@ impl ProgramRun {
         let zero = machine_zero(&site.axes, site.chain);
         feeder.set_datum(site.chain.offsets.datum, zero, site.axes.traverse_box());
         if let Some(answer) = self.answer.take() {
-            if answer.touch.is_none() {
+            let probed = answer.touch.is_some();
+            if !probed {
                 // The PLC may have moved the axes, or corrected the datum [000:8914].
                 feeder.interpreter_mut().stand_at(&site.here());
             }
             path.resume(feeder, answer);
             if let Some(call) = site.tools.inserted_call.take() {
                 feeder.insert(&call);
+            } else if let Wear::Replace(tool) = wear
+                && !probed
+            {
+                feeder.replace_tool(site.tools.number, tool);
             }
         }
         if let Some(element) = path.element() {
@@ -307,6 +317,7 @@ impl ProgramRun {
                     // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
                     site.tools.counts &= mdi;
                     site.tools.replaces_worn &= mdi;
+                    site.tools.takes_larger &= mdi;
                     let block = if mdi { 0 } else { self.selection.start_block };
                     let feeder = self.source.feeder_for_run(program, block, site, basis);
                     self.source.put(feeder);
@@ -326,7 +337,13 @@ impl ProgramRun {
     }
 
     /// RESTORE AT N: scans to a block.
-    pub fn restore_at(&mut self, block: u32, rules: &RestartParameters, site: &mut Site, basis: &Basis) -> bool {
+    pub fn restore_at(
+        &mut self,
+        block: u32,
+        rules: &RestartParameters,
+        site: &mut Site,
+        basis: &Basis,
+    ) -> bool {
         if self.is_active() || !rules.block_scan {
             return false;
         }
@@ -411,8 +428,8 @@ impl ProgramRun {
         }
         self.tapping.couple(&mut self.track, site);
         let settled = self.is_in_position(site);
-        let worn = site.tools.would_replace(self.source.reading.checking.skip_unknown);
-        let drive = self.drive(settled, worn, site);
+        let wear = Wear::of(site.tools).message();
+        let drive = self.drive(settled, wear.is_some(), site);
         let cycle = self.track.path.cycle(&drive);
         self.track.set_speed(cycle.speed_mm_s);
         self.tapping.lead(cycle.lead, site.spindle);
@@ -420,7 +437,7 @@ impl ProgramRun {
             .follow(&cycle.position, &mut site.axes, site.chain, site.now.time_s);
         let inch = self.source.inch();
         self.track.output(site, &mut self.q_transfer, inch, settled);
-        self.take_state(cycle.state, &drive, worn, site);
+        self.take_state(cycle.state, &drive, wear, site);
     }
 
     /// What the interpolator may do in this cycle.
@@ -444,10 +461,8 @@ impl ProgramRun {
             // Without spindle enable nothing is led. Functions at which the axes do not stop (MP7440 bit 2) may
             // come faster than the PLC takes them.
             hold: stopped || site.handshakes.is_crowded() || coupled && !site.spindle.is_enabled(),
-            single_block: now.mode == Mode::SingleBlock
-                || on
-                || worn
-                || site.handshakes.inhibit_read_in(),
+            single_block: now.mode == Mode::SingleBlock || on || worn || site.handshakes.inhibit_read_in(),
+            stop_before: self.replacement.place(),
             in_position: settled,
             clamped: track::clamped_axes(&site.axes),
             clamping: track::clamping_axes(&site.axes, site.exchange.nc()),
@@ -455,7 +470,7 @@ impl ProgramRun {
     }
 
     /// What the path came to in this cycle.
-    fn take_state(&mut self, state: State, drive: &Drive, worn: bool, site: &mut Site) {
+    fn take_state(&mut self, state: State, drive: &Drive, wear: Option<MessageId>, site: &mut Site) {
         let settled = drive.in_position;
         let all_output = self.track.has_output_all() && site.handshakes.is_idle();
         match state {
@@ -473,10 +488,12 @@ impl ProgramRun {
             }
             State::Clamped => self.track.ask_to_unclamp(drive.clamped, &mut site.axes),
             State::BlockEnd if settled && self.progress.goes_on() => {
-                if worn {
-                    self.show(Message::Plain(MessageId::MaxToolLifeExpired), site);
+                if let Some(message) = wear {
+                    self.show(Message::Plain(message), site);
                 }
-                if site.now.mode == Mode::SingleBlock || worn {
+                if self.replacement.is_here(&self.track, site) {
+                    // What follows is given by the next preparation.
+                } else if site.now.mode == Mode::SingleBlock || wear.is_some() {
                     self.progress.enter(RunState::BlockEnd);
                 } else if !site.handshakes.inhibit_read_in() {
                     self.track.path.go_on();

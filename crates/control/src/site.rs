@@ -4,45 +4,17 @@ use bahn_exchange::Exchange;
 use bahn_path::{Axis, Function, Position, ToolCall};
 
 use crate::axes::OwnAxes;
-use crate::command::Mode;
 use crate::handshake::{Handshakes, Transfer};
 use crate::kinematics::Chain;
-use crate::markers::{AXES, TOOL_AXIS};
+use crate::markers::TOOL_AXIS;
 use crate::message::Messages;
-use crate::panel::Direction;
+use crate::now::Now;
 use crate::positioning::Positioning;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
 
 /// Highest M function that goes to the PLC [000:7206].
 const M_MAX: u16 = 99;
-
-/// What holds for all that is done in a contour cycle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Now {
-    /// The contour cycle, s.
-    pub time_s: f64,
-    /// Time since power-on, µs.
-    pub us: u64,
-    pub mode: Mode,
-    /// NC start was pressed and not yet used.
-    pub start: bool,
-    /// NC stop is given by the PLC, the circuit, a flashing message or a fault of an axis.
-    pub stop: bool,
-    /// The PLC gives NC stop (M2488 = 0).
-    pub stop_pressed: bool,
-    /// The control voltage is on: nothing is stopped for good.
-    pub ready: bool,
-    /// The loops were closed since the control voltage came on.
-    pub loops_closed: bool,
-    /// Feed override, %: for itself, and as it acts on programs.
-    pub feed_percent: f64,
-    pub program_percent: f64,
-    /// The direction keys that are pressed, by axis index.
-    pub axis_keys: [Option<Direction>; AXES],
-    /// Rapid traverse as PLC and probe limit it, mm/min.
-    pub rapid_limit_mm_min: f64,
-}
 
 /// Where a channel acts: its axes, its spindle and tools, its part of the PLC's memory, the messages. Who
 /// executes blocks or functions is given this, and nothing else of machine and channel.
@@ -97,6 +69,9 @@ impl Site<'_> {
         if matches!(code, 101 | 102) {
             self.tools.replaces_worn = code == 101;
         }
+        if matches!(code, 107 | 108) {
+            self.tools.takes_larger = code == 107;
+        }
         if code <= M_MAX
             && let Ok(code) = u8::try_from(code)
         {
@@ -111,7 +86,7 @@ impl Site<'_> {
             return;
         }
         let before = (self.chain.offsets.tool_length, self.chain.offsets.tool_axis);
-        self.tools.call(call.tool, self.exchange, self.handshakes);
+        self.tools.call(call, self.exchange, self.handshakes);
         self.tools.hold_geometry(before.0, before.1);
         self.chain.offsets.tool_axis = call.axis;
         self.chain.offsets.tool_length = call.shape.length;

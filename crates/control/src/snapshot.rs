@@ -2,10 +2,15 @@
 
 use bahn_path::BlockRef;
 
+use crate::axis::AxisUnit;
+use crate::channel::Channel;
 use crate::command::Mode;
 use crate::handshake::Waiting;
+use crate::kinematics::Chain;
+use crate::machine::MachineSide;
 use crate::message::Shown;
 use crate::progress::RunState;
+use crate::run::ProgramRun;
 use crate::spindle::SpindleState;
 
 /// The state of an axis.
@@ -72,4 +77,56 @@ pub struct Snapshot {
     pub waiting: Option<Waiting>,
     /// Nominal processing time of the PLC, %: latest and longest scan.
     pub plc_percent: [f64; 2],
+}
+
+impl AxisState {
+    /// The state of an axis of a channel.
+    fn of(unit: &AxisUnit, run: &ProgramRun, chain: &Chain) -> AxisState {
+        let offset = chain.offsets.of(unit.axis);
+        AxisState {
+            letter: unit.axis.letter(),
+            index: unit.index,
+            actual: unit.shown(unit.servo.actual_mm() - offset),
+            nominal: unit.shown(unit.nominal - offset),
+            machine: unit.shown(unit.servo.actual_mm()),
+            lag: unit.lag_mm(),
+            max_lag: unit.max_lag,
+            distance_to_go: run.distance_to_go(unit, chain),
+            referenced: unit.referenced,
+            closed: unit.servo.closed(),
+            enabled: unit.enabled,
+            in_position: unit.in_position,
+        }
+    }
+}
+
+impl Snapshot {
+    /// The state of a channel.
+    pub(crate) fn of(channel: &Channel, machine: &MachineSide) -> Snapshot {
+        let time = machine.plc.machine.time();
+        let (run, desk) = (&channel.run, channel.desk());
+        let axes = machine.axes.owned(channel.number());
+        Snapshot {
+            time_us: machine.messages.time_us(),
+            mode: desk.mode(),
+            run: run.progress().state(),
+            ended: run.progress().has_ended(),
+            program: run.selection.program.clone(),
+            block: run.track.path.element().map(|element| element.block),
+            axes: axes
+                .map(|unit| AxisState::of(unit, run, channel.chain()))
+                .collect(),
+            feed_mm_min: run.track.speed_mm_s() * 60.0,
+            programmed_feed_mm_min: run.track.programmed_feed(),
+            feed_override_percent: desk.feed_percent(),
+            spindle_override_percent: desk.spindle_percent(),
+            spindle: machine.spindles.of(channel.number()).state(),
+            tool: channel.tools.number,
+            messages: machine.messages.shown().to_vec(),
+            waiting: channel
+                .handshakes
+                .waiting(machine.memory.of(channel.number()).nc()),
+            plc_percent: [time.current_percent(), time.maximum_percent()],
+        }
+    }
 }

@@ -86,10 +86,6 @@ impl Source {
     }
 
     /// The program that runs, or ran last.
-    pub fn feeder(&self) -> Option<&Feeder> {
-        self.feeder.as_ref()
-    }
-
     pub fn feeder_mut(&mut self) -> Option<&mut Feeder> {
         self.feeder.as_mut()
     }
@@ -256,13 +252,7 @@ impl Source {
     }
 
     /// A feeder of a program with what is in force before it.
-    pub fn feeder_from(
-        &self,
-        program: Arc<Program>,
-        status: Status,
-        site: &Site,
-        basis: &Basis,
-    ) -> Feeder {
+    pub fn feeder_from(&self, program: Arc<Program>, status: Status, site: &Site, basis: &Basis) -> Feeder {
         let mut rules = Rules::of(basis.list);
         rules.machine_zero = machine_zero(&site.axes, site.chain);
         let settings = Settings {
@@ -297,10 +287,7 @@ impl Source {
 /// [000:4568-4576].
 pub(crate) fn machine_zero(axes: &OwnAxes, chain: &Chain) -> Position {
     let mut zero: Position = Axis::ALL.map(|axis| -chain.offsets.datum[axis]).into();
-    for unit in axes
-        .iter()
-        .filter(|unit| !unit.referenced && !unit.is_plc_axis())
-    {
+    for unit in axes.iter().filter(|unit| !unit.referenced && !unit.is_plc_axis()) {
         zero[unit.axis] = f64::NAN;
     }
     zero

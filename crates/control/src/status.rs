@@ -56,6 +56,26 @@ pub(crate) fn analogue(extensions: [bool; 2], plant: &mut dyn Plant, exchange: &
     }
 }
 
+/// Markers and words with a value at power-on.
+pub(crate) fn preset<'a>(axes: impl Iterator<Item = &'a AxisUnit>, english: bool, exchange: &mut Exchange) {
+    // They lie among the markers that power-off keeps, but belong to the NC.
+    let of_the_nc = [
+        &signal::RISING_EDGES,
+        &signal::FALLING_EDGES,
+        &signal::DECODED_M_FUNCTIONS,
+    ];
+    for marker in of_the_nc.into_iter().flat_map(|range| range.iter()) {
+        exchange.nc_put(marker, false);
+    }
+    for unit in axes {
+        if let Some(marker) = REFERENCE_MISSING.get(unit.index) {
+            exchange.nc_set(*marker, unit.parameters.controlled);
+        }
+    }
+    exchange.nc_set_number(signal::RAPID_TRAVERSE_LIMIT, 300_000);
+    exchange.nc_set(signal::ENGLISH_SELECTED, english);
+}
+
 /// The operating mode, and the axis key that was pressed last.
 pub(crate) fn mode(mode: Mode, last_key: usize, exchange: &mut Exchange) {
     exchange.nc_put_number(signal::OPERATING_MODE, mode.code());

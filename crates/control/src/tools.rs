@@ -35,6 +35,8 @@ pub(crate) struct Tools {
     pub counts: bool,
     /// M101: a tool whose life is over while it works is replaced.
     pub replaces_worn: bool,
+    /// M107: also by one that is larger.
+    pub takes_larger: bool,
     /// The PLC waits at M2717 for the geometry that it activated.
     geometry_taken: bool,
     /// Tool of the last TOOL DEF.
@@ -76,6 +78,7 @@ impl Tools {
             changed: false,
             counts: false,
             replaces_worn: false,
+            takes_larger: false,
             geometry_taken: false,
             defined: None,
             states_changed: false,
@@ -134,6 +137,16 @@ impl Tools {
         self.tool(number).shape.length
     }
 
+    /// Radius of a tool in the table, mm.
+    pub fn radius(&self, number: u32) -> f64 {
+        self.tool(number).shape.radius
+    }
+
+    /// How many tools the table has.
+    pub fn count(&self) -> usize {
+        self.table.as_ref().map_or(0, BTreeMap::len)
+    }
+
     /// The lives of a tool.
     pub fn life(&self, number: u32) -> ToolLife {
         self.tool(number).life
@@ -146,12 +159,6 @@ impl Tools {
         tool.life.current_min = minutes;
         self.states_changed = true;
         true
-    }
-
-    /// M101 would now take the replacement tool into the spindle [000:9175]. Nothing here returns to the contour
-    /// with it: the run stops at the end of each block, until another tool is called or the life is reset.
-    pub fn would_replace(&self, skip_unknown: bool) -> bool {
-        self.replaces_worn && self.counts && !skip_unknown && self.life(self.number).is_worn()
     }
 
     /// Takes the tools as a table has them.
@@ -236,12 +243,13 @@ impl Tools {
     }
 
     /// TOOL CALL: one or two codes, by the kinds of the old and the new tool [000:9287-9410].
-    pub fn call(&mut self, number: u32, exchange: &mut Exchange, handshakes: &mut Handshakes) {
+    pub fn call(&mut self, call: &ToolCall, exchange: &mut Exchange, handshakes: &mut Handshakes) {
+        let number = call.tool;
         let output = self.parameters.call;
         let (old, changed) = (self.called, self.called != number);
         self.called = number;
         self.counts = true;
-        self.mark(number, exchange);
+        self.mark(call, exchange);
         if output.what == ToolOutputKind::None || !(changed || output.always) {
             self.number = number;
             return;
@@ -302,11 +310,13 @@ impl Tools {
             axis,
             speed_rpm: block.speed.unwrap_or(0.0),
             shape,
+            at_end_of_life: false,
         })
     }
 
     /// M2400 to M2404 [000:9229] [000:9294-9297].
-    fn mark(&self, number: u32, exchange: &mut Exchange) {
+    fn mark(&self, call: &ToolCall, exchange: &mut Exchange) {
+        let number = call.tool;
         let by_pocket = self.parameters.call.what == ToolOutputKind::Pocket && number != 0;
         let has_pocket = self.tool(number).pocket.is_some();
         for (marker, value) in [
@@ -314,8 +324,7 @@ impl Tools {
             (signal::ACTIVE_TOOL_HAS_POCKET, by_pocket && has_pocket),
             (signal::ACTIVE_TOOL_HAS_NO_POCKET, by_pocket && !has_pocket),
             (signal::ACTIVE_TOOL_IS_SPECIAL, self.tool(number).special),
-            // No tool is called by itself: M101 interrupts the run instead.
-            (signal::TOOL_CALL_ORIGIN, false),
+            (signal::TOOL_CALL_ORIGIN, call.at_end_of_life),
         ] {
             if exchange.nc().bit(marker) != value {
                 exchange.nc_set(marker, value);
@@ -455,12 +464,22 @@ mod tests {
         )
     }
 
+    fn tool_call(tool: u32) -> ToolCall {
+        ToolCall {
+            tool,
+            axis: Axis::Z,
+            speed_rpm: 0.0,
+            shape: bahn_path::ToolShape::default(),
+            at_end_of_life: false,
+        }
+    }
+
     /// The codes (W262, W264, M2093) of a row of calls; what the PLC has set, it has set before.
     fn codes_with(tools: &mut Tools, exchange: &mut Exchange, calls: &[u32]) -> Vec<(i16, i16, bool)> {
         let mut codes = Vec::new();
         for call in calls {
             let mut handshakes = Handshakes::default();
-            tools.call(*call, exchange, &mut handshakes);
+            tools.call(&tool_call(*call), exchange, &mut handshakes);
             while !handshakes.is_idle() {
                 handshakes.cycle(exchange, true);
                 let nc = exchange.nc();
@@ -578,7 +597,7 @@ mod tests {
     fn markers_of_the_called_tool() {
         let marks = |what, call| {
             let mut exchange = Exchange::default();
-            tools(what).call(call, &mut exchange, &mut Handshakes::default());
+            tools(what).call(&tool_call(call), &mut exchange, &mut Handshakes::default());
             [
                 signal::TOOL_0_PROGRAMMED,
                 signal::ACTIVE_TOOL_HAS_POCKET,

@@ -4,7 +4,9 @@ use std::collections::VecDeque;
 
 use bahn_exchange::Image;
 use bahn_motion::{FunctionOutput, Interpolator, Limits};
+use bahn_parameters::ParameterList;
 use bahn_path::{Axis, AxisSet, Curve, FeedRate, PathElement, Position};
+use bahn_servo::Timing;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisId, AxisUnit, Mover};
@@ -248,5 +250,30 @@ fn is_circular(element: &PathElement, axis: Axis) -> bool {
     match &element.curve {
         Curve::Arc(arc) => axis == arc.plane.first || axis == arc.plane.second,
         Curve::Line | Curve::Hold => false,
+    }
+}
+
+/// The limits of a path: those of the axes by their slots.
+pub(crate) fn path_limits<'a>(
+    parameters: &ParameterList,
+    axes: impl Iterator<Item = &'a AxisUnit> + Clone,
+) -> Limits {
+    let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
+        Axis::ALL.map(|axis| {
+            let mut axes = axes.clone();
+            axes.find(|unit| unit.axis == axis).map_or(otherwise, value)
+        })
+    };
+    Limits {
+        max_feed_mm_min: of(|unit| unit.parameters.motion.rapid_mm_min, 0.0),
+        acceleration_m_s2: of(|unit| unit.parameters.motion.acceleration_m_s2, 1.0),
+        radial_acceleration_m_s2: parameters.radial_acceleration_m_s2(),
+        corner_angle_deg: parameters.corner_angle_deg(),
+        servo_lag: !parameters.feed_precontrol(),
+        cycle_s: f64::from(Timing::of(parameters.model()).contour_us()) * 1e-6,
+        servo_window_s: bahn_motion::SERVO_WINDOW_S,
+        spindle: parameters.spindle_parameters().rigid_ramps().map(Into::into),
+        feed_override_percent: 100.0,
+        rapid_override_percent: 100.0,
     }
 }

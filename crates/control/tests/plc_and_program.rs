@@ -172,8 +172,8 @@ fn datum_correction() {
     }
 }
 
-/// An M function lets the PLC take Z to a position from the machine datum; after it the program goes on from
-/// there without a jump, and axes that it does not name stay [000:4005-4088].
+/// An M function lets the PLC take Z to a position from the machine datum (D536, W564); after it the program goes on
+/// from there without a jump, and axes that it does not name stay [000:4005-4088].
 #[test]
 fn plc_positioning_in_a_strobe() {
     let mut rig = bench_with(&plc_moves_z(), "L X+60 R0 F6000 M70\nL X+70\nL Z+40");

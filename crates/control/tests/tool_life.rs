@@ -2,7 +2,7 @@
 
 mod support;
 
-use bahn_control::{Remembered, RunState, ToolLife};
+use bahn_control::{Remembered, ToolLife};
 use bahn_plc::TableKind;
 use support::{Build, Rig};
 
@@ -166,40 +166,6 @@ fn a_life_that_ends_in_the_program() {
     confirm(&mut rig);
     rig.until(30.0, "the run ends", |rig| rig.control.snapshot().ended);
     assert_eq!(rig.control.snapshot().tool, 3);
-}
-
-/// M101: the run of a worn tool stops at the end of its block with the message, again with each NC start, until the
-/// life is reset; not before M101 and not behind M102 [000:9175].
-#[test]
-fn m101_stops_the_run_of_a_worn_tool() {
-    let pass = "L X+5 F60\nL X+0";
-    let part = format!("TOOL CALL 2 Z S500\nL X+0 Y+0 R0 FMAX M101\n{pass}\n{pass}\n{pass}");
-    let mut rig = on(mill(life(0.0, 5.0, 4.9, Some(3)), &part));
-    start(&mut rig);
-    let stopped = |rig: &Rig| rig.control.snapshot().run == RunState::BlockEnd;
-    rig.until(60.0, "the run stops", stopped);
-    assert!(counted(&rig) > 5.0);
-    let x = rig.control.snapshot().axes[0].nominal;
-    assert!(x == 0.0 || x == 5.0, "at the end of a block: {x}");
-    assert_eq!(rig.messages(), ["MAX. TOOL LIFE EXPIRED"]);
-    rig.command("ce");
-    rig.start();
-    rig.until(10.0, "the run stops again", |rig| {
-        stopped(rig) && !rig.messages().is_empty()
-    });
-    let next = rig.control.snapshot().axes[0].nominal;
-    assert_eq!(next, 5.0 - x, "one block further");
-    rig.command("ce");
-    rig.command("tool-life 2 0");
-    rig.start();
-    rig.until(60.0, "the run ends", |rig| rig.control.snapshot().ended);
-    assert_eq!(rig.messages(), [""; 0]);
-    for blocks in [part.replace(" M101", ""), part.replacen("F60", "F60 M102", 1)] {
-        let mut rig = on(mill(life(0.0, 5.0, 4.9, Some(3)), &blocks));
-        start(&mut rig);
-        rig.until(90.0, "the run ends", |rig| rig.control.snapshot().ended);
-        assert!(counted(&rig) > 5.0);
-    }
 }
 
 /// What was counted is there after power-off; a tool table with another CUR.TIME counts.

@@ -6,11 +6,9 @@ use std::fmt;
 
 use bahn_parameters::conformance::{Effect, Entry, Kind, find};
 use bahn_parameters::{ControlModel, MessageId};
-use bahn_program::{CycleBlock, CycleWord, InputSteps, InvalidBlock, Unit};
+use bahn_program::{CycleBlock, CycleWord};
 
-use crate::error::{Cause, Fault, WarningKind};
-use crate::flow::Flow;
-use crate::run::Run;
+use crate::error::{Fault, WarningKind};
 use crate::settings::Settings;
 
 /// A function of a block that has a row of its own in the registry.
@@ -52,20 +50,28 @@ impl Feature {
         find(model, kind, &self.to_string())
     }
 
-    /// What a model does with the function.
-    fn judge(self, model: ControlModel, strict: bool) -> Judgement {
-        let Some(entry) = self.entry(model) else {
-            return Judgement::Refused(format!("this control has no {self}"));
+    /// Whether the function is executed, and what the user is told when it is not, or not wholly.
+    ///
+    /// # Errors
+    /// FUNCTION NOT AVAILABLE ON THIS CONTROL for what must not be passed over.
+    pub fn judge(self, settings: &Settings) -> Result<(bool, Option<WarningKind>), Fault> {
+        let passed_over = |what: String| match settings.skip_unknown {
+            true => Ok((false, Some(WarningKind::PassedOver { what }))),
+            false => Err(Fault::new(MessageId::BlockNotKnown, what)),
+        };
+        let Some(entry) = self.entry(settings.model) else {
+            return passed_over(format!("this control has no {self}"));
         };
         let Some(remark) = entry.remark() else {
-            return Judgement::Executed;
+            return Ok((true, None));
         };
-        let remark = format!("{self} {remark}");
+        let text = format!("{self} {remark}");
         match entry.effect {
-            Effect::None if entry.moves => Judgement::Refused(remark),
-            _ if strict => Judgement::Refused(remark),
-            Effect::None => Judgement::PassedOver(remark),
-            Effect::Partly | Effect::Acts => Judgement::Remarked(remark),
+            // The path would be another with it.
+            Effect::None if entry.moves => passed_over(text),
+            _ if settings.strict => passed_over(text),
+            Effect::None => Ok((false, Some(WarningKind::Function { text }))),
+            Effect::Partly | Effect::Acts => Ok((true, Some(WarningKind::Function { text }))),
         }
     }
 }
@@ -82,19 +88,6 @@ impl fmt::Display for Feature {
     }
 }
 
-/// What becomes of a function.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Judgement {
-    /// It is executed.
-    Executed,
-    /// It is executed in part; the text says what is missing.
-    Remarked(String),
-    /// It has no effect, and the path is the same without it; the text says what it would do.
-    PassedOver(String),
-    /// The control lacks it, or the path would be another with it; the text says why.
-    Refused(String),
-}
-
 /// What was said in a run, each thing once.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Said {
@@ -104,75 +97,20 @@ pub(crate) struct Said {
     rounded: BTreeSet<u16>,
 }
 
-impl Run {
-    /// Whether a function is to be executed. Where it is met first, the user is told when it is not, or not
-    /// wholly.
-    ///
-    /// # Errors
-    /// FUNCTION NOT AVAILABLE ON THIS CONTROL for what must not be passed over.
-    pub(crate) fn executes(&mut self, feature: Feature, settings: &Settings) -> Result<bool, Fault> {
-        if let Some(executes) = self.said.features.get(&feature) {
-            return Ok(*executes);
-        }
-        let executes = match feature.judge(settings.model, settings.strict) {
-            Judgement::Executed => true,
-            Judgement::Remarked(text) => {
-                self.warn(WarningKind::Function { text });
-                true
-            }
-            Judgement::PassedOver(text) => {
-                self.warn(WarningKind::Function { text });
-                false
-            }
-            Judgement::Refused(text) if settings.skip_unknown => {
-                self.warn(WarningKind::PassedOver { what: text });
-                false
-            }
-            Judgement::Refused(text) => return Err(Fault::new(MessageId::BlockNotKnown, text)),
-        };
-        self.said.features.insert(feature, executes);
-        Ok(executes)
+impl Said {
+    /// Whether a function is executed, when it was looked up before.
+    pub fn executes(&self, feature: Feature) -> Option<bool> {
+        self.features.get(&feature).copied()
     }
 
-    /// The block has numbers that were rounded: the user is told at the first of each program.
-    ///
-    /// # Errors
-    /// ENTRY VALUE INCORRECT where checking is strict.
-    #[cold]
-    pub(crate) fn tell_rounded(&mut self, settings: &Settings) -> Result<(), Fault> {
-        let steps = InputSteps::of(settings.model, self.unit);
-        let unit = match self.unit {
-            Unit::Mm => "mm",
-            Unit::Inch => "inch",
-        };
-        let step = format!("{} {unit} and {}°", steps.length(), steps.angle());
-        let first = self.said.rounded.insert(self.block.program);
-        // A rehearsal goes on after an error, and says this one once, too.
-        if settings.strict && (first || !self.rehearsal) {
-            let detail = format!("the input step of this control is {step}");
-            return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
-        }
-        if first {
-            self.warn(WarningKind::Rounded { step });
-        }
-        Ok(())
+    /// Keeps what was found of a function.
+    pub fn note(&mut self, feature: Feature, executes: bool) {
+        self.features.insert(feature, executes);
     }
 
-    /// A block that could not be read. With [`Settings::skip_unknown`] a word that nothing knows is left
-    /// out, and a block that opens with one is passed over.
-    #[cold]
-    pub(crate) fn unreadable(&mut self, block: &InvalidBlock, settings: &Settings) -> Result<Flow, Fault> {
-        let error = &block.error;
-        if !settings.skip_unknown || !block.is_unknown() {
-            let cause = error.help.map_or(Cause::Message, Cause::Written);
-            return Err(Fault::new(error.message, error.detail.to_string()).because(cause));
-        }
-        let (operation, words) = block.without_unknown_words();
-        self.warn(WarningKind::PassedOver { what: words });
-        match operation {
-            Some(operation) => self.execute_operation(&operation, settings),
-            None => Ok(Flow::Next),
-        }
+    /// Whether these are the first rounded numbers of a program.
+    pub fn is_first_rounded(&mut self, program: u16) -> bool {
+        self.rounded.insert(program)
     }
 }
 

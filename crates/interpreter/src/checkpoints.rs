@@ -80,6 +80,11 @@ impl Kept {
         state
     }
 
+    /// What is kept, in its order.
+    pub fn states(&self) -> impl Iterator<Item = &Checkpoint> {
+        self.states.iter()
+    }
+
     /// States that are kept.
     pub fn count(&self) -> usize {
         self.states.len()

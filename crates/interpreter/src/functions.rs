@@ -4,44 +4,13 @@ use bahn_path::{At, Axis, Function, Synchronisation, TechnologyFunction};
 use bahn_program::MFunctions;
 
 use crate::availability::Feature;
+use crate::block_functions::{BlockFunctions, Reference};
 use crate::contour::{Corner, CornerArcs, FeedLaw};
 use crate::error::{Fault, WarningKind};
-use crate::modal::Spindle;
 use crate::q_parameters::preassigned;
 use crate::run::Run;
 use crate::settings::Settings;
-
-/// What the M functions of a block do to the block itself.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct BlockFunctions {
-    /// M90: constant speed at the corner [003:3439-3457].
-    pub constant_speed: bool,
-    /// M91, M92, M93: what the coordinates refer to [003:3533-3553].
-    pub reference: Reference,
-    /// M97, M98.
-    pub corner: Corner,
-    /// M99, or M89 in force: call the cycle after the movement.
-    pub cycle_call: bool,
-    /// Stop after the block.
-    pub stop: bool,
-    /// Program end after the block.
-    pub end: bool,
-    /// What goes out, with its place.
-    pub output: Vec<TechnologyFunction>,
-}
-
-/// What the coordinates of a block refer to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Reference {
-    #[default]
-    Datum,
-    /// M91: machine zero.
-    MachineZero,
-    /// M92: machine datum of MP950.
-    MachineDatum,
-    /// M93: current position.
-    Position,
-}
+use crate::status::Spindle;
 
 /// Highest M function that goes to the PLC [000:7206].
 const M_PLC_MAX: u16 = 99;
@@ -172,7 +141,7 @@ impl Run {
             }
             113 => self.modal.corner_arcs = None,
             // For who counts tool lives, and for the position loops.
-            101 | 102 => block.output.push(inside(code)),
+            101 | 102 | 107 | 108 => block.output.push(inside(code)),
             105 | 106 if rules.m105_enabled => block.output.push(inside(code)),
             _ => {}
         }
@@ -185,16 +154,6 @@ impl Run {
                 .push(output(Function::M(code), code, rules.axes_wait));
         }
         Ok(())
-    }
-
-    pub(crate) fn set_spindle(&mut self, spindle: Spindle) {
-        self.modal.spindle = spindle;
-        self.q.preassign(preassigned::SPINDLE, spindle.q110());
-    }
-
-    pub(crate) fn stop_spindle(&mut self) {
-        let stopped = self.modal.spindle.stopped();
-        self.set_spindle(stopped);
     }
 
     fn set_coolant(&mut self, on: bool) {

@@ -9,18 +9,21 @@
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
 //! What is executed here, and what the user is told, `availability` asks of the registry of the control models.
-//! A block is executed by `run`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
+//! A block is executed by `execute`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
 //! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished
 //! steps.
 //! Nothing here knows of time or of the machine's axes.
 
 mod arc;
 mod availability;
+mod block_functions;
 mod checkpoints;
 mod code;
 mod contour;
 mod cycles;
+mod definition;
 mod error;
+mod execute;
 mod flow;
 mod functions;
 mod growing;
@@ -34,6 +37,7 @@ mod q_parameters;
 mod rehearsal;
 mod run;
 mod settings;
+mod status;
 mod tools;
 mod work;
 
@@ -47,13 +51,13 @@ use bahn_program::{Block, MotionKind, Operation, Program};
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
-pub use modal::Status;
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
     ContourPocketRules, DatumTable, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules,
     ToolState, ToolTable, tool_key,
 };
+pub use status::Status;
 pub use work::{Done, Work};
 
 use crate::checkpoints::{Kept, acts};
@@ -330,6 +334,10 @@ impl Interpreter {
     /// Executes the next block.
     #[inline]
     fn step(&mut self) -> Result<(), Fault> {
+        if self.run.comes_back.is_some() {
+            self.come_back();
+            return Ok(());
+        }
         let at = self.run.at.block_ref();
         if self.code.is_growing() && self.must_wait(at) {
             return Ok(());

@@ -1,11 +1,11 @@
 //! Modal data: what stays in force from block to block.
 
-use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position, ToolShape};
+use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position};
 use bahn_program::Compensation;
 
 use crate::contour::{CornerArcs, FeedLaw};
-use crate::cycles::CycleData;
-use crate::probe::ReferencePlane;
+use crate::definition::CycleData;
+use crate::status::{Spindle, Status, Tool};
 
 /// The modal data of a run [003:2164-2188] [003:6199-6205].
 #[derive(Clone, Debug)]
@@ -59,46 +59,13 @@ pub(crate) struct Modal {
     pub probe: Option<ReferencePlane>,
 }
 
-/// A tool in the spindle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Tool {
-    pub number: u32,
+/// First block of TCH PROBE 0: result parameter, axis and direction [003:4414-4428].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ReferencePlane {
+    pub target: u16,
     pub axis: Axis,
-    pub shape: ToolShape,
-    /// Radius with the oversize of TOOL CALL, mm; negative ones must not be used.
-    pub radius: f64,
-    /// Its data are in the program or in the tool table.
-    pub defined: bool,
-}
-
-/// Spindle state as Q110 counts it [003:7616-7619].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Spindle {
-    Undefined,
-    Clockwise,
-    CounterClockwise,
-    StoppedAfterClockwise,
-    StoppedAfterCounterClockwise,
-}
-
-impl Spindle {
-    pub fn q110(self) -> f64 {
-        match self {
-            Spindle::Undefined => -1.0,
-            Spindle::Clockwise => 0.0,
-            Spindle::CounterClockwise => 1.0,
-            Spindle::StoppedAfterClockwise => 2.0,
-            Spindle::StoppedAfterCounterClockwise => 3.0,
-        }
-    }
-
-    pub fn stopped(self) -> Spindle {
-        match self {
-            Spindle::Clockwise => Spindle::StoppedAfterClockwise,
-            Spindle::CounterClockwise => Spindle::StoppedAfterCounterClockwise,
-            other => other,
-        }
-    }
+    /// +1 in positive, -1 in negative axis direction.
+    pub direction: f64,
 }
 
 /// The last movement in programmed coordinates.
@@ -109,66 +76,10 @@ pub(crate) struct LastMove {
     pub end: Position,
 }
 
-/// What of a run stays in force behind its end until a machine cancels it: coordinate transformations, feed and
-/// the data of the tool [003:6199-6205] [000:6589-6601].
-#[derive(Clone, Debug, Default)]
-pub struct Status {
-    /// Transformations with their plane, and the feed.
-    programmed: Option<(Frame, Option<f64>)>,
-    tool: Option<Tool>,
-    /// How the spindle of the machine turns, and its programmed speed, rpm.
-    spindle: Option<(Spindle, f64)>,
-}
-
-impl Status {
-    /// The spindle turns already, clockwise as with M3 or the other way, for the operator or the PLC has switched it
-    /// on; or it stands. Its speed as it was programmed last, rpm.
-    pub fn take_spindle(&mut self, clockwise: Option<bool>, speed_rpm: f64) {
-        let spindle = match clockwise {
-            Some(true) => Spindle::Clockwise,
-            Some(false) => Spindle::CounterClockwise,
-            None => Spindle::Undefined,
-        };
-        self.spindle = Some((spindle, speed_rpm));
-    }
-
-    pub(crate) fn spindle(&self) -> Option<(Spindle, f64)> {
-        self.spindle
-    }
-
-    /// Cancels transformations and feed.
-    pub fn cancel_programmed(&mut self) {
-        self.programmed = None;
-    }
-
-    /// Cancels the data of the tool.
-    pub fn cancel_tool(&mut self) {
-        self.tool = None;
-    }
-
-    /// Transformations and feed.
-    pub(crate) fn programmed(&self) -> Option<(Frame, Option<f64>)> {
-        self.programmed
-    }
-
-    pub(crate) fn tool_data(&self) -> Option<Tool> {
-        self.tool
-    }
-
-    /// Number of the tool whose data are in force.
-    pub fn tool(&self) -> Option<u32> {
-        self.tool.map(|tool| tool.number)
-    }
-}
-
 impl Modal {
     /// What stays in force behind the end.
     pub fn status(&self) -> Status {
-        Status {
-            programmed: Some((self.frame, self.feed_mm_min)),
-            tool: self.tool,
-            spindle: None,
-        }
+        Status::left((self.frame, self.feed_mm_min), self.tool)
     }
 
     pub fn new(start: Position, length_mm: Option<f64>) -> Modal {

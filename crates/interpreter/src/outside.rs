@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_path::{Axis, Position};
-use bahn_program::Value;
+use bahn_path::{Axis, BlockRef, Position};
+use bahn_program::{MotionKind, Operation, Value};
 
 use crate::Interpreter;
+use crate::checkpoints::{Checkpoint, Kept};
+use crate::contour::Contour;
 use crate::settings::{DatumTable, Rules, ToolState};
 
 impl Interpreter {
@@ -62,5 +64,69 @@ impl Interpreter {
         if let Err(fault) = result {
             self.fail(fault, at);
         }
+    }
+
+    /// Whether the tool in the spindle may be replaced before the next block: no contour with radius compensation is on
+    /// its way (inferred), and nothing waits to be handed out.
+    pub fn may_replace_tool(&self, tool: u32) -> bool {
+        let run = &self.run;
+        self.waiting.is_none()
+            && self.pending.is_none()
+            && run.is_between_contours(tool)
+            && run.contour.is_empty()
+    }
+
+    /// The first block behind a sequence that is read already and [may](Interpreter::may_replace_tool) have the tool
+    /// replaced before it, by its own sequence. It is known only when [checkpoints are
+    /// kept](Interpreter::keep_checkpoints).
+    pub fn next_replacement(&mut self, behind: u64, tool: u32) -> Option<u64> {
+        let Interpreter { kept, code, .. } = self;
+        let mut states = kept.iter().flat_map(Kept::states);
+        let found = states.find(|state| {
+            let mut refers_back = |at: BlockRef| {
+                let fetched = code.block(at.program, at.block);
+                fetched.is_some_and(|fetched| refers_back(&fetched.block.operation))
+            };
+            state.sequence() > behind && state.run.is_between_contours(tool) && !refers_back(state.at())
+        });
+        found.map(Checkpoint::sequence)
+    }
+
+    /// Replaces the tool in the spindle before the next block, without one (M101), with tool axis and oversizes of the
+    /// call before; then the path comes back to where it was. Change and way back count as blocks of their own, to
+    /// which a run may go back.
+    pub fn replace_tool(&mut self, number: u32) {
+        let at = self.run.at.block_ref();
+        self.begin_unwritten_block();
+        // What is held back is executed already.
+        self.run.contour = Contour::default();
+        if let Err(fault) = self.run.replace_tool(number, &self.settings) {
+            self.fail(fault, at);
+        }
+    }
+
+    /// The way back behind a change of the tool.
+    pub(crate) fn come_back(&mut self) {
+        self.begin_unwritten_block();
+        self.run.come_back();
+    }
+
+    fn begin_unwritten_block(&mut self) {
+        if let Some(kept) = &mut self.kept {
+            kept.keep(&mut self.run, self.position);
+        }
+        self.run.sequence += 1;
+    }
+}
+
+/// Whether a block changes or goes on from the movement before it.
+fn refers_back(operation: &Operation) -> bool {
+    match operation {
+        Operation::Rounding { .. } | Operation::Chamfer { .. } => true,
+        Operation::Motion(motion) => matches!(
+            motion.kind,
+            MotionKind::CircleTangential | MotionKind::CircleTangentialPolar
+        ),
+        _ => false,
     }
 }

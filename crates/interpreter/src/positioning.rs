@@ -4,9 +4,9 @@ use bahn_parameters::MessageId;
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Position};
 use bahn_program::{Compensation, Coordinates, Feed, Motion, MotionKind};
 
+use crate::block_functions::{BlockFunctions, Reference};
 use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
-use crate::functions::{BlockFunctions, Reference};
 use crate::modal::LastMove;
 use crate::q_parameters::preassigned;
 use crate::run::Run;
@@ -22,23 +22,27 @@ pub(crate) struct Programmed {
 }
 
 impl Run {
-    /// L, C, CR, CT, LP, CP, CTP and paraxial blocks.
+    /// L, C, CR, CT, LP, CP, CTP and paraxial blocks; with it whether the block calls the cycle behind its movement.
     #[inline]
-    pub(crate) fn positioning(&mut self, motion: &Motion, settings: &Settings) -> Result<Flow, Fault> {
+    pub(crate) fn positioning(
+        &mut self,
+        motion: &Motion,
+        settings: &Settings,
+    ) -> Result<(Flow, bool), Fault> {
         if self.is_short_way(motion) {
-            return self.short_line(motion, settings);
+            return Ok((self.short_line(motion, settings)?, false));
         }
         self.any_positioning(motion, settings)
     }
 
-    fn any_positioning(&mut self, motion: &Motion, settings: &Settings) -> Result<Flow, Fault> {
+    fn any_positioning(&mut self, motion: &Motion, settings: &Settings) -> Result<(Flow, bool), Fault> {
         if motion.kind == MotionKind::Paraxial && settings.rules.paraxial_inhibited {
             let detail = "MP7246 disables paraxial positioning blocks";
             return Err(Fault::new(MessageId::BlockNotKnown, detail));
         }
         self.take_compensation(motion)?;
         if self.recording.is_some() {
-            return self.record(motion, settings);
+            return Ok((self.record(motion, settings)?, false));
         }
         let functions = if motion.m.is_empty() && !self.modal.cycle_after_each_block {
             BlockFunctions::default()
@@ -48,11 +52,7 @@ impl Run {
         let feed = self.take_feed(motion.feed, settings)?;
         let cycle_call = functions.cycle_call;
         let flow = self.movement(motion, functions, feed, settings)?;
-        if cycle_call && flow == Flow::Next {
-            self.call_cycle(settings)
-        } else {
-            Ok(flow)
-        }
+        Ok((flow, cycle_call))
     }
 
     /// Whether a block is a straight line in absolute numbers that nothing in force changes and nothing

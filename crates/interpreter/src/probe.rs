@@ -5,31 +5,12 @@ use bahn_path::{Axis, Barrier, Curve, FeedRate, LiveData, Position};
 use bahn_program::{CycleBlock, Direction};
 
 use crate::availability::Feature;
-use crate::cycles::Resolved;
+use crate::definition::Resolved;
 use crate::error::Fault;
+use crate::modal::ReferencePlane;
 use crate::q_parameters::preassigned;
-use crate::run::Run;
+use crate::run::{Probing, Run};
 use crate::settings::{ProbeRules, Settings};
-
-/// A probing that waits for its touch.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Probing {
-    axis: Axis,
-    target: u16,
-    /// +1 in positive, -1 in negative axis direction.
-    direction: f64,
-    radius: f64,
-    /// Pre-position to which the probe returns.
-    before: Position,
-}
-
-/// First block of TCH PROBE 0: result parameter, axis and direction [003:4414-4428].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ReferencePlane {
-    target: u16,
-    axis: Axis,
-    direction: f64,
-}
 
 impl Run {
     /// TCH PROBE 0.0 and 0.1, the measuring function.

@@ -1,4 +1,4 @@
-//! The state of a run and the execution of one block.
+//! The state of a run, and what every block does with it: functions, movements, warnings.
 
 use std::collections::BTreeMap;
 
@@ -7,19 +7,30 @@ use bahn_path::{
     At, Axis, AxisSet, Barrier, Blank, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement,
     Position, Synchronisation, TechnologyFunction, ToolShape,
 };
-use bahn_program::{Block, Compensation, Operation, Unit, Value};
+use bahn_program::{Compensation, InputSteps, Unit, Value};
 
-use crate::availability::{Feature, Said, words};
-use crate::contour::rounding::{Join, JoinKind};
+use crate::availability::{Feature, Said};
+use crate::block_functions::BlockFunctions;
 use crate::contour::{Contour, ContourMove, Side};
-use crate::error::{Cause, Fault, Message, Warning, WarningKind};
+use crate::error::{Fault, Warning, WarningKind};
 use crate::flow::{self, Flow};
-use crate::functions::BlockFunctions;
-use crate::modal::{Modal, Status};
+use crate::modal::Modal;
 use crate::output::Output;
-use crate::probe::Probing;
 use crate::q_parameters::{QTable, preassigned};
 use crate::settings::Settings;
+use crate::status::{Spindle, Status};
+
+/// A probing that waits for its touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Probing {
+    pub axis: Axis,
+    pub target: u16,
+    /// +1 in positive, -1 in negative axis direction.
+    pub direction: f64,
+    pub radius: f64,
+    /// Pre-position to which the probe returns.
+    pub before: Position,
+}
 
 /// Everything that changes while a program runs. A copy of it is a checkpoint.
 #[derive(Clone, Debug)]
@@ -61,6 +72,8 @@ pub(crate) struct Run {
     pub machine: bool,
     /// Nothing is moved: cycles are looked at but make no path, and the tool has no radius.
     pub rehearsal: bool,
+    /// The tool was replaced, and the path is still to come back to where it was, programmed and moved.
+    pub comes_back: Option<(Position, Position)>,
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
     /// A contour subprogram is being recorded for an SL cycle: M functions, feeds and cycle calls in it
@@ -101,6 +114,7 @@ impl Run {
             increments_from: None,
             machine: settings.machine,
             rehearsal: false,
+            comes_back: None,
             probing: None,
             recording: None,
         };
@@ -126,6 +140,20 @@ impl Run {
         }
     }
 
+    /// Whether a tool is in the spindle and works on no contour with radius compensation.
+    pub fn is_between_contours(&self, tool: u32) -> bool {
+        let modal = &self.modal;
+        modal.tool.is_some_and(|in_spindle| in_spindle.number == tool)
+            && modal.compensation == Compensation::Off
+            && modal.paraxial == Compensation::Off
+            && self.contour.is_between_contours()
+            && (modal.corner_arcs.is_none() || self.contour.is_empty())
+            && self.out.queue.is_empty()
+            && self.comes_back.is_none()
+            && self.probing.is_none()
+            && self.recording.is_none()
+    }
+
     /// Notes a warning; the same one at the same block is counted, so that loops do not pile them up.
     pub fn warn(&mut self, kind: WarningKind) {
         self.warn_at(self.block, kind);
@@ -145,233 +173,81 @@ impl Run {
         }
     }
 
-    /// Executes a block. The caller has already passed over skipped blocks.
-    #[inline]
-    pub fn execute(&mut self, block: &Block, settings: &Settings) -> Result<Flow, Fault> {
-        self.execute_operation(&block.operation, settings)
+    /// Whether a function is to be executed. Where it is met first, the user is told when it is not, or not
+    /// wholly.
+    ///
+    /// # Errors
+    /// FUNCTION NOT AVAILABLE ON THIS CONTROL for what must not be passed over.
+    pub(crate) fn executes(&mut self, feature: Feature, settings: &Settings) -> Result<bool, Fault> {
+        if let Some(executes) = self.said.executes(feature) {
+            return Ok(executes);
+        }
+        let (executes, remark) = feature.judge(settings)?;
+        if let Some(kind) = remark {
+            self.warn(kind);
+        }
+        self.said.note(feature, executes);
+        Ok(executes)
     }
 
-    /// Executes what a block says.
-    #[inline]
-    pub fn execute_operation(&mut self, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
-        match operation {
-            Operation::Motion(motion) => self.positioning(motion, settings),
-            Operation::Calculate {
-                function,
-                target,
-                a,
-                b,
-            } => {
-                let value = self.q.calculate(*function, *a, *b)?;
-                self.q.set(*target, value)?;
-                Ok(Flow::Next)
-            }
-            Operation::Jump {
-                condition,
-                a,
-                b,
-                label,
-            } => Ok(if self.q.holds(*condition, *a, *b)? {
-                Flow::Jump(*label)
-            } else {
-                Flow::Next
-            }),
-            Operation::Label(0) => Ok(Flow::Return),
-            Operation::Label(label) if u32::from(*label) > settings.model.limits().label_max => {
-                let detail = format!("labels are 1 to {}", settings.model.limits().label_max);
-                Err(Fault::new(MessageId::EntryValueIncorrect, detail))
-            }
-            Operation::Label(_) | Operation::Comment(_) | Operation::Begin(_) => Ok(Flow::Next),
-            other => self.execute_rare(other, settings),
-        }
-    }
-
-    fn execute_rare(&mut self, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
-        match operation {
-            Operation::End(_) => return Ok(Flow::EndOfProgram),
-            Operation::Formula { target, expression } => {
-                if !settings.model.limits().formulas {
-                    return Err(Fault::new(
-                        MessageId::BlockNotKnown,
-                        "this control has no formulas",
-                    ));
-                }
-                let value = self.q.evaluate(expression)?;
-                self.q.set(*target, value)?;
-            }
-            Operation::CallLabel { label, repeats } => return self.call_label(*label, *repeats, settings),
-            Operation::CallProgram(name) => return Ok(Flow::CallProgram(name.clone())),
-            Operation::CircleCentre(coordinates) => self.circle_centre(coordinates)?,
-            Operation::Rounding { radius, feed } => {
-                let radius = self.length(*radius)? * self.plane_scale();
-                if radius < 0.0 {
-                    return Err(Fault::new(
-                        MessageId::EntryValueIncorrect,
-                        "a rounding radius is positive",
-                    ));
-                }
-                if radius > 0.0 {
-                    self.join(JoinKind::Rounding(radius), *feed, settings)?;
-                }
-            }
-            Operation::Chamfer { length, feed } => {
-                let length = self.length(*length)? * self.plane_scale();
-                if length <= 0.0 {
-                    let detail = "the length of a chamfer must be positive";
-                    return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
-                }
-                self.join(JoinKind::Chamfer(length), *feed, settings)?;
-            }
-            Operation::BlankMin(coordinates, axis) => self.blank_min(coordinates, *axis)?,
-            Operation::BlankMax(coordinates) => self.blank_max(coordinates, settings)?,
-            Operation::ToolDefinition { tool, length, radius } => {
-                self.tool_definition(*tool, *length, *radius, settings)?;
-            }
-            Operation::ToolCall {
-                tool,
-                axis,
-                speed,
-                delta_length,
-                delta_radius,
-            } => {
-                self.tool_call(*tool, *axis, *speed, [*delta_length, *delta_radius], settings)?;
-            }
-            Operation::Stop(m) => {
-                let mut functions = self.take_m_functions(m, settings)?;
-                functions.stop = true;
-                functions.cycle_call = false;
-                return self.hold(functions);
-            }
-            Operation::Miscellaneous(m) => {
-                let functions = self.take_m_functions(m, settings)?;
-                let call = m.contains(99);
-                let flow = self.hold(functions)?;
-                return if call { self.call_cycle(settings) } else { Ok(flow) };
-            }
-            Operation::ErrorNumber(number) => return Err(self.numbered_error(*number, settings)),
-            Operation::Print(items) => self.print(items, settings)?,
-            Operation::Plc { a, b } => self.plc(*a, *b, settings)?,
-            Operation::Cycle(block) => self.define_cycle(block, settings)?,
-            Operation::CycleCall(m) => {
-                // CYCL CALL ends M89 [003:4875-4881].
-                self.modal.cycle_after_each_block = false;
-                let mut functions = self.take_m_functions(m, settings)?;
-                functions.cycle_call = true;
-                self.hold(functions)?;
-                return self.call_cycle(settings);
-            }
-            Operation::Probe(block) => self.probe(block, settings)?,
-            Operation::Dialog(dialog) => {
-                let name = if dialog.call {
-                    words::DIALOG_CALL
-                } else {
-                    words::DIALOG_DEFINITION
-                };
-                self.executes(Feature::Word(name), settings)?;
-            }
-            Operation::Invalid(invalid) => return self.unreadable(invalid, settings),
-            Operation::Motion(_)
-            | Operation::Calculate { .. }
-            | Operation::Jump { .. }
-            | Operation::Label(_)
-            | Operation::Comment(_)
-            | Operation::Begin(_) => {}
-        }
-        Ok(Flow::Next)
-    }
-
-    fn call_label(&mut self, label: u16, repeats: Option<Value>, settings: &Settings) -> Result<Flow, Fault> {
-        if label == 0 {
-            return Err(MessageId::JumpToLabelZeroNotPermitted.into());
-        }
-        let Some(repeats) = repeats else {
-            return Ok(Flow::Call(label));
+    /// The block has numbers that were rounded: the user is told at the first of each program.
+    ///
+    /// # Errors
+    /// ENTRY VALUE INCORRECT where checking is strict.
+    #[cold]
+    pub(crate) fn tell_rounded(&mut self, settings: &Settings) -> Result<(), Fault> {
+        let steps = InputSteps::of(settings.model, self.unit);
+        let unit = match self.unit {
+            Unit::Mm => "mm",
+            Unit::Inch => "inch",
         };
-        let count = self.q.value(repeats)?;
-        let max = f64::from(settings.model.limits().repeat_max);
-        if !(0.0..=max).contains(&count) {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                format!("REP takes 1 to {max}"),
-            ));
+        let step = format!("{} {unit} and {}°", steps.length(), steps.angle());
+        let first = self.said.is_first_rounded(self.block.program);
+        // A rehearsal goes on after an error, and says this one once, too.
+        if settings.strict && (first || !self.rehearsal) {
+            let detail = format!("the input step of this control is {step}");
+            return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
         }
-        Ok(Flow::Repeat(label, count as u32))
+        if first {
+            self.warn(WarningKind::Rounded { step });
+        }
+        Ok(())
     }
 
-    fn join(&mut self, kind: JoinKind, feed: Option<Value>, settings: &Settings) -> Result<(), Fault> {
-        let feed_mm_min = feed.map(|feed| self.feed(feed, settings)).transpose()?;
-        self.contour.join(Join {
-            kind,
-            feed_mm_min,
-            block: self.block,
-            sequence: self.sequence,
-        })
+    pub(crate) fn set_spindle(&mut self, spindle: Spindle) {
+        self.modal.spindle = spindle;
+        self.q.preassign(preassigned::SPINDLE, spindle.q110());
     }
 
-    /// FN14: the run ends with the text of the number [003:4352-4367].
-    fn numbered_error(&mut self, number: Value, settings: &Settings) -> Fault {
-        let number = match self.q.value(number) {
-            Ok(number) => number,
-            Err(fault) => return fault,
+    pub(crate) fn stop_spindle(&mut self) {
+        let stopped = self.modal.spindle.stopped();
+        self.set_spindle(stopped);
+    }
+
+    /// Q parameters of the tool in use, in the unit of the main program.
+    pub(crate) fn preassign_tool(&mut self, length: f64, radius: f64) {
+        let unit = self.main_unit_mm();
+        self.q.preassign(preassigned::TOOL_RADIUS, radius / unit);
+        self.q.preassign(preassigned::TOOL_LENGTH, length / unit);
+    }
+
+    /// The Q parameter of the tool axis.
+    pub(crate) fn preassign_tool_axis(&mut self, axis: Axis) {
+        let number = match axis {
+            Axis::X => 0.0,
+            Axis::Y => 1.0,
+            Axis::Z => 2.0,
+            Axis::U => 6.0,
+            Axis::V => 7.0,
+            Axis::W => 8.0,
+            Axis::A | Axis::B | Axis::C => -1.0,
         };
-        let max = settings.model.limits().fn14_max;
-        if !(0.0..=f64::from(max)).contains(&number) {
-            return Fault::new(MessageId::EntryValueIncorrect, format!("FN14 takes 0 to {max}"));
-        }
-        match settings.texts.text(number as u16, settings.model) {
-            Some(text) => Fault {
-                message: Message::Numbered(text),
-                detail: String::new(),
-                block: None,
-                ahead: false,
-                cause: Cause::Message,
-            },
-            None => Fault::from(MessageId::EntryValueIncorrect),
-        }
+        self.q.preassign(preassigned::TOOL_AXIS, number);
     }
 
-    /// FN15: PRINT. A number up to 200 prints the FN14 text of that number, a Q parameter its value
-    /// [003:4371-4385].
-    fn print(&mut self, items: &[Value], settings: &Settings) -> Result<(), Fault> {
-        const TEXT_NUMBER_MAX: f64 = 200.0;
-        if !self.executes(Feature::Fn(15), settings)? {
-            return Ok(());
-        }
-        if items.len() > usize::from(settings.model.limits().print_items_max) {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                "too many items for PRINT",
-            ));
-        }
-        let mut line = Vec::new();
-        for item in items {
-            line.push(match item {
-                Value::Number(number) if (0.0..=TEXT_NUMBER_MAX).contains(number) => settings
-                    .texts
-                    .text(*number as u16, settings.model)
-                    .unwrap_or_default(),
-                Value::Number(_) => {
-                    return Err(Fault::new(
-                        MessageId::EntryValueIncorrect,
-                        "PRINT takes texts 0 to 200",
-                    ));
-                }
-                Value::Q { .. } => format!("{:+}", self.q.value(*item)?),
-            });
-        }
-        self.output_function(Function::Print(line.join(" ")), true)
-    }
-
-    /// FN19: two values to the PLC in the unit of the control model [003:4387-4395] [000:11597-11655].
-    fn plc(&mut self, a: Value, b: Option<Value>, settings: &Settings) -> Result<(), Fault> {
-        let Some(per_mm) = settings.model.limits().fn19_per_mm else {
-            return Err(Fault::new(MessageId::BlockNotKnown, "this control has no FN19"));
-        };
-        // TNC 360: the programmed number already counts in micrometres [003:4391-4395].
-        let scale = if per_mm < 1e4 { 1.0 } else { per_mm };
-        let a = self.q.value(a)? * scale;
-        let b = b.map(|b| self.q.value(b)).transpose()?.map(|b| b * scale);
-        self.output_function(Function::Plc([Some(a), b]), true)
+    /// Millimetres of the unit of the main program, in which the control shows lengths.
+    pub(crate) fn main_unit_mm(&self) -> f64 {
+        self.main_unit.mm()
     }
 
     /// A function with a block of its own.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes, SpindleParameters};
 use bahn_path::{Axis, Position, ToolShape};
 
-use crate::modal::Status;
+use crate::status::Status;
 
 /// Everything a run depends on beside the program.
 #[derive(Clone, Debug)]

@@ -2,18 +2,18 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{
-    At, Axis, Blank, Function, Plane, Position, Synchronisation, TechnologyFunction, ToolCall, ToolShape,
+    At, Axis, Blank, Curve, FeedRate, Function, Plane, Position, Synchronisation, TechnologyFunction,
+    ToolCall, ToolShape,
 };
 use bahn_program::{Coordinates, Value};
 
 use crate::availability::{Feature, words};
+use crate::block_functions::BlockFunctions;
 use crate::error::{Cause, Fault, WarningKind};
-use crate::functions::BlockFunctions;
-use crate::modal::Tool;
 use crate::positioning::known;
-use crate::q_parameters::preassigned;
 use crate::run::Run;
 use crate::settings::{Settings, ToolState, ToolTable, tool_key};
+use crate::status::Tool;
 
 /// A tool number is meant to have an index when it is as near as this to a tenth.
 const INDEX_TOLERANCE: f64 = 1e-9;
@@ -96,41 +96,46 @@ impl Run {
         self.finish_contour()?;
         let (number, index) = self.indexed_tool_number(tool, settings)?;
         let (number, index) = usable(number, index, settings)?;
-        let (mut shape, defined) = self.tool_shape(number, index, settings)?;
+        let (shape, defined) = self.tool_shape(number, index, settings)?;
         let has_oversize = oversize.iter().any(Option::is_some);
         let executed = !has_oversize || self.executes(Feature::Word(words::OVERSIZE), settings)?;
-        let [delta_length, delta_radius] = if executed { oversize } else { [None; 2] };
-        shape.length += delta_length
-            .map(|value| self.length(value))
-            .transpose()?
-            .unwrap_or(0.0);
-        let delta_radius = delta_radius
-            .map(|value| self.length(value))
-            .transpose()?
-            .unwrap_or(0.0);
+        let mut delta = [0.0; 2];
+        for (delta, value) in delta.iter_mut().zip(oversize) {
+            if let Some(value) = value.filter(|_| executed) {
+                *delta = self.length(value)?;
+            }
+        }
         let axis = axis.or(self.modal.tool.map(|tool| tool.axis)).unwrap_or(Axis::Z);
         self.set_tool_axis(axis)?;
+        let tool = Tool::new(number, axis, (shape, defined), delta);
+        self.insert_tool(tool, false, settings)
+    }
+
+    /// A tool comes into the spindle, by TOOL CALL or at the end of the life of the one before.
+    fn insert_tool(&mut self, tool: Tool, at_end_of_life: bool, settings: &Settings) -> Result<(), Fault> {
+        let Tool {
+            number,
+            axis,
+            mut shape,
+            radius,
+            ..
+        } = tool;
         if settings.machine || self.modal.tool.is_some_and(|tool| tool.number == number) {
             self.change_length(axis, shape.length);
         } else {
             self.modal.length_mm = Some(shape.length);
             self.lift_out(axis, &settings.tool_change);
         }
-        self.modal.tool = Some(Tool {
-            number,
-            axis,
-            shape,
-            radius: shape.radius + delta_radius,
-            defined,
-        });
+        self.modal.tool = Some(tool);
         // The graphics take no notice of a radius that must not be used.
         shape.radius = shape.radius.max(0.0);
-        self.preassign_tool(shape.length, shape.radius + delta_radius);
+        self.preassign_tool(shape.length, radius);
         let call = ToolCall {
             tool: number,
             axis,
             speed_rpm: self.modal.speed_rpm,
             shape,
+            at_end_of_life,
         };
         let functions = BlockFunctions {
             output: vec![TechnologyFunction {
@@ -144,11 +149,30 @@ impl Run {
         Ok(())
     }
 
-    /// Q parameters of the tool in use, in the unit of the main program.
-    pub(crate) fn preassign_tool(&mut self, length: f64, radius: f64) {
-        let unit = self.main_unit_mm();
-        self.q.preassign(preassigned::TOOL_RADIUS, radius / unit);
-        self.q.preassign(preassigned::TOOL_LENGTH, length / unit);
+    /// The replacement tool takes the place of the one in the spindle, whose axis and oversizes count for it, too.
+    /// Behind it the path [comes back](Run::come_back).
+    pub(crate) fn replace_tool(&mut self, number: u32, settings: &Settings) -> Result<(), Fault> {
+        let Some(old) = self.modal.tool else {
+            return Ok(());
+        };
+        let data = self.tool_shape(number, 0, settings)?;
+        self.comes_back = Some((self.modal.nominal, self.modal.actual));
+        self.insert_tool(Tool::new(number, old.axis, data, old.oversize), true, settings)
+    }
+
+    /// From wherever the axes stand behind a change that no block has programmed, the path comes back to where it was,
+    /// the tool axis last (inferred: the blocks that follow count on it, and need not move all axes).
+    pub(crate) fn come_back(&mut self) {
+        let (Some((nominal, actual)), Some(tool)) = (self.comes_back.take(), self.modal.tool) else {
+            return;
+        };
+        (self.modal.nominal, self.modal.actual) = (nominal, actual);
+        let mut beside = actual;
+        beside[tool.axis] = f64::NAN;
+        for end in [beside, actual] {
+            let element = self.element(Curve::Line, Position::UNKNOWN, end, FeedRate::Rapid);
+            self.out.push(element, None);
+        }
     }
 
     /// The axes stand still at a tool change, so the tip of a longer tool stands lower: the position in the
@@ -296,25 +320,6 @@ impl Run {
         self.modal.take_plane(plane);
         self.preassign_tool_axis(axis);
         Ok(())
-    }
-
-    /// The Q parameter of the tool axis.
-    pub(crate) fn preassign_tool_axis(&mut self, axis: Axis) {
-        let number = match axis {
-            Axis::X => 0.0,
-            Axis::Y => 1.0,
-            Axis::Z => 2.0,
-            Axis::U => 6.0,
-            Axis::V => 7.0,
-            Axis::W => 8.0,
-            Axis::A | Axis::B | Axis::C => -1.0,
-        };
-        self.q.preassign(preassigned::TOOL_AXIS, number);
-    }
-
-    /// Millimetres of the unit of the main program, in which the control shows lengths.
-    pub(crate) fn main_unit_mm(&self) -> f64 {
-        self.main_unit.mm()
     }
 
     // Blank.

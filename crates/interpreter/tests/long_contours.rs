@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use bahn_interpreter::{Interpreter, Message, NoLibrary, Settings, Work};
+use bahn_interpreter::{Interpreter, Message, NoLibrary, Settings};
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, ElementSource, Step};
 use bahn_program::Program;

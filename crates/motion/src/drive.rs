@@ -23,6 +23,8 @@ pub struct Drive {
     pub hold: bool,
     /// The path stops at the end of each block and waits for [`Interpolator::go_on`](crate::Interpolator::go_on).
     pub single_block: bool,
+    /// The path stops as in single block behind the last block before the one with this sequence, if it still can.
+    pub stop_before: Option<u64>,
     /// The axes are in position (MP1030): where the path stops, the next element waits for it
     /// [000:5302-5318].
     pub in_position: bool,
@@ -44,6 +46,7 @@ impl Default for Drive {
             rapid_limit_mm_min: f64::INFINITY,
             hold: false,
             single_block: false,
+            stop_before: None,
             in_position: true,
             clamped: AxisSet::EMPTY,
             clamping: AxisSet::EMPTY,

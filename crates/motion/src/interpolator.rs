@@ -351,7 +351,7 @@ impl<E> Interpolator<E> {
                 return Some(State::Clamping);
             }
             // Whether the block has ended is known when the next element is, or that none comes.
-            if self.stops.is_block_end(item) {
+            if self.stops.is_block_end(item, self.ring.following()) {
                 self.phase = Phase::BlockEnd;
                 return None;
             }
@@ -560,6 +560,11 @@ impl<E> Interpolator<E> {
     /// The element that is executed, or was last.
     pub fn element(&self) -> Option<&PathElement> {
         self.ring.current().map(|item| &item.element)
+    }
+
+    /// The element after it, as far as it is known.
+    pub fn next_element(&self) -> Option<&PathElement> {
+        self.ring.following().map(|item| &item.element)
     }
 
     /// Path length to the end of that element, mm.

@@ -176,6 +176,7 @@ fn auxiliary_times() {
             axis: Axis::Z,
             speed_rpm,
             shape,
+            at_end_of_life: false,
         })
     };
     let times = AuxiliaryTimes {

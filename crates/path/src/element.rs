@@ -186,6 +186,8 @@ pub struct ToolCall {
     pub speed_rpm: f64,
     /// Shape of the tool.
     pub shape: ToolShape,
+    /// No block calls it: the life of the tool before is over (M101) [000:9175].
+    pub at_end_of_life: bool,
 }
 
 /// Geometry of a tool.

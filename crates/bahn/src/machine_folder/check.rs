@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use bahn_control::datum_shifts;
+use bahn_host::{LoadedMachine, tool_table};
 use bahn_interpreter::{Rules, Settings};
 
-use super::load::{LoadedMachine, load};
+use super::load;
 use super::options::CheckOptions;
 use crate::check::{self, Check, CheckReport};
 use crate::diagnostics::{self, FileFault, Severity};
 use crate::interrupt::Interrupt;
 use crate::options::Format;
-use crate::{Outcome, UsageError, console, tool_table};
+use crate::{Outcome, UsageError, console};
 
 #[derive(Debug, Serialize)]
 struct Report {

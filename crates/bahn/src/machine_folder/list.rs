@@ -2,7 +2,7 @@
 
 use bahn_machine::Event;
 
-use super::load::load;
+use super::load;
 use super::options::ListOptions;
 use crate::diagnostics;
 use crate::diagnostics::printable;

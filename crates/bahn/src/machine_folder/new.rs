@@ -65,7 +65,7 @@ fn write(path: &Path, content: &str) -> Result<(), UsageError> {
     let mut file = NewFile::create(path)?;
     file.write_all(content.as_bytes())
         .map_err(|error| files::cannot("write", path, &error))?;
-    file.finish()
+    Ok(file.finish()?)
 }
 
 /// Workpiece datum of the small mill where positions count from the reference marks, mm.

@@ -2,15 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use bahn_host::lists;
 use bahn_parameters::conformance::{Effect, Kind, find};
-use bahn_parameters::{
-    Definition, Inconsistency, ListError, ListText, ParameterError, ParameterId, ParameterList, chapters,
-};
+use bahn_parameters::{Inconsistency, ListError, ListText, ParameterError, ParameterId, ParameterList};
 use serde::Serialize;
 
 use super::options::CheckOptions;
 use super::{count, print_json, source};
-use crate::diagnostics::{self, FileFault, Marked, Severity};
+use crate::diagnostics::{self, FileFault};
 use crate::options::Format;
 use crate::{Outcome, UsageError, files};
 
@@ -102,6 +101,11 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
     } else {
         text.all_faults()
     };
+    let inconsistent = inconsistencies(&text, options.partial || !faults.is_empty());
+    let warnings: Vec<FileFault> = inconsistent
+        .iter()
+        .map(|found| lists::warning(found, &text, path))
+        .collect();
     let report = Report {
         file: path.display().to_string(),
         model: text.model().id(),
@@ -110,22 +114,24 @@ fn check(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
         acting_partly: entries_with(&text, Effect::Partly),
         errors: faults.iter().map(error_item).collect(),
         not_listed: text.not_listed(),
-        warnings: warnings(&text, options.partial || !faults.is_empty()),
+        warnings: inconsistent
+            .iter()
+            .zip(&warnings)
+            .map(|(found, fault)| warning_item(found, fault))
+            .collect(),
     };
     if options.format == Format::Text {
         let unreadable: Vec<FileFault> = faults
             .iter()
             .filter(|fault| !is_missing(fault))
-            .map(|fault| file_fault(fault, &text, path))
+            .map(|fault| lists::fault(fault, &text, path))
             .collect();
         diagnostics::print_faults(&unreadable);
         let missing: Vec<&ListError> = faults.iter().filter(|fault| is_missing(fault)).collect();
         if let Some(first) = missing.first() {
             print_missing(&missing, first);
         }
-        for warning in &report.warnings {
-            file_warning(warning, &text, path).print();
-        }
+        warnings.iter().for_each(diagnostics::print_fault);
         diagnostics::print_line(&format!(
             "{}: {}, {} ({} without effect here, {} in part), {}{}, {}",
             report.file,
@@ -170,82 +176,25 @@ fn error_item(fault: &ListError) -> Item {
 }
 
 /// What does not go together in a list that can be read as a whole.
-fn warnings(text: &ListText, is_part: bool) -> Vec<Item> {
+fn inconsistencies(text: &ListText, is_part: bool) -> Vec<Inconsistency> {
     if is_part || text.entries().is_empty() {
         return Vec::new();
     }
     let mut list = ParameterList::smallest(text.model());
     list.take(text);
-    warnings_of(text, &list)
+    list.inconsistencies()
 }
 
-fn warnings_of(text: &ListText, list: &ParameterList) -> Vec<Item> {
-    let line_of = |id| {
-        text.entries()
-            .iter()
-            .find(|entry| entry.id == id)
-            .map_or(1, |entry| entry.line)
-    };
-    let item = |found: Inconsistency| Item {
+fn warning_item(found: &Inconsistency, fault: &FileFault) -> Item {
+    Item {
         number: None,
-        text: found.rule.to_owned(),
+        text: fault.title.clone(),
         parameter: Some(found.id.to_string()),
-        line: line_of(found.id),
+        line: fault.marked.line as usize,
         column: 1,
         length: 0,
-        detail: format!("{} ({})", found.detail, chapters(found.source).join("; ")),
-    };
-    list.inconsistencies().into_iter().map(item).collect()
-}
-
-/// A fault of a list at its place.
-fn file_fault(fault: &ListError, text: &ListText, path: &Path) -> FileFault {
-    FileFault {
-        severity: Severity::Error,
-        title: format!("{} {}", fault.error.number(), fault.error.control_text()),
-        path: path.to_owned(),
-        marked: Marked {
-            line: fault.line as u32,
-            text: text.line(fault.line),
-            columns: Some((fault.column as u32, fault.length as u32)),
-        },
-        label: fault.error.to_string(),
-        help: help(fault, text),
-        opened: None,
+        detail: fault.label.clone(),
     }
-}
-
-/// All faults of the list of a machine, then what does not go together in it. What the list does not name
-/// keeps its value of the reference list.
-pub(crate) fn machine_list(text: &ListText, list: &ParameterList, path: &Path) -> Vec<FileFault> {
-    let faults = text.faults();
-    if !faults.is_empty() {
-        return faults.iter().map(|fault| file_fault(fault, text, path)).collect();
-    }
-    warnings_of(text, list)
-        .iter()
-        .map(|warning| file_warning(warning, text, path))
-        .collect()
-}
-
-/// What the parameter is, for someone who has to enter another value.
-fn help(fault: &ListError, text: &ListText) -> Option<String> {
-    let id = fault.error.id()?;
-    let definition = Definition::named(text.model(), id).ok()?;
-    let choices: Vec<&str> = definition.choices().take(6).collect();
-    let unit = if definition.unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {}", definition.unit)
-    };
-    let range = definition
-        .range_text()
-        .map(|[min, max]| format!(", {min} to {max}{unit}"));
-    let mut help = format!("{id} is {}{}", definition.name, range.unwrap_or_default());
-    if !choices.is_empty() {
-        help += &format!(" ({})", choices.join("; "));
-    }
-    Some(help)
 }
 
 /// Columns of the text in which missing parameters are named.
@@ -282,20 +231,4 @@ fn run_name(run: &[ParameterId]) -> Option<String> {
         Some(last) if run.len() > 1 => format!("{first}-{last}"),
         _ => first.to_string(),
     })
-}
-
-fn file_warning(warning: &Item, text: &ListText, path: &Path) -> FileFault {
-    FileFault {
-        severity: Severity::Warning,
-        title: warning.text.clone(),
-        path: path.to_owned(),
-        marked: Marked {
-            line: warning.line as u32,
-            text: text.line(warning.line),
-            columns: None,
-        },
-        label: warning.detail.clone(),
-        help: None,
-        opened: None,
-    }
 }

@@ -14,7 +14,6 @@ mod options;
 mod source;
 mod style;
 
-pub(crate) use check::machine_list;
 pub(crate) use options::MpOptions;
 
 use crate::{Outcome, UsageError, console};

@@ -1,7 +1,7 @@
 //! `bahn plc`: the PLC on a desk.
 //!
 //! - `options`: options and help texts;
-//! - `source`: source files beside the main file, compile errors as rustc prints them;
+//! - `source`: the program, compile errors as rustc prints them;
 //! - `operand`, `script`: operands as the user writes them, stimuli and expectations;
 //! - `bench`: program, memory and stand-in for the control together;
 //! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
@@ -19,7 +19,6 @@ mod list;
 mod operand;
 mod options;
 mod record;
-mod retain;
 mod run;
 mod script;
 mod signals;
@@ -30,10 +29,12 @@ mod watch;
 mod xref;
 
 pub(crate) use options::PlcOptions;
-pub(crate) use retain::Retained;
-pub(crate) use source::Source;
 
-use crate::{Outcome, UsageError, console};
+use std::path::Path;
+
+use bahn_host::Retained;
+
+use crate::{Outcome, UsageError, console, diagnostics};
 use options::PlcCommand;
 
 /// Executes a subcommand of `bahn plc`.
@@ -55,6 +56,15 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
 #[doc(hidden)]
 pub fn check_script(name: &str, bytes: &[u8]) -> Result<(), String> {
     script::Script::read(name, bytes).map(|_| ())
+}
+
+/// Opens the journal of the retained memory; says what is damaged in it.
+fn retained(path: Option<&Path>) -> Result<Option<Retained>, UsageError> {
+    let retained = path.map(Retained::open).transpose()?;
+    if let Some(damage) = retained.as_ref().and_then(Retained::damage) {
+        diagnostics::print_line(&format!("warning: {damage}"));
+    }
+    Ok(retained)
 }
 
 /// Prints a report as JSON.

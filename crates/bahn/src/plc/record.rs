@@ -38,12 +38,12 @@ impl Record {
     }
 
     pub fn finish(self) -> Result<(), UsageError> {
-        self.file.finish()
+        Ok(self.file.finish()?)
     }
 
     fn row(&mut self, first: &str, values: Vec<String>) -> Result<(), UsageError> {
         let separator = if values.is_empty() { "" } else { "," };
         writeln!(self.file, "{first}{separator}{}", values.join(","))
-            .map_err(|error| files::cannot("write", &self.path, &error))
+            .map_err(|error| files::cannot("write", &self.path, &error).into())
     }
 }

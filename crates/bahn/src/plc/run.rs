@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use bahn_exchange::Exchange;
+use bahn_host::Retained;
 use bahn_plc::ProcessingTime;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -13,7 +14,6 @@ use super::operand::{Content, Operand};
 use super::options::RunOptions;
 use super::print_json;
 use super::record::Record;
-use super::retain::Retained;
 use super::source::Source;
 use super::trace::{Line, Trace};
 use crate::diagnostics::{self, PRINTED_MAX};
@@ -38,7 +38,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         }
         return Ok(Outcome::ProgramError);
     };
-    let mut retained = options.retain.as_deref().map(Retained::open).transpose()?;
+    let mut retained = super::retained(options.retain.as_deref())?;
     let exchange = retained
         .as_ref()
         .map_or_else(Exchange::default, Retained::restore);
@@ -77,7 +77,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         report.failed_expectations.extend(bench.failures());
         written = record.as_mut().map_or(Ok(()), |record| record.cycle(&bench));
         if let Some(retained) = &mut retained {
-            written = written.and(retained.tick(bench.exchange.plc()));
+            written = written.and(retained.tick(bench.exchange.plc()).map_err(UsageError::from));
         }
         if written.is_err() {
             break;
@@ -85,7 +85,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     }
     // A file that cannot be written loses neither the others nor the report.
     if let Some(retained) = &mut retained {
-        written = written.and(retained.flush(bench.exchange.plc()));
+        written = written.and(retained.flush(bench.exchange.plc()).map_err(UsageError::from));
     }
     written = written.and(record.map_or(Ok(()), Record::finish));
 
@@ -95,7 +95,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         let fault = bench
             .script
             .failure(failure.line, &failure.operand, &title, found);
-        fault.print();
+        diagnostics::print_fault(&fault);
     }
     diagnostics::print_rest(report.failed_expectations.len().saturating_sub(PRINTED_MAX));
     if let Some(path) = &options.junit {

@@ -11,6 +11,7 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use bahn_exchange::Exchange;
+use bahn_host::Retained;
 use bahn_plc::{RuntimeError, TraceStep, Tracer};
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
@@ -18,7 +19,6 @@ use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, Ke
 use super::bench::{Bench, set_operands};
 use super::operand::{Assignment, Content, Operand};
 use super::options::WatchOptions;
-use super::retain::Retained;
 use super::source::Source;
 use crate::{Outcome, UsageError};
 use breakpoint::Breakpoints;
@@ -35,7 +35,7 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(UsageError::new("bahn plc watch needs a terminal"));
     }
-    let retained = options.retain.as_deref().map(Retained::open).transpose()?;
+    let retained = super::retained(options.retain.as_deref())?;
     let exchange = retained
         .as_ref()
         .map_or_else(Exchange::default, Retained::restore);

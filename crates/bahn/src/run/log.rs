@@ -38,7 +38,7 @@ impl Log {
 
     pub fn finish(mut self) -> Result<(), UsageError> {
         self.write(&check_line(self.sum.clone()))?;
-        self.file.finish()
+        Ok(self.file.finish()?)
     }
 
     fn write(&mut self, line: &str) -> Result<(), UsageError> {
@@ -47,7 +47,7 @@ impl Log {
         self.sum.update(line.as_bytes());
         self.file
             .write_all(line.as_bytes())
-            .map_err(|error| files::cannot("write", &self.path, &error))
+            .map_err(|error| files::cannot("write", &self.path, &error).into())
     }
 }
 

@@ -32,6 +32,7 @@ use std::sync::Arc;
 
 use bahn_control::{Checking, Control, Mode, Position0, Remembered, Setup, Signal};
 use bahn_exchange::Exchange;
+use bahn_host::{FolderPrograms, LoadedMachine, State};
 use bahn_machine::Machine;
 use bahn_workpiece::Projection;
 
@@ -39,7 +40,7 @@ use crate::cutting::{self, Columns, Cutting, Memory, Written};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
 use crate::junit;
-use crate::machine_folder::{self, FolderPrograms, LoadedMachine, State};
+use crate::machine_folder;
 use crate::options::Format;
 use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Place, Record};
@@ -171,7 +172,8 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     };
     // What could not be stored loses no report.
     let outcome = finish(session, ended, &machine, &programs, options, &interrupt)?;
-    switched_off.map(|()| outcome)
+    switched_off?;
+    Ok(outcome)
 }
 
 /// Prints the faults of files that keep a machine from being switched on.
@@ -215,6 +217,9 @@ fn power_on(
         return Ok((None, begin(), Exchange::default()));
     }
     let found = State::open(&machine.root.join(&machine.folder.state))?;
+    for warning in &found.warnings {
+        diagnostics::print_line(&format!("warning: {warning}"));
+    }
     let mut remembered = found.remembered.unwrap_or_else(begin);
     if !remembered.fit_pockets(machine.tools.as_ref()) {
         diagnostics::print_line(

@@ -109,14 +109,14 @@ impl Recording {
     }
 
     pub fn finish(self) -> Result<(), UsageError> {
-        self.file.finish()
+        Ok(self.file.finish()?)
     }
 
     fn write_row(&mut self) -> Result<(), UsageError> {
         self.row.push('\n');
         self.file
             .write_all(self.row.as_bytes())
-            .map_err(|error| files::cannot("write", &self.path, &error))
+            .map_err(|error| files::cannot("write", &self.path, &error).into())
     }
 }
 

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use bahn_control::Command;
+use bahn_host::decode;
 use bahn_machine::{Event, Machine};
 
 use super::expectation::Expectation;
 use crate::diagnostics::{FileFault, Marked, Severity};
-use crate::machine_folder::decode;
 
 /// The last second that a script may speak of: eleven days.
 const SECONDS_MAX: f64 = 1e6;

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet, VecDeque};
 
 use bahn_control::{Command, Control, Message, RunState, Shown};
+use bahn_host::State;
 use bahn_machine::{Event, KeyAction, Machine};
 use bahn_path::{BlockRef, FeedRate, PathElement};
 
@@ -23,7 +24,6 @@ use crate::diagnostics::FileFault;
 use crate::files::short_name;
 use crate::interrupt::Interrupt;
 use crate::junit::{Case, Verdict};
-use crate::machine_folder::State;
 use crate::progress::Progress;
 use crate::report::{Notice, Record};
 use crate::test_run::{Outputs, stop_function};
@@ -408,6 +408,9 @@ impl Session {
 
     /// Hands on what was executed.
     fn take_path(&mut self) -> Result<(), UsageError> {
+        if let Some(dropped) = self.control.take_dropped_path() {
+            self.ahead.retain(|element| element.sequence < dropped);
+        }
         self.ahead.extend(self.control.take_path());
         for warning in self.control.take_warnings() {
             self.record

@@ -162,5 +162,5 @@ fn write(sheet: &Sheet, picture: &Picture) -> Result<(), UsageError> {
     let mut file = NewFile::create(path)?;
     file.write_all(&bytes)
         .map_err(|error| files::cannot("write", path, &error))?;
-    file.finish()
+    Ok(file.finish()?)
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
+use bahn_host::tool_table;
 use bahn_path::Position;
 
 use super::row::{Row, Verdict};
@@ -11,7 +12,7 @@ use super::{COLUMNS, Shelf, csv};
 use crate::report_text::clock;
 use crate::settings::Equipment;
 use crate::test_run::{Bench, TestOptions};
-use crate::{UsageError, files, tool_table};
+use crate::{UsageError, files};
 
 /// What the programs are compared with.
 pub(super) enum Other {
@@ -37,7 +38,7 @@ pub(super) fn load(path: &Path, options: &TestOptions, datum: &Position) -> Resu
         return bench(Equipment::of_folder("--against", path)?);
     }
     if let Err(error) = fs::metadata(path) {
-        return Err(files::cannot("read", path, &error));
+        return Err(files::cannot("read", path, &error).into());
     }
     let bytes = files::read_program(path)?
         .ok_or_else(|| UsageError::new(format!("{}: {}", path.display(), files::TOO_LARGE)))?;

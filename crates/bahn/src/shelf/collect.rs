@@ -27,7 +27,7 @@ pub(super) fn programs(named: &[PathBuf], endings: &[String]) -> Result<Vec<Path
             continue;
         }
         if let Err(error) = fs::metadata(path) {
-            return Err(files::cannot("read", path, &error));
+            return Err(files::cannot("read", path, &error).into());
         }
         add(path, endings, &mut found)?;
     }

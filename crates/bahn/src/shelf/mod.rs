@@ -221,5 +221,5 @@ fn write(
         ReportFile::Html(_) => html::write(&mut file, done, &Totals::of(&rows), options),
     };
     written.map_err(|error| files::cannot("write", kind.path(), &error))?;
-    file.finish()
+    Ok(file.finish()?)
 }

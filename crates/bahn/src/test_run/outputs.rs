@@ -94,15 +94,15 @@ impl Outputs {
     pub fn finish(&mut self) -> Result<(), UsageError> {
         let mut written = Ok(());
         for (table, _) in self.tables.drain(..) {
-            written = written.and(table.into_file().finish());
+            written = written.and(table.into_file().finish().map_err(UsageError::from));
         }
         if let Some((file, _)) = self.print.take() {
-            written = written.and(file.finish());
+            written = written.and(file.finish().map_err(UsageError::from));
         }
         let title = self.names.first().cloned().unwrap_or_default();
         for (drawing, mut file) in self.drawings.drain(..) {
             let drawn = drawing.write(&title, &mut file);
-            written = written.and(drawn.and_then(|()| file.finish()));
+            written = written.and(drawn.and_then(|()| Ok(file.finish()?)));
         }
         written
     }

@@ -145,6 +145,11 @@ impl Contour {
         self.is_idle() && !self.holds_from(0)
     }
 
+    /// Whether no contour is on its way; the last movement may be held back for a rounding that does not come.
+    pub fn is_between_contours(&self) -> bool {
+        self.is_idle() && !self.compensation.holds_from(0)
+    }
+
     /// Whether something of a block at or behind a sequence is held back.
     pub fn holds_from(&self, sequence: u64) -> bool {
         self.rounding.holds_from(sequence) || self.compensation.holds_from(sequence)

@@ -10,14 +10,14 @@ use bahn_path::region::{
 };
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2};
 
-use super::Definition;
 use super::machining::{Heights, Tracer, infeeds};
 use crate::contour::flat::Flat;
 use crate::contour::{ContourMove, Side};
+use crate::definition::Definition;
 use crate::error::Fault;
-use crate::modal::Spindle;
 use crate::run::Run;
 use crate::settings::Settings;
+use crate::status::Spindle;
 
 /// What an SL cycle is asked to do: the subcontours that its labels describe.
 #[derive(Clone, Debug)]

@@ -3,12 +3,12 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Function, OverrideLaw, Thread};
 
-use super::Definition;
 use super::machining::{Heights, Tracer, infeeds};
+use crate::definition::Definition;
 use crate::error::Fault;
-use crate::modal::Spindle;
 use crate::run::Run;
 use crate::settings::Settings;
+use crate::status::Spindle;
 
 /// Advanced stop distance of pecking, mm: 0.6 up to a depth of 30 mm, then depth/50, at most 7
 /// [003:4943-4948].

@@ -6,7 +6,7 @@ use bahn_path::{
     TechnologyFunction,
 };
 
-use super::Definition;
+use crate::definition::Definition;
 use crate::error::{Fault, WarningKind};
 use crate::run::Run;
 use crate::settings::Settings;

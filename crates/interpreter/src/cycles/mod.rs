@@ -4,18 +4,17 @@
 //! others when they are called [003:4849-4857].
 
 mod contour_pocket;
-mod definition;
 mod drilling;
 mod machining;
 mod pockets;
 mod transformation;
 
 use bahn_parameters::MessageId;
-use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
+use bahn_program::{CycleBlock, CycleFunction, CycleWord, Feed, Value, cycle};
 
 pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
-pub(crate) use self::definition::{CycleData, Definition, Resolved};
 use crate::availability::{Feature, names_datum_table, words};
+use crate::definition::{Definition, Resolved, is_contour_cycle};
 use crate::error::{Cause, Fault};
 use crate::flow::Flow;
 use crate::run::Run;
@@ -84,6 +83,33 @@ impl Run {
         }
     }
 
+    /// Gives every word of a cycle block its value.
+    pub(crate) fn resolve(&self, block: &CycleBlock, settings: &Settings) -> Result<Vec<Resolved>, Fault> {
+        let value = |value: Value| self.q.value(value);
+        let mut words = Vec::with_capacity(block.words.len());
+        for word in &block.words {
+            words.push(match word {
+                CycleWord::Text(text) => Resolved::Text(text.clone()),
+                CycleWord::Number(number) => Resolved::Number(value(*number)?),
+                CycleWord::Coordinate(axis, word) => Resolved::Coordinate {
+                    axis: *axis,
+                    value: value(word.value)?,
+                    incremental: word.incremental,
+                },
+                CycleWord::Axis(axis) => Resolved::Axis(*axis),
+                CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
+                CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
+                CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(self.feed(*feed, settings)?)),
+                CycleWord::Direction(direction) => Resolved::Direction(*direction),
+                CycleWord::Labels(labels) => Resolved::Labels(labels.clone()),
+                CycleWord::Target(number) => Resolved::Target(*number),
+                CycleWord::Assignment(number, assigned) => Resolved::Assignment(*number, value(*assigned)?),
+                CycleWord::M(_) => continue,
+            });
+        }
+        Ok(words)
+    }
+
     /// CYCL CALL, M99 or M89: runs the last defined machining cycle [003:4857-4881].
     pub(crate) fn call_cycle(&mut self, settings: &Settings) -> Result<Flow, Fault> {
         let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
@@ -149,9 +175,4 @@ fn is_inhibited(number: u16, settings: &Settings) -> bool {
 
 fn is_effective_at_definition(number: u16) -> bool {
     cycle(CycleFunction::Definition, number).is_some_and(|cycle| cycle.acts_at_definition)
-}
-
-/// Cycles that machine the contours of cycle 14.
-fn is_contour_cycle(number: u16) -> bool {
-    matches!(number, 6 | 15 | 16)
 }

@@ -6,12 +6,12 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Plane, Point2};
 
-use super::Definition;
 use super::machining::{Heights, Tracer, infeeds};
+use crate::definition::Definition;
 use crate::error::Fault;
-use crate::modal::Spindle;
 use crate::run::Run;
 use crate::settings::Settings;
+use crate::status::Spindle;
 
 const SAME_MM: f64 = 1e-9;
 

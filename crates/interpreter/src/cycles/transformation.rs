@@ -3,7 +3,7 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Curve, FeedRate, Function};
 
-use super::definition::{Resolved, dwell_time};
+use crate::definition::{Resolved, dwell_time};
 use crate::error::{Fault, WarningKind};
 use crate::run::Run;
 use crate::settings::Settings;

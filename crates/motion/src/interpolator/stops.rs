@@ -1,4 +1,4 @@
-//! Where single block and axes that are clamped stop the path.
+//! Where single block, axes that are clamped and a block to stop before stop the path.
 
 use bahn_path::AxisSet;
 
@@ -9,6 +9,7 @@ use crate::ring::Ring;
 #[derive(Clone, Debug)]
 pub(super) struct Stops {
     single_block: bool,
+    before: Option<u64>,
     clamped: AxisSet,
     clamping: AxisSet,
     /// The next stop is to be looked for.
@@ -21,6 +22,7 @@ impl Default for Stops {
     fn default() -> Stops {
         Stops {
             single_block: false,
+            before: None,
             clamped: AxisSet::EMPTY,
             clamping: AxisSet::EMPTY,
             wanted: false,
@@ -32,9 +34,14 @@ impl Default for Stops {
 impl Stops {
     /// Takes over how to drive. Whether the next stop is to be looked for.
     pub(super) fn take(&mut self, drive: &Drive) -> bool {
-        let now = (drive.single_block, drive.clamped, drive.clamping);
-        if now != (self.single_block, self.clamped, self.clamping) {
-            (self.single_block, self.clamped, self.clamping) = now;
+        let now = (
+            drive.single_block,
+            drive.stop_before,
+            drive.clamped,
+            drive.clamping,
+        );
+        if now != (self.single_block, self.before, self.clamped, self.clamping) {
+            (self.single_block, self.before, self.clamped, self.clamping) = now;
             (self.wanted, self.sought) = (true, 0);
         }
         std::mem::take(&mut self.wanted)
@@ -53,7 +60,8 @@ impl Stops {
     /// Number of the next element at whose end the path stops, where it can still come to a standstill at a speed,
     /// mm/s, with so much of the current one to go, mm.
     pub(super) fn next(&mut self, ring: &Ring, speed: f64, rest: f64) -> Option<u64> {
-        if !self.single_block && self.clamped.union(self.clamping).is_empty() {
+        let by_block = self.single_block || self.before.is_some();
+        if !by_block && self.clamped.union(self.clamping).is_empty() {
             return None;
         }
         let last = ring.last()?;
@@ -81,13 +89,17 @@ impl Stops {
     /// Whether the path is to stop at the end of an element. What is not so stays so, but for the last element: it
     /// depends on the one after it.
     fn stops_behind(&self, ring: &Ring, number: u64) -> bool {
-        let ends = |item: &Item| self.is_block_end(item) || self.is_to_be_clamped(item);
-        ring.get(number).is_some_and(ends) || ring.get(number + 1).is_some_and(|next| self.is_clamped(next))
+        let next = ring.get(number + 1);
+        let ends = |item: &Item| self.is_block_end(item, next) || self.is_to_be_clamped(item);
+        ring.get(number).is_some_and(ends) || next.is_some_and(|next| self.is_clamped(next))
     }
 
-    /// The path stops behind it in single block.
-    pub(super) fn is_block_end(&self, item: &Item) -> bool {
-        item.block_end && self.single_block
+    /// The path stops behind it in single block, or before the block that is next.
+    pub(super) fn is_block_end(&self, item: &Item, next: Option<&Item>) -> bool {
+        let is_before = |sequence| {
+            item.element.sequence < sequence && next.is_some_and(|next| next.element.sequence >= sequence)
+        };
+        item.block_end && (self.single_block || self.before.is_some_and(is_before))
     }
 
     /// An axis that it moves is clamped.

@@ -7,27 +7,27 @@ use std::time::Instant;
 
 use bahn_exchange::{Exchange, Image, JOURNAL_LENGTH, Retention, RetentionError, RetentionStorage};
 
-use crate::diagnostics;
-use crate::{UsageError, files, kept};
+use crate::{HostError, files, kept};
 
 /// What survives power-off, kept while a program runs. No other process may have it meanwhile.
-pub(crate) struct Retained {
+pub struct Retained {
     path: PathBuf,
+    damage: Option<String>,
     retention: Retention<FileStorage>,
     started: Instant,
 }
 
 impl Retained {
-    /// Opens or begins a journal, and says what is damaged in it.
+    /// Opens or begins a journal.
     ///
     /// # Errors
     /// When another process has it, or it cannot be read or written, or is something else.
-    pub fn open(path: &Path) -> Result<Retained, UsageError> {
+    pub fn open(path: &Path) -> Result<Retained, HostError> {
         let there = kept::open(path)?;
         let is_new = there.is_none();
         let file = there.map_or_else(|| kept::make(path), Ok)?;
         if !kept::lock(&file, path)? {
-            return Err(UsageError::new(format!(
+            return Err(HostError::new(format!(
                 "{} is in use: the machine it belongs to is switched on",
                 path.display()
             )));
@@ -39,18 +39,25 @@ impl Retained {
             aside: None,
         };
         let retention = Retention::open(storage)
-            .map_err(|error| UsageError::new(format!("{}: {error}", path.display())))?;
-        if let Some(damage) = retention.damage() {
-            let aside = retention.storage().aside.as_ref().map_or(String::new(), |aside| {
+            .map_err(|error| HostError::new(format!("{}: {error}", path.display())))?;
+        let aside = || {
+            let aside = retention.storage().aside.as_ref();
+            aside.map_or(String::new(), |aside| {
                 format!("\n  the damaged file is kept: {}", aside.display())
-            });
-            diagnostics::print_line(&format!("warning: {}: {damage}{aside}", path.display()));
-        }
+            })
+        };
+        let damage = retention.damage();
         Ok(Retained {
             path: path.to_owned(),
+            damage: damage.map(|damage| format!("{}: {damage}{}", path.display(), aside())),
             retention,
             started: Instant::now(),
         })
+    }
+
+    /// What is damaged in it, and where the damaged file is kept; in words.
+    pub fn damage(&self) -> Option<&str> {
+        self.damage.as_deref()
     }
 
     /// Both images as at power-on.
@@ -61,7 +68,10 @@ impl Retained {
     }
 
     /// Writes what changed, at most every 200 ms.
-    pub fn tick(&mut self, image: &Image) -> Result<(), UsageError> {
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn tick(&mut self, image: &Image) -> Result<(), HostError> {
         let now = u64::try_from(self.started.elapsed().as_micros()).unwrap_or(u64::MAX);
         self.retention
             .tick(image, now)
@@ -69,12 +79,15 @@ impl Retained {
     }
 
     /// Writes what changed at once.
-    pub fn flush(&mut self, image: &Image) -> Result<(), UsageError> {
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn flush(&mut self, image: &Image) -> Result<(), HostError> {
         self.retention.flush(image).map_err(|error| self.error(&error))
     }
 
-    fn error(&self, error: &RetentionError) -> UsageError {
-        UsageError::new(format!("{}: {error}", self.path.display()))
+    fn error(&self, error: &RetentionError) -> HostError {
+        HostError::new(format!("{}: {error}", self.path.display()))
     }
 }
 

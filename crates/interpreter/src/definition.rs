@@ -2,12 +2,9 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, BlockRef};
-use bahn_program::{
-    CycleBlock, CycleFunction, CycleWord, Direction, Feed, Quantity, Value, cycle_parameters,
-};
+use bahn_program::{CycleFunction, Direction, Quantity, cycle_parameters};
 
 use crate::error::Fault;
-use crate::run::Run;
 use crate::settings::Settings;
 
 /// The definitions in force: the machining cycle for the call, and the one that acts at definition.
@@ -21,7 +18,7 @@ impl CycleData {
     /// Whether a cycle call machines the contours of cycle 14.
     pub fn is_contour_cycle(&self) -> bool {
         let definition = self.machining.definition.as_ref();
-        definition.is_some_and(|definition| super::is_contour_cycle(definition.number))
+        definition.is_some_and(|definition| is_contour_cycle(definition.number))
     }
 }
 
@@ -200,7 +197,7 @@ impl Definition {
 }
 
 /// Refuses dwell times, s, that the model does not take.
-pub(super) fn dwell_time(seconds: f64, settings: &Settings) -> Result<f64, Fault> {
+pub(crate) fn dwell_time(seconds: f64, settings: &Settings) -> Result<f64, Fault> {
     let max = settings.model.limits().dwell_max_s;
     if (0.0..=max).contains(&seconds) {
         return Ok(seconds);
@@ -222,31 +219,7 @@ fn in_range(length_mm: f64) -> Result<f64, Fault> {
     }
 }
 
-impl Run {
-    /// Gives every word of a cycle block its value.
-    pub(crate) fn resolve(&self, block: &CycleBlock, settings: &Settings) -> Result<Vec<Resolved>, Fault> {
-        let value = |value: Value| self.q.value(value);
-        let mut words = Vec::with_capacity(block.words.len());
-        for word in &block.words {
-            words.push(match word {
-                CycleWord::Text(text) => Resolved::Text(text.clone()),
-                CycleWord::Number(number) => Resolved::Number(value(*number)?),
-                CycleWord::Coordinate(axis, word) => Resolved::Coordinate {
-                    axis: *axis,
-                    value: value(word.value)?,
-                    incremental: word.incremental,
-                },
-                CycleWord::Axis(axis) => Resolved::Axis(*axis),
-                CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
-                CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
-                CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(self.feed(*feed, settings)?)),
-                CycleWord::Direction(direction) => Resolved::Direction(*direction),
-                CycleWord::Labels(labels) => Resolved::Labels(labels.clone()),
-                CycleWord::Target(number) => Resolved::Target(*number),
-                CycleWord::Assignment(number, assigned) => Resolved::Assignment(*number, value(*assigned)?),
-                CycleWord::M(_) => continue,
-            });
-        }
-        Ok(words)
-    }
+/// Cycles that machine the contours of cycle 14.
+pub(crate) fn is_contour_cycle(number: u16) -> bool {
+    matches!(number, 6 | 15 | 16)
 }

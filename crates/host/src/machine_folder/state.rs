@@ -10,7 +10,8 @@ use bahn_exchange::Exchange;
 
 use super::remembered;
 use crate::files::{self, NewFile};
-use crate::{UsageError, diagnostics, kept, plc};
+use crate::retained::Retained;
+use crate::{HostError, kept};
 
 /// The journal of retained markers and bytes.
 const JOURNAL: &str = "plc.mem";
@@ -22,9 +23,9 @@ pub(super) const LOCK: &str = "lock";
 const PERIOD: Duration = Duration::from_millis(200);
 
 /// The state folder of a machine that is switched on.
-pub(crate) struct State {
+pub struct State {
     file: PathBuf,
-    journal: plc::Retained,
+    journal: Retained,
     written: String,
     looked: Instant,
     /// Unlocked when the control is switched off.
@@ -32,11 +33,15 @@ pub(crate) struct State {
 }
 
 /// What a control finds at power-on.
-pub(crate) struct Found {
+pub struct Found {
+    /// Where it keeps what changes.
     pub state: State,
     /// `None` when nothing is there yet.
     pub remembered: Option<Remembered>,
+    /// Both images with the retained markers and bytes.
     pub exchange: Exchange,
+    /// What was lost, in words.
+    pub warnings: Vec<String>,
 }
 
 impl State {
@@ -45,7 +50,7 @@ impl State {
     /// # Errors
     /// When the folder cannot be used, another control uses it, or what the control remembered cannot be
     /// read: a machine does not start with another datum than it had.
-    pub fn open(folder: &Path) -> Result<Found, UsageError> {
+    pub fn open(folder: &Path) -> Result<Found, HostError> {
         fs::create_dir_all(folder).map_err(|error| files::cannot("make", folder, &error))?;
         let [lock_path, journal, file] = [LOCK, JOURNAL, CONTROL].map(|name| folder.join(name));
         for path in [folder, &lock_path, &journal, &file] {
@@ -53,23 +58,22 @@ impl State {
         }
         let lock = kept::open(&lock_path)?.map_or_else(|| kept::make(&lock_path), Ok)?;
         if !kept::lock(&lock, &lock_path)? {
-            return Err(UsageError::new(format!(
-                "{}: the machine is switched on already; --fresh runs beside it without its state",
-                folder.display()
-            )));
+            return Err(HostError::SwitchedOn(folder.display().to_string()));
         }
         remove_half_written(folder);
         let (written, remembered) = match remembered_in(&file)? {
             Some((text, remembered)) => (text, Some(remembered)),
             None => (String::new(), None),
         };
+        let mut warnings = Vec::new();
         if remembered.is_some() && kept::open(&journal)?.is_none() {
-            diagnostics::print_line(&format!(
-                "warning: {} is missing: all retained markers and bytes begin with 0",
+            warnings.push(format!(
+                "{} is missing: all retained markers and bytes begin with 0",
                 journal.display()
             ));
         }
-        let journal = plc::Retained::open(&journal)?;
+        let journal = Retained::open(&journal)?;
+        warnings.extend(journal.damage().map(str::to_owned));
         let exchange = journal.restore();
         Ok(Found {
             state: State {
@@ -81,11 +85,15 @@ impl State {
             },
             remembered,
             exchange,
+            warnings,
         })
     }
 
     /// Writes what changed: at once what the control waits for, everything else now and then.
-    pub fn keep(&mut self, control: &mut Control) -> Result<(), UsageError> {
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn keep(&mut self, control: &mut Control) -> Result<(), HostError> {
         if control.unsaved().is_some() {
             // First what the PLC did when it acknowledged, then what follows from it.
             self.flush(control)?;
@@ -101,12 +109,15 @@ impl State {
     }
 
     /// Writes what changed at once: the control is switched off.
-    pub fn flush(&mut self, control: &Control) -> Result<(), UsageError> {
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn flush(&mut self, control: &Control) -> Result<(), HostError> {
         self.journal.flush(control.exchange().plc())?;
         self.write(control)
     }
 
-    fn write(&mut self, control: &Control) -> Result<(), UsageError> {
+    fn write(&mut self, control: &Control) -> Result<(), HostError> {
         let text = remembered::write(&control.remember());
         if text == self.written {
             return Ok(());
@@ -121,7 +132,7 @@ impl State {
 }
 
 /// The text of the file and what it says; `None` when nothing was kept yet. A damaged file is put aside.
-fn remembered_in(file: &Path) -> Result<Option<(String, Remembered)>, UsageError> {
+fn remembered_in(file: &Path) -> Result<Option<(String, Remembered)>, HostError> {
     if kept::open(file)?.is_none() {
         return match kept::found_aside(file) {
             None => Ok(None),
@@ -141,8 +152,8 @@ fn remembered_in(file: &Path) -> Result<Option<(String, Remembered)>, UsageError
 }
 
 /// Nobody but the operator knows datum and tool now.
-fn unknown(file: &Path, aside: &Path, what: &str) -> UsageError {
-    UsageError::new(format!(
+fn unknown(file: &Path, aside: &Path, what: &str) -> HostError {
+    HostError::new(format!(
         "{}: {what}\ndatums, tool in the spindle, pockets, offsets and Q parameters are not known: the machine is not \
          started\nthe damaged file is kept: {}\nto go on with it, mend it, end it with the line `{}` and give it \
          its name back\nto begin with the datum of machine.toml, remove it",

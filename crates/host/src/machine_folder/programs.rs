@@ -7,11 +7,11 @@ use bahn_control::Programs;
 use bahn_interpreter::Library;
 use bahn_program::Program;
 
-use crate::UsageError;
+use crate::HostError;
 use crate::files::{self, FileLibrary, Loaded};
 
 /// The folder of programs, and the program that was given by its path, with those that lie beside it.
-pub(crate) struct FolderPrograms {
+pub struct FolderPrograms {
     /// A name in the folder: programs lie beside their caller.
     caller: String,
     main: Option<Arc<Program>>,
@@ -24,7 +24,7 @@ impl FolderPrograms {
     ///
     /// # Errors
     /// When the program cannot be read.
-    pub fn new(folder: &Path, main: Option<&Path>) -> Result<FolderPrograms, UsageError> {
+    pub fn new(folder: &Path, main: Option<&Path>) -> Result<FolderPrograms, HostError> {
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         let main = main.map(|path| load(&folder, path)).transpose()?;
         let library = match &main {
@@ -49,7 +49,7 @@ impl FolderPrograms {
     }
 }
 
-fn load(folder: &Path, path: &Path) -> Result<Arc<Program>, UsageError> {
+fn load(folder: &Path, path: &Path) -> Result<Arc<Program>, HostError> {
     let beside = folder.join(path);
     let path = if !path.exists() && beside.is_file() {
         &beside
@@ -58,8 +58,8 @@ fn load(folder: &Path, path: &Path) -> Result<Arc<Program>, UsageError> {
     };
     match files::load_program(path)? {
         Loaded::Program(program) => Ok(program),
-        Loaded::Empty(_) => Err(UsageError::new(format!("{}: {}", path.display(), files::EMPTY))),
-        Loaded::TooLarge => Err(UsageError::new(format!(
+        Loaded::Empty(_) => Err(HostError::new(format!("{}: {}", path.display(), files::EMPTY))),
+        Loaded::TooLarge => Err(HostError::new(format!(
             "{}: {}",
             path.display(),
             files::TOO_LARGE

@@ -4,8 +4,10 @@ use std::fmt;
 
 /// What is wrong in a line of a table, from 1; 0 is the table as a whole.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct TableFault {
+pub struct TableFault {
+    /// The line.
     pub line: u32,
+    /// What is wrong, in words.
     pub message: String,
 }
 

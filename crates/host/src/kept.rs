@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use crate::UsageError;
+use crate::HostError;
 use crate::files;
 
 /// Copies of damaged files of one name that are kept at most.
@@ -14,10 +14,10 @@ const ASIDE_MAX: usize = 99;
 ///
 /// # Errors
 /// When it cannot be opened, or is no regular file: devices have no end.
-pub(crate) fn open(path: &Path) -> Result<Option<File>, UsageError> {
+pub(crate) fn open(path: &Path) -> Result<Option<File>, HostError> {
     match fs::metadata(path) {
         Ok(there) if !there.is_file() => {
-            Err(UsageError::new(format!("{} is no regular file", path.display())))
+            Err(HostError::new(format!("{} is no regular file", path.display())))
         }
         Ok(_) => OpenOptions::new()
             .read(true)
@@ -34,7 +34,7 @@ pub(crate) fn open(path: &Path) -> Result<Option<File>, UsageError> {
 ///
 /// # Errors
 /// When it is there, or cannot be made.
-pub(crate) fn make(path: &Path) -> Result<File, UsageError> {
+pub(crate) fn make(path: &Path) -> Result<File, HostError> {
     OpenOptions::new()
         .read(true)
         .write(true)
@@ -47,7 +47,7 @@ pub(crate) fn make(path: &Path) -> Result<File, UsageError> {
 ///
 /// # Errors
 /// When the file system knows no locks.
-pub(crate) fn lock(file: &File, path: &Path) -> Result<bool, UsageError> {
+pub(crate) fn lock(file: &File, path: &Path) -> Result<bool, HostError> {
     match file.try_lock() {
         Ok(()) => Ok(true),
         Err(TryLockError::WouldBlock) => Ok(false),
@@ -59,9 +59,9 @@ pub(crate) fn lock(file: &File, path: &Path) -> Result<bool, UsageError> {
 ///
 /// # Errors
 /// When it is a link.
-pub(crate) fn refuse_link(path: &Path) -> Result<(), UsageError> {
+pub(crate) fn refuse_link(path: &Path) -> Result<(), HostError> {
     match fs::symlink_metadata(path) {
-        Ok(there) if there.is_symlink() => Err(UsageError::new(format!(
+        Ok(there) if there.is_symlink() => Err(HostError::new(format!(
             "{} is a link; what survives power-off is kept in the folder itself",
             path.display()
         ))),

@@ -12,25 +12,30 @@ use bahn_path::{Axis, Position};
 use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
 
 use super::state;
-use crate::diagnostics::{FileFault, Marked, Severity};
-use crate::{UsageError, files, mp, plc, tool_table};
+use crate::fault::{FileFault, Marked, Severity};
+use crate::plc_source::PlcSource;
+use crate::{HostError, files, lists, tool_table};
 
 /// Texts that a PLC message file holds at most: M2924 to M3023 [000:6625-6633].
 const MESSAGES: usize = 100;
 
 /// A machine that can be switched on.
-pub(crate) struct LoadedMachine {
+pub struct LoadedMachine {
     /// The folder.
     pub root: PathBuf,
     /// What `machine.toml` says.
     pub folder: MachineFolder,
+    /// Its machine parameters.
     pub parameters: ParameterList,
+    /// Its PLC program.
     pub plc: Arc<PlcProgram>,
+    /// Texts of PLC messages, from 0.
     pub plc_messages: Vec<String>,
+    /// Texts of PLC dialogues, from 0.
     pub plc_dialogues: Vec<String>,
     /// The machine at power-on.
     pub plant: Machine,
-    /// `None` when tools come from TOOL DEF.
+    /// Tools by number; `None` when they come from TOOL DEF.
     pub tools: Option<BTreeMap<u32, Tool>>,
     /// Files that PLC modules and compensation read.
     pub files: NcFiles,
@@ -41,6 +46,14 @@ pub(crate) struct LoadedMachine {
 }
 
 impl LoadedMachine {
+    /// Loads the machine of a folder; the inner `Err` holds every fault of every file.
+    ///
+    /// # Errors
+    /// When there is no such folder or no `machine.toml` in it.
+    pub fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+        load(root)
+    }
+
     /// The files that were read, and the lock of the state.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let folder = &self.folder;
@@ -78,15 +91,12 @@ fn axis(letter: char) -> Option<Axis> {
     u8::try_from(letter).ok().and_then(Axis::from_letter)
 }
 
-/// Loads the machine of a folder; `Err` holds every fault of every file.
-///
-/// # Errors
-/// [`UsageError`] when there is no such folder or no `machine.toml` in it.
-pub(crate) fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
+/// See [`LoadedMachine::load`].
+fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
     let file = root.join(MachineFolder::FILE);
     let bytes = files::read_description(&file).map_err(|error| {
-        UsageError::new(format!(
-            "{error}\na machine is a folder with {}; `bahn machine new` makes one",
+        HostError::new(format!(
+            "{error}\na machine is a folder with {}",
             MachineFolder::FILE
         ))
     })?;
@@ -190,7 +200,7 @@ impl Loader<'_> {
         &mut self,
         key: &str,
         name: &str,
-        reading: fn(&Path) -> Result<Vec<u8>, UsageError>,
+        reading: fn(&Path) -> Result<Vec<u8>, HostError>,
     ) -> Option<(PathBuf, Vec<u8>)> {
         if name.is_empty() {
             return None;
@@ -210,7 +220,7 @@ impl Loader<'_> {
         let text = ListText::from_bytes(model, &bytes);
         let mut list = ParameterList::reference(model);
         list.take(&text);
-        let found = mp::machine_list(&text, &list, &path);
+        let found = lists::machine_list(&text, &list, &path);
         self.sort(found).then_some(list)
     }
 
@@ -226,7 +236,7 @@ impl Loader<'_> {
                 let text = ListText::from_bytes(model, &bytes);
                 let mut list = ParameterList::reference(model);
                 list.take(&text);
-                let found = mp::machine_list(&text, &list, &entry.path());
+                let found = lists::machine_list(&text, &list, &entry.path());
                 let faulty = found.iter().any(|fault| fault.severity == Severity::Error);
                 (!faulty).then_some(list)
             });
@@ -241,15 +251,16 @@ impl Loader<'_> {
         parameters: Option<&ParameterList>,
     ) -> Option<Arc<PlcProgram>> {
         let (path, _) = self.read("plc", &folder.plc)?;
-        let parameters = parameters
-            .cloned()
-            .unwrap_or_else(|| ParameterList::reference(model));
-        let memory = match parameters.plc_parameters().from_eprom {
+        let reference = || ParameterList::reference(model).plc_parameters();
+        let memory = match parameters
+            .map_or_else(reference, ParameterList::plc_parameters)
+            .from_eprom
+        {
             true => ProgramMemory::Eprom,
             false => ProgramMemory::Ram,
         };
         let options = Options::for_model(model).stored_in(memory);
-        let mut source = plc::Source::compile_for(&path, parameters, options);
+        let mut source = PlcSource::compile(&path, None, options);
         self.sort(source.faults());
         source.compilation.program.take().map(Arc::new)
     }
@@ -505,7 +516,7 @@ pub(super) fn file_fault(
 }
 
 /// Text of a file: UTF-8, or else the Latin alphabet of the control's own files.
-pub(crate) fn decode(bytes: &[u8]) -> String {
+pub fn decode(bytes: &[u8]) -> String {
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect(),

@@ -8,13 +8,16 @@ use bahn_interpreter::{ToolState, tool_key};
 use bahn_path::ToolShape;
 
 use crate::columns::{self, Form, Row, TableFault};
-use crate::{UsageError, files};
+use crate::{HostError, files};
 
 /// Reads the tool table of a file.
-pub(crate) fn load(path: &Path) -> Result<BTreeMap<u32, Tool>, UsageError> {
+///
+/// # Errors
+/// When it cannot be read; its first fault.
+pub fn load(path: &Path) -> Result<BTreeMap<u32, Tool>, HostError> {
     let bytes = files::read_table(path)?;
     parse(&String::from_utf8_lossy(&bytes)).map_err(|faults| {
-        UsageError::new(format!(
+        HostError::new(format!(
             "{}: {}",
             path.display(),
             faults.first().map(TableFault::to_string).unwrap_or_default()
@@ -23,7 +26,7 @@ pub(crate) fn load(path: &Path) -> Result<BTreeMap<u32, Tool>, UsageError> {
 }
 
 /// The tools that must not be called.
-pub(crate) fn barred<'a>(tools: impl Iterator<Item = (&'a u32, &'a Tool)>) -> BTreeMap<u32, ToolState> {
+pub fn barred<'a>(tools: impl Iterator<Item = (&'a u32, &'a Tool)>) -> BTreeMap<u32, ToolState> {
     tools
         .map(|(number, tool)| (*number, tool.state()))
         .filter(|(_, state)| *state != ToolState::Usable)
@@ -37,8 +40,11 @@ const FORM: Form = Form {
     example: "T L R R2",
 };
 
-/// Reads a tool table: see the help of `bahn test`. All faults are named, up to a limit.
-pub(crate) fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
+/// Reads a tool table. All faults are named, up to a limit.
+///
+/// # Errors
+/// The faults with their lines.
+pub fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
     let mut table = BTreeMap::new();
     columns::read(text, &FORM, |row| {
         let (number, tool) = tool(row)?;

@@ -1,0 +1,307 @@
+//! Files: reading programs, finding called ones, writing without leaving half-written files.
+
+mod neighbours;
+
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bahn_interpreter::Library;
+use bahn_program::Program;
+
+use crate::{HostError, called};
+
+/// Largest program file, 1 GiB. A larger one is FURTHER PROGRAM ENTRY IMPOSSIBLE: the run holds the file in
+/// memory.
+pub const MAX_PROGRAM_BYTES: u64 = 1 << 30;
+
+/// Largest tool table or list of machine parameters, 16 MiB: many times what any control holds.
+const MAX_TABLE_BYTES: u64 = 16 << 20;
+
+/// Largest description of a machine, 1 MiB: the tree that is made of it takes many times as much.
+const MAX_DESCRIPTION_BYTES: u64 = 1 << 20;
+
+/// What became of reading a program.
+pub enum Loaded {
+    /// The program.
+    Program(Arc<Program>),
+    /// The file holds no block at all: nothing, or blanks and NULs only.
+    Empty(Arc<Program>),
+    /// The file is larger than [`MAX_PROGRAM_BYTES`].
+    TooLarge,
+}
+
+/// Why an empty file is an error.
+pub const EMPTY: &str = "the file holds no program";
+/// Why a file is an error that is too large.
+pub const TOO_LARGE: &str = "the file is larger than 1 GiB";
+
+/// Reads a program file.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn load_program(path: &Path) -> Result<Loaded, HostError> {
+    Ok(as_program(path, read_program(path)?))
+}
+
+/// The program of a file that was read; `None` is one that is too large.
+pub fn as_program(path: &Path, bytes: Option<Vec<u8>>) -> Loaded {
+    let Some(bytes) = bytes else {
+        return Loaded::TooLarge;
+    };
+    let program = Arc::new(Program::from_bytes(program_name(path), bytes));
+    if is_empty(&program) {
+        Loaded::Empty(program)
+    } else {
+        Loaded::Program(program)
+    }
+}
+
+fn is_empty(program: &Program) -> bool {
+    // Two blocks are the implied BEGIN and END.
+    program.begin().is_none() && program.end().is_none() && program.block_count() <= 2
+}
+
+/// The bytes of a program file; `None` when it is larger than [`MAX_PROGRAM_BYTES`].
+///
+/// # Errors
+/// When it cannot be read.
+pub fn read_program(path: &Path) -> Result<Option<Vec<u8>>, HostError> {
+    read(path, MAX_PROGRAM_BYTES).map_err(|error| cannot("read", path, &error))
+}
+
+/// Reads a tool table or parameter list.
+///
+/// # Errors
+/// When it cannot be read, or is too large.
+pub fn read_table(path: &Path) -> Result<Vec<u8>, HostError> {
+    read_up_to(path, MAX_TABLE_BYTES)
+}
+
+/// Reads the description of a machine.
+///
+/// # Errors
+/// When it cannot be read, or is too large.
+pub fn read_description(path: &Path) -> Result<Vec<u8>, HostError> {
+    read_up_to(path, MAX_DESCRIPTION_BYTES)
+}
+
+fn read_up_to(path: &Path, limit: u64) -> Result<Vec<u8>, HostError> {
+    match read(path, limit) {
+        Ok(Some(bytes)) => Ok(bytes),
+        Ok(None) => Err(HostError::new(format!("{} is too large", path.display()))),
+        Err(error) => Err(cannot("read", path, &error)),
+    }
+}
+
+/// A file that cannot be read or written. Of one that is not there its folder says what is.
+pub fn cannot(verb: &str, path: &Path, error: &io::Error) -> HostError {
+    let mut text = format!("cannot {verb} {}: {error}", path.display());
+    if verb == "read" && error.kind() == io::ErrorKind::NotFound {
+        text += &neighbours::of(path).unwrap_or_default();
+    }
+    HostError::new(text)
+}
+
+/// The name that a program of this path is opened by: its absolute path, so that no two programs share one
+/// and called programs are found beside it.
+fn program_name(path: &Path) -> String {
+    std::path::absolute(path)
+        .unwrap_or_else(|_| path.to_owned())
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// The name of a program in reports: that of its file, without folders.
+pub fn short_name(program: &Program) -> &str {
+    let name = program.name();
+    name.rsplit(std::path::MAIN_SEPARATOR).next().unwrap_or(name)
+}
+
+/// All bytes of a file, or `None` when there are more than `limit`.
+fn read(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    if length > limit {
+        return Ok(None);
+    }
+    let mut bytes = Vec::new();
+    // One more byte shows the end, so that reading needs no second buffer.
+    bytes.try_reserve_exact(usize::try_from(length).unwrap_or(usize::MAX).saturating_add(1))?;
+    // Devices have no length but may have no end.
+    file.take(limit + 1).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= limit).then_some(bytes))
+}
+
+/// Called programs, beside the calling one.
+#[derive(Debug, Default)]
+pub struct FileLibrary {
+    /// By path, so that one file is one program whatever its name was written like.
+    programs: HashMap<PathBuf, Arc<Program>>,
+    /// What a name beside a caller led to.
+    found: HashMap<(String, String), Arc<Program>>,
+}
+
+impl FileLibrary {
+    /// A library that knows the main program.
+    pub fn with_main(main: &Arc<Program>) -> FileLibrary {
+        let mut library = FileLibrary::default();
+        library.programs.insert(PathBuf::from(main.name()), main.clone());
+        library
+    }
+
+    fn open(&mut self, path: PathBuf) -> Result<Arc<Program>, String> {
+        if let Some(program) = self.programs.get(&path) {
+            return Ok(program.clone());
+        }
+        match load_program(&path) {
+            Ok(Loaded::Program(program)) => {
+                self.programs.insert(path, program.clone());
+                Ok(program)
+            }
+            Ok(Loaded::Empty(_)) => Err(EMPTY.to_owned()),
+            Ok(Loaded::TooLarge) => Err(TOO_LARGE.to_owned()),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+}
+
+impl Library for FileLibrary {
+    /// Looks for the name beside the calling program; see [`called::find`].
+    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        let key = (name.to_owned(), caller.to_owned());
+        if let Some(program) = self.found.get(&key) {
+            return Ok(Some(program.clone()));
+        }
+        let folder = Path::new(caller).parent().unwrap_or(Path::new(""));
+        let Some(path) = called::find(folder, name, Path::new(caller)) else {
+            return Ok(None);
+        };
+        let program = self.open(path)?;
+        self.found.insert(key, program.clone());
+        Ok(Some(program))
+    }
+}
+
+/// The files that are being written and have not their names yet.
+static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn temporaries() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+    TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what is half written: the process ends.
+pub fn remove_temporaries() {
+    for temporary in temporaries().drain(..) {
+        // It is of no use to anybody.
+        let _ = fs::remove_file(temporary);
+    }
+}
+
+/// A file being written: it appears under its name when it is complete, in one step. Until then, and for
+/// good when it is dropped before, whatever was there stays there.
+#[derive(Debug)]
+pub struct NewFile {
+    path: PathBuf,
+    /// Beside the path; `None` when the path is no regular file (`/dev/stdout`) and is written to directly.
+    temporary: Option<PathBuf>,
+    writer: BufWriter<File>,
+}
+
+impl NewFile {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// When its folder cannot be written.
+    pub fn create(path: &Path) -> Result<NewFile, HostError> {
+        NewFile::try_create(path).map_err(|error| cannot("write", path, &error))
+    }
+
+    fn try_create(path: &Path) -> io::Result<NewFile> {
+        // Through symbolic links, so that the link stays and what it names is replaced.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let old = fs::metadata(&path).ok();
+        if old.as_ref().is_some_and(|old| !old.is_file()) {
+            let file = OpenOptions::new().write(true).open(&path)?;
+            return Ok(NewFile {
+                path,
+                temporary: None,
+                writer: BufWriter::with_capacity(1 << 16, file),
+            });
+        }
+        let name = path
+            .file_name()
+            .ok_or(io::ErrorKind::InvalidInput)?
+            .to_string_lossy()
+            .into_owned();
+        let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+        temporaries().push(temporary.clone());
+        let create = || OpenOptions::new().write(true).create_new(true).open(&temporary);
+        // What is there is what a killed process of the same number left, or a link that leads elsewhere.
+        let file = create().or_else(|_| fs::remove_file(&temporary).and_then(|()| create()))?;
+        if let Some(old) = old {
+            file.set_permissions(old.permissions())?;
+        }
+        Ok(NewFile {
+            path,
+            temporary: Some(temporary),
+            writer: BufWriter::with_capacity(1 << 16, file),
+        })
+    }
+
+    /// Puts the complete file in its place.
+    ///
+    /// # Errors
+    /// When it cannot be written; what was there stays.
+    pub fn finish(mut self) -> Result<(), HostError> {
+        let path = self.path.clone();
+        self.try_finish().map_err(|error| cannot("write", &path, &error))
+    }
+
+    fn try_finish(&mut self) -> io::Result<()> {
+        self.writer.flush()?;
+        let Some(temporary) = &self.temporary else {
+            return Ok(());
+        };
+        self.writer.get_ref().sync_all()?;
+        fs::rename(temporary, &self.path)?;
+        temporaries().retain(|known| known != temporary);
+        self.temporary = None;
+        sync_folder(&self.path);
+        Ok(())
+    }
+}
+
+impl Write for NewFile {
+    #[inline]
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+impl Drop for NewFile {
+    fn drop(&mut self) {
+        if let Some(temporary) = &self.temporary {
+            // It is of no use to anybody.
+            let _ = fs::remove_file(temporary);
+            temporaries().retain(|known| known != temporary);
+        }
+    }
+}
+
+/// The new name is safe when its folder is; where a folder cannot be synchronised nothing can be done.
+pub fn sync_folder(path: &Path) {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
+}

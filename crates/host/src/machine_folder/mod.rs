@@ -1,0 +1,34 @@
+//! The folder of a machine.
+//!
+//! `load`: everything in it, all faults at once; `nc_memory`: its tables; `programs`: its part programs; `state`:
+//! what survives power-off, `remembered` as a file.
+
+mod load;
+mod nc_memory;
+mod programs;
+mod remembered;
+mod state;
+
+pub use load::{LoadedMachine, decode};
+pub use programs::FolderPrograms;
+pub use state::{Found, State};
+
+use crate::columns::TableFault;
+
+/// Reads what a control remembers and writes it again, for fuzzing: `None` when it is damaged, else whether the
+/// second reading is the first.
+#[doc(hidden)]
+pub fn check_state(file: &[u8]) -> Option<bool> {
+    let read = remembered::read(file).ok()?;
+    Some(remembered::read(remembered::write(&read).as_bytes()).as_ref() == Ok(&read))
+}
+
+/// Reads a text as datum table and as pallet file, for fuzzing: the lines of the faults, 0 is the table as a whole.
+#[doc(hidden)]
+pub fn check_nc_tables(text: &str) -> [Result<(), Vec<u32>>; 2] {
+    let lines = |faults: Vec<TableFault>| faults.iter().map(|fault| fault.line).collect();
+    [
+        nc_memory::datum_table(text, [false; 5]).map(drop).map_err(lines),
+        nc_memory::pallet_file(text).map(drop).map_err(lines),
+    ]
+}

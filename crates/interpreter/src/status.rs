@@ -1,0 +1,125 @@
+//! Tool and spindle, and what of a run stays in force behind its end.
+
+use bahn_path::{Axis, Frame, ToolShape};
+
+/// A tool in the spindle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tool {
+    pub number: u32,
+    pub axis: Axis,
+    pub shape: ToolShape,
+    /// Radius with the oversize of TOOL CALL, mm; negative ones must not be used.
+    pub radius: f64,
+    /// DL and DR of TOOL CALL, mm.
+    pub oversize: [f64; 2],
+    /// Its data are in the program or in the tool table.
+    pub defined: bool,
+}
+
+impl Tool {
+    /// A tool with its data, and whether they were found, and the oversizes of its call, mm.
+    pub fn new(number: u32, axis: Axis, data: (ToolShape, bool), oversize: [f64; 2]) -> Tool {
+        let (mut shape, defined) = data;
+        let [length, radius] = oversize;
+        shape.length += length;
+        Tool {
+            number,
+            axis,
+            shape,
+            radius: shape.radius + radius,
+            oversize,
+            defined,
+        }
+    }
+}
+
+/// Spindle state as Q110 counts it [003:7616-7619].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Spindle {
+    Undefined,
+    Clockwise,
+    CounterClockwise,
+    StoppedAfterClockwise,
+    StoppedAfterCounterClockwise,
+}
+
+impl Spindle {
+    pub fn q110(self) -> f64 {
+        match self {
+            Spindle::Undefined => -1.0,
+            Spindle::Clockwise => 0.0,
+            Spindle::CounterClockwise => 1.0,
+            Spindle::StoppedAfterClockwise => 2.0,
+            Spindle::StoppedAfterCounterClockwise => 3.0,
+        }
+    }
+
+    pub fn stopped(self) -> Spindle {
+        match self {
+            Spindle::Clockwise => Spindle::StoppedAfterClockwise,
+            Spindle::CounterClockwise => Spindle::StoppedAfterCounterClockwise,
+            other => other,
+        }
+    }
+}
+
+/// What of a run stays in force behind its end until a machine cancels it: coordinate transformations, feed and
+/// the data of the tool [003:6199-6205] [000:6589-6601].
+#[derive(Clone, Debug, Default)]
+pub struct Status {
+    /// Transformations with their plane, and the feed.
+    programmed: Option<(Frame, Option<f64>)>,
+    tool: Option<Tool>,
+    /// How the spindle of the machine turns, and its programmed speed, rpm.
+    spindle: Option<(Spindle, f64)>,
+}
+
+impl Status {
+    /// What a run leaves: transformations and feed, and the data of its tool.
+    pub(crate) fn left(programmed: (Frame, Option<f64>), tool: Option<Tool>) -> Status {
+        Status {
+            programmed: Some(programmed),
+            tool,
+            spindle: None,
+        }
+    }
+
+    /// The spindle turns already, clockwise as with M3 or the other way, for the operator or the PLC has switched it
+    /// on; or it stands. Its speed as it was programmed last, rpm.
+    pub fn take_spindle(&mut self, clockwise: Option<bool>, speed_rpm: f64) {
+        let spindle = match clockwise {
+            Some(true) => Spindle::Clockwise,
+            Some(false) => Spindle::CounterClockwise,
+            None => Spindle::Undefined,
+        };
+        self.spindle = Some((spindle, speed_rpm));
+    }
+
+    pub(crate) fn spindle(&self) -> Option<(Spindle, f64)> {
+        self.spindle
+    }
+
+    /// Cancels transformations and feed.
+    pub fn cancel_programmed(&mut self) {
+        self.programmed = None;
+    }
+
+    /// Cancels the data of the tool.
+    pub fn cancel_tool(&mut self) {
+        self.tool = None;
+    }
+
+    /// Transformations and feed.
+    pub(crate) fn programmed(&self) -> Option<(Frame, Option<f64>)> {
+        self.programmed
+    }
+
+    pub(crate) fn tool_data(&self) -> Option<Tool> {
+        self.tool
+    }
+
+    /// Number of the tool whose data are in force.
+    pub fn tool(&self) -> Option<u32> {
+        self.tool.map(|tool| tool.number)
+    }
+}
