@@ -8,6 +8,7 @@ use bahn_servo::{Gantry, Plant, Timing};
 use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::gantry;
 use crate::kinematics::Box2;
+use crate::markers::AXES;
 
 /// All axes of the machine. Each belongs to one channel, which gives it a slot of its path and an index of
 /// its markers.
@@ -59,6 +60,22 @@ impl Axes {
 
     pub fn with_id_mut(&mut self, id: AxisId) -> Option<&mut AxisUnit> {
         self.units.iter_mut().find(|unit| unit.id == id)
+    }
+
+    /// Gives an axis to a channel, in a slot and at an index of its markers that no axis of it has. `false` when one
+    /// has.
+    pub fn give(&mut self, id: AxisId, channel: usize, slot: Axis, index: usize) -> bool {
+        let taken = |unit: &AxisUnit| unit.id != id && (unit.axis == slot || unit.index == index);
+        if index >= AXES || self.owned(channel).any(taken) {
+            return false;
+        }
+        let Some(unit) = self.with_id_mut(id) else {
+            return false;
+        };
+        unit.channel = channel;
+        unit.axis = slot;
+        unit.index = index;
+        true
     }
 
     /// Reads the encoders, once in each servo step.
@@ -213,8 +230,9 @@ impl OwnAxes<'_> {
 
     /// Goes over to changed machine parameters, with the limits of a traverse range.
     pub fn set_parameters(&mut self, list: &ParameterList, range: usize) {
-        for unit in self.iter_mut() {
-            let Ok(index) = u8::try_from(unit.index) else {
+        let channel = self.channel;
+        for unit in self.units.iter_mut().filter(|unit| unit.home.0 == channel) {
+            let Ok(index) = u8::try_from(unit.home.1) else {
                 continue;
             };
             let mut parameters = list.axis_parameters(index);
@@ -227,6 +245,20 @@ impl OwnAxes<'_> {
                 unit.limits = *limits;
             }
         }
+    }
+
+    /// An axis may go to another channel: it stands, nothing moves it, and it is coupled to none.
+    pub fn may_leave(&self, id: AxisId) -> bool {
+        let master = |place: usize| {
+            let mut couplings = self.units.iter().filter_map(|unit| unit.coupling.as_ref());
+            couplings.any(|coupling| coupling.master == place)
+        };
+        self.places().any(|place| {
+            self.get(place).is_some_and(|unit| {
+                let free = unit.mover == Mover::None && unit.stands() && unit.is_free();
+                unit.id == id && free && !master(place)
+            })
+        })
     }
 
     /// Those that something moves belong to nobody.

@@ -67,6 +67,8 @@ pub(crate) struct Coupling {
 #[derive(Clone, Debug)]
 pub(crate) struct AxisUnit {
     pub id: AxisId,
+    /// The channel and the index that its machine parameters are of.
+    pub home: (usize, usize),
     /// The channel that moves it.
     pub channel: usize,
     /// Axis index of markers and machine parameters in that channel.
@@ -114,6 +116,7 @@ impl AxisUnit {
         Some(AxisUnit {
             id,
             channel,
+            home: (channel, parameters.index.into()),
             index: parameters.index.into(),
             axis,
             servo: Servo::new(parameters, timing),

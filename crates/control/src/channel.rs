@@ -2,16 +2,17 @@
 //! on the machine side, and has its own window into the memory of the PLC.
 
 use bahn_exchange::signal;
-use bahn_interpreter::{Done, Rules, Work};
+use bahn_interpreter::Rules;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, BlockRef};
 use bahn_servo::{OperatorInputs, Plant};
 
 use crate::axes::Axes;
-use crate::axis::AxisUnit;
+use crate::axis::{AxisId, AxisUnit};
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
 use crate::desk::{self, Desk};
+use crate::feeder::Feeder;
 use crate::handshake::{Handshakes, Transfer};
 use crate::kinematics::{Chain, Kinematics};
 use crate::life::{self, LifeCount};
@@ -520,6 +521,17 @@ impl Channel {
         self.run.track.limits_changed = true;
     }
 
+    /// Its axes are others from now on: the path has their limits, the datum their corrections.
+    pub fn take_axes(&mut self, machine: &mut MachineSide) {
+        self.run.track.limits_changed = true;
+        self.select_range(self.datums.range(), machine);
+    }
+
+    /// An axis may leave it: no program is on its way, and the axis stands free.
+    pub fn may_hand_over(&self, id: AxisId, axes: &mut Axes) -> bool {
+        !self.run.is_active() && axes.of(self.number).may_leave(id)
+    }
+
     fn select_range(&mut self, range: usize, machine: &mut MachineSide) {
         let mut axes = machine.axes.of(self.number);
         self.datums.select_range(range, &mut axes);
@@ -552,28 +564,10 @@ impl Channel {
         }
     }
 
-    /// A computation to be done beside.
-    pub fn take_work(&mut self) -> Option<Work> {
+    /// The programs that are read: that of the run, and that of a test run.
+    pub fn feeders(&mut self) -> impl Iterator<Item = &mut Feeder> {
         let run = self.run.source.feeder_mut().into_iter();
-        let test = self.test.as_mut().map(TestRun::feeder);
-        run.chain(test)
-            .find_map(|feeder| feeder.interpreter_mut().take_work())
-    }
-
-    /// What a computation came to; it is given back when nobody here waits for it.
-    pub fn finish_work(&mut self, done: Done) -> Option<Done> {
-        let run = self.run.source.feeder_mut().into_iter();
-        let test = self.test.as_mut().map(TestRun::feeder);
-        match run
-            .chain(test)
-            .find(|feeder| feeder.interpreter().waits_for(&done))
-        {
-            Some(feeder) => {
-                feeder.interpreter_mut().finish_work(done);
-                None
-            }
-            None => Some(done),
-        }
+        run.chain(self.test.as_mut().map(TestRun::feeder))
     }
 
     /// Executes a command; `false` when it is not possible now.

@@ -4,7 +4,7 @@
 use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Warning, Work};
 use bahn_parameters::{MessageId, ParameterList};
-use bahn_path::PathElement;
+use bahn_path::{Axis, PathElement};
 use bahn_plc::mirror_parameters;
 use bahn_servo::{Plant, Timing};
 
@@ -22,7 +22,7 @@ use crate::message::{Message, Shown};
 use crate::per_channel::PerChannel;
 use crate::plc_link::{PalletSelection, PlcLink};
 use crate::progress::RunState;
-use crate::setup::{Remembered, Setup};
+use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::source::Reading;
@@ -55,8 +55,33 @@ pub struct Control {
 }
 
 impl Control {
-    /// A control at power-on. The PLC does not run yet, and the loops are open.
+    /// A control of one channel at power-on. The PLC does not run yet, and the loops are open.
     pub fn new(setup: Setup) -> Control {
+        let axes = units(&setup.parameters, 0, first_ids());
+        Control::build(setup, Vec::new(), axes)
+    }
+
+    /// A control of several channels at power-on: the first one and those beside it. All run under one clock, with
+    /// one PLC and one EMERGENCY STOP.
+    ///
+    /// # Errors
+    /// Why the channels cannot be put together.
+    pub fn with_channels(setup: Setup, others: Vec<ChannelSetup>) -> Result<Control, ChannelError> {
+        if others.len() >= ChannelError::CHANNELS_MAX {
+            return Err(ChannelError::TooMany);
+        }
+        let mut axes = units(&setup.parameters, 0, first_ids());
+        for (channel, other) in (1..).zip(&others) {
+            axes.extend(units(&other.parameters, channel, other.axes));
+        }
+        let mut ids = std::collections::BTreeSet::new();
+        match axes.iter().find(|unit| !ids.insert(unit.id)) {
+            Some(twice) => Err(ChannelError::AxisTwice(twice.id)),
+            None => Ok(Control::build(setup, others, axes)),
+        }
+    }
+
+    fn build(setup: Setup, others: Vec<ChannelSetup>, units: Vec<AxisUnit>) -> Control {
         let Setup {
             parameters,
             plc,
@@ -73,8 +98,8 @@ impl Control {
         let model = parameters.model();
         let timing = Timing::of(model);
         let operation = parameters.operation_parameters();
-        let mut axes = Axes::new(units(&parameters, 0, timing), timing);
-        for unit in axes.iter_mut() {
+        let mut axes = Axes::new(units, timing);
+        for unit in axes.of(0).iter_mut() {
             let volts = remembered.offsets_volts.get(unit.index).copied();
             unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
         }
@@ -90,24 +115,42 @@ impl Control {
         let mut tools = Tools::new(tools, operation.tools, &remembered);
         let loaded_tables = LoadedTables::set_up(&mut tools, &mut link.files, &remembered.written);
         let plc = PlcUnit::new(plc, model);
-        let memory = PerChannel::new(exchange, Vec::new());
-        let spindles = PerChannel::new(spindle, Vec::new());
-        let mut machine = MachineSide::new(&parameters, plc, link, memory, axes, spindles);
+        let windows = others.iter().map(|other| other.window.clone()).collect();
+        let mut machine = MachineSide::new(&parameters, plc, link, exchange, windows, axes, spindle);
         machine.loaded_datums = loaded_datums;
         machine.loaded_tables = loaded_tables;
+        let reading = Reading {
+            model,
+            checking,
+            inch_feed,
+            programs,
+        };
         let parts = Parts {
             number: 0,
             own_list: None,
             kinematics: std::sync::Arc::new(Cartesian),
             tools,
-            reading: Reading {
-                model,
-                checking,
-                inch_feed,
-                programs,
-            },
+            reading: reading.clone(),
         };
         let first = Channel::new(parts, &remembered, &mut machine);
+        let mut channels = PerChannel::new(first, Vec::new());
+        for other in others {
+            let parameters = other.parameters.spindle_parameters();
+            let spindle = SpindleUnit::new(other.spindle, parameters, timing);
+            machine.spindles.push(spindle);
+            let tools = other.parameters.operation_parameters().tools;
+            let parts = Parts {
+                number: channels.count(),
+                own_list: Some(other.parameters),
+                kinematics: other.kinematics,
+                tools: Tools::new(other.tools, tools, &other.remembered),
+                reading: Reading {
+                    programs: other.programs,
+                    ..reading.clone()
+                },
+            };
+            channels.push(Channel::new(parts, &other.remembered, &mut machine));
+        }
         if operation.power_interrupted {
             let message = Message::Plain(MessageId::PowerInterrupted);
             machine.messages.show(message, false, None);
@@ -115,10 +158,53 @@ impl Control {
         Control {
             now_us: 0,
             machine,
-            channels: PerChannel::new(first, Vec::new()),
+            channels,
             keeps: false,
             log: None,
         }
+    }
+
+    /// Channels that it has; they are numbered from 0.
+    pub fn channels(&self) -> usize {
+        self.channels.count()
+    }
+
+    /// Gives a command of the operator to a channel, as [`Control::command`] to the first one; it is not logged.
+    /// `false` when it is not possible now, or there is no such channel.
+    pub fn command_to(&mut self, channel: usize, command: Command) -> bool {
+        channel < self.channels.count() && self.give(channel, command)
+    }
+
+    /// The state of a channel as of now.
+    pub fn snapshot_of(&self, channel: usize) -> Option<Snapshot> {
+        let channel = self.channels.get(channel)?;
+        Some(Snapshot::of(channel, &self.machine))
+    }
+
+    /// What survives power-off of a channel beside the first one: datums, tool, Q parameters, program.
+    pub fn remember_of(&self, channel: usize) -> Option<Remembered> {
+        self.channels.get(channel).map(Channel::remember)
+    }
+
+    /// Hands an axis over to another channel, where it has a slot of the path and an index of markers that are free.
+    /// `false` when it cannot go: it moves or is coupled, or a program is on its way in either channel. Outside the
+    /// cycle, as [`Control::prepare`].
+    pub fn hand_over(&mut self, id: AxisId, channel: usize, slot: Axis, index: usize) -> bool {
+        let axes = &mut self.machine.axes;
+        let Some(from) = axes.iter().find(|unit| unit.id == id).map(|unit| unit.channel) else {
+            return false;
+        };
+        let Some(to) = self.channels.get(channel) else {
+            return false;
+        };
+        let may = !to.run.is_active() && self.channels.of(from).may_hand_over(id, axes);
+        if !may || !axes.give(id, channel, slot, index) {
+            return false;
+        }
+        for number in [from, channel] {
+            self.channels.of_mut(number).take_axes(&mut self.machine);
+        }
+        true
     }
 
     /// Time since power-on, µs.
@@ -300,13 +386,16 @@ impl Control {
 
     /// A computation to be done beside.
     pub fn take_work(&mut self) -> Option<Work> {
-        self.channels.iter_mut().find_map(Channel::take_work)
+        let mut feeders = self.channels.iter_mut().flat_map(Channel::feeders);
+        feeders.find_map(|feeder| feeder.interpreter_mut().take_work())
     }
 
     /// What a computation came to. It has no effect when what needed it was given up.
     pub fn finish_work(&mut self, done: Done) {
-        let mut channels = self.channels.iter_mut();
-        channels.try_fold(done, |done, channel| channel.finish_work(done));
+        let mut feeders = self.channels.iter_mut().flat_map(Channel::feeders);
+        if let Some(feeder) = feeders.find(|feeder| feeder.interpreter().waits_for(&done)) {
+            feeder.interpreter_mut().finish_work(done);
+        }
     }
 
     /// Simulates the block processing time: no more elements of the path are read than the control has time
@@ -323,7 +412,11 @@ impl Control {
         if let Some(log) = self.log.as_mut().filter(|log| log.len() < LOG_MAX) {
             log.push((self.now_us, command.clone()));
         }
-        let channel = self.channels.first_mut();
+        self.give(0, command)
+    }
+
+    fn give(&mut self, channel: usize, command: Command) -> bool {
+        let channel = self.channels.of_mut(channel);
         let done = channel.execute(command, &mut self.machine);
         if !done {
             let refused = Message::Plain(MessageId::KeyNonFunctional);
@@ -552,13 +645,15 @@ impl Control {
     }
 }
 
+/// The numbers of the axes of the first channel.
+fn first_ids() -> [Option<AxisId>; AXES] {
+    [0, 1, 2, 3, 4].map(AxisId::new)
+}
+
 /// The axes that a list of machine parameters gives to a channel.
-fn units(parameters: &ParameterList, channel: usize, timing: Timing) -> Vec<AxisUnit> {
-    (0..AXES)
-        .filter_map(|index| {
-            let index = u8::try_from(index).ok()?;
-            let id = AxisId::new(index)?;
-            AxisUnit::new(id, channel, parameters.axis_parameters(index), timing)
-        })
+fn units(parameters: &ParameterList, channel: usize, ids: [Option<AxisId>; AXES]) -> Vec<AxisUnit> {
+    let timing = Timing::of(parameters.model());
+    let ids = (0u8..).zip(ids);
+    ids.filter_map(|(index, id)| AxisUnit::new(id?, channel, parameters.axis_parameters(index), timing))
         .collect()
 }

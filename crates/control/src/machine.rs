@@ -20,6 +20,7 @@ use crate::spindle::SpindleUnit;
 use crate::status;
 use crate::tables::LoadedTables;
 use crate::upkeep::{self, DriveOffsets};
+use crate::window::Window;
 
 const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
 const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop);
@@ -33,6 +34,8 @@ pub(crate) struct MachineSide {
     pub plc_parameters: PlcParameters,
     /// The memory of the PLC as each channel sees it; the first channel's is the memory itself.
     pub memory: PerChannel<Exchange>,
+    /// Those of the channels beside the first one.
+    pub windows: Vec<Window>,
     pub link: PlcLink,
     pub plc: PlcUnit,
     pub emergency: EmergencyStop,
@@ -119,12 +122,14 @@ impl MachineSide {
         parameters: &ParameterList,
         plc: PlcUnit,
         link: PlcLink,
-        memory: PerChannel<Exchange>,
+        exchange: Exchange,
+        windows: Vec<Window>,
         axes: Axes,
-        spindles: PerChannel<SpindleUnit>,
+        spindle: SpindleUnit,
     ) -> MachineSide {
         let model = parameters.model();
         let operation = parameters.operation_parameters();
+        let memory = PerChannel::new(exchange, windows.iter().map(Window::memory).collect());
         let interval_s = axes
             .iter()
             .next()
@@ -138,12 +143,13 @@ impl MachineSide {
             plc_parameters: parameters.plc_parameters(),
             compensation: Compensation::of(&link.files, line),
             memory,
+            windows,
             link,
             plc,
             emergency: EmergencyStop::new(model, operation.power_interrupted),
             messages: Messages::default(),
             axes,
-            spindles,
+            spindles: PerChannel::new(spindle, Vec::new()),
             loops_closed: false,
             offsets: DriveOffsets::new(interval_s),
             loaded_tables: LoadedTables::default(),
@@ -234,10 +240,15 @@ impl MachineSide {
     /// Runs the PLC program. `false` when it has stopped.
     pub fn scan(&mut self, block: Option<BlockRef>) -> bool {
         self.plc.scans += 1;
-        let exchange = self.memory.first_mut();
-        let Err(error) = self.plc.machine.scan(exchange, &mut self.link) else {
-            return true;
-        };
+        let (exchange, others) = self.memory.split_mut();
+        for (window, own) in self.windows.iter().zip(others.iter_mut()) {
+            window.publish(own, exchange);
+        }
+        let scanned = self.plc.machine.scan(exchange, &mut self.link);
+        for (window, own) in self.windows.iter().zip(others) {
+            window.take(own, exchange);
+        }
+        let Err(error) = scanned else { return true };
         let message = Message::PlcStopped {
             number: error.error.number(),
             file: error.file,

@@ -16,12 +16,21 @@ impl<T> PerChannel<T> {
         1 + self.more.len()
     }
 
+    pub fn push(&mut self, more: T) {
+        self.more.push(more);
+    }
+
     pub fn first(&self) -> &T {
         &self.first
     }
 
     pub fn first_mut(&mut self) -> &mut T {
         &mut self.first
+    }
+
+    /// That of the first channel, and those of the others.
+    pub fn split_mut(&mut self) -> (&mut T, &mut [T]) {
+        (&mut self.first, &mut self.more)
     }
 
     /// That of a channel; of the first one for a channel that does not exist.

@@ -8,9 +8,13 @@ use bahn_parameters::{InchFeed, ParameterList};
 use bahn_path::{Axis, Position};
 use bahn_plc::PlcProgram;
 
+use crate::axis::AxisId;
+use crate::kinematics::Kinematics;
 use crate::plc_link::{NcFiles, WrittenElement};
 use crate::programs::Programs;
+use crate::spindle::SpindleWiring;
 use crate::tool::{MovedTool, Tool};
+use crate::window::Window;
 
 /// How programs are taken that use what is not executed here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,6 +50,44 @@ pub struct Setup {
     pub remembered: Remembered,
     /// Memory of the PLC with what power-off keeps (see [`bahn_exchange::Retention`]).
     pub exchange: Exchange,
+}
+
+/// A channel beside the first one.
+#[derive(Clone)]
+pub struct ChannelSetup {
+    /// Its machine parameters; what they say of the machine as a whole (PLC, EMERGENCY STOP) is not looked at.
+    pub parameters: ParameterList,
+    /// The number on the machine of each of its axes, by their indices in the list. An axis without number is not
+    /// there.
+    pub axes: [Option<AxisId>; 5],
+    /// Where its spindle is connected.
+    pub spindle: SpindleWiring,
+    /// Tools by number; `None` when tools are defined in the programs.
+    pub tools: Option<BTreeMap<u32, Tool>>,
+    /// Where its programs come from.
+    pub programs: Arc<dyn Programs>,
+    /// How its axes stand to its path.
+    pub kinematics: Arc<dyn Kinematics>,
+    /// Where its markers and words stand in the memory of the PLC.
+    pub window: Window,
+    /// What was remembered of it over power-off: datums, tool, Q parameters, program.
+    pub remembered: Remembered,
+}
+
+/// Channels cannot be put together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ChannelError {
+    /// There are more than eight.
+    #[error("a control has at most {} channels", ChannelError::CHANNELS_MAX)]
+    TooMany,
+    /// Two channels name the same axis.
+    #[error("axis {} belongs to two channels", .0.number())]
+    AxisTwice(AxisId),
+}
+
+impl ChannelError {
+    /// Channels that a control has at most.
+    pub const CHANNELS_MAX: usize = 8;
 }
 
 /// What survives power-off beside the memory of the PLC.
