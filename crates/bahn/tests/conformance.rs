@@ -209,9 +209,7 @@ const UNSAID: &[&str] = &[
     // The function is reached by its own interface, or goes by another name: a chamfer is an L block.
     "interpreter::m112_rounds_corners_of_uncompensated_lines",
     "interpreter::p02_chamfer",
-    "machine::the_probe_touches_a_block_beside_and_from_above",
     "plc::m9031_error_codes",
-    "servo::a_turning_spindle_stops_at_its_angle_in_its_direction",
     "workpiece::another_tool_axis_is_not_shown",
     "workpiece::plunge_is_a_cylinder",
 ];

@@ -41,6 +41,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "interpreter",
             "exchange",
             "plc",
+            "servo",
             "machine",
             "control",
         ],

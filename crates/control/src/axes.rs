@@ -205,8 +205,11 @@ impl OwnAxes<'_> {
 
     /// Chooses lag or feed pre-control for a kind of operation; whether all have it.
     pub fn choose_methods(&mut self, automatic: bool, rigid: bool) -> bool {
-        self.iter_mut()
-            .fold(true, |ready, unit| unit.choose_method(automatic, rigid) && ready)
+        let mut ready = true;
+        for unit in self.iter_mut() {
+            ready &= unit.choose_method(automatic, rigid);
+        }
+        ready
     }
 
     /// Those that nobody moves any more come down to a standstill.

@@ -178,7 +178,7 @@ impl Control {
     /// The state of a channel as of now.
     pub fn snapshot_of(&self, channel: usize) -> Option<Snapshot> {
         let channel = self.channels.get(channel)?;
-        Some(Snapshot::of(channel, &self.machine))
+        Some(Snapshot::of(channel, &self.machine, None))
     }
 
     /// What survives power-off of a channel beside the first one: datums, tool, Q parameters, program.
@@ -520,7 +520,13 @@ impl Control {
 
     /// The state as of now.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot::of(self.channels.first(), &self.machine)
+        Snapshot::of(self.channels.first(), &self.machine, None)
+    }
+
+    /// The state as of now, in the memory of an earlier one: it does not allocate unless another program or
+    /// message is shown.
+    pub fn snapshot_again(&self, earlier: Snapshot) -> Snapshot {
+        Snapshot::of(self.channels.first(), &self.machine, Some(earlier))
     }
 
     /// The messages that came up since the last call, in their order.

@@ -32,9 +32,9 @@ pub(crate) enum RunFault {
 }
 
 /// Feeds the interpolator from a program.
+#[derive(Clone)]
 pub(crate) struct Feeder {
     interpreter: Interpreter,
-    programs: Arc<dyn Programs>,
     /// Kinematics with the offsets as of the last element handed out.
     chain: Chain,
     limits: Box2,
@@ -60,12 +60,11 @@ impl Feeder {
         chain: Chain,
         limits: Box2,
     ) -> Feeder {
-        let shelf = Box::new(Shelf(Arc::clone(&programs)));
+        let shelf = Box::new(Shelf(programs));
         let mut interpreter = Interpreter::new(main, settings, shelf);
         interpreter.keep_checkpoints();
         Feeder {
             interpreter,
-            programs,
             chain,
             limits,
             fault: None,
@@ -255,24 +254,6 @@ impl Feeder {
             });
         }
         None
-    }
-}
-
-impl Clone for Feeder {
-    fn clone(&self) -> Feeder {
-        let shelf = Box::new(Shelf(Arc::clone(&self.programs)));
-        Feeder {
-            interpreter: self.interpreter.fork(shelf),
-            programs: Arc::clone(&self.programs),
-            chain: self.chain.clone(),
-            limits: self.limits,
-            fault: self.fault.clone(),
-            found: self.found.clone(),
-            refused: self.refused.clone(),
-            read: self.read,
-            tap: self.tap.clone(),
-            dropped_from: self.dropped_from,
-        }
     }
 }
 

@@ -18,7 +18,6 @@ pub trait Programs: Send + Sync {
 }
 
 /// Programs as a library for the interpreter.
-#[derive(Clone)]
 pub(crate) struct Shelf(pub Arc<dyn Programs>);
 
 impl Library for Shelf {

@@ -478,13 +478,11 @@ impl ProgramRun {
                 self.track.path.release();
                 self.track.regain(site);
             }
-            State::Master => {
-                if self.tapping.prepare(&self.track, site) == Preparation::Refused {
-                    // No manual names the message of a spindle without analogue output or encoder (inferred).
-                    self.show(Message::Plain(MessageId::WrongRpm), site);
-                    let block = self.track.path.element().map_or(0, |element| element.sequence);
-                    self.abort(Resume::Block(block), site);
-                }
+            State::Master if self.tapping.prepare(&self.track, site) == Preparation::Refused => {
+                // No manual names the message of a spindle without analogue output or encoder (inferred).
+                self.show(Message::Plain(MessageId::WrongRpm), site);
+                let block = self.track.path.element().map_or(0, |element| element.sequence);
+                self.abort(Resume::Block(block), site);
             }
             State::Clamped => self.track.ask_to_unclamp(drive.clamped, &mut site.axes),
             State::BlockEnd if settled && self.progress.goes_on() => {

@@ -101,28 +101,38 @@ impl AxisState {
 }
 
 impl Snapshot {
-    /// The state of a channel.
-    pub(crate) fn of(channel: &Channel, machine: &MachineSide) -> Snapshot {
+    /// The state of a channel, in the memory of an earlier one.
+    pub(crate) fn of(channel: &Channel, machine: &MachineSide, earlier: Option<Snapshot>) -> Snapshot {
         let time = machine.plc.machine.time();
         let (run, desk) = (&channel.run, channel.desk());
-        let axes = machine.axes.owned(channel.number());
+        let (mut axes, mut messages, mut program) = match earlier {
+            Some(earlier) => (earlier.axes, earlier.messages, earlier.program),
+            None => Default::default(),
+        };
+        axes.clear();
+        let units = machine.axes.owned(channel.number());
+        axes.extend(units.map(|unit| AxisState::of(unit, run, channel.chain())));
+        if messages != machine.messages.shown() {
+            messages = machine.messages.shown().to_vec();
+        }
+        if program != run.selection.program {
+            program.clone_from(&run.selection.program);
+        }
         Snapshot {
             time_us: machine.messages.time_us(),
             mode: desk.mode(),
             run: run.progress().state(),
             ended: run.progress().has_ended(),
-            program: run.selection.program.clone(),
+            program,
             block: run.track.path.element().map(|element| element.block),
-            axes: axes
-                .map(|unit| AxisState::of(unit, run, channel.chain()))
-                .collect(),
+            axes,
             feed_mm_min: run.track.speed_mm_s() * 60.0,
             programmed_feed_mm_min: run.track.programmed_feed(),
             feed_override_percent: desk.feed_percent(),
             spindle_override_percent: desk.spindle_percent(),
             spindle: machine.spindles.of(channel.number()).state(),
             tool: channel.tools.number,
-            messages: machine.messages.shown().to_vec(),
+            messages,
             waiting: channel
                 .handshakes
                 .waiting(machine.memory.of(channel.number()).nc()),

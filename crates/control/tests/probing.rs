@@ -114,6 +114,27 @@ fn probe_not_ready() {
     near(display(&rig, 'X'), 50.0);
 }
 
+/// A low battery is told by M2027 when it is probed, neither before nor where nothing probes; the probing goes on. With a
+/// new battery the next probing resets it [000:7688].
+#[test]
+fn a_low_battery_is_told_when_it_is_probed() {
+    let mut rig = rig(PROGRAM);
+    rig.event("fault probe battery");
+    rig.seconds(1.0);
+    assert!(!rig.bit("M2027"), "nothing probes");
+    rig.start();
+    rig.until(5.0, "the touch", |rig| rig.bit("M2025"));
+    assert!(rig.bit("M2027"));
+    rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+    assert_eq!(rig.messages(), [""; 0]);
+    rig.event("repair probe");
+    rig.seconds(1.0);
+    assert!(rig.bit("M2027"), "nothing probes");
+    rig.start();
+    rig.until(5.0, "it is probed", |rig| !rig.bit("M2027"));
+    rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+}
+
 /// NC stop on the way to the touch: the axes brake, START probes on; internal stop and START probe anew.
 #[test]
 fn stop_while_probing() {

@@ -6,7 +6,7 @@ mod support;
 
 use bahn_control::RunState;
 use stand::*;
-use support::Build;
+use support::{Build, Rig};
 
 /// The M functions of the spindle, acknowledged at once, without the gear.
 const SPINDLE: &str = "
@@ -365,6 +365,78 @@ fn orientation() {
     // MP3430: the mark of the encoder stands at 90 degrees; the angle of the machine is that of the spindle.
     let angle = rig.machine.spindle().unwrap().angle_deg.rem_euclid(360.0);
     assert!((angle - 120.0).abs() < 1.0, "{angle}");
+}
+
+/// M2656 chooses the direction in which a spindle that stands is oriented by M2712, here to 120 degrees from D592 and
+/// back to 0: with M04 always down, by the longer way, too. With M2501 it turns at MP3520.0 that way [000:5859]
+/// [000:5893-5895].
+#[test]
+fn direction_of_orientation() {
+    let plc = format!(
+        "{}
+       L     I21
+       = M2656
+       L     I22
+       = M2501
+       L     I20
+       AN    M0
+       = M1
+       L     I20
+       = M0
+       L     M1
+       CMT   TO_AND_FRO
+       EM
+LBL TO_AND_FRO
+       L     K+1200000
+       -     D592
+       = D592
+       L     M1
+       S     M2712
+",
+        with_gear()
+    );
+    let build = diagram(&plc).mps("3440.0=5 3520.0=40 3520.1=60 3410.1=0.05");
+    let mut rig = ready(build);
+    let angle = |rig: &Rig| {
+        rig.machine
+            .spindle()
+            .map_or(f64::NAN, |spindle| spindle.angle_deg)
+    };
+    let orient = |rig: &mut Rig| {
+        let before = angle(rig);
+        rig.event("key A press");
+        rig.until(1.0, "the orientation", |rig| rig.bit("M2712"));
+        rig.until(10.0, "its end", |rig| !rig.bit("M2712") && rig.bit("M2007"));
+        rig.event("key A release");
+        rig.seconds(0.2);
+        angle(rig) - before
+    };
+    // The first orientation finds the mark; from then on the spindle stands at 120 and 0 degrees by turns.
+    orient(&mut rig);
+    for (m04, ways) in [(false, [240.0, 120.0]), (true, [-120.0, -240.0])] {
+        rig.event(if m04 { "key B press" } else { "key B release" });
+        rig.seconds(0.1);
+        for expected in ways {
+            let way = orient(&mut rig);
+            assert!(
+                (way - expected).abs() < 1.0,
+                "M2656 = {m04}: {way}, not {expected}"
+            );
+        }
+        rig.event("key C press");
+        rig.seconds(3.0);
+        // 40 rpm of 1500 rpm at 6 V.
+        let volts = rig.control.snapshot().spindle.volts;
+        let expected = if m04 { -0.16 } else { 0.16 };
+        assert!((volts - expected).abs() < 0.001, "{volts}");
+        rig.event("key C release");
+        rig.seconds(2.0);
+        // Back to where the next way begins: at 120 degrees.
+        orient(&mut rig);
+        if rig.number("D592") == 0 {
+            orient(&mut rig);
+        }
+    }
 }
 
 /// Module 9171 orients to 30 degrees by the shorter way at 50 rpm; M2712 is 1 meanwhile [000:16120-16160].

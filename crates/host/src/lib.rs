@@ -14,21 +14,38 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+mod background;
 mod called;
 mod columns;
+mod deed;
 mod error;
 mod fault;
+mod feed;
 pub mod files;
+mod host;
+mod journal;
 mod kept;
 pub mod lists;
+mod log;
 mod machine_folder;
+mod notice;
+mod operator;
+mod orders;
+mod pace;
 mod plc_source;
+mod power_on;
 mod retained;
+mod saved;
+mod text;
 pub mod tool_table;
 
 pub use columns::TableFault;
+pub use deed::{Answer, Deed, DeedError, Operable, Source};
 pub use error::HostError;
 pub use fault::{FileFault, Marked, Severity};
+pub use feed::{Next, Reader};
+pub use host::Host;
+pub use log::{Log, LogFile, Sink, is_whole};
 pub use machine_folder::{FolderPrograms, Found, LoadedMachine, State, decode};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
 #[doc(hidden)]
@@ -39,5 +56,12 @@ pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
 
 #[doc(hidden)]
 pub use machine_folder::{check_nc_tables, check_state};
+pub use notice::{Notice, Stamped, Why};
+pub use operator::{Attendance, Job, Operator, Phase};
+pub use orders::{Desk, Order, When};
+pub use pace::{Clock, Lateness};
 pub use plc_source::PlcSource;
+pub use power_on::PowerOn;
 pub use retained::Retained;
+pub use saved::{Saved, Timeline};
+pub use text::printable;

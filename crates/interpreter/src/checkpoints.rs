@@ -6,7 +6,7 @@ use bahn_path::{Barrier, BlockRef, Position};
 use bahn_program::Operation;
 
 use crate::run::Run;
-use crate::{Ended, Interpreter, Library};
+use crate::{Ended, Interpreter};
 
 /// The state of a run at a block: Q parameters, calls, repeats, pole, transformations, tool.
 #[derive(Clone)]
@@ -92,26 +92,6 @@ impl Kept {
 }
 
 impl Interpreter {
-    /// A second interpreter in the same state, with a library of its own. A computation that somebody does beside
-    /// stays with the first; the second asks for it anew.
-    pub fn fork(&self, library: Box<dyn Library + Send>) -> Interpreter {
-        Interpreter {
-            settings: self.settings.clone(),
-            library,
-            code: self.code.fork(),
-            run: self.run.clone(),
-            ended: self.ended.clone(),
-            waiting: self.waiting.clone(),
-            interrupt: self.interrupt.clone(),
-            kept: self.kept.clone(),
-            work: self.work,
-            defers: self.defers,
-            pending: self.pending.fork(),
-            starved: self.starved,
-            position: self.position,
-        }
-    }
-
     /// Keeps the state before each block whose elements are on their way, for [`Interpreter::go_back`].
     pub fn keep_checkpoints(&mut self) {
         self.kept = Some(Kept::default());

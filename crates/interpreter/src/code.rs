@@ -28,6 +28,7 @@ impl Library for NoLibrary {
 const CHUNKS_KEPT: usize = 128;
 
 /// The programs of a run; index 0 is the main program.
+#[derive(Clone)]
 pub(crate) struct Code {
     model: ControlModel,
     programs: Vec<Loaded>,
@@ -39,12 +40,14 @@ pub(crate) struct Code {
     growing: bool,
 }
 
+#[derive(Clone)]
 struct Loaded {
     program: Arc<Program>,
     chunks: Vec<Option<Box<Decoded>>>,
 }
 
 /// Blocks as the control takes them in.
+#[derive(Clone)]
 struct Decoded {
     chunk: Chunk,
     /// Blocks with numbers that were rounded, bit by bit.
@@ -93,21 +96,6 @@ impl Code {
         };
         code.add(main);
         code
-    }
-
-    /// The same programs; their blocks are decoded anew.
-    pub fn fork(&self) -> Code {
-        let programs = self.programs.iter().map(|loaded| Loaded {
-            program: Arc::clone(&loaded.program),
-            chunks: loaded.chunks.iter().map(|_| None).collect(),
-        });
-        Code {
-            model: self.model,
-            programs: programs.collect(),
-            called: self.called,
-            kept: VecDeque::new(),
-            growing: self.growing,
-        }
     }
 
     fn add(&mut self, program: Arc<Program>) -> u16 {

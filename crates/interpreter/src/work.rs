@@ -9,7 +9,7 @@ use crate::run::Run;
 use crate::settings::Settings;
 
 /// How far a computation is that is done beside.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) enum Pending {
     #[default]
     None,
@@ -21,6 +21,13 @@ pub(crate) enum Pending {
 
 /// Tells a computation from others, and that nobody wants it any more: dropped, it ends it.
 pub(crate) struct Wanted(Arc<AtomicBool>);
+
+/// A copy of the interpreter finds its computation lost and has it done again.
+impl Clone for Wanted {
+    fn clone(&self) -> Wanted {
+        Wanted(Arc::default())
+    }
+}
 
 impl Drop for Wanted {
     fn drop(&mut self) {
@@ -72,15 +79,6 @@ impl Pending {
     /// Whether it was taken and can come back no more: the [`Work`] or the [`Done`] was dropped.
     pub fn is_lost(&self) -> bool {
         matches!(self, Pending::Taken(wanted) if Arc::strong_count(&wanted.0) == 1)
-    }
-
-    /// The computation for a second interpreter: what somebody does already is lost to it.
-    pub fn fork(&self) -> Pending {
-        match self {
-            Pending::None => Pending::None,
-            Pending::Waiting(job) => Pending::Waiting(job.clone()),
-            Pending::Taken(_) => Pending::Taken(Wanted(Arc::default())),
-        }
     }
 
     pub fn is_of(&self, done: &Done) -> bool {
