@@ -113,7 +113,7 @@ expect lamp NC_START=1              a lamp of the panel
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         match word {
-            "message" => return Ok(Some(Expectation::Message(quoted(rest)?, true))),
+            "message" => Ok(Some(Expectation::Message(quoted(rest)?, true))),
             "no" => {
                 let rest = rest
                     .strip_prefix("message")
@@ -124,36 +124,36 @@ expect lamp NC_START=1              a lamp of the panel
                 } else {
                     quoted(rest)?
                 };
-                return Ok(Some(Expectation::Message(text, false)));
+                Ok(Some(Expectation::Message(text, false)))
             }
             "mode" => {
                 let mode = Mode::ALL.into_iter().find(|mode| mode.name() == rest);
-                return mode.map(|mode| Some(Expectation::Mode(mode))).ok_or_else(|| {
+                mode.map(|mode| Some(Expectation::Mode(mode))).ok_or_else(|| {
                     format!(
                         "`{rest}` is no mode; there are {}",
                         Mode::ALL.map(Mode::name).join(", ")
                     )
-                });
+                })
             }
             "run" => {
                 let run = RUNS.iter().find(|(name, _)| *name == rest);
-                return run.map(|(_, run)| Some(Expectation::Run(*run))).ok_or_else(|| {
+                run.map(|(_, run)| Some(Expectation::Run(*run))).ok_or_else(|| {
                     format!(
                         "`{rest}` is no state; there are {}",
                         RUNS.map(|(name, _)| name).join(", ")
                     )
-                });
+                })
             }
             "test" => {
                 let state = TESTS.iter().find(|(name, _)| *name == rest);
-                return state
+                state
                     .map(|(_, state)| Some(Expectation::Test(*state)))
                     .ok_or_else(|| {
                         format!(
                             "`{rest}` is no state; there are {}",
                             TESTS.map(|(name, _)| name).join(", ")
                         )
-                    });
+                    })
             }
             "lamp" => {
                 let (name, value) = rest.split_once('=').ok_or("it is written `lamp NAME=1`")?;
@@ -165,7 +165,7 @@ expect lamp NC_START=1              a lamp of the panel
                         known.join(", ")
                     ));
                 }
-                return bit(value).map(|on| Some(Expectation::Lamp(name.to_owned(), on)));
+                bit(value).map(|on| Some(Expectation::Lamp(name.to_owned(), on)))
             }
             _ => Ok(None),
         }
