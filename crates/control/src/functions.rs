@@ -1,7 +1,8 @@
 //! What the functions of a program do when the path comes to them.
 
 use bahn_exchange::Exchange;
-use bahn_path::{Axis, Function, ToolCall};
+use bahn_parameters::technology::{Deed, Output, Technology};
+use bahn_path::{Axis, ControlFunction, Function, ToolCall};
 
 use crate::axes::AxisUnit;
 use crate::feeder::Offsets;
@@ -9,9 +10,6 @@ use crate::handshake::{Handshakes, Transfer};
 use crate::markers::TOOL_AXIS;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
-
-/// Highest M function that goes to the PLC [000:7206].
-const M_MAX: u16 = 99;
 
 /// The parts of the control that functions act on.
 pub(crate) struct Target<'a> {
@@ -29,7 +27,13 @@ impl Target<'_> {
     /// Outputs a function: its effect in the control, and what goes to the PLC.
     pub fn output(&mut self, function: &Function) {
         match function {
-            Function::M(code) => self.m(*code),
+            Function::M(code) => {
+                // Each that goes to the PLC has a code of two digits [000:7206].
+                if let Ok(code) = u8::try_from(*code) {
+                    self.handshakes.push(Transfer::M(code));
+                }
+            }
+            Function::Control(function) => self.control(*function),
             Function::Tool(call) => self.tool(call),
             Function::NextTool(tool) => {
                 if let Some(transfer) = self.tools.define(*tool) {
@@ -48,23 +52,28 @@ impl Target<'_> {
         }
     }
 
-    fn m(&mut self, code: u16) {
-        // M105 chooses the second set of kv and reversal peaks, M106 the first [000:7251-7305].
-        if matches!(code, 105 | 106) {
-            for unit in self.axes.iter_mut() {
-                unit.servo.set_second_set(code == 105);
+    /// What acts here and never reaches the PLC.
+    fn control(&mut self, function: ControlFunction) {
+        match function {
+            ControlFunction::SecondServoSet(second) => {
+                for unit in self.axes.iter_mut() {
+                    unit.servo.set_second_set(second);
+                }
+            }
+            ControlFunction::ReplaceWornTools(replaces) => self.tools.replaces_worn = replaces,
+            ControlFunction::TakeLargerTools(takes) => self.tools.takes_larger = takes,
+        }
+    }
+
+    /// An M function that the operator enters: to whom it goes says its row.
+    pub fn m_by_hand(&mut self, technology: &Technology, code: u16) {
+        for deed in technology.deeds() {
+            if let Deed::Control(function) = deed {
+                self.control(function);
             }
         }
-        if matches!(code, 101 | 102) {
-            self.tools.replaces_worn = code == 101;
-        }
-        if matches!(code, 107 | 108) {
-            self.tools.takes_larger = code == 107;
-        }
-        if code <= M_MAX
-            && let Ok(code) = u8::try_from(code)
-        {
-            self.handshakes.push(Transfer::M(code));
+        if technology.output == Output::Plc {
+            self.output(&Function::M(code));
         }
     }
 

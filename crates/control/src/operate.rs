@@ -1,6 +1,7 @@
 //! The commands of the operator.
 
 use bahn_exchange::signal;
+use bahn_parameters::technology::Technology;
 use bahn_path::Axis;
 
 use crate::axes::Mover;
@@ -169,8 +170,10 @@ impl Control {
         if let Some(rpm) = self.manual.s.take() {
             target.speed(rpm, false);
         }
-        if let Some(m) = self.manual.m.take() {
-            target.output(&bahn_path::Function::M(m));
+        if let Some(m) = self.manual.m.take()
+            && let Some(technology) = Technology::of_m(self.model, m)
+        {
+            target.m_by_hand(technology, m);
         }
     }
 

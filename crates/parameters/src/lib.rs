@@ -9,7 +9,8 @@
 //! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
 //!   model: [`ParameterList::axis_parameters`], [`ParameterList::spindle_parameters`] and so on;
 //! - [`ListText`]: the text of a list, whose values change in their places;
-//! - [`conformance`]: what each function of a control does here, and what it does not.
+//! - [`conformance`]: what each function of a control does here, and what it does not;
+//! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them.
 //!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
@@ -34,6 +35,7 @@ mod meaning;
 mod message;
 mod model;
 mod settings;
+pub mod technology;
 mod text;
 
 pub use advice::Advice;
