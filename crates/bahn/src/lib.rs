@@ -138,7 +138,7 @@ impl From<HostError> for UsageError {
             HostError::SwitchedOn(_) => {
                 UsageError(format!("{error}; --fresh runs beside it without its state"))
             }
-            HostError::File(text) => UsageError(text),
+            other => UsageError(other.to_string()),
         }
     }
 }

@@ -8,7 +8,8 @@ use std::collections::VecDeque;
 
 use bahn_exchange::{Bit, Exchange, Image, Number, signal};
 
-use crate::control::LOOK_AHEAD;
+/// Elements of the path that are prepared ahead at most.
+pub(crate) const LOOK_AHEAD: usize = 512;
 
 /// A function on its way to the PLC.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,7 +161,7 @@ impl std::fmt::Display for Waiting {
 }
 
 /// The transfers in their order, one at a time.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Handshakes {
     queue: VecDeque<Transfer>,
     active: Option<Transfer>,

@@ -8,6 +8,21 @@ pub enum HostError {
     /// The folder of a state that another process has.
     #[error("{0}: the machine is switched on already")]
     SwitchedOn(String),
+    /// Too many orders wait.
+    #[error("too many orders wait")]
+    Busy,
+    /// What survives power-off cannot be stored; why.
+    #[error("{0}")]
+    NotStored(String),
+    /// The machine cannot do what it is told; why.
+    #[error("{0}")]
+    Impossible(String),
+    /// A run that is logged goes forward only.
+    #[error("a run that is logged does not go back")]
+    Logged,
+    /// What was done since a saved state is not known any more.
+    #[error("what was done since is not known any more")]
+    Forgotten,
     /// A file cannot be read, written or used; which one and why.
     #[error("{0}")]
     File(String),

@@ -169,7 +169,7 @@ impl FileLibrary {
 }
 
 impl Library for FileLibrary {
-    /// Looks for the name beside the calling program; see [`called::find`].
+    /// Looks for the name beside the calling program; see `called::find`.
     fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         let key = (name.to_owned(), caller.to_owned());
         if let Some(program) = self.found.get(&key) {

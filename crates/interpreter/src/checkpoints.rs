@@ -31,7 +31,7 @@ impl Checkpoint {
 
 /// States before the blocks whose elements are on their way. Blocks that left nothing have none, so a loop
 /// without movements does not pile them up.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Kept {
     states: VecDeque<Checkpoint>,
     /// Sequence of the last element that was handed out.

@@ -28,6 +28,7 @@ impl Library for NoLibrary {
 const CHUNKS_KEPT: usize = 128;
 
 /// The programs of a run; index 0 is the main program.
+#[derive(Clone)]
 pub(crate) struct Code {
     model: ControlModel,
     programs: Vec<Loaded>,
@@ -39,12 +40,14 @@ pub(crate) struct Code {
     growing: bool,
 }
 
+#[derive(Clone)]
 struct Loaded {
     program: Arc<Program>,
     chunks: Vec<Option<Box<Decoded>>>,
 }
 
 /// Blocks as the control takes them in.
+#[derive(Clone)]
 struct Decoded {
     chunk: Chunk,
     /// Blocks with numbers that were rounded, bit by bit.

@@ -41,8 +41,8 @@ mod status;
 mod tools;
 mod work;
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
@@ -87,9 +87,11 @@ use crate::work::Pending;
 /// }
 /// assert_eq!(ends, [10.0, 30.0]);
 /// ```
+#[derive(Clone)]
 pub struct Interpreter {
     settings: Settings,
-    library: Box<dyn Library + Send>,
+    /// Shared with all copies.
+    library: Arc<Mutex<Box<dyn Library + Send>>>,
     code: Code,
     run: Run,
     ended: Option<Ended>,
@@ -127,7 +129,7 @@ impl Interpreter {
         let (position, model) = (settings.start, settings.model);
         let mut interpreter = Interpreter {
             settings,
-            library,
+            library: Arc::new(Mutex::new(library)),
             code: Code::new(main, model),
             run,
             ended: None,
@@ -466,10 +468,10 @@ impl Interpreter {
 
     fn call_program(&mut self, name: &str) -> Result<(), Fault> {
         let caller = self.run.at.program;
-        let found = self
-            .code
-            .open(name, caller, self.library.as_mut())
-            .map_err(|reason| Fault::new(MessageId::ProgramNotFound, reason))?;
+        let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = self.code.open(name, caller, library.as_mut());
+        drop(library);
+        let found = found.map_err(|reason| Fault::new(MessageId::ProgramNotFound, reason))?;
         let Some(index) = found else {
             return Err(Fault::new(
                 MessageId::ProgramNotFound,

@@ -9,7 +9,7 @@ use crate::run::Run;
 use crate::settings::Settings;
 
 /// How far a computation is that is done beside.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) enum Pending {
     #[default]
     None,
@@ -21,6 +21,13 @@ pub(crate) enum Pending {
 
 /// Tells a computation from others, and that nobody wants it any more: dropped, it ends it.
 pub(crate) struct Wanted(Arc<AtomicBool>);
+
+/// A copy of the interpreter finds its computation lost and has it done again.
+impl Clone for Wanted {
+    fn clone(&self) -> Wanted {
+        Wanted(Arc::default())
+    }
+}
 
 impl Drop for Wanted {
     fn drop(&mut self) {

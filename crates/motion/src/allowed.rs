@@ -3,7 +3,7 @@
 use crate::braking::{Braking, ROUNDING};
 use crate::segments::Segments;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Allowed {
     /// The stop is where what is known ends.
     braking: Braking,

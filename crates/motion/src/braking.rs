@@ -14,7 +14,7 @@ use crate::segments::Segments;
 /// What part of the level may be rounding when two joints are compared: that of the sums over some thousand elements.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Braking {
     lows: VecDeque<Low>,
     /// A joint that is a stop whatever else it is.

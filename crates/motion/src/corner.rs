@@ -40,7 +40,7 @@ const SHARE: f64 = 0.8;
 const NO_CHANGE: f64 = 1e-8;
 
 /// What happens between two motions.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Joint {
     /// The path stops.
     Stop,
@@ -51,7 +51,7 @@ pub(crate) enum Joint {
 }
 
 /// A corner to pass. Its speed is known when the way to the next corner is.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Corner {
     /// Speed that both motions allow, mm/s.
     speed: f64,

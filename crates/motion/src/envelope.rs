@@ -13,7 +13,7 @@ use crate::segments::Segments;
 use crate::stretch::Wish;
 use crate::wanted::Wanted;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Envelope {
     segments: Segments,
     /// Number of the segment that is executed.

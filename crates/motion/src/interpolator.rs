@@ -26,7 +26,7 @@ use stops::Stops;
 /// cycle of time and never does. Both are called in turn, `prepare` as often as there is time for it:
 /// where it falls behind, the path comes to a stop at the end of what is known and goes on when more
 /// is. At an override that does not change the path runs as a [`Planner`](crate::Planner) plans it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Interpolator<E> {
     ring: Ring,
     cycle_s: f64,
@@ -53,7 +53,7 @@ pub struct Interpolator<E> {
     recalled: Option<Executed>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum After<E> {
     Open,
     Stop(Stop<E>),

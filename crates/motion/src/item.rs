@@ -6,7 +6,7 @@ use crate::gate::{Gate, place, wait};
 use crate::limits::{Dynamics, Slowest};
 use crate::motion::Motion;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Item {
     pub(crate) element: PathElement,
     /// Path length, mm; 0 when nothing moves.

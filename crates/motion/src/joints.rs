@@ -22,7 +22,7 @@ pub(crate) trait Caps {
 }
 
 /// The state at the end of the path that is known.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Joints {
     /// The last element waits for what comes after it.
     open: bool,

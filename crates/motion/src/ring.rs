@@ -16,7 +16,7 @@ use crate::stretch::Wish;
 /// The element that is executed, the next one and a line to its start.
 const LEAST_CAPACITY: usize = 3;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Ring {
     dynamics: Dynamics,
     items: VecDeque<Item>,

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 /// Segments by their number.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Segments {
     queue: VecDeque<Segment>,
     /// Number of the first one, and of the joint at its end.

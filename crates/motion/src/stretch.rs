@@ -38,7 +38,7 @@ impl Wish {
 
 /// Elements in a row with the same wish, up to the next stretch. Elements without length belong to the one
 /// before them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Stretch {
     /// Number of its first element.
     first: u64,
@@ -48,7 +48,7 @@ struct Stretch {
 }
 
 /// The stretches from the element on that is executed. Before the first of them nothing moves.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Stretches {
     queue: VecDeque<Stretch>,
     /// Number of the first stretch.
@@ -109,7 +109,7 @@ impl Stretches {
 }
 
 /// The way back over the stretches.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Back<'a> {
     queue: &'a VecDeque<Stretch>,
     /// Stretches that begin at the element or before it.

@@ -9,7 +9,7 @@ use crate::limits::Dynamics;
 use crate::segments::Segments;
 use crate::stretch::{Stretches, Wish};
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Wanted {
     stretches: Stretches,
     /// The stop is that of single block.

@@ -8,13 +8,15 @@
 //! - [`chapters`]: the chapters of the manuals that a citation means;
 //! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
 //!   model: [`ParameterList::axis_parameters`], [`ParameterList::spindle_parameters`] and so on;
+//! - [`ParameterSpace`]: what machine parameters have in common with other kinds, as the system and channel parameters
+//!   of a System 900, [`QParameters`];
 //! - [`ListText`]: the text of a list, whose values change in their places;
 //! - [`conformance`]: what each function of a control does here, and what it does not;
 //! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them.
 //!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
-//! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `003` the user's manual
+//! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `002` the parameter manual of the System 900, `003` the user's manual
 //! of the TNC 360. Nothing here knows what the values are used for.
 
 #![allow(
@@ -35,6 +37,7 @@ mod meaning;
 mod message;
 mod model;
 mod settings;
+mod space;
 pub mod technology;
 mod text;
 
@@ -57,5 +60,8 @@ pub use settings::{
     RestartParameters, ScaledAxes, SpeedCodes, SpindleOutput, SpindleParameters, SpindlePolarity,
     SpindleRamps, Station, StrobeTimes, Synchronization, Tapping, TappingParameters, ToolOutput,
     ToolOutputKind, ToolParameters, TravelParameters, UserParameter,
+};
+pub use space::{
+    Content, PARAMETERS_MIN, ParameterSpace, QError, QName, QParameters, QStatus, Receivers, differences,
 };
 pub use text::{Entry, ListText};

@@ -2,8 +2,11 @@
 
 use std::fmt;
 
+use crate::definition::parse_id;
 use crate::text::read_assignment;
-use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};
+use crate::{
+    Content, ControlModel, Definition, ListError, ListText, ParameterError, ParameterId, ParameterSpace,
+};
 
 /// The machine parameters of one machine: a value within its range for every parameter of the model.
 ///
@@ -143,6 +146,37 @@ impl ParameterList {
         if let Some(slot) = position.and_then(|position| self.values.get_mut(position)) {
             *slot = value;
         }
+    }
+}
+
+impl ParameterSpace for ParameterList {
+    type Name = ParameterId;
+    type Error = ParameterError;
+
+    fn name(&self, text: &str) -> Result<ParameterId, ParameterError> {
+        let id = parse_id(text.trim()).ok_or(ParameterError::NoNumber)?;
+        Definition::named(self.model, id).map(|definition| definition.id)
+    }
+
+    fn names(&self) -> impl Iterator<Item = ParameterId> {
+        Definition::all(self.model).iter().map(|definition| definition.id)
+    }
+
+    fn content(&self, name: ParameterId) -> Result<Content, ParameterError> {
+        let value = self.get(name.number, name.index.unwrap_or(0));
+        value
+            .map(Content::Number)
+            .ok_or(ParameterError::UnknownNumber(name))
+    }
+
+    fn written(&self, name: ParameterId) -> Result<String, ParameterError> {
+        let definition = Definition::named(self.model, name)?;
+        let value = self.get(name.number, name.index.unwrap_or(0));
+        Ok(definition.format_value(value.ok_or(ParameterError::UnknownNumber(name))?))
+    }
+
+    fn enter(&mut self, name: ParameterId, value: &str) -> Result<(), ParameterError> {
+        self.assign(&format!("{name}={value}")).map(|_| ())
     }
 }
 

@@ -1,6 +1,6 @@
 //! `bahn mp diff`: in which parameters two lists differ.
 
-use bahn_parameters::{Definition, ParameterList};
+use bahn_parameters::{Definition, ParameterList, differences};
 use serde::Serialize;
 
 use super::list::Row;
@@ -19,11 +19,10 @@ pub(super) fn command(options: &DiffOptions) -> Result<Outcome, UsageError> {
         Some(path) => (a, source::values(path, &source::read(path, Some(model))?)?),
         None => (ParameterList::reference(model), a),
     };
-    let differences: Vec<Difference> = Definition::all(model)
-        .iter()
-        .map(|definition| (Row::new(definition, &a), Row::new(definition, &b)))
-        .filter(|(a, b)| a.number != b.number)
-        .map(Difference::new)
+    let differences: Vec<Difference> = differences(&a, &b)
+        .into_iter()
+        .filter_map(|name| Definition::named(model, name).ok())
+        .map(|definition| Difference::new((Row::new(definition, &a), Row::new(definition, &b))))
         .collect();
     match options.format {
         Format::Json => print_json(&differences)?,

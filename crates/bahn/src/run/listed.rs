@@ -1,6 +1,17 @@
 //! What a session lists for its report.
 
+use bahn_control::{Control, Message, Shown};
+use bahn_host::Why;
+use bahn_path::BlockRef;
 use serde::Serialize;
+
+use super::executed::stop_name;
+use crate::files::short_name;
+
+/// Keys that are listed as confirmed at most.
+const CONFIRMED_MAX: usize = 1000;
+/// Messages that are listed at most.
+const MESSAGES_MAX: usize = 1000;
 
 /// A message of the control.
 #[derive(Clone, Debug, Serialize)]
@@ -30,4 +41,61 @@ pub(super) struct FailedExpectation {
     pub text: String,
     pub actual: String,
     pub time_s: f64,
+}
+
+/// The lists.
+#[derive(Default)]
+pub(super) struct Listed {
+    pub messages: Vec<Said>,
+    pub confirmed: Vec<Confirmed>,
+}
+
+impl Listed {
+    /// A message came up.
+    pub fn message(&mut self, control: &Control, shown: &Shown) {
+        if self.messages.len() >= MESSAGES_MAX {
+            return;
+        }
+        let place = match &shown.message {
+            Message::Program(error) => Some(error.detail.clone()).filter(|detail| !detail.is_empty()),
+            other => other.place(),
+        };
+        let program = shown.block.map(|block| program_name(control, block));
+        let program = program.unwrap_or_default();
+        let block = shown.block.filter(|_| !program.is_empty());
+        self.messages.push(Said {
+            time_s: shown.time_us as f64 * 1e-6,
+            text: control.message_text(&shown.message),
+            place,
+            flashing: shown.flashing,
+            block: block.map(|block| block.block),
+            program,
+        });
+    }
+
+    /// The operator pressed a key because the run waited for him.
+    pub fn confirm(&mut self, control: &Control, key: String, why: Why) {
+        if self.confirmed.len() >= CONFIRMED_MAX {
+            return;
+        }
+        let block = control.element().map(|element| element.block);
+        self.confirmed.push(Confirmed {
+            time_s: control.time_us() as f64 * 1e-6,
+            key,
+            why: match why {
+                Why::Stop => stop_name(control, block),
+                Why::Routine | Why::ToolChange => "tool change",
+            },
+            block: block.map_or(0, |block| block.block),
+        });
+    }
+}
+
+/// Name of the program of a block.
+fn program_name(control: &Control, block: BlockRef) -> String {
+    control
+        .interpreter()
+        .and_then(|run| run.program(block.program))
+        .map(|program| short_name(program).to_owned())
+        .unwrap_or_default()
 }

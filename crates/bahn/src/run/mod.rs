@@ -1,22 +1,20 @@
 //! `bahn run`: a part program on the simulated machine.
 //!
 //! - `options`: options and help text;
-//! - `session`: control and machine, cycle after cycle; `operator` who stands by, `script` what happens at
-//!   which time, `expectation` what must be so;
-//! - `background`: computations that take long;
-//! - `deviation`, `times`: what is measured; `recording`, `log`: what is written while it runs; `pace`: the
-//!   clock on the wall;
+//! - `session`: a host, cycle after cycle, with those who follow it; `script` what happens at which time, `play`
+//!   what of it is still to come, `expectation` what must be so;
+//! - `executed`: what was done of the path; `measured`: `deviation` and `times`; `listed`: messages and keys;
+//!   `recording`: signals over time;
 //! - `report`: what is said in the end.
 
-mod background;
 mod cause;
 mod deviation;
+mod executed;
 mod expectation;
 mod listed;
-mod log;
-mod operator;
+mod measured;
 mod options;
-mod pace;
+mod play;
 mod recording;
 mod report;
 mod script;
@@ -30,9 +28,11 @@ pub(crate) use options::{EXAMPLES, RunMachineOptions};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::{Checking, Control, Mode, Position0, Remembered, Setup, Signal};
-use bahn_exchange::Exchange;
-use bahn_host::{FolderPrograms, LoadedMachine, State};
+use bahn_control::{Checking, Control, Mode, Signal};
+use bahn_host::{
+    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, PowerOn, Source,
+    is_whole,
+};
 use bahn_machine::Machine;
 use bahn_workpiece::Projection;
 
@@ -46,12 +46,12 @@ use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Place, Record};
 use crate::test_run::{Outputs, print_error};
 use crate::{Outcome, UsageError, console, files, report_text, settings};
-use log::Log;
-use operator::{Attendance, Job, Operator};
+use executed::Executed;
+use play::Play;
 use recording::Recording;
 use report::{ProgramReport, Refusal, RunReport};
 use script::Script;
-use session::{Ended, Parts, Session, Writers};
+use session::{Ended, Patience, Session};
 
 /// Runs a program on a machine and reports.
 pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
@@ -69,107 +69,52 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         Ok(script) => script,
         Err(faults) => return refused(&faults, options),
     };
-    let (state, remembered, exchange) = power_on(options, &machine)?;
-    if let Some(name) = &remembered.parameter_list {
-        let list = machine.files.parameter_lists.get(name).cloned().flatten();
-        machine.parameters = list.ok_or_else(|| {
-            UsageError::new(format!(
-                "{name}, which module 9033 selected, is missing or faulty in {}",
-                machine.root.display()
-            ))
-        })?;
+    let mut power_on = power_on(options, &machine)?;
+    settings::assign(&mut power_on.parameters, &options.run.mp)?;
+    settings::say_without_effect(&power_on.parameters, &options.run.mp);
+    machine.parameters = power_on.parameters.clone();
+    let operator = operator(options, &machine, &programs);
+    let shared = Arc::clone(&programs) as Arc<dyn bahn_control::Programs>;
+    let mut host = Host::new(&machine, power_on, shared, operator);
+    if let Some(path) = &options.run.log {
+        let program = programs.main_name().unwrap_or("no program");
+        let title = format!("{}, {program}; bahn run --replay repeats it", machine.folder.name);
+        host.set_log(Box::new(LogFile::create(path, &title)?));
     }
-    if let Some(name) = &remembered.datum_table
-        && !machine.files.datum_tables.contains_key(name)
-    {
-        return Err(UsageError::new(format!(
-            "{name}, the datum table that module 9090 selected, is missing in {}",
-            folder.display()
-        )));
-    }
-    settings::assign(&mut machine.parameters, &options.run.mp)?;
-    settings::say_without_effect(&machine.parameters, &options.run.mp);
-    let mut plant = machine.plant.clone();
-    let mut log = options
-        .run
-        .log
-        .as_deref()
-        .map(|path| {
-            Log::create(
-                path,
-                &format!(
-                    "{}, {}",
-                    machine.folder.name,
-                    programs.main_name().unwrap_or("no program")
-                ),
-            )
-        })
-        .transpose()?;
     if let Some(percent) = options.run.override_percent {
-        let event = format!("override feed {percent}");
-        plant
-            .apply(&event)
-            .map_err(|error| UsageError::new(error.to_string()))?;
-        if let Some(log) = &mut log {
-            log.note(0, &event)?;
-        }
+        let deed = Deed::parse(&format!("override feed {percent}"));
+        host.act(
+            Source::Operator,
+            deed.map_err(|error| UsageError::new(error.to_string()))?,
+        )?;
     }
-    let block_time_ms = machine.parameters.model().limits().block_time_ms;
-    let mut control = Control::new(Setup {
-        parameters: machine.parameters.clone(),
-        plc: Arc::clone(&machine.plc),
-        plc_messages: machine.plc_messages.clone(),
-        plc_dialogues: machine.plc_dialogues.clone(),
-        tools: machine.tools.clone(),
-        checking: Checking {
-            strict: options.run.strict,
-            skip_unknown: options.run.skip_unknown,
-        },
-        inch_feed: options.run.inch_feed.map(Into::into),
-        programs: Arc::clone(&programs) as Arc<dyn bahn_control::Programs>,
-        files: machine.files.clone(),
-        remembered,
-        exchange,
+    let interrupt = Interrupt::on_ctrl_c();
+    host.break_off_by(interrupt.flag());
+    let cutting = (!options.output.no_graphics).then(|| {
+        let columns = options.output.resolution;
+        Cutting::new(
+            columns.map_or(Columns::BySize, Columns::Millimetres),
+            Memory::of(&options.output),
+            settings::left_hand(machine.tools.as_ref()),
+        )
     });
-    if options.run.block_time {
-        control.set_block_time((block_time_ms * 1e3) as u32);
-    }
-    control.keep_state(state.is_some());
-    let writers = Writers {
-        recording: recording(options, &control)?,
-        log,
-        outputs: Outputs::create(&options.output)?,
-        state,
+    let recording = recording(options, host.control())?;
+    let executed = Executed::new(cutting, Outputs::create(&options.output)?);
+    let patience = Patience {
+        time_us: (options.run.max_time * 1e6) as u64,
+        wait_us: (options.run.max_wait * 1e6) as u64,
     };
-    let mut session = Session::new(Parts {
-        operator: operator(options, &machine, &programs),
-        control,
-        machine: plant,
-        script,
-        writers,
-        cutting: (!options.output.no_graphics).then(|| {
-            let columns = options.output.resolution;
-            Cutting::new(
-                columns.map_or(Columns::BySize, Columns::Millimetres),
-                Memory::of(&options.output),
-                settings::left_hand(machine.tools.as_ref()),
-            )
-        }),
-        realtime: options.run.realtime,
-        max_time_s: options.run.max_time,
-        max_wait_s: options.run.max_wait,
-    });
+    if options.run.realtime {
+        host.set_clock(Clock::Wall(1.0));
+    }
+    let mut session = Session::new(host, Play::new(script), executed, recording, patience);
     let blocks = programs.main().map_or(0, |main| main.block_count());
     let mut progress = Progress::new(blocks);
-    let interrupt = Interrupt::on_ctrl_c();
     // A file that cannot be written loses no report.
     let ended = session.run(&interrupt, &mut progress);
     let ended = ended.unwrap_or_else(|error| Ended::Failed(error.to_string()));
     drop(progress);
-    let switched_off = match &mut session.writers.state {
-        Some(state) => state.flush(&session.control),
-        None => Ok(()),
-    };
+    let switched_off = session.host.store();
     // What could not be stored loses no report.
     let outcome = finish(session, ended, &machine, &programs, options, &interrupt)?;
     switched_off?;
@@ -195,7 +140,7 @@ fn load_script(
         (None, None) => return Ok(Ok(Script::default())),
     };
     let bytes = files::read_table(path)?;
-    if is_log && !log::is_whole(&bytes) {
+    if is_log && !is_whole(&bytes) {
         diagnostics::print_text(&format!(
             "warning: {}: the log is not as it was written: damaged, cut off or edited",
             path.display()
@@ -204,38 +149,34 @@ fn load_script(
     Ok(Script::of(path, &bytes, plant))
 }
 
-/// What the control remembers, or what it begins with.
-fn power_on(
-    options: &RunMachineOptions,
-    machine: &LoadedMachine,
-) -> Result<(Option<State>, Remembered, Exchange), UsageError> {
-    let begin = || Remembered {
-        datums: [Position0(machine.datum()); 3],
-        ..Remembered::default()
+/// What the control finds.
+fn power_on(options: &RunMachineOptions, machine: &LoadedMachine) -> Result<PowerOn, UsageError> {
+    let mut power_on = match options.run.fresh {
+        true => PowerOn::fresh(machine),
+        false => PowerOn::kept(machine)?,
     };
-    if options.run.fresh {
-        return Ok((None, begin(), Exchange::default()));
-    }
-    let found = State::open(&machine.root.join(&machine.folder.state))?;
-    for warning in &found.warnings {
+    for warning in &power_on.warnings {
         diagnostics::print_line(&format!("warning: {warning}"));
     }
-    let mut remembered = found.remembered.unwrap_or_else(begin);
-    if !remembered.fit_pockets(machine.tools.as_ref()) {
-        diagnostics::print_line(
-            "warning: the pockets of the tool table have changed since the last run: they count, not those that the \
-             control remembered",
-        );
-    }
-    Ok((Some(found.state), remembered, found.exchange))
+    power_on.checking = Checking {
+        strict: options.run.strict,
+        skip_unknown: options.run.skip_unknown,
+    };
+    power_on.inch_feed = options.run.inch_feed.map(Into::into);
+    power_on.block_time = options.run.block_time;
+    Ok(power_on)
 }
 
 fn operator(options: &RunMachineOptions, machine: &LoadedMachine, programs: &FolderPrograms) -> Operator {
-    let attendance = options.run.operator.unwrap_or(match &options.run {
-        run if run.replay.is_some() => Attendance::Absent,
-        run if run.script.is_some() => Attendance::Start,
-        _ => Attendance::Full,
-    });
+    let attendance = options
+        .run
+        .operator
+        .map(Attendance::from)
+        .unwrap_or(match &options.run {
+            run if run.replay.is_some() => Attendance::Absent,
+            run if run.script.is_some() => Attendance::Start,
+            _ => Attendance::Full,
+        });
     let job = programs.main_name().map(|name| Job {
         program: name.to_owned(),
         mode: if options.run.single_block {
@@ -284,12 +225,11 @@ fn finish(
     interrupt: &Interrupt,
 ) -> Result<Outcome, UsageError> {
     let model = machine.parameters.model();
-    let mut written = session.writers.finish();
-    diagnostics::print_faults(&session.failures());
-    let part = session
-        .cutting
-        .take()
-        .and_then(|cutting| cutting.finish(&mut session.record));
+    let mut written = session.finish_files();
+    diagnostics::print_faults(&session.play.failures());
+    let executed = &mut session.executed;
+    let cutting = executed.cutting.take();
+    let part = cutting.and_then(|cutting| cutting.finish(&mut executed.record));
     let removed_mm3 = part.as_ref().map(|part| part.removed_mm3());
     let end = match &ended {
         Ended::Completed => End::Completed,
@@ -306,12 +246,11 @@ fn finish(
         End::Failed(error) => Some(error.clone()),
         _ => None,
     };
-    let mut record = std::mem::replace(&mut session.record, Record::new(bahn_path::Position::UNKNOWN));
-    record.machining_time_s = session.program_us as f64 * 1e-6;
-    let run = session
-        .control
-        .interpreter()
-        .filter(|_| programs.main().is_some());
+    let record = &mut session.executed.record;
+    let mut record = std::mem::replace(record, Record::new(bahn_path::Position::UNKNOWN));
+    record.machining_time_s = session.measured.program_us as f64 * 1e-6;
+    let run = session.host.control().interpreter();
+    let run = run.filter(|_| programs.main().is_some());
     let program = match run {
         Some(run) => ProgramReport::Ran(Box::new(record.report(run, end, removed_mm3, model))),
         None => ProgramReport::Bare {
@@ -324,7 +263,7 @@ fn finish(
     }
     let mut report = RunReport::new(&session, program, &machine.folder.name, model);
     let outcome = match &ended {
-        Ended::Completed if session.failed.is_empty() => Outcome::Fine,
+        Ended::Completed if session.play.failed.is_empty() => Outcome::Fine,
         Ended::Interrupted => {
             diagnostics::print_line("interrupted: the report so far");
             Outcome::Interrupted
@@ -345,7 +284,7 @@ fn finish(
     if let Some(path) = &options.run.junit {
         let suite = programs.main_name().unwrap_or("no program");
         let stopped = failure.as_ref().map(|error| error.message.as_str());
-        written = written.and(junit::write(path, suite, &session.expectations(), stopped));
+        written = written.and(junit::write(path, suite, &session.play.expectations(), stopped));
     }
     let projection = if machine.parameters.graphics().third_angle {
         Projection::ThirdAngle
@@ -367,7 +306,7 @@ fn finish(
 /// What broke the run off.
 fn error(session: &Session, ended: &Ended) -> ErrorReport {
     use bahn_control::Message;
-    let run = session.control.interpreter();
+    let run = session.host.control().interpreter();
     let mut at = session.block().unwrap_or_default();
     let shown = match ended {
         Ended::Broken(shown) | Ended::Hangs(_, shown) => shown.as_deref(),
@@ -378,7 +317,7 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
     }
     let (message, detail) = match ended {
         Ended::Broken(Some(shown)) => {
-            let text = session.control.message_text(&shown.message);
+            let text = session.host.control().message_text(&shown.message);
             match &shown.message {
                 Message::Program(error) => (text, error.detail.clone()),
                 other => (text, other.place().unwrap_or_default()),
@@ -388,7 +327,9 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
             "the script ended the run before it was complete".to_owned(),
             String::new(),
         ),
-        Ended::Hangs(what, Some(shown)) => (session.control.message_text(&shown.message), what.clone()),
+        Ended::Hangs(what, Some(shown)) => {
+            (session.host.control().message_text(&shown.message), what.clone())
+        }
         Ended::TooLong => (
             "the time allowed is over".to_owned(),
             "--max-time allows more".to_owned(),
@@ -430,7 +371,7 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
 
 /// Says it with the block where that is known.
 fn say_failure(error: &ErrorReport, session: &Session, programs: &FolderPrograms) {
-    match (session.control.interpreter(), programs.main()) {
+    match (session.host.control().interpreter(), programs.main()) {
         (Some(run), Some(main)) if error.line > 0 => print_error(error, run, Path::new(main.name())),
         _ if error.detail.is_empty() => diagnostics::print_usage_error(&error.message),
         _ => diagnostics::print_usage_error(&format!("{}: {}", error.message, error.detail)),

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use bahn_control::Signal;
+use bahn_host::Attendance;
 use clap::{Args, ValueHint};
 
-use super::operator::Attendance;
 use crate::options::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -118,7 +118,7 @@ pub(crate) struct RunControl {
     pub replay: Option<PathBuf>,
     /// What the operator who stands by does.
     #[arg(long, value_name = "WHAT", value_enum)]
-    pub operator: Option<Attendance>,
+    pub operator: Option<AttendanceOption>,
     /// Feed override potentiometer, 0 to 150 %.
     #[arg(long = "override", value_name = "PERCENT", value_parser = override_percent)]
     pub override_percent: Option<f64>,
@@ -156,6 +156,27 @@ pub(crate) struct RunControl {
     /// Time of the machine without any movement after which a run hangs, s.
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds)]
     pub max_wait: f64,
+}
+
+/// What the operator who stands by does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum AttendanceOption {
+    /// Everything: also NC start after programmed stops, and what a tool change waits for.
+    Full,
+    /// Switches on, passes the reference marks and starts the program; then the script is alone.
+    Start,
+    /// Nothing: the script does it.
+    Absent,
+}
+
+impl From<AttendanceOption> for Attendance {
+    fn from(option: AttendanceOption) -> Attendance {
+        match option {
+            AttendanceOption::Full => Attendance::Full,
+            AttendanceOption::Start => Attendance::Start,
+            AttendanceOption::Absent => Attendance::Absent,
+        }
+    }
 }
 
 /// What is recorded.

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use bahn_control::{TestReport, TestState};
+use bahn_host::Lateness;
 use bahn_parameters::ControlModel;
 use serde::Serialize;
 
 use super::listed::{Confirmed, FailedExpectation, Said};
-use super::pace::Lateness;
 use super::session::Session;
 use super::times::Share;
 use crate::diagnostics::FileFault;
@@ -48,7 +48,7 @@ impl TestRunReport {
         TestRunReport {
             program: report.program,
             completed: report.state == TestState::Finished,
-            message: message.map(|message| session.control.message_text(message)),
+            message: message.map(|message| session.host.control().message_text(message)),
             place: message.and_then(|message| message.place()),
         }
     }
@@ -126,8 +126,8 @@ pub(super) struct RunReport {
 impl RunReport {
     pub fn new(session: &Session, program: ProgramReport, machine: &str, model: ControlModel) -> RunReport {
         let seconds = |us: u64| us as f64 * 1e-6;
-        let (sum, count, longest) = session.plc_percent;
-        let axes = session.deviation.axes.iter().map(|axis| {
+        let (sum, count, longest) = session.measured.plc_percent;
+        let axes = session.measured.deviation.axes.iter().map(|axis| {
             let linear = axis.is_linear();
             let report = AxisReport {
                 max_lag: tidy(axis.max_lag),
@@ -137,30 +137,31 @@ impl RunReport {
             };
             (axis.letter, report)
         });
-        let cause = session.deviation.cause;
+        let cause = session.measured.deviation.cause;
         RunReport {
             machine: machine.to_owned(),
             model: model.id(),
-            power_up_s: seconds(session.power_up_us),
-            reference_s: seconds(session.reference_us),
-            times: session.times.shares(),
+            power_up_s: seconds(session.measured.power_up_us),
+            reference_s: seconds(session.measured.reference_us),
+            times: session.measured.times.shares(),
             axes: axes.collect(),
-            contour_deviation_mm: tidy(session.deviation.max_mm),
+            contour_deviation_mm: tidy(session.measured.deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
             contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
             plc: PlcReport {
                 max_percent: tidy(longest),
                 mean_percent: tidy(sum / count.max(1) as f64),
             },
-            messages: session.messages.clone(),
-            confirmed: session.confirmed.clone(),
+            messages: session.listed.messages.clone(),
+            confirmed: session.listed.confirmed.clone(),
             waits_for: None,
-            failed_expectations: session.failed.clone(),
+            failed_expectations: session.play.failed.clone(),
             test_run: session
-                .control
+                .host
+                .control()
                 .test_report()
                 .map(|report| TestRunReport::of(session, report)),
-            realtime: session.pace.as_ref().map(|pace| pace.lateness),
+            realtime: session.host.lateness(),
             program,
         }
     }

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_control::Command;
-use bahn_host::decode;
+use bahn_host::{Deed, DeedError, decode};
 use bahn_machine::{Event, Machine};
 
 use super::expectation::Expectation;
@@ -26,10 +25,8 @@ pub(super) enum Base {
 /// What happens.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Action {
-    /// To the machine.
-    Event(Event, String),
-    /// To the control.
-    Command(Command),
+    /// Something is done.
+    Do(Deed),
     /// Nothing; something must be so.
     Expect(Expectation),
     /// The run ends.
@@ -217,33 +214,17 @@ fn read_action(text: &str, machine: &mut Machine) -> Result<Action, String> {
         "end" if rest.trim().is_empty() => return Ok(Action::End),
         _ => {}
     }
-    // `key 107` is a key of the keyboard, `key NC_START tap` one of the panel; `handwheel X 3` chooses the axis
-    // of the handwheel, `handwheel 500` turns it.
-    let is_command = match word {
-        "key" => rest.trim().parse::<u8>().is_ok(),
-        "handwheel" => rest.trim().starts_with(|first: char| first.is_ascii_alphabetic()),
-        _ => false,
-    };
-    let is_event = Event::WORDS.contains(&word) && !is_command;
-    if !is_event {
-        return text.parse().map(Action::Command).map_err(|error| {
-            if error.to_string().ends_with("is no command") {
-                format!(
-                    "`{word}` is no event and no command; events are {}, expect, end; commands those of \
-                     `bahn machine list`",
-                    Event::WORDS.join(", ")
-                )
-            } else {
-                error.to_string()
-            }
-        });
+    let deed = Deed::parse(text).map_err(|error| match error {
+        DeedError::Unknown(word) => format!(
+            "`{word}` is no event and no command; events are {}, expect, end; commands those of `bahn machine list`",
+            Event::WORDS.join(", ")
+        ),
+        DeedError::Wrong(what) => what,
+    })?;
+    if let Deed::Event(event, _) = &deed {
+        machine.act(event).map_err(|error| error.to_string())?;
     }
-    let event = Event::parse(text).map_err(|error| error.to_string())?;
-    machine.act(&event).map_err(|error| error.to_string())?;
-    Ok(Action::Event(
-        event,
-        text.split_whitespace().collect::<Vec<_>>().join(" "),
-    ))
+    Ok(Action::Do(deed))
 }
 
 /// A line without what stands behind ; or # outside quotes and words.
@@ -259,6 +240,7 @@ fn without_comment(line: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
+    use bahn_control::Command;
     use proptest::prelude::*;
 
     use super::*;
@@ -299,7 +281,10 @@ mod tests {
                 (PowerOn, 12_000_000)
             ]
         );
-        assert_eq!(script.lines[3].action, Action::Command(Command::Key(107)));
+        assert_eq!(
+            script.lines[3].action,
+            Action::Do(Deed::Command(Command::Key(107)))
+        );
     }
 
     #[test]
@@ -310,9 +295,9 @@ mod tests {
         assert_eq!(
             actions,
             [
-                Action::Command(Command::Handwheel(bahn_path::Axis::X, 3)),
-                Action::Event(Event::Handwheel(-500), turn),
-                Action::Command(Command::Test("OTHER.H".into()))
+                Action::Do(Deed::Command(Command::Handwheel(bahn_path::Axis::X, 3))),
+                Action::Do(Deed::Event(Event::Handwheel(-500), turn)),
+                Action::Do(Deed::Command(Command::Test("OTHER.H".into())))
             ]
         );
         let faults = read("1: handwheel X 11").unwrap_err();

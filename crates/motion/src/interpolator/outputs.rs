@@ -8,7 +8,7 @@ use crate::drive::{FunctionOutput, Place};
 use crate::gate::{Gate, place};
 use crate::item::Item;
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Outputs {
     queue: VecDeque<FunctionOutput>,
     /// Functions along the current element up to this length are output, mm.

@@ -6,7 +6,7 @@ use crate::drive::Drive;
 use crate::item::Item;
 use crate::ring::Ring;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Stops {
     single_block: bool,
     before: Option<u64>,

@@ -1,26 +1,26 @@
 //! Long computations of the control on a thread of their own: the machine goes on, or Ctrl-C counts, meanwhile.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, sync_channel};
 use std::thread::Builder;
 use std::time::Duration;
 
 use bahn_control::{Control, Done, Work};
 
-use crate::interrupt::Interrupt;
-
 /// How often it is looked whether the run is to end.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// What computes beside.
 #[derive(Default)]
-pub(super) struct Background {
+pub(crate) struct Background {
     result: Option<Receiver<Done>>,
 }
 
 impl Background {
     /// Lets the control interpret and plan ahead. With the clock on the wall the machine goes on while
-    /// something is computed; otherwise time stands still, so that every run is the same.
-    pub fn prepare(&mut self, control: &mut Control, realtime: bool, interrupt: &Interrupt) {
+    /// something is computed; otherwise time stands still, so that every run is the same, but for a run that is
+    /// to be broken off.
+    pub fn prepare(&mut self, control: &mut Control, realtime: bool, break_off: &AtomicBool) {
         loop {
             control.prepare();
             if self.result.is_none()
@@ -44,7 +44,7 @@ impl Background {
                 }
             } else {
                 match result.recv_timeout(PATIENCE) {
-                    Err(RecvTimeoutError::Timeout) if interrupt.is_requested() => return,
+                    Err(RecvTimeoutError::Timeout) if break_off.load(Ordering::Relaxed) => return,
                     Err(RecvTimeoutError::Timeout) => continue,
                     other => other.ok(),
                 }

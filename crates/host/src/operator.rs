@@ -6,6 +6,9 @@ use bahn_exchange::signal;
 use bahn_machine::OperatorKeys;
 use bahn_parameters::MessageId;
 
+use crate::deed::Deed;
+use crate::notice::Why;
+
 /// Between two things that he does, µs.
 const PAUSE_US: u64 = 500_000;
 /// NC start between two blocks of single block, µs: a key must have been released.
@@ -16,8 +19,8 @@ const PATIENCE_US: u64 = 5_000_000;
 const CHANGE_US: u64 = 1_500_000;
 
 /// How much he does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Attendance {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Attendance {
     /// Everything: also NC start after programmed stops, and what a tool change waits for.
     Full,
     /// Switches on, passes the reference marks and starts the program; then the script is alone.
@@ -28,7 +31,7 @@ pub(crate) enum Attendance {
 
 /// How far he is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Phase {
+pub enum Phase {
     /// Until the loops are closed.
     PowerUp,
     /// Until all reference marks are passed.
@@ -39,43 +42,41 @@ pub(super) enum Phase {
     Ready,
 }
 
-/// What he does now.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Deed {
-    Command(Command),
-    /// Taps a key of the panel.
-    Key(String, Why),
-}
-
-/// Why he presses a key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Why {
-    /// Voltage, reference run, start of the program, next block of single block.
-    Routine,
-    /// A programmed stop.
-    Stop,
-    /// A tool change waits for him.
-    ToolChange,
-}
-
 /// What he starts.
-pub(super) struct Job {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// The name of the program.
     pub program: String,
+    /// Full sequence or single block.
     pub mode: Mode,
+    /// The block to start at, when it is not the first.
     pub start_block: Option<u32>,
 }
 
-pub(super) struct Operator {
+impl Job {
+    /// A program from its beginning, in full sequence.
+    pub fn whole(program: &str) -> Job {
+        Job {
+            program: program.to_owned(),
+            mode: Mode::FullSequence,
+            start_block: None,
+        }
+    }
+}
+
+/// The operator who stands by.
+#[derive(Clone, Debug)]
+pub struct Operator {
     attendance: Attendance,
     keys: OperatorKeys,
     job: Option<Job>,
-    pub phase: Phase,
+    phase: Phase,
     /// When he did something last.
     acted_us: u64,
     /// The steps of choosing the program that are done.
     chosen: u8,
     /// NC start was pressed for the program.
-    pub started: bool,
+    started: bool,
     /// The state of the run, and since when.
     state: (RunState, u64),
     /// Since when a tool change waits, and how many of its keys were pressed.
@@ -83,6 +84,7 @@ pub(super) struct Operator {
 }
 
 impl Operator {
+    /// An operator with the keys of his machine.
     pub fn new(attendance: Attendance, keys: OperatorKeys, job: Option<Job>) -> Operator {
         Operator {
             attendance,
@@ -97,13 +99,23 @@ impl Operator {
         }
     }
 
+    /// How far he is.
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// NC start was pressed for the program.
+    pub fn has_started(&self) -> bool {
+        self.started
+    }
+
     /// There is a program to start.
     pub fn has_job(&self) -> bool {
         self.job.is_some()
     }
 
     /// What he does in this cycle.
-    pub fn act(&mut self, control: &Control) -> Option<Deed> {
+    pub(crate) fn act(&mut self, control: &Control) -> Option<(Deed, Why)> {
         self.follow(control);
         if self.attendance == Attendance::Absent {
             return None;
@@ -113,7 +125,7 @@ impl Operator {
         let deed = match self.phase {
             Phase::PowerUp if waited >= PAUSE_US => self.power_up(control),
             Phase::Reference if waited >= 2 * PAUSE_US && control.stands() => {
-                Some(Deed::Key(self.keys.start.clone(), Why::Routine))
+                Some((Deed::tap(&self.keys.start), Why::Routine))
             }
             Phase::Program if !self.started && waited >= PAUSE_US => self.choose(),
             Phase::Program if self.attendance == Attendance::Full => self.stand_by(control, now, waited),
@@ -147,22 +159,22 @@ impl Operator {
         }
     }
 
-    fn power_up(&self, control: &Control) -> Option<Deed> {
+    fn power_up(&self, control: &Control) -> Option<(Deed, Why)> {
         let shows = |id| {
             let message = Message::Plain(id);
             control.shown().iter().any(|shown| shown.message == message)
         };
         if shows(MessageId::PowerInterrupted) {
-            return Some(Deed::Command(Command::Ce));
+            return Some((Deed::Command(Command::Ce), Why::Routine));
         }
         let voltage = self.keys.control_voltage.clone();
         voltage
             .filter(|_| shows(MessageId::RelayExtDcVoltageMissing))
-            .map(|key| Deed::Key(key, Why::Routine))
+            .map(|key| (Deed::tap(&key), Why::Routine))
     }
 
     /// Mode, program, start block, then NC start.
-    fn choose(&mut self) -> Option<Deed> {
+    fn choose(&mut self) -> Option<(Deed, Why)> {
         let job = self.job.as_ref()?;
         loop {
             self.chosen += 1;
@@ -175,15 +187,15 @@ impl Operator {
                 },
                 _ => {
                     self.started = true;
-                    return Some(Deed::Key(self.keys.start.clone(), Why::Routine));
+                    return Some((Deed::tap(&self.keys.start), Why::Routine));
                 }
             };
-            return Some(Deed::Command(command));
+            return Some((Deed::Command(command), Why::Routine));
         }
     }
 
-    fn stand_by(&mut self, control: &Control, now: u64, waited: u64) -> Option<Deed> {
-        let start = |why| Some(Deed::Key(self.keys.start.clone(), why));
+    fn stand_by(&mut self, control: &Control, now: u64, waited: u64) -> Option<(Deed, Why)> {
+        let start = |why| Some((Deed::tap(&self.keys.start), why));
         let (state, since) = self.state;
         let waited = waited.min(now.saturating_sub(since));
         match state {
@@ -206,6 +218,6 @@ impl Operator {
             return None;
         }
         self.change = Some((since, pressed + 1));
-        Some(Deed::Key(key.clone(), Why::ToolChange))
+        Some((Deed::tap(key), Why::ToolChange))
     }
 }

@@ -1,0 +1,398 @@
+//! A machine that is switched on.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use bahn_control::{Control, Programs, Setup, Snapshot};
+use bahn_interpreter::Warning;
+use bahn_machine::Machine;
+use bahn_path::PathElement;
+
+use crate::background::Background;
+use crate::deed::{Answer, Deed, Operable, Source};
+use crate::error::HostError;
+use crate::feed::{Feed, Reader};
+use crate::journal::{Given, Journal};
+use crate::log::Sink;
+use crate::machine_folder::{LoadedMachine, State};
+use crate::notice::{Before, Notice, Stamped, Why};
+use crate::operator::Operator;
+use crate::orders::{Desk, Waiting, When};
+use crate::pace::{Clock, Lateness, Pace};
+use crate::power_on::PowerOn;
+
+/// Notices that wait for slow readers.
+const NOTICES: usize = 1024;
+/// Snapshots that wait for slow readers.
+const SNAPSHOTS: usize = 256;
+
+/// Control and plant, driven cycle by cycle, observed, and kept over power-off.
+///
+/// [`Host::step`] is one contour cycle: what is due is done, the operator acts, the control prepares and spends
+/// the cycle, what must survive is stored, and what has changed is told. The same machine and the same deeds at
+/// the same times give the same bits, but for computations that a [`Clock::Wall`] does not wait for.
+pub struct Host<P = Machine> {
+    pub(crate) control: Control,
+    pub(crate) plant: P,
+    pub(crate) operator: Operator,
+    pub(crate) waiting: Waiting,
+    pub(crate) before: Before,
+    pub(crate) restart: Option<String>,
+    pub(crate) journal: Journal,
+    pub(crate) background: Background,
+    /// What was is repeated: nobody is told, and nothing is stored but in the end.
+    pub(crate) repeats: bool,
+    desk: Desk,
+    state: Option<State>,
+    sink: Option<Box<dyn Sink + Send>>,
+    clock: Clock,
+    pace: Option<Pace>,
+    break_off: Arc<AtomicBool>,
+    notices: Feed<Stamped>,
+    snapshots: Feed<Snapshot>,
+    /// Time between two snapshots, µs, and when the next one is due.
+    snapshot_us: Option<(u64, u64)>,
+}
+
+impl Host {
+    /// Switches on the simulated machine of a folder.
+    pub fn new(
+        machine: &LoadedMachine,
+        power_on: PowerOn,
+        programs: Arc<dyn Programs>,
+        operator: Operator,
+    ) -> Host {
+        Host::with_plant(machine, machine.plant.clone(), power_on, programs, operator)
+    }
+}
+
+impl<P: Operable> Host<P> {
+    /// Switches on the control of a folder with a plant of one's own.
+    pub fn with_plant(
+        machine: &LoadedMachine,
+        plant: P,
+        power_on: PowerOn,
+        programs: Arc<dyn Programs>,
+        operator: Operator,
+    ) -> Host<P> {
+        let block_time_ms = power_on.parameters.model().limits().block_time_ms;
+        let mut control = Control::new(Setup {
+            parameters: power_on.parameters,
+            plc: Arc::clone(&machine.plc),
+            plc_messages: machine.plc_messages.clone(),
+            plc_dialogues: machine.plc_dialogues.clone(),
+            tools: machine.tools.clone(),
+            checking: power_on.checking,
+            inch_feed: power_on.inch_feed,
+            programs,
+            files: machine.files.clone(),
+            remembered: power_on.remembered,
+            exchange: power_on.exchange,
+        });
+        if power_on.block_time {
+            control.set_block_time((block_time_ms * 1e3) as u32);
+        }
+        control.keep_state(power_on.state.is_some());
+        control.defer_work();
+        Host {
+            control,
+            plant,
+            operator,
+            waiting: Waiting::default(),
+            before: Before::default(),
+            restart: None,
+            journal: Journal::default(),
+            background: Background::default(),
+            repeats: false,
+            desk: Desk::default(),
+            state: power_on.state,
+            sink: None,
+            clock: Clock::Free,
+            pace: None,
+            break_off: Arc::default(),
+            notices: Feed::new(NOTICES),
+            snapshots: Feed::new(SNAPSHOTS),
+            snapshot_us: None,
+        }
+    }
+
+    /// One contour cycle: [`Host::begin`] and [`Host::cycle`].
+    ///
+    /// # Errors
+    /// When the log or what survives power-off cannot be written. The machine can go on all the same.
+    pub fn step(&mut self) -> Result<(), HostError> {
+        self.begin()?;
+        self.cycle()
+    }
+
+    /// Does what is due before the cycle, and lets the operator act.
+    ///
+    /// # Errors
+    /// When the log cannot be written.
+    pub fn begin(&mut self) -> Result<(), HostError> {
+        while let Some(order) = self.next_order() {
+            let now = self.control.time_us();
+            self.journal.add(now, Given::Order(order.clone()));
+            self.take(order);
+        }
+        while let Some(order) = self.waiting.due(self.control.time_us()) {
+            self.execute(order.source, order.deed)?;
+        }
+        if let Some((deed, why)) = self.operator.act(&self.control) {
+            if let (Deed::Event(bahn_machine::Event::Key(key, _), _), Why::Stop | Why::ToolChange) =
+                (&deed, why)
+            {
+                let key = key.clone();
+                self.tell(Notice::Confirmed { key, why });
+            }
+            self.execute(Source::Operator, deed)?;
+        }
+        Ok(())
+    }
+
+    /// Spends a contour cycle, stores what must survive, tells what has changed, and waits for the clock.
+    ///
+    /// # Errors
+    /// [`HostError::NotStored`].
+    pub fn cycle(&mut self) -> Result<(), HostError> {
+        let beside = self.pace.is_some() && !self.repeats;
+        self.background
+            .prepare(&mut self.control, beside, &self.break_off);
+        self.control.cycle(&mut self.plant);
+        if let Some(list) = self.control.take_restart() {
+            self.tell(Notice::Restart(list.clone()));
+            self.restart = Some(list);
+        }
+        let kept = self.keep();
+        self.look();
+        if let Some(pace) = self.pace.as_mut().filter(|_| !self.repeats) {
+            pace.cycle(self.control.time_us());
+        }
+        kept
+    }
+
+    /// Does something at once, between two cycles.
+    ///
+    /// # Errors
+    /// When the log cannot be written.
+    pub fn act(&mut self, source: Source, deed: Deed) -> Result<Answer, HostError> {
+        let now = self.control.time_us();
+        self.journal.add(now, Given::AtOnce(source.clone(), deed.clone()));
+        self.execute(source, deed)
+    }
+
+    /// Gives an order; [`Host::desk`] takes them from any thread.
+    ///
+    /// # Errors
+    /// [`HostError::Busy`] when too many wait.
+    pub fn order(&self, source: Source, when: When, deed: Deed) -> Result<(), HostError> {
+        self.desk.give(source, when, deed)
+    }
+
+    /// Where others give orders.
+    pub fn desk(&self) -> Desk {
+        self.desk.clone()
+    }
+
+    /// What was given at the desk. Of the past nobody orders anything more.
+    fn next_order(&self) -> Option<crate::orders::Order> {
+        if self.repeats { None } else { self.desk.take() }
+    }
+
+    /// An order that finds no place among those that wait is answered at once.
+    pub(crate) fn take(&mut self, order: crate::orders::Order) {
+        let (source, deed) = (order.source.clone(), order.deed.clone());
+        if !self.waiting.add(order, self.control.time_us()) {
+            let answer = Answer::Impossible(HostError::Busy.to_string());
+            self.tell(Notice::Given(source, deed, answer));
+        }
+    }
+
+    pub(crate) fn execute(&mut self, source: Source, deed: Deed) -> Result<Answer, HostError> {
+        if let Some(sink) = &mut self.sink {
+            sink.note(self.control.time_us(), &source, &deed.to_string())?;
+        }
+        let answer = match &deed {
+            Deed::Command(command) => match self.control.command(command.clone()) {
+                true => Answer::Done,
+                false => Answer::Refused,
+            },
+            Deed::Event(event, _) => match self.plant.operate(event) {
+                Ok(()) => Answer::Done,
+                Err(what) => Answer::Impossible(what),
+            },
+        };
+        self.tell(Notice::Given(source, deed, answer.clone()));
+        Ok(answer)
+    }
+
+    /// Stores what the control waits for at once, everything else now and then.
+    fn keep(&mut self) -> Result<(), HostError> {
+        let waits = self.control.unsaved().is_some();
+        if self.repeats {
+            if waits {
+                self.control.stored();
+            }
+            return Ok(());
+        }
+        let Some(state) = &mut self.state else {
+            return Ok(());
+        };
+        if let Err(error) = state.keep(&mut self.control) {
+            self.tell(Notice::Fault(error.to_string()));
+            return Err(HostError::NotStored(error.to_string()));
+        }
+        if waits {
+            self.tell(Notice::Stored);
+        }
+        Ok(())
+    }
+
+    /// Tells what has changed, and takes a snapshot when one is due.
+    fn look(&mut self) {
+        let time_us = self.control.time_us();
+        let (notices, repeats) = (&self.notices, self.repeats);
+        self.before.compare(&mut self.control, |notice| {
+            if !repeats {
+                notices.put(|_| Stamped { time_us, notice });
+            }
+        });
+        if let Some((every_us, due_us)) = self.snapshot_us.as_mut().filter(|_| !repeats)
+            && time_us >= *due_us
+        {
+            *due_us = time_us + *every_us;
+            let control = &self.control;
+            self.snapshots.put(|oldest| match oldest {
+                Some(oldest) => control.snapshot_again(oldest),
+                None => control.snapshot(),
+            });
+        }
+    }
+
+    pub(crate) fn tell(&self, notice: Notice) {
+        if !self.repeats {
+            let time_us = self.control.time_us();
+            self.notices.put(|_| Stamped { time_us, notice });
+        }
+    }
+
+    /// Stores everything: the machine is switched off, or is where it was before.
+    ///
+    /// # Errors
+    /// [`HostError::NotStored`].
+    pub fn store(&mut self) -> Result<(), HostError> {
+        match &mut self.state {
+            Some(state) => state
+                .flush(&self.control)
+                .map_err(|error| HostError::NotStored(error.to_string())),
+            None => Ok(()),
+        }
+    }
+
+    /// The control.
+    pub fn control(&self) -> &Control {
+        &self.control
+    }
+
+    /// The plant.
+    pub fn plant(&self) -> &P {
+        &self.plant
+    }
+
+    /// The operator who stands by.
+    pub fn operator(&self) -> &Operator {
+        &self.operator
+    }
+
+    /// The list of machine parameters with which the control is to be started anew.
+    pub fn restart(&self) -> Option<&str> {
+        self.restart.as_deref()
+    }
+
+    /// A reader of what happens from now on.
+    pub fn notices(&self) -> Reader<Stamped> {
+        self.notices.reader()
+    }
+
+    /// A reader of the snapshots from now on; see [`Host::take_snapshots`].
+    pub fn snapshots(&self) -> Reader<Snapshot> {
+        self.snapshots.reader()
+    }
+
+    /// Takes a snapshot every so many µs of the machine from now on; 0 is every contour cycle.
+    pub fn take_snapshots(&mut self, every_us: u64) {
+        self.snapshot_us = Some((every_us, self.control.time_us()));
+    }
+
+    /// Runs by another clock from now on. Planning ahead and the cycle share the control, and so a thread.
+    pub fn set_clock(&mut self, clock: Clock) {
+        self.clock = clock;
+        self.pace = Pace::of(clock, self.control.time_us());
+    }
+
+    /// The clock begins anew: the machine is at another time.
+    pub(crate) fn reset_clock(&mut self) {
+        self.set_clock(self.clock);
+        if let Some((_, due_us)) = &mut self.snapshot_us {
+            *due_us = self.control.time_us();
+        }
+    }
+
+    /// How well the pace of the wall was kept; `None` where the machine runs freely.
+    pub fn lateness(&self) -> Option<Lateness> {
+        self.pace.as_ref().map(|pace| pace.lateness)
+    }
+
+    /// Notes what is done from now on.
+    pub fn set_log(&mut self, sink: Box<dyn Sink + Send>) {
+        self.sink = Some(sink);
+    }
+
+    /// Notes something that is no deed.
+    ///
+    /// # Errors
+    /// When the log cannot be written.
+    pub fn remark(&mut self, source: &Source, what: &str) -> Result<(), HostError> {
+        match &mut self.sink {
+            Some(sink) => sink.note(self.control.time_us(), source, what),
+            None => Ok(()),
+        }
+    }
+
+    pub(crate) fn is_logged(&self) -> bool {
+        self.sink.is_some()
+    }
+
+    /// Completes the log.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn finish_log(&mut self) -> Result<(), HostError> {
+        self.sink.take().map_or(Ok(()), |mut sink| sink.finish())
+    }
+
+    /// While this is set, nothing waits for a computation that takes long.
+    pub fn break_off_by(&mut self, flag: Arc<AtomicBool>) {
+        self.break_off = flag;
+    }
+
+    /// Keeps the path elements of runs that begin from now on, for [`Host::take_path`].
+    pub fn keep_path(&mut self) {
+        self.control.keep_path(true);
+    }
+
+    /// The path elements that were prepared since the last call, in workpiece coordinates.
+    pub fn take_path(&mut self) -> Vec<PathElement> {
+        self.control.take_path()
+    }
+
+    /// The first element that is executed no more, of those that were taken: see [`Control::take_dropped_path`].
+    pub fn take_dropped_path(&mut self) -> Option<u64> {
+        self.control.take_dropped_path()
+    }
+
+    /// The interpreter's warnings since the last call.
+    pub fn take_warnings(&mut self) -> Vec<Warning> {
+        self.control.take_warnings()
+    }
+}

@@ -1,0 +1,66 @@
+//! What was given since power-on, and when: given again at these times it repeats the run.
+
+use std::collections::VecDeque;
+
+use crate::deed::{Deed, Source};
+use crate::orders::Order;
+
+/// Entries that are known at most; the oldest are forgotten.
+const GIVEN_MAX: usize = 100_000;
+
+/// How something was given.
+#[derive(Clone, Debug)]
+pub(crate) enum Given {
+    /// By whoever drives the host, at once.
+    AtOnce(Source, Deed),
+    /// At the desk.
+    Order(Order),
+}
+
+#[derive(Debug, Default)]
+pub(crate) struct Journal {
+    given: VecDeque<(u64, Given)>,
+    /// Number of the first one.
+    first: u64,
+}
+
+impl Journal {
+    pub fn add(&mut self, time_us: u64, given: Given) {
+        if self.given.len() == GIVEN_MAX {
+            self.given.pop_front();
+            self.first += 1;
+        }
+        self.given.push_back((time_us, given));
+    }
+
+    /// Number of the next entry.
+    pub fn end(&self) -> u64 {
+        self.first + self.given.len() as u64
+    }
+
+    /// Takes all entries from a number on; `None` when some of them are not known any more.
+    pub fn split_off(&mut self, entry: u64) -> Option<VecDeque<(u64, Given)>> {
+        let place = usize::try_from(entry.checked_sub(self.first)?).ok()?;
+        (place <= self.given.len()).then(|| self.given.split_off(place))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    #[test]
+    fn what_is_forgotten_is_not_repeated() {
+        let mut journal = Journal::default();
+        for time in 0..GIVEN_MAX as u64 + 2 {
+            journal.add(time, Given::AtOnce(Source::Script, Deed::tap("a")));
+        }
+        assert!(journal.split_off(1).is_none());
+        let since = journal.split_off(GIVEN_MAX as u64).unwrap();
+        let times: Vec<u64> = since.iter().map(|(time, _)| *time).collect();
+        assert_eq!(times, [GIVEN_MAX as u64, GIVEN_MAX as u64 + 1]);
+        assert_eq!(journal.end(), GIVEN_MAX as u64);
+        assert!(journal.split_off(journal.end() + 1).is_none());
+    }
+}

@@ -1,0 +1,101 @@
+//! What happens while a machine is on, told once when it happens.
+
+use bahn_control::{Control, Message, Mode, RunState, Shown};
+use bahn_path::BlockRef;
+
+use crate::deed::{Answer, Deed, Source};
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Notice {
+    /// A message came up.
+    Shown(Shown),
+    /// A message is shown no more.
+    Cleared(Message),
+    /// The run is in another state.
+    Run(RunState),
+    /// The run has come to the end of its program.
+    Ended,
+    /// Another block is executed.
+    Block(Option<BlockRef>),
+    /// The operating mode is another one.
+    Mode(Mode),
+    /// Something was done, and what came of it.
+    Given(Source, Deed, Answer),
+    /// The operator pressed a key because the run waited for him.
+    Confirmed {
+        /// The key.
+        key: String,
+        /// Why.
+        why: Why,
+    },
+    /// Module 9033 has selected this list of machine parameters: the control is to be started anew with it.
+    Restart(String),
+    /// What a tool change, a datum or the PLC changed is on the medium.
+    Stored,
+    /// Something keeps the machine from going on; in words.
+    Fault(String),
+    /// An earlier moment was gone back to: what comes now follows from it.
+    Restored,
+}
+
+/// Why the operator presses a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// Voltage, reference run, start of the program, next block of single block.
+    Routine,
+    /// A programmed stop.
+    Stop,
+    /// A tool change waits for him.
+    ToolChange,
+}
+
+/// A notice with its time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stamped {
+    /// Since power-on, µs.
+    pub time_us: u64,
+    /// What happened.
+    pub notice: Notice,
+}
+
+/// What was so after the last cycle.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Before {
+    mode: Mode,
+    run: RunState,
+    ended: bool,
+    block: Option<BlockRef>,
+    shown: Vec<Message>,
+}
+
+impl Before {
+    /// Tells what a cycle has changed.
+    pub fn compare(&mut self, control: &mut Control, mut tell: impl FnMut(Notice)) {
+        for shown in control.take_messages() {
+            tell(Notice::Shown(shown));
+        }
+        let shown = control.shown();
+        let is_same = |message: &Message| shown.iter().any(|shown| shown.message == *message);
+        if self.shown.len() != shown.len() || !self.shown.iter().all(is_same) {
+            let cleared = self.shown.iter().filter(|message| !is_same(message));
+            cleared.for_each(|message| tell(Notice::Cleared(message.clone())));
+            self.shown = shown.iter().map(|shown| shown.message.clone()).collect();
+        }
+        let (mode, run, ended) = (control.mode(), control.run_state(), control.has_ended());
+        if std::mem::replace(&mut self.mode, mode) != mode {
+            tell(Notice::Mode(mode));
+        }
+        if std::mem::replace(&mut self.run, run) != run {
+            tell(Notice::Run(run));
+        }
+        let block = control.element().map(|element| element.block);
+        let block = block.filter(|_| run != RunState::Idle);
+        if std::mem::replace(&mut self.block, block) != block {
+            tell(Notice::Block(block));
+        }
+        if !std::mem::replace(&mut self.ended, ended) && ended {
+            tell(Notice::Ended);
+        }
+    }
+}

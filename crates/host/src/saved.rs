@@ -1,0 +1,155 @@
+//! Moments that can be gone back to.
+
+use bahn_control::Control;
+
+use crate::background::Background;
+use crate::deed::Operable;
+use crate::error::HostError;
+use crate::host::Host;
+use crate::journal::Given;
+use crate::notice::{Before, Notice};
+use crate::operator::Operator;
+use crate::orders::Waiting;
+
+/// Control, plant, operator and what is ordered, as they were.
+#[derive(Clone)]
+pub struct Saved<P> {
+    control: Control,
+    plant: P,
+    operator: Operator,
+    waiting: Waiting,
+    before: Before,
+    restart: Option<String>,
+    /// The first entry of the journal behind it.
+    entry: u64,
+}
+
+impl<P> Saved<P> {
+    /// When it was, µs since power-on.
+    pub fn time_us(&self) -> u64 {
+        self.control.time_us()
+    }
+}
+
+impl<P: Operable + Clone> Host<P> {
+    /// Everything as it is now.
+    pub fn save(&self) -> Saved<P> {
+        Saved {
+            control: self.control.clone(),
+            plant: self.plant.clone(),
+            operator: self.operator.clone(),
+            waiting: self.waiting.clone(),
+            before: self.before.clone(),
+            restart: self.restart.clone(),
+            entry: self.journal.end(),
+        }
+    }
+
+    /// Goes back to a moment. What was given since is forgotten, what is told goes on after
+    /// [`Notice::Restored`], and what survives power-off is that of the moment.
+    ///
+    /// # Errors
+    /// [`HostError::Logged`], [`HostError::NotStored`].
+    pub fn restore(&mut self, saved: &Saved<P>) -> Result<(), HostError> {
+        self.replay(saved, saved.time_us())
+    }
+
+    /// Goes back to a moment and repeats what was done since, until a time, µs since power-on, or as far as the
+    /// machine had come. What was given later is forgotten.
+    ///
+    /// # Errors
+    /// [`HostError::Logged`], [`HostError::Forgotten`], [`HostError::NotStored`]. In the first two cases
+    /// everything stays as it is.
+    pub fn replay(&mut self, saved: &Saved<P>, time_us: u64) -> Result<(), HostError> {
+        if self.is_logged() {
+            return Err(HostError::Logged);
+        }
+        let mut given = self.journal.split_off(saved.entry).ok_or(HostError::Forgotten)?;
+        let end_us = time_us.min(self.control.time_us());
+        self.go_back(saved);
+        self.repeats = true;
+        let repeated = loop {
+            let now = self.control.time_us();
+            if now >= end_us {
+                break Ok(());
+            }
+            while given.front().is_some_and(|(time, _)| *time <= now)
+                && let Some((_, entry)) = given.pop_front()
+            {
+                self.journal.add(now, entry.clone());
+                match entry {
+                    Given::AtOnce(source, deed) => drop(self.execute(source, deed)),
+                    Given::Order(order) => self.take(order),
+                }
+            }
+            if let Err(error) = self.step() {
+                break Err(error);
+            }
+            // Whoever follows the path has it already.
+            drop((self.take_dropped_path(), self.take_path(), self.take_warnings()));
+        };
+        self.repeats = false;
+        self.reset_clock();
+        self.tell(Notice::Restored);
+        repeated.and_then(|()| self.store())
+    }
+
+    fn go_back(&mut self, saved: &Saved<P>) {
+        self.control = saved.control.clone();
+        self.plant = saved.plant.clone();
+        self.operator = saved.operator.clone();
+        self.waiting = saved.waiting.clone();
+        self.before = saved.before.clone();
+        self.restart = saved.restart.clone();
+        // A computation that is on its way belongs to the control that is left.
+        self.background = Background::default();
+    }
+}
+
+/// Saved moments of a run at regular times, at most so many: when there are more, every other one goes and the
+/// times between them double.
+pub struct Timeline<P> {
+    moments: Vec<Saved<P>>,
+    every_us: u64,
+    most: usize,
+}
+
+impl<P: Operable + Clone> Timeline<P> {
+    /// Saves every so many µs of the machine, at most so many moments and at least two.
+    pub fn new(every_us: u64, most: usize) -> Timeline<P> {
+        Timeline {
+            moments: Vec::new(),
+            every_us: every_us.max(1),
+            most: most.max(2),
+        }
+    }
+
+    /// Saves the moment when it is time; to be called after every cycle.
+    pub fn follow(&mut self, host: &Host<P>) {
+        let now = host.control().time_us();
+        // Moments of a time that was left lead nowhere.
+        while self.moments.pop_if(|last| last.time_us() > now).is_some() {}
+        let due = self
+            .moments
+            .last()
+            .is_none_or(|last| now >= last.time_us() + self.every_us);
+        if !due {
+            return;
+        }
+        if self.moments.len() >= self.most {
+            let mut place = 0;
+            self.moments.retain(|_| {
+                place += 1;
+                place % 2 == 1
+            });
+            self.every_us *= 2;
+        }
+        self.moments.push(host.save());
+    }
+
+    /// The last saved moment up to a time.
+    pub fn nearest(&self, time_us: u64) -> Option<&Saved<P>> {
+        let mut moments = self.moments.iter();
+        moments.rfind(|moment| moment.time_us() <= time_us)
+    }
+}
