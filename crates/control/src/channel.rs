@@ -278,9 +278,9 @@ impl Channel {
     }
 
     fn output_entered(&mut self, machine: &mut MachineSide) {
-        let mut manual = self.desk.manual;
+        let (mut manual, model) = (self.desk.manual, machine.model);
         let (_, mut site, _) = self.parts(machine);
-        manual.output_entered(&mut site);
+        manual.output_entered(model, &mut site);
         self.desk.manual = manual;
     }
 
