@@ -7,7 +7,7 @@ use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, BlockRef};
 use bahn_servo::{OperatorInputs, Plant};
 
-use crate::axes::Axes;
+use crate::axes::{Axes, path_positions};
 use crate::axis::{AxisId, AxisUnit};
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
@@ -331,9 +331,11 @@ impl Channel {
             cycle_us: machine.timing.contour_us(),
             runs,
         };
-        let (life, files) = (&mut self.life, &mut machine.link.files);
-        let changed = life.follow(counting, &mut self.tools, &self.handshakes, exchange, files);
-        machine.unsaved |= changed;
+        // Modules see the tools of the first channel.
+        let files = (self.number == 0).then_some(&mut machine.link.files);
+        machine.unsaved |= self
+            .life
+            .follow(counting, &mut self.tools, &self.handshakes, exchange, files);
         let waits = keeps && machine.unsaved;
         if !waits {
             self.tools.end_geometry_strobe(exchange);
@@ -383,13 +385,13 @@ impl Channel {
         let (run, chain) = (&self.run, &self.datums.chain);
         let (axes, link) = (&machine.axes, &mut machine.link);
         let spindle = machine.spindles.of(self.number);
+        let [actual, nominal] = path_positions(axes.owned(self.number), chain);
         status::coordinates(
             axes.owned(self.number),
             |unit| {
-                let offset = chain.offsets.of(unit.axis);
                 [
-                    unit.servo.actual_mm() - offset,
-                    unit.nominal - offset,
+                    actual[unit.axis],
+                    nominal[unit.axis],
                     unit.servo.actual_mm(),
                     unit.servo.lag_mm(),
                     run.distance_to_go(unit, chain),
@@ -599,11 +601,8 @@ impl Channel {
             }
             Command::ToolLife(tool, minutes) => {
                 machine.unsaved = true;
-                let done = self.tools.set_life(tool, minutes);
-                if done {
-                    life::write_life(&mut machine.link.files, tool, minutes);
-                }
-                done
+                let files = (self.number == 0).then_some(&mut machine.link.files);
+                life::set(&mut self.tools, files, tool, minutes)
             }
             Command::Handwheel(axis, factor) => {
                 let axes = machine.axes.of(self.number);

@@ -135,21 +135,8 @@ impl Control {
         let first = Channel::new(parts, &remembered, &mut machine);
         let mut channels = PerChannel::new(first, Vec::new());
         for other in others {
-            let parameters = other.parameters.spindle_parameters();
-            let spindle = SpindleUnit::new(other.spindle, parameters, timing);
-            machine.spindles.push(spindle);
-            let tools = other.parameters.operation_parameters().tools;
-            let parts = Parts {
-                number: channels.count(),
-                own_list: Some(other.parameters),
-                kinematics: other.kinematics,
-                tools: Tools::new(other.tools, tools, &other.remembered),
-                reading: Reading {
-                    programs: other.programs,
-                    ..reading.clone()
-                },
-            };
-            channels.push(Channel::new(parts, &other.remembered, &mut machine));
+            let channel = beside(other, channels.count(), &reading, &mut machine);
+            channels.push(channel);
         }
         if operation.power_interrupted {
             let message = Message::Plain(MessageId::PowerInterrupted);
@@ -649,6 +636,25 @@ impl Control {
     pub fn observe(&self, signal: &Signal) -> f64 {
         signal.value(self.channels.first(), &self.machine)
     }
+}
+
+/// A channel beside the first one, with its spindle.
+fn beside(setup: ChannelSetup, number: usize, reading: &Reading, machine: &mut MachineSide) -> Channel {
+    let parameters = setup.parameters.spindle_parameters();
+    let spindle = SpindleUnit::new(setup.spindle, parameters, machine.timing);
+    machine.spindles.push(spindle);
+    let tools = setup.parameters.operation_parameters().tools;
+    let parts = Parts {
+        number,
+        own_list: Some(setup.parameters),
+        kinematics: setup.kinematics,
+        tools: Tools::new(setup.tools, tools, &setup.remembered),
+        reading: Reading {
+            programs: setup.programs,
+            ..reading.clone()
+        },
+    };
+    Channel::new(parts, &setup.remembered, machine)
 }
 
 /// The numbers of the axes of the first channel.

@@ -41,7 +41,7 @@ impl LifeCount {
         tools: &mut Tools,
         handshakes: &Handshakes,
         exchange: &mut Exchange,
-        files: &mut NcFiles,
+        mut files: Option<&mut NcFiles>,
     ) -> bool {
         // What a tool change leads to is on the medium before the PLC sees its end.
         if let Some(Transfer::ToolCall { more: false, .. }) = handshakes.acknowledged(exchange.nc())
@@ -49,35 +49,33 @@ impl LifeCount {
         {
             tools.inserted(exchange);
         }
-        if let Some((tool, minutes)) = self.count(counting, tools) {
-            write_life(files, tool, minutes);
-        }
+        self.count(counting, tools, files.as_deref_mut());
         self.tell_time1(tools, exchange);
         let changed = std::mem::take(&mut tools.changed);
         if changed {
-            tables::mirror_pockets(tools, files);
+            if let Some(files) = files {
+                tables::mirror_pockets(tools, files);
+            }
             tools.states_changed = true;
         }
         changed
     }
 
-    /// Counts a cycle. The tool whose life has changed, with its life in minutes.
-    fn count(&mut self, counting: Counting, tools: &mut Tools) -> Option<(u32, f64)> {
+    /// Counts a cycle.
+    fn count(&mut self, counting: Counting, tools: &mut Tools, files: Option<&mut NcFiles>) {
         let counts = tools.counts && counting.runs && !tools.is_changing();
         let goes_on = counts && self.tool == tools.number;
         let due = if goes_on { STEP_US } else { 1 };
-        let mut counted = None;
         if self.uncounted_us >= due {
             let minutes = std::mem::take(&mut self.uncounted_us) as f64 / US_PER_MIN;
             let before = tools.life(self.tool).current_min;
             let current = (before + minutes).min(CURRENT_MAX_MIN);
-            counted = tools.set_life(self.tool, current).then_some((self.tool, current));
+            set(tools, files, self.tool, current);
         }
         self.tool = tools.number;
         if counts {
             self.uncounted_us += u64::from(counting.cycle_us);
         }
-        counted
     }
 
     /// M2094 follows TIME1 of the tool in the spindle on its edges: the PLC may reset it, too [000:9173].
@@ -91,9 +89,12 @@ impl LifeCount {
     }
 }
 
-/// The current life of a tool, minutes, in the tool table that modules see.
-pub(crate) fn write_life(files: &mut NcFiles, number: u32, minutes: f64) {
-    if let (Some(table), Ok(line)) = (files.tables.get_mut(&TableKind::Tool), i32::try_from(number)) {
+/// The current life of a tool, minutes, with the tool table that modules see; `false` when there is no such tool.
+pub(crate) fn set(tools: &mut Tools, files: Option<&mut NcFiles>, number: u32, minutes: f64) -> bool {
+    let known = tools.set_life(number, minutes);
+    let table = files.and_then(|files| files.tables.get_mut(&TableKind::Tool));
+    if let (true, Some(table), Ok(line)) = (known, table, i32::try_from(number)) {
         table.set_value(line, tables::CURRENT_TIME, minutes);
     }
+    known
 }
