@@ -44,6 +44,8 @@ pub(crate) struct Channel {
     pub handshakes: Handshakes,
     datums: Datums,
     pub tools: Tools,
+    /// The version of the magazine that the interpreter knows.
+    tools_seen: u64,
     /// Of the tool in the spindle.
     life: LifeCount,
     pub run: ProgramRun,
@@ -55,7 +57,6 @@ pub(crate) struct Parts {
     pub number: usize,
     pub own_list: Option<ParameterList>,
     pub kinematics: std::sync::Arc<dyn Kinematics>,
-    pub tools: Tools,
     pub reading: Reading,
 }
 
@@ -80,7 +81,8 @@ impl Channel {
                 operation.datums.datum_for_each_range,
                 parts.kinematics,
             ),
-            tools: parts.tools,
+            tools: Tools::new(operation.tools, remembered),
+            tools_seen: 0,
             life: LifeCount::default(),
             run: ProgramRun::new(selection, source, Track::new(&limits)),
             test: None,
@@ -128,6 +130,7 @@ impl Channel {
             axes: machine.axes.of(self.number),
             spindle: machine.spindles.of_mut(self.number),
             tools: &mut self.tools,
+            magazine: &machine.magazine,
             chain: &mut self.datums.chain,
             handshakes: &mut self.handshakes,
             positioning: &mut self.positioning,
@@ -331,11 +334,10 @@ impl Channel {
             cycle_us: machine.timing.contour_us(),
             runs,
         };
-        // Modules see the tools of the first channel.
-        let files = (self.number == 0).then_some(&mut machine.link.files);
-        machine.unsaved |= self
-            .life
-            .follow(counting, &mut self.tools, &self.handshakes, exchange, files);
+        let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
+        let (life, tools) = (&mut self.life, &mut self.tools);
+        let changed = life.follow(counting, tools, magazine, &self.handshakes, exchange, files);
+        machine.unsaved |= changed;
         let waits = keeps && machine.unsaved;
         if !waits {
             self.tools.end_geometry_strobe(exchange);
@@ -451,8 +453,9 @@ impl Channel {
         let mut axes = machine.axes.of(self.number);
         strobes::take_lubrication(&mut axes, exchange);
         strobes::take_lag_tracking(machine.plc_parameters.tracking_step_mm, &mut axes, exchange.nc());
+        let offsets = &mut self.datums.chain.offsets;
         self.tools
-            .take_geometry_strobe(exchange, &mut self.datums.chain.offsets);
+            .take_geometry_strobe(&machine.magazine, exchange, offsets);
         let spindle = machine.spindles.of_mut(self.number);
         if let Some(code) = spindle.take_markers(exchange) {
             self.show(Message::PlcMarkers(code), true, machine);
@@ -482,6 +485,7 @@ impl Channel {
         if std::mem::take(&mut requests.geometry) {
             tables::initialise_geometry(
                 &mut self.tools,
+                &mut machine.magazine,
                 &machine.link.files,
                 &mut self.datums.chain.offsets,
             );
@@ -548,13 +552,13 @@ impl Channel {
             self.run.track.take_limits(&limits);
         }
         let rules = self.desk.rules().restart;
+        let version = machine.magazine.version();
+        let tools_changed = std::mem::replace(&mut self.tools_seen, version) != version;
         let (run, mut site, basis) = self.parts(machine);
         run.prepare_restore(&rules, &mut site);
         run.close(&mut site, &basis);
-        if std::mem::take(&mut site.tools.states_changed)
-            && let Some(interpreter) = run.source.interpreter_mut()
-        {
-            interpreter.set_barred_tools(site.tools.barred());
+        if tools_changed && let Some(interpreter) = run.source.interpreter_mut() {
+            interpreter.set_barred_tools(site.magazine.barred());
         }
         if datums_changed && let Some(interpreter) = run.source.interpreter_mut() {
             interpreter.set_datum_table(basis.link.datums(basis.list));
@@ -601,8 +605,7 @@ impl Channel {
             }
             Command::ToolLife(tool, minutes) => {
                 machine.unsaved = true;
-                let files = (self.number == 0).then_some(&mut machine.link.files);
-                life::set(&mut self.tools, files, tool, minutes)
+                life::set(&mut machine.magazine, &mut machine.link.files, tool, minutes)
             }
             Command::Handwheel(axis, factor) => {
                 let axes = machine.axes.of(self.number);
@@ -678,7 +681,6 @@ impl Channel {
             tool: self.tools.number,
             tool_length,
             tool_axis: Some(tool_axis),
-            pockets: self.tools.moved(),
             q: self.run.q_values(),
             program: self.run.selection.program.clone(),
             ..Remembered::default()

@@ -39,6 +39,7 @@ mod kinematics;
 mod life;
 mod loops;
 mod machine;
+mod magazine;
 mod manual;
 mod markers;
 mod message;

@@ -99,7 +99,6 @@ fn channel(parameters: ParameterList, axes: [Option<AxisId>; 5], blocks: &str) -
         parameters,
         axes,
         spindle: SpindleWiring { output: 6, input: 6 },
-        tools: None,
         programs: Arc::new(programs),
         kinematics: Arc::new(Cartesian),
         window: window(),
