@@ -17,6 +17,7 @@ use crate::datum_tables::LoadedDatums;
 use crate::handshake::Waiting;
 use crate::kinematics::Cartesian;
 use crate::machine::{CircuitOrder, MachineSide, PlcUnit};
+use crate::magazine::Magazine;
 use crate::markers::AXES;
 use crate::message::{Message, Shown};
 use crate::per_channel::PerChannel;
@@ -29,7 +30,6 @@ use crate::source::Reading;
 use crate::spindle::{SpindleState, SpindleUnit, SpindleWiring};
 use crate::tables::LoadedTables;
 use crate::test_run::{TestReport, TestRun};
-use crate::tools::Tools;
 use crate::upkeep::by_index;
 
 /// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
@@ -112,11 +112,12 @@ impl Control {
             datum_table: remembered.datum_table.clone(),
         };
         let loaded_datums = LoadedDatums::set_up(&mut link, &remembered.written_datums);
-        let mut tools = Tools::new(tools, operation.tools, &remembered);
-        let loaded_tables = LoadedTables::set_up(&mut tools, &mut link.files, &remembered.written);
+        let mut magazine = Magazine::new(tools, &remembered.pockets);
+        let loaded_tables = LoadedTables::set_up(&mut magazine, &mut link.files, &remembered.written);
         let plc = PlcUnit::new(plc, model);
         let windows = others.iter().map(|other| other.window.clone()).collect();
-        let mut machine = MachineSide::new(&parameters, plc, link, exchange, windows, axes, spindle);
+        let mut machine =
+            MachineSide::new(&parameters, plc, link, exchange, windows, axes, spindle, magazine);
         machine.loaded_datums = loaded_datums;
         machine.loaded_tables = loaded_tables;
         let reading = Reading {
@@ -129,27 +130,13 @@ impl Control {
             number: 0,
             own_list: None,
             kinematics: std::sync::Arc::new(Cartesian),
-            tools,
             reading: reading.clone(),
         };
         let first = Channel::new(parts, &remembered, &mut machine);
         let mut channels = PerChannel::new(first, Vec::new());
         for other in others {
-            let parameters = other.parameters.spindle_parameters();
-            let spindle = SpindleUnit::new(other.spindle, parameters, timing);
-            machine.spindles.push(spindle);
-            let tools = other.parameters.operation_parameters().tools;
-            let parts = Parts {
-                number: channels.count(),
-                own_list: Some(other.parameters),
-                kinematics: other.kinematics,
-                tools: Tools::new(other.tools, tools, &other.remembered),
-                reading: Reading {
-                    programs: other.programs,
-                    ..reading.clone()
-                },
-            };
-            channels.push(Channel::new(parts, &other.remembered, &mut machine));
+            let channel = beside(other, channels.count(), &reading, &mut machine);
+            channels.push(channel);
         }
         if operation.power_interrupted {
             let message = Message::Plain(MessageId::PowerInterrupted);
@@ -495,6 +482,7 @@ impl Control {
         let link = &self.machine.link;
         let axes = self.machine.axes.owned(0);
         Remembered {
+            pockets: self.machine.magazine.moved(),
             written: self.machine.loaded_tables.written(&link.files),
             offsets_volts: by_index(axes, |unit| unit.servo.offset_compensation_volts()),
             parameter_list: link.selected_list.clone(),
@@ -649,6 +637,23 @@ impl Control {
     pub fn observe(&self, signal: &Signal) -> f64 {
         signal.value(self.channels.first(), &self.machine)
     }
+}
+
+/// A channel beside the first one, with its spindle.
+fn beside(setup: ChannelSetup, number: usize, reading: &Reading, machine: &mut MachineSide) -> Channel {
+    let parameters = setup.parameters.spindle_parameters();
+    let spindle = SpindleUnit::new(setup.spindle, parameters, machine.timing);
+    machine.spindles.push(spindle);
+    let parts = Parts {
+        number,
+        own_list: Some(setup.parameters),
+        kinematics: setup.kinematics,
+        reading: Reading {
+            programs: setup.programs,
+            ..reading.clone()
+        },
+    };
+    Channel::new(parts, &setup.remembered, machine)
 }
 
 /// The numbers of the axes of the first channel.

@@ -12,6 +12,7 @@ use crate::axis::AxisId;
 use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::emergency::{Circuit, EmergencyStop};
+use crate::magazine::Magazine;
 use crate::message::{Message, Messages};
 use crate::now::Facts;
 use crate::per_channel::PerChannel;
@@ -42,6 +43,7 @@ pub(crate) struct MachineSide {
     pub messages: Messages,
     pub axes: Axes,
     pub spindles: PerChannel<SpindleUnit>,
+    pub magazine: Magazine,
     /// The loops were closed since the control voltage came on.
     pub loops_closed: bool,
     pub offsets: DriveOffsets,
@@ -126,6 +128,7 @@ impl MachineSide {
         windows: Vec<Window>,
         axes: Axes,
         spindle: SpindleUnit,
+        magazine: Magazine,
     ) -> MachineSide {
         let model = parameters.model();
         let operation = parameters.operation_parameters();
@@ -150,6 +153,7 @@ impl MachineSide {
             messages: Messages::default(),
             axes,
             spindles: PerChannel::new(spindle, Vec::new()),
+            magazine,
             loops_closed: false,
             offsets: DriveOffsets::new(interval_s),
             loaded_tables: LoadedTables::default(),

@@ -7,6 +7,7 @@ use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall};
 use crate::axes::OwnAxes;
 use crate::handshake::{Handshakes, Transfer};
 use crate::kinematics::Chain;
+use crate::magazine::Magazine;
 use crate::markers::TOOL_AXIS;
 use crate::message::Messages;
 use crate::now::Now;
@@ -21,6 +22,7 @@ pub(crate) struct Site<'a> {
     pub axes: OwnAxes<'a>,
     pub spindle: &'a mut SpindleUnit,
     pub tools: &'a mut Tools,
+    pub magazine: &'a Magazine,
     pub chain: &'a mut Chain,
     pub handshakes: &'a mut Handshakes,
     pub positioning: &'a mut Positioning,
@@ -47,7 +49,7 @@ impl Site<'_> {
             Function::Control(function) => self.control(*function),
             Function::Tool(call) => self.tool(call),
             Function::NextTool(tool) => {
-                if let Some(transfer) = self.tools.define(*tool) {
+                if let Some(transfer) = self.tools.define(*tool, self.magazine) {
                     self.handshakes.push(transfer);
                 }
             }
@@ -95,7 +97,8 @@ impl Site<'_> {
             return;
         }
         let before = (self.chain.offsets.tool_length, self.chain.offsets.tool_axis);
-        self.tools.call(call, self.exchange, self.handshakes);
+        self.tools
+            .call(call, self.magazine, self.exchange, self.handshakes);
         self.tools.hold_geometry(before.0, before.1);
         self.chain.offsets.tool_axis = call.axis;
         self.chain.offsets.tool_length = call.shape.length;
@@ -115,11 +118,12 @@ impl Site<'_> {
         let Some(inserted) = self.tools.inserted_call.take() else {
             return;
         };
-        let Some(call) = self.tools.tool_call(&inserted, self.chain.offsets.tool_axis) else {
+        let axis = self.chain.offsets.tool_axis;
+        let Some(call) = self.tools.tool_call(&inserted, axis, self.magazine) else {
             return;
         };
         let called = inserted.tool.is_some() && call.tool != 0;
-        if called && !self.tools.may_be_called(call.tool) {
+        if called && !self.magazine.may_be_called(call.tool) {
             return;
         }
         match inserted.tool {
