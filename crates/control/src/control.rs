@@ -16,7 +16,7 @@ use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::handshake::Waiting;
 use crate::kinematics::Cartesian;
-use crate::machine::{CircuitOrder, MachineSide, PlcUnit};
+use crate::machine::{CircuitOrder, MachineParts, MachineSide, PlcUnit};
 use crate::magazine::Magazine;
 use crate::markers::AXES;
 use crate::message::{Message, Shown};
@@ -28,6 +28,7 @@ use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::source::Reading;
 use crate::spindle::{SpindleState, SpindleUnit, SpindleWiring};
+use crate::status;
 use crate::tables::LoadedTables;
 use crate::test_run::{TestReport, TestRun};
 use crate::upkeep::by_index;
@@ -114,12 +115,18 @@ impl Control {
         let loaded_datums = LoadedDatums::set_up(&mut link, &remembered.written_datums);
         let mut magazine = Magazine::new(tools, &remembered.pockets);
         let loaded_tables = LoadedTables::set_up(&mut magazine, &mut link.files, &remembered.written);
-        let plc = PlcUnit::new(plc, model);
-        let windows = others.iter().map(|other| other.window.clone()).collect();
-        let mut machine =
-            MachineSide::new(&parameters, plc, link, exchange, windows, axes, spindle, magazine);
-        machine.loaded_datums = loaded_datums;
-        machine.loaded_tables = loaded_tables;
+        let parts = MachineParts {
+            plc: PlcUnit::new(plc, model),
+            link,
+            exchange,
+            windows: others.iter().map(|other| other.window.clone()).collect(),
+            axes,
+            spindle,
+            magazine,
+            loaded_tables,
+            loaded_datums,
+        };
+        let mut machine = MachineSide::new(&parameters, parts);
         let reading = Reading {
             model,
             checking,
@@ -178,9 +185,10 @@ impl Control {
     /// cycle, as [`Control::prepare`].
     pub fn hand_over(&mut self, id: AxisId, channel: usize, slot: Axis, index: usize) -> bool {
         let axes = &mut self.machine.axes;
-        let Some(from) = axes.iter().find(|unit| unit.id == id).map(|unit| unit.channel) else {
+        let Some(unit) = axes.iter().find(|unit| unit.id == id) else {
             return false;
         };
+        let (from, before) = (unit.channel, unit.index);
         let Some(to) = self.channels.get(channel) else {
             return false;
         };
@@ -188,6 +196,7 @@ impl Control {
         if !may || !axes.give(id, channel, slot, index) {
             return false;
         }
+        status::leave(before, self.machine.memory.of_mut(from));
         for number in [from, channel] {
             self.channels.of_mut(number).take_axes(&mut self.machine);
         }

@@ -57,6 +57,21 @@ pub(crate) struct MachineSide {
     wiring: Wiring,
 }
 
+/// What a machine side is made of.
+pub(crate) struct MachineParts {
+    pub plc: PlcUnit,
+    pub link: PlcLink,
+    /// The memory of the PLC, and the windows of the channels beside the first one.
+    pub exchange: Exchange,
+    pub windows: Vec<Window>,
+    pub axes: Axes,
+    /// Of the first channel.
+    pub spindle: SpindleUnit,
+    pub magazine: Magazine,
+    pub loaded_tables: LoadedTables,
+    pub loaded_datums: LoadedDatums,
+}
+
 /// The PLC and its clock.
 #[derive(Clone)]
 pub(crate) struct PlcUnit {
@@ -120,16 +135,18 @@ impl Wiring {
 
 impl MachineSide {
     /// A machine at power-on.
-    pub fn new(
-        parameters: &ParameterList,
-        plc: PlcUnit,
-        link: PlcLink,
-        exchange: Exchange,
-        windows: Vec<Window>,
-        axes: Axes,
-        spindle: SpindleUnit,
-        magazine: Magazine,
-    ) -> MachineSide {
+    pub fn new(parameters: &ParameterList, parts: MachineParts) -> MachineSide {
+        let MachineParts {
+            plc,
+            link,
+            exchange,
+            windows,
+            axes,
+            spindle,
+            magazine,
+            loaded_tables,
+            loaded_datums,
+        } = parts;
         let model = parameters.model();
         let operation = parameters.operation_parameters();
         let memory = PerChannel::new(exchange, windows.iter().map(Window::memory).collect());
@@ -156,8 +173,8 @@ impl MachineSide {
             magazine,
             loops_closed: false,
             offsets: DriveOffsets::new(interval_s),
-            loaded_tables: LoadedTables::default(),
-            loaded_datums: LoadedDatums::default(),
+            loaded_tables,
+            loaded_datums,
             unsaved: false,
             restart_wanted: false,
             wiring: Wiring::of(model),

@@ -266,7 +266,13 @@ fn an_axis_is_handed_over_between_programs() {
     rig.seconds(0.2);
     assert!(!rig.control.hand_over(z, 1, Axis::X, 2), "the slot is taken");
     assert!(!rig.control.hand_over(z, 2, axis, 2), "there is no such channel");
+    assert!(
+        rig.bit("M2002"),
+        "Z is held in its loop, says the window of the first"
+    );
     assert!(rig.control.hand_over(z, 1, axis, 2));
+    rig.seconds(0.1);
+    assert!(!rig.bit("M2002"), "it has no Z any more");
     let letters =
         |rig: &Rig, channel| -> String { state(rig, channel).axes.iter().map(|axis| axis.letter).collect() };
     assert_eq!(
