@@ -33,7 +33,7 @@ use bahn_host::{
     Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, PowerOn, Source,
     is_whole,
 };
-use bahn_machine::Machine;
+use bahn_servo::Timing;
 use bahn_workpiece::Projection;
 
 use crate::cutting::{self, Columns, Cutting, Memory, Written};
@@ -65,7 +65,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     files::keep_inputs(&inputs, &options.written())?;
     let folder = machine.root.join(&machine.folder.programs);
     let programs = Arc::new(FolderPrograms::new(&folder, options.file.as_deref())?);
-    let script = match load_script(options, &machine.plant)? {
+    let script = match load_script(options, &machine)? {
         Ok(script) => script,
         Err(faults) => return refused(&faults, options),
     };
@@ -132,13 +132,14 @@ fn refused(faults: &[FileFault], options: &RunMachineOptions) -> Result<Outcome,
 
 fn load_script(
     options: &RunMachineOptions,
-    plant: &Machine,
+    machine: &LoadedMachine,
 ) -> Result<Result<Script, Vec<FileFault>>, UsageError> {
     let (path, is_log) = match (&options.run.script, &options.run.replay) {
         (Some(path), _) => (path, false),
         (None, Some(path)) => (path, true),
         (None, None) => return Ok(Ok(Script::default())),
     };
+    let cycle_us = Timing::of(machine.parameters.model()).contour_us();
     let bytes = files::read_table(path)?;
     if is_log && !is_whole(&bytes) {
         diagnostics::print_text(&format!(
@@ -146,7 +147,7 @@ fn load_script(
             path.display()
         ));
     }
-    Ok(Script::of(path, &bytes, plant))
+    Ok(Script::of(path, &bytes, &machine.plant, cycle_us))
 }
 
 /// What the control finds.
