@@ -1,8 +1,7 @@
 //! `bahn run`: a part program on the simulated machine.
 //!
 //! - `options`: options and help text;
-//! - `session`: a host, cycle after cycle, with those who follow it; `script` what happens at which time, `play`
-//!   what of it is still to come, `expectation` what must be so;
+//! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it;
 //! - `executed`: what was done of the path; `measured`: `deviation` and `times`; `listed`: messages and keys;
 //!   `recording`: signals over time;
 //! - `report`: what is said in the end.
@@ -10,19 +9,15 @@
 mod cause;
 mod deviation;
 mod executed;
-mod expectation;
 mod listed;
 mod measured;
 mod options;
-mod play;
 mod recording;
 mod report;
-mod script;
 mod session;
 mod times;
 mod turning;
 
-pub(crate) use expectation::Expectation;
 pub(crate) use options::{EXAMPLES, RunMachineOptions};
 
 use std::path::{Path, PathBuf};
@@ -30,8 +25,8 @@ use std::sync::Arc;
 
 use bahn_control::{Checking, Control, Mode, Signal};
 use bahn_host::{
-    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, PowerOn, Source,
-    is_whole,
+    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, Play, PowerOn,
+    Script, Source, is_whole,
 };
 use bahn_servo::Timing;
 use bahn_workpiece::Projection;
@@ -47,10 +42,8 @@ use crate::report::{End, ErrorReport, Place, Record};
 use crate::test_run::{Outputs, print_error};
 use crate::{Outcome, UsageError, console, files, report_text, settings};
 use executed::Executed;
-use play::Play;
 use recording::Recording;
 use report::{ProgramReport, Refusal, RunReport};
-use script::Script;
 use session::{Ended, Patience, Session};
 
 /// Runs a program on a machine and reports.

@@ -1,17 +1,17 @@
 //! A program, a script and an operator on a machine: cycle after cycle until the run ends.
 
 use bahn_control::{Command, Message, RunState, Shown};
-use bahn_host::{Answer, Deed, Host, HostError, Next, Notice, Phase, Reader, Source, Stamped};
+use bahn_host::{
+    Action, Answer, Deed, Expectation, Host, HostError, Line, Next, Notice, Phase, Play, Reader, Source,
+    Stamped, run_name,
+};
 use bahn_machine::Event;
 use bahn_path::BlockRef;
 
 use super::executed::Executed;
-use super::expectation::{Expectation, run_name};
 use super::listed::Listed;
 use super::measured::Measured;
-use super::play::Play;
 use super::recording::Recording;
-use super::script::{Action, Line};
 use crate::UsageError;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;

@@ -2,14 +2,49 @@
 
 use std::collections::{HashMap, HashSet, VecDeque};
 
-use super::expectation::Expectation;
-use super::listed::FailedExpectation;
-use super::script::{Action, Base, Line, Script};
-use crate::diagnostics::FileFault;
-use crate::junit::{Case, Verdict};
+use serde::Serialize;
+
+use crate::expectation::Expectation;
+use crate::fault::FileFault;
+use crate::script::{Action, Base, Line, Script};
+
+/// An expectation that did not hold.
+#[derive(Clone, Debug, Serialize)]
+pub struct FailedExpectation {
+    /// Its line in the script.
+    pub line: u32,
+    /// The text of the line.
+    pub text: String,
+    /// What was so instead.
+    pub actual: String,
+    /// When, s since power-on.
+    pub time_s: f64,
+}
+
+/// An expectation with what became of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Case {
+    /// File and line of the expectation.
+    pub place: String,
+    /// What is expected.
+    pub name: String,
+    /// What became of it.
+    pub verdict: Verdict,
+}
+
+/// What became of an expectation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It held.
+    Held,
+    /// With what was found instead.
+    Failed(String),
+    /// The run ended before.
+    NotReached,
+}
 
 /// A script that is played.
-pub(super) struct Play {
+pub struct Play {
     script: Script,
     /// When what times count from was: power-on, start, and each condition.
     bases: Vec<Option<u64>>,
@@ -33,6 +68,7 @@ fn place(base: Base) -> usize {
 }
 
 impl Play {
+    /// A script from its beginning.
     pub fn new(script: Script) -> Play {
         let conditions = script.lines.iter().filter(|line| line.condition.is_some());
         let mut waiting = vec![VecDeque::new(); 2 + conditions.count()];

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_host::{Deed, DeedError, decode};
 use bahn_machine::{Event, Machine};
 
-use super::expectation::Expectation;
-use crate::diagnostics::{FileFault, Marked, Severity};
+use crate::deed::{Deed, DeedError};
+use crate::expectation::Expectation;
+use crate::fault::{FileFault, Marked, Severity};
+use crate::machine_folder::decode;
 
 /// The last second that a script may speak of: eleven days.
 const SECONDS_MAX: f64 = 1e6;
@@ -16,7 +17,8 @@ const FAULTS_MAX: usize = 1000;
 
 /// What a time counts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Base {
+pub enum Base {
+    /// Power-on.
     PowerOn,
     /// The start of the program.
     Start,
@@ -26,7 +28,7 @@ pub(super) enum Base {
 
 /// What happens.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Action {
+pub enum Action {
     /// Something is done.
     Do(Deed),
     /// Nothing; something must be so.
@@ -37,21 +39,25 @@ pub(super) enum Action {
 
 /// A line of a script.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Line {
+pub struct Line {
     /// In the file, from 1.
     pub number: u32,
+    /// What its time counts from.
     pub base: Base,
+    /// Its time, µs.
     pub offset_us: u64,
     /// It waits from then on until this is so.
     pub condition: Option<Expectation>,
+    /// What happens.
     pub action: Action,
 }
 
 /// A script: its lines in the order of the file.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Script {
+pub struct Script {
     path: PathBuf,
     text: Vec<String>,
+    /// Its lines.
     pub lines: Vec<Line>,
 }
 
@@ -63,7 +69,7 @@ struct Wrong {
 }
 
 impl Script {
-    /// Reads a script; what it does to the machine is tried on a copy of it.
+    /// Reads a script; what it does to the machine is tried on a copy of it. `cycle_us` is the contour cycle.
     ///
     /// # Errors
     /// All faults of the script.
@@ -145,6 +151,7 @@ impl Script {
         format!("{}:{number}", self.path.display())
     }
 
+    /// The text of a line, from 1.
     pub fn line_text(&self, number: u32) -> String {
         let index = (number as usize).saturating_sub(1);
         self.text.get(index).cloned().unwrap_or_default()
@@ -285,7 +292,7 @@ fn read_action(text: &str, machine: &mut Machine) -> Result<Action, String> {
     }
     let deed = Deed::parse(text).map_err(|error| match error {
         DeedError::Unknown(word) => format!(
-            "`{word}` is no event and no command; events are {}, expect, end; commands those of `bahn machine list`",
+            "`{word}` is no event and no command; events are {}, expect, end; commands those of the control",
             Event::WORDS.join(", ")
         ),
         DeedError::Wrong(what) => what,
