@@ -4,26 +4,10 @@ use std::fmt::Write;
 use std::io::Write as _;
 use std::path::Path;
 
+pub(crate) use bahn_host::{Case, Verdict};
+
 use crate::UsageError;
 use crate::files::{self, NewFile};
-
-/// A test case.
-pub(crate) struct Case {
-    /// File and line of the expectation.
-    pub place: String,
-    /// What is expected.
-    pub name: String,
-    pub verdict: Verdict,
-}
-
-/// What became of it.
-pub(crate) enum Verdict {
-    Held,
-    /// With what was found instead.
-    Failed(String),
-    /// The run ended before.
-    NotReached,
-}
 
 /// Writes the cases of a run. `stopped` is the error that ended it, a case of its own.
 pub(crate) fn write(

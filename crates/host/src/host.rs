@@ -228,6 +228,9 @@ impl<P: Operable> Host<P> {
 
     /// Stores what the control waits for at once, everything else now and then.
     fn keep(&mut self) -> Result<(), HostError> {
+        let Some(state) = &mut self.state else {
+            return Ok(());
+        };
         let waits = self.control.unsaved().is_some();
         if self.repeats {
             if waits {
@@ -235,9 +238,6 @@ impl<P: Operable> Host<P> {
             }
             return Ok(());
         }
-        let Some(state) = &mut self.state else {
-            return Ok(());
-        };
         if let Err(error) = state.keep(&mut self.control) {
             self.tell(Notice::Fault(error.to_string()));
             return Err(HostError::NotStored(error.to_string()));

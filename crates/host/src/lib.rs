@@ -26,7 +26,7 @@
 //! - [`PowerOn`] is what it begins with, [`Host`] the machine that is on: [`Host::step`] is a contour cycle, by
 //!   whichever [`Clock`];
 //! - a [`Deed`] is done at once ([`Host::act`]) or ordered for a time, from any thread ([`Desk`]), by a
-//!   [`Source`]; a [`Sink`] logs it; an [`Operator`] stands by;
+//!   [`Source`]; a [`Sink`] logs it; an [`Operator`] stands by; a [`Script`] is [played](Play);
 //! - any number of [`Reader`]s follow [`Notice`]s and snapshots; who is slow is told how much he missed;
 //! - [`Saved`] is a moment to go back to, a [`Timeline`] many of them: [`Host::replay`] reaches any moment again;
 //! - [`State`] is what survives power-off: it is on the medium before the control goes on;
@@ -43,8 +43,10 @@
 mod background;
 mod called;
 mod columns;
+mod decimals;
 mod deed;
 mod error;
+mod expectation;
 mod fault;
 mod feed;
 pub mod files;
@@ -55,19 +57,24 @@ pub mod lists;
 mod log;
 mod machine_folder;
 mod notice;
+mod operand;
 mod operator;
 mod orders;
 mod pace;
+mod play;
 mod plc_source;
 mod power_on;
 mod retained;
 mod saved;
+mod script;
 mod text;
 pub mod tool_table;
 
 pub use columns::TableFault;
+pub use decimals::{Decimals, decimals};
 pub use deed::{Answer, Deed, DeedError, Operable, Source};
 pub use error::HostError;
+pub use expectation::{Expectation, Relation, Run, Tested, run_name};
 pub use fault::{FileFault, Marked, Severity};
 pub use feed::{Next, Reader};
 pub use host::Host;
@@ -83,11 +90,14 @@ pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
 #[doc(hidden)]
 pub use machine_folder::{check_nc_tables, check_state};
 pub use notice::{Notice, Stamped, Why};
+pub use operand::{Assignment, Content, Operand};
 pub use operator::{Attendance, Job, Operator, Phase};
 pub use orders::{Desk, Order, When};
 pub use pace::{Clock, Lateness};
+pub use play::{Case, FailedExpectation, Play, Verdict};
 pub use plc_source::PlcSource;
 pub use power_on::PowerOn;
 pub use retained::Retained;
 pub use saved::{Saved, Timeline};
+pub use script::{Action, Base, Line, Script};
 pub use text::printable;

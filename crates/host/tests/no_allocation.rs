@@ -7,7 +7,7 @@ use support::*;
 
 #[test]
 fn steps_allocate_nothing_in_steady_state() {
-    let mut host = mill("L X+300 R0 F200");
+    let mut host = mill("TOOL CALL 1 Z S1000\nL X+300 R0 F200");
     host.take_snapshots(0);
     let _slow = (host.snapshots(), host.notices());
     let mut moving = 0;

@@ -1,12 +1,12 @@
 //! `bahn machine list`: what a script can speak of.
 
+use bahn_host::Expectation;
 use bahn_machine::Event;
 
 use super::load;
 use super::options::ListOptions;
 use crate::diagnostics;
 use crate::diagnostics::printable;
-use crate::run::Expectation;
 use crate::{Outcome, UsageError, console};
 
 /// Commands of the control, a line each.

@@ -7,10 +7,10 @@ use bahn_exchange::Exchange;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{Machine, PlcProgram, RuntimeError, Start, TestNc, Tracer, mirror_parameters};
 
-use super::operand::{Assignment, Content, Operand};
 use super::options::BenchOptions;
 use super::script::Script;
 use crate::UsageError;
+use bahn_host::{Assignment, Content, Operand};
 
 /// A program with all it needs to run.
 pub(super) struct Bench {

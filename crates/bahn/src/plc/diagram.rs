@@ -8,13 +8,13 @@ use bahn_exchange::Exchange;
 use super::bench::Bench;
 use super::drawing::{self, Diagram};
 use super::failure;
-use super::operand::{Assignment, Content, Operand};
 use super::options::DiagramOptions;
 use super::print_json;
 use super::source::Source;
 use crate::files::{self, NewFile};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
+use bahn_host::{Assignment, Content, Operand};
 
 /// Operands of a diagram [000:11461].
 const OPERANDS_MAX: usize = 16;

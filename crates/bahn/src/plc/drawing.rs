@@ -1,6 +1,6 @@
 //! Logic diagrams as text and as SVG.
 
-use super::operand::{Content, Operand};
+use bahn_host::{Content, Operand};
 
 /// Cycles in a line of text.
 const COLUMNS: usize = 64;

@@ -2,7 +2,7 @@
 //!
 //! - `options`: options and help texts;
 //! - `source`: the program, compile errors as rustc prints them;
-//! - `operand`, `script`: operands as the user writes them, stimuli and expectations;
+//! - `script`: stimuli and expectations;
 //! - `bench`: program, memory and stand-in for the control together;
 //! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
 
@@ -16,7 +16,6 @@ mod diagram;
 mod drawing;
 mod failure;
 mod list;
-mod operand;
 mod options;
 mod record;
 mod run;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use bahn_parameters::ControlModel;
 use clap::{Args, Subcommand, ValueHint};
 
-use super::operand::Operand;
 use crate::options::{Format, model_parser};
+use bahn_host::Operand;
 
 /// Options of `bahn plc`.
 #[derive(Args, Debug)]

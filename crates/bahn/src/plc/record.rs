@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::bench::Bench;
-use super::operand::{Content, Operand};
 use crate::UsageError;
 use crate::files::{self, NewFile};
+use bahn_host::{Content, Operand};
 
 /// A table being written.
 pub(super) struct Record {

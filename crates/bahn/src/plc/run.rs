@@ -10,7 +10,6 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::bench::{Bench, Failure};
 use super::failure;
-use super::operand::{Content, Operand};
 use super::options::RunOptions;
 use super::print_json;
 use super::record::Record;
@@ -21,6 +20,7 @@ use crate::interrupt::Interrupt;
 use crate::junit::{self, Case, Verdict};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, files};
+use bahn_host::{Content, Operand};
 
 /// Runs a program and shows what came out.
 pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {

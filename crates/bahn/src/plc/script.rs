@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::operand::{Assignment, Content, Operand};
 use crate::diagnostics::{FileFault, Marked, Severity};
 use crate::{UsageError, files};
+use bahn_host::{Assignment, Content, Operand};
 
 /// The last cycle that a script may speak of: more than two days of a machine. A slip of the keyboard is
 /// not to run for years.

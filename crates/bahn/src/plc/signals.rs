@@ -2,11 +2,11 @@
 
 use bahn_exchange::signal::{self, Signal, SignalOperand};
 
-use super::operand::Operand;
 use super::options::SignalsOptions;
 use super::print_json;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console};
+use bahn_host::Operand;
 
 /// Prints the signals that have all words of the filter.
 pub(super) fn command(options: &SignalsOptions) -> Result<Outcome, UsageError> {

@@ -17,10 +17,10 @@ use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 use super::bench::{Bench, set_operands};
-use super::operand::{Assignment, Content, Operand};
 use super::options::WatchOptions;
 use super::source::Source;
 use crate::{Outcome, UsageError};
+use bahn_host::{Assignment, Content, Operand};
 use breakpoint::Breakpoints;
 use entry::Entry;
 use trend::Trend;

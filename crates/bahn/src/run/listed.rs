@@ -53,15 +53,6 @@ impl Confirmed {
     }
 }
 
-/// An expectation of the script that did not hold.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct FailedExpectation {
-    pub line: u32,
-    pub text: String,
-    pub actual: String,
-    pub time_s: f64,
-}
-
 /// The lists.
 #[derive(Default)]
 pub(super) struct Listed {

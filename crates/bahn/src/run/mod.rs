@@ -1,8 +1,7 @@
 //! `bahn run`: a part program on the simulated machine.
 //!
 //! - `options`: options and help text;
-//! - `session`: a host, cycle after cycle, with those who follow it; `script` what happens at which time, `play`
-//!   what of it is still to come, `expectation` what must be so;
+//! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it;
 //! - `executed`: what was done of the path; `measured`: `deviation` and `times`; `listed`: messages and keys;
 //!   `recording`: signals over time;
 //! - `report`: what is said in the end.
@@ -10,19 +9,15 @@
 mod cause;
 mod deviation;
 mod executed;
-mod expectation;
 mod listed;
 mod measured;
 mod options;
-mod play;
 mod recording;
 mod report;
-mod script;
 mod session;
 mod times;
 mod turning;
 
-pub(crate) use expectation::Expectation;
 pub(crate) use options::{EXAMPLES, RunMachineOptions};
 
 use std::path::{Path, PathBuf};
@@ -30,10 +25,10 @@ use std::sync::Arc;
 
 use bahn_control::{Checking, Control, Mode, Signal};
 use bahn_host::{
-    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, PowerOn, Source,
-    is_whole,
+    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, Play, PowerOn,
+    Script, Source, is_whole,
 };
-use bahn_machine::Machine;
+use bahn_servo::Timing;
 use bahn_workpiece::Projection;
 
 use crate::cutting::{self, Columns, Cutting, Memory, Written};
@@ -47,10 +42,8 @@ use crate::report::{End, ErrorReport, Place, Record};
 use crate::test_run::{Outputs, print_error};
 use crate::{Outcome, UsageError, console, files, report_text, settings};
 use executed::Executed;
-use play::Play;
 use recording::Recording;
 use report::{ProgramReport, Refusal, RunReport};
-use script::Script;
 use session::{Ended, Patience, Session};
 
 /// Runs a program on a machine and reports.
@@ -65,7 +58,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     files::keep_inputs(&inputs, &options.written())?;
     let folder = machine.root.join(&machine.folder.programs);
     let programs = Arc::new(FolderPrograms::new(&folder, options.file.as_deref())?);
-    let script = match load_script(options, &machine.plant)? {
+    let script = match load_script(options, &machine)? {
         Ok(script) => script,
         Err(faults) => return refused(&faults, options),
     };
@@ -132,13 +125,14 @@ fn refused(faults: &[FileFault], options: &RunMachineOptions) -> Result<Outcome,
 
 fn load_script(
     options: &RunMachineOptions,
-    plant: &Machine,
+    machine: &LoadedMachine,
 ) -> Result<Result<Script, Vec<FileFault>>, UsageError> {
     let (path, is_log) = match (&options.run.script, &options.run.replay) {
         (Some(path), _) => (path, false),
         (None, Some(path)) => (path, true),
         (None, None) => return Ok(Ok(Script::default())),
     };
+    let cycle_us = Timing::of(machine.parameters.model()).contour_us();
     let bytes = files::read_table(path)?;
     if is_log && !is_whole(&bytes) {
         diagnostics::print_text(&format!(
@@ -146,7 +140,7 @@ fn load_script(
             path.display()
         ));
     }
-    Ok(Script::of(path, &bytes, plant))
+    Ok(Script::of(path, &bytes, &machine.plant, cycle_us))
 }
 
 /// What the control finds.

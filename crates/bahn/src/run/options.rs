@@ -29,7 +29,8 @@ The operator who stands by (--operator): full confirms programmed stops and tool
 Without --operator it is full, with --script start, with --replay absent.
 
 Script (--script): lines `TIME: EVENT`. TIME is s since power-on (12.5), since the line before (+2) or since
-the program was started (start+3). Text behind ; or # is a comment. Events are those of the machine
+the program was started (start+3), `+20 cycles` of the control, or a condition: `when X.actual > 50`,
+`after message TEXT`; docs/scripts.md tells all of it. Text behind ; or # is a comment. Events are those of the machine
 (machines/mill/README.md), commands of the control, what is expected, and `end`:
   start+2: key NC_STOP tap
   +3: expect run interrupted
@@ -53,7 +54,8 @@ failed_expectations (line, text, actual); test_run (null, or program, completed,
 TEST RUN of a script); realtime (null, or cycles, late_cycles, worst_lateness_ms).
 
 Exit codes: 0 fine, 1 the program or the machine has an error, the run hangs or takes longer than allowed,
-an expectation fails, or the script ends the run before the program is complete, 2 wrong use, 130 ended by
+an expectation fails, or the script ends the run before the program is complete or with a flashing message
+that it did not expect, 2 wrong use, 130 ended by
 Ctrl-C. When files of the machine or the script are faulty, JSON has completed = false and faults (file,
 line, column, title, message).";
 

@@ -5,6 +5,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use bahn_control::{AxisSignal, Control, RunState, Signal};
+use bahn_host::decimals;
 
 use crate::UsageError;
 use crate::files::{self, NewFile};
@@ -97,7 +98,7 @@ impl Recording {
         // Writing to a string cannot fail.
         let _ = write!(self.row, "{:.4}", now as f64 * 1e-6);
         for signal in &self.signals {
-            let _ = write!(self.row, ",{}", value(signal, control.observe(signal)));
+            let _ = write!(self.row, ",{}", decimals(signal, control.observe(signal)));
         }
         if self.events.contains([',', '"']) {
             let _ = write!(self.row, ",\"{}\"", self.events.replace('"', "\"\""));
@@ -144,38 +145,13 @@ pub(super) fn unit(signal: &Signal) -> &'static str {
     }
 }
 
-/// A value with as many decimals as its signal is good for.
-pub(super) fn value(signal: &Signal, value: f64) -> Decimals {
-    let places = match signal {
-        Signal::Axis(_, AxisSignal::Actual | AxisSignal::Nominal | AxisSignal::Lag) => 5,
-        Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts | Signal::SpindleAngle => 4,
-        Signal::Axis(..) | Signal::PathSpeed | Signal::SpindleRpm => 3,
-        Signal::Block | Signal::Bit(_) | Signal::Number(_) => 0,
-    };
-    Decimals { value, places }
-}
-
-/// A number with its decimals, never -0.
-pub(super) struct Decimals {
-    value: f64,
-    places: usize,
-}
-
-impl std::fmt::Display for Decimals {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let scale = 10f64.powi(i32::try_from(self.places).unwrap_or(0));
-        let rounded = (self.value * scale).round() / scale + 0.0;
-        write!(f, "{rounded:.*}", self.places)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn values_have_the_decimals_of_their_signal() {
-        let text = |signal: &str, number: f64| value(&signal.parse().unwrap(), number).to_string();
+        let text = |signal: &str, number: f64| decimals(&signal.parse().unwrap(), number).to_string();
         assert_eq!(text("X.lag", -0.000001), "0.00000");
         assert_eq!(text("X.volts", 9.12345), "9.1235");
         assert_eq!(text("M2045", 1.0), "1");

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use bahn_control::{TestReport, TestState};
-use bahn_host::Lateness;
+use bahn_host::{FailedExpectation, Lateness};
 use bahn_parameters::ControlModel;
 use serde::Serialize;
 
-use super::listed::{Confirmed, FailedExpectation, Said};
+use super::listed::{Confirmed, Said};
 use super::session::Session;
 use super::times::Share;
 use crate::diagnostics::FileFault;

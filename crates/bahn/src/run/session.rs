@@ -1,17 +1,17 @@
 //! A program, a script and an operator on a machine: cycle after cycle until the run ends.
 
 use bahn_control::{Command, Message, RunState, Shown};
-use bahn_host::{Answer, Deed, Host, HostError, Next, Notice, Phase, Reader, Source, Stamped};
+use bahn_host::{
+    Action, Answer, Deed, Expectation, Host, HostError, Line, Next, Notice, Phase, Play, Reader, Source,
+    Stamped, run_name,
+};
 use bahn_machine::Event;
 use bahn_path::BlockRef;
 
 use super::executed::Executed;
-use super::expectation::run_name;
 use super::listed::Listed;
 use super::measured::Measured;
-use super::play::Play;
 use super::recording::Recording;
-use super::script::{Action, Line};
 use crate::UsageError;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
@@ -98,6 +98,7 @@ impl Session {
             self.follow_notices()?;
             if let Some(ended) = self.ended.take() {
                 self.executed.finish(self.host.control())?;
+                self.play.finish(self.host.control().time_us() as f64 * 1e-6);
                 self.host.remark(&Source::Script, "end")?;
                 return Ok(ended);
             }
@@ -139,19 +140,34 @@ impl Session {
     /// Everything that is due, in the order of time and of the file.
     fn follow_script(&mut self) -> Result<(), UsageError> {
         let now = self.host.control().time_us();
-        while let Some(line) = self.play.due(now, self.start_us) {
+        loop {
+            let (control, plant) = (self.host.control(), self.host.plant());
+            let holds = |condition: &Expectation| condition.check(control, plant).is_none();
+            let Some(line) = self.play.due(now, holds) else {
+                return Ok(());
+            };
             self.execute(line)?;
         }
-        Ok(())
+    }
+
+    /// What `end` of the script makes of the run: a flashing message that it did not expect breaks it off.
+    fn ended_by_script(&self) -> Ended {
+        let control = self.host.control();
+        let ended = control.has_ended() || !self.host.operator().has_job();
+        if !ended || !self.is_idle() {
+            return Ended::Stopped;
+        }
+        let text = |shown: &Shown| control.message_text(&shown.message);
+        let mut flashing = control.shown().iter().filter(|shown| shown.flashing);
+        let unexpected = flashing.find(|shown| !self.play.has_expected(&text(shown)));
+        unexpected.map_or(Ended::Completed, |shown| {
+            Ended::Broken(Some(Box::new(shown.clone())))
+        })
     }
 
     fn execute(&mut self, line: Line) -> Result<(), UsageError> {
         match line.action {
-            Action::End => {
-                let ended = self.host.control().has_ended() || !self.host.operator().has_job();
-                let done = ended && self.is_idle();
-                self.ended = Some(if done { Ended::Completed } else { Ended::Stopped });
-            }
+            Action::End => self.ended = Some(self.ended_by_script()),
             Action::Do(deed) => {
                 let text = deed.to_string();
                 if let Answer::Impossible(error) = self.host.act(Source::Script, deed)? {
@@ -160,9 +176,12 @@ impl Session {
             }
             Action::Expect(expectation) => {
                 let control = self.host.control();
-                if let Some(actual) = expectation.check(control, self.host.plant()) {
-                    let time_s = control.time_us() as f64 * 1e-6;
-                    self.play.fail(line.number, actual, time_s);
+                match expectation.check(control, self.host.plant()) {
+                    Some(actual) => {
+                        let time_s = control.time_us() as f64 * 1e-6;
+                        self.play.fail(line.number, actual, time_s);
+                    }
+                    None => self.play.expect(&expectation),
                 }
             }
         }
@@ -207,7 +226,9 @@ impl Session {
         let phase = self.host.operator().phase();
         if running && self.start_us.is_none() && phase != Phase::PowerUp {
             // What the script gives from the start on counts from here.
-            self.start_us = Some(self.host.control().time_us());
+            let now = self.host.control().time_us();
+            self.start_us = Some(now);
+            self.play.start(now);
         }
         self.measured.cycle(self.host.control(), phase, running);
         self.executed.cycle(&mut self.host, running)?;
@@ -255,7 +276,9 @@ impl Session {
     /// Why the session ends with this cycle.
     fn end(&mut self) -> Option<Ended> {
         let now = self.host.control().time_us();
-        let script_done = self.play.is_done(self.start_us.is_some());
+        let waited = now.saturating_sub(self.moved_us) > self.patience.wait_us && !self.is_dwelling();
+        // What nothing moves for any more does not come.
+        let script_done = self.play.is_done() || waited && self.play.is_timed_out();
         if now >= self.patience.time_us {
             return Some(Ended::TooLong);
         }
@@ -280,8 +303,7 @@ impl Session {
             }
             _ => {}
         }
-        let still = now.saturating_sub(self.moved_us);
-        if !script_done || still <= self.patience.wait_us || self.is_dwelling() {
+        if !script_done || !waited {
             return None;
         }
         let waits_for = self.waits_for();

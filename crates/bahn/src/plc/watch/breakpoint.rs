@@ -1,6 +1,6 @@
 //! Where the program stops by itself: before a line, or after a cycle that changed an operand.
 
-use crate::plc::operand::{Content, Operand};
+use bahn_host::{Content, Operand};
 
 /// The breakpoints that are set.
 #[derive(Debug, Default)]

@@ -2,7 +2,7 @@
 
 use ratatui::crossterm::event::KeyCode;
 
-use crate::plc::operand::{Content, Operand};
+use bahn_host::{Content, Operand};
 
 /// What is being typed.
 pub(super) struct Entry {

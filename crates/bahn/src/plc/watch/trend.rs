@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::plc::operand::{Content, Operand};
+use bahn_host::{Content, Operand};
 
 /// Cycles that are remembered.
 const CYCLES: usize = 240;

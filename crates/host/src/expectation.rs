@@ -3,15 +3,20 @@
 use bahn_control::{Control, Mode, RunState, Signal, TestState};
 use bahn_machine::Machine;
 
+use crate::decimals::decimals;
+use crate::operand::{Content, Operand};
+
 /// So near counts as equal when a script does not say how near, for values that are no whole numbers: the
 /// last digit of the display.
 const TOLERANCE: f64 = 0.0005;
 
 /// Something that must be so.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Expectation {
+pub enum Expectation {
     /// `X.actual=100±0.01`, `M2045=1`, `X.lag<0.01`, `S.rpm>900`.
     Signal(Signal, Relation, f64),
+    /// `S0="TEXT"`: a string of the PLC.
+    Text(usize, String),
     /// `message "TEXT"`, `no message "TEXT"`: a message that is shown contains the text; any without text.
     Message(String, bool),
     /// `mode full`.
@@ -26,18 +31,23 @@ pub(crate) enum Expectation {
     Lamp(String, bool),
 }
 
+/// How a value compares.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Relation {
+pub enum Relation {
     /// Equal within a tolerance.
     Equal(f64),
+    /// `<`
     Less,
+    /// `>`
     Greater,
 }
 
 /// States of the run by their names in scripts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Run {
+pub enum Run {
+    /// A state of the run.
     State(RunState),
+    /// The run has come to its end.
     Ended,
 }
 
@@ -52,9 +62,12 @@ const RUNS: [(&str, Run); 6] = [
 
 /// States of the test run by their names in scripts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Tested {
+pub enum Tested {
+    /// It goes on.
     Running,
+    /// It has come to its end.
     Finished,
+    /// An error has ended it.
     Failed,
 }
 
@@ -80,7 +93,7 @@ impl Tested {
 }
 
 /// The name of a state of the run.
-pub(super) fn run_name(state: RunState) -> &'static str {
+pub fn run_name(state: RunState) -> &'static str {
     let named = RUNS.iter().find(|(_, run)| *run == Run::State(state));
     named.map_or("", |(name, _)| name)
 }
@@ -89,7 +102,7 @@ impl Expectation {
     /// The forms of expectations, a line each.
     pub const HELP: &str = "\
 expect X.actual=100±0.01            a signal and its value, +-0.01 also; without it within 0.0005
-expect M2045=1                      an operand of the PLC
+expect M2045=1                      an operand of the PLC, as W260=$1F or S0=\"TEXT\"
 expect X.lag<0.05                   or greater, with >
 expect message \"TEXT\"               a message with this in its text is shown
 expect no message                   none is shown; with \"TEXT\" none with this in its text
@@ -101,6 +114,9 @@ expect lamp NC_START=1              a lamp of the panel
 ";
 
     /// Reads what stands behind `expect`.
+    ///
+    /// # Errors
+    /// In words, when it is none.
     pub fn parse(text: &str, machine: &Machine) -> Result<Expectation, String> {
         match Expectation::of_state(text, machine)? {
             Some(expectation) => Ok(expectation),
@@ -184,10 +200,14 @@ expect lamp NC_START=1              a lamp of the panel
             let tool = value.parse().map_err(|_| format!("`{value}` is no tool"))?;
             return Ok(Expectation::Tool(tool));
         }
-        let signal: Signal = name.trim().parse().map_err(|error| format!("{error}"))?;
-        if let Signal::Bit(_) = signal {
-            bit(value)?;
+        if let (Ok(Operand::Text(string)), Some('=')) = (name.parse(), relation) {
+            return Operand::Text(string).content(value).map(|content| match content {
+                Content::Text(text) => Expectation::Text(string, text),
+                Content::Number(number) => Expectation::Text(string, number.to_string()),
+            });
         }
+        let signal: Signal = name.trim().parse().map_err(|error| format!("{error}"))?;
+        let number = |text: &str| value_of(&signal, text);
         match relation {
             Some('<') => Ok(Expectation::Signal(signal, Relation::Less, number(value)?)),
             Some('>') => Ok(Expectation::Signal(signal, Relation::Greater, number(value)?)),
@@ -196,7 +216,7 @@ expect lamp NC_START=1              a lamp of the panel
                     .into_iter()
                     .find_map(|separator| value.split_once(separator));
                 let (value, tolerance) = match parts {
-                    Some((value, tolerance)) => (number(value)?, number(tolerance)?.abs()),
+                    Some((value, tolerance)) => (number(value)?, decimal(tolerance)?.abs()),
                     None => (number(value)?, TOLERANCE),
                 };
                 Ok(Expectation::Signal(signal, Relation::Equal(tolerance), value))
@@ -214,7 +234,11 @@ expect lamp NC_START=1              a lamp of the panel
                     Relation::Less => actual < *value,
                     Relation::Greater => actual > *value,
                 };
-                (!holds).then(|| format!("{signal} is {}", super::recording::value(signal, actual)))
+                (!holds).then(|| format!("{signal} is {}", decimals(signal, actual)))
+            }
+            Expectation::Text(string, text) => {
+                let actual = Operand::Text(*string).read(control.exchange().plc());
+                (actual != Content::Text(text.clone())).then(|| format!("S{string} is {actual}"))
             }
             Expectation::Message(text, wanted) => {
                 let shown: Vec<String> = control
@@ -273,10 +297,63 @@ fn bit(text: &str) -> Result<bool, String> {
     }
 }
 
-fn number(text: &str) -> Result<f64, String> {
+/// A value of a signal; an operand takes what fits it, `$` is hexadecimal.
+fn value_of(signal: &Signal, text: &str) -> Result<f64, String> {
+    let operand = match signal {
+        Signal::Bit(bit) => Operand::Bit(*bit),
+        Signal::Number(number) => Operand::Number(*number),
+        _ => return decimal(text),
+    };
+    match operand.content(text)? {
+        Content::Number(value) => Ok(value.into()),
+        Content::Text(text) => decimal(&text),
+    }
+}
+
+fn decimal(text: &str) -> Result<f64, String> {
     let text = text.trim();
     text.parse::<f64>()
         .ok()
         .filter(|value| value.is_finite())
         .ok_or_else(|| format!("`{text}` is no number"))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    fn read(text: &str) -> Result<Expectation, String> {
+        let machine = Machine::from_toml(
+            "name = 'one'\n[emergency_stop]\nacknowledgement = 'I3'\n\
+             [axis.X]\noutput = '1'\nspeed = 15000\nvolts = 9\nencoder = { input = 'X1', period_um = 20 }",
+        );
+        Expectation::parse(text, &machine.unwrap())
+    }
+
+    /// Numbers of the PLC are signed and may be hexadecimal; what does not fit is no value.
+    #[test]
+    fn operands_take_what_fits_them() {
+        let value = |text: &str| match read(text) {
+            Ok(Expectation::Signal(_, Relation::Equal(tolerance), value)) => Ok((value, tolerance)),
+            other => Err(other),
+        };
+        assert_eq!(value("W6=$FFFE"), Ok((-2.0, TOLERANCE)));
+        assert_eq!(value("B8 = 200"), Ok((-56.0, TOLERANCE)));
+        assert_eq!(value("D8=-3+-2"), Ok((-3.0, 2.0)));
+        assert_eq!(value("M5=1"), Ok((1.0, TOLERANCE)));
+        assert_eq!(value("X.actual=1.5±0.1"), Ok((1.5, 0.1)));
+        assert!(matches!(
+            read("W6>$10"),
+            Ok(Expectation::Signal(_, Relation::Greater, 16.0))
+        ));
+        let text = Expectation::Text(0, "A=B".to_owned());
+        assert_eq!(
+            (read("S0=\"A=B\""), read("s0 = A=B")),
+            (Ok(text.clone()), Ok(text))
+        );
+        for wrong in ["M5=2", "W6=$10000", "W6=1.5", "B8=256", "S4=\"A\"", "X.actual=$1"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
 }

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_host::{Deed, DeedError, decode};
 use bahn_machine::{Event, Machine};
 
-use super::expectation::Expectation;
-use crate::diagnostics::{FileFault, Marked, Severity};
+use crate::deed::{Deed, DeedError};
+use crate::expectation::Expectation;
+use crate::fault::{FileFault, Marked, Severity};
+use crate::machine_folder::decode;
 
 /// The last second that a script may speak of: eleven days.
 const SECONDS_MAX: f64 = 1e6;
@@ -16,15 +17,18 @@ const FAULTS_MAX: usize = 1000;
 
 /// What a time counts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Base {
+pub enum Base {
+    /// Power-on.
     PowerOn,
     /// The start of the program.
     Start,
+    /// The moment in which a condition came true; conditions are numbered in the order of the file.
+    Condition(usize),
 }
 
 /// What happens.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Action {
+pub enum Action {
     /// Something is done.
     Do(Deed),
     /// Nothing; something must be so.
@@ -35,19 +39,25 @@ pub(super) enum Action {
 
 /// A line of a script.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Line {
+pub struct Line {
     /// In the file, from 1.
     pub number: u32,
+    /// What its time counts from.
     pub base: Base,
+    /// Its time, µs.
     pub offset_us: u64,
+    /// It waits from then on until this is so.
+    pub condition: Option<Expectation>,
+    /// What happens.
     pub action: Action,
 }
 
 /// A script: its lines in the order of the file.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Script {
+pub struct Script {
     path: PathBuf,
     text: Vec<String>,
+    /// Its lines.
     pub lines: Vec<Line>,
 }
 
@@ -59,23 +69,27 @@ struct Wrong {
 }
 
 impl Script {
-    /// Reads a script; what it does to the machine is tried on a copy of it.
+    /// Reads a script; what it does to the machine is tried on a copy of it. `cycle_us` is the contour cycle.
     ///
     /// # Errors
     /// All faults of the script.
-    pub fn of(path: &Path, bytes: &[u8], machine: &Machine) -> Result<Script, Vec<FileFault>> {
-        Script::read(path, &decode(bytes), machine)
+    pub fn of(path: &Path, bytes: &[u8], machine: &Machine, cycle_us: u32) -> Result<Script, Vec<FileFault>> {
+        Script::read(path, &decode(bytes), machine, cycle_us)
     }
 
-    fn read(path: &Path, text: &str, machine: &Machine) -> Result<Script, Vec<FileFault>> {
+    fn read(path: &Path, text: &str, machine: &Machine, cycle_us: u32) -> Result<Script, Vec<FileFault>> {
         let mut script = Script {
             path: path.to_owned(),
             text: text.lines().map(str::to_owned).collect(),
             lines: Vec::new(),
         };
         let mut faults = Vec::new();
-        let mut machine = machine.clone();
-        let mut last = (Base::PowerOn, 0);
+        let mut reader = Reader {
+            machine: machine.clone(),
+            cycle_us,
+            last: (Base::PowerOn, 0),
+            conditions: 0,
+        };
         for (number, line) in (1..).zip(text.lines()) {
             let content = without_comment(line);
             if content.trim().is_empty() {
@@ -86,16 +100,8 @@ impl Script {
                 faults.push(script.fault_at(number, &wrong(line, line, message)));
                 break;
             }
-            match read_line(content, last, &mut machine) {
-                Ok((base, offset_us, action)) => {
-                    last = (base, offset_us);
-                    script.lines.push(Line {
-                        number,
-                        base,
-                        offset_us,
-                        action,
-                    });
-                }
+            match reader.line(number, content) {
+                Ok(line) => script.lines.push(line),
                 Err(wrong) => faults.push(script.fault_at(number, &wrong)),
             }
         }
@@ -145,26 +151,124 @@ impl Script {
         format!("{}:{number}", self.path.display())
     }
 
+    /// The text of a line, from 1.
     pub fn line_text(&self, number: u32) -> String {
         let index = (number as usize).saturating_sub(1);
         self.text.get(index).cloned().unwrap_or_default()
     }
 }
 
-/// Time, base and action of a line.
-fn read_line(line: &str, last: (Base, u64), machine: &mut Machine) -> Result<(Base, u64, Action), Wrong> {
-    let Some((time, rest)) = line.split_once(':') else {
-        return Err(wrong(
-            line,
-            line.trim(),
-            "a line is `TIME: EVENT` or `TIME: expect ..`",
-        ));
-    };
-    let (base, offset_us) =
-        read_time(time.trim(), last).map_err(|message| wrong(line, time.trim(), &message))?;
-    let rest = rest.trim();
-    let action = read_action(rest, machine).map_err(|message| wrong(line, rest, &message))?;
-    Ok((base, offset_us, action))
+/// Reads line after line.
+struct Reader {
+    /// What the script does to the machine is tried on it.
+    machine: Machine,
+    cycle_us: u32,
+    /// From what, and how far behind it, the next line counts.
+    last: (Base, u64),
+    conditions: usize,
+}
+
+impl Reader {
+    fn line(&mut self, number: u32, line: &str) -> Result<Line, Wrong> {
+        let Some((time, rest)) = split_time(line) else {
+            return Err(wrong(
+                line,
+                line.trim(),
+                "a line is `TIME: EVENT` or `TIME: expect ..`",
+            ));
+        };
+        let (time, rest) = (time.trim(), rest.trim());
+        let condition = self
+            .condition(time)
+            .map_err(|message| wrong(line, time, &message))?;
+        let (base, offset_us) = match condition {
+            Some(_) => self.last,
+            None => self.time(time).map_err(|message| wrong(line, time, &message))?,
+        };
+        let action = read_action(rest, &mut self.machine).map_err(|message| wrong(line, rest, &message))?;
+        self.last = (base, offset_us);
+        if condition.is_some() {
+            self.last = (Base::Condition(self.conditions), 0);
+            self.conditions += 1;
+        }
+        Ok(Line {
+            number,
+            base,
+            offset_us,
+            condition,
+            action,
+        })
+    }
+
+    /// `when X.actual > 50`, `when message "TEXT"`, `after message TEXT`: what `expect` takes.
+    fn condition(&self, text: &str) -> Result<Option<Expectation>, String> {
+        let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+        let rest = rest.trim();
+        match word {
+            "when" => Expectation::parse(rest, &self.machine).map(Some),
+            "after" => {
+                let text = rest.strip_prefix("message").map(str::trim);
+                let text = text.map(|text| text.trim_matches('"'));
+                let text = text.filter(|text| !text.is_empty());
+                let text = text.ok_or("it is written `after message TEXT`")?;
+                Ok(Some(Expectation::Message(text.to_owned(), true)))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// `12.5` since power-on, `+2` since the line before, `start` or `start+2` since the program was started; in
+    /// seconds or, as `+20 cycles`, in contour cycles.
+    fn time(&self, text: &str) -> Result<(Base, u64), String> {
+        let (base, before_us) = self.last;
+        if let Some(rest) = text.strip_prefix('+') {
+            return Ok((base, before_us + self.duration(rest)?));
+        }
+        if let Some(rest) = text.strip_prefix("start") {
+            let rest = rest.trim();
+            if rest.is_empty() {
+                return Ok((Base::Start, 0));
+            }
+            let rest = rest
+                .strip_prefix('+')
+                .ok_or("behind `start` stands + and a time")?;
+            return Ok((Base::Start, self.duration(rest)?));
+        }
+        Ok((Base::PowerOn, self.duration(text)?))
+    }
+
+    /// µs.
+    fn duration(&self, text: &str) -> Result<u64, String> {
+        let cycles = ["cycles", "cycle"];
+        let cycles = cycles.iter().find_map(|unit| text.trim().strip_suffix(unit));
+        let us = match cycles {
+            Some(count) => {
+                let count = count.trim().parse::<u32>().ok();
+                count.map(|count| u64::from(count) * u64::from(self.cycle_us))
+            }
+            None => {
+                let seconds = text.trim().parse::<f64>().ok();
+                let seconds = seconds.filter(|seconds| (0.0..=SECONDS_MAX).contains(seconds));
+                seconds.map(|seconds| (seconds * 1e6).round() as u64)
+            }
+        };
+        us.filter(|us| *us as f64 <= SECONDS_MAX * 1e6).ok_or_else(|| {
+            format!(
+                "`{text}` is no time: 12.5 (s since power-on), +2 (since the line before), start+3, +20 cycles, or a \
+                 condition: when X.actual > 50, after message TEXT"
+            )
+        })
+    }
+}
+
+/// What stands before and behind the first colon outside quotes.
+fn split_time(line: &str) -> Option<(&str, &str)> {
+    let mut quoted = false;
+    let at = line.find(|character: char| {
+        quoted ^= character == '"';
+        character == ':' && !quoted
+    })?;
+    Some((line.get(..at)?, line.get(at + 1..)?))
 }
 
 /// A fault in a part of a line.
@@ -179,34 +283,6 @@ fn wrong(line: &str, part: &str, message: &str) -> Wrong {
     }
 }
 
-/// `12.5` since power-on, `+2` since the line before, `start` or `start+2` since the program was started.
-fn read_time(text: &str, (base, before_us): (Base, u64)) -> Result<(Base, u64), String> {
-    let seconds = |text: &str| {
-        text.trim()
-            .parse::<f64>()
-            .ok()
-            .filter(|seconds| (0.0..=SECONDS_MAX).contains(seconds))
-            .map(|seconds| (seconds * 1e6).round() as u64)
-            .ok_or_else(|| {
-                format!("`{text}` is no time: 12.5 (s since power-on), +2 (since the line before), start+3")
-            })
-    };
-    if let Some(rest) = text.strip_prefix('+') {
-        return Ok((base, before_us + seconds(rest)?));
-    }
-    if let Some(rest) = text.strip_prefix("start") {
-        let rest = rest.trim();
-        if rest.is_empty() {
-            return Ok((Base::Start, 0));
-        }
-        let rest = rest
-            .strip_prefix('+')
-            .ok_or("behind `start` stands + and a time")?;
-        return Ok((Base::Start, seconds(rest)?));
-    }
-    Ok((Base::PowerOn, seconds(text)?))
-}
-
 fn read_action(text: &str, machine: &mut Machine) -> Result<Action, String> {
     let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
     match word {
@@ -216,7 +292,7 @@ fn read_action(text: &str, machine: &mut Machine) -> Result<Action, String> {
     }
     let deed = Deed::parse(text).map_err(|error| match error {
         DeedError::Unknown(word) => format!(
-            "`{word}` is no event and no command; events are {}, expect, end; commands those of `bahn machine list`",
+            "`{word}` is no event and no command; events are {}, expect, end; commands those of the control",
             Event::WORDS.join(", ")
         ),
         DeedError::Wrong(what) => what,
@@ -254,7 +330,7 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<Script, Vec<FileFault>> {
-        Script::read(Path::new("s.txt"), text, &machine())
+        Script::read(Path::new("s.txt"), text, &machine(), 3000)
     }
 
     #[test]
@@ -285,6 +361,41 @@ mod tests {
             script.lines[3].action,
             Action::Do(Deed::Command(Command::Key(107)))
         );
+    }
+
+    #[test]
+    fn conditions_begin_a_chain_and_cycles_are_times() {
+        let script = read(
+            "1: ce\nwhen X.actual > 50: key NC_START tap\n+20 cycles: ce\nafter message LIMIT SWITCH: ce\n+0.5: ce\n\
+             when message \"A: B\": ce\n2: ce\n1 cycle: ce",
+        )
+        .unwrap();
+        let lines: Vec<_> = script
+            .lines
+            .iter()
+            .map(|line| (line.base, line.offset_us, line.condition.is_some()))
+            .collect();
+        use Base::*;
+        assert_eq!(
+            lines,
+            [
+                (PowerOn, 1_000_000, false),
+                // It waits from the line before on.
+                (PowerOn, 1_000_000, true),
+                (Condition(0), 60_000, false),
+                (Condition(0), 60_000, true),
+                (Condition(1), 500_000, false),
+                (Condition(1), 500_000, true),
+                (PowerOn, 2_000_000, false),
+                (PowerOn, 3_000, false),
+            ]
+        );
+        let message = |text: &str| Some(Expectation::Message(text.to_owned(), true));
+        assert_eq!(script.lines[3].condition, message("LIMIT SWITCH"));
+        assert_eq!(script.lines[5].condition, message("A: B"));
+        let faults = read("when X.heat > 5: ce\nafter rain: ce\n+2.5 cycles: ce\n1e7: ce").unwrap_err();
+        let lines: Vec<u32> = faults.iter().map(|fault| fault.marked.line).collect();
+        assert_eq!(lines, [1, 2, 3, 4]);
     }
 
     #[test]

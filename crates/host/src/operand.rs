@@ -7,8 +7,10 @@ use bahn_exchange::{Bit, Exchange, Image, Number, STRINGS, Size};
 
 /// An operand that can be shown and set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Operand {
+pub enum Operand {
+    /// A marker, input, output, timer or counter.
     Bit(Bit),
+    /// A byte, word or doubleword.
     Number(Number),
     /// S0 to S3.
     Text(usize),
@@ -70,6 +72,9 @@ impl Operand {
     }
 
     /// Reads a value for it: a bit 0 or 1, a number signed or as the bits of its width, a text.
+    ///
+    /// # Errors
+    /// In words, when it is no such value.
     pub fn content(self, text: &str) -> Result<Content, String> {
         let text = text.trim();
         match self {
@@ -103,8 +108,10 @@ impl Operand {
 /// What an operand holds. Numbers are signed.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(untagged)]
-pub(crate) enum Content {
+pub enum Content {
+    /// Of a bit, 0 or 1, or of a number.
     Number(i32),
+    /// Of a string.
     Text(String),
 }
 
@@ -119,13 +126,18 @@ impl fmt::Display for Content {
 
 /// `operand=value`, or a machine parameter.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Assignment {
+pub enum Assignment {
+    /// An operand and what it is to hold.
     Operand(Operand, Content),
     /// `4110.2=4`.
     Parameter(String),
 }
 
 impl Assignment {
+    /// Reads one.
+    ///
+    /// # Errors
+    /// In words, when it is none.
     pub fn parse(text: &str) -> Result<Assignment, String> {
         let (name, value) = text
             .split_once('=')
@@ -145,6 +157,9 @@ impl Assignment {
     }
 
     /// Several with commas between.
+    ///
+    /// # Errors
+    /// That of the first that is none.
     pub fn parse_all(text: &str) -> Result<Vec<Assignment>, String> {
         parts(text).map(Assignment::parse).collect()
     }
