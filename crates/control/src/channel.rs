@@ -117,7 +117,7 @@ impl Channel {
     fn now(&self, machine: &MachineSide) -> Now {
         let mut axes = machine.axes.owned(self.number);
         let fault = axes.any(|unit| unit.servo.fault().is_some());
-        let probe_mm_min = self.list(machine).probe().rapid_mm_min;
+        let probe_mm_min = || self.list(machine).probe().rapid_mm_min;
         let nc = machine.memory.of(self.number).nc();
         self.desk.now(nc, probe_mm_min, machine.facts(fault))
     }

@@ -99,8 +99,8 @@ impl Desk {
         self.reference.is_running()
     }
 
-    /// What holds now, with the rapid traverse of the probe, mm/min.
-    pub fn now(&self, nc: &Image, probe_mm_min: f64, facts: Facts) -> Now {
+    /// What holds now; with the rapid traverse of the probe, mm/min, which is asked for only where it counts.
+    pub fn now(&self, nc: &Image, probe_mm_min: impl FnOnce() -> f64, facts: Facts) -> Now {
         let feed_percent = self.feed_override.percent();
         // MP7620 bit 0 = 0 takes the feed override away while the rapid traverse key is pressed [000:10512]
         // [001:3262] [003:7434-7443].
@@ -109,7 +109,7 @@ impl Desk {
         // it, too [000:7654].
         let by_plc = f64::from(nc.number(signal::RAPID_TRAVERSE_LIMIT).max(0));
         let rapid_limit_mm_min = if nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION) {
-            by_plc.min(probe_mm_min)
+            by_plc.min(probe_mm_min())
         } else {
             by_plc
         };
