@@ -8,7 +8,7 @@ use bahn_motion::{Interpolator, Limits as PathLimits};
 use bahn_parameters::{ControlModel, InchFeed, MessageId, OperationParameters, PlcParameters, Station};
 use bahn_path::{Axis, BlockRef, Position};
 use bahn_plc::{Machine, Start, mirror_parameters};
-use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
+use bahn_servo::{Commands, Measured, Plant, Step, Timing};
 
 use crate::axes::AxisUnit;
 use crate::command::{Command, Mode};
@@ -31,9 +31,6 @@ use crate::tables::{LoadedDatums, LoadedTables};
 use crate::thread::Tapping;
 use crate::tools::Tools;
 use crate::upkeep::Upkeep;
-
-/// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
-const MILLISECOND_US: u32 = 1000;
 
 /// Elements of the path that are prepared ahead at most.
 pub(crate) const LOOK_AHEAD: usize = 512;
@@ -105,8 +102,8 @@ pub struct Control {
     pub(crate) loaded_datums: LoadedDatums,
     /// The commands, when somebody wants them.
     log: Option<Vec<(u64, Command)>>,
-    pub(crate) inputs: [bool; INPUTS],
-    outputs: [bool; OUTPUTS],
+    commands: Commands,
+    pub(crate) measured: Measured,
     output_bits: Vec<(usize, Bit)>,
     input_bits: Vec<(usize, Bit)>,
     pub(crate) letters: [char; AXES],
@@ -227,8 +224,8 @@ impl Control {
             loaded_tables: LoadedTables::default(),
             loaded_datums: LoadedDatums::default(),
             log: None,
-            inputs: [false; INPUTS],
-            outputs: [false; OUTPUTS],
+            commands: Commands::default(),
+            measured: Measured::default(),
             output_bits: bits(BitArea::O, model.limits().outputs),
             input_bits: bits(BitArea::I, model.limits().inputs),
             letters,
@@ -300,46 +297,63 @@ impl Control {
     /// Spends one contour cycle on a machine. It does not allocate unless something out of the ordinary
     /// happens: a message, a fault.
     pub fn cycle(&mut self, plant: &mut dyn Plant) {
+        // Somebody may have touched the machine meanwhile.
+        self.spend(plant, 0);
         for step in 0..self.timing.steps() {
-            self.servo_step(plant, step == 0);
+            self.servo_step(step == 0);
+            self.spend(plant, self.timing.step_us());
         }
         self.cycles += 1;
     }
 
     /// One servo step: a contour cycle begins with the first of its steps, a PLC scan with the first step
     /// at or after its time.
-    fn servo_step(&mut self, plant: &mut dyn Plant, first: bool) {
-        let step_us = self.timing.step_us();
-        self.emergency.step(self.now_us, plant.control_ready());
-        plant.set_control_ready(self.emergency.output());
+    fn servo_step(&mut self, first: bool) {
+        self.emergency.step(self.now_us, self.measured.control_ready);
+        self.commands.control_ready = self.emergency.output();
         for unit in &mut self.axes {
-            let encoder = plant.encoder(unit.parameters.encoder.input.into());
+            let encoder = self.measured.encoder(unit.parameters.encoder.input.into());
             unit.servo.measure(encoder);
+            let drive = self
+                .measured
+                .drives
+                .get(usize::from(unit.parameters.output.output));
+            unit.servo.take_drive_fault(drive.map_or(0, |drive| drive.fault));
         }
-        self.spindle.measure(plant);
-        self.watch_probe(plant);
+        self.spindle.measure(&self.measured);
+        self.watch_probe();
         if self.plc_runs() && self.now_us >= self.plc.due_us {
-            self.scan(plant);
+            self.scan();
             self.plc.due_us += self.plc.period_us;
         }
         if first {
-            self.contour_cycle(plant);
+            self.contour_cycle();
         }
         for unit in &mut self.axes {
-            let volts = unit.servo.step();
-            plant.set_nominal(unit.parameters.output.output.into(), volts);
+            unit.servo.step();
+            if let Some(output) = self
+                .commands
+                .axes
+                .get_mut(usize::from(unit.parameters.output.output))
+            {
+                *output = unit.servo.output();
+            }
         }
-        self.spindle.output(plant);
-        let mut rest = step_us;
-        while rest > 0 && self.emergency.is_timing() {
-            let part = rest.min(MILLISECOND_US);
-            plant.advance(part);
-            rest -= part;
-            let now = self.now_us + u64::from(step_us - rest);
-            self.emergency.step(now, plant.control_ready());
+        self.spindle.output(&mut self.commands);
+    }
+
+    /// Lets time pass on the machine, µs.
+    fn spend(&mut self, plant: &mut dyn Plant, length_us: u32) {
+        let step = Step {
+            from_us: self.now_us,
+            length_us,
+        };
+        let before = self.measured.control_ready;
+        plant.exchange(step, &self.commands, &mut self.measured);
+        if length_us > 0 {
+            self.emergency.pass(step, before, &self.measured);
         }
-        plant.advance(rest);
-        self.now_us += u64::from(step_us);
+        self.now_us += u64::from(length_us);
     }
 
     /// The PLC runs from the end of `POWER INTERRUPTED` on [000:7033-7040].
@@ -359,16 +373,15 @@ impl Control {
     }
 
     /// A PLC scan: inputs in, program, outputs out, then what the PLC asks for.
-    fn scan(&mut self, plant: &mut dyn Plant) {
-        plant.inputs(&mut self.inputs);
+    fn scan(&mut self) {
         for (number, bit) in &self.input_bits {
-            let value = self.inputs.get(*number).copied().unwrap_or(false);
+            let value = self.measured.inputs.get(*number).copied().unwrap_or(false);
             if self.exchange.nc().bit(*bit) != value {
                 self.exchange.nc_set(*bit, value);
             }
         }
-        self.publish_analogue(plant);
-        let operator = plant.operator();
+        self.publish_analogue();
+        let operator = self.measured.operator;
         self.feed_override
             .publish(&mut self.exchange, operator.feed_override_percent);
         self.spindle_override
@@ -391,11 +404,10 @@ impl Control {
         self.spindle_override.take(&self.exchange);
         let nc = self.exchange.nc();
         for (number, bit) in &self.output_bits {
-            if let Some(output) = self.outputs.get_mut(*number) {
+            if let Some(output) = self.commands.outputs.get_mut(*number) {
                 *output = nc.bit(*bit);
             }
         }
-        plant.set_outputs(&self.outputs);
         self.after_scan();
     }
 
@@ -415,11 +427,11 @@ impl Control {
     }
 
     /// What is decided once in each contour cycle.
-    fn contour_cycle(&mut self, plant: &mut dyn Plant) {
+    fn contour_cycle(&mut self) {
         self.follow_circuit();
-        self.follow_loops(plant);
+        self.follow_loops();
         self.take_faults();
-        if !self.loops_closed || self.move_axes(plant) {
+        if !self.loops_closed || self.move_axes() {
             self.start_pressed = false;
         }
         // What a tool change leads to is on the medium before the PLC sees its end.

@@ -2,7 +2,6 @@
 
 use bahn_motion::{Drive, State, Stop};
 use bahn_path::{Axis, AxisSet, Barrier, Curve, PathElement, Position};
-use bahn_servo::Plant;
 
 use crate::axes::Mover;
 use crate::command::Mode;
@@ -17,7 +16,7 @@ const SAME_MM: f64 = 1e-6;
 
 impl Control {
     /// Moves the axes along the path for a cycle.
-    pub(crate) fn move_path(&mut self, plant: &mut dyn Plant) {
+    pub(crate) fn move_path(&mut self) {
         if self.stop_given() {
             self.stop_run();
         } else if self.start_pressed && self.mode.is_automatic() {
@@ -33,7 +32,7 @@ impl Control {
             return;
         }
         if self.run.probing.is_some() {
-            self.move_probe(plant);
+            self.move_probe();
             return;
         }
         self.couple_thread();

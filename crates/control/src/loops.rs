@@ -2,7 +2,7 @@
 
 use bahn_exchange::signal;
 use bahn_parameters::{MessageId, Station};
-use bahn_servo::{Fault, Plant};
+use bahn_servo::Fault;
 
 use crate::axes::Mover;
 use crate::command::Mode;
@@ -106,8 +106,8 @@ impl Control {
 
     /// Opens and closes the loop of each axis as the PLC asks for, and gives the feed enable
     /// [000:5352-5369] [000:5403-5421].
-    pub(crate) fn follow_loops(&mut self, plant: &mut dyn Plant) {
-        let monitoring_off = self.monitoring_is_off(plant);
+    pub(crate) fn follow_loops(&mut self) {
+        let monitoring_off = self.monitoring_is_off();
         let nc = self.exchange.nc();
         let all_open = nc.bit(signal::NC_STOP_AND_OPEN_LOOPS);
         let by_axis = nc.number(signal::FEED_ENABLE_AXES);
@@ -155,13 +155,13 @@ impl Control {
 
     /// W522 bit 0 lets the input MP4130, sampled in each control cycle, switch the monitoring off
     /// [000:5178-5188].
-    fn monitoring_is_off(&mut self, plant: &mut dyn Plant) -> bool {
+    fn monitoring_is_off(&mut self) -> bool {
         let permitted = self.exchange.nc().number(signal::MONITORING_SUPPRESSION) & 1 != 0;
         let Some(input) = self.plc_parameters.monitoring_input.filter(|_| permitted) else {
             return false;
         };
-        plant.inputs(&mut self.inputs);
-        self.inputs
+        self.measured
+            .inputs
             .get(usize::from(input.input))
             .is_some_and(|high| *high == input.active_high)
     }

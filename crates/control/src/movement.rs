@@ -1,7 +1,5 @@
 //! What moves in a contour cycle, by operating mode.
 
-use bahn_servo::Plant;
-
 use crate::axes::Mover;
 use crate::command::Mode;
 use crate::control::Control;
@@ -11,9 +9,9 @@ use crate::run::RunState;
 impl Control {
     /// Finds the nominal positions of all axes for the end of the contour cycle. `false` as long as the
     /// operating mode waits for axes to come to a standstill: NC start then counts later.
-    pub(crate) fn move_axes(&mut self, plant: &mut dyn Plant) -> bool {
+    pub(crate) fn move_axes(&mut self) -> bool {
         self.count_display_axes();
-        let handwheel = plant.operator().handwheel_count;
+        let handwheel = self.measured.operator.handwheel_count;
         if self.mode != Mode::Handwheel {
             // What is turned in another mode moves nothing later.
             self.manual.forget_turns(handwheel);
@@ -39,7 +37,7 @@ impl Control {
                 if self.manual_operation_is_on() && !self.path.is_coupled() {
                     self.move_manually(handwheel);
                 } else {
-                    self.move_path(plant);
+                    self.move_path();
                 }
                 self.move_restore();
             }

@@ -4,7 +4,6 @@ use bahn_exchange::signal;
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, BlockRef, LiveData, Position, Touch};
-use bahn_servo::Plant;
 
 use crate::axes::Mover;
 use crate::control::Control;
@@ -115,12 +114,12 @@ impl Control {
     }
 
     /// Takes the position of the axes when the stylus is deflected; once in each servo step.
-    pub(crate) fn watch_probe(&mut self, plant: &mut dyn Plant) {
-        self.watch_stylus(plant);
+    pub(crate) fn watch_probe(&mut self) {
+        self.watch_stylus();
         let Some(probing) = &mut self.run.probing else {
             return;
         };
-        if probing.phase != Phase::Search || probing.touch.is_some() || !plant.probe_deflected() {
+        if probing.phase != Phase::Search || probing.touch.is_some() || !self.measured.probe.deflected {
             return;
         }
         let along = self.axes.iter().map(|unit| {
@@ -140,7 +139,7 @@ impl Control {
     /// has left the workpiece again; not with a TS 511, which is on standby otherwise [000:7652]. The stop stays
     /// until all axes stand and no key moves them: by hand the stylus can then be freed; a program goes on only
     /// when it is free (inferred).
-    fn watch_stylus(&mut self, plant: &mut dyn Plant) {
+    fn watch_stylus(&mut self) {
         let guards = self.exchange.nc().bit(signal::NC_STOP_ON_STYLUS_DEFLECTION)
             && !self.link.list().probe().on_standby;
         if !guards && !self.stylus.stops {
@@ -150,7 +149,7 @@ impl Control {
             .run
             .probing
             .is_some_and(|probing| probing.phase != Phase::Enable);
-        let touches = guards && plant.probe_deflected();
+        let touches = guards && self.measured.probe.deflected;
         self.stylus.probed = touches && (probes || self.stylus.probed);
         let deflected = touches && !self.stylus.probed;
         let rises = deflected && !self.stylus.deflected;
@@ -162,7 +161,7 @@ impl Control {
     }
 
     /// Moves the axes of a probing for a cycle.
-    pub(crate) fn move_probe(&mut self, plant: &mut dyn Plant) {
+    pub(crate) fn move_probe(&mut self) {
         let running = self.run.state == RunState::Running;
         let time = self.cycle_s();
         let percent = self.feed_override.percent().min(100.0);
@@ -174,7 +173,7 @@ impl Control {
         let aim = match probing.phase {
             Phase::Enable => {
                 if running && !self.exchange.nc().bit(signal::PROBING_ENABLE) {
-                    self.enter_probing(plant);
+                    self.enter_probing();
                 }
                 return;
             }
@@ -227,15 +226,15 @@ impl Control {
     }
 
     /// The PLC has enabled the probing: the probe must be ready and at rest.
-    fn enter_probing(&mut self, plant: &mut dyn Plant) {
-        let ready = plant.probe_ready();
+    fn enter_probing(&mut self) {
+        let ready = self.measured.probe.ready;
         self.put(signal::PROBE_NOT_READY, !ready);
-        self.put(signal::PROBE_BATTERY_LOW, plant.probe_battery_low());
+        self.put(signal::PROBE_BATTERY_LOW, self.measured.probe.battery_low);
         if !ready {
             self.refuse_probing(Message::Plain(MessageId::ProbeSystemNotReady));
             return;
         }
-        let deflected = plant.probe_deflected();
+        let deflected = self.measured.probe.deflected;
         self.put(signal::STYLUS_ALREADY_DEFLECTED, deflected);
         let Some(probing) = &mut self.run.probing else {
             return;

@@ -4,7 +4,7 @@
 use bahn_exchange::{Bit, Exchange, signal};
 use bahn_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
 use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
-use bahn_servo::{Fault, Plant, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
+use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 
 use crate::handshake::Transfer;
 use crate::panel::PlcFaultCode;
@@ -106,22 +106,32 @@ impl SpindleUnit {
         exchange.nc_set_number(signal::MINIMUM_S_CODE, self.parameters.codes.min.into());
     }
 
-    pub fn measure(&mut self, plant: &mut dyn Plant) {
-        self.servo.measure(plant.encoder(INPUT_X6));
+    pub fn measure(&mut self, measured: &Measured) {
+        self.servo.measure(measured.encoder(INPUT_X6));
     }
 
     /// One servo step.
-    pub fn output(&mut self, plant: &mut dyn Plant) {
+    pub fn output(&mut self, commands: &mut Commands) {
         let volts = self.servo.step();
-        if self.is_analogue() {
-            plant.set_nominal(OUTPUT_S, volts);
-        } else {
-            match self.parameters.free_output {
-                FreeOutput::Plc => plant.set_nominal(OUTPUT_S, self.plc_volts),
-                FreeOutput::Feed { .. } => plant.set_nominal(OUTPUT_S, self.feed_volts),
-                FreeOutput::None | FreeOutput::MFunctions => {}
-            }
-        }
+        let Some(output) = commands.axes.get_mut(OUTPUT_S) else {
+            return;
+        };
+        let volts = match self.parameters.free_output {
+            _ if self.is_analogue() => volts,
+            FreeOutput::Plc => self.plc_volts,
+            FreeOutput::Feed { .. } => self.feed_volts,
+            FreeOutput::None | FreeOutput::MFunctions => return,
+        };
+        *output = AxisCommand {
+            enabled: self.is_analogue() && self.servo.is_enabled(),
+            volts,
+            speed_per_min: if self.is_analogue() {
+                self.servo.output_rpm()
+            } else {
+                0.0
+            },
+            position_steps: None,
+        };
     }
 
     /// MP3011 = 1: a voltage in proportion to the contour feed, 10 V at MP3012 [000:9835-9839].

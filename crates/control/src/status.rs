@@ -2,7 +2,6 @@
 
 use bahn_exchange::signal;
 use bahn_plc::StatusItem;
-use bahn_servo::Plant;
 
 use crate::axes::Mover;
 use crate::command::Mode;
@@ -52,18 +51,19 @@ impl Control {
 
     /// Analogue inputs of the extensions that MP4410 names: voltages in 0.1 V, temperatures in 0.5 degrees
     /// [000:8449-8484].
-    pub(crate) fn publish_analogue(&mut self, plant: &mut dyn Plant) {
+    pub(crate) fn publish_analogue(&mut self) {
         let extensions = self.plc_parameters.analogue_inputs;
-        let mut input = 0;
+        let mut values = self.measured.volts.into_iter().zip(self.measured.temperatures);
         for ([voltages, temperatures], there) in ANALOGUE.iter().zip(extensions) {
-            for (voltage, temperature) in voltages.iter().zip(temperatures) {
+            for ((voltage, temperature), (volts, celsius)) in
+                voltages.iter().zip(temperatures).zip(&mut values)
+            {
                 if there {
-                    let volts = (plant.analogue_input(input) * 10.0).round();
+                    let volts = (volts * 10.0).round();
                     self.put_number(*voltage, volts.clamp(-100.0, 100.0) as i32);
-                    let celsius = (plant.temperature_input(input) * 2.0).round();
+                    let celsius = (celsius * 2.0).round();
                     self.put_number(*temperature, celsius.clamp(0.0, 200.0) as i32);
                 }
-                input += 1;
             }
         }
     }
