@@ -9,10 +9,6 @@ use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCo
 use crate::handshake::Transfer;
 use crate::panel::PlcFaultCode;
 
-/// Analogue output of the spindle [000:3393-3406].
-const OUTPUT_S: usize = 5;
-/// Encoder input of the spindle, X6 [000:3376].
-const INPUT_X6: usize = 5;
 /// Range of the analogue outputs, V.
 const OUTPUT_VOLTS: f64 = 10.0;
 /// D356, D756 and module 9171 count in 1/1000 rpm.
@@ -41,9 +37,26 @@ pub struct SpindleState {
     pub rotation: Rotation,
 }
 
+/// Where a spindle is connected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SpindleWiring {
+    /// Its analogue output.
+    pub output: usize,
+    /// Its encoder input.
+    pub input: usize,
+}
+
+impl Default for SpindleWiring {
+    /// Output S [000:3393-3406] and encoder input X6 [000:3376].
+    fn default() -> SpindleWiring {
+        SpindleWiring { output: 5, input: 5 }
+    }
+}
+
 /// The spindle.
 #[derive(Clone, Debug)]
 pub(crate) struct SpindleUnit {
+    wiring: SpindleWiring,
     parameters: SpindleParameters,
     servo: Spindle,
     rotation: Rotation,
@@ -69,8 +82,9 @@ pub(crate) struct SpindleUnit {
 }
 
 impl SpindleUnit {
-    pub fn new(parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
+    pub fn new(wiring: SpindleWiring, parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
         SpindleUnit {
+            wiring,
             servo: Spindle::new(parameters, timing),
             parameters,
             rotation: Rotation::M5,
@@ -107,31 +121,29 @@ impl SpindleUnit {
     }
 
     pub fn measure(&mut self, measured: &Measured) {
-        self.servo.measure(measured.encoder(INPUT_X6));
+        self.servo.measure(measured.encoder(self.wiring.input));
     }
 
     /// One servo step.
     pub fn output(&mut self, commands: &mut Commands) {
         let volts = self.servo.step();
-        let Some(output) = commands.axes.get_mut(OUTPUT_S) else {
-            return;
+        let (enabled, volts, speed) = if self.is_analogue() {
+            (self.servo.is_enabled(), volts, self.servo.output_rpm())
+        } else {
+            match self.parameters.free_output {
+                FreeOutput::Plc => (false, self.plc_volts, 0.0),
+                FreeOutput::Feed { .. } => (false, self.feed_volts, 0.0),
+                FreeOutput::None | FreeOutput::MFunctions => return,
+            }
         };
-        let volts = match self.parameters.free_output {
-            _ if self.is_analogue() => volts,
-            FreeOutput::Plc => self.plc_volts,
-            FreeOutput::Feed { .. } => self.feed_volts,
-            FreeOutput::None | FreeOutput::MFunctions => return,
-        };
-        *output = AxisCommand {
-            enabled: self.is_analogue() && self.servo.is_enabled(),
-            volts,
-            speed_per_min: if self.is_analogue() {
-                self.servo.output_rpm()
-            } else {
-                0.0
-            },
-            position_steps: None,
-        };
+        if let Some(output) = commands.axes.get_mut(self.wiring.output) {
+            *output = AxisCommand {
+                enabled,
+                volts,
+                speed_per_min: speed,
+                position_steps: None,
+            };
+        }
     }
 
     /// MP3011 = 1: a voltage in proportion to the contour feed, 10 V at MP3012 [000:9835-9839].

@@ -8,7 +8,6 @@ use bahn_control::{Control, Mode};
 use bahn_machine::Machine;
 use bahn_servo::{Commands, IdealAxes, Measured, Plant, Step};
 use stand::*;
-use support::*;
 
 /// Counting steps of a millimetre: 1024 in 20 µm.
 const STEPS_MM: f64 = 51_200.0;

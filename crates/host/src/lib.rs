@@ -1,9 +1,35 @@
-//! The host: a machine from its folder, and what it keeps on the medium.
+//! The host: a machine that is switched on, driven cycle by cycle, observed, and kept over power-off.
+//!
+//! ```
+//! use std::{path::Path, sync::Arc};
+//! use bahn_host::{Attendance, FolderPrograms, Host, Job, LoadedMachine, Next, Notice, Operator, PowerOn};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/mill"));
+//! let machine = LoadedMachine::load(folder)?.map_err(|faults| faults[0].title.clone())?;
+//! let programs = FolderPrograms::new(&folder.join("programs"), Some(Path::new("CIRCLE.H")))?;
+//! let job = programs.main_name().map(Job::whole);
+//! let operator = Operator::new(Attendance::Full, machine.folder.operator.clone(), job);
+//! let mut host = Host::new(&machine, PowerOn::fresh(&machine), Arc::new(programs), operator);
+//! let mut notices = host.notices();
+//! let mut ended = false;
+//! while !ended {
+//!     host.step()?;
+//!     ended = notices.any(|next| matches!(next, Next::Item(stamped) if stamped.notice == Notice::Ended));
+//! }
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! - [`LoadedMachine`] is everything in the folder of a machine, with all faults of all files at once
-//!   ([`FileFault`]);
+//!   ([`FileFault`]); [`FolderPrograms`] are its part programs;
+//! - [`PowerOn`] is what it begins with, [`Host`] the machine that is on: [`Host::step`] is a contour cycle, by
+//!   whichever [`Clock`];
+//! - a [`Deed`] is done at once ([`Host::act`]) or ordered for a time, from any thread ([`Desk`]), by a
+//!   [`Source`]; a [`Sink`] logs it; an [`Operator`] stands by;
+//! - any number of [`Reader`]s follow [`Notice`]s and snapshots; who is slow is told how much he missed;
+//! - [`Saved`] is a moment to go back to, a [`Timeline`] many of them: [`Host::replay`] reaches any moment again;
 //! - [`State`] is what survives power-off: it is on the medium before the control goes on;
-//! - [`FolderPrograms`] are the part programs of a machine;
 //! - [`files`] reads programs and tables and writes files that are whole or not there; [`lists`] and
 //!   [`PlcSource`] say where in a file of machine parameters or of a PLC program a fault is.
 //!

@@ -53,6 +53,17 @@ pub struct Job {
     pub start_block: Option<u32>,
 }
 
+impl Job {
+    /// A program from its beginning, in full sequence.
+    pub fn whole(program: &str) -> Job {
+        Job {
+            program: program.to_owned(),
+            mode: Mode::FullSequence,
+            start_block: None,
+        }
+    }
+}
+
 /// The operator who stands by.
 #[derive(Clone, Debug)]
 pub struct Operator {

@@ -156,6 +156,36 @@ fn a_computation_that_is_lost_is_handed_out_again() {
     }
 }
 
+/// A copy that is made meanwhile has the contour computed for itself, whatever becomes of the first.
+#[test]
+fn a_copy_computes_for_itself() {
+    let rest = |run: &mut Interpreter| {
+        let mut ends = Vec::new();
+        loop {
+            match run.next() {
+                Step::Element(element) => ends.push(Axis::ALL.map(|axis| element.end[axis].to_bits())),
+                step => break (ends, matches!(step, Step::End)),
+            }
+        }
+    };
+    let mut run = rough_out(&star(51, 25));
+    run.defer_work();
+    let (_, ended) = rest(&mut run);
+    assert!(!ended);
+    let first = run.take_work().expect("the contour is to be computed");
+    let mut copy = run.clone();
+    let done = first.compute();
+    assert!(!copy.waits_for(&done) && run.waits_for(&done));
+    run.finish_work(done);
+    let expected = rest(&mut run);
+    assert!(expected.1 && !expected.0.is_empty());
+    drop(run);
+    assert!(matches!(copy.next(), Step::Starved));
+    let second = copy.take_work().expect("it is to be computed again");
+    copy.finish_work(second.compute());
+    assert!(rest(&mut copy) == expected);
+}
+
 /// Millions of crossings would take gigabytes.
 #[test]
 fn a_contour_across_itself_everywhere_is_refused() {

@@ -12,6 +12,9 @@ use crate::probe::Probe;
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 
+/// Outputs 1 to 5 and S, inputs X1 to X6.
+const CONNECTORS: usize = 6;
+
 /// Contacts, relays and things move once in so many µs.
 const TICK_US: u32 = 1000;
 
@@ -254,14 +257,14 @@ impl Machine {
 
 impl Plant for Machine {
     fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
-        for (output, command) in commands.axes.iter().enumerate() {
+        for (output, command) in commands.axes.iter().enumerate().take(CONNECTORS) {
             self.set_nominal(output, command.volts);
         }
         self.set_outputs(&commands.outputs);
         self.set_control_ready(commands.control_ready);
         measured.control_ready_changed_at = self.pass(step.length_us);
         let again = !std::mem::take(&mut self.moved_on);
-        for (input, seen) in measured.encoders.iter_mut().enumerate() {
+        for (input, seen) in measured.encoders.iter_mut().enumerate().take(CONNECTORS) {
             let mark = seen.mark.filter(|_| again);
             *seen = self.read_encoder(input, again);
             seen.mark = seen.mark.or(mark);

@@ -4,10 +4,11 @@
 pub const INPUTS: usize = 384;
 /// PLC outputs that a plant may have: O0 to O191.
 pub const OUTPUTS: usize = 192;
-/// Nominal value outputs: 0 to 4 are outputs 1 to 5 of MP120, 5 is output S [000:3374-3406].
-pub const NOMINALS: usize = 6;
-/// Encoder inputs: 0 to 5 are X1 to X6 [000:3374-3406].
-pub const ENCODERS: usize = 6;
+/// Nominal value outputs: 0 to 4 are outputs 1 to 5 of MP120, 5 is output S [000:3374-3406]; the others are those of
+/// machines with several channels, up to 32 axes and 8 spindles.
+pub const NOMINALS: usize = 40;
+/// Encoder inputs: 0 to 5 are X1 to X6 [000:3374-3406]; the others as the outputs.
+pub const ENCODERS: usize = 40;
 /// Analogue inputs of PLC input boards: 0 to 3 of the first, 4 to 7 of the second [000:8449-8484].
 pub const ANALOGUE_INPUTS: usize = 8;
 
@@ -117,6 +118,11 @@ impl Measured {
     /// An encoder input; one that does not exist stands still.
     pub fn encoder(&self, input: usize) -> Encoder {
         self.encoders.get(input).copied().unwrap_or_default()
+    }
+
+    /// The drive at an output; one that does not exist says nothing.
+    pub fn drive(&self, output: usize) -> Drive {
+        self.drives.get(output).copied().unwrap_or_default()
     }
 }
 
