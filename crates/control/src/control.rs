@@ -45,13 +45,25 @@ pub struct Control {
     now_us: u64,
     machine: MachineSide,
     channels: PerChannel<Channel>,
-    /// What the machine was told last, and what it answered.
-    commands: Commands,
-    measured: Measured,
+    seam: Seam,
     /// Tool changes and datums must be stored before their strobe is reset.
     keeps: bool,
     /// The commands, when somebody wants them.
     log: Option<Vec<(u64, Command)>>,
+}
+
+fn take_offsets(axes: &mut Axes, remembered: &Remembered) {
+    for unit in axes.of(0).iter_mut() {
+        let volts = remembered.offsets_volts.get(unit.index).copied();
+        unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
+    }
+}
+
+/// What the machine was told last, and what it answered.
+#[derive(Clone, Default)]
+struct Seam {
+    commands: Commands,
+    measured: Measured,
 }
 
 impl Control {
@@ -99,10 +111,7 @@ impl Control {
         let timing = Timing::of(model);
         let operation = parameters.operation_parameters();
         let mut axes = Axes::new(units, timing);
-        for unit in axes.of(0).iter_mut() {
-            let volts = remembered.offsets_volts.get(unit.index).copied();
-            unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
-        }
+        take_offsets(&mut axes, &remembered);
         mirror_parameters(&parameters, &mut exchange);
         let spindle = SpindleUnit::new(SpindleWiring::default(), parameters.spindle_parameters(), timing);
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
@@ -152,15 +161,15 @@ impl Control {
             channels.push(Channel::new(parts, &other.remembered, &mut machine));
         }
         if operation.power_interrupted {
-            let message = Message::Plain(MessageId::PowerInterrupted);
-            machine.messages.show(message, false, None);
+            machine
+                .messages
+                .show(Message::Plain(MessageId::PowerInterrupted), false, None);
         }
         Control {
             now_us: 0,
             machine,
             channels,
-            commands: Commands::default(),
-            measured: Measured::default(),
+            seam: Seam::default(),
             keeps: false,
             log: None,
         }
@@ -234,9 +243,9 @@ impl Control {
     /// at or after its time.
     fn servo_step(&mut self, first: bool) {
         let machine = &mut self.machine;
-        machine.begin_step(self.now_us, &self.measured, &mut self.commands);
+        machine.begin_step(self.now_us, &self.seam.measured, &mut self.seam.commands);
         for channel in self.channels.iter_mut() {
-            channel.watch_probe(machine, &self.measured);
+            channel.watch_probe(machine, &self.seam.measured);
         }
         if machine.scan_is_due(self.now_us) {
             self.scan();
@@ -244,7 +253,7 @@ impl Control {
         if first {
             self.contour_cycle();
         }
-        self.machine.output(&mut self.commands);
+        self.machine.output(&mut self.seam.commands);
     }
 
     /// Lets time pass on the machine, µs.
@@ -253,10 +262,10 @@ impl Control {
             from_us: self.now_us,
             length_us,
         };
-        let before = self.measured.control_ready;
-        plant.exchange(step, &self.commands, &mut self.measured);
+        let before = self.seam.measured.control_ready;
+        plant.exchange(step, &self.seam.commands, &mut self.seam.measured);
         if length_us > 0 {
-            self.machine.emergency.pass(step, before, &self.measured);
+            self.machine.emergency.pass(step, before, &self.seam.measured);
             self.now_us += u64::from(length_us);
             self.machine.messages.set_time(self.now_us);
         }
@@ -265,8 +274,8 @@ impl Control {
     /// A PLC scan: inputs in, program, outputs out, then what the PLC asks for.
     fn scan(&mut self) {
         let machine = &mut self.machine;
-        machine.read_inputs(&self.measured);
-        let operator = self.measured.operator;
+        machine.read_inputs(&self.seam.measured);
+        let operator = self.seam.measured.operator;
         for channel in self.channels.iter_mut() {
             channel.publish(&operator, machine);
         }
@@ -276,7 +285,7 @@ impl Control {
         if !machine.scan(block) {
             return;
         }
-        machine.write_outputs(&mut self.commands);
+        machine.write_outputs(&mut self.seam.commands);
         for channel in self.channels.iter_mut() {
             channel.after_scan(machine);
         }
@@ -306,7 +315,7 @@ impl Control {
     fn contour_cycle(&mut self) {
         self.follow_circuit();
         let machine = &mut self.machine;
-        let monitoring_off = machine.monitoring_is_off(&self.measured);
+        let monitoring_off = machine.monitoring_is_off(&self.seam.measured);
         for channel in self.channels.iter_mut() {
             channel.follow_loops(monitoring_off, machine);
         }
@@ -315,7 +324,7 @@ impl Control {
         }
         if machine.loops_closed {
             for channel in self.channels.iter_mut() {
-                channel.move_axes(machine, &self.measured);
+                channel.move_axes(machine, &self.seam.measured);
             }
             machine.axes.command();
             for channel in self.channels.iter_mut() {
