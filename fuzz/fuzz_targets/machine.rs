@@ -8,7 +8,6 @@
 #![no_main]
 
 use bahn_machine::Machine;
-use bahn_servo::Plant;
 use bahn_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 

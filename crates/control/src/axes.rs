@@ -3,7 +3,7 @@
 use bahn_motion::Aim;
 use bahn_parameters::ParameterList;
 use bahn_path::{Axis, Position};
-use bahn_servo::{Gantry, Plant, Timing};
+use bahn_servo::{Commands, Gantry, Measured, Timing};
 
 use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::gantry;
@@ -79,18 +79,22 @@ impl Axes {
     }
 
     /// Reads the encoders, once in each servo step.
-    pub fn measure(&mut self, plant: &mut dyn Plant) {
+    pub fn measure(&mut self, measured: &Measured) {
         for unit in &mut self.units {
-            let encoder = plant.encoder(unit.parameters.encoder.input.into());
+            let encoder = measured.encoder(unit.parameters.encoder.input.into());
             unit.servo.measure(encoder);
+            let drive = measured.drive(unit.parameters.output.output.into());
+            unit.servo.take_drive_fault(drive.fault);
         }
     }
 
-    /// Outputs the voltages of a servo step.
-    pub fn output(&mut self, plant: &mut dyn Plant) {
+    /// Outputs what the drives are to do in a servo step.
+    pub fn output(&mut self, commands: &mut Commands) {
         for unit in &mut self.units {
-            let volts = unit.servo.step();
-            plant.set_nominal(unit.parameters.output.output.into(), volts);
+            unit.servo.step();
+            if let Some(output) = commands.axes.get_mut(usize::from(unit.parameters.output.output)) {
+                *output = unit.servo.output();
+            }
         }
     }
 

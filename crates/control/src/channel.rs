@@ -5,7 +5,7 @@ use bahn_exchange::signal;
 use bahn_interpreter::Rules;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, BlockRef};
-use bahn_servo::{OperatorInputs, Plant};
+use bahn_servo::{Measured, OperatorInputs};
 
 use crate::axes::{Axes, path_positions};
 use crate::axis::{AxisId, AxisUnit};
@@ -208,7 +208,7 @@ impl Channel {
     }
 
     /// Looks at the stylus, and takes the position of the axes when it is deflected; once in each servo step.
-    pub fn watch_probe(&mut self, machine: &MachineSide, plant: &mut dyn Plant) {
+    pub fn watch_probe(&mut self, machine: &MachineSide, measured: &Measured) {
         let nc = machine.memory.of(self.number).nc();
         let guards = nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION)
             && !self
@@ -219,15 +219,15 @@ impl Channel {
                 .on_standby;
         let axes = || machine.axes.owned(self.number);
         self.desk
-            .watch_stylus(plant, guards, &self.run.probe, || axes().all(AxisUnit::stands));
-        self.run.probe.watch(plant, axes(), &self.datums.chain);
+            .watch_stylus(measured, guards, &self.run.probe, || axes().all(AxisUnit::stands));
+        self.run.probe.watch(measured, axes(), &self.datums.chain);
     }
 
     /// Finds the nominal positions of its axes for the end of the contour cycle. NC start is kept as long as the
     /// operating mode waits for axes to come to a standstill.
-    pub fn move_axes(&mut self, machine: &mut MachineSide, plant: &mut dyn Plant) {
+    pub fn move_axes(&mut self, machine: &mut MachineSide, measured: &Measured) {
         let now = self.now(machine);
-        let handwheel = plant.operator().handwheel_count;
+        let handwheel = measured.operator.handwheel_count;
         let mut axes = machine.axes.of(self.number);
         reference::count_display_axes(&mut axes);
         self.desk.count_handwheel(handwheel);
@@ -237,7 +237,7 @@ impl Channel {
         // What the mode before moved comes to a standstill first.
         let waits = automatic && !ready && !self.run.is_active();
         if !waits {
-            self.move_by_mode(handwheel, &now, machine, plant);
+            self.move_by_mode(handwheel, &now, machine, measured);
         }
         self.move_for_plc(&now, machine);
         machine.axes.of(self.number).slow_down(now.time_s);
@@ -246,7 +246,7 @@ impl Channel {
         }
     }
 
-    fn move_by_mode(&mut self, handwheel: i64, now: &Now, machine: &mut MachineSide, plant: &mut dyn Plant) {
+    fn move_by_mode(&mut self, handwheel: i64, now: &Now, machine: &mut MachineSide, measured: &Measured) {
         match now.mode {
             Mode::Manual | Mode::Handwheel => {
                 if now.start && !now.stop {
@@ -272,7 +272,7 @@ impl Channel {
                         run.start(&mut site);
                     }
                     let (run, mut site, _) = self.parts(machine);
-                    run.moves(&mut site, plant);
+                    run.moves(&mut site, measured);
                 }
                 let (run, mut site, _) = self.parts(machine);
                 run.move_back(&mut site);

@@ -6,7 +6,7 @@ use bahn_interpreter::{Done, Interpreter, Warning, Work};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, PathElement};
 use bahn_plc::mirror_parameters;
-use bahn_servo::{Plant, Timing};
+use bahn_servo::{Commands, Measured, Plant, Step, Timing};
 
 use crate::axes::Axes;
 use crate::axis::{AxisId, AxisUnit};
@@ -33,9 +33,6 @@ use crate::tables::LoadedTables;
 use crate::test_run::{TestReport, TestRun};
 use crate::upkeep::by_index;
 
-/// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
-const MILLISECOND_US: u32 = 1000;
-
 /// Commands that are kept at most until they are taken.
 const LOG_MAX: usize = 100_000;
 
@@ -49,10 +46,25 @@ pub struct Control {
     now_us: u64,
     machine: MachineSide,
     channels: PerChannel<Channel>,
+    seam: Seam,
     /// Tool changes and datums must be stored before their strobe is reset.
     keeps: bool,
     /// The commands, when somebody wants them.
     log: Option<Vec<(u64, Command)>>,
+}
+
+fn take_offsets(axes: &mut Axes, remembered: &Remembered) {
+    for unit in axes.of(0).iter_mut() {
+        let volts = remembered.offsets_volts.get(unit.index).copied();
+        unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
+    }
+}
+
+/// What the machine was told last, and what it answered.
+#[derive(Clone, Default)]
+struct Seam {
+    commands: Commands,
+    measured: Measured,
 }
 
 impl Control {
@@ -100,10 +112,7 @@ impl Control {
         let timing = Timing::of(model);
         let operation = parameters.operation_parameters();
         let mut axes = Axes::new(units, timing);
-        for unit in axes.of(0).iter_mut() {
-            let volts = remembered.offsets_volts.get(unit.index).copied();
-            unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
-        }
+        take_offsets(&mut axes, &remembered);
         mirror_parameters(&parameters, &mut exchange);
         let spindle = SpindleUnit::new(SpindleWiring::default(), parameters.spindle_parameters(), timing);
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
@@ -146,13 +155,15 @@ impl Control {
             channels.push(channel);
         }
         if operation.power_interrupted {
-            let message = Message::Plain(MessageId::PowerInterrupted);
-            machine.messages.show(message, false, None);
+            machine
+                .messages
+                .show(Message::Plain(MessageId::PowerInterrupted), false, None);
         }
         Control {
             now_us: 0,
             machine,
             channels,
+            seam: Seam::default(),
             keeps: false,
             log: None,
         }
@@ -216,44 +227,51 @@ impl Control {
     /// Spends one contour cycle on a machine. It does not allocate unless something out of the ordinary
     /// happens: a message, a fault.
     pub fn cycle(&mut self, plant: &mut dyn Plant) {
+        // Somebody may have touched the machine meanwhile.
+        self.exchange_with(plant, 0);
         for step in 0..self.machine.timing.steps() {
-            self.servo_step(plant, step == 0);
+            self.servo_step(step == 0);
+            self.exchange_with(plant, self.machine.timing.step_us());
         }
     }
 
     /// One servo step: a contour cycle begins with the first of its steps, a PLC scan with the first step
     /// at or after its time.
-    fn servo_step(&mut self, plant: &mut dyn Plant, first: bool) {
-        let step_us = self.machine.timing.step_us();
-        self.machine.begin_step(self.now_us, plant);
+    fn servo_step(&mut self, first: bool) {
+        let machine = &mut self.machine;
+        machine.begin_step(self.now_us, &self.seam.measured, &mut self.seam.commands);
         for channel in self.channels.iter_mut() {
-            channel.watch_probe(&self.machine, plant);
+            channel.watch_probe(machine, &self.seam.measured);
         }
-        if self.machine.scan_is_due(self.now_us) {
-            self.scan(plant);
+        if machine.scan_is_due(self.now_us) {
+            self.scan();
         }
         if first {
-            self.contour_cycle(plant);
+            self.contour_cycle();
         }
-        self.machine.output(plant);
-        let mut rest = step_us;
-        while rest > 0 && self.machine.emergency.is_timing() {
-            let part = rest.min(MILLISECOND_US);
-            plant.advance(part);
-            rest -= part;
-            let now = self.now_us + u64::from(step_us - rest);
-            self.machine.emergency.step(now, plant.control_ready());
+        self.machine.output(&mut self.seam.commands);
+    }
+
+    /// Lets time pass on the machine, µs.
+    fn exchange_with(&mut self, plant: &mut dyn Plant, length_us: u32) {
+        let step = Step {
+            from_us: self.now_us,
+            length_us,
+        };
+        let before = self.seam.measured.control_ready;
+        plant.exchange(step, &self.seam.commands, &mut self.seam.measured);
+        if length_us > 0 {
+            self.machine.emergency.pass(step, before, &self.seam.measured);
+            self.now_us += u64::from(length_us);
+            self.machine.messages.set_time(self.now_us);
         }
-        plant.advance(rest);
-        self.now_us += u64::from(step_us);
-        self.machine.messages.set_time(self.now_us);
     }
 
     /// A PLC scan: inputs in, program, outputs out, then what the PLC asks for.
-    fn scan(&mut self, plant: &mut dyn Plant) {
+    fn scan(&mut self) {
         let machine = &mut self.machine;
-        machine.read_inputs(plant);
-        let operator = plant.operator();
+        machine.read_inputs(&self.seam.measured);
+        let operator = self.seam.measured.operator;
         for channel in self.channels.iter_mut() {
             channel.publish(&operator, machine);
         }
@@ -263,7 +281,7 @@ impl Control {
         if !machine.scan(block) {
             return;
         }
-        machine.write_outputs(plant);
+        machine.write_outputs(&mut self.seam.commands);
         for channel in self.channels.iter_mut() {
             channel.after_scan(machine);
         }
@@ -290,10 +308,10 @@ impl Control {
     }
 
     /// What is decided once in each contour cycle.
-    fn contour_cycle(&mut self, plant: &mut dyn Plant) {
+    fn contour_cycle(&mut self) {
         self.follow_circuit();
         let machine = &mut self.machine;
-        let monitoring_off = machine.monitoring_is_off(plant);
+        let monitoring_off = machine.monitoring_is_off(&self.seam.measured);
         for channel in self.channels.iter_mut() {
             channel.follow_loops(monitoring_off, machine);
         }
@@ -302,7 +320,7 @@ impl Control {
         }
         if machine.loops_closed {
             for channel in self.channels.iter_mut() {
-                channel.move_axes(machine, plant);
+                channel.move_axes(machine, &self.seam.measured);
             }
             machine.axes.command();
             for channel in self.channels.iter_mut() {

@@ -3,7 +3,7 @@
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_parameters::OperationParameters;
 use bahn_path::BlockRef;
-use bahn_servo::{OperatorInputs, Plant};
+use bahn_servo::{Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
@@ -225,13 +225,13 @@ impl Desk {
     /// Looks at the stylus, once in each servo step.
     pub fn watch_stylus(
         &mut self,
-        plant: &mut dyn Plant,
+        measured: &Measured,
         guards: bool,
         probe: &Probe,
         stand: impl FnOnce() -> bool,
     ) {
         let (keys, automatic) = (&self.panel.axis_keys, self.mode.is_automatic());
-        self.stylus.watch(plant, guards, probe, || Guarded {
+        self.stylus.watch(measured, guards, probe, || Guarded {
             rest: keys.iter().all(Option::is_none) && stand(),
             automatic,
         });

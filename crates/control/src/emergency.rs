@@ -5,6 +5,10 @@
 //! The TNC 415 and 425 have three processors that do so in turn, the others one [000:6175-6228].
 
 use bahn_parameters::{ControlModel, EmergencyStopTest};
+use bahn_servo::{Measured, Step};
+
+/// How finely the test times the acknowledgement, µs (inferred).
+const LOOK_US: u32 = 1000;
 
 /// What the circuit says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,8 +99,8 @@ impl EmergencyStop {
         }
     }
 
-    /// The acknowledgement is timed: it is looked at each millisecond, however long a servo step is.
-    pub fn is_timing(&self) -> bool {
+    /// The acknowledgement is timed.
+    fn is_timing(&self) -> bool {
         matches!(self.state, State::Dropped { .. })
     }
 
@@ -106,6 +110,26 @@ impl EmergencyStop {
             self.state,
             State::Dropped { .. } | State::Fallen { .. } | State::Defective
         )
+    }
+
+    /// A servo step has passed: a timed acknowledgement counts as of the millisecond in which it fell.
+    pub fn pass(&mut self, step: Step, before: bool, measured: &Measured) {
+        if !self.is_timing() {
+            return;
+        }
+        let changed_at = if before {
+            measured.control_ready_changed_at
+        } else {
+            Some(0)
+        };
+        let (after_us, acknowledged) = match changed_at {
+            Some(at) => {
+                let looked_at = at.div_ceil(LOOK_US).max(1).saturating_mul(LOOK_US);
+                (looked_at.min(step.length_us), false)
+            }
+            None => (step.length_us, measured.control_ready),
+        };
+        self.step(step.from_us + u64::from(after_us), acknowledged);
     }
 
     /// Goes on by a servo step with the acknowledgement X42/4.
@@ -203,6 +227,44 @@ mod tests {
         assert_eq!(power_on(Tnc407, 147_000).0, Circuit::Defective);
         assert_eq!(power_on(Tnc155, 199_000), (Circuit::Ready, 2));
         assert_eq!(power_on(Tnc155, 201_000).0, Circuit::Defective);
+    }
+
+    /// In a servo step of 6 ms the fall counts as of its millisecond: the test may last until 2 ms in the step.
+    #[test]
+    fn the_fall_is_timed_within_a_step() {
+        let step = Step {
+            from_us: 60_000,
+            length_us: 6000,
+        };
+        let until = step.from_us + 2000;
+        for (at, fallen_us) in [
+            (1, Some(1000)),
+            (1000, Some(1000)),
+            (1001, Some(2000)),
+            (2001, None),
+            (5999, None),
+        ] {
+            let mut stop = EmergencyStop::new(ControlModel::Tnc155, false);
+            stop.state = State::Dropped { tested: 0, until };
+            let measured = Measured {
+                control_ready_changed_at: Some(at),
+                ..Measured::default()
+            };
+            stop.pass(step, true, &measured);
+            let expected = fallen_us.map_or(State::Defective, |us| State::Fallen {
+                tested: 0,
+                until: step.from_us + us + stop.test.restore_us,
+            });
+            assert_eq!(stop.state, expected, "{at} us");
+        }
+        let mut stop = EmergencyStop::new(ControlModel::Tnc155, false);
+        stop.state = State::Dropped { tested: 0, until };
+        let held = Measured {
+            control_ready: true,
+            ..Measured::default()
+        };
+        stop.pass(step, true, &held);
+        assert_eq!(stop.state, State::Defective, "it never fell");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use bahn_exchange::{Bit, BitArea, Exchange, signal};
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PlcParameters, Station};
 use bahn_path::BlockRef;
 use bahn_plc::{Machine, PlcProgram, Start, mirror_parameters};
-use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
+use bahn_servo::{Commands, Measured, Timing};
 
 use crate::axes::Axes;
 use crate::axis::AxisId;
@@ -85,8 +85,6 @@ pub(crate) struct PlcUnit {
 /// The inputs and outputs of the PLC with their operands.
 #[derive(Clone)]
 struct Wiring {
-    inputs: [bool; INPUTS],
-    outputs: [bool; OUTPUTS],
     input_bits: Vec<(usize, Bit)>,
     output_bits: Vec<(usize, Bit)>,
 }
@@ -125,8 +123,6 @@ impl Wiring {
                 .collect()
         };
         Wiring {
-            inputs: [false; INPUTS],
-            outputs: [false; OUTPUTS],
             input_bits: bits(BitArea::I, model.limits().inputs),
             output_bits: bits(BitArea::O, model.limits().outputs),
         }
@@ -208,20 +204,20 @@ impl MachineSide {
     }
 
     /// What a servo step begins with: "control is ready", encoders.
-    pub fn begin_step(&mut self, now_us: u64, plant: &mut dyn Plant) {
-        self.emergency.step(now_us, plant.control_ready());
-        plant.set_control_ready(self.emergency.output());
-        self.axes.measure(plant);
+    pub fn begin_step(&mut self, now_us: u64, measured: &Measured, commands: &mut Commands) {
+        self.emergency.step(now_us, measured.control_ready);
+        commands.control_ready = self.emergency.output();
+        self.axes.measure(measured);
         for spindle in self.spindles.iter_mut() {
-            spindle.measure(plant);
+            spindle.measure(measured);
         }
     }
 
-    /// The voltages of a servo step.
-    pub fn output(&mut self, plant: &mut dyn Plant) {
-        self.axes.output(plant);
+    /// What the machine is to do in a servo step.
+    pub fn output(&mut self, commands: &mut Commands) {
+        self.axes.output(commands);
         for spindle in self.spindles.iter_mut() {
-            spindle.output(plant);
+            spindle.output(commands);
         }
     }
 
@@ -245,14 +241,12 @@ impl MachineSide {
     }
 
     /// Reads the inputs for a scan.
-    pub fn read_inputs(&mut self, plant: &mut dyn Plant) {
-        let wiring = &mut self.wiring;
+    pub fn read_inputs(&mut self, measured: &Measured) {
         let exchange = self.memory.first_mut();
-        plant.inputs(&mut wiring.inputs);
-        for (number, bit) in &wiring.input_bits {
-            exchange.nc_put(*bit, wiring.inputs.get(*number).copied().unwrap_or(false));
+        for (number, bit) in &self.wiring.input_bits {
+            exchange.nc_put(*bit, measured.inputs.get(*number).copied().unwrap_or(false));
         }
-        status::analogue(self.plc_parameters.analogue_inputs, plant, exchange);
+        status::analogue(self.plc_parameters.analogue_inputs, measured, exchange);
         for (marker, value) in self.messages.markers() {
             exchange.nc_put(marker, value);
         }
@@ -280,14 +274,13 @@ impl MachineSide {
     }
 
     /// Sets the outputs as a scan left them.
-    pub fn write_outputs(&mut self, plant: &mut dyn Plant) {
+    pub fn write_outputs(&mut self, commands: &mut Commands) {
         let nc = self.memory.first().nc();
         for (number, bit) in &self.wiring.output_bits {
-            if let Some(output) = self.wiring.outputs.get_mut(*number) {
+            if let Some(output) = commands.outputs.get_mut(*number) {
                 *output = nc.bit(*bit);
             }
         }
-        plant.set_outputs(&self.wiring.outputs);
     }
 
     /// Follows the "control is ready" circuit.
@@ -352,14 +345,13 @@ impl MachineSide {
 
     /// W522 bit 0 lets the input MP4130, sampled in each control cycle, switch the monitoring off
     /// [000:5178-5188].
-    pub fn monitoring_is_off(&mut self, plant: &mut dyn Plant) -> bool {
+    pub fn monitoring_is_off(&self, measured: &Measured) -> bool {
         let nc = self.memory.first().nc();
         let permitted = nc.number(signal::MONITORING_SUPPRESSION) & 1 != 0;
         let Some(input) = self.plc_parameters.monitoring_input.filter(|_| permitted) else {
             return false;
         };
-        plant.inputs(&mut self.wiring.inputs);
-        self.wiring
+        measured
             .inputs
             .get(usize::from(input.input))
             .is_some_and(|high| *high == input.active_high)

@@ -4,7 +4,7 @@ use bahn_exchange::{Exchange, signal};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, BlockRef, Position, Touch};
-use bahn_servo::Plant;
+use bahn_servo::Measured;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -81,7 +81,7 @@ impl Stylus {
     /// when it is free (inferred).
     pub fn watch(
         &mut self,
-        plant: &mut dyn Plant,
+        measured: &Measured,
         guards: bool,
         probing: &Probe,
         guarded: impl FnOnce() -> Guarded,
@@ -89,7 +89,7 @@ impl Stylus {
         if !guards && !self.stops {
             return;
         }
-        let touches = guards && plant.probe_deflected();
+        let touches = guards && measured.probe.deflected;
         self.probed = touches && (probing.touches() || self.probed);
         let deflected = touches && !self.probed;
         let rises = deflected && !self.deflected;
@@ -147,12 +147,12 @@ impl Probe {
     /// Takes the position of the axes when the stylus is deflected; once in each servo step.
     pub fn watch<'a>(
         &mut self,
-        plant: &mut dyn Plant,
+        measured: &Measured,
         axes: impl Iterator<Item = &'a AxisUnit> + Clone,
         chain: &Chain,
     ) {
         let Some(probing) = &mut self.0 else { return };
-        if probing.phase != Phase::Search || probing.touch.is_some() || !plant.probe_deflected() {
+        if probing.phase != Phase::Search || probing.touch.is_some() || !measured.probe.deflected {
             return;
         }
         let mut actual = Position::UNKNOWN;
@@ -174,7 +174,7 @@ impl Probe {
     }
 
     /// Moves the axes of a probing for a cycle.
-    pub fn moves(&mut self, running: bool, site: &mut Site, plant: &mut dyn Plant) -> Probed {
+    pub fn moves(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Probed {
         let percent = site.now.feed_percent.min(100.0);
         let Some(probing) = &mut self.0 else {
             return Probed::Moves;
@@ -183,7 +183,7 @@ impl Probe {
         let aim = match probing.phase {
             Phase::Enable => {
                 if running && !site.exchange.nc().bit(signal::PROBING_ENABLE) {
-                    return self.enter(site, plant);
+                    return self.enter(site, measured);
                 }
                 return Probed::Moves;
             }
@@ -238,11 +238,11 @@ impl Probe {
     }
 
     /// The PLC has enabled the probing: the probe must be ready and at rest.
-    fn enter(&mut self, site: &mut Site, plant: &mut dyn Plant) -> Probed {
-        let ready = plant.probe_ready();
+    fn enter(&mut self, site: &mut Site, measured: &Measured) -> Probed {
+        let ready = measured.probe.ready;
         site.exchange.nc_put(signal::PROBE_NOT_READY, !ready);
         site.exchange
-            .nc_put(signal::PROBE_BATTERY_LOW, plant.probe_battery_low());
+            .nc_put(signal::PROBE_BATTERY_LOW, measured.probe.battery_low);
         let Some(probing) = &mut self.0 else {
             return Probed::Moves;
         };
@@ -250,7 +250,7 @@ impl Probe {
             let message = Message::Plain(MessageId::ProbeSystemNotReady);
             return Probed::Refused(message, probing.block);
         }
-        let deflected = plant.probe_deflected();
+        let deflected = measured.probe.deflected;
         site.exchange.nc_put(signal::STYLUS_ALREADY_DEFLECTED, deflected);
         if deflected {
             let from = probing.from;

@@ -5,7 +5,7 @@ use bahn_interpreter::{Interpreter, Status};
 use bahn_motion::{Drive, State, Stop};
 use bahn_parameters::{MessageId, RestartParameters};
 use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
-use bahn_servo::Plant;
+use bahn_servo::Measured;
 
 use crate::axis::{AxisUnit, Mover};
 use crate::block_time::BlockTime;
@@ -411,7 +411,7 @@ impl ProgramRun {
     }
 
     /// Moves the axes along the path for a cycle.
-    pub fn moves(&mut self, site: &mut Site, plant: &mut dyn Plant) {
+    pub fn moves(&mut self, site: &mut Site, measured: &Measured) {
         if !self.progress.is_on_its_way() || self.restoration.is_on() {
             return;
         }
@@ -422,7 +422,7 @@ impl ProgramRun {
             return;
         }
         if self.probe.is_on() {
-            let probed = self.probe.moves(self.progress.goes_on(), site, plant);
+            let probed = self.probe.moves(self.progress.goes_on(), site, measured);
             self.take_probed(probed, site);
             return;
         }

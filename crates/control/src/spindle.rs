@@ -4,7 +4,7 @@
 use bahn_exchange::{Bit, Exchange, signal};
 use bahn_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
 use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
-use bahn_servo::{Fault, Plant, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
+use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 
 use crate::handshake::Transfer;
 use crate::panel::PlcFaultCode;
@@ -120,21 +120,29 @@ impl SpindleUnit {
         exchange.nc_set_number(signal::MINIMUM_S_CODE, self.parameters.codes.min.into());
     }
 
-    pub fn measure(&mut self, plant: &mut dyn Plant) {
-        self.servo.measure(plant.encoder(self.wiring.input));
+    pub fn measure(&mut self, measured: &Measured) {
+        self.servo.measure(measured.encoder(self.wiring.input));
     }
 
     /// One servo step.
-    pub fn output(&mut self, plant: &mut dyn Plant) {
+    pub fn output(&mut self, commands: &mut Commands) {
         let volts = self.servo.step();
-        if self.is_analogue() {
-            plant.set_nominal(self.wiring.output, volts);
+        let (enabled, volts, speed) = if self.is_analogue() {
+            (self.servo.is_enabled(), volts, self.servo.output_rpm())
         } else {
             match self.parameters.free_output {
-                FreeOutput::Plc => plant.set_nominal(self.wiring.output, self.plc_volts),
-                FreeOutput::Feed { .. } => plant.set_nominal(self.wiring.output, self.feed_volts),
-                FreeOutput::None | FreeOutput::MFunctions => {}
+                FreeOutput::Plc => (false, self.plc_volts, 0.0),
+                FreeOutput::Feed { .. } => (false, self.feed_volts, 0.0),
+                FreeOutput::None | FreeOutput::MFunctions => return,
             }
+        };
+        if let Some(output) = commands.axes.get_mut(self.wiring.output) {
+            *output = AxisCommand {
+                enabled,
+                volts,
+                speed_per_min: speed,
+                position_steps: None,
+            };
         }
     }
 

@@ -2,7 +2,7 @@
 
 use bahn_exchange::{Exchange, signal};
 use bahn_plc::{CoordinateKind, StatusItem};
-use bahn_servo::Plant;
+use bahn_servo::Measured;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -41,17 +41,16 @@ const LAST_KEYS: [bahn_exchange::Bit; 5] = [
 
 /// Analogue inputs of the extensions that MP4410 names: voltages in 0.1 V, temperatures in 0.5 degrees
 /// [000:8449-8484].
-pub(crate) fn analogue(extensions: [bool; 2], plant: &mut dyn Plant, exchange: &mut Exchange) {
-    let mut input = 0;
+pub(crate) fn analogue(extensions: [bool; 2], measured: &Measured, exchange: &mut Exchange) {
+    let mut values = measured.volts.into_iter().zip(measured.temperatures);
     for ([voltages, temperatures], there) in ANALOGUE.iter().zip(extensions) {
-        for (voltage, temperature) in voltages.iter().zip(temperatures) {
+        for ((voltage, temperature), (volts, celsius)) in voltages.iter().zip(temperatures).zip(&mut values) {
             if there {
-                let volts = (plant.analogue_input(input) * 10.0).round();
+                let volts = (volts * 10.0).round();
                 exchange.nc_put_number(*voltage, volts.clamp(-100.0, 100.0) as i32);
-                let celsius = (plant.temperature_input(input) * 2.0).round();
+                let celsius = (celsius * 2.0).round();
                 exchange.nc_put_number(*temperature, celsius.clamp(0.0, 200.0) as i32);
             }
-            input += 1;
         }
     }
 }

@@ -5,7 +5,7 @@ mod stand;
 mod support;
 
 use bahn_machine::Machine;
-use bahn_servo::{Encoder, INPUTS, OUTPUTS, OperatorInputs, Plant};
+use bahn_servo::{Commands, Measured, Plant, Step};
 use stand::*;
 use support::*;
 
@@ -47,33 +47,12 @@ struct Watched<'a> {
 }
 
 impl Plant for Watched<'_> {
-    fn advance(&mut self, micros: u32) {
-        self.machine.advance(micros);
+    fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
+        self.machine.exchange(step, commands, measured);
         let [x, y] = ['X', 'Y'].map(|axis| self.machine.axis(axis).map_or(f64::NAN, |axis| axis.position));
         let distance = (x - self.centre[0]).hypot(y - self.centre[1]);
         assert!(distance.is_finite(), "the machine has X and Y");
         self.worst = self.worst.max((distance - self.radius).abs());
-    }
-    fn set_nominal(&mut self, output: usize, volts: f64) {
-        self.machine.set_nominal(output, volts);
-    }
-    fn encoder(&mut self, input: usize) -> Encoder {
-        self.machine.encoder(input)
-    }
-    fn inputs(&mut self, inputs: &mut [bool; INPUTS]) {
-        self.machine.inputs(inputs);
-    }
-    fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]) {
-        self.machine.set_outputs(outputs);
-    }
-    fn set_control_ready(&mut self, on: bool) {
-        self.machine.set_control_ready(on);
-    }
-    fn control_ready(&mut self) -> bool {
-        self.machine.control_ready()
-    }
-    fn operator(&mut self) -> OperatorInputs {
-        self.machine.operator()
     }
 }
 

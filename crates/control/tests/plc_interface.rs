@@ -6,7 +6,6 @@
 mod stand;
 mod support;
 
-use bahn_servo::Plant;
 use stand::*;
 use support::*;
 

@@ -7,7 +7,7 @@
 #![expect(clippy::unwrap_used, reason = "the description of the mill is right")]
 
 use bahn_machine::Machine;
-use bahn_servo::{INPUTS, OUTPUTS, Plant};
+use bahn_servo::{INPUTS, OUTPUTS};
 use divan::Bencher;
 
 fn main() {
@@ -62,7 +62,7 @@ fn advance_600_us_three_axes(bencher: Bencher) {
 
 #[divan::bench]
 fn read_inputs(bencher: Bencher) {
-    let mut machine = running(mill());
+    let machine = running(mill());
     let mut inputs = [false; INPUTS];
     bencher.bench_local(|| machine.inputs(&mut inputs));
 }

@@ -324,13 +324,14 @@ impl Axis {
         if self.on_motor { self.motor } else { self.table }
     }
 
-    /// What the control reads of the encoder.
-    pub fn read_encoder(&mut self) -> bahn_servo::Encoder {
-        let measured = self.measured();
-        let speed = self.speed;
-        self.counter
-            .as_mut()
-            .map_or_else(Default::default, |counter| counter.read_at(measured, speed))
+    /// What the control reads of the encoder; `again` without time having passed.
+    pub fn read_encoder(&mut self, again: bool) -> bahn_servo::Encoder {
+        let (measured, speed) = (self.measured(), self.speed);
+        match &mut self.counter {
+            Some(counter) if again => counter.look_at(measured, speed),
+            Some(counter) => counter.read_at(measured, speed),
+            None => Default::default(),
+        }
     }
 
     /// No limit switch is actuated.

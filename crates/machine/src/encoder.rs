@@ -38,6 +38,8 @@ pub(crate) struct Counter {
     below: f64,
     latched: Option<i64>,
     noise: Noise,
+    /// The noise of the last reading.
+    blur: f64,
     noise_amplitude: f64,
     /// Fastest permitted movement, units per second.
     speed_max: f64,
@@ -69,6 +71,7 @@ impl Counter {
             below: f64::NEG_INFINITY,
             latched: None,
             noise,
+            blur: 0.0,
             noise_amplitude: section.number("noise_um", 0.0..=1000.0).unwrap_or(0.0) / 1000.0,
             speed_max: section
                 .number("frequency_max_khz", 0.001..=10_000.0)
@@ -94,6 +97,7 @@ impl Counter {
             below: 0.0,
             latched: None,
             noise,
+            blur: 0.0,
             noise_amplitude: 0.0,
             speed_max: f64::INFINITY,
             fault: None,
@@ -198,21 +202,27 @@ impl Counter {
         ((position - self.zero) * self.steps_per_unit).floor() as i64
     }
 
-    /// What the control reads at a position and speed (units per second).
+    /// What the control reads at a position and speed (units per second) after time has passed.
     pub fn read_at(&mut self, position: f64, speed: f64) -> Encoder {
+        if self.noise_amplitude > 0.0 {
+            self.blur = self.noise.next() * self.noise_amplitude;
+        }
+        Encoder {
+            mark: self.latched.take(),
+            ..self.look_at(position, speed)
+        }
+    }
+
+    /// The same once more, without the mark.
+    pub fn look_at(&self, position: f64, speed: f64) -> Encoder {
         let failing = self.fault.filter(|fault| *fault != EncoderFault::Marks);
-        let noise = if self.noise_amplitude > 0.0 {
-            self.noise.next() * self.noise_amplitude
-        } else {
-            0.0
-        };
         Encoder {
             count: if failing.is_some() {
                 self.frozen
             } else {
-                self.steps(position + noise)
+                self.steps(position + self.blur)
             },
-            mark: self.latched.take(),
+            mark: None,
             amplitude_low: failing == Some(EncoderFault::Amplitude),
             edges_too_close: failing == Some(EncoderFault::Edges) || speed.abs() > self.speed_max,
         }

@@ -1,14 +1,12 @@
 //! What an operator, a script or a test does to the machine, as text.
 
+use bahn_servo::ANALOGUE_INPUTS;
 use bahn_servo::INPUTS;
 
 use crate::axis::DriveFault;
 use crate::chain::RelayFault;
 use crate::device::DeviceFault;
 use crate::encoder::EncoderFault;
-
-/// Analogue inputs and Pt 100 inputs of two PLC boards.
-pub(crate) const ANALOGUE_INPUTS: usize = 8;
 
 /// What can be done to a machine. The text form is in the table of [`Event::HELP`].
 #[derive(Clone, Debug, PartialEq)]

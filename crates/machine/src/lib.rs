@@ -9,7 +9,7 @@
 //! The control sees nothing but the trait. The true state ([`Machine::axis`], [`Machine::spindle`],
 //! [`Machine::device`]) is for tests and recordings.
 //!
-//! Invariant: time passes in fixed steps only, so however [`bahn_servo::Plant::advance`] is divided the
+//! Invariant: time passes in fixed steps only, so however [`bahn_servo::Plant::exchange`] is divided the
 //! machine is the same, bit by bit; no call of the trait allocates.
 
 mod acting;

@@ -1,15 +1,19 @@
 //! The whole machine.
 
-use bahn_servo::{Encoder, INPUTS, OUTPUTS, OperatorInputs, Plant};
+use bahn_servo::{
+    ANALOGUE_INPUTS, Commands, Encoder, INPUTS, Measured, OUTPUTS, Plant, Probe as Touch, Step,
+};
 
 use crate::axis::{Axis, AxisState};
 use crate::chain::Chain;
 use crate::device::{Device, DeviceState};
-use crate::event::ANALOGUE_INPUTS;
 use crate::panel::Panel;
 use crate::probe::Probe;
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
+
+/// Outputs 1 to 5 and S, inputs X1 to X6.
+const CONNECTORS: usize = 6;
 
 /// Contacts, relays and things move once in so many µs.
 const TICK_US: u32 = 1000;
@@ -19,7 +23,6 @@ const TICK_US: u32 = 1000;
 ///
 /// ```
 /// use bahn_machine::Machine;
-/// use bahn_servo::Plant;
 /// let text = r#"
 ///     name = "one axis"
 ///     [emergency_stop]
@@ -58,16 +61,14 @@ pub struct Machine {
     pub(crate) probe: Option<Probe>,
     pub(crate) volts: [f64; ANALOGUE_INPUTS],
     pub(crate) temperatures: [f64; ANALOGUE_INPUTS],
-    plc_volts: [f64; OUTPUTS_ANALOGUE],
+    /// Time has passed since the encoders were read.
+    moved_on: bool,
     /// As the PLC set them, and as they arrive.
     outputs: [bool; OUTPUTS],
     live: [bool; OUTPUTS],
     pub(crate) stuck: Vec<(usize, bool)>,
     wires: Vec<Wire>,
 }
-
-/// Analogue outputs that a PLC may set.
-const OUTPUTS_ANALOGUE: usize = 8;
 
 impl Machine {
     /// Builds a machine from its description; `machines/mill/plant.toml` explains every key.
@@ -121,7 +122,7 @@ impl Machine {
             probe: root.section("probe").map(Probe::read),
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [20.0; ANALOGUE_INPUTS],
-            plc_volts: [0.0; OUTPUTS_ANALOGUE],
+            moved_on: true,
             outputs: [false; OUTPUTS],
             live: [false; OUTPUTS],
             stuck: Vec::new(),
@@ -229,11 +230,6 @@ impl Machine {
         self.chain.voltage()
     }
 
-    /// A voltage that the PLC put out (module 9130), V.
-    pub fn plc_volts(&self, output: usize) -> Option<f64> {
-        self.plc_volts.get(output).copied()
-    }
-
     /// Contacts, relays and things: once in a millisecond.
     fn tick(&mut self) {
         self.panel.advance();
@@ -260,7 +256,39 @@ impl Machine {
 }
 
 impl Plant for Machine {
-    fn advance(&mut self, micros: u32) {
+    fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
+        for (output, command) in commands.axes.iter().enumerate().take(CONNECTORS) {
+            self.set_nominal(output, command.volts);
+        }
+        self.set_outputs(&commands.outputs);
+        self.set_control_ready(commands.control_ready);
+        measured.control_ready_changed_at = self.pass(step.length_us);
+        let again = !std::mem::take(&mut self.moved_on);
+        for (input, seen) in measured.encoders.iter_mut().enumerate().take(CONNECTORS) {
+            let mark = seen.mark.filter(|_| again);
+            *seen = self.read_encoder(input, again);
+            seen.mark = seen.mark.or(mark);
+        }
+        measured.control_ready = self.control_ready();
+        self.inputs(&mut measured.inputs);
+        measured.operator = self.panel.operator;
+        measured.probe = self.touch_probe();
+        measured.volts = self.volts;
+        measured.temperatures = self.temperatures;
+    }
+}
+
+/// The plug connectors one by one, for whoever tries the machine without a control.
+impl Machine {
+    /// Lets time pass with everything as last set, in µs.
+    pub fn advance(&mut self, micros: u32) {
+        self.pass(micros);
+    }
+
+    /// Lets time pass; after how many µs the acknowledgement "control is ready" changed first.
+    fn pass(&mut self, micros: u32) -> Option<u32> {
+        let (before, mut changed_at) = (self.control_ready(), None);
+        self.moved_on |= micros > 0;
         self.time_us += u64::from(micros);
         self.pending_us = self.pending_us.saturating_add(micros);
         while self.pending_us >= self.step_us {
@@ -275,11 +303,16 @@ impl Plant for Machine {
             if self.tick_us >= TICK_US {
                 self.tick_us = 0;
                 self.tick();
+                if changed_at.is_none() && self.control_ready() != before {
+                    changed_at = Some(micros.saturating_sub(self.pending_us));
+                }
             }
         }
+        changed_at
     }
 
-    fn set_nominal(&mut self, output: usize, volts: f64) {
+    /// Sets a nominal value output, V.
+    pub fn set_nominal(&mut self, output: usize, volts: f64) {
         let volts = if volts.is_finite() {
             volts.clamp(-10.0, 10.0)
         } else {
@@ -293,20 +326,26 @@ impl Plant for Machine {
         }
     }
 
-    fn encoder(&mut self, input: usize) -> Encoder {
+    /// Reads an encoder input.
+    pub fn encoder(&mut self, input: usize) -> Encoder {
+        self.read_encoder(input, false)
+    }
+
+    fn read_encoder(&mut self, input: usize, again: bool) -> Encoder {
         let at = |counter: &Option<crate::encoder::Counter>| {
             counter.as_ref().is_some_and(|counter| counter.input == input)
         };
         if let Some(axis) = self.axes.iter_mut().find(|axis| at(&axis.counter)) {
-            return axis.read_encoder();
+            return axis.read_encoder(again);
         }
         match &mut self.spindle {
-            Some(spindle) if at(&spindle.counter) => spindle.read_encoder(),
+            Some(spindle) if at(&spindle.counter) => spindle.read_encoder(again),
             _ => Encoder::default(),
         }
     }
 
-    fn inputs(&mut self, inputs: &mut [bool; INPUTS]) {
+    /// Reads the PLC inputs.
+    pub fn inputs(&self, inputs: &mut [bool; INPUTS]) {
         inputs.fill(false);
         self.panel.set_inputs(inputs);
         self.chain.set_inputs(inputs);
@@ -324,58 +363,35 @@ impl Plant for Machine {
         }
     }
 
-    fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]) {
+    /// Sets the PLC outputs.
+    pub fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]) {
         self.outputs = *outputs;
     }
 
-    fn set_control_ready(&mut self, on: bool) {
+    /// Switches the output X41/34 "control is ready".
+    pub fn set_control_ready(&mut self, on: bool) {
         self.chain.control_ready = on;
     }
 
-    fn control_ready(&mut self) -> bool {
+    /// The acknowledgement at X42/4.
+    pub fn control_ready(&self) -> bool {
         self.chain.acknowledged(&self.stuck)
     }
 
-    fn operator(&mut self) -> OperatorInputs {
-        self.panel.operator
-    }
-
-    fn probe_deflected(&mut self) -> bool {
-        let [Some(x), Some(y), Some(z)] = self.probe_axes.map(|index| {
-            index
-                .and_then(|index| self.axes.get(index))
-                .map(|axis| axis.table)
-        }) else {
-            return false;
+    /// The touch probe; none is never ready.
+    pub fn touch_probe(&self) -> Touch {
+        let Some(probe) = &self.probe else {
+            return Touch::default();
         };
-        self.probe
-            .as_ref()
-            .is_some_and(|probe| probe.deflected([x, y, z]))
-    }
-
-    fn probe_ready(&mut self) -> bool {
-        self.probe
-            .as_ref()
-            .is_some_and(|probe| probe.inserted && probe.ready)
-    }
-
-    fn probe_battery_low(&mut self) -> bool {
-        self.probe.as_ref().is_some_and(|probe| probe.battery_low)
-    }
-
-    fn analogue_input(&mut self, input: usize) -> f64 {
-        self.volts.get(input).copied().unwrap_or(0.0)
-    }
-
-    fn temperature_input(&mut self, input: usize) -> f64 {
-        self.temperatures.get(input).copied().unwrap_or(0.0)
-    }
-
-    fn set_plc_analogue(&mut self, output: usize, volts: f64) {
-        set(&mut self.plc_volts, output, volts);
-        // The free output S leads to what hangs there [000:16037-16061].
-        if output == 0 {
-            self.set_nominal(5, volts);
+        let place = self.probe_axes.map(|index| Some(self.axes.get(index?)?.table));
+        let deflected = match place {
+            [Some(x), Some(y), Some(z)] => probe.deflected([x, y, z]),
+            _ => false,
+        };
+        Touch {
+            deflected,
+            ready: probe.inserted && probe.ready,
+            battery_low: probe.battery_low,
         }
     }
 }

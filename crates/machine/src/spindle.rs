@@ -215,11 +215,13 @@ impl Spindle {
         }
     }
 
-    pub fn read_encoder(&mut self) -> Encoder {
+    pub fn read_encoder(&mut self, again: bool) -> Encoder {
         let turns = self.turns;
-        self.counter
-            .as_mut()
-            .map_or_else(Encoder::default, |counter| counter.read_at(turns, 0.0))
+        match &mut self.counter {
+            Some(counter) if again => counter.look_at(turns, 0.0),
+            Some(counter) => counter.read_at(turns, 0.0),
+            None => Encoder::default(),
+        }
     }
 
     /// Makes the encoder fail or repairs it. `false` when the spindle has none.

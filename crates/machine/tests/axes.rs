@@ -3,7 +3,7 @@
 
 mod common;
 
-use bahn_servo::{Encoder, Plant};
+use bahn_servo::Encoder;
 use common::{BASE, IDEAL_X, input, milliseconds, running};
 
 fn x(keys: &str) -> String {

@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_machine::{Event, Machine, MachineFolder};
-use bahn_servo::{Encoder, Plant};
+use bahn_servo::Encoder;
 use common::{BASE, milliseconds, running};
 use proptest::prelude::*;
 

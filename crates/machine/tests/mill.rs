@@ -6,7 +6,7 @@ use bahn_exchange::{Bit, BitArea, Exchange, Number};
 use bahn_machine::Machine;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{Compilation, MemoryFiles, Options, Start, TestNc, mirror_parameters};
-use bahn_servo::{INPUTS, OUTPUTS, Plant};
+use bahn_servo::{INPUTS, OUTPUTS};
 
 /// The machine, its PLC, and as much of an NC as the test plays.
 struct Mill {

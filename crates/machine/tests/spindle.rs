@@ -4,7 +4,6 @@
 mod common;
 
 use bahn_machine::Machine;
-use bahn_servo::Plant;
 use common::{BASE, IDEAL_X, input, milliseconds, outputs, running};
 
 const SPINDLE: &str = r#"

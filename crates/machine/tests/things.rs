@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_machine::{Event, EventError};
-use bahn_servo::Plant;
+use bahn_servo::{Commands, Measured, Plant, Step};
 use common::{BASE, IDEAL_X, input, machine, milliseconds, outputs, running};
 
 fn with(more: &str) -> String {
@@ -216,12 +216,14 @@ fn potentiometers_handwheel_and_analogue_inputs() {
     ] {
         machine.apply(event).unwrap();
     }
-    let operator = machine.operator();
+    let mut measured = Measured::default();
+    machine.exchange(Step::default(), &Commands::default(), &mut measured);
+    let operator = measured.operator;
     assert_eq!(operator.feed_override_percent, 80.0);
     assert_eq!(operator.spindle_override_percent, 120.5);
     assert_eq!(operator.handwheel_count, 200);
-    assert_eq!(machine.analogue_input(1), 5.0);
-    assert_eq!(machine.temperature_input(6), 23.4);
+    assert_eq!(measured.volts[1], 5.0);
+    assert_eq!(measured.temperatures[6], 23.4);
 }
 
 #[test]
@@ -233,17 +235,17 @@ fn the_probe_touches_a_block_beside_and_from_above() {
                  [[probe.solid]]\nmin = [10, -20, -50]\nmax = [60, 20, 0]\n";
     let mut machine = running(&with(probe));
     machine.apply("probe insert").unwrap();
-    assert!(machine.probe_ready());
+    assert!(machine.touch_probe().ready);
     machine.set_nominal(2, -0.9);
     milliseconds(&mut machine, 1000);
     // Z 95: the centre at -3, beside the block at X 0.
-    assert!(!machine.probe_deflected());
+    assert!(!machine.touch_probe().deflected);
     machine.set_nominal(2, 0.0);
     machine.set_nominal(0, 0.09);
     let mut touched = None;
     for _ in 0..4000 {
         machine.advance(1000);
-        if touched.is_none() && machine.probe_deflected() {
+        if touched.is_none() && machine.touch_probe().deflected {
             touched = machine.axis('X').map(|axis| axis.position);
         }
     }
@@ -252,9 +254,9 @@ fn the_probe_touches_a_block_beside_and_from_above() {
     assert!((touched - 8.0).abs() < 0.0026, "{touched}");
     machine.apply("fault probe not-ready").unwrap();
     machine.apply("fault probe battery").unwrap();
-    assert!(!machine.probe_ready() && machine.probe_battery_low());
+    assert!(!machine.touch_probe().ready && machine.touch_probe().battery_low);
     machine.apply("probe remove").unwrap();
-    assert!(!machine.probe_deflected());
+    assert!(!machine.touch_probe().deflected);
 }
 
 #[test]

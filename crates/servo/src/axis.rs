@@ -3,13 +3,13 @@
 use bahn_parameters::AxisParameters;
 
 use crate::characteristic::Characteristic;
-use crate::fault::Fault;
+use crate::fault::{Fault, GrossFault};
 use crate::interpolation::{FineInterpolation, Transient};
 use crate::measuring::{Mark, MeasuringSystem};
 use crate::method::Method;
 use crate::monitor::{Monitor, Sample};
 use crate::offset::Offset;
-use crate::plant::Encoder;
+use crate::plant::{AxisCommand, Encoder};
 use crate::reversal::{ReversalPeak, Travel};
 use crate::timing::Timing;
 
@@ -62,6 +62,8 @@ pub struct Axis {
     /// The commanded position at which the window was reached last.
     rest_mm: f64,
     nominal_mm: f64,
+    /// Nominal position at the end of the step.
+    next_mm: f64,
     actual_mm: f64,
     /// A contour cycle has begun and its first step is not done.
     cycle_begins: bool,
@@ -110,6 +112,7 @@ impl Axis {
             commanded_mm: 0.0,
             rest_mm: 0.0,
             nominal_mm: 0.0,
+            next_mm: 0.0,
             actual_mm: 0.0,
             cycle_begins: false,
             cycle_actual_mm: 0.0,
@@ -193,6 +196,7 @@ impl Axis {
             Method::Precontrol => (smooth_now, smooth_next),
         };
         self.nominal_mm = now;
+        self.next_mm = next;
         if std::mem::take(&mut self.cycle_begins) {
             self.begin_cycle();
         }
@@ -226,6 +230,25 @@ impl Axis {
             0.0
         };
         self.volts
+    }
+
+    /// What the last step says to the drive.
+    pub fn output(&self) -> AxisCommand {
+        let way_mm = self.next_mm - self.actual_mm;
+        AxisCommand {
+            enabled: self.drove,
+            volts: self.volts,
+            speed_per_min: if self.drove { self.velocity_mm_min } else { 0.0 },
+            position_steps: Some(self.measuring.steps_after(way_mm))
+                .filter(|steps| self.closed() && steps.is_finite()),
+        }
+    }
+
+    /// Takes the fault word of a drive: another than 0 opens the loop for good.
+    pub fn take_drive_fault(&mut self, word: u16) {
+        if word != 0 && self.closed {
+            self.raise(Fault::Gross(GrossFault::Movement));
+        }
     }
 
     /// What is done once in a contour cycle, with the lag at its beginning.
@@ -368,6 +391,7 @@ impl Axis {
         self.commanded_mm = self.actual_mm;
         self.rest_mm = self.actual_mm;
         self.nominal_mm = self.actual_mm;
+        self.next_mm = self.actual_mm;
         self.bias_mm_min = 0.0;
     }
 

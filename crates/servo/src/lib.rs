@@ -1,7 +1,7 @@
 //! The servo loops of one axis or spindle, and what they drive.
 //!
-//! - [`Plant`] is the seam to the machine: nominal value voltages, encoders, inputs and outputs. The
-//!   simulated machine implements it; a real machine would;
+//! - [`Plant`] is the seam to the machine: in each servo step [`Commands`] go out and what is [`Measured`] comes
+//!   back. The simulated machine implements it; a real machine would; [`IdealAxes`] is the shortest one;
 //! - [`Axis`] is the position loop of one axis: in each contour cycle a nominal position comes in, in each
 //!   servo step an encoder reading comes in and a voltage goes out;
 //! - [`Gantry`] couples a slave axis to its master, [`ErrorTable`] and [`DistanceCode`] know scales and their
@@ -54,6 +54,7 @@ mod characteristic;
 mod error_table;
 mod fault;
 mod gantry;
+mod ideal;
 mod interpolation;
 mod marks;
 mod measuring;
@@ -70,10 +71,19 @@ pub use characteristic::Characteristic;
 pub use error_table::ErrorTable;
 pub use fault::{EncoderFault, Fault, GrossFault};
 pub use gantry::Gantry;
+pub use ideal::IdealAxes;
 pub use marks::DistanceCode;
 pub use measuring::Mark;
 pub use method::Method;
 pub use offset::OffsetInterval;
-pub use plant::{Encoder, INPUTS, OUTPUTS, OperatorInputs, Plant};
+pub use plant::{
+    ANALOGUE_INPUTS, AxisCommand, Commands, Drive, ENCODERS, Encoder, INPUTS, Measured, NOMINALS, OUTPUTS,
+    OperatorInputs, Plant, Probe, Step,
+};
 pub use spindle::{Ramp, Rotation, SpeedCode, Spindle, Way};
 pub use timing::{OUTPUT_VOLTS, Timing};
+
+/// The example of `docs/plant.md`.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/plant.md")]
+struct PlantOfYourOwn;

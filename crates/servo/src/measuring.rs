@@ -153,6 +153,11 @@ impl MeasuringSystem {
         scale * self.linear_factor + self.error_mm - play - self.tracking_mm
     }
 
+    /// The count that stands for a place of the table so far from where it is, mm, in parts of a step.
+    pub(crate) fn steps_after(&self, way_mm: f64) -> f64 {
+        self.count as f64 + way_mm / (self.step_mm * self.linear_factor)
+    }
+
     /// A count as position of the scale, mm.
     pub(crate) fn scale_mm(&self, count: i64) -> f64 {
         count.wrapping_sub(self.datum_count) as f64 * self.step_mm + self.datum_mm

@@ -4,71 +4,125 @@
 pub const INPUTS: usize = 384;
 /// PLC outputs that a plant may have: O0 to O191.
 pub const OUTPUTS: usize = 192;
+/// Nominal value outputs: 0 to 4 are outputs 1 to 5 of MP120, 5 is output S [000:3374-3406]; the others are those of
+/// machines with several channels, up to 32 axes and 8 spindles.
+pub const NOMINALS: usize = 40;
+/// Encoder inputs: 0 to 5 are X1 to X6 [000:3374-3406]; the others as the outputs.
+pub const ENCODERS: usize = 40;
+/// Analogue inputs of PLC input boards: 0 to 3 of the first, 4 to 7 of the second [000:8449-8484].
+pub const ANALOGUE_INPUTS: usize = 8;
 
 /// A machine as the logic unit sees it through its connectors: nominal value outputs, encoder inputs, PLC
-/// inputs and outputs, override potentiometers, handwheel.
+/// inputs and outputs, override potentiometers, handwheel, touch probe.
 ///
-/// Time passes only in [`Plant::advance`]; everything read is the state at the end of it. A plant does not
-/// allocate in these calls, and the same calls give the same answers.
+/// `docs/plant.md` tells how one is written for real drives; [`IdealAxes`](crate::IdealAxes) is the shortest one.
 pub trait Plant {
-    /// Lets time pass with everything as last set, in µs.
-    fn advance(&mut self, micros: u32);
+    /// Lets the time of a servo step pass under the commands and tells what is measured at its end.
+    ///
+    /// A step without length asks what is there now: at power-on, and before each contour cycle, since somebody
+    /// may have touched the machine. Then encoders answer as before but for their faults: the marks of
+    /// the step before are still there.
+    ///
+    /// A plant fills in all that it has; the rest stays as it is in [`Measured::default`]. It does not allocate
+    /// here, and a simulated one gives the same answers to the same calls.
+    fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured);
+}
 
-    /// Sets an analogue output, -10 V to +10 V: 0 to 4 are outputs 1 to 5 of MP120, 5 is output S
-    /// [000:3374-3406]. Outputs that do not exist are ignored.
-    fn set_nominal(&mut self, output: usize, volts: f64);
+/// A piece of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Step {
+    /// Its beginning from power-on, µs.
+    pub from_us: u64,
+    /// Its length, µs.
+    pub length_us: u32,
+}
 
-    /// Reads an encoder input, 0 to 5 for X1 to X6 [000:3374-3406]. An input without encoder reads as one
-    /// that stands still.
-    fn encoder(&mut self, input: usize) -> Encoder;
+/// What the control wants of a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Commands {
+    /// By the number of the nominal value output.
+    pub axes: [AxisCommand; NOMINALS],
+    /// The PLC outputs by their numbers, as the last scan left them.
+    pub outputs: [bool; OUTPUTS],
+    /// The output X41/34 "control is ready" [000:6151].
+    pub control_ready: bool,
+}
 
-    /// Reads the PLC inputs; the index is the number of the input.
-    fn inputs(&mut self, inputs: &mut [bool; INPUTS]);
+impl Default for Commands {
+    fn default() -> Commands {
+        Commands {
+            axes: [AxisCommand::default(); NOMINALS],
+            outputs: [false; OUTPUTS],
+            control_ready: false,
+        }
+    }
+}
 
-    /// Sets the PLC outputs; the index is the number of the output. Called at the end of each PLC scan.
-    fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]);
+/// What one drive is to do in a step: it takes of the three what it follows, they say the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AxisCommand {
+    /// The loop is closed and the axis has its feed enable: the drive holds torque. An output that is no axis
+    /// under control is not enabled, whatever its voltage.
+    pub enabled: bool,
+    /// The analogue output, -10 V to +10 V, with the polarity of MP1040.
+    pub volts: f64,
+    /// The speed that the voltage stands for, mm/min, degrees/min or rpm, in the sense of the axis: position
+    /// loop and pre-control.
+    pub speed_per_min: f64,
+    /// Where the encoder is to stand at the end of the step, counting steps since power-on. `None` where the
+    /// control closes no position loop.
+    pub position_steps: Option<f64>,
+}
 
-    /// Switches the output X41/34 "control is ready" [000:6151].
-    fn set_control_ready(&mut self, on: bool);
-
+/// What a machine answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// By the number of the encoder input. An input without encoder is one that stands still.
+    pub encoders: [Encoder; ENCODERS],
+    /// By the number of the nominal value output.
+    pub drives: [Drive; NOMINALS],
     /// The acknowledgement "control is ready" at X42/4, input I3 [000:6151].
-    fn control_ready(&mut self) -> bool;
-
+    pub control_ready: bool,
+    /// When that changed first in the step, µs from its beginning: the test of the EMERGENCY STOP circuit is finer than
+    /// the servo steps of some controls [000:6175-6228].
+    pub control_ready_changed_at: Option<u32>,
+    /// The PLC inputs by their numbers.
+    pub inputs: [bool; INPUTS],
     /// The controls of the operating panel that the NC reads itself.
-    fn operator(&mut self) -> OperatorInputs;
+    pub operator: OperatorInputs,
+    /// The touch probe.
+    pub probe: Probe,
+    /// Analogue inputs of the PLC, V.
+    pub volts: [f64; ANALOGUE_INPUTS],
+    /// Pt 100 inputs of the PLC, degrees Celsius.
+    pub temperatures: [f64; ANALOGUE_INPUTS],
+}
 
-    /// Whether the touch probe is deflected.
-    fn probe_deflected(&mut self) -> bool {
-        false
+impl Default for Measured {
+    fn default() -> Measured {
+        Measured {
+            encoders: [Encoder::default(); ENCODERS],
+            drives: [Drive::default(); NOMINALS],
+            control_ready: false,
+            control_ready_changed_at: None,
+            inputs: [false; INPUTS],
+            operator: OperatorInputs::default(),
+            probe: Probe::default(),
+            volts: [0.0; ANALOGUE_INPUTS],
+            temperatures: [0.0; ANALOGUE_INPUTS],
+        }
+    }
+}
+
+impl Measured {
+    /// An encoder input; one that does not exist stands still.
+    pub fn encoder(&self, input: usize) -> Encoder {
+        self.encoders.get(input).copied().unwrap_or_default()
     }
 
-    /// Whether the touch probe is there and ready (X12/3) [000:1694-1765].
-    fn probe_ready(&mut self) -> bool {
-        true
-    }
-
-    /// Whether the battery of the touch probe is low (X12/7).
-    fn probe_battery_low(&mut self) -> bool {
-        false
-    }
-
-    /// Analogue input of a PLC input board, V: 0 to 3 of the first, 4 to 7 of the second
-    /// [000:8449-8484].
-    fn analogue_input(&mut self, input: usize) -> f64 {
-        let _ = input;
-        0.0
-    }
-
-    /// Temperature at a Pt 100 input, degrees Celsius: 0 to 3 of the first board, 4 to 7 of the second
-    /// [000:8449-8484].
-    fn temperature_input(&mut self, input: usize) -> f64 {
-        let _ = input;
-        0.0
-    }
-
-    /// Sets an analogue output of the PLC (module 9130), V [000:8486-8490].
-    fn set_plc_analogue(&mut self, output: usize, volts: f64) {
-        let _ = (output, volts);
+    /// The drive at an output; one that does not exist says nothing.
+    pub fn drive(&self, output: usize) -> Drive {
+        self.drives.get(output).copied().unwrap_or_default()
     }
 }
 
@@ -78,7 +132,7 @@ pub struct Encoder {
     /// Steps counted since power-on, [`Encoder::STEPS`] to a signal period (after interpolation, before
     /// the counting direction MP210).
     pub count: i64,
-    /// The count latched when a reference mark was last crossed since the last reading.
+    /// The count latched when a reference mark was last crossed in the step.
     pub mark: Option<i64>,
     /// The signal amplitude is too small (monitoring A) [000:3294].
     pub amplitude_low: bool,
@@ -89,6 +143,27 @@ pub struct Encoder {
 impl Encoder {
     /// Counting steps of a signal period.
     pub const STEPS: i64 = 1024;
+}
+
+/// What a drive says of itself on a bus; an analogue drive says nothing, its contact is a PLC input.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drive {
+    /// Status word, as the drive has it: shown, not judged.
+    pub status: u16,
+    /// Fault word: 0 for none. With any other the axis is as one that does not move as it is told (inferred): GROSS
+    /// POSITIONING ERROR C.
+    pub fault: u16,
+}
+
+/// The touch probe.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Probe {
+    /// The stylus is deflected.
+    pub deflected: bool,
+    /// It is there and ready (X12/3) [000:1694-1765].
+    pub ready: bool,
+    /// Its battery is low (X12/7).
+    pub battery_low: bool,
 }
 
 /// The state of the controls that the NC reads without the PLC.

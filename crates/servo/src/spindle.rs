@@ -457,6 +457,16 @@ impl Spindle {
         self.volts
     }
 
+    /// The speed that the voltage stands for, rpm; negative as M04.
+    pub fn output_rpm(&self) -> f64 {
+        let gear = self.gear();
+        if gear.rated_volts > 0.0 {
+            self.volts / gear.rated_volts * gear.rated_rpm
+        } else {
+            0.0
+        }
+    }
+
     /// Whether the voltage is on a ramp, on its way to its nominal value [000:5536].
     pub fn on_ramp(&self) -> bool {
         self.ramp_volts != self.goal_volts

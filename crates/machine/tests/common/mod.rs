@@ -7,7 +7,7 @@
 )]
 
 use bahn_machine::Machine;
-use bahn_servo::{INPUTS, OUTPUTS, Plant};
+use bahn_servo::{INPUTS, OUTPUTS};
 
 /// Chain, one ideal axis X, panel; more is appended by the tests.
 pub const BASE: &str = r#"

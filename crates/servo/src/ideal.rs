@@ -1,0 +1,79 @@
+//! The shortest plant.
+
+use crate::plant::{Commands, ENCODERS, Encoder, INPUTS, Measured, OperatorInputs, Plant, Step};
+
+/// Axes that stand where they are told to: no drive, no mass, no play. The axis at output 1 has its encoder at X1, and so
+/// on; the circuit "control is ready" closes and opens at once. What a PLC program waits for is set by hand.
+///
+/// It shows what a plant must do, and is a machine for programs in which only the path counts.
+///
+/// ```
+/// use bahn_servo::{AxisCommand, Commands, IdealAxes, Measured, Plant, Step};
+/// let (mut plant, mut commands, mut measured) = (IdealAxes::default(), Commands::default(), Measured::default());
+/// plant.marks[0] = Some(700);
+/// commands.axes[0] = AxisCommand { enabled: true, position_steps: Some(1000.0), ..AxisCommand::default() };
+/// plant.exchange(Step { from_us: 0, length_us: 600 }, &commands, &mut measured);
+/// assert_eq!((measured.encoders[0].count, measured.encoders[0].mark), (1000, Some(700)));
+/// ```
+#[derive(Clone, Debug)]
+pub struct IdealAxes {
+    /// The count of the reference mark of each encoder.
+    pub marks: [Option<i64>; ENCODERS],
+    /// The PLC inputs by their numbers.
+    pub inputs: [bool; INPUTS],
+    /// Override potentiometers and handwheel.
+    pub operator: OperatorInputs,
+    counts: [i64; ENCODERS],
+    ready: bool,
+}
+
+impl Default for IdealAxes {
+    fn default() -> IdealAxes {
+        IdealAxes {
+            marks: [None; ENCODERS],
+            inputs: [false; INPUTS],
+            operator: OperatorInputs {
+                feed_override_percent: 100.0,
+                spindle_override_percent: 100.0,
+                handwheel_count: 0,
+            },
+            counts: [0; ENCODERS],
+            ready: false,
+        }
+    }
+}
+
+impl IdealAxes {
+    /// Where an encoder stands, steps since power-on.
+    pub fn count(&self, encoder: usize) -> i64 {
+        self.counts.get(encoder).copied().unwrap_or(0)
+    }
+}
+
+impl Plant for IdealAxes {
+    fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
+        measured.inputs = self.inputs;
+        measured.operator = self.operator;
+        if step.length_us == 0 {
+            return;
+        }
+        let places = self.counts.iter_mut().zip(&self.marks);
+        for ((count, mark), (command, encoder)) in
+            places.zip(commands.axes.iter().zip(&mut measured.encoders))
+        {
+            let from = *count;
+            if let Some(position) = command.position_steps.filter(|_| command.enabled) {
+                *count = position.round() as i64;
+            }
+            let passed = from.min(*count)..from.max(*count);
+            *encoder = Encoder {
+                count: *count,
+                mark: mark.filter(|mark| passed.contains(mark)),
+                ..Encoder::default()
+            };
+        }
+        measured.control_ready_changed_at = (self.ready != commands.control_ready).then_some(0);
+        self.ready = commands.control_ready;
+        measured.control_ready = self.ready;
+    }
+}
