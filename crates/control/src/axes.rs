@@ -1,280 +1,282 @@
-//! One axis of the machine as the kernel sees it: its loop, its nominal position, what moves it.
+//! The servo axes of the machine, and those of them that a channel moves.
 
-use bahn_motion::{Aim, PointToPoint};
-use bahn_parameters::AxisParameters;
-use bahn_path::Axis;
-use bahn_servo::{Axis as Servo, Gantry, Method, Timing};
+use bahn_motion::Aim;
+use bahn_parameters::ParameterList;
+use bahn_path::{Axis, Position};
+use bahn_servo::{Gantry, Plant, Timing};
 
-use crate::panel::Direction;
+use crate::axis::{AxisId, AxisUnit, Mover};
+use crate::gantry;
+use crate::kinematics::Box2;
+use crate::markers::AXES;
 
-/// So far below 0 an axis counts as being at 0, degrees.
-const TURN_TOLERANCE_DEG: f64 = 1e-3;
-
-/// What moves an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Mover {
-    /// Nothing: it is held where it is.
-    #[default]
-    None,
-    /// The path of a program.
-    Path,
-    /// Direction keys, handwheel, jog increment.
-    Manual,
-    /// The reference run.
-    Reference,
-    /// PLC positioning, return to the contour.
-    Positioning,
-    /// A PLC axis on command of modules.
-    Plc,
-    /// Free rotation.
-    Rotation,
+/// All axes of the machine. Each belongs to one channel, which gives it a slot of its path and an index of
+/// its markers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Axes {
+    units: Vec<AxisUnit>,
 }
 
-/// The coupling of a slave.
-#[derive(Clone, Debug)]
-pub(crate) struct Coupling {
-    /// Place of its master.
-    pub master: usize,
-    pub gantry: Gantry,
-    /// The relation of the two at switch-on was taken.
-    pub switched_on: bool,
+impl Axes {
+    /// The axes, slaves coupled to their masters.
+    pub fn new(units: Vec<AxisUnit>, timing: Timing) -> Axes {
+        Axes {
+            units: gantry::couple(units, timing),
+        }
+    }
+
+    /// Those of a channel.
+    pub fn of(&mut self, channel: usize) -> OwnAxes<'_> {
+        OwnAxes {
+            units: &mut self.units,
+            channel,
+        }
+    }
+
+    /// Those of a channel, to be looked at.
+    pub fn owned(&self, channel: usize) -> impl Iterator<Item = &AxisUnit> + Clone {
+        self.units.iter().filter(move |unit| unit.channel == channel)
+    }
+
+    pub fn iter(&self) -> std::slice::Iter<'_, AxisUnit> {
+        self.units.iter()
+    }
+
+    pub fn iter_mut(&mut self) -> std::slice::IterMut<'_, AxisUnit> {
+        self.units.iter_mut()
+    }
+
+    pub fn count(&self) -> usize {
+        self.units.len()
+    }
+
+    pub fn get(&self, place: usize) -> Option<&AxisUnit> {
+        self.units.get(place)
+    }
+
+    pub fn get_mut(&mut self, place: usize) -> Option<&mut AxisUnit> {
+        self.units.get_mut(place)
+    }
+
+    pub fn with_id_mut(&mut self, id: AxisId) -> Option<&mut AxisUnit> {
+        self.units.iter_mut().find(|unit| unit.id == id)
+    }
+
+    /// Gives an axis to a channel, in a slot and at an index of its markers that no axis of it has. `false` when one
+    /// has.
+    pub fn give(&mut self, id: AxisId, channel: usize, slot: Axis, index: usize) -> bool {
+        let taken = |unit: &AxisUnit| unit.id != id && (unit.axis == slot || unit.index == index);
+        if index >= AXES || self.owned(channel).any(taken) {
+            return false;
+        }
+        let Some(unit) = self.with_id_mut(id) else {
+            return false;
+        };
+        unit.channel = channel;
+        unit.axis = slot;
+        unit.index = index;
+        true
+    }
+
+    /// Reads the encoders, once in each servo step.
+    pub fn measure(&mut self, plant: &mut dyn Plant) {
+        for unit in &mut self.units {
+            let encoder = plant.encoder(unit.parameters.encoder.input.into());
+            unit.servo.measure(encoder);
+        }
+    }
+
+    /// Outputs the voltages of a servo step.
+    pub fn output(&mut self, plant: &mut dyn Plant) {
+        for unit in &mut self.units {
+            let volts = unit.servo.step();
+            plant.set_nominal(unit.parameters.output.output.into(), volts);
+        }
+    }
+
+    /// Hands the nominal positions of a contour cycle to the loops; slaves follow their masters.
+    pub fn command(&mut self) {
+        for unit in self.units.iter_mut().filter(|unit| unit.coupling.is_none()) {
+            unit.servo.command(unit.nominal);
+        }
+        gantry::command(&mut self.units);
+    }
+
+    /// The control voltage has come: all are held where they are.
+    pub fn close_loops(&mut self) {
+        for unit in self.units.iter_mut().filter(|unit| unit.parameters.controlled) {
+            unit.transfer();
+            unit.servo.close();
+        }
+        gantry::switch_on(&mut self.units);
+    }
+
+    /// The control voltage is gone: nothing moves them.
+    pub fn open_loops(&mut self) {
+        for unit in &mut self.units {
+            unit.servo.open();
+            unit.transfer();
+            unit.mover = Mover::None;
+        }
+    }
 }
 
-/// An axis.
-#[derive(Clone, Debug)]
-pub(crate) struct AxisUnit {
-    /// Axis index of markers and machine parameters.
-    pub index: usize,
-    /// Its place in positions of the path.
-    pub axis: Axis,
-    pub parameters: AxisParameters,
-    pub servo: Servo,
-    /// Its reference mark was passed.
-    pub referenced: bool,
-    pub mover: Mover,
-    /// Nominal position at the end of the contour cycle, machine coordinates, mm or degrees.
-    pub nominal: f64,
-    /// Nominal speed, mm/s, with its sign.
-    pub speed: f64,
-    /// Generator of movements that are no path.
-    pub ptp: PointToPoint,
-    /// The feed is enabled.
-    pub enabled: bool,
-    /// Direction of the last movement.
-    pub direction: Direction,
-    /// Way since the last lubrication, mm.
-    pub travelled: f64,
-    /// Actual position of the last cycle, for the way travelled.
-    last_actual: f64,
-    /// Largest lag since power-on, mm.
-    pub max_lag: f64,
-    /// Status marker M2008 ff.: in position after a movement.
-    pub in_position: bool,
-    /// Software limits of the active traverse range with the AXIS LIMIT of MOD, least and greatest.
-    pub limits: [f64; 2],
-    /// At a software limit.
-    pub at_limit: Option<Direction>,
-    /// The feed enable was withdrawn while it moved: 0 V until the enable is back.
-    pub halted: bool,
-    /// Where an interrupted path has left it, when the actual position became the nominal one meanwhile.
-    pub left_at: Option<f64>,
-    /// A synchronized slave is led by its master.
-    pub coupling: Option<Coupling>,
+/// The axes of a channel.
+pub(crate) struct OwnAxes<'a> {
+    units: &'a mut [AxisUnit],
+    channel: usize,
 }
 
-impl AxisUnit {
-    pub fn new(parameters: AxisParameters, timing: Timing) -> Option<AxisUnit> {
-        let axis = parameters.letter.filter(|_| parameters.active)?;
-        Some(AxisUnit {
-            index: parameters.index.into(),
-            axis,
-            servo: Servo::new(parameters, timing),
-            referenced: false,
-            mover: Mover::None,
-            nominal: 0.0,
-            speed: 0.0,
-            ptp: PointToPoint::new(0.0),
-            enabled: false,
-            direction: Direction::Plus,
-            travelled: 0.0,
-            last_actual: 0.0,
-            max_lag: 0.0,
-            in_position: true,
-            limits: [f64::NEG_INFINITY, f64::INFINITY],
-            at_limit: None,
-            halted: false,
-            left_at: None,
-            coupling: None,
-            parameters,
+impl OwnAxes<'_> {
+    pub fn iter(&self) -> impl Iterator<Item = &AxisUnit> + Clone {
+        let channel = self.channel;
+        self.units.iter().filter(move |unit| unit.channel == channel)
+    }
+
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut AxisUnit> {
+        let channel = self.channel;
+        self.units.iter_mut().filter(move |unit| unit.channel == channel)
+    }
+
+    /// The places of its axes among all.
+    pub fn places(&self) -> impl Iterator<Item = usize> + use<> {
+        let places = self.units.iter().enumerate();
+        let own = places.fold(0u64, |own, (place, unit)| {
+            own | u64::from(unit.channel == self.channel) << place
+        });
+        (0..self.units.len()).filter(move |place| own >> place & 1 != 0)
+    }
+
+    pub fn get(&self, place: usize) -> Option<&AxisUnit> {
+        self.units.get(place)
+    }
+
+    pub fn get_mut(&mut self, place: usize) -> Option<&mut AxisUnit> {
+        self.units.get_mut(place)
+    }
+
+    /// All axes of the machine, where masters and slaves find each other.
+    pub fn all_mut(&mut self) -> &mut [AxisUnit] {
+        self.units
+    }
+
+    /// The axis of a slot.
+    pub fn at(&self, axis: Axis) -> Option<&AxisUnit> {
+        self.iter().find(|unit| unit.axis == axis)
+    }
+
+    /// The axis of an index of markers.
+    pub fn with_index(&self, index: usize) -> Option<&AxisUnit> {
+        self.iter().find(|unit| unit.index == index)
+    }
+
+    /// Nothing is commanded to move.
+    pub fn stand(&self) -> bool {
+        self.iter().all(AxisUnit::stands)
+    }
+
+    /// Where the axes stand, machine coordinates; unknown where there is no axis.
+    pub fn machine_position(&self) -> Position {
+        machine_position(self.iter())
+    }
+
+    /// The box of the active traverse range.
+    pub fn traverse_box(&self) -> Box2 {
+        let mut limits: Box2 = [
+            [f64::NEG_INFINITY; Axis::COUNT].into(),
+            [f64::INFINITY; Axis::COUNT].into(),
+        ];
+        for unit in self.iter() {
+            if let Some([least, greatest]) = unit.limited() {
+                let [min, max] = &mut limits;
+                min[unit.axis] = least;
+                max[unit.axis] = greatest;
+            }
+        }
+        limits
+    }
+
+    /// Nothing moves that a run could take over in the midst of its movement.
+    pub fn rest(&self) -> bool {
+        let moves =
+            |unit: &AxisUnit| !unit.is_at_rest() && unit.mover != Mover::Rotation && !unit.is_plc_axis();
+        !self.iter().any(moves)
+    }
+
+    /// Chooses lag or feed pre-control for a kind of operation; whether all have it.
+    pub fn choose_methods(&mut self, automatic: bool, rigid: bool) -> bool {
+        let mut ready = true;
+        for unit in self.iter_mut() {
+            ready &= unit.choose_method(automatic, rigid);
+        }
+        ready
+    }
+
+    /// Those that nobody moves any more come down to a standstill.
+    pub fn slow_down(&mut self, time_s: f64) {
+        for unit in self.iter_mut() {
+            if unit.mover == Mover::None && !unit.stands() && unit.coupling.is_none() {
+                unit.drive(time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
+            }
+        }
+    }
+
+    /// No path leads them: those that stand count within one turn, and nothing is left to go back to.
+    pub fn settle(&mut self) {
+        for unit in self.iter_mut() {
+            unit.left_at = None;
+            if unit.mover == Mover::None && unit.stands() {
+                unit.wrap();
+            }
+        }
+    }
+
+    /// Goes over to changed machine parameters, with the limits of a traverse range.
+    pub fn set_parameters(&mut self, list: &ParameterList, range: usize) {
+        let channel = self.channel;
+        for unit in self.units.iter_mut().filter(|unit| unit.home.0 == channel) {
+            let Ok(index) = u8::try_from(unit.home.1) else {
+                continue;
+            };
+            let mut parameters = list.axis_parameters(index);
+            let coupled = unit.coupling.is_some();
+            if let Some(master) = unit.parameters.synchronization.master.filter(|_| coupled) {
+                parameters = Gantry::slave_parameters(&parameters, &list.axis_parameters(master));
+            }
+            unit.set_parameters(parameters);
+            if let Some(limits) = parameters.travel.ranges_mm.get(range) {
+                unit.limits = *limits;
+            }
+        }
+    }
+
+    /// An axis may go to another channel: it stands, nothing moves it, and it is coupled to none.
+    pub fn may_leave(&self, id: AxisId) -> bool {
+        let master = |place: usize| {
+            let mut couplings = self.units.iter().filter_map(|unit| unit.coupling.as_ref());
+            couplings.any(|coupling| coupling.master == place)
+        };
+        self.places().any(|place| {
+            self.get(place).is_some_and(|unit| {
+                let free = unit.mover == Mover::None && unit.stands() && unit.is_free();
+                unit.id == id && free && !master(place)
+            })
         })
     }
 
-    /// A PLC axis is driven by modules only [000:4094-4116].
-    pub fn is_plc_axis(&self) -> bool {
-        self.parameters.plc_axis
-    }
-
-    /// It is moved for itself: neither by modules of the PLC nor by its master.
-    pub fn is_free(&self) -> bool {
-        !self.is_plc_axis() && self.coupling.is_none()
-    }
-
-    /// What the status display shows as lag: a slave shows how far it is from its master [000:4490].
-    pub fn lag_mm(&self) -> f64 {
-        match &self.coupling {
-            Some(coupling) => coupling.gantry.difference_mm(),
-            None => self.servo.lag_mm(),
+    /// Those that something moves belong to nobody.
+    pub fn release(&mut self, moved_by: impl Fn(Mover) -> bool) {
+        for unit in self.iter_mut().filter(|unit| moved_by(unit.mover)) {
+            unit.mover = Mover::None;
         }
     }
+}
 
-    /// The software limits are effective: the axis is referenced and shows no modulo value [000:3442]
-    /// [000:4570].
-    pub fn limited(&self) -> Option<[f64; 2]> {
-        (self.referenced && self.parameters.travel.modulo_deg.is_none()).then_some(self.limits)
+/// Where axes stand, machine coordinates; unknown where there is none.
+pub(crate) fn machine_position<'a>(axes: impl Iterator<Item = &'a AxisUnit>) -> Position {
+    let mut position = Position::UNKNOWN;
+    for unit in axes {
+        position[unit.axis] = unit.nominal;
     }
-
-    /// Moves for a cycle, no path; no faster than the rapid traverse.
-    pub fn drive(&mut self, time_s: f64, aim: Aim, feed_mm_min: f64) {
-        let acceleration = self.parameters.motion.acceleration_m_s2;
-        let feed = feed_mm_min.min(self.parameters.motion.rapid_mm_min);
-        self.nominal = self.ptp.cycle(time_s, aim, feed, acceleration);
-        self.speed = self.ptp.speed_mm_s();
-    }
-
-    /// Takes the nominal position of the path.
-    pub fn follow(&mut self, position: f64, time_s: f64) {
-        self.speed = (position - self.nominal) / time_s;
-        self.nominal = position;
-        self.ptp = PointToPoint::moving(position, self.speed);
-    }
-
-    /// Takes over the nominal position of its master.
-    pub fn follow_master(&mut self, position: f64, speed_mm_s: f64) {
-        self.speed = speed_mm_s;
-        self.nominal = position;
-        self.ptp = PointToPoint::moving(position, speed_mm_s);
-    }
-
-    /// A clamped axis is wanted: its marker M2008 ff. falls, and the PLC is to close its loop [000:5407].
-    pub fn ask_to_unclamp(&mut self) {
-        if !self.servo.closed() {
-            self.in_position = false;
-        }
-    }
-
-    /// Stands at once where it is: the loop was opened, or the feed enable withdrawn.
-    pub fn stand(&mut self, position: f64) {
-        self.nominal = position;
-        self.speed = 0.0;
-        self.ptp = PointToPoint::new(position);
-    }
-
-    /// Makes the actual position the nominal one. On an interrupted path it is remembered where the path
-    /// left the axis: it goes on there.
-    pub fn transfer(&mut self) {
-        if self.mover == Mover::Path {
-            self.left_at.get_or_insert(self.nominal);
-        }
-        self.servo.transfer();
-        self.stand(self.servo.actual_mm());
-    }
-
-    /// Whether nothing is commanded to move.
-    pub fn stands(&self) -> bool {
-        self.speed == 0.0
-    }
-
-    /// Whether it is held at its place, or not held at all.
-    pub fn is_at_rest(&self) -> bool {
-        !self.servo.closed() || self.stands() && self.servo.in_position()
-    }
-
-    /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag, all others
-    /// with pre-control in rigid tapping [000:6122].
-    fn wanted_method(&self, automatic: bool, rigid: bool) -> Method {
-        let precontrol = &self.parameters.precontrol;
-        let wanted = if automatic {
-            precontrol.in_automatic
-        } else {
-            precontrol.in_manual
-        };
-        if (wanted || rigid) && !self.is_plc_axis() {
-            Method::Precontrol
-        } else {
-            Method::Lag
-        }
-    }
-
-    /// Chooses lag or feed pre-control for a kind of operation; an axis that moves changes when it has come
-    /// to a standstill (inferred). Whether it has the method.
-    pub fn choose_method(&mut self, automatic: bool, rigid: bool) -> bool {
-        if self.has_method(automatic, rigid) {
-            return true;
-        }
-        let wanted = self.wanted_method(automatic, rigid);
-        let rests = self.is_at_rest();
-        if rests {
-            self.servo.set_method(wanted);
-        }
-        rests
-    }
-
-    /// Whether it has the method for a kind of operation.
-    pub fn has_method(&self, automatic: bool, rigid: bool) -> bool {
-        self.servo.method() == self.wanted_method(automatic, rigid)
-    }
-
-    /// Says at which machine position a count is; nominal and actual position shift alike, by the value
-    /// returned.
-    pub fn set_datum(&mut self, count: i64, position_mm: f64) -> f64 {
-        let shift = self.servo.set_datum(count, position_mm);
-        self.nominal += shift;
-        self.last_actual += shift;
-        self.ptp = PointToPoint::moving(self.nominal, self.speed);
-        shift
-    }
-
-    /// Counts within one turn again (MP810), after it has turned farther; nothing moves.
-    pub fn wrap(&mut self) {
-        let Some(modulo) = self.parameters.travel.modulo_deg else {
-            return;
-        };
-        let turns = ((self.nominal + TURN_TOLERANCE_DEG) / modulo).floor();
-        if turns != 0.0 {
-            let shift = -turns * modulo;
-            self.servo.shift(shift);
-            self.nominal += shift;
-            self.last_actual += shift;
-            self.ptp = PointToPoint::moving(self.nominal, self.speed);
-        }
-    }
-
-    /// A position as it is shown: within one turn where MP810 says so [000:6468-6484].
-    pub fn shown(&self, position: f64) -> f64 {
-        match self.parameters.travel.modulo_deg {
-            Some(modulo) => position.rem_euclid(modulo),
-            None => position,
-        }
-    }
-
-    /// Goes over to changed machine parameters, as far as they take effect without a restart.
-    pub fn set_parameters(&mut self, parameters: AxisParameters) {
-        self.servo.set_parameters(parameters);
-        self.parameters = parameters;
-    }
-
-    /// Goes on by a contour cycle: counts the way, remembers direction and lag.
-    pub fn count(&mut self) {
-        let actual = self.servo.actual_mm();
-        self.travelled += (actual - self.last_actual).abs();
-        self.last_actual = actual;
-        if self.servo.closed() {
-            self.max_lag = self.max_lag.max(self.servo.lag_mm().abs());
-        }
-        if self.speed > 0.0 {
-            self.direction = Direction::Plus;
-        } else if self.speed < 0.0 {
-            self.direction = Direction::Minus;
-        }
-    }
+    position
 }

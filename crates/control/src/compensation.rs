@@ -1,202 +1,23 @@
-//! Non-linear axis errors: compensation tables (.COM) and their assignment (.CMA) [000:3770-3865].
+//! Non-linear axis errors are compensated over the positions of their driving axes [000:3770-3865].
 
 use std::collections::BTreeMap;
 
 use bahn_servo::ErrorTable;
 
-use crate::control::Control;
-use crate::markers::AXES;
-
-/// Names of the axes in tables, by axis index.
-const NAMES: [&str; AXES] = ["X", "Y", "Z", "4", "5"];
-
-/// A compensation table: errors of several axes over the position of the axis that it is assigned to.
-///
-/// Its text form has a head line with name, unit, DATUM (mm from the machine datum), DIST (exponent of two in
-/// units of 0.1 µm) and the dependent axes; then a line for each point that has an entry. Axes are X, Y, Z,
-/// 4 and 5.
-///
-/// ```
-/// use bahn_control::CompensationTable;
-/// let table = CompensationTable::read(
-///     "ACHSE-Y MM DATUM -90 DIST 16 Y Z\n\
-///      0 Y=0 Z=-0.01\n\
-///      2 Y=0.005 Z=-0.02\n",
-/// )?;
-/// // Point 1 stands at -90 + 2^16 · 0.1 µm = -83.4464 mm.
-/// assert!((table.error_mm(1, -83.4464) - 0.0025).abs() < 1e-9);
-/// assert!(CompensationTable::read("A MM DATUM 0 DIST 24 Y\n").is_err());
-/// # Ok::<(), bahn_control::CompensationError>(())
-/// ```
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CompensationTable {
-    columns: Vec<(usize, ErrorTable)>,
-    points: usize,
-}
-
-/// The assignment: in each line the table of each driving axis. Exactly one line is active, or none.
-///
-/// ```
-/// use bahn_control::CompensationAssignment;
-/// let assignment = CompensationAssignment::read("0 Y=ACHSE-Y Z=ACHSE-Z\n1 Z=ACHSE-Z\nACTIVE 0\n")?;
-/// assert_eq!(assignment.active, Some(0));
-/// assert_eq!(assignment.lines[1][2].as_deref(), Some("ACHSE-Z"));
-/// # Ok::<(), bahn_control::CompensationError>(())
-/// ```
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CompensationAssignment {
-    /// Names of tables by line and axis index.
-    pub lines: Vec<[Option<String>; AXES]>,
-    /// The line that is active at power-on.
-    pub active: Option<usize>,
-}
-
-/// A line of a compensation file cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {what}")]
-pub struct CompensationError {
-    /// Line, from 1.
-    pub line: usize,
-    /// What is wrong.
-    pub what: &'static str,
-}
-
-fn error<T>(line: usize, what: &'static str) -> Result<T, CompensationError> {
-    Err(CompensationError { line, what })
-}
-
-/// Words of each line that is not empty, with its number.
-fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
-    let lines = (1..).zip(text.lines());
-    lines
-        .map(|(number, line)| (number, line.split_whitespace().collect::<Vec<_>>()))
-        .filter(|(_, words)| !words.is_empty())
-}
-
-/// `Y=VALUE`: axis index and value.
-fn cell(line: usize, word: &str) -> Result<(usize, &str), CompensationError> {
-    let found = word.split_once('=').and_then(|(name, value)| {
-        let axis = NAMES.iter().position(|known| known.eq_ignore_ascii_case(name))?;
-        Some((axis, value))
-    });
-    found.map_or_else(|| error(line, "a cell is written axis=value, as Y=0.005"), Ok)
-}
-
-impl CompensationTable {
-    /// Reads a table from its text form.
-    ///
-    /// # Errors
-    /// The first line that cannot be read.
-    pub fn read(text: &str) -> Result<CompensationTable, CompensationError> {
-        const HEAD: &str = "the head line is NAME MM DATUM mm DIST exponent AXES";
-        let mut lines = lines(text);
-        let Some((line, head)) = lines.next() else {
-            return error(1, HEAD);
-        };
-        let [_, unit, datum_word, datum, dist_word, exponent, axes @ ..] = head.as_slice() else {
-            return error(line, HEAD);
-        };
-        let words = unit.eq_ignore_ascii_case("MM") && *datum_word == "DATUM" && *dist_word == "DIST";
-        let (Ok(datum), Ok(exponent), true) = (datum.parse::<f64>(), exponent.parse::<u32>(), words) else {
-            return error(line, HEAD);
-        };
-        let mut columns = Vec::new();
-        for name in axes {
-            match NAMES.iter().position(|known| known.eq_ignore_ascii_case(name)) {
-                Some(axis) => columns.push((axis, Vec::new())),
-                None => return error(line, "the axes are X, Y, Z, 4 and 5"),
-            }
-        }
-        let mut points = 0;
-        for (line, words) in lines {
-            let [number, cells @ ..] = words.as_slice() else {
-                continue;
-            };
-            let Some(number) = number
-                .parse()
-                .ok()
-                .filter(|number| *number < ErrorTable::POINTS_MAX)
-            else {
-                return error(line, "a line begins with the number of its point, 0 to 255");
-            };
-            points = points.max(number + 1);
-            for word in cells {
-                let (axis, value) = cell(line, word)?;
-                let column = columns.iter_mut().find(|(of, _)| *of == axis);
-                match (column, value.parse::<f64>()) {
-                    (Some((_, entries)), Ok(value)) if value.is_finite() => entries.push((number, value)),
-                    (None, _) => return error(line, "the axis is not in the head line"),
-                    _ => return error(line, "the value is no number"),
-                }
-            }
-        }
-        let columns = columns
-            .into_iter()
-            .map(|(axis, entries)| Some((axis, ErrorTable::new(datum, exponent, &entries)?)))
-            .collect::<Option<Vec<_>>>();
-        match columns {
-            Some(columns) => Ok(CompensationTable { columns, points }),
-            None => error(line, "DIST is 0 to 23"),
-        }
-    }
-
-    /// The error of an axis (index) where the driving axis is at a position, mm.
-    pub fn error_mm(&self, axis: usize, position_mm: f64) -> f64 {
-        let column = self.columns.iter().find(|(of, _)| *of == axis);
-        column.map_or(0.0, |(_, table)| table.error_mm(position_mm))
-    }
-
-    /// Its points in all columns together, which module 9095 counts [000:15547-15580].
-    pub fn points(&self) -> usize {
-        self.points * self.columns.len()
-    }
-}
-
-impl CompensationAssignment {
-    /// Reads an assignment from its text form: a line with its number and a cell for each driving axis;
-    /// `ACTIVE n` makes one active.
-    ///
-    /// # Errors
-    /// The first line that cannot be read.
-    pub fn read(text: &str) -> Result<CompensationAssignment, CompensationError> {
-        let mut assignment = CompensationAssignment::default();
-        for (line, words) in lines(text) {
-            if let ["ACTIVE", number] = words.as_slice() {
-                match number.parse() {
-                    Ok(number) => assignment.active = Some(number),
-                    Err(_) => return error(line, "ACTIVE takes the number of a line"),
-                }
-                continue;
-            }
-            let [number, cells @ ..] = words.as_slice() else {
-                continue;
-            };
-            if number.parse() != Ok(assignment.lines.len()) {
-                return error(line, "lines are numbered 0, 1, 2 in their order");
-            }
-            let mut tables: [Option<String>; AXES] = Default::default();
-            for word in cells {
-                let (axis, name) = cell(line, word)?;
-                if let Some(table) = tables.get_mut(axis) {
-                    *table = Some(name.to_owned());
-                }
-            }
-            assignment.lines.push(tables);
-        }
-        Ok(assignment)
-    }
-}
+use crate::axes::Axes;
+use crate::compensation_table::{CompensationAssignment, CompensationTable};
+use crate::plc_link::NcFiles;
 
 /// A column that is active: which axis it corrects, and over which one.
 #[derive(Clone, Debug)]
-pub(crate) struct Correction {
+struct Correction {
     driving: usize,
     corrected: usize,
     table: ErrorTable,
 }
 
 /// The columns of a line of the assignment.
-pub(crate) fn corrections(
+fn corrections(
     assignment: &CompensationAssignment,
     tables: &BTreeMap<String, CompensationTable>,
     line: usize,
@@ -210,7 +31,7 @@ pub(crate) fn corrections(
     });
     named
         .flat_map(|(driving, table)| {
-            table.columns.iter().map(move |(corrected, table)| Correction {
+            table.columns().map(move |(corrected, table)| Correction {
                 driving,
                 corrected: *corrected,
                 table: table.clone(),
@@ -219,41 +40,46 @@ pub(crate) fn corrections(
         .collect()
 }
 
-impl Control {
-    /// Makes a line of the assignment active, or none.
-    pub(crate) fn activate_compensation(&mut self, line: Option<usize>) {
-        let files = &self.link.files;
-        self.upkeep.corrections = match (&files.compensation, line) {
+/// The axis errors that are compensated.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Compensation {
+    /// The columns of the active line.
+    corrections: Vec<Correction>,
+    /// The active line of the assignment: it survives power-off [000:15547-15580].
+    pub line: Option<usize>,
+}
+
+impl Compensation {
+    /// A line of the assignment, or none.
+    pub fn of(files: &NcFiles, line: Option<usize>) -> Compensation {
+        let corrections = match (&files.compensation, line) {
             (Some(assignment), Some(line)) => corrections(assignment, &files.compensation_tables, line),
             _ => Vec::new(),
         };
-        self.upkeep.line = line;
-    }
-
-    /// The line of the compensation assignment that is active: it survives power-off [000:15547-15580].
-    pub fn compensation_line(&self) -> Option<usize> {
-        self.upkeep.line
+        Compensation { corrections, line }
     }
 
     /// Corrects each axis with MP730 = 1 by the sum of the tables that have a column for it, over the
     /// positions of their driving axes; a rotary axis counts within one turn [000:3751-3758] [000:3871-3873].
-    pub(crate) fn correct_axes(&mut self) {
-        if self.upkeep.corrections.is_empty() {
+    pub fn correct(&self, axes: &mut Axes) {
+        if self.corrections.is_empty() {
             return;
         }
-        for place in 0..self.axes.len() {
-            let Some(unit) = self.axes.get(place) else {
+        for place in 0..axes.count() {
+            let Some(unit) = axes.get(place) else {
                 continue;
             };
             if !(unit.parameters.compensation.nonlinear && unit.referenced) {
                 continue;
             }
             let mut error_mm = 0.0;
-            for correction in &self.upkeep.corrections {
-                if correction.corrected != unit.index {
+            for correction in &self.corrections {
+                if correction.corrected != usize::from(unit.id.number()) {
                     continue;
                 }
-                let driving = self.axes.iter().find(|unit| unit.index == correction.driving);
+                let driving = axes
+                    .iter()
+                    .find(|unit| usize::from(unit.id.number()) == correction.driving);
                 let Some(driving) = driving.filter(|unit| unit.referenced) else {
                     continue;
                 };
@@ -264,7 +90,7 @@ impl Control {
                 };
                 error_mm += correction.table.error_mm(position);
             }
-            if let Some(unit) = self.axes.get_mut(place) {
+            if let Some(unit) = axes.get_mut(place) {
                 unit.servo.set_error(error_mm);
             }
         }

@@ -1,42 +1,39 @@
-//! The kernel: one state machine whose time is a count of microseconds.
+//! The kernel: machine side and channels under one clock, a count of microseconds. It orders what happens in a
+//! servo step, a contour cycle and a PLC scan, and decides nothing.
 
-use std::sync::Arc;
+use bahn_exchange::{Exchange, Image};
+use bahn_interpreter::{Done, Interpreter, Warning, Work};
+use bahn_parameters::{MessageId, ParameterList};
+use bahn_path::{Axis, PathElement};
+use bahn_plc::mirror_parameters;
+use bahn_servo::{Plant, Timing};
 
-use bahn_exchange::{Bit, BitArea, Exchange, Image, Number, signal};
-use bahn_interpreter::{Done, Work};
-use bahn_motion::{Interpolator, Limits as PathLimits};
-use bahn_parameters::{ControlModel, InchFeed, MessageId, OperationParameters, PlcParameters, Station};
-use bahn_path::{Axis, BlockRef, Position};
-use bahn_plc::{Machine, Start, mirror_parameters};
-use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
-
-use crate::axes::AxisUnit;
+use crate::axes::Axes;
+use crate::axis::{AxisId, AxisUnit};
+use crate::channel::{Channel, Parts};
 use crate::command::{Command, Mode};
-use crate::emergency::EmergencyStop;
-use crate::feeder::{Offsets, Programs};
-use crate::handshake::{Handshakes, Transfer};
-use crate::life::LifeCount;
-use crate::manual::Manual;
+use crate::compensation::Compensation;
+use crate::datum_tables::LoadedDatums;
+use crate::handshake::Waiting;
+use crate::kinematics::Cartesian;
+use crate::machine::{CircuitOrder, MachineSide, PlcUnit};
 use crate::markers::AXES;
-use crate::message::{Message, Messages};
-use crate::overrides::Override;
-use crate::panel::Panel;
+use crate::message::{Message, Shown};
+use crate::per_channel::PerChannel;
 use crate::plc_link::{PalletSelection, PlcLink};
-use crate::positioning::Positioning;
-use crate::reference::ReferenceRun;
-use crate::run::ProgramRun;
-use crate::setup::{Checking, Remembered, Setup};
-use crate::spindle::SpindleUnit;
-use crate::tables::{LoadedDatums, LoadedTables};
-use crate::thread::Tapping;
+use crate::progress::RunState;
+use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
+use crate::signal::Signal;
+use crate::snapshot::Snapshot;
+use crate::source::Reading;
+use crate::spindle::{SpindleState, SpindleUnit, SpindleWiring};
+use crate::tables::LoadedTables;
+use crate::test_run::{TestReport, TestRun};
 use crate::tools::Tools;
-use crate::upkeep::Upkeep;
+use crate::upkeep::by_index;
 
 /// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
 const MILLISECOND_US: u32 = 1000;
-
-/// Elements of the path that are prepared ahead at most.
-pub(crate) const LOOK_AHEAD: usize = 512;
 
 /// Commands that are kept at most until they are taken.
 const LOG_MAX: usize = 100_000;
@@ -44,87 +41,47 @@ const LOG_MAX: usize = 100_000;
 /// A control with its PLC, axes and programs. The machine comes with every cycle.
 ///
 /// [`Control::prepare`] interprets and plans ahead and may allocate; [`Control::cycle`] spends one contour
-/// cycle and does not. Both are called in turn. The same setup, commands and plant give the same bits.
-/// A copy goes on from the same state.
+/// cycle and does not. Both are called in turn. The same setup, commands and plant give the same bits; a clone goes on
+/// as the control would have done.
 #[derive(Clone)]
 pub struct Control {
-    pub(crate) model: ControlModel,
-    pub(crate) timing: Timing,
-    pub(crate) operation: OperationParameters,
-    pub(crate) plc_parameters: PlcParameters,
-    pub(crate) now_us: u64,
-    pub(crate) cycles: u64,
-    pub(crate) exchange: Exchange,
-    pub(crate) link: PlcLink,
-    pub(crate) plc: PlcUnit,
-    pub(crate) emergency: EmergencyStop,
-    pub(crate) messages: Messages,
-    pub(crate) panel: Panel,
-    /// NC start was pressed and not yet used.
-    pub(crate) start_pressed: bool,
-    pub(crate) handshakes: Handshakes,
-    pub(crate) axes: Vec<AxisUnit>,
-    /// The index into `axes` of each axis index.
-    pub(crate) places: [Option<usize>; AXES],
-    pub(crate) spindle: SpindleUnit,
-    pub(crate) feed_override: Override,
-    pub(crate) spindle_override: Override,
-    pub(crate) mode: Mode,
-    /// The loops were closed since the control voltage came on.
-    pub(crate) loops_closed: bool,
-    pub(crate) manual: Manual,
-    pub(crate) reference: ReferenceRun,
-    pub(crate) positioning: Positioning,
-    pub(crate) run: ProgramRun,
-    pub(crate) path: Interpolator<crate::feeder::RunFault>,
-    pub(crate) offsets: Offsets,
-    /// Machine position of the workpiece datum for each traverse range.
-    pub(crate) datums: [Position; 3],
-    /// Datum correction by the PLC, mm or degrees.
-    pub(crate) correction: [f64; AXES],
-    /// Active traverse range, 0 to 2.
-    pub(crate) range: usize,
-    pub(crate) tools: Tools,
-    pub(crate) checking: Checking,
-    pub(crate) upkeep: Upkeep,
-    pub(crate) stylus: crate::probing::Stylus,
-    pub(crate) tapping: Tapping,
-    pub(crate) test: Option<crate::test_run::TestRun>,
+    now_us: u64,
+    machine: MachineSide,
+    channels: PerChannel<Channel>,
     /// Tool changes and datums must be stored before their strobe is reset.
     keeps: bool,
-    /// What is to be stored has changed since [`Control::stored`].
-    pub(crate) unsaved: bool,
-    /// Of the tool in the spindle.
-    pub(crate) life: LifeCount,
-    /// What F counts in a program in inches, when that is not what it counts on the model.
-    pub(crate) inch_feed: Option<InchFeed>,
-    pub(crate) programs: Arc<dyn Programs>,
-    /// Q parameters between runs.
-    pub(crate) q: Vec<(u16, f64)>,
-    pub(crate) loaded_tables: LoadedTables,
-    pub(crate) loaded_datums: LoadedDatums,
     /// The commands, when somebody wants them.
     log: Option<Vec<(u64, Command)>>,
-    pub(crate) inputs: [bool; INPUTS],
-    outputs: [bool; OUTPUTS],
-    output_bits: Vec<(usize, Bit)>,
-    input_bits: Vec<(usize, Bit)>,
-    pub(crate) letters: [char; AXES],
-}
-
-/// The PLC and its clock.
-#[derive(Clone)]
-pub(crate) struct PlcUnit {
-    pub machine: Machine,
-    pub due_us: u64,
-    pub period_us: u64,
-    /// Scans that were started.
-    pub scans: u64,
 }
 
 impl Control {
-    /// A control at power-on. The PLC does not run yet, and the loops are open.
+    /// A control of one channel at power-on. The PLC does not run yet, and the loops are open.
     pub fn new(setup: Setup) -> Control {
+        let axes = units(&setup.parameters, 0, first_ids());
+        Control::build(setup, Vec::new(), axes)
+    }
+
+    /// A control of several channels at power-on: the first one and those beside it. All run under one clock, with
+    /// one PLC and one EMERGENCY STOP.
+    ///
+    /// # Errors
+    /// Why the channels cannot be put together.
+    pub fn with_channels(setup: Setup, others: Vec<ChannelSetup>) -> Result<Control, ChannelError> {
+        if others.len() >= ChannelError::CHANNELS_MAX {
+            return Err(ChannelError::TooMany);
+        }
+        let mut axes = units(&setup.parameters, 0, first_ids());
+        for (channel, other) in (1..).zip(&others) {
+            axes.extend(units(&other.parameters, channel, other.axes));
+        }
+        let mut ids = std::collections::BTreeSet::new();
+        match axes.iter().find(|unit| !ids.insert(unit.id)) {
+            Some(twice) => Err(ChannelError::AxisTwice(twice.id)),
+            None => Ok(Control::build(setup, others, axes)),
+        }
+    }
+
+    fn build(setup: Setup, others: Vec<ChannelSetup>, units: Vec<AxisUnit>) -> Control {
         let Setup {
             parameters,
             plc,
@@ -141,146 +98,113 @@ impl Control {
         let model = parameters.model();
         let timing = Timing::of(model);
         let operation = parameters.operation_parameters();
-        let axes: Vec<AxisUnit> = (0..AXES)
-            .filter_map(|index| {
-                let index = u8::try_from(index).ok()?;
-                AxisUnit::new(parameters.axis_parameters(index), timing)
-            })
-            .collect();
-        let mut axes = crate::gantry::couple(axes, timing);
-        for unit in &mut axes {
+        let mut axes = Axes::new(units, timing);
+        for unit in axes.of(0).iter_mut() {
             let volts = remembered.offsets_volts.get(unit.index).copied();
             unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
         }
-        let parameters_interval_s = axes
-            .first()
-            .map_or(0.0, |unit| unit.parameters.output.offset_interval_s);
-        let mut places = [None; AXES];
-        let mut letters = ['X', 'Y', 'Z', '4', '5'];
-        for (place, unit) in axes.iter().enumerate() {
-            if let (Some(slot), Some(letter)) = (places.get_mut(unit.index), letters.get_mut(unit.index)) {
-                *slot = Some(place);
-                *letter = unit.axis.letter();
-            }
-        }
         mirror_parameters(&parameters, &mut exchange);
-        let path_limits = path_limits(&parameters, &axes);
-        let bits = |area: BitArea, boards: &[(u16, u16)]| {
-            let numbers = boards.iter().flat_map(|(first, last)| *first..=*last);
-            numbers
-                .filter_map(|number| Some((usize::from(number), Bit::new(area, number)?)))
-                .collect()
+        let spindle = SpindleUnit::new(SpindleWiring::default(), parameters.spindle_parameters(), timing);
+        let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
+        link.selected_list.clone_from(&remembered.parameter_list);
+        link.pallet = PalletSelection {
+            line: remembered.pallet_line,
+            datum_table: remembered.datum_table.clone(),
         };
-        let datums = remembered.datums.map(|datum| datum.0);
-        let [first, ..] = datums;
-        let mut control = Control {
+        let loaded_datums = LoadedDatums::set_up(&mut link, &remembered.written_datums);
+        let mut tools = Tools::new(tools, operation.tools, &remembered);
+        let loaded_tables = LoadedTables::set_up(&mut tools, &mut link.files, &remembered.written);
+        let plc = PlcUnit::new(plc, model);
+        let windows = others.iter().map(|other| other.window.clone()).collect();
+        let mut machine = MachineSide::new(&parameters, plc, link, exchange, windows, axes, spindle);
+        machine.loaded_datums = loaded_datums;
+        machine.loaded_tables = loaded_tables;
+        let reading = Reading {
             model,
-            timing,
-            operation,
-            plc_parameters: parameters.plc_parameters(),
-            now_us: 0,
-            cycles: 0,
-            exchange,
-            spindle: SpindleUnit::new(parameters.spindle_parameters(), timing),
-            tools: Tools::new(tools, operation.tools, &remembered),
             checking,
-            link: PlcLink::new(parameters, plc_messages, plc_dialogues, files),
-            plc: PlcUnit {
-                machine: Machine::new(plc, Start::PowerOn),
-                due_us: 0,
-                period_us: model.limits().plc_cycle_us.into(),
-                scans: 0,
-            },
-            emergency: EmergencyStop::new(model, operation.power_interrupted),
-            messages: Messages::default(),
-            panel: Panel::default(),
-            start_pressed: false,
-            handshakes: Handshakes::default(),
-            places,
-            feed_override: Override::feed(operation.overrides.feed_steps),
-            spindle_override: Override::spindle(operation.overrides.spindle_steps),
-            mode: Mode::Manual,
-            loops_closed: false,
-            manual: Manual::default(),
-            reference: ReferenceRun::default(),
-            positioning: Positioning::default(),
-            run: ProgramRun::default(),
-            path: Interpolator::new(&path_limits, LOOK_AHEAD),
-            offsets: Offsets {
-                datum: first,
-                tool_axis: remembered.tool_axis.unwrap_or(Axis::Z),
-                tool_length: remembered.tool_length,
-            },
-            datums,
-            correction: [0.0; AXES],
-            range: 0,
-            upkeep: Upkeep::new(parameters_interval_s),
-            stylus: crate::probing::Stylus::default(),
-            tapping: Tapping::default(),
-            test: None,
-            keeps: false,
-            unsaved: false,
-            life: LifeCount::default(),
             inch_feed,
             programs,
-            q: remembered.q,
-            loaded_tables: LoadedTables::default(),
-            loaded_datums: LoadedDatums::default(),
+        };
+        let parts = Parts {
+            number: 0,
+            own_list: None,
+            kinematics: std::sync::Arc::new(Cartesian),
+            tools,
+            reading: reading.clone(),
+        };
+        let first = Channel::new(parts, &remembered, &mut machine);
+        let mut channels = PerChannel::new(first, Vec::new());
+        for other in others {
+            let parameters = other.parameters.spindle_parameters();
+            let spindle = SpindleUnit::new(other.spindle, parameters, timing);
+            machine.spindles.push(spindle);
+            let tools = other.parameters.operation_parameters().tools;
+            let parts = Parts {
+                number: channels.count(),
+                own_list: Some(other.parameters),
+                kinematics: other.kinematics,
+                tools: Tools::new(other.tools, tools, &other.remembered),
+                reading: Reading {
+                    programs: other.programs,
+                    ..reading.clone()
+                },
+            };
+            channels.push(Channel::new(parts, &other.remembered, &mut machine));
+        }
+        if operation.power_interrupted {
+            let message = Message::Plain(MessageId::PowerInterrupted);
+            machine.messages.show(message, false, None);
+        }
+        Control {
+            now_us: 0,
+            machine,
+            channels,
+            keeps: false,
             log: None,
-            inputs: [false; INPUTS],
-            outputs: [false; OUTPUTS],
-            output_bits: bits(BitArea::O, model.limits().outputs),
-            input_bits: bits(BitArea::I, model.limits().inputs),
-            letters,
-            axes,
-        };
-        control.link.selected_list = remembered.parameter_list;
-        if let Some(name) = remembered.program {
-            control.run.selected = Some(name);
         }
-        control.link.pallet = PalletSelection {
-            line: remembered.pallet_line,
-            datum_table: remembered.datum_table,
-        };
-        control.set_up_datums(&remembered.written_datums);
-        control.set_up_tables(&remembered.written);
-        control.select_range(0);
-        let active = control
-            .link
-            .files
-            .compensation
-            .as_ref()
-            .and_then(|file| file.active);
-        control.activate_compensation(active);
-        control.preset_markers();
-        if control.operation.power_interrupted {
-            control.show(Message::Plain(MessageId::PowerInterrupted), false);
-        }
-        control
     }
 
-    /// Markers and words with a value at power-on.
-    fn preset_markers(&mut self) {
-        // They lie among the markers that power-off keeps, but belong to the NC.
-        let of_the_nc = [
-            &signal::RISING_EDGES,
-            &signal::FALLING_EDGES,
-            &signal::DECODED_M_FUNCTIONS,
-        ];
-        for marker in of_the_nc.into_iter().flat_map(|range| range.iter()) {
-            if self.exchange.nc().bit(marker) {
-                self.exchange.nc_set(marker, false);
-            }
+    /// Channels that it has; they are numbered from 0.
+    pub fn channels(&self) -> usize {
+        self.channels.count()
+    }
+
+    /// Gives a command of the operator to a channel, as [`Control::command`] to the first one; it is not logged.
+    /// `false` when it is not possible now, or there is no such channel.
+    pub fn command_to(&mut self, channel: usize, command: Command) -> bool {
+        channel < self.channels.count() && self.give(channel, command)
+    }
+
+    /// The state of a channel as of now.
+    pub fn snapshot_of(&self, channel: usize) -> Option<Snapshot> {
+        let channel = self.channels.get(channel)?;
+        Some(Snapshot::of(channel, &self.machine, None))
+    }
+
+    /// What survives power-off of a channel beside the first one: datums, tool, Q parameters, program.
+    pub fn remember_of(&self, channel: usize) -> Option<Remembered> {
+        self.channels.get(channel).map(Channel::remember)
+    }
+
+    /// Hands an axis over to another channel, where it has a slot of the path and an index of markers that are free.
+    /// `false` when it cannot go: it moves or is coupled, or a program is on its way in either channel. Outside the
+    /// cycle, as [`Control::prepare`].
+    pub fn hand_over(&mut self, id: AxisId, channel: usize, slot: Axis, index: usize) -> bool {
+        let axes = &mut self.machine.axes;
+        let Some(from) = axes.iter().find(|unit| unit.id == id).map(|unit| unit.channel) else {
+            return false;
+        };
+        let Some(to) = self.channels.get(channel) else {
+            return false;
+        };
+        let may = !to.run.is_active() && self.channels.of(from).may_hand_over(id, axes);
+        if !may || !axes.give(id, channel, slot, index) {
+            return false;
         }
-        for unit in &self.axes {
-            if let Some(marker) = crate::markers::REFERENCE_MISSING.get(unit.index) {
-                self.exchange.nc_set(*marker, unit.parameters.controlled);
-            }
+        for number in [from, channel] {
+            self.channels.of_mut(number).take_axes(&mut self.machine);
         }
-        self.exchange.nc_set_number(signal::RAPID_TRAVERSE_LIMIT, 300_000);
-        self.exchange
-            .nc_set(signal::ENGLISH_SELECTED, self.operation.english);
-        self.spindle.preset(&mut self.exchange);
+        true
     }
 
     /// Time since power-on, µs.
@@ -290,215 +214,186 @@ impl Control {
 
     /// The contour cycle, µs.
     pub fn cycle_us(&self) -> u32 {
-        self.timing.contour_us()
-    }
-
-    pub(crate) fn cycle_s(&self) -> f64 {
-        f64::from(self.timing.contour_us()) * 1e-6
+        self.machine.timing.contour_us()
     }
 
     /// Spends one contour cycle on a machine. It does not allocate unless something out of the ordinary
     /// happens: a message, a fault.
     pub fn cycle(&mut self, plant: &mut dyn Plant) {
-        for step in 0..self.timing.steps() {
+        for step in 0..self.machine.timing.steps() {
             self.servo_step(plant, step == 0);
         }
-        self.cycles += 1;
     }
 
     /// One servo step: a contour cycle begins with the first of its steps, a PLC scan with the first step
     /// at or after its time.
     fn servo_step(&mut self, plant: &mut dyn Plant, first: bool) {
-        let step_us = self.timing.step_us();
-        self.emergency.step(self.now_us, plant.control_ready());
-        plant.set_control_ready(self.emergency.output());
-        for unit in &mut self.axes {
-            let encoder = plant.encoder(unit.parameters.encoder.input.into());
-            unit.servo.measure(encoder);
+        let step_us = self.machine.timing.step_us();
+        self.machine.begin_step(self.now_us, plant);
+        for channel in self.channels.iter_mut() {
+            channel.watch_probe(&self.machine, plant);
         }
-        self.spindle.measure(plant);
-        self.watch_probe(plant);
-        if self.plc_runs() && self.now_us >= self.plc.due_us {
+        if self.machine.scan_is_due(self.now_us) {
             self.scan(plant);
-            self.plc.due_us += self.plc.period_us;
         }
         if first {
             self.contour_cycle(plant);
         }
-        for unit in &mut self.axes {
-            let volts = unit.servo.step();
-            plant.set_nominal(unit.parameters.output.output.into(), volts);
-        }
-        self.spindle.output(plant);
+        self.machine.output(plant);
         let mut rest = step_us;
-        while rest > 0 && self.emergency.is_timing() {
+        while rest > 0 && self.machine.emergency.is_timing() {
             let part = rest.min(MILLISECOND_US);
             plant.advance(part);
             rest -= part;
             let now = self.now_us + u64::from(step_us - rest);
-            self.emergency.step(now, plant.control_ready());
+            self.machine.emergency.step(now, plant.control_ready());
         }
         plant.advance(rest);
         self.now_us += u64::from(step_us);
-    }
-
-    /// The PLC runs from the end of `POWER INTERRUPTED` on [000:7033-7040].
-    fn plc_runs(&mut self) -> bool {
-        use crate::emergency::Circuit;
-        if self.operation.station == Station::WithoutPlc || self.plc.machine.stopped().is_some() {
-            return false;
-        }
-        let runs = !matches!(
-            self.emergency.circuit(),
-            Circuit::PowerInterrupted | Circuit::Defective
-        );
-        if runs && self.plc.scans == 0 && self.plc.due_us < self.now_us {
-            self.plc.due_us = self.now_us;
-        }
-        runs
+        self.machine.messages.set_time(self.now_us);
     }
 
     /// A PLC scan: inputs in, program, outputs out, then what the PLC asks for.
     fn scan(&mut self, plant: &mut dyn Plant) {
-        plant.inputs(&mut self.inputs);
-        for (number, bit) in &self.input_bits {
-            let value = self.inputs.get(*number).copied().unwrap_or(false);
-            if self.exchange.nc().bit(*bit) != value {
-                self.exchange.nc_set(*bit, value);
-            }
-        }
-        self.publish_analogue(plant);
+        let machine = &mut self.machine;
+        machine.read_inputs(plant);
         let operator = plant.operator();
-        self.feed_override
-            .publish(&mut self.exchange, operator.feed_override_percent);
-        self.spindle_override
-            .publish(&mut self.exchange, operator.spindle_override_percent);
-        self.publish();
-        self.link.program_running = self.run.is_active();
-        self.link.orienting = self.spindle.is_orienting();
-        self.link.spindle = self.spindle.position();
-        self.plc.scans += 1;
-        if let Err(error) = self.plc.machine.scan(&mut self.exchange, &mut self.link) {
-            let message = Message::PlcStopped {
-                number: error.error.number(),
-                file: error.file,
-                line: error.line,
-            };
-            self.show(message, true);
+        for channel in self.channels.iter_mut() {
+            channel.publish(&operator, machine);
+        }
+        machine.link.program_running = self.channels.iter().any(|channel| channel.run.is_active());
+        self.channels.first().inform(machine);
+        let block = self.channels.first().running_block();
+        if !machine.scan(block) {
             return;
         }
-        self.feed_override.take(&self.exchange);
-        self.spindle_override.take(&self.exchange);
-        let nc = self.exchange.nc();
-        for (number, bit) in &self.output_bits {
-            if let Some(output) = self.outputs.get_mut(*number) {
-                *output = nc.bit(*bit);
-            }
+        machine.write_outputs(plant);
+        for channel in self.channels.iter_mut() {
+            channel.after_scan(machine);
         }
-        plant.set_outputs(&self.outputs);
-        self.after_scan();
+        let block = self.channels.first().running_block();
+        machine.messages.follow_plc(machine.memory.first(), block);
+        for channel in self.channels.iter_mut() {
+            channel.take_strobes(machine);
+        }
+        self.take_module_requests();
     }
 
-    /// What the PLC asked for in the scan that has ended.
-    fn after_scan(&mut self) {
-        match self.panel.read(self.exchange.nc()) {
-            Ok(panel) => {
-                self.start_pressed |= panel.started;
-                self.panel = panel;
-            }
-            Err(code) => self.show(Message::PlcMarkers(code), true),
+    /// What modules asked for in a scan.
+    fn take_module_requests(&mut self) {
+        let machine = &mut self.machine;
+        self.channels.first_mut().take_module_requests(machine);
+        machine.restart_wanted |= std::mem::take(&mut machine.link.requests.restart);
+        if let Some(line) = machine.link.requests.compensation_line.take() {
+            machine.compensation = Compensation::of(&machine.link.files, usize::try_from(line).ok());
         }
-        let block = self.running_block();
-        self.messages.follow_plc(&self.exchange, self.now_us, block);
-        self.take_plc_strobes();
-        self.take_module_requests();
+        if std::mem::take(&mut machine.link.requests.parameters_changed) {
+            machine.take_parameters();
+            self.channels.first_mut().take_parameters(machine);
+        }
     }
 
     /// What is decided once in each contour cycle.
     fn contour_cycle(&mut self, plant: &mut dyn Plant) {
         self.follow_circuit();
-        self.follow_loops(plant);
-        self.take_faults();
-        if !self.loops_closed || self.move_axes(plant) {
-            self.start_pressed = false;
+        let machine = &mut self.machine;
+        let monitoring_off = machine.monitoring_is_off(plant);
+        for channel in self.channels.iter_mut() {
+            channel.follow_loops(monitoring_off, machine);
         }
-        // What a tool change leads to is on the medium before the PLC sees its end.
-        if let Some(Transfer::ToolCall { more: false, .. }) = self.handshakes.acknowledged(self.exchange.nc())
-            && self.tools.is_changing()
-        {
-            self.tools.inserted(&self.exchange);
+        for channel in self.channels.iter_mut() {
+            channel.take_faults(machine);
         }
-        self.count_tool_life();
-        if std::mem::take(&mut self.tools.changed) {
-            self.mirror_pockets();
-            self.unsaved = true;
-            self.life.changed = true;
-        }
-        let waits = self.keeps && self.unsaved;
-        if !waits {
-            self.tools.end_geometry_strobe(&mut self.exchange);
-        }
-        if let Some(transfer) = self.handshakes.cycle(&mut self.exchange, !waits) {
-            self.acknowledged(transfer);
-        }
-        self.follow_tapping();
-        self.spindle.set_feed(self.run.speed * 60.0);
-        // In cycle 2 the override of the spindle is off [003:5032].
-        let percent = if self.taps_floating() {
-            100.0
+        if machine.loops_closed {
+            for channel in self.channels.iter_mut() {
+                channel.move_axes(machine, plant);
+            }
+            machine.axes.command();
+            for channel in self.channels.iter_mut() {
+                channel.settle(&mut machine.axes);
+            }
         } else {
-            self.spindle_override.percent()
-        };
-        self.spindle.cycle(&mut self.exchange, percent);
-        if self.spindle.take_wrong_speed() {
-            self.show(Message::Plain(MessageId::WrongRpm), false);
-            self.refuse_block();
+            for channel in self.channels.iter_mut() {
+                channel.forget_start();
+            }
         }
-        for unit in &mut self.axes {
+        for channel in self.channels.iter_mut() {
+            channel.follow_plc(self.keeps, machine);
+        }
+        for unit in machine.axes.iter_mut() {
             unit.count();
         }
-        self.look_after();
+        machine.look_after();
     }
 
-    /// What was acknowledged has its effect now.
-    fn acknowledged(&mut self, transfer: Transfer) {
-        if let Transfer::Gear { .. } = transfer {
-            self.spindle.gear_changed();
+    /// Follows the "control is ready" circuit.
+    fn follow_circuit(&mut self) {
+        let machine = &mut self.machine;
+        let order = machine.follow_circuit(self.channels.first().running_block());
+        if matches!(order, CircuitOrder::Stop | CircuitOrder::StopSilently) {
+            for channel in self.channels.iter_mut() {
+                channel.stop();
+            }
         }
+        match order {
+            CircuitOrder::Nothing => {}
+            CircuitOrder::CloseLoops => {
+                machine.close_loops();
+                for channel in self.channels.iter_mut() {
+                    channel.loops_closed(&mut machine.axes);
+                }
+            }
+            CircuitOrder::OpenLoops => self.open_loops(),
+            CircuitOrder::StopSilently => {
+                self.open_loops();
+                self.machine.end_silent_stop();
+            }
+            CircuitOrder::Stop => {
+                machine.show_emergency_stop(self.channels.first().running_block());
+                let mut stand = true;
+                for channel in self.channels.iter_mut() {
+                    stand &= channel.end_for_emergency(machine);
+                }
+                if machine.loops_closed && stand {
+                    self.open_loops();
+                }
+            }
+        }
+    }
+
+    fn open_loops(&mut self) {
+        for channel in self.channels.iter_mut() {
+            channel.loops_opened(&mut self.machine);
+        }
+        self.machine.open_loops();
     }
 
     /// Interprets and plans ahead; may allocate. To be called after every cycle.
     pub fn prepare(&mut self) {
-        self.prepare_limits();
-        self.prepare_restore();
-        self.prepare_run();
-        self.prepare_test();
+        let datums_changed = std::mem::take(&mut self.machine.loaded_datums.changed);
+        for channel in self.channels.iter_mut() {
+            channel.prepare(datums_changed, &mut self.machine);
+        }
     }
 
     /// Leaves computations that take long, as those of an SL contour, to whoever drives the control: runs that
     /// begin from now on wait for [`Control::finish_work`], while everything else goes on.
     pub fn defer_work(&mut self) {
-        self.run.defers = true;
+        for channel in self.channels.iter_mut() {
+            channel.run.source.defers = true;
+        }
     }
 
     /// A computation to be done beside.
     pub fn take_work(&mut self) -> Option<Work> {
-        let run = self.run.feeder.as_mut();
-        let test = self.test.as_mut().map(crate::test_run::TestRun::feeder);
-        run.into_iter()
-            .chain(test)
-            .find_map(|feeder| feeder.interpreter_mut().take_work())
+        let mut feeders = self.channels.iter_mut().flat_map(Channel::feeders);
+        feeders.find_map(|feeder| feeder.interpreter_mut().take_work())
     }
 
     /// What a computation came to. It has no effect when what needed it was given up.
     pub fn finish_work(&mut self, done: Done) {
-        let run = self.run.feeder.as_mut();
-        let test = self.test.as_mut().map(crate::test_run::TestRun::feeder);
-        if let Some(feeder) = run
-            .into_iter()
-            .chain(test)
-            .find(|feeder| feeder.interpreter().waits_for(&done))
-        {
+        let mut feeders = self.channels.iter_mut().flat_map(Channel::feeders);
+        if let Some(feeder) = feeders.find(|feeder| feeder.interpreter().waits_for(&done)) {
             feeder.interpreter_mut().finish_work(done);
         }
     }
@@ -506,7 +401,9 @@ impl Control {
     /// Simulates the block processing time: no more elements of the path are read than the control has time
     /// for, each taking so long, µs. 0 for no time.
     pub fn set_block_time(&mut self, time_us: u32) {
-        self.run.block_time.set(time_us);
+        for channel in self.channels.iter_mut() {
+            channel.run.block_time.set(time_us);
+        }
     }
 
     /// Gives a command of the operator; it is logged with the time when a log is kept. `false` when it is not
@@ -515,9 +412,16 @@ impl Control {
         if let Some(log) = self.log.as_mut().filter(|log| log.len() < LOG_MAX) {
             log.push((self.now_us, command.clone()));
         }
-        let done = self.execute(command);
+        self.give(0, command)
+    }
+
+    fn give(&mut self, channel: usize, command: Command) -> bool {
+        let channel = self.channels.of_mut(channel);
+        let done = channel.execute(command, &mut self.machine);
         if !done {
-            self.show(Message::Plain(MessageId::KeyNonFunctional), false);
+            let refused = Message::Plain(MessageId::KeyNonFunctional);
+            let block = channel.running_block();
+            self.machine.messages.show(refused, false, block);
         }
         done
     }
@@ -534,42 +438,33 @@ impl Control {
         (log.len() < LOG_MAX).then_some(log)
     }
 
-    pub(crate) fn show(&mut self, message: Message, flashing: bool) {
-        let block = match &message {
-            Message::Program(error) => Some(error.block),
-            _ => self.running_block(),
-        };
-        self.show_at(message, flashing, block);
+    /// TEST RUN of a program, from its first block; the machine goes on with what it does. Errors are in
+    /// [`Control::test_report`]. `false` when there is no such program.
+    pub fn test(&mut self, name: &str) -> bool {
+        let command = Command::Test(name.to_owned());
+        self.channels.first_mut().execute(command, &mut self.machine)
     }
 
-    /// Shows a message that belongs to a block.
-    pub(crate) fn show_at(&mut self, message: Message, flashing: bool, block: Option<BlockRef>) {
-        self.messages.show(message, flashing, self.now_us, block);
+    /// Breaks a test run off, or clears its result.
+    pub fn end_test(&mut self) {
+        self.channels
+            .first_mut()
+            .execute(Command::EndTest, &mut self.machine);
     }
 
-    /// The block that is executed, while a run is on.
-    pub(crate) fn running_block(&self) -> Option<BlockRef> {
-        let element = self.path.element().filter(|_| self.run.is_active())?;
-        Some(element.block)
-    }
-
-    /// Sets a marker for the PLC when it changes.
-    pub(crate) fn put(&mut self, bit: Bit, value: bool) {
-        if self.exchange.nc().bit(bit) != value {
-            self.exchange.nc_set(bit, value);
-        }
-    }
-
-    /// Sets a word for the PLC when it changes.
-    pub(crate) fn put_number(&mut self, number: Number, value: i32) {
-        if self.exchange.nc().number(number) != value {
-            self.exchange.nc_set_number(number, value);
-        }
+    /// The test run that was started last.
+    pub fn test_report(&self) -> Option<TestReport> {
+        self.channels.first().test().map(TestRun::report)
     }
 
     /// What the NC sees of the PLC's memory.
     pub fn memory(&self) -> &Image {
-        self.exchange.nc()
+        self.machine.memory.first().nc()
+    }
+
+    /// The exchanged memory, for the journal of retained markers and bytes.
+    pub fn exchange(&self) -> &Exchange {
+        self.machine.memory.first()
     }
 
     /// Lets the end of a tool change wait until what survives power-off is stored: whoever calls
@@ -580,66 +475,191 @@ impl Control {
 
     /// What survives power-off when it has changed since it was stored.
     pub fn unsaved(&self) -> Option<Remembered> {
-        self.unsaved.then(|| self.remember())
+        self.machine.unsaved.then(|| self.remember())
     }
 
     /// What survives power-off is on the medium.
     pub fn stored(&mut self) {
-        self.unsaved = false;
+        self.machine.unsaved = false;
     }
 
     /// The name of the list of machine parameters that module 9033 has selected: the control is to be started
     /// anew with it.
     pub fn take_restart(&mut self) -> Option<String> {
-        std::mem::take(&mut self.run.restart_wanted).then(|| self.link.selected_list.clone())?
+        let selected = &self.machine.link.selected_list;
+        std::mem::take(&mut self.machine.restart_wanted).then(|| selected.clone())?
     }
 
     /// What survives power-off, as of now.
     pub fn remember(&self) -> Remembered {
-        let offsets = (self.offsets.tool_length, self.offsets.tool_axis);
-        let (tool_length, tool_axis) = self.tools.held_geometry().unwrap_or(offsets);
+        let link = &self.machine.link;
+        let axes = self.machine.axes.owned(0);
         Remembered {
-            datums: self.datums.map(crate::setup::Position0),
-            tool: self.tools.number,
-            tool_length,
-            tool_axis: Some(tool_axis),
-            pockets: self.tools.moved(),
-            written: self.written_elements(),
-            q: self.q_values(),
-            offsets_volts: self.offset_volts(),
-            parameter_list: self.link.selected_list.clone(),
-            program: self.run.selected.clone(),
-            pallet_line: self.link.pallet.line,
-            datum_table: self.link.pallet.datum_table.clone(),
-            written_datums: self.written_datums(),
+            written: self.machine.loaded_tables.written(&link.files),
+            offsets_volts: by_index(axes, |unit| unit.servo.offset_compensation_volts()),
+            parameter_list: link.selected_list.clone(),
+            pallet_line: link.pallet.line,
+            datum_table: link.pallet.datum_table.clone(),
+            written_datums: self.machine.loaded_datums.written(link),
+            ..self.channels.first().remember()
         }
     }
 
-    /// The exchanged memory, for the journal of retained markers and bytes.
-    pub fn exchange(&self) -> &Exchange {
-        &self.exchange
+    /// The offsets that code number 75 368 shows while its dialogue is open, by axis index, in units of
+    /// 0.15 mV [000:5014-5016].
+    pub fn offsets_shown(&self) -> Option<[i32; AXES]> {
+        let axes = self.machine.axes.owned(0);
+        let units = by_index(axes, |unit| unit.servo.offset_units());
+        self.machine.offsets.shown.then_some(units)
+    }
+
+    /// The line of the compensation assignment that is active: it survives power-off [000:15547-15580].
+    pub fn compensation_line(&self) -> Option<usize> {
+        self.machine.compensation.line
+    }
+
+    /// The state as of now.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot::of(self.channels.first(), &self.machine, None)
+    }
+
+    /// The state as of now, in the memory of an earlier one: it does not allocate unless another program or
+    /// message is shown.
+    pub fn snapshot_again(&self, earlier: Snapshot) -> Snapshot {
+        Snapshot::of(self.channels.first(), &self.machine, Some(earlier))
+    }
+
+    /// The messages that came up since the last call, in their order.
+    pub fn take_messages(&mut self) -> Vec<Shown> {
+        self.machine.messages.take_news()
+    }
+
+    /// The text of a message as this control shows it.
+    pub fn message_text(&self, message: &Message) -> String {
+        let machine = &self.machine;
+        message.text(machine.model, &machine.letters(), machine.link.messages())
+    }
+
+    /// Keeps the path elements of runs that begin from now on, for [`Control::take_path`].
+    pub fn keep_path(&mut self, keep: bool) {
+        self.channels.first_mut().run.source.tap = keep;
+    }
+
+    /// Of what [`Control::take_path`] has handed out so far, the elements from a sequence on are not executed: the tool
+    /// is replaced before them. To be asked for before it.
+    pub fn take_dropped_path(&mut self) -> Option<u64> {
+        let feeder = self.channels.first_mut().run.source.feeder_mut();
+        feeder.and_then(|feeder| feeder.take_dropped())
+    }
+
+    /// The path elements that were prepared since the last call, in workpiece coordinates.
+    pub fn take_path(&mut self) -> Vec<PathElement> {
+        let feeder = self.channels.first_mut().run.source.feeder_mut();
+        feeder.map(|feeder| feeder.take_tap()).unwrap_or_default()
+    }
+
+    /// The interpreter's warnings since the last call.
+    pub fn take_warnings(&mut self) -> Vec<Warning> {
+        let interpreter = self.channels.first_mut().run.source.interpreter_mut();
+        interpreter.map(Interpreter::take_warnings).unwrap_or_default()
+    }
+
+    /// Operating mode.
+    pub fn mode(&self) -> Mode {
+        self.channels.first().desk().mode()
+    }
+
+    /// State of the run.
+    pub fn run_state(&self) -> RunState {
+        self.channels.first().run.progress().state()
+    }
+
+    /// A fault has interrupted the run: nothing of it is on its way, and NC start tries its block again.
+    pub fn is_broken(&self) -> bool {
+        self.channels.first().run.progress().is_broken()
+    }
+
+    /// The run came to its end since it was started.
+    pub fn has_ended(&self) -> bool {
+        self.channels.first().run.progress().has_ended()
+    }
+
+    /// The element of the path that is executed, or was last.
+    pub fn element(&self) -> Option<&PathElement> {
+        self.channels.first().run.track.path.element()
+    }
+
+    /// Path length to the end of that element, mm.
+    pub fn rest_mm(&self) -> f64 {
+        self.channels.first().run.track.path.rest_mm()
+    }
+
+    /// The interpreter of the program that runs, or ran last.
+    pub fn interpreter(&self) -> Option<&Interpreter> {
+        self.channels.first().run.source.interpreter()
+    }
+
+    /// Handshake that the run waits for.
+    pub fn waiting(&self) -> Option<Waiting> {
+        let nc = self.machine.memory.first().nc();
+        self.channels.first().handshakes.waiting(nc)
+    }
+
+    /// Messages that are shown, the oldest first.
+    pub fn shown(&self) -> &[Shown] {
+        self.machine.messages.shown()
+    }
+
+    /// Tool in the spindle.
+    pub fn tool(&self) -> u32 {
+        self.channels.first().tools.number
+    }
+
+    /// The loops are closed: the control voltage is there.
+    pub fn loops_closed(&self) -> bool {
+        self.machine.loops_closed
+    }
+
+    /// Feed override in force, %.
+    pub fn feed_override_percent(&self) -> f64 {
+        self.channels.first().desk().feed_percent()
+    }
+
+    /// Spindle.
+    pub fn spindle(&self) -> SpindleState {
+        self.machine.spindles.first().state()
+    }
+
+    /// No axis is commanded to move.
+    pub fn stands(&self) -> bool {
+        self.machine.axes.iter().all(AxisUnit::stands)
+    }
+
+    /// The letters of the axes in the order of their indices.
+    pub fn axis_letters(&self) -> impl Iterator<Item = char> {
+        self.machine.axes.owned(0).map(|unit| unit.axis.letter())
+    }
+
+    /// Nominal processing time of the latest PLC scan, %.
+    pub fn plc_percent(&self) -> f64 {
+        self.machine.plc.machine.time().current_percent()
+    }
+
+    /// The value of a signal now; an axis that the machine does not have reads 0.
+    pub fn observe(&self, signal: &Signal) -> f64 {
+        signal.value(self.channels.first(), &self.machine)
     }
 }
 
-/// The limits of the path: those of the axes by their letters.
-pub(crate) fn path_limits(parameters: &bahn_parameters::ParameterList, axes: &[AxisUnit]) -> PathLimits {
-    let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
-        Axis::ALL.map(|axis| {
-            axes.iter()
-                .find(|unit| unit.axis == axis)
-                .map_or(otherwise, value)
-        })
-    };
-    PathLimits {
-        max_feed_mm_min: of(|unit| unit.parameters.motion.rapid_mm_min, 0.0),
-        acceleration_m_s2: of(|unit| unit.parameters.motion.acceleration_m_s2, 1.0),
-        radial_acceleration_m_s2: parameters.radial_acceleration_m_s2(),
-        corner_angle_deg: parameters.corner_angle_deg(),
-        servo_lag: !parameters.feed_precontrol(),
-        cycle_s: f64::from(Timing::of(parameters.model()).contour_us()) * 1e-6,
-        servo_window_s: bahn_motion::SERVO_WINDOW_S,
-        spindle: parameters.spindle_parameters().rigid_ramps().map(Into::into),
-        feed_override_percent: 100.0,
-        rapid_override_percent: 100.0,
-    }
+/// The numbers of the axes of the first channel.
+fn first_ids() -> [Option<AxisId>; AXES] {
+    [0, 1, 2, 3, 4].map(AxisId::new)
+}
+
+/// The axes that a list of machine parameters gives to a channel.
+fn units(parameters: &ParameterList, channel: usize, ids: [Option<AxisId>; AXES]) -> Vec<AxisUnit> {
+    let timing = Timing::of(parameters.model());
+    let ids = (0u8..).zip(ids);
+    ids.filter_map(|(index, id)| AxisUnit::new(id?, channel, parameters.axis_parameters(index), timing))
+        .collect()
 }

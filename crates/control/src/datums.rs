@@ -1,115 +1,108 @@
-//! Datum tables and what module 9090 selects: the selected table is that of `CYCL DEF 7.1 #n` and of modules
-//! 9092 to 9094 [000:15328-15545].
+//! The workpiece datums, the traverse range and the datum correction of a channel.
 
 use std::sync::Arc;
 
-use bahn_interpreter::DatumTable;
-use bahn_parameters::ParameterList;
 use bahn_path::{Axis, Position};
-use bahn_plc::{MemoryTable, TableFile, TableKind};
 
-use crate::command::Command;
-use crate::control::Control;
+use crate::axes::OwnAxes;
+use crate::kinematics::{Chain, Kinematics, Offsets};
 use crate::markers::AXES;
-use crate::plc_link::{PalletRequest, PlcLink};
-use crate::setup::WrittenElement;
-use crate::tables::differences;
+use crate::setup::Remembered;
 
-/// The lines of a datum table as shifts of the axes that a list of machine parameters has [000:15414-15420].
-pub fn datum_shifts(table: &MemoryTable, list: &ParameterList) -> DatumTable {
-    let axes: Vec<(Axis, usize)> = list
-        .axes()
-        .iter()
-        .filter_map(|axis| Some((axis, usize::from(list.axis_index(axis)?))))
-        .filter(|(_, element)| *element < AXES)
-        .collect();
-    let mut shifts = DatumTable::new();
-    let mut line = table.next_line(0);
-    while let Some(number) = line {
-        let mut datum = Position::UNKNOWN;
-        for (axis, element) in &axes {
-            datum[*axis] = table.value(number, *element).unwrap_or_default();
-        }
-        shifts.insert(number, datum);
-        line = number.checked_add(1).and_then(|next| table.next_line(next));
-    }
-    shifts
+/// Datums, traverse range and datum correction.
+#[derive(Clone, Debug)]
+pub(crate) struct Datums {
+    /// Machine position of the workpiece datum for each traverse range.
+    points: [Position; 3],
+    /// Datum correction by the PLC, mm or degrees, by axis index.
+    correction: [f64; AXES],
+    /// Active traverse range, 0 to 2.
+    range: usize,
+    /// Each traverse range has its datum (MP7490).
+    pub each_range: bool,
+    /// The kinematics with the datum and the tool in force.
+    pub chain: Chain,
 }
 
-impl Control {
-    /// The datum tables at power-on, with what was written before. Elements whose file has changed since are as
-    /// it says.
-    pub(crate) fn set_up_datums(&mut self, written: &[(String, WrittenElement)]) {
-        self.loaded_datums.tables = self.link.files.datum_tables.clone();
-        for (name, element) in written {
-            if let Some(table) = self.link.files.datum_tables.get_mut(name)
-                && table.value(element.line, element.element) == Some(element.file)
-            {
-                table.set_value(element.line, element.element, element.value);
+impl Datums {
+    /// The datums and the tool that are remembered.
+    pub fn new(remembered: &Remembered, each_range: bool, kinematics: Arc<dyn Kinematics>) -> Datums {
+        let points = remembered.datums.map(|datum| datum.0);
+        let [first, ..] = points;
+        let offsets = Offsets {
+            datum: first,
+            tool_axis: remembered.tool_axis.unwrap_or(Axis::Z),
+            tool_length: remembered.tool_length,
+        };
+        Datums {
+            points,
+            correction: [0.0; AXES],
+            range: 0,
+            each_range,
+            chain: Chain::new(kinematics, offsets),
+        }
+    }
+
+    /// The datums of all ranges.
+    pub fn points(&self) -> [Position; 3] {
+        self.points
+    }
+
+    /// The active traverse range, 0 to 2.
+    pub fn range(&self) -> usize {
+        self.range
+    }
+
+    /// Makes a traverse range active, with its datum where each has one (MP7490).
+    pub fn select_range(&mut self, range: usize, axes: &mut OwnAxes) {
+        self.range = range;
+        for unit in axes.iter_mut() {
+            if let Some(limits) = unit.parameters.travel.ranges_mm.get(range) {
+                unit.limits = *limits;
             }
         }
+        self.chain.offsets.datum = self.active(axes);
     }
 
-    /// Module 9090: program and datum table are selected, and are so after power-off.
-    pub(crate) fn select_pallet(&mut self, request: PalletRequest) {
-        if !self.execute(Command::Select(request.program)) {
-            return;
+    /// Datum correction by the PLC: each replaces the last one.
+    pub fn correct(&mut self, correction: [f64; AXES], axes: &OwnAxes) {
+        self.correction = correction;
+        self.chain.offsets.datum = self.active(axes);
+    }
+
+    /// DATUM SET: the actual position becomes a value. `false` for an axis for which that is inhibited.
+    pub fn set(&mut self, axis: Axis, value: f64, axes: &OwnAxes) -> bool {
+        let unit = axes.at(axis);
+        let Some(unit) = unit.filter(|unit| !unit.parameters.travel.datum_inhibited) else {
+            return false;
+        };
+        let offsets = &self.chain.offsets;
+        let length = if axis == offsets.tool_axis {
+            offsets.tool_length
+        } else {
+            0.0
+        };
+        let correction = self.correction.get(unit.index).copied().unwrap_or(0.0);
+        let datum = unit.servo.actual_mm() - length - value + correction;
+        let place = self.place();
+        if let Some(points) = self.points.get_mut(place) {
+            points[axis] = datum;
         }
-        self.link.pallet.line = Some(request.line);
-        if request.datum_table.is_some() {
-            self.link.pallet.datum_table = request.datum_table;
+        self.chain.offsets.datum = self.active(axes);
+        true
+    }
+
+    /// The datum in force with its correction by the PLC.
+    fn active(&self, axes: &OwnAxes) -> Position {
+        let mut datum = self.points.get(self.place()).copied().unwrap_or(Position::ZERO);
+        for unit in axes.iter() {
+            // The display rises by the correction: the datum moves the other way [000:8916-8922].
+            datum[unit.axis] -= self.correction.get(unit.index).copied().unwrap_or(0.0);
         }
-        self.unsaved = true;
+        datum
     }
 
-    /// What module 9094 wrote into datum tables.
-    pub(crate) fn written_datums(&self) -> Vec<(String, WrittenElement)> {
-        let loaded = self.loaded_datums.tables.iter();
-        let changed = loaded.filter_map(|(name, loaded)| {
-            let table = self.link.files.datum_tables.get(name)?;
-            Some(differences(loaded, table).map(|element| (name.clone(), element)))
-        });
-        changed.flatten().collect()
-    }
-
-    /// The datums of `CYCL DEF 7.1 #n`.
-    pub(crate) fn datum_table(&self) -> Option<Arc<DatumTable>> {
-        let table = self.link.files.datum_tables.get(self.link.datum_table_name()?)?;
-        Some(Arc::new(datum_shifts(table, self.link.list())))
-    }
-
-    /// Module 9094 wrote. A shift that is in force stays until the next cycle 7 (inferred).
-    pub(crate) fn datums_written(&mut self) {
-        self.loaded_datums.changed = true;
-    }
-
-    /// The run learns what was written.
-    pub(crate) fn take_datums(&mut self) {
-        if !std::mem::take(&mut self.loaded_datums.changed) {
-            return;
-        }
-        let table = self.datum_table();
-        if let Some(feeder) = &mut self.run.feeder {
-            feeder.interpreter_mut().set_datum_table(table);
-        }
-    }
-}
-
-impl PlcLink {
-    /// The datum table with M status.
-    pub fn datum_table_name(&self) -> Option<&String> {
-        self.pallet
-            .datum_table
-            .as_ref()
-            .or(self.files.datum_table.as_ref())
-    }
-
-    /// The tables that modules 9092 to 9094 see.
-    pub fn selected_table(&mut self, kind: TableKind) -> Option<&mut MemoryTable> {
-        if kind != TableKind::Datum {
-            return self.files.tables.get_mut(&kind);
-        }
-        let name = self.datum_table_name()?.clone();
-        self.files.datum_tables.get_mut(&name)
+    fn place(&self) -> usize {
+        if self.each_range { self.range } else { 0 }
     }
 }

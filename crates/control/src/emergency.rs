@@ -26,7 +26,7 @@ pub(crate) enum Circuit {
 }
 
 /// The circuit, step by step.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(crate) struct EmergencyStop {
     test: EmergencyStopTest,
     state: State,

@@ -4,35 +4,17 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, Library, ProgramError, Settings};
-use bahn_path::{
-    Axis, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, Position, Step,
-};
+use bahn_interpreter::{Interpreter, ProgramError, Settings};
+use bahn_path::{Axis, Barrier, BlockRef, Curve, ElementSource, LiveData, PathElement, Position, Step};
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
 
+use crate::kinematics::{Box2, Chain};
 use crate::panel::Direction;
-
-/// Where programs come from. The control asks by name, as written in CALL PGM and chosen by the operator.
-pub trait Programs: Send + Sync {
-    /// The program of a name; `Ok(None)` when there is none.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
-}
+use crate::programs::{Programs, Shelf};
 
 /// Work of the interpreter in one preparation at most, as [`Interpreter::allow`] counts it: some ms.
 const WORK: u32 = 4096;
-
-/// Programs as a library for the interpreter.
-struct Shelf(Arc<dyn Programs>);
-
-impl Library for Shelf {
-    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        self.0.open(name, caller)
-    }
-}
 
 /// Why a run cannot go on.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,57 +31,12 @@ pub(crate) enum RunFault {
     },
 }
 
-/// From path positions to axis positions in machine coordinates: the workpiece datum and, in the tool axis,
-/// the length of the tool.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Offsets {
-    /// Machine position of the workpiece datum, mm or degrees.
-    pub datum: Position,
-    /// Axis of the tool.
-    pub tool_axis: Axis,
-    /// Length of the tool, mm.
-    pub tool_length: f64,
-}
-
-impl Offsets {
-    /// What is added to a path position.
-    pub fn of(&self, axis: Axis) -> f64 {
-        let length = if axis == self.tool_axis {
-            self.tool_length
-        } else {
-            0.0
-        };
-        self.datum[axis] + length
-    }
-
-    /// The axis positions of a path position.
-    pub fn to_machine(self, path: &Position) -> Position {
-        Axis::ALL.map(|axis| path[axis] + self.of(axis)).into()
-    }
-
-    /// The path position of axis positions.
-    pub fn to_path(self, machine: &Position) -> Position {
-        Axis::ALL.map(|axis| machine[axis] - self.of(axis)).into()
-    }
-
-    /// Takes the tool of a call.
-    pub fn take(&mut self, function: &Function) {
-        if let Function::Tool(call) = function {
-            self.tool_axis = call.axis;
-            self.tool_length = call.shape.length;
-        }
-    }
-}
-
-/// The least and greatest machine position of each axis; infinite where there is no limit.
-pub(crate) type Box2 = [Position; 2];
-
 /// Feeds the interpolator from a program.
 #[derive(Clone)]
 pub(crate) struct Feeder {
     interpreter: Interpreter,
-    /// Offsets as of the last element handed out.
-    offsets: Offsets,
+    /// Kinematics with the offsets as of the last element handed out.
+    chain: Chain,
     limits: Box2,
     fault: Option<RunFault>,
     /// Elements that were given back: they come next.
@@ -120,14 +57,15 @@ impl Feeder {
         main: Arc<Program>,
         settings: Settings,
         programs: Arc<dyn Programs>,
-        offsets: Offsets,
+        chain: Chain,
         limits: Box2,
     ) -> Feeder {
-        let mut interpreter = Interpreter::new(main, settings, Box::new(Shelf(programs)));
+        let shelf = Box::new(Shelf(programs));
+        let mut interpreter = Interpreter::new(main, settings, shelf);
         interpreter.keep_checkpoints();
         Feeder {
             interpreter,
-            offsets,
+            chain,
             limits,
             fault: None,
             found: VecDeque::new(),
@@ -155,7 +93,7 @@ impl Feeder {
     /// Datum, machine zero in workpiece coordinates and traverse range as they are now.
     pub fn set_datum(&mut self, datum: Position, machine_zero: Position, limits: Box2) {
         self.limits = limits;
-        self.offsets.datum = datum;
+        self.chain.offsets.datum = datum;
         self.interpreter.set_machine_zero(machine_zero);
     }
 
@@ -173,15 +111,15 @@ impl Feeder {
         self.interpreter.next_replacement(behind, tool)
     }
 
-    /// Replaces the tool before such a block: what was read from there on is read again. With the offsets of where the
-    /// path stands.
-    pub fn replace_tool_before(&mut self, sequence: u64, tool: u32, offsets: Offsets) {
+    /// Replaces the tool before such a block: what was read from there on is read again. With the kinematics and offsets of where
+    /// the path stands.
+    pub fn replace_tool_before(&mut self, sequence: u64, tool: u32, chain: &Chain) {
         self.interpreter
             .go_back(|checkpoint| checkpoint.sequence() == sequence);
         self.found.clear();
         self.refused = None;
         self.fault = None;
-        self.offsets = offsets;
+        self.chain.clone_from(chain);
         if let Some(tap) = &mut self.tap {
             tap.retain(|element| element.sequence < sequence);
             self.dropped_from = Some(sequence);
@@ -235,19 +173,19 @@ impl Feeder {
     }
 
     /// Goes back to the state before a block, which then starts from where the axes stand.
-    pub fn return_to(&mut self, sequence: u64, machine: &Position, offsets: Offsets, limits: Box2) {
+    pub fn return_to(&mut self, sequence: u64, machine: &Position, chain: &Chain, limits: Box2) {
         if sequence <= self.interpreter.blocks_executed() {
             self.interpreter
                 .go_back(|checkpoint| checkpoint.sequence() <= sequence);
         }
-        self.begin_again(machine, offsets, limits);
+        self.begin_again(machine, chain, limits);
     }
 
     /// Goes back to the block that could not be executed.
-    pub fn retry(&mut self, machine: &Position, offsets: Offsets, limits: Box2) {
+    pub fn retry(&mut self, machine: &Position, chain: &Chain, limits: Box2) {
         match self.fault.take() {
             Some(RunFault::Limit { sequence, .. }) => {
-                return self.return_to(sequence, machine, offsets, limits);
+                return self.return_to(sequence, machine, chain, limits);
             }
             Some(RunFault::Program(error)) if self.interpreter.at() != error.block => {
                 self.interpreter
@@ -255,17 +193,17 @@ impl Feeder {
             }
             _ => {}
         }
-        self.begin_again(machine, offsets, limits);
+        self.begin_again(machine, chain, limits);
     }
 
-    fn begin_again(&mut self, machine: &Position, offsets: Offsets, limits: Box2) {
+    fn begin_again(&mut self, machine: &Position, chain: &Chain, limits: Box2) {
         self.found.clear();
         self.refused = None;
         self.fault = None;
-        self.offsets = offsets;
+        self.chain.clone_from(chain);
         self.limits = limits;
         self.interpreter.retry();
-        self.interpreter.relocate(&offsets.to_path(machine));
+        self.interpreter.relocate(&chain.to_path(machine));
     }
 
     /// The next step of the program.
@@ -283,7 +221,7 @@ impl Feeder {
         };
         self.read += 1;
         for output in element.functions() {
-            self.offsets.take(&output.function);
+            self.chain.offsets.take(&output.function);
         }
         if let Some(tap) = &mut self.tap {
             tap.push(element.clone());
@@ -295,16 +233,15 @@ impl Feeder {
     fn outside(&self, element: &PathElement) -> Option<RunFault> {
         // The resolution of positions is no violation.
         const ROUNDING: f64 = 1e-6;
-        let [min, max] = element.curve.bounds(&element.start, &element.end);
+        let [min, max] = self.chain.bounds(&element.curve, &element.start, &element.end);
         let [least, greatest] = &self.limits;
         for axis in Axis::ALL {
             if element.start[axis] == element.end[axis] && element.curve == Curve::Line {
                 continue;
             }
-            let offset = self.offsets.of(axis);
-            let direction = if max[axis] + offset > greatest[axis] + ROUNDING {
+            let direction = if max[axis] > greatest[axis] + ROUNDING {
                 Direction::Plus
-            } else if min[axis] + offset < least[axis] - ROUNDING {
+            } else if min[axis] < least[axis] - ROUNDING {
                 Direction::Minus
             } else {
                 continue;
@@ -368,6 +305,7 @@ impl ElementSource for Feeder {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
     use super::*;
+    use crate::kinematics::{Cartesian, Offsets};
 
     struct Empty;
 
@@ -394,7 +332,8 @@ mod tests {
             tool_length_mm: Some(0.0),
             ..Settings::default()
         };
-        Feeder::new(program, settings, Arc::new(Empty), offsets, limits)
+        let chain = Chain::new(Arc::new(Cartesian), offsets);
+        Feeder::new(program, settings, Arc::new(Empty), chain, limits)
     }
 
     fn end(blocks: &str) -> Step<RunFault> {
@@ -453,8 +392,8 @@ mod tests {
         }
         let mut machine = Position::ZERO;
         machine[Axis::X] = 112.0;
-        let (offsets, limits) = (feeder.offsets, feeder.limits);
-        feeder.return_to(third.unwrap(), &machine, offsets, limits);
+        let (chain, limits) = (feeder.chain.clone(), feeder.limits);
+        feeder.return_to(third.unwrap(), &machine, &chain, limits);
         assert_eq!(feeder.interpreter().q_values()[1], 5.0);
         let Step::Element(again) = feeder.next() else {
             panic!("block 3 runs again")

@@ -2,17 +2,18 @@
 
 use bahn_servo::{Gantry, Timing};
 
-use crate::axes::{AxisUnit, Coupling};
+use crate::axis::{AxisUnit, Coupling};
 
 /// Couples the slaves among the axes (MP850) to their masters. A slave whose master does not exist stays an
 /// axis of its own (inferred).
 pub(crate) fn couple(mut axes: Vec<AxisUnit>, timing: Timing) -> Vec<AxisUnit> {
     for place in 0..axes.len() {
-        let wanted = axes
-            .get(place)
-            .and_then(|unit| unit.parameters.synchronization.master);
+        let wanted = axes.get(place).and_then(|unit| {
+            let master = unit.parameters.synchronization.master?;
+            Some((unit.channel, usize::from(master)))
+        });
         let Some(wanted) = wanted else { continue };
-        let master = axes.iter().position(|unit| unit.index == usize::from(wanted));
+        let master = axes.iter().position(|unit| (unit.channel, unit.index) == wanted);
         let Some(master) = master.filter(|master| *master != place) else {
             continue;
         };

@@ -8,7 +8,8 @@ use std::collections::VecDeque;
 
 use bahn_exchange::{Bit, Exchange, Image, Number, signal};
 
-use crate::control::LOOK_AHEAD;
+/// Elements of the path that are prepared ahead at most.
+pub(crate) const LOOK_AHEAD: usize = 512;
 
 /// A function on its way to the PLC.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,15 +1,20 @@
 //! Manual operation: axis direction keys, jog increment, electronic handwheel.
 
-use bahn_exchange::signal;
+use bahn_exchange::{Image, signal};
 use bahn_motion::Aim;
-use bahn_parameters::Handwheel;
+use bahn_parameters::{Handwheel, OperationParameters};
+use bahn_path::{BlockRef, Function};
+use bahn_plc::JogLimit;
 
-use crate::axes::{AxisUnit, Mover};
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
-use crate::control::Control;
 use crate::markers::AXES;
-use crate::message::Message;
-use crate::panel::Direction;
+use crate::message::{Message, Messages};
+use crate::now::Now;
+use crate::panel::{Direction, Panel};
+use crate::plc_link::StatusChanges;
+use crate::site::Site;
 
 /// Counting steps of a turn of the handwheel (inferred).
 pub const HANDWHEEL_STEPS: f64 = 1000.0;
@@ -26,27 +31,25 @@ pub(crate) struct Manual {
     /// Jog increment, mm.
     pub increment: f64,
     /// Limit of the jog increment by module 9036, mm.
-    pub increment_limit: Option<f64>,
+    increment_limit: Option<f64>,
     /// Positions that jogging goes to.
     jogging: [Option<f64>; AXES],
     /// Handwheel or jog increment would lead beyond a limit.
     pushed: [Option<Direction>; AXES],
     /// Axis index of the handwheel.
-    pub handwheel_axis: usize,
+    handwheel_axis: usize,
     /// Interpolation factors.
-    pub factors: [u8; AXES],
+    factors: [u8; AXES],
     /// Handwheel count up to which it was followed.
     count: Option<i64>,
     /// Axis index that the handwheel leads, and where to.
     wheel: Option<(usize, f64)>,
     /// Axis key pressed last.
-    pub last_key: usize,
+    last_key: usize,
     /// M function that was entered and waits for NC start.
-    pub m: Option<u16>,
+    m: Option<u16>,
     /// Spindle speed that was entered and waits for NC start, rpm.
-    pub s: Option<f64>,
-    /// Code number 75 368 shows the offsets.
-    pub offsets_shown: bool,
+    s: Option<f64>,
 }
 
 impl Default for Manual {
@@ -64,7 +67,6 @@ impl Default for Manual {
             last_key: 0,
             m: None,
             s: None,
-            offsets_shown: false,
         }
     }
 }
@@ -82,6 +84,68 @@ impl Manual {
         self.pushed = [None; AXES];
         self.wheel = None;
     }
+
+    /// Axis index of the handwheel.
+    pub fn handwheel_axis(&self) -> usize {
+        self.handwheel_axis
+    }
+
+    /// Interpolation factors of the handwheel, by axis index.
+    pub fn factors(&self) -> [u8; AXES] {
+        self.factors
+    }
+
+    /// Index of the axis key that was pressed last.
+    pub fn last_key(&self) -> usize {
+        self.last_key
+    }
+
+    /// The handwheel moves an axis with an interpolation factor.
+    pub fn choose_handwheel(&mut self, index: usize, factor: u8) {
+        self.handwheel_axis = index;
+        if let Some(slot) = self.factors.get_mut(index) {
+            *slot = factor;
+        }
+    }
+
+    /// M and S in Manual and Handwheel: entered here, output with NC start [003:1103-1111].
+    pub fn enter(&mut self, m: Option<u16>, s: Option<f64>) {
+        self.m = m.or(self.m);
+        self.s = s.or(self.s);
+    }
+
+    /// NC start in Manual and Handwheel: outputs what was entered.
+    pub fn output_entered(&mut self, site: &mut Site) {
+        if !site.handshakes.is_idle() {
+            return;
+        }
+        if let Some(rpm) = self.s.take() {
+            site.speed(rpm, false);
+        }
+        if let Some(m) = self.m.take() {
+            site.output(&Function::M(m), false);
+        }
+    }
+
+    /// Module 9036.
+    pub fn take_status(&mut self, changes: StatusChanges) {
+        for (factor, changed) in self.factors.iter_mut().zip(changes.factors) {
+            *factor = changed.unwrap_or(*factor);
+        }
+        if let Some(axis) = changes.handwheel_axis {
+            self.handwheel_axis = axis;
+        }
+        match changes.jog_limit {
+            None => {}
+            Some(JogLimit::At(limit)) => self.increment_limit = Some(limit),
+            Some(JogLimit::LastIncrement) => self.increment_limit = None,
+            Some(JogLimit::SmallerOfLastIncrementAndLimit) => {
+                if let Some(limit) = self.increment_limit.take() {
+                    self.increment = self.increment.min(limit);
+                }
+            }
+        }
+    }
 }
 
 /// Least interpolation factor that the rapid traverse of the slowest axis allows [000:8075-8092].
@@ -95,40 +159,51 @@ pub(crate) fn factor_min(rapid_mm_min: f64) -> u8 {
     u8::try_from(factor).unwrap_or(FACTOR_MAX)
 }
 
-impl Control {
+/// What the operator's hands reach.
+pub(crate) struct Reach<'a, 'b> {
+    pub axes: &'a mut OwnAxes<'b>,
+    pub panel: &'a mut Panel,
+    pub rules: &'a OperationParameters,
+    pub nc: &'a Image,
+    pub messages: &'a mut Messages,
+    /// The block whose run is interrupted.
+    pub block: Option<BlockRef>,
+}
+
+impl Manual {
     /// Moves the axes in Manual and Handwheel, and while a run is interrupted with MANUAL OPERATION.
-    pub(crate) fn move_manually(&mut self, handwheel_count: i64) {
-        if self.stop_given() {
-            self.manual.stop();
+    pub fn moves(&mut self, handwheel_count: i64, reach: &mut Reach, now: &Now) {
+        if now.stop {
+            self.stop();
         }
-        let keys = self.keys();
-        self.turn_handwheel(handwheel_count);
-        for place in 0..self.axes.len() {
-            let Some(index) = self.axes.get(place).map(|unit| unit.index) else {
+        let keys = self.keys(reach, now);
+        self.turn_handwheel(handwheel_count, reach, now);
+        for place in reach.axes.places() {
+            let Some(index) = reach.axes.get(place).map(|unit| unit.index) else {
                 continue;
             };
             let key = keys.get(index).copied().flatten();
-            self.move_by_hand(place, index, key);
+            self.move_by_hand(place, index, key, reach, now);
         }
     }
 
     /// The direction keys that count, latched ones included.
-    fn keys(&mut self) -> [Option<Direction>; AXES] {
-        if self.mode == Mode::Handwheel {
+    fn keys(&mut self, reach: &Reach, now: &Now) -> [Option<Direction>; AXES] {
+        if now.mode == Mode::Handwheel {
             // The direction keys work in Handwheel, too, unless jogging is on.
-            if self.exchange.nc().bit(signal::ENABLE_JOG_INCREMENT) {
+            if reach.nc.bit(signal::ENABLE_JOG_INCREMENT) {
                 return [None; AXES];
             }
         }
-        let mut keys = if self.stop_given() {
+        let mut keys = if now.stop {
             [None; AXES]
         } else {
-            self.panel.axis_keys
+            reach.panel.axis_keys
         };
-        for (index, (key, latched)) in keys.iter_mut().zip(&mut self.manual.latched).enumerate() {
+        for (index, (key, latched)) in keys.iter_mut().zip(&mut self.latched).enumerate() {
             if key.is_some() {
-                self.manual.last_key = index;
-                if self.panel.memory && self.operation.keys_latched {
+                self.last_key = index;
+                if reach.panel.memory && reach.rules.keys_latched {
                     *latched = *key;
                 }
             }
@@ -138,28 +213,32 @@ impl Control {
     }
 
     /// Moves one axis by its key, its jog increment or the handwheel.
-    fn move_by_hand(&mut self, place: usize, index: usize, key: Option<Direction>) {
-        let time = self.cycle_s();
-        let feed_percent = self.feed_override.percent();
-        let rapid_percent = if self.operation.overrides.on_manual_rapid {
+    fn move_by_hand(
+        &mut self,
+        place: usize,
+        index: usize,
+        key: Option<Direction>,
+        reach: &mut Reach,
+        now: &Now,
+    ) {
+        let feed_percent = now.feed_percent;
+        let rapid_percent = if reach.rules.overrides.on_manual_rapid {
             feed_percent.min(100.0)
         } else {
             100.0
         };
-        let rapid = self.panel.rapid;
-        let rapid_limit = self.rapid_limit_mm_min();
-        let stop = self.stop_given();
-        let jog = self.jog_target(place, index);
-        let wheel = self.manual.wheel.filter(|(axis, _)| *axis == index);
+        let rapid = reach.panel.rapid;
+        let jog = self.jog_target(place, index, reach, now);
+        let wheel = self.wheel.filter(|(axis, _)| *axis == index);
         let wheel = wheel.map(|(_, target)| target);
-        let Some(unit) = self.axes.get_mut(place) else {
+        let Some(unit) = reach.axes.get_mut(place) else {
             return;
         };
         if !matches!(unit.mover, Mover::None | Mover::Manual) || !unit.is_free() {
             return;
         }
         if !(unit.servo.closed() && unit.enabled) {
-            if !stop && (key.is_some() || jog.is_some() || wheel.is_some()) {
+            if !now.stop && (key.is_some() || jog.is_some() || wheel.is_some()) {
                 unit.ask_to_unclamp();
             }
             if unit.mover == Mover::Manual && unit.stands() {
@@ -169,7 +248,7 @@ impl Control {
         }
         let motion = unit.parameters.motion;
         let (aim, feed) = match (key, jog.or(wheel)) {
-            _ if stop => (Aim::Feed(0.0), motion.rapid_mm_min),
+            _ if now.stop => (Aim::Feed(0.0), motion.rapid_mm_min),
             (Some(direction), _) => {
                 let feed = if rapid {
                     motion.rapid_mm_min * rapid_percent / 100.0
@@ -191,17 +270,17 @@ impl Control {
         if aim != Aim::Feed(0.0) || !unit.stands() {
             unit.mover = Mover::Manual;
         }
-        unit.drive(time, aim, feed.min(rapid_limit));
+        unit.drive(now.time_s, aim, feed.min(now.rapid_limit_mm_min));
         if unit.stands() && unit.mover == Mover::Manual && key.is_none() {
             unit.mover = Mover::None;
         }
-        let pushed = self.manual.pushed.get(index).copied().flatten();
-        self.note_limit(place, key.or(pushed));
+        let pushed = self.pushed.get(index).copied().flatten();
+        self.note_limit(place, key.or(pushed), reach);
     }
 
     /// Message and marker at a software limit switch; they go when the axis leaves it (inferred).
-    fn note_limit(&mut self, place: usize, wanted: Option<Direction>) {
-        let Some(unit) = self.axes.get_mut(place) else {
+    fn note_limit(&mut self, place: usize, wanted: Option<Direction>, reach: &mut Reach) {
+        let Some(unit) = reach.axes.get_mut(place) else {
             return;
         };
         let reached = unit.limited().and_then(|[least, greatest]| match wanted {
@@ -214,47 +293,49 @@ impl Control {
                 .get(usize::from(*at == Direction::Plus))
                 .is_none_or(|limit| unit.nominal != *limit)
         });
-        let index = unit.index;
+        let (index, id) = (unit.index, unit.id);
         if reached.is_some() {
             unit.at_limit = reached;
-            if let Some(pushed) = self.manual.pushed.get_mut(index) {
+            if let Some(pushed) = self.pushed.get_mut(index) {
                 *pushed = None;
             }
         } else if left.is_some() {
             unit.at_limit = None;
         }
         if let Some(direction) = reached {
-            self.show(Message::limit(index, direction), false);
+            reach
+                .messages
+                .show(Message::limit(id, direction), false, reach.block);
         } else if let Some(direction) = left {
-            self.messages.remove(&Message::limit(index, direction));
+            reach.messages.remove(&Message::limit(id, direction));
         }
     }
 
     /// Where the jog increment leads the axis to.
-    fn jog_target(&mut self, place: usize, index: usize) -> Option<f64> {
-        let started = self
+    fn jog_target(&mut self, place: usize, index: usize, reach: &mut Reach, now: &Now) -> Option<f64> {
+        let started = reach
             .panel
             .jog_started
             .get(index)
             .copied()
             .flatten()
-            .filter(|_| self.mode == Mode::Handwheel);
-        let increment = match self.manual.increment_limit {
-            Some(limit) => self.manual.increment.min(limit),
-            None => self.manual.increment,
+            .filter(|_| now.mode == Mode::Handwheel);
+        let increment = match self.increment_limit {
+            Some(limit) => self.increment.min(limit),
+            None => self.increment,
         };
-        let unit = self.axes.get(place)?;
+        let unit = reach.axes.get(place)?;
         let (nominal, stands) = (unit.nominal, unit.stands());
-        let target = self.manual.jogging.get_mut(index)?;
+        let target = self.jogging.get_mut(index)?;
         if let Some(direction) = started
             && stands
         {
             let (within, pushed) = within(unit, nominal + direction.sign() * increment);
             *target = Some(within);
-            if let Some(slot) = self.manual.pushed.get_mut(index) {
+            if let Some(slot) = self.pushed.get_mut(index) {
                 *slot = pushed;
             }
-            if let Some(started) = self.panel.jog_started.get_mut(index) {
+            if let Some(started) = reach.panel.jog_started.get_mut(index) {
                 *started = None;
             }
         } else if *target == Some(nominal) && stands {
@@ -264,84 +345,52 @@ impl Control {
     }
 
     /// Follows the handwheel: its steps move the target of its axis.
-    fn turn_handwheel(&mut self, count: i64) {
-        let before = self.manual.count.replace(count).unwrap_or(count);
-        let index = self.manual.handwheel_axis;
-        if self.manual.wheel.is_some_and(|(axis, _)| axis != index) {
-            self.manual.wheel = None;
+    fn turn_handwheel(&mut self, count: i64, reach: &Reach, now: &Now) {
+        let before = self.count.replace(count).unwrap_or(count);
+        let index = self.handwheel_axis;
+        if self.wheel.is_some_and(|(axis, _)| axis != index) {
+            self.wheel = None;
         }
-        let slowest = self
+        let slowest = reach
             .axes
             .iter()
             .map(|unit| unit.parameters.motion.rapid_mm_min)
             .fold(f64::INFINITY, f64::min);
-        let unit = self
-            .places
-            .get(index)
-            .copied()
-            .flatten()
-            .and_then(|place| self.axes.get(place));
-        let there = self.mode == Mode::Handwheel && self.operation.handwheel.kind != Handwheel::None;
+        let unit = reach.axes.with_index(index);
+        let there = now.mode == Mode::Handwheel && reach.rules.handwheel.kind != Handwheel::None;
         // What is turned while the feed is not enabled moves nothing later.
         let Some(unit) = unit.filter(|unit| there && unit.enabled) else {
-            self.manual.wheel = None;
+            self.wheel = None;
             return;
         };
         let steps = count.wrapping_sub(before);
-        let few = steps.unsigned_abs() < u64::from(self.operation.handwheel.threshold);
-        if few || self.exchange.nc().bit(signal::SUPPRESS_HANDWHEEL) {
+        let few = steps.unsigned_abs() < u64::from(reach.rules.handwheel.threshold);
+        if few || reach.nc.bit(signal::SUPPRESS_HANDWHEEL) {
             if steps != 0 && few {
                 // A vibration: its steps are counted together with those that follow.
-                self.manual.count = Some(before);
+                self.count = Some(before);
             }
         } else if steps != 0 {
             let least = factor_min(slowest);
             let factor = self
-                .manual
                 .factors
                 .get(index)
                 .copied()
                 .unwrap_or(FACTOR_MAX)
                 .max(least)
-                .max(self.operation.handwheel.factor_min.first().copied().unwrap_or(0));
+                .max(reach.rules.handwheel.factor_min.first().copied().unwrap_or(0));
             let travel = TRAVEL_MM / f64::from(1u32 << factor.min(FACTOR_MAX));
-            let sign = if self.operation.handwheel.positive {
-                1.0
-            } else {
-                -1.0
-            };
-            let from = self.manual.wheel.map_or(unit.nominal, |(_, target)| target);
+            let sign = if reach.rules.handwheel.positive { 1.0 } else { -1.0 };
+            let from = self.wheel.map_or(unit.nominal, |(_, target)| target);
             let target = from + sign * steps as f64 / HANDWHEEL_STEPS * travel;
             let (target, pushed) = within(unit, target);
-            self.manual.wheel = Some((index, target));
-            if let Some(slot) = self.manual.pushed.get_mut(index) {
+            self.wheel = Some((index, target));
+            if let Some(slot) = self.pushed.get_mut(index) {
                 *slot = pushed;
             }
         }
-        if self.manual.wheel == Some((index, unit.nominal)) && unit.stands() {
-            self.manual.wheel = None;
-        }
-    }
-
-    /// The feed override as it acts on programs: MP7620 bit 0 = 0 takes it away while the rapid traverse key
-    /// is pressed [000:10512] [001:3262] [003:7434-7443].
-    pub(crate) fn program_override_percent(&self) -> f64 {
-        if self.panel.rapid && !self.operation.overrides.on_rapid_key {
-            100.0
-        } else {
-            self.feed_override.percent()
-        }
-    }
-
-    /// D596: rapid traverse as the PLC limits it, mm/min [000:4812-4814].
-    pub(crate) fn rapid_limit_mm_min(&self) -> f64 {
-        let nc = self.exchange.nc();
-        let by_plc = f64::from(nc.number(signal::RAPID_TRAVERSE_LIMIT).max(0));
-        // With a probe in the spindle MP6150 limits it, too [000:7654].
-        if nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION) {
-            by_plc.min(self.link.list().probe().rapid_mm_min)
-        } else {
-            by_plc
+        if self.wheel == Some((index, unit.nominal)) && unit.stands() {
+            self.wheel = None;
         }
     }
 }

@@ -8,6 +8,7 @@ use bahn_interpreter::ProgramError;
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
 
+use crate::axis::AxisId;
 use crate::panel::Direction;
 
 /// A message of the running control.
@@ -19,14 +20,14 @@ pub enum Message {
     Axis {
         /// The message.
         id: MessageId,
-        /// Axis index, 0 to 4; 5 is the spindle.
+        /// Number of the axis ([`AxisId`]); 5 is the spindle.
         axis: u8,
         /// The letter.
         letter: Option<char>,
     },
     /// `LIMIT SWITCH` with axis and sign.
     Limit {
-        /// Axis index, 0 to 4.
+        /// Number of the axis ([`AxisId`]).
         axis: u8,
         /// The positive limit.
         plus: bool,
@@ -48,27 +49,24 @@ pub enum Message {
     Program(Box<ProgramError>),
 }
 
-/// The spindle among the axes of messages, the sixth encoder of MP31 [000:3310-3318].
-pub(crate) const SPINDLE_INDEX: usize = 5;
-
 impl Message {
-    pub(crate) fn limit(axis: usize, direction: Direction) -> Message {
+    pub(crate) fn limit(axis: AxisId, direction: Direction) -> Message {
         Message::Limit {
-            axis: index(axis),
+            axis: axis.number(),
             plus: direction == Direction::Plus,
         }
     }
 
-    pub(crate) fn axis(id: MessageId, axis: usize, letter: Option<char>) -> Message {
+    pub(crate) fn axis(id: MessageId, axis: AxisId, letter: Option<char>) -> Message {
         Message::Axis {
             id,
-            axis: index(axis),
+            axis: axis.number(),
             letter,
         }
     }
 
     /// The text that the model shows, `plc` being the texts of the PLC messages.
-    pub fn text(&self, model: ControlModel, letters: &[char; 5], plc: &[String]) -> String {
+    pub fn text(&self, model: ControlModel, letters: &[char], plc: &[String]) -> String {
         let with_axis = |id: MessageId, axis: u8| {
             let letter = letters.get(usize::from(axis)).copied().unwrap_or('S');
             let text = id.text(model);
@@ -137,10 +135,6 @@ impl Message {
     }
 }
 
-fn index(axis: usize) -> u8 {
-    u8::try_from(axis).unwrap_or(u8::MAX)
-}
-
 /// A message with how it is shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
@@ -160,21 +154,33 @@ pub(crate) struct Messages {
     shown: Vec<Shown>,
     /// What came up since somebody asked.
     news: Vec<Shown>,
+    /// Time since power-on, µs.
+    now_us: u64,
 }
 
 /// News that nobody took are dropped beyond this, the oldest first.
 const NEWS_MAX: usize = 10_000;
 
 impl Messages {
+    /// Messages come up at this time from now on, µs since power-on.
+    pub fn set_time(&mut self, now_us: u64) {
+        self.now_us = now_us;
+    }
+
+    /// Time since power-on, µs.
+    pub fn time_us(&self) -> u64 {
+        self.now_us
+    }
+
     /// Shows a message; the same one again changes nothing.
-    pub fn show(&mut self, message: Message, flashing: bool, time_us: u64, block: Option<BlockRef>) {
+    pub fn show(&mut self, message: Message, flashing: bool, block: Option<BlockRef>) {
         if self.shown.iter().any(|shown| shown.message == message) {
             return;
         }
         let shown = Shown {
             message,
             flashing,
-            time_us,
+            time_us: self.now_us,
             block,
         };
         if self.news.len() >= NEWS_MAX {
@@ -225,14 +231,14 @@ impl Messages {
 
     /// After a PLC scan: the PLC's messages by their markers. With M2815 they flash; M2815 alone is
     /// `EMERGENCY STOP PLC` [000:6625-6633].
-    pub fn follow_plc(&mut self, exchange: &Exchange, time_us: u64, block: Option<BlockRef>) {
+    pub fn follow_plc(&mut self, exchange: &Exchange, block: Option<BlockRef>) {
         let nc = exchange.nc();
         let flashes = nc.bit(signal::PLC_MESSAGE_FLASHES);
         let mut any = false;
         for (number, marker) in (0..).zip(signal::PLC_MESSAGES.iter()) {
             if nc.bit(marker) {
                 any = true;
-                self.show(Message::Plc(number), flashes, time_us, block);
+                self.show(Message::Plc(number), flashes, block);
             }
         }
         self.shown.retain(|shown| {
@@ -243,7 +249,7 @@ impl Messages {
             shown.flashing || marker.is_none_or(|marker| nc.bit(marker))
         });
         if flashes && !any {
-            self.show(Message::Plain(MessageId::EmergencyStopPlc), true, time_us, block);
+            self.show(Message::Plain(MessageId::EmergencyStopPlc), true, block);
         }
     }
 
@@ -264,10 +270,15 @@ impl Messages {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
     use super::*;
 
     const MODEL: ControlModel = ControlModel::Tnc415b;
     const LETTERS: [char; 5] = ['X', 'Y', 'Z', 'C', 'V'];
+
+    fn id(number: u8) -> AxisId {
+        AxisId::new(number).unwrap()
+    }
 
     fn text(message: &Message) -> String {
         message.text(MODEL, &LETTERS, &["TOOL CLAMP OPEN".to_owned(), String::new()])
@@ -275,10 +286,10 @@ mod tests {
 
     #[test]
     fn texts_carry_axis_sign_and_letter() {
-        let gross = Message::axis(MessageId::GrossPositioningError, 3, Some('A'));
+        let gross = Message::axis(MessageId::GrossPositioningError, id(3), Some('A'));
         assert_eq!(text(&gross), "GROSS POSITIONING ERROR C A");
-        assert_eq!(text(&Message::limit(0, Direction::Minus)), "LIMIT SWITCH X-");
-        let encoder = Message::axis(MessageId::MeasuringSystemDefective, 2, Some('B'));
+        assert_eq!(text(&Message::limit(id(0), Direction::Minus)), "LIMIT SWITCH X-");
+        let encoder = Message::axis(MessageId::MeasuringSystemDefective, id(2), Some('B'));
         assert_eq!(text(&encoder), "MEASURING SYSTEM Z DEFECTIVE B");
         assert_eq!(text(&Message::PlcMarkers(*b"1Q")), "ERROR IN PLC-PROGRAM 1Q");
         assert_eq!(text(&Message::Plc(0)), "TOOL CLAMP OPEN");
@@ -306,7 +317,7 @@ mod tests {
         for number in [5, 7] {
             plc_sets(&mut exchange, marker(number).unwrap_or(signal::NC_START), true);
         }
-        messages.follow_plc(&exchange, 0, None);
+        messages.follow_plc(&exchange, None);
         assert_eq!(messages.shown().len(), 2);
         assert_eq!(messages.clear(&mut exchange, |_| true), Some(Message::Plc(5)));
         exchange.begin_scan();
@@ -317,7 +328,7 @@ mod tests {
         );
         exchange.end_scan();
         plc_sets(&mut exchange, marker(7).unwrap_or(signal::NC_START), false);
-        messages.follow_plc(&exchange, 0, None);
+        messages.follow_plc(&exchange, None);
         assert!(messages.shown().is_empty());
     }
 
@@ -326,7 +337,7 @@ mod tests {
         let mut exchange = Exchange::default();
         let mut messages = Messages::default();
         plc_sets(&mut exchange, signal::PLC_MESSAGE_FLASHES, true);
-        messages.follow_plc(&exchange, 0, None);
+        messages.follow_plc(&exchange, None);
         assert_eq!(
             messages.shown().first().map(|s| text(&s.message)).as_deref(),
             Some("EMERGENCY STOP PLC")

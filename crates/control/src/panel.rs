@@ -115,6 +115,13 @@ const JOG_KEYS: [[Command; 2]; AXES] = [
     ],
 ];
 
+/// The complements of all commands; they are 1 while no command is given.
+pub(crate) fn complements() -> impl Iterator<Item = Bit> {
+    let single = [&START, &RAPID, &MEMORY, &FEED];
+    let keys = AXIS_KEYS.iter().chain(&JOG_KEYS).flatten();
+    single.into_iter().chain(keys).map(|command| command.complement)
+}
+
 /// A direction of traverse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Direction {

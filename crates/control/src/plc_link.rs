@@ -4,16 +4,18 @@
 //! see one consistent state, and nothing happens in the middle of a scan.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
-use bahn_interpreter::MachineTexts;
+use bahn_interpreter::{DatumTable, MachineTexts};
 use bahn_parameters::ParameterList;
+use bahn_path::{Axis, Position};
 use bahn_plc::{
     CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable, Nc, NotSaved, PalletLine,
     ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
     SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
-use crate::compensation::{CompensationAssignment, CompensationTable};
+use crate::compensation_table::{CompensationAssignment, CompensationTable};
 use crate::markers::AXES;
 
 /// Files and tables of the NC memory that modules read.
@@ -190,6 +192,79 @@ impl PlcLink {
             *cell = value;
         }
     }
+
+    /// The datums of `CYCL DEF 7.1 #n` for the axes of a list of machine parameters.
+    pub fn datums(&self, list: &ParameterList) -> Option<Arc<DatumTable>> {
+        let table = self.files.datum_tables.get(self.datum_table_name()?)?;
+        Some(Arc::new(datum_shifts(table, list)))
+    }
+
+    /// The datum table with M status.
+    pub fn datum_table_name(&self) -> Option<&String> {
+        self.pallet
+            .datum_table
+            .as_ref()
+            .or(self.files.datum_table.as_ref())
+    }
+
+    /// The tables that modules 9092 to 9094 see.
+    pub fn selected_table(&mut self, kind: TableKind) -> Option<&mut MemoryTable> {
+        if kind != TableKind::Datum {
+            return self.files.tables.get_mut(&kind);
+        }
+        let name = self.datum_table_name()?.clone();
+        self.files.datum_tables.get_mut(&name)
+    }
+}
+
+/// An element of a table that the PLC has written with module 9094.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenElement {
+    /// The table.
+    pub table: TableKind,
+    /// Number of tool, vector or pocket.
+    pub line: i32,
+    /// Number of the element [000:15414-15454].
+    pub element: usize,
+    /// Its value.
+    pub value: f64,
+    /// Its value in the file of the table. Where that says another one, the file counts.
+    pub file: f64,
+}
+
+/// The elements of a table that are not as they were loaded.
+pub(crate) fn differences(loaded: &MemoryTable, table: &MemoryTable) -> impl Iterator<Item = WrittenElement> {
+    table.elements().filter_map(|(line, element, value)| {
+        let file = loaded.value(line, element).filter(|file| *file != value)?;
+        Some(WrittenElement {
+            table: loaded.kind(),
+            line,
+            element,
+            value,
+            file,
+        })
+    })
+}
+
+/// The lines of a datum table as shifts of the axes that a list of machine parameters has [000:15414-15420].
+pub fn datum_shifts(table: &MemoryTable, list: &ParameterList) -> DatumTable {
+    let axes: Vec<(Axis, usize)> = list
+        .axes()
+        .iter()
+        .filter_map(|axis| Some((axis, usize::from(list.axis_index(axis)?))))
+        .filter(|(_, element)| *element < AXES)
+        .collect();
+    let mut shifts = DatumTable::new();
+    let mut line = table.next_line(0);
+    while let Some(number) = line {
+        let mut datum = Position::UNKNOWN;
+        for (axis, element) in &axes {
+            datum[*axis] = table.value(number, *element).unwrap_or_default();
+        }
+        shifts.insert(number, datum);
+        line = number.checked_add(1).and_then(|next| table.next_line(next));
+    }
+    shifts
 }
 
 impl Nc for PlcLink {

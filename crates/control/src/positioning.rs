@@ -1,12 +1,14 @@
 //! Movements that the PLC commands: PLC positioning of NC axes, PLC axes, free rotation.
 
-use bahn_exchange::signal;
+use bahn_exchange::{Exchange, Image, signal};
 use bahn_motion::Aim;
-use bahn_plc::PlcAxisCommand;
+use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
 
-use crate::axes::Mover;
-use crate::control::Control;
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Mover};
 use crate::markers::{AXES, PLC_POSITIONING, POSITIONING_FEED, TRANSFER};
+use crate::now::Now;
+use crate::plc_link::Requests;
 
 /// Position words count in 1/10 000 mm [000:4026].
 pub(crate) const PER_MM: f64 = 10_000.0;
@@ -15,20 +17,30 @@ pub(crate) const PER_MM: f64 = 10_000.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Positioning {
     /// Targets of PLC positioning, machine coordinates, with their feed.
-    pub targets: [Option<(f64, f64)>; AXES],
+    targets: [Option<(f64, f64)>; AXES],
     /// What each PLC axis executes.
-    pub plc_axes: [PlcAxis; AXES],
+    plc_axes: [PlcAxis; AXES],
     /// Free rotation: feed with sign, by axis.
-    pub rotation: [Option<f64>; AXES],
+    rotation: [Option<f64>; AXES],
 }
 
 /// A PLC axis.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PlcAxis {
-    pub command: Option<PlcAxisCommand>,
+struct PlcAxis {
+    command: Option<PlcAxisCommand>,
     /// Target of the positioning, once it began.
-    pub target: Option<f64>,
-    pub override_percent: f64,
+    target: Option<f64>,
+    override_percent: f64,
+}
+
+/// A cycle in which the PLC moves axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moving {
+    pub now: Now,
+    /// A program runs or is interrupted.
+    pub active: bool,
+    /// Axes are being brought back to the contour.
+    pub restores: bool,
 }
 
 impl Default for PlcAxis {
@@ -51,65 +63,54 @@ impl Positioning {
         }
         self.rotation = [None; AXES];
     }
-}
 
-impl Control {
     /// PLC positioning: M2704 ff. with target and feed, relative to the machine datum, without software
-    /// limits. It starts only on referenced axes, without a program or during a strobe of it, in Manual
-    /// without direction keys; the PLC aborts it by resetting the strobe [000:4005-4053].
-    pub(crate) fn take_positioning_strobes(&mut self) {
-        let nc = self.exchange.nc();
-        let free = !self.run.is_running() || self.handshakes.strobe_is_set();
-        let keys = self.panel.axis_keys.iter().any(Option::is_some);
-        let free = free && !keys && !self.stop_given();
-        let most = usize::from(self.model.limits().plc_positioning_axes_max);
-        let mut running = self.positioning.targets.iter().flatten().count();
-        for index in 0..AXES {
-            let (Some(strobe), Some(target), Some(feed)) = (
-                PLC_POSITIONING.get(index),
-                TRANSFER.get(index),
-                POSITIONING_FEED.get(index),
-            ) else {
-                continue;
-            };
-            let Some(slot) = self.positioning.targets.get_mut(index) else {
-                continue;
-            };
+    /// limits. It starts only on referenced axes, when the NC is `free`: without a program or during a strobe of
+    /// it, in Manual without direction keys; the PLC aborts it by resetting the strobe [000:4005-4053].
+    pub fn take_strobes(&mut self, nc: &Image, free: bool, most: usize, axes: &OwnAxes) {
+        let mut running = self.targets.iter().flatten().count();
+        let words = PLC_POSITIONING.iter().zip(TRANSFER).zip(POSITIONING_FEED);
+        for (index, (slot, ((strobe, target), feed))) in self.targets.iter_mut().zip(words).enumerate() {
             if !nc.bit(*strobe) {
                 *slot = None;
                 continue;
             }
-            let unit = self
-                .places
-                .get(index)
-                .copied()
-                .flatten()
-                .and_then(|place| self.axes.get(place));
-            let ready =
-                unit.is_some_and(|unit| unit.referenced && unit.is_free() && unit.parameters.controlled);
+            let ready = axes
+                .with_index(index)
+                .is_some_and(|unit| unit.referenced && unit.is_free() && unit.parameters.controlled);
             if slot.is_none() && ready && free && running < most {
                 running += 1;
-                let target = f64::from(nc.number(*target)) / PER_MM;
+                let target = f64::from(nc.number(target)) / PER_MM;
                 // Feeds above 32 767 mm/min count on in the word.
-                let feed = f64::from(nc.number(*feed) as u16);
+                let feed = f64::from(nc.number(feed) as u16);
                 *slot = Some((target, feed));
             }
         }
     }
 
+    /// The PLC wants an axis positioned that is not yet.
+    pub fn is_wanted(&self, nc: &Image) -> bool {
+        PLC_POSITIONING
+            .iter()
+            .zip(&self.targets)
+            .any(|(strobe, running)| nc.bit(*strobe) && running.is_none())
+    }
+
+    /// The PLC positions an axis.
+    pub fn is_on(&self) -> bool {
+        self.targets.iter().any(Option::is_some)
+    }
+
     /// Moves what the PLC positions; the NC resets the strobe at the end, or when it is broken off.
-    pub(crate) fn move_for_plc(&mut self) {
-        let time = self.cycle_s();
-        let percent = self.feed_override.percent();
-        let limit = self.rapid_limit_mm_min();
+    pub fn moves(&mut self, axes: &mut OwnAxes, exchange: &mut Exchange, moving: &Moving) {
+        let now = &moving.now;
         // NC stop ends it in Manual and Handwheel; in the automatic modes only with internal stop.
-        let broken_off = self.stop_given() && !self.run.is_active();
-        let waits = self.stop_given();
+        let broken_off = now.stop && !moving.active;
         let mut reached = [false; AXES];
-        for unit in &mut self.axes {
-            let Some((target, feed)) = self.positioning.targets.get(unit.index).copied().flatten() else {
-                if unit.mover == Mover::Positioning && self.run.restoring().is_none() {
-                    unit.drive(time, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
+        for unit in axes.iter_mut() {
+            let Some((target, feed)) = self.targets.get(unit.index).copied().flatten() else {
+                if unit.mover == Mover::Positioning && !moving.restores {
+                    unit.drive(now.time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
                     if unit.stands() {
                         unit.mover = Mover::None;
                     }
@@ -121,12 +122,13 @@ impl Control {
                 continue;
             }
             unit.mover = Mover::Positioning;
-            let (aim, feed) = if waits {
+            let (aim, feed) = if now.stop {
                 (Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min)
             } else {
-                (Aim::Position(target), (feed * percent / 100.0).min(limit))
+                let feed = (feed * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
+                (Aim::Position(target), feed)
             };
-            unit.drive(time, aim, feed);
+            unit.drive(now.time_s, aim, feed);
             let there = unit.ptp.is_at(target) && unit.servo.in_position();
             if (there || broken_off)
                 && let Some(reached) = reached.get_mut(unit.index)
@@ -136,137 +138,96 @@ impl Control {
         }
         for (index, reached) in reached.into_iter().enumerate() {
             if reached {
-                self.end_positioning(index);
+                self.end(index, exchange);
             }
         }
     }
 
-    /// The PLC positions an axis.
-    pub(crate) fn is_positioning(&self) -> bool {
-        self.positioning.targets.iter().any(Option::is_some)
-    }
-
     /// Resets the strobe of a PLC positioning.
-    pub(crate) fn end_positioning(&mut self, index: usize) {
-        if let Some(target) = self.positioning.targets.get_mut(index)
+    fn end(&mut self, index: usize, exchange: &mut Exchange) {
+        if let Some(target) = self.targets.get_mut(index)
             && target.take().is_some()
             && let Some(strobe) = PLC_POSITIONING.get(index)
         {
-            self.exchange.nc_set(*strobe, false);
+            exchange.nc_set(*strobe, false);
+        }
+    }
+
+    /// Resets the strobes of all PLC positionings.
+    pub fn end_all(&mut self, exchange: &mut Exchange) {
+        for index in 0..AXES {
+            self.end(index, exchange);
+        }
+    }
+
+    /// What modules 9120 to 9124 asked for in a scan.
+    pub fn take_requests(&mut self, requests: &mut Requests) {
+        let wanted = requests.plc_axes.iter_mut().zip(&mut requests.plc_axis_override);
+        for (axis, (command, percent)) in self.plc_axes.iter_mut().zip(wanted) {
+            if let Some(command) = command.take() {
+                axis.command = Some(command);
+                axis.target = None;
+            }
+            if let Some(percent) = percent.take() {
+                axis.override_percent = percent;
+            }
         }
     }
 
     /// PLC axes: modules 9120 to 9124. Always with servo lag, no override but that of 9124, no software
     /// limits in the reference run [000:4094-4116] [000:15938-16000].
-    pub(crate) fn move_plc_axes(&mut self) {
-        let time = self.cycle_s();
-        for unit in self.axes.iter_mut().filter(|unit| unit.is_plc_axis()) {
-            let (Some(axis), Some(status)) = (
-                self.positioning.plc_axes.get_mut(unit.index),
-                self.link.plc_axes.get_mut(unit.index),
-            ) else {
-                continue;
-            };
-            let rapid = unit.parameters.motion.rapid_mm_min;
-            let able = unit.servo.closed() && unit.enabled;
-            let mut stop = !able || self.emergency.circuit() != crate::emergency::Circuit::Ready;
-            match axis.command {
-                Some(PlcAxisCommand::Start {
-                    target,
-                    incremental,
-                    feed,
-                }) if !stop => {
-                    let wanted = *axis.target.get_or_insert(if incremental {
-                        unit.nominal + target
-                    } else {
-                        shortest(unit.nominal, target, unit.parameters.travel.modulo_deg)
-                    });
-                    let feed = feed.max(0.0) * axis.override_percent / 100.0;
-                    unit.drive(time, Aim::Position(wanted), feed);
-                    if unit.ptp.is_at(wanted) && unit.servo.in_position() {
-                        axis.command = None;
-                    }
-                }
-                Some(PlcAxisCommand::TraverseReferenceMarks { feed, negative }) if !stop => {
-                    if axis.target.replace(0.0).is_none() {
-                        unit.servo.forget_marks();
-                        unit.referenced = false;
-                    }
-                    let mark = unit.servo.take_mark();
-                    if let Some((count, scale)) = mark.and_then(|mark| Some((mark.count, mark.scale_mm?))) {
-                        unit.set_datum(count, scale - unit.parameters.travel.machine_datum_mm);
-                        unit.referenced = true;
-                        axis.command = Some(PlcAxisCommand::Stop);
-                    }
-                    let feed = feed.max(0.0);
-                    let sign = if negative { -1.0 } else { 1.0 };
-                    unit.drive(time, Aim::Feed(sign * feed), feed);
-                }
-                _ => stop = true,
+    pub fn move_plc_axes(&mut self, axes: &mut OwnAxes, statuses: &mut [PlcAxisStatus; AXES], now: &Now) {
+        for unit in axes.iter_mut().filter(|unit| unit.is_plc_axis()) {
+            if let (Some(axis), Some(status)) =
+                (self.plc_axes.get_mut(unit.index), statuses.get_mut(unit.index))
+            {
+                axis.moves(unit, now);
+                *status = PlcAxisStatus {
+                    positioning: axis.command.is_some(),
+                    negative: unit.speed < 0.0,
+                    referenced: unit.referenced,
+                    error: unit.servo.fault().is_some(),
+                };
             }
-            if stop {
-                unit.drive(time, Aim::Feed(0.0), rapid);
-                if unit.stands() {
-                    axis.command = None;
-                }
-            }
-            if axis.command.is_none() {
-                axis.target = None;
-            }
-            unit.mover = if axis.command.is_some() {
-                Mover::Plc
-            } else {
-                Mover::None
-            };
-            status.positioning = axis.command.is_some();
-            status.negative = unit.speed < 0.0;
-            status.referenced = unit.referenced;
-            status.error = unit.servo.fault().is_some();
         }
     }
 
     /// M2720: free rotation of the axes in B518 in the directions of B519 [000:6494-6517].
-    pub(crate) fn take_free_rotation(&mut self) {
-        let nc = self.exchange.nc();
+    pub fn take_free_rotation(&mut self, exchange: &mut Exchange) {
+        let nc = exchange.nc();
         if !nc.bit(signal::FREE_ROTATION) {
             return;
         }
         let axes = nc.number(signal::FREE_ROTATION_AXIS);
         let negative = nc.number(signal::FREE_ROTATION_DIRECTION);
-        for index in 3..AXES {
+        for (index, rotation) in self.rotation.iter_mut().enumerate().skip(3) {
             let turns = axes >> index & 1 != 0;
             let sign = if negative >> index & 1 != 0 { -1.0 } else { 1.0 };
-            if let Some(rotation) = self.positioning.rotation.get_mut(index) {
-                *rotation = turns.then_some(sign);
-            }
+            *rotation = turns.then_some(sign);
         }
-        self.exchange.nc_set(signal::FREE_ROTATION, false);
+        exchange.nc_set(signal::FREE_ROTATION, false);
     }
 
     /// Turns the axes of the free rotation, at W566 or W568 with the override W754, 0 to 300 %.
-    pub(crate) fn move_rotation(&mut self) {
-        let time = self.cycle_s();
-        let nc = self.exchange.nc();
+    pub fn move_rotation(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Now) {
         let percent = f64::from(nc.number(signal::FREE_ROTATION_FEED_OVERRIDE).clamp(0, 300));
-        let stop = self.emergency.circuit() != crate::emergency::Circuit::Ready;
-        let limit = self.rapid_limit_mm_min();
-        for unit in &mut self.axes {
-            let Some(rotation) = self.positioning.rotation.get(unit.index).copied() else {
+        for unit in axes.iter_mut() {
+            let Some(rotation) = self.rotation.get(unit.index).copied() else {
                 continue;
             };
             if !(unit.servo.closed() && unit.enabled) {
                 continue;
             }
-            match rotation.filter(|_| !stop) {
+            match rotation.filter(|_| now.ready) {
                 Some(sign) if matches!(unit.mover, Mover::None | Mover::Rotation) => {
                     let word = POSITIONING_FEED.get(unit.index);
                     let feed = word.map_or(0.0, |word| f64::from(nc.number(*word) as u16));
                     unit.mover = Mover::Rotation;
-                    let feed = (feed * percent / 100.0).min(limit);
-                    unit.drive(time, Aim::Feed(sign * feed), feed);
+                    let feed = (feed * percent / 100.0).min(now.rapid_limit_mm_min);
+                    unit.drive(now.time_s, Aim::Feed(sign * feed), feed);
                 }
                 None if unit.mover == Mover::Rotation => {
-                    unit.drive(time, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
+                    unit.drive(now.time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
                     if unit.stands() {
                         unit.mover = Mover::None;
                     }
@@ -274,6 +235,63 @@ impl Control {
                 _ => {}
             }
         }
+    }
+}
+
+impl PlcAxis {
+    /// Moves its axis for a cycle.
+    fn moves(&mut self, unit: &mut AxisUnit, now: &Now) {
+        let rapid = unit.parameters.motion.rapid_mm_min;
+        let able = unit.servo.closed() && unit.enabled;
+        let mut stop = !able || !now.ready;
+        match self.command {
+            Some(PlcAxisCommand::Start {
+                target,
+                incremental,
+                feed,
+            }) if !stop => {
+                let wanted = *self.target.get_or_insert(if incremental {
+                    unit.nominal + target
+                } else {
+                    shortest(unit.nominal, target, unit.parameters.travel.modulo_deg)
+                });
+                let feed = feed.max(0.0) * self.override_percent / 100.0;
+                unit.drive(now.time_s, Aim::Position(wanted), feed);
+                if unit.ptp.is_at(wanted) && unit.servo.in_position() {
+                    self.command = None;
+                }
+            }
+            Some(PlcAxisCommand::TraverseReferenceMarks { feed, negative }) if !stop => {
+                if self.target.replace(0.0).is_none() {
+                    unit.servo.forget_marks();
+                    unit.referenced = false;
+                }
+                let mark = unit.servo.take_mark();
+                if let Some((count, scale)) = mark.and_then(|mark| Some((mark.count, mark.scale_mm?))) {
+                    unit.set_datum(count, scale - unit.parameters.travel.machine_datum_mm);
+                    unit.referenced = true;
+                    self.command = Some(PlcAxisCommand::Stop);
+                }
+                let feed = feed.max(0.0);
+                let sign = if negative { -1.0 } else { 1.0 };
+                unit.drive(now.time_s, Aim::Feed(sign * feed), feed);
+            }
+            _ => stop = true,
+        }
+        if stop {
+            unit.drive(now.time_s, Aim::Feed(0.0), rapid);
+            if unit.stands() {
+                self.command = None;
+            }
+        }
+        if self.command.is_none() {
+            self.target = None;
+        }
+        unit.mover = if self.command.is_some() {
+            Mover::Plc
+        } else {
+            Mover::None
+        };
     }
 }
 

@@ -1,16 +1,18 @@
 //! Probing in the program: the axes move until the stylus is deflected [000:7613-7718].
 
-use bahn_exchange::signal;
+use bahn_exchange::{Exchange, signal};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, BlockRef, LiveData, Position, Touch};
+use bahn_path::{Axis, BlockRef, Position, Touch};
 use bahn_servo::Plant;
 
-use crate::axes::Mover;
-use crate::control::Control;
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Mover};
+use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::panel::Direction;
-use crate::run::{Resume, RunState};
+use crate::site::Site;
+use crate::track::{are_in_position, limit_message};
 
 /// What M2502 makes of the stylus.
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,20 +55,80 @@ enum Phase {
     Return,
 }
 
-impl Control {
+/// What a probing comes to in a cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Probed {
+    /// It goes on.
+    Moves,
+    /// It is over: the program learns of the touch, or that there was none.
+    Over(Option<Touch>),
+    /// It is refused, with a message at its block.
+    Refused(Message, BlockRef),
+}
+
+/// How the axes move that a stylus guards.
+pub(crate) struct Guarded {
+    /// All stand, and no direction key is pressed.
+    pub rest: bool,
+    /// Blocks run in the operating mode.
+    pub automatic: bool,
+}
+
+impl Stylus {
+    /// M2502: the machine stops when the stylus is deflected, in all modes, but where a probing deflects it, until it
+    /// has left the workpiece again; not with a TS 511, which is on standby otherwise [000:7652]. The stop stays
+    /// until all axes stand and no key moves them: by hand the stylus can then be freed; a program goes on only
+    /// when it is free (inferred).
+    pub fn watch(
+        &mut self,
+        plant: &mut dyn Plant,
+        guards: bool,
+        probing: &Probe,
+        guarded: impl FnOnce() -> Guarded,
+    ) {
+        if !guards && !self.stops {
+            return;
+        }
+        let touches = guards && plant.probe_deflected();
+        self.probed = touches && (probing.touches() || self.probed);
+        let deflected = touches && !self.probed;
+        let rises = deflected && !self.deflected;
+        self.deflected = deflected;
+        let Guarded { rest, automatic } = guarded();
+        let stays = deflected && automatic || !rest;
+        self.stops = rises || self.stops && stays;
+    }
+}
+
+/// The probing movement that is on its way, if one is.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Probe(Option<Probing>);
+
+impl Probe {
+    /// A probing movement is on its way.
+    pub fn is_on(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// The stylus may touch the workpiece.
+    fn touches(&self) -> bool {
+        self.0.is_some_and(|probing| probing.phase != Phase::Enable)
+    }
+
     /// The path came to a probe block: asks the PLC to enable it [000:7682-7690].
-    pub(crate) fn begin_probing(&mut self, block: BlockRef, from: Position, to: Position, feed_mm_min: f64) {
-        let (to, limit) = self.within_range(&from, to);
+    pub fn begin(&mut self, block: BlockRef, ends: [Position; 2], feed_mm_min: f64, site: &mut Site) {
+        let [from, to] = ends;
+        let (to, limit) = within_range(&from, to, &site.axes, site.chain);
         let way = |axis: Axis| to[axis] - from[axis];
         let moving = |axis: &Axis| way(*axis).abs() > 0.0;
         let length = Axis::ALL.into_iter().filter(moving).map(|axis| way(axis).powi(2));
-        let acceleration = self
+        let acceleration = site
             .axes
             .iter()
             .filter(|unit| moving(&unit.axis))
             .map(|unit| unit.parameters.motion.acceleration_m_s2)
             .fold(f64::INFINITY, f64::min);
-        self.run.probing = Some(Probing {
+        self.0 = Some(Probing {
             phase: Phase::Enable,
             block,
             limit,
@@ -78,55 +140,30 @@ impl Control {
             length: length.sum::<f64>().sqrt(),
             touch: None,
         });
-        self.put(signal::PROBING_ENDED, false);
-        self.exchange.nc_set(signal::PROBING_ENABLE, true);
-    }
-
-    /// The way of a probing as far as the traverse range reaches, and the limit that ends it.
-    fn within_range(&self, from: &Position, to: Position) -> (Position, Option<(Axis, Direction)>) {
-        let [least, greatest] = self.traverse_box();
-        let mut part = 1.0;
-        let mut limit = None;
-        for unit in &self.axes {
-            let axis = unit.axis;
-            let (offset, way) = (self.offsets.of(axis), to[axis] - from[axis]);
-            let (end, direction) = if way > 0.0 {
-                (greatest[axis], Direction::Plus)
-            } else {
-                (least[axis], Direction::Minus)
-            };
-            let reach = (end - offset - from[axis]) / way;
-            if way != 0.0 && reach < part {
-                (part, limit) = (reach.max(0.0), Some((axis, direction)));
-            }
-        }
-        if limit.is_none() {
-            return (to, None);
-        }
-        let end = Axis::ALL.map(|axis| {
-            let way = to[axis] - from[axis];
-            if way == 0.0 {
-                to[axis]
-            } else {
-                from[axis] + part * way
-            }
-        });
-        (end.into(), limit)
+        site.exchange.nc_put(signal::PROBING_ENDED, false);
+        site.exchange.nc_set(signal::PROBING_ENABLE, true);
     }
 
     /// Takes the position of the axes when the stylus is deflected; once in each servo step.
-    pub(crate) fn watch_probe(&mut self, plant: &mut dyn Plant) {
-        self.watch_stylus(plant);
-        let Some(probing) = &mut self.run.probing else {
-            return;
-        };
+    pub fn watch<'a>(
+        &mut self,
+        plant: &mut dyn Plant,
+        axes: impl Iterator<Item = &'a AxisUnit> + Clone,
+        chain: &Chain,
+    ) {
+        let Some(probing) = &mut self.0 else { return };
         if probing.phase != Phase::Search || probing.touch.is_some() || !plant.probe_deflected() {
             return;
         }
-        let along = self.axes.iter().map(|unit| {
+        let mut actual = Position::UNKNOWN;
+        for unit in axes.clone() {
+            actual[unit.axis] = unit.servo.actual_mm();
+        }
+        let actual = chain.to_path(&actual);
+        let along = axes.map(|unit| {
             let axis = unit.axis;
             let way = probing.to[axis] - probing.from[axis];
-            let at = unit.servo.actual_mm() - self.offsets.of(axis) - probing.from[axis];
+            let at = actual[axis] - probing.from[axis];
             if way == 0.0 || way.is_nan() {
                 0.0
             } else {
@@ -136,53 +173,25 @@ impl Control {
         probing.touch = Some(along.sum());
     }
 
-    /// M2502: the machine stops when the stylus is deflected, in all modes, but where a probing deflects it, until it
-    /// has left the workpiece again; not with a TS 511, which is on standby otherwise [000:7652]. The stop stays
-    /// until all axes stand and no key moves them: by hand the stylus can then be freed; a program goes on only
-    /// when it is free (inferred).
-    fn watch_stylus(&mut self, plant: &mut dyn Plant) {
-        let guards = self.exchange.nc().bit(signal::NC_STOP_ON_STYLUS_DEFLECTION)
-            && !self.link.list().probe().on_standby;
-        if !guards && !self.stylus.stops {
-            return;
-        }
-        let probes = self
-            .run
-            .probing
-            .is_some_and(|probing| probing.phase != Phase::Enable);
-        let touches = guards && plant.probe_deflected();
-        self.stylus.probed = touches && (probes || self.stylus.probed);
-        let deflected = touches && !self.stylus.probed;
-        let rises = deflected && !self.stylus.deflected;
-        self.stylus.deflected = deflected;
-        let keys = self.panel.axis_keys.iter().any(Option::is_some);
-        let rests = !keys && self.axes.iter().all(|unit| unit.stands());
-        let stays = deflected && self.mode.is_automatic() || !rests;
-        self.stylus.stops = rises || self.stylus.stops && stays;
-    }
-
     /// Moves the axes of a probing for a cycle.
-    pub(crate) fn move_probe(&mut self, plant: &mut dyn Plant) {
-        let running = self.run.state == RunState::Running;
-        let time = self.cycle_s();
-        let percent = self.feed_override.percent().min(100.0);
-        let limit = self.rapid_limit_mm_min();
-        let Some(probing) = &mut self.run.probing else {
-            return;
+    pub fn moves(&mut self, running: bool, site: &mut Site, plant: &mut dyn Plant) -> Probed {
+        let percent = site.now.feed_percent.min(100.0);
+        let Some(probing) = &mut self.0 else {
+            return Probed::Moves;
         };
-        let feed = (probing.feed_mm_min * percent / 100.0).min(limit);
+        let feed = (probing.feed_mm_min * percent / 100.0).min(site.now.rapid_limit_mm_min);
         let aim = match probing.phase {
             Phase::Enable => {
-                if running && !self.exchange.nc().bit(signal::PROBING_ENABLE) {
-                    self.enter_probing(plant);
+                if running && !site.exchange.nc().bit(signal::PROBING_ENABLE) {
+                    return self.enter(site, plant);
                 }
-                return;
+                return Probed::Moves;
             }
             _ if !running => Aim::Feed(0.0),
             Phase::Search => match probing.touch {
                 Some(_) => {
                     probing.phase = Phase::Brake;
-                    self.exchange.nc_set(signal::STYLUS_DEFLECTED, true);
+                    site.exchange.nc_set(signal::STYLUS_DEFLECTED, true);
                     Aim::Feed(0.0)
                 }
                 None => Aim::Position(probing.length),
@@ -195,6 +204,7 @@ impl Control {
         } else {
             feed
         };
+        let time = site.now.time_s;
         let at = probing.way.cycle(time, aim, feed, probing.acceleration_m_s2);
         let stands = probing.way.speed_mm_s() == 0.0;
         let position = along(probing, at);
@@ -207,75 +217,99 @@ impl Control {
             (Phase::Search, None) if probing.way.is_at(probing.length) => Some(None),
             _ => None,
         };
-        for unit in &mut self.axes {
-            let value = position[unit.axis];
+        let nominal = site.chain.to_axes(&position);
+        for unit in site.axes.iter_mut() {
+            let value = nominal[unit.axis];
             if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && !unit.is_plc_axis() {
                 unit.mover = Mover::Path;
-                unit.follow(value + self.offsets.of(unit.axis), time);
+                unit.follow(value, time);
             }
         }
-        let Some(touched) = answer.filter(|_| stands && self.path_in_position()) else {
-            return;
-        };
-        match (touched, self.run.probing.and_then(|probing| probing.limit)) {
-            (None, Some((axis, direction))) => {
-                let message = self.limit_message(axis, direction);
-                self.refuse_probing(message);
-            }
-            _ => self.finish_probing(touched),
+        match (answer, probing.limit) {
+            (Some(touched), limit) if stands && are_in_position(&site.axes) => match (touched, limit) {
+                (None, Some((axis, direction))) => {
+                    let message = limit_message(&mut site.axes, axis, direction);
+                    Probed::Refused(message, probing.block)
+                }
+                _ => self.finish(touched, site),
+            },
+            _ => Probed::Moves,
         }
     }
 
     /// The PLC has enabled the probing: the probe must be ready and at rest.
-    fn enter_probing(&mut self, plant: &mut dyn Plant) {
+    fn enter(&mut self, site: &mut Site, plant: &mut dyn Plant) -> Probed {
         let ready = plant.probe_ready();
-        self.put(signal::PROBE_NOT_READY, !ready);
-        self.put(signal::PROBE_BATTERY_LOW, plant.probe_battery_low());
+        site.exchange.nc_put(signal::PROBE_NOT_READY, !ready);
+        site.exchange
+            .nc_put(signal::PROBE_BATTERY_LOW, plant.probe_battery_low());
+        let Some(probing) = &mut self.0 else {
+            return Probed::Moves;
+        };
         if !ready {
-            self.refuse_probing(Message::Plain(MessageId::ProbeSystemNotReady));
-            return;
+            let message = Message::Plain(MessageId::ProbeSystemNotReady);
+            return Probed::Refused(message, probing.block);
         }
         let deflected = plant.probe_deflected();
-        self.put(signal::STYLUS_ALREADY_DEFLECTED, deflected);
-        let Some(probing) = &mut self.run.probing else {
-            return;
-        };
+        site.exchange.nc_put(signal::STYLUS_ALREADY_DEFLECTED, deflected);
         if deflected {
             let from = probing.from;
-            self.finish_probing(Some(from));
-        } else {
-            probing.phase = Phase::Search;
+            return self.finish(Some(from), site);
         }
+        probing.phase = Phase::Search;
+        Probed::Moves
     }
 
-    /// The run ends at the block that probes, with a message; the next start probes again.
-    fn refuse_probing(&mut self, message: Message) {
-        let block = self.run.probing.map(|probing| probing.block);
-        let feeder = self.run.feeder.as_ref();
-        let sequence = feeder.map_or(0, |feeder| feeder.interpreter().blocks_executed());
-        self.show_at(message, false, block);
-        self.abort_run(Resume::Block(sequence));
-    }
-
-    /// Hands the touch to the program, or that there was none.
-    fn finish_probing(&mut self, touched: Option<Position>) {
-        self.end_probing();
-        let here = self.offsets.to_path(&self.machine_position());
-        self.path.set_position(touched.unwrap_or(here));
-        self.run.last = None;
-        self.run.answer = Some(LiveData {
-            touch: touched.map(|position| Touch { position }),
-            q_values: Vec::new(),
-        });
+    fn finish(&mut self, touched: Option<Position>, site: &mut Site) -> Probed {
+        self.end(site.exchange);
+        Probed::Over(touched.map(|position| Touch { position }))
     }
 
     /// Nothing is probed any more.
-    pub(crate) fn end_probing(&mut self) {
-        if self.run.probing.take().is_some() {
-            self.put(signal::PROBING_ENABLE, false);
-            self.put(signal::PROBING_ENDED, true);
+    pub fn end(&mut self, exchange: &mut Exchange) {
+        if self.0.take().is_some() {
+            exchange.nc_put(signal::PROBING_ENABLE, false);
+            exchange.nc_put(signal::PROBING_ENDED, true);
         }
     }
+}
+
+/// The way of a probing as far as the traverse range reaches, and the limit that ends it. On kinematics that are
+/// not Cartesian the way is that of the axes (inferred).
+fn within_range(
+    from: &Position,
+    to: Position,
+    axes: &OwnAxes,
+    chain: &Chain,
+) -> (Position, Option<(Axis, Direction)>) {
+    let [least, greatest] = axes.traverse_box();
+    let mut part = 1.0;
+    let mut limit = None;
+    for unit in axes.iter() {
+        let axis = unit.axis;
+        let (offset, way) = (chain.offsets.of(axis), to[axis] - from[axis]);
+        let (end, direction) = if way > 0.0 {
+            (greatest[axis], Direction::Plus)
+        } else {
+            (least[axis], Direction::Minus)
+        };
+        let reach = (end - offset - from[axis]) / way;
+        if way != 0.0 && reach < part {
+            (part, limit) = (reach.max(0.0), Some((axis, direction)));
+        }
+    }
+    if limit.is_none() {
+        return (to, None);
+    }
+    let end = Axis::ALL.map(|axis| {
+        let way = to[axis] - from[axis];
+        if way == 0.0 {
+            to[axis]
+        } else {
+            from[axis] + part * way
+        }
+    });
+    (end.into(), limit)
 }
 
 /// The position so far along the line, path coordinates.

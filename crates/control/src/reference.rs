@@ -4,14 +4,15 @@
 //! of them and what sister manuals say (inferred) [000:4583-4667]. The cam of each axis is the marker M2556
 //! ff. that the PLC copies from its input.
 
+use bahn_exchange::Image;
 use bahn_motion::Aim;
 use bahn_parameters::ReferenceType;
 
-use crate::axes::{AxisUnit, Mover};
-use crate::command::Mode;
-use crate::control::Control;
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Mover};
 use crate::gantry;
 use crate::markers::REFERENCE_CAM;
+use crate::now::Now;
 
 /// The reference run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +22,7 @@ pub(crate) struct ReferenceRun {
     /// The axis that runs, by its place, and its step.
     running: Option<(usize, Step)>,
     /// The control has asked for it since power-on.
-    pub asked: bool,
+    asked: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,192 +47,197 @@ impl ReferenceRun {
         self.automatic = false;
         self.running = None;
     }
-}
 
-impl Control {
-    /// An axis has not passed its reference mark: any one, or one of those that MP1340 names.
-    pub(crate) fn reference_is_missing(&self, named: bool) -> bool {
-        self.axes
-            .iter()
-            .any(|unit| waits(unit) && (!named || unit.parameters.reference.place.is_some()))
+    /// The loops were closed: whether the control now asks for the run, once since power-on.
+    pub fn is_asked_for(&mut self, axes: &OwnAxes) -> bool {
+        !std::mem::replace(&mut self.asked, true) && is_missing(axes, true)
     }
 
-    /// Moves the axes in PASS OVER REFERENCE MARKS.
-    pub(crate) fn move_reference(&mut self) {
-        if self.stop_given() {
-            self.reference.automatic = false;
-        } else if self.start_pressed {
-            self.reference.automatic = true;
+    /// Moves the axes in PASS OVER REFERENCE MARKS; whether the run is over.
+    pub fn moves(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Now) -> bool {
+        if now.stop {
+            self.automatic = false;
+        } else if now.start {
+            self.automatic = true;
         }
-        if self.reference.running.is_none() {
-            self.next_reference_axis();
+        if self.running.is_none() {
+            self.next_axis(axes, nc, now);
         }
-        if let Some((place, step)) = self.reference.running {
-            let stop = self.stop_given() || !(self.reference.automatic || self.key_of(place));
-            self.reference.running = self.run_reference(place, step, stop);
+        if let Some((place, step)) = self.running {
+            let stop = now.stop || !(self.automatic || key_of(place, axes, now));
+            self.running = run_axis(place, step, stop, axes, nc, now);
         }
-        if self.reference.running.is_some() {
-            return;
+        if self.running.is_some() {
+            return false;
         }
         // Axes that MP1340 does not name pass their marks by their keys only [000:4649-4654].
-        let automatic = self.reference.automatic && !self.reference_is_missing(true);
-        if automatic || !self.reference_is_missing(false) {
-            self.reference.abort();
-            self.set_mode(Mode::Manual);
+        let over = self.automatic && !is_missing(axes, true) || !is_missing(axes, false);
+        if over {
+            self.abort();
         }
-    }
-
-    /// A direction key of the axis is pressed: the operator chooses the order [000:4563-4566].
-    fn key_of(&self, place: usize) -> bool {
-        self.axes
-            .get(place)
-            .and_then(|unit| self.panel.axis_keys.get(unit.index))
-            .is_some_and(Option::is_some)
+        over
     }
 
     /// Chooses the axis that runs next; one that is clamped or has no feed enable is waited for.
-    fn next_reference_axis(&mut self) {
-        let next = if self.reference.automatic {
-            let named = self.axes.iter().enumerate().filter(|(_, unit)| waits(unit));
-            named
-                .filter_map(|(place, unit)| Some((unit.parameters.reference.place?, place)))
-                .min()
-                .map(|(_, place)| place)
+    fn next_axis(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Now) {
+        let next = if self.automatic {
+            let named = axes.places().filter_map(|place| {
+                let unit = axes.get(place).filter(|unit| waits(unit))?;
+                Some((unit.parameters.reference.place?, place))
+            });
+            named.min().map(|(_, place)| place)
         } else {
-            (0..self.axes.len()).find(|place| self.key_of(*place) && self.axes.get(*place).is_some_and(waits))
+            axes.places()
+                .find(|place| key_of(*place, axes, now) && axes.get(*place).is_some_and(waits))
         };
         let Some(place) = next else { return };
-        let Some(unit) = self.axes.get_mut(place) else {
+        let Some(unit) = axes.get_mut(place) else {
             return;
         };
         unit.ask_to_unclamp();
         if !(unit.servo.closed() && unit.enabled && unit.stands()) {
             return;
         }
-        let cam = self.cam(place);
-        for unit in &mut self.axes {
+        let cam = cam(place, axes, nc);
+        for unit in axes.all_mut() {
             let slave = unit.coupling.as_ref().is_some_and(|of| of.master == place);
             if slave {
                 unit.servo.forget_marks();
             }
         }
-        if let Some(unit) = self.axes.get_mut(place) {
+        if let Some(unit) = axes.get_mut(place) {
             unit.servo.forget_marks();
             let step = match unit.parameters.reference.kind {
                 ReferenceType::RotaryEncoder if cam => Step::LeaveCam,
                 _ => Step::Seek { reversed: cam },
             };
-            self.reference.running = Some((place, step));
+            self.running = Some((place, step));
         }
     }
+}
 
-    /// The cam of an axis is closed.
-    fn cam(&self, place: usize) -> bool {
-        self.axes
-            .get(place)
-            .and_then(|unit| REFERENCE_CAM.get(unit.index))
-            .is_some_and(|marker| self.exchange.nc().bit(*marker))
+/// A direction key of the axis is pressed: the operator chooses the order [000:4563-4566].
+fn key_of(place: usize, axes: &OwnAxes, now: &Now) -> bool {
+    axes.get(place)
+        .and_then(|unit| now.axis_keys.get(unit.index))
+        .is_some_and(Option::is_some)
+}
+
+/// An axis has not passed its reference mark: any one, or one of those that MP1340 names.
+fn is_missing(axes: &OwnAxes, named: bool) -> bool {
+    axes.iter()
+        .any(|unit| waits(unit) && (!named || unit.parameters.reference.place.is_some()))
+}
+
+/// The cam of an axis is closed.
+fn cam(place: usize, axes: &OwnAxes, nc: &Image) -> bool {
+    axes.get(place)
+        .and_then(|unit| REFERENCE_CAM.get(unit.index))
+        .is_some_and(|marker| nc.bit(*marker))
+}
+
+/// One cycle of the run of an axis; what comes next.
+fn run_axis(
+    place: usize,
+    step: Step,
+    stop: bool,
+    axes: &mut OwnAxes,
+    nc: &Image,
+    now: &Now,
+) -> Option<(usize, Step)> {
+    let (time, cam) = (now.time_s, cam(place, axes, nc));
+    let unit = axes.get_mut(place)?;
+    if !(unit.servo.closed() && unit.enabled) {
+        unit.mover = Mover::None;
+        return None;
     }
-
-    /// One cycle of the run of an axis; what comes next.
-    fn run_reference(&mut self, place: usize, step: Step, stop: bool) -> Option<(usize, Step)> {
-        let (time, cam) = (self.cycle_s(), self.cam(place));
-        let rapid_limit = self.rapid_limit_mm_min();
-        let percent = self.feed_override.percent();
-        let unit = self.axes.get_mut(place)?;
-        if !(unit.servo.closed() && unit.enabled) {
-            unit.mover = Mover::None;
-            return None;
+    unit.mover = Mover::Reference;
+    let reference = unit.parameters.reference;
+    let forwards = if reference.negative { -1.0 } else { 1.0 };
+    if stop && step != Step::Stop {
+        unit.drive(time, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
+        if !unit.stands() {
+            return Some((place, step));
         }
-        unit.mover = Mover::Reference;
-        let reference = unit.parameters.reference;
-        let forwards = if reference.negative { -1.0 } else { 1.0 };
-        if stop && step != Step::Stop {
-            unit.drive(time, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
-            if !unit.stands() {
-                return Some((place, step));
-            }
-            unit.mover = Mover::None;
-            return None;
-        }
-        let (step, synchronous) = self.next_step(place, step, cam);
-        let unit = self.axes.get_mut(place)?;
-        let (direction, feed) = match step {
-            Step::Seek { reversed: false } => (forwards, reference.feed_mm_min),
-            Step::Seek { reversed: true } => (-forwards, reference.feed_mm_min),
-            Step::LeaveCam | Step::Pulse => (-forwards, reference.leaving_mm_min),
-            Step::Stop => (0.0, reference.feed_mm_min),
-        };
-        // The override acts (inferred: only PLC axes are said to run without).
-        let feed = (feed * percent / 100.0).min(rapid_limit);
-        let outside = unit.limited().and_then(|[least, greatest]| {
-            let inside = unit.nominal.clamp(least, greatest.max(least));
-            (inside != unit.nominal).then_some(inside)
-        });
-        let aim = match (step, outside) {
-            // Found beyond the software limit: the axis returns to it.
-            (Step::Stop, Some(limit)) if unit.stands() || unit.nominal != limit => Aim::Position(limit),
-            _ => Aim::Feed(direction * feed),
-        };
-        let slowing = step == Step::Stop && matches!(aim, Aim::Feed(_));
-        let greatest = if slowing {
-            unit.parameters.motion.rapid_mm_min
-        } else {
-            feed
-        };
-        unit.drive(time, aim, greatest);
-        let settled = unit.stands() && unit.servo.in_position();
-        if step == Step::Stop && settled && synchronous && outside.is_none() {
-            // The next axis starts when the PLC has seen this one in position.
-            unit.mover = Mover::None;
-            return (!unit.in_position).then_some((place, step));
-        }
-        Some((place, step))
+        unit.mover = Mover::None;
+        return None;
     }
+    let (step, synchronous) = next_step(place, step, cam, axes, nc);
+    let unit = axes.get_mut(place)?;
+    let (direction, feed) = match step {
+        Step::Seek { reversed: false } => (forwards, reference.feed_mm_min),
+        Step::Seek { reversed: true } => (-forwards, reference.feed_mm_min),
+        Step::LeaveCam | Step::Pulse => (-forwards, reference.leaving_mm_min),
+        Step::Stop => (0.0, reference.feed_mm_min),
+    };
+    // The override acts (inferred: only PLC axes are said to run without).
+    let feed = (feed * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
+    let outside = unit.limited().and_then(|[least, greatest]| {
+        let inside = unit.nominal.clamp(least, greatest.max(least));
+        (inside != unit.nominal).then_some(inside)
+    });
+    let aim = match (step, outside) {
+        // Found beyond the software limit: the axis returns to it.
+        (Step::Stop, Some(limit)) if unit.stands() || unit.nominal != limit => Aim::Position(limit),
+        _ => Aim::Feed(direction * feed),
+    };
+    let slowing = step == Step::Stop && matches!(aim, Aim::Feed(_));
+    let greatest = if slowing {
+        unit.parameters.motion.rapid_mm_min
+    } else {
+        feed
+    };
+    unit.drive(time, aim, greatest);
+    let settled = unit.stands() && unit.servo.in_position();
+    if step == Step::Stop && settled && synchronous && outside.is_none() {
+        // The next axis starts when the PLC has seen this one in position.
+        unit.mover = Mover::None;
+        return (!unit.in_position).then_some((place, step));
+    }
+    Some((place, step))
+}
 
-    /// What the cam and the marks make of a step, and whether slaves are where they shall be.
-    fn next_step(&mut self, place: usize, step: Step, cam: bool) -> (Step, bool) {
-        let nc = self.exchange.nc();
-        let cam_of = |unit: &AxisUnit| REFERENCE_CAM.get(unit.index).is_some_and(|cam| nc.bit(*cam));
-        let Some(unit) = self.axes.get_mut(place) else {
-            return (Step::Stop, true);
-        };
-        let kind = unit.parameters.reference.kind;
-        let turned = turn_at_cam(unit, step, kind, cam);
-        // Marks do not count before the cam has chosen them, nor under the cam with one mark: it must lie
-        // outside.
-        let choosing = kind == ReferenceType::RotaryEncoder && turned != Step::Pulse;
-        let counts = turned == step && !choosing;
-        let mark = unit.servo.take_mark();
-        let mark = mark.filter(|_| counts && !unit.referenced && !(cam && kind == ReferenceType::OneMark));
-        if let Some((count, scale_mm)) = mark.and_then(|mark| Some((mark.count, mark.scale_mm?))) {
-            let datum = unit.parameters.travel.machine_datum_mm;
+/// What the cam and the marks make of a step, and whether slaves are where they shall be.
+fn next_step(place: usize, step: Step, cam: bool, axes: &mut OwnAxes, nc: &Image) -> (Step, bool) {
+    let cam_of = |unit: &AxisUnit| REFERENCE_CAM.get(unit.index).is_some_and(|cam| nc.bit(*cam));
+    let Some(unit) = axes.get_mut(place) else {
+        return (Step::Stop, true);
+    };
+    let kind = unit.parameters.reference.kind;
+    let turned = turn_at_cam(unit, step, kind, cam);
+    // Marks do not count before the cam has chosen them, nor under the cam with one mark: it must lie
+    // outside.
+    let choosing = kind == ReferenceType::RotaryEncoder && turned != Step::Pulse;
+    let counts = turned == step && !choosing;
+    let mark = unit.servo.take_mark();
+    let mark = mark.filter(|_| counts && !unit.referenced && !(cam && kind == ReferenceType::OneMark));
+    if let Some((count, scale_mm)) = mark.and_then(|mark| Some((mark.count, mark.scale_mm?))) {
+        let datum = unit.parameters.travel.machine_datum_mm;
+        unit.referenced = true;
+        let shift = unit.set_datum(count, scale_mm - datum);
+        gantry::shifted(axes.all_mut(), place, shift);
+    }
+    let slaves = gantry::reference(axes.all_mut(), place, counts, |unit| {
+        kind == ReferenceType::OneMark && cam_of(unit)
+    });
+    let found = axes.get(place).is_some_and(|unit| unit.referenced) && slaves.found;
+    let step = if found { Step::Stop } else { turned };
+    (step, slaves.synchronous)
+}
+
+/// Axes that are only displayed: the counter is zero on the reference mark [000:4573].
+pub(crate) fn count_display_axes(axes: &mut OwnAxes) {
+    for unit in axes.iter_mut().filter(|unit| !unit.parameters.controlled) {
+        if unit.referenced {
+            continue;
+        }
+        if let Some((count, scale)) = unit
+            .servo
+            .take_mark()
+            .and_then(|mark| Some((mark.count, mark.scale_mm?)))
+        {
+            unit.set_datum(count, scale);
             unit.referenced = true;
-            let shift = unit.set_datum(count, scale_mm - datum);
-            gantry::shifted(&mut self.axes, place, shift);
-        }
-        let slaves = gantry::reference(&mut self.axes, place, counts, |unit| {
-            kind == ReferenceType::OneMark && cam_of(unit)
-        });
-        let found = self.axes.get(place).is_some_and(|unit| unit.referenced) && slaves.found;
-        let step = if found { Step::Stop } else { turned };
-        (step, slaves.synchronous)
-    }
-
-    /// Axes that are only displayed: the counter is zero on the reference mark [000:4573].
-    pub(crate) fn count_display_axes(&mut self) {
-        for unit in self.axes.iter_mut().filter(|unit| !unit.parameters.controlled) {
-            if unit.referenced {
-                continue;
-            }
-            if let Some((count, scale)) = unit
-                .servo
-                .take_mark()
-                .and_then(|mark| Some((mark.count, mark.scale_mm?)))
-            {
-                unit.set_datum(count, scale);
-                unit.referenced = true;
-            }
         }
     }
 }

@@ -6,24 +6,26 @@
 
 use std::collections::VecDeque;
 
-use bahn_exchange::signal;
+use bahn_exchange::{Exchange, signal};
 use bahn_motion::Aim;
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, RestartParameters};
 use bahn_path::{Barrier, ElementSource, Function, PathElement, Position, Step, TechnologyFunction};
 
-use crate::axes::Mover;
-use crate::control::Control;
-use crate::feeder::{Feeder, Offsets};
-use crate::functions::Target;
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Mover};
+use crate::feeder::{Feeder, RunFault};
+use crate::kinematics::Offsets;
 use crate::message::Message;
-use crate::run::RunState;
+use crate::q_transfer::QTransfer;
+use crate::site::Site;
+use crate::track::Track;
 
 /// Elements that one call of prepare passes at most.
 const BUDGET: usize = 1000;
 
 /// Where a return is.
 #[derive(Clone, Debug)]
-pub(crate) enum Restore {
+enum Restore {
     /// The scan runs towards a block of the main program.
     Scan {
         block: u32,
@@ -41,265 +43,255 @@ pub(crate) enum Restore {
     Moving { target: Position },
 }
 
-impl Restore {
-    /// The block is not found yet.
-    pub fn scans(&self) -> bool {
-        matches!(self, Restore::Scan { .. } | Restore::Stopped { .. })
-    }
+/// Why a scan ends before its block.
+pub(crate) enum ScanEnd {
+    /// The block does not come.
+    NotAddressed,
+    /// A block is refused.
+    Fault(RunFault),
 }
 
-impl Control {
-    /// RESTORE AT N: scans to a block.
-    pub(crate) fn restore_at(&mut self, block: u32) -> bool {
-        if self.run.is_active() || !self.operation.restart.block_scan {
-            return false;
-        }
-        let Ok(program) = self.open_program() else {
-            return false;
-        };
-        // The scan starts at the cursor, or with MP7680 bit 5 at the begin of the program.
-        if self.operation.restart.from_start {
-            self.run.start_block = 0;
-        }
-        let machine = self.machine_position();
-        let feeder = self.new_feeder(program, &machine, self.traverse_box());
-        self.run.feeder = Some(feeder);
-        self.run.state = RunState::Interrupted;
-        self.run.broken = false;
-        self.run.ended = false;
-        self.run.restore = Some(Restore::Scan {
-            block,
-            functions: VecDeque::new(),
-            dwell_until_us: 0,
-        });
-        self.put(signal::BLOCK_SCAN_ACTIVE, true);
-        true
+impl ScanEnd {
+    /// The message, when it is none of a block.
+    pub const NOT_ADDRESSED: Message = Message::Plain(MessageId::SelectedBlockNotAddressed);
+}
+
+/// The return to the contour that is on its way, if one is.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Restoration(Option<Restore>);
+
+impl Restoration {
+    pub fn is_on(&self) -> bool {
+        self.0.is_some()
     }
 
-    /// MANUAL OPERATION while a run is interrupted.
-    pub(crate) fn manual_operation(&mut self) -> bool {
-        let possible = self.run.state == RunState::Interrupted
-            && self.run.restore.is_none()
-            && (self.operation.restart.return_to_contour && self.path_stands() || self.path.is_coupled());
-        if possible {
-            self.put(signal::MANUAL_OPERATION_PRESSED, true);
-            let free = !self.path.is_coupled();
-            for unit in self
-                .axes
-                .iter_mut()
-                .filter(|unit| free && unit.mover == Mover::Path)
-            {
-                unit.mover = Mover::None;
+    /// The block is not found yet.
+    pub fn scans(&self) -> bool {
+        matches!(self.0, Some(Restore::Scan { .. } | Restore::Stopped { .. }))
+    }
+
+    /// The scan to a block begins.
+    pub fn scan(&mut self, block: u32, exchange: &mut Exchange) {
+        self.0 = Some(scan_to(block));
+        exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, true);
+    }
+
+    /// Nothing returns any more.
+    pub fn break_off(&mut self) {
+        self.0 = None;
+    }
+
+    /// After a stop in which axes lost their nominal positions (EMERGENCY STOP, POSITIONING ERROR) they go
+    /// back to where the path left them before it goes on (inferred).
+    pub fn return_to_path(&mut self, axes: &mut OwnAxes) {
+        let mut target = axes.machine_position();
+        let mut away = false;
+        for unit in axes.iter_mut() {
+            if let Some(left_at) = unit.left_at.take() {
+                target[unit.axis] = left_at;
+                away |= left_at != unit.nominal;
             }
         }
-        possible
+        if away && self.0.is_none() {
+            self.0 = Some(Restore::Moving { target });
+        }
     }
 
-    /// Whether the operator may move axes while a run is interrupted.
-    pub(crate) fn manual_operation_is_on(&self) -> bool {
-        self.run.state == RunState::Interrupted && self.exchange.nc().bit(signal::MANUAL_OPERATION_PRESSED)
-    }
-
-    /// RESTORE POSITION.
-    pub(crate) fn restore_position(&mut self) -> bool {
-        let target = match &self.run.restore {
+    /// RESTORE POSITION, from where an interrupted path was left when it `may` return there.
+    pub fn arm(&mut self, may: bool, track: &Track, site: &mut Site) -> bool {
+        let target = match &self.0 {
             Some(Restore::Ready { target }) => *target,
-            None if self.manual_operation_is_on() => self.offsets.to_machine(&self.path.position()),
+            None if may => site.chain.to_axes(&track.path.position()),
             _ => return false,
         };
-        self.put(signal::MANUAL_OPERATION_PRESSED, false);
-        self.put(signal::BLOCK_SCAN_ACTIVE, false);
-        self.put(signal::RESTORE_POSITION_ACTIVE, true);
-        self.run.restore = Some(Restore::Armed { target });
+        site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
+        site.exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, false);
+        site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, true);
+        self.0 = Some(Restore::Armed { target });
         true
     }
 
-    /// Goes on with a scan; may allocate.
-    pub(crate) fn prepare_restore(&mut self) {
-        if let Some(feeder) = &mut self.run.feeder {
-            feeder.allow_work();
-        }
+    /// Goes on with a scan; may allocate. Why it ended, when that was not at its block.
+    pub fn prepare(
+        &mut self,
+        feeder: &mut Feeder,
+        q_transfer: &mut QTransfer,
+        rules: &RestartParameters,
+        track: &mut Track,
+        site: &mut Site,
+    ) -> Option<ScanEnd> {
         for _ in 0..BUDGET {
             let Some(Restore::Scan {
                 block,
                 functions,
                 dwell_until_us,
-            }) = &mut self.run.restore
+            }) = &mut self.0
             else {
-                return;
+                return None;
             };
-            if !self.handshakes.is_idle() || self.panel.stop || self.now_us < *dwell_until_us {
-                return;
+            if !site.handshakes.is_idle() || site.now.stop_pressed || site.now.us < *dwell_until_us {
+                return None;
             }
             let block = *block;
             if let Some(function) = functions.pop_front() {
-                self.run.q_transfer.strobe();
-                let mut target = Target {
-                    spindle: &mut self.spindle,
-                    tools: &mut self.tools,
-                    offsets: &mut self.offsets,
-                    handshakes: &mut self.handshakes,
-                    exchange: &mut self.exchange,
-                    axes: &mut self.axes,
-                    inch: self.run.feeder.as_ref().is_some_and(Feeder::inch),
-                };
-                target.output(&function.function);
+                q_transfer.strobe();
+                site.output(&function.function, feeder.inch());
                 continue;
             }
-            let Some(feeder) = &mut self.run.feeder else {
-                return;
-            };
             match feeder.next() {
-                Step::Element(element) => self.pass(element, block),
-                Step::Barrier(Barrier::Stop { .. }) if !self.operation.restart.passes_stops => {
-                    self.run.restore = Some(Restore::Stopped { block });
+                Step::Element(element) => self.pass(element, block, feeder, rules, track, site),
+                Step::Barrier(Barrier::Stop { .. }) if !rules.passes_stops => {
+                    self.0 = Some(Restore::Stopped { block });
                 }
-                Step::Barrier(_) => feeder.resume(self.run.q_transfer.answer()),
-                Step::Starved => return,
-                Step::End => {
-                    // The block does not come: the scan ends with the program.
-                    self.show(Message::Plain(MessageId::SelectedBlockNotAddressed), false);
-                    self.internal_stop();
-                    return;
-                }
-                Step::Error(fault) => {
-                    self.show_fault(fault);
-                    self.internal_stop();
-                    return;
-                }
+                Step::Barrier(_) => feeder.resume(q_transfer.answer()),
+                Step::Starved => return None,
+                Step::End => return Some(ScanEnd::NotAddressed),
+                Step::Error(fault) => return Some(ScanEnd::Fault(fault)),
             }
         }
+        None
     }
 
     /// Passes an element of the scan, or has found the block.
-    fn pass(&mut self, element: PathElement, block: u32) {
+    fn pass(
+        &mut self,
+        element: PathElement,
+        block: u32,
+        feeder: &mut Feeder,
+        rules: &RestartParameters,
+        track: &mut Track,
+        site: &Site,
+    ) {
         if element.block.program == 0 && element.block.block >= block {
-            let mut target = self.offsets.to_machine(&element.start);
-            let here = self.machine_position();
-            for unit in &self.axes {
+            let mut target = site.chain.to_axes(&element.start);
+            for unit in site.axes.iter() {
                 if target[unit.axis].is_nan() {
-                    target[unit.axis] = here[unit.axis];
+                    target[unit.axis] = unit.nominal;
                 }
             }
-            self.path.set_position(element.start);
-            if let Some(feeder) = &mut self.run.feeder {
-                feeder.put_back(std::iter::once(element));
-            }
-            self.run.restore = Some(Restore::Ready { target });
+            track.path.set_position(element.start);
+            feeder.put_back(std::iter::once(element));
+            self.0 = Some(Restore::Ready { target });
             return;
         }
         if let Some(Restore::Scan {
             functions,
             dwell_until_us,
             ..
-        }) = &mut self.run.restore
+        }) = &mut self.0
         {
-            if !self.operation.restart.ignores_dwell {
-                *dwell_until_us = self.now_us + (element.dwell_s * 1e6) as u64;
+            if !rules.ignores_dwell {
+                *dwell_until_us = site.now.us + (element.dwell_s * 1e6) as u64;
             }
             functions.extend(element.functions().iter().cloned());
         }
-        self.pass_tool_change(&element);
-    }
-
-    /// MP951: where a tool change would have left the axes of MP7450, machine coordinates. The scan goes on
-    /// from there. 1 = calculate: the list says so, the section the reverse [000:6783-6832].
-    fn pass_tool_change(&mut self, element: &PathElement) {
-        let call = element
-            .functions()
-            .iter()
-            .find_map(|output| match &output.function {
-                Function::Tool(call) => Some(*call),
-                _ => None,
-            });
-        let places = self.operation.restart.tool_change;
-        let (Some(call), Some(feeder)) = (call, &mut self.run.feeder) else {
-            return;
-        };
-        if places.iter().all(Option::is_none) {
-            return;
-        }
-        let offsets = Offsets {
-            tool_axis: call.axis,
-            tool_length: call.shape.length,
-            ..self.offsets
-        };
-        let mut position = element.end;
-        for unit in &self.axes {
-            if let Some(Some(place)) = places.get(unit.index) {
-                position[unit.axis] = place - offsets.of(unit.axis);
-            }
-        }
-        feeder.interpreter_mut().relocate(&position);
+        pass_tool_change(&element, feeder, rules, site);
     }
 
     /// Moves the axes to the contour: those of the working plane first, the tool axis last, unless it has
     /// to be raised (inferred). The feed is MP4220 of each axis [000:6785].
-    pub(crate) fn move_restore(&mut self) {
-        let start = self.start_pressed && !self.stop_given();
-        match &self.run.restore {
+    pub fn moves(&mut self, feeder: Option<&mut Feeder>, q_transfer: &mut QTransfer, site: &mut Site) {
+        let now = site.now;
+        let start = now.start && !now.stop;
+        match &self.0 {
             Some(Restore::Stopped { block }) if start => {
                 let block = *block;
-                if let Some(feeder) = &mut self.run.feeder {
-                    feeder.resume(self.run.q_transfer.answer());
+                if let Some(feeder) = feeder {
+                    feeder.resume(q_transfer.answer());
                 }
-                self.run.restore = Some(Restore::Scan {
-                    block,
-                    functions: VecDeque::new(),
-                    dwell_until_us: 0,
-                });
+                self.0 = Some(scan_to(block));
                 return;
             }
             Some(Restore::Armed { target }) if start => {
-                self.run.restore = Some(Restore::Moving { target: *target });
+                self.0 = Some(Restore::Moving { target: *target });
             }
             _ => {}
         }
-        let Some(Restore::Moving { target }) = &self.run.restore else {
+        let Some(Restore::Moving { target }) = self.0 else {
             return;
         };
-        let (target, time, stop) = (*target, self.cycle_s(), self.stop_given());
-        let percent = self.feed_override.percent();
-        let limit = self.rapid_limit_mm_min();
-        let tool_axis = self.offsets.tool_axis;
-        let there = |unit: &crate::axes::AxisUnit| unit.ptp.is_at(target[unit.axis]);
-        let raise = self
-            .axes
-            .iter()
-            .any(|unit| unit.axis == tool_axis && target[unit.axis] > unit.nominal);
-        let others_there = self
-            .axes
-            .iter()
-            .filter(|unit| unit.axis != tool_axis && !unit.is_plc_axis())
-            .all(there);
-        let tool_there = self.axes.iter().filter(|unit| unit.axis == tool_axis).all(there);
-        for unit in self.axes.iter_mut().filter(|unit| !unit.is_plc_axis()) {
-            if !(unit.servo.closed() && unit.enabled) {
-                continue;
-            }
-            let turn = if unit.axis == tool_axis {
-                raise || others_there
-            } else {
-                !raise || tool_there
-            };
-            unit.mover = Mover::Positioning;
-            let feed = (unit.parameters.motion.plc_mm_min * percent / 100.0).min(limit);
-            if stop || !turn {
-                unit.drive(time, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
-            } else {
-                unit.drive(time, Aim::Position(target[unit.axis]), feed);
-            }
-        }
-        if others_there && tool_there && self.axes.iter().all(|unit| unit.stands()) {
-            for unit in self
-                .axes
-                .iter_mut()
-                .filter(|unit| unit.mover == Mover::Positioning)
-            {
-                unit.mover = Mover::None;
-            }
-            self.run.restore = None;
-            self.put(signal::RESTORE_POSITION_ACTIVE, false);
+        if lead_to(&target, site) {
+            site.axes.release(|mover| mover == Mover::Positioning);
+            self.0 = None;
+            site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, false);
         }
     }
+}
+
+/// A scan to a block.
+fn scan_to(block: u32) -> Restore {
+    Restore::Scan {
+        block,
+        functions: VecDeque::new(),
+        dwell_until_us: 0,
+    }
+}
+
+/// Leads the axes to a place for a cycle; whether they stand there.
+fn lead_to(target: &Position, site: &mut Site) -> bool {
+    let now = site.now;
+    let tool_axis = site.chain.offsets.tool_axis;
+    let axes = &mut site.axes;
+    let there = |unit: &AxisUnit| unit.ptp.is_at(target[unit.axis]);
+    let raise = axes
+        .iter()
+        .any(|unit| unit.axis == tool_axis && target[unit.axis] > unit.nominal);
+    let others_there = axes
+        .iter()
+        .filter(|unit| unit.axis != tool_axis && !unit.is_plc_axis())
+        .all(there);
+    let tool_there = axes.iter().filter(|unit| unit.axis == tool_axis).all(there);
+    for unit in axes.iter_mut().filter(|unit| !unit.is_plc_axis()) {
+        if !(unit.servo.closed() && unit.enabled) {
+            continue;
+        }
+        let turn = if unit.axis == tool_axis {
+            raise || others_there
+        } else {
+            !raise || tool_there
+        };
+        unit.mover = Mover::Positioning;
+        let feed = (unit.parameters.motion.plc_mm_min * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
+        if now.stop || !turn {
+            unit.drive(now.time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
+        } else {
+            unit.drive(now.time_s, Aim::Position(target[unit.axis]), feed);
+        }
+    }
+    others_there && tool_there && axes.stand()
+}
+
+/// MP951: where a tool change would have left the axes of MP7450, machine coordinates. The scan goes on
+/// from there. 1 = calculate: the list says so, the section the reverse [000:6783-6832].
+fn pass_tool_change(element: &PathElement, feeder: &mut Feeder, rules: &RestartParameters, site: &Site) {
+    let call = element
+        .functions()
+        .iter()
+        .find_map(|output| match &output.function {
+            Function::Tool(call) => Some(*call),
+            _ => None,
+        });
+    let places = rules.tool_change;
+    let Some(call) = call.filter(|_| places.iter().any(Option::is_some)) else {
+        return;
+    };
+    let chain = site.chain.with(Offsets {
+        tool_axis: call.axis,
+        tool_length: call.shape.length,
+        ..site.chain.offsets
+    });
+    let mut position = element.end;
+    let mut axes = chain.to_axes(&position);
+    for unit in site.axes.iter() {
+        if let Some(Some(place)) = places.get(unit.index) {
+            axes[unit.axis] = *place;
+        }
+    }
+    let changed = chain.to_path(&axes);
+    for unit in site.axes.iter() {
+        if let Some(Some(_)) = places.get(unit.index) {
+            position[unit.axis] = changed[unit.axis];
+        }
+    }
+    feeder.interpreter_mut().relocate(&position);
 }

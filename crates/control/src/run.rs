@@ -1,627 +1,655 @@
 //! Program run: MDI, single block, full sequence; start, stop, internal stop, end.
 
-use std::collections::VecDeque;
-use std::sync::Arc;
+use bahn_exchange::{Image, signal};
+use bahn_interpreter::{Interpreter, Status};
+use bahn_motion::{Drive, State, Stop};
+use bahn_parameters::{MessageId, RestartParameters};
+use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
+use bahn_servo::Plant;
 
-use bahn_interpreter::{Rules, Settings, Status};
-use bahn_motion::FunctionOutput;
-use bahn_parameters::MessageId;
-use bahn_path::{Axis, LiveData, Position};
-use bahn_program::Program;
-use bahn_servo::Rotation;
-
-use crate::axes::{AxisUnit, Mover};
+use crate::axis::{AxisUnit, Mover};
 use crate::block_time::BlockTime;
 use crate::command::Mode;
-use crate::control::Control;
-use crate::feeder::{Box2, Feeder};
-use crate::life::Wear;
+use crate::feeder::{Feeder, RunFault};
+use crate::kinematics::Chain;
 use crate::message::Message;
-use crate::probing::Probing;
+use crate::probing::{Probe, Probed};
+use crate::programs::Selection;
+use crate::progress::{Progress, RunState};
 use crate::q_transfer::QTransfer;
-use crate::restore::Restore;
+use crate::replacement::{Replacement, Wear};
+use crate::restore::{Restoration, ScanEnd};
+use crate::site::Site;
+use crate::source::{Basis, Resume, Source, machine_zero};
+use crate::thread::{self, Preparation, Tapping};
+use crate::track::{self, Track};
 
 /// Elements that one call of prepare reads at most.
 const BUDGET: usize = 256;
-/// Blocks that take no time after which a program is taken for an endless loop (inferred): at 4 ms for a
-/// block the control would have stood for 400 s.
-const BLOCKS_WITHOUT_MOTION: u64 = 100_000;
-/// Outputs of functions that wait at most.
-pub(crate) const OUTPUTS: usize = 64;
 
-/// What the run does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RunState {
-    /// Nothing was started, or it was broken off or ended.
-    #[default]
-    Idle,
-    /// Blocks are executed.
-    Running,
-    /// An external stop: `*` flashes. NC start goes on [000:6581-6587].
-    Interrupted,
-    /// A programmed stop (STOP, M0, M6): NC start goes on.
-    Stopped,
-    /// Single block: NC start executes the next one.
-    BlockEnd,
-}
-
-/// A run.
-#[derive(Clone, Default)]
+/// The program run of a channel.
+#[derive(Clone)]
 pub(crate) struct ProgramRun {
-    /// Name of the program that runs in single block and full sequence.
-    pub selected: Option<String>,
-    /// Block at which the next run starts.
-    pub start_block: u32,
-    /// Blocks of MDI.
-    pub mdi: Option<String>,
-    pub state: RunState,
-    /// A fault has interrupted it: it is not on its way, and the next start tries the block again.
-    pub broken: bool,
-    pub feeder: Option<Feeder>,
-    /// NC start was given: the run begins with the next preparation.
-    pub begin_wanted: bool,
-    /// The run has ended: its Q parameters are to be kept.
-    q_due: bool,
-    /// The program whose run was interrupted, while blocks of MDI run.
-    aside: Option<(Option<Feeder>, Option<Resume>)>,
-    /// Blocks of MDI have run: back to the program.
-    mdi_over: bool,
-    /// After an internal stop or a fault: where the next start goes on.
-    pub resume_from: Option<Resume>,
-    /// Functions on the path that wait for the axes to be in position.
-    pub waiting: VecDeque<FunctionOutput>,
-    /// Position of the path in the last cycle.
-    pub last: Option<Position>,
-    /// The source goes on with this at the next preparation.
-    pub answer: Option<LiveData>,
+    pub selection: Selection,
+    pub source: Source,
+    pub track: Track,
+    progress: Progress,
     /// A probing movement.
-    pub probing: Option<Probing>,
+    pub probe: Probe,
+    /// Block scan and return to the contour.
+    restoration: Restoration,
+    tapping: Tapping,
     /// Q100 to Q107 as the PLC wrote them.
-    pub q_transfer: QTransfer,
-    /// The control is to be restarted (module 9033).
-    pub restart_wanted: bool,
-    /// The program that runs came to its end since it was started (M2061).
-    pub ended: bool,
-    /// Keep the executed elements.
-    pub tap: bool,
-    /// Long computations are done beside.
-    pub defers: bool,
+    q_transfer: QTransfer,
+    /// The source goes on with this at the next preparation.
+    answer: Option<LiveData>,
+    /// Of a tool that is worn, under M101.
+    replacement: Replacement,
     /// Block processing time that is simulated.
     pub block_time: BlockTime,
-    /// What the last run left in force.
-    pub status: Status,
-    /// Return to the contour.
-    pub restore: Option<Restore>,
-    /// The path speed, mm/s.
-    pub speed: f64,
-}
-
-/// Where a run goes on that was broken off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Resume {
-    /// At a block, by its place in the order of execution.
-    Block(u64),
-    /// At the block that could not be executed.
-    Fault,
 }
 
 impl ProgramRun {
-    /// A run was started and not ended or broken off.
+    pub fn new(selection: Selection, source: Source, track: Track) -> ProgramRun {
+        ProgramRun {
+            selection,
+            source,
+            track,
+            progress: Progress::default(),
+            probe: Probe::default(),
+            restoration: Restoration::default(),
+            tapping: Tapping::default(),
+            q_transfer: QTransfer::default(),
+            answer: None,
+            replacement: Replacement::default(),
+            block_time: BlockTime::default(),
+        }
+    }
+
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
     pub fn is_active(&self) -> bool {
-        self.state != RunState::Idle && !self.broken || self.begin_wanted
+        self.progress.is_active()
     }
 
-    /// Blocks are executed now.
-    pub fn is_running(&self) -> bool {
-        self.state == RunState::Running || self.begin_wanted
+    /// Axes are being brought back to the contour, or are to be.
+    pub fn restores(&self) -> bool {
+        self.restoration.is_on()
     }
 
-    /// The next start begins anew, not with the block of an interruption.
-    pub fn forget_interruption(&mut self) {
-        self.resume_from = None;
-        self.leave_fault();
+    /// The block that is executed, while a run is on.
+    pub fn running_block(&self) -> Option<BlockRef> {
+        self.element().map(|element| element.block)
     }
 
-    /// Nothing is interrupted any more by a fault.
-    pub fn leave_fault(&mut self) {
-        if std::mem::take(&mut self.broken) {
-            self.state = RunState::Idle;
-        }
+    /// The element that is executed, while a run is.
+    fn element(&self) -> Option<&PathElement> {
+        self.track.path.element().filter(|_| self.is_active())
     }
 
-    pub fn restoring(&self) -> Option<&Restore> {
-        self.restore.as_ref()
+    /// A path that follows the spindle is executed, or begins.
+    pub fn taps_rigidly(&self) -> bool {
+        thread::is_rigid(self.element())
     }
-}
 
-impl Control {
+    /// Cycle 2 taps.
+    pub fn taps_floating(&self) -> bool {
+        thread::is_floating(self.element())
+    }
+
+    /// Spindle and axis have come apart.
+    pub fn part_thread(&mut self) {
+        let element = self.track.path.element().filter(|_| self.progress.is_active());
+        self.tapping.part(&self.track, element);
+    }
+
+    /// Once in each contour cycle: what tapping tells the PLC, the axes and the spindle.
+    pub fn follow_tapping(&mut self, site: &mut Site) {
+        self.tapping.follow(&self.track, self.progress.is_active(), site);
+    }
+
+    /// Shows a message of the run.
+    fn show(&self, message: Message, site: &mut Site) {
+        let block = match &message {
+            Message::Program(error) => Some(error.block),
+            _ => self.running_block(),
+        };
+        site.messages.show(message, false, block);
+    }
+
     /// NC start in an automatic mode.
-    pub(crate) fn start_run(&mut self) {
-        if self.run.restore.is_some() || self.is_positioning() {
+    pub fn start(&mut self, site: &mut Site) {
+        if self.restoration.is_on() || site.positioning.is_on() {
             return;
         }
-        if self.has_lost_spindle() {
-            self.show(Message::Plain(MessageId::KeyNonFunctional), false);
+        if self.tapping.has_lost_spindle() {
+            self.show(Message::Plain(MessageId::KeyNonFunctional), site);
             return;
         }
-        match self.run.state {
-            RunState::Idle => self.run.begin_wanted = true,
-            _ if self.run.broken => self.run.begin_wanted = true,
+        match self.progress.state() {
+            RunState::Idle => self.progress.want_begin(),
+            _ if self.progress.is_broken() => self.progress.want_begin(),
             RunState::Running => {}
             state => {
                 match state {
-                    RunState::BlockEnd => self.path.go_on(),
-                    RunState::Stopped => self.run.answer = Some(self.run.q_transfer.answer()),
-                    _ if self.path.is_coupled() => {
+                    RunState::BlockEnd => self.track.path.go_on(),
+                    RunState::Stopped => self.answer = Some(self.q_transfer.answer()),
+                    _ if self.track.path.is_coupled() => {
                         // Led out of a thread by hand.
-                        self.path.go_on();
-                        self.put(bahn_exchange::signal::MANUAL_OPERATION_PRESSED, false);
+                        self.track.path.go_on();
+                        site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
                     }
                     _ => {}
                 }
-                self.run.state = RunState::Running;
-                self.return_to_path();
-                if self.run.restore.is_none() {
-                    self.regain_path();
+                self.progress.enter(RunState::Running);
+                self.restoration.return_to_path(&mut site.axes);
+                if !self.restoration.is_on() {
+                    self.track.regain(site);
                 }
             }
         }
     }
 
     /// NC stop, or anything that stops like it.
-    pub(crate) fn stop_run(&mut self) {
-        self.run.begin_wanted = false;
-        if self.run.state == RunState::Running {
-            self.run.state = RunState::Interrupted;
-        }
-        self.manual.stop();
-        if self.reference.is_running() && self.mode != Mode::Reference {
-            self.reference.abort();
-        }
+    pub fn stop(&mut self) {
+        self.progress.stop();
     }
 
     /// INTERNAL STOP: the interrupted run is broken off; the next start begins with its block.
-    pub(crate) fn internal_stop(&mut self) -> bool {
-        if self.run.state == RunState::Running || self.run.begin_wanted || !self.path_stands() {
+    pub fn internal_stop(&mut self, site: &mut Site) -> bool {
+        if self.progress.is_running()
+            || !self.track.stands(&site.axes)
+            || thread::is_in_thread(&self.track, site)
+        {
             return false;
         }
-        if self.is_in_thread() {
-            return false;
-        }
-        if self.run.broken {
-            self.run.leave_fault();
+        if self.progress.is_broken() {
+            self.progress.leave_fault();
             return true;
         }
-        if self.run.state == RunState::Idle && self.run.restore.is_none() {
+        if self.progress.state() == RunState::Idle && !self.restoration.is_on() {
             return false;
         }
-        let cut = self.path.clear().map(|cut| cut.sequence);
+        let cut = self.track.path.clear().map(|cut| cut.sequence);
         let next = self
-            .run
-            .feeder
-            .as_ref()
-            .map(|feeder| feeder.interpreter().blocks_executed() + 1);
-        self.run.resume_from = match self.run.probing {
-            // The block that probes is executed as far as its path goes.
-            Some(_) => next.map(|next| next - 1),
-            None => cut.or(next),
-        }
-        .map(Resume::Block);
-        self.break_off();
+            .source
+            .interpreter()
+            .map(|interpreter| interpreter.blocks_executed() + 1);
+        // The block that probes is executed as far as its path goes.
+        let resume = if self.probe.is_on() {
+            next.map(|next| next - 1)
+        } else {
+            cut.or(next)
+        };
+        self.source.resume_at(resume.map(Resume::Block));
+        self.break_off(site);
         true
     }
 
     /// Ends what is on its way for the run.
-    fn break_off(&mut self) {
-        self.run.state = RunState::Idle;
-        self.run.broken = false;
-        self.run.mdi_over = self.mode == Mode::Mdi;
-        self.run.waiting.clear();
-        self.run.answer = None;
-        self.run.restore = None;
-        self.run.speed = 0.0;
-        if let Some(feeder) = &mut self.run.feeder {
-            feeder.interpreter_mut().give_up_work();
-        }
-        self.end_probing();
-        self.handshakes.abort(&mut self.exchange);
-        self.tools.take_back(&mut self.offsets);
-        for index in 0..crate::markers::AXES {
-            self.end_positioning(index);
-        }
-        for unit in self.axes.iter_mut().filter(|unit| unit.mover == Mover::Path) {
-            unit.mover = Mover::None;
-        }
-        self.put(bahn_exchange::signal::MANUAL_OPERATION_PRESSED, false);
-        self.put(bahn_exchange::signal::BLOCK_SCAN_ACTIVE, false);
-    }
-
-    /// No axis moves along the path.
-    pub(crate) fn path_stands(&self) -> bool {
-        self.path.speed_mm_s() == 0.0
-            && self
-                .axes
-                .iter()
-                .filter(|unit| unit.mover == Mover::Path)
-                .all(|unit| unit.stands())
-    }
-
-    /// Interprets ahead; begins a run.
-    pub(crate) fn prepare_run(&mut self) {
-        self.close_run();
-        self.take_tool_states();
-        self.take_datums();
-        if self.run.begin_wanted && self.axes_stand() {
-            self.run.begin_wanted = false;
-            self.begin_run();
-        }
-        if self.run.waiting.capacity() == 0 {
-            self.run.waiting.reserve(OUTPUTS);
-        }
-        if !self.run.is_active() && self.handshakes.is_idle() {
-            self.call_inserted_tool();
-        }
-        let limits = self.traverse_box();
-        let zero = self.machine_zero();
-        let here = self.offsets.to_path(&self.machine_position());
-        self.prepare_replacement();
-        let wear = self.tools.wear();
-        // A block scan reads the blocks itself.
-        let scans = self.run.restore.as_ref().is_some_and(Restore::scans);
-        if let Some(feeder) = &mut self.run.feeder
-            && self.run.state != RunState::Idle
-            && !self.run.broken
-            && !scans
-        {
-            if let Some(recalled) = self.path.take_recalled() {
-                feeder.put_back(recalled.into_iter());
-            }
-            feeder.set_datum(self.offsets.datum, zero, limits);
-            if let Some(answer) = self.run.answer.take() {
-                let probed = answer.touch.is_some();
-                if !probed {
-                    // The PLC may have moved the axes, or corrected the datum [000:8914].
-                    feeder.interpreter_mut().stand_at(&here);
-                }
-                self.path.resume(feeder, answer);
-                if let Some(call) = self.tools.inserted_call.take() {
-                    feeder.insert(&call);
-                } else if let Wear::Replace(tool) = wear
-                    && !probed
-                {
-                    feeder.replace_tool(self.tools.number, tool);
-                }
-            }
-            if let Some(element) = self.path.element() {
-                feeder.forget_before(element.sequence);
-            }
-            feeder.allow_work();
-            let before = feeder.elements_read();
-            let allowed = self.run.block_time.allow(self.now_us, BUDGET);
-            self.path.prepare(feeder, allowed);
-            self.run.block_time.spend(feeder.elements_read() - before);
-        }
-    }
-
-    /// Module 9150 without a program: the TOOL CALL is executed at once; a wrong one is passed over without a message
-    /// [000:16063-16075].
-    fn call_inserted_tool(&mut self) {
-        let Some(inserted) = self.tools.inserted_call.take() else {
-            return;
-        };
-        let Some(call) = self.tools.tool_call(&inserted, self.offsets.tool_axis) else {
-            return;
-        };
-        let called = inserted.tool.is_some() && call.tool != 0;
-        if called && !self.tools.may_be_called(call.tool) {
-            return;
-        }
-        let mut target = crate::functions::Target {
-            spindle: &mut self.spindle,
-            tools: &mut self.tools,
-            offsets: &mut self.offsets,
-            handshakes: &mut self.handshakes,
-            exchange: &mut self.exchange,
-            axes: &mut self.axes,
-            inch: false,
-        };
-        match inserted.tool {
-            Some(_) => target.output(&bahn_path::Function::Tool(call)),
-            None if inserted.speed.is_some() => target.speed(call.speed_rpm, true),
-            None => {}
-        }
-    }
-
-    /// Where the axes stand, machine coordinates; unknown where there is no axis.
-    pub(crate) fn machine_position(&self) -> Position {
-        let mut position = Position::UNKNOWN;
-        for unit in &self.axes {
-            position[unit.axis] = unit.nominal;
-        }
-        position
-    }
-
-    /// The box of the active traverse range.
-    pub(crate) fn traverse_box(&self) -> Box2 {
-        let mut limits: Box2 = [
-            [f64::NEG_INFINITY; Axis::COUNT].into(),
-            [f64::INFINITY; Axis::COUNT].into(),
-        ];
-        for unit in &self.axes {
-            if let Some([least, greatest]) = unit.limited() {
-                let [min, max] = &mut limits;
-                min[unit.axis] = least;
-                max[unit.axis] = greatest;
-            }
-        }
-        limits
-    }
-
-    /// Nothing moves that a run could take over in the midst of its movement.
-    fn axes_stand(&self) -> bool {
-        let moves =
-            |unit: &AxisUnit| !unit.is_at_rest() && unit.mover != Mover::Rotation && !unit.is_plc_axis();
-        !self.axes.iter().any(moves)
-    }
-
-    /// What is to be done once a run is over, outside the cycle.
-    fn close_run(&mut self) {
-        if self.run.q_due {
-            self.path.clear();
-            self.q = self.q_values();
-            self.run.q_due = false;
-            for (number, value) in self.run.q_transfer.take_all() {
-                self.keep_q(number, value);
-            }
-            if let Some(feeder) = &self.run.feeder {
-                self.run.status = feeder.interpreter().status();
-            }
-            // A block of MDI is no program that comes to its end (inferred).
-            if self.link.list().program_end_clearing().at_program_end && !self.run.mdi_over {
-                self.cancel_status();
-            }
-        }
-        if std::mem::take(&mut self.run.mdi_over)
-            && let Some((feeder, resume)) = self.run.aside.take()
-        {
-            self.run.feeder = feeder;
-            self.run.resume_from = resume;
-        }
-    }
-
-    /// Cancels what MP7300 names [000:6589-6601]. The tool stays in the spindle, without its data.
-    fn cancel_status(&mut self) {
-        let clearing = self.link.list().program_end_clearing();
-        if clearing.q_parameters {
-            self.q.clear();
-        }
-        if clearing.status {
-            self.run.status.cancel_programmed();
-        }
-        if clearing.tool {
-            self.run.status.cancel_tool();
-            self.tools.forget_length(&mut self.offsets);
-        }
-    }
-
-    fn begin_run(&mut self) {
-        self.run.leave_fault();
-        let machine = self.machine_position();
-        let limits = self.traverse_box();
-        self.put(bahn_exchange::signal::PROGRAM_END_EXECUTED, false);
-        self.run.ended = false;
-        self.run.last = None;
-        self.run.answer = None;
-        if self.mode == Mode::Mdi && self.run.aside.is_none() {
-            self.run.aside = Some((self.run.feeder.take(), self.run.resume_from.take()));
-        }
-        if let (Some(resume), Some(feeder)) = (self.run.resume_from.take(), &mut self.run.feeder) {
-            match resume {
-                Resume::Block(sequence) => feeder.return_to(sequence, &machine, self.offsets, limits),
-                Resume::Fault => feeder.retry(&machine, self.offsets, limits),
-            }
-        } else {
-            match self.open_program() {
-                Ok(program) => {
-                    // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
-                    self.tools.counts &= self.mode == Mode::Mdi;
-                    self.tools.replaces_worn &= self.mode == Mode::Mdi;
-                    self.tools.takes_larger &= self.mode == Mode::Mdi;
-                    let feeder = self.new_feeder(program, &machine, limits);
-                    self.run.feeder = Some(feeder);
-                }
-                Err(message) => {
-                    self.show(message, false);
-                    return;
-                }
-            }
-        }
-        self.path.set_position(self.offsets.to_path(&machine));
-        self.run.state = RunState::Running;
-    }
-
-    /// A feeder of a program from the chosen start block on.
-    pub(crate) fn new_feeder(&self, program: Arc<Program>, machine: &Position, limits: Box2) -> Feeder {
-        let block = if self.mode == Mode::Mdi {
-            0
-        } else {
-            self.run.start_block
-        };
-        let mut status = self.run.status.clone();
-        if status.tool() != Some(self.tools.number) {
-            status.cancel_tool();
-        }
-        let spindle = self.spindle.state();
-        let clockwise = match spindle.rotation {
-            Rotation::M3 => Some(true),
-            Rotation::M4 => Some(false),
-            Rotation::M5 => None,
-        };
-        status.take_spindle(clockwise, spindle.programmed_rpm);
-        let mut feeder = self.new_feeder_from(program, block, machine, limits, status);
-        feeder.set_tap(self.run.tap);
-        feeder
-    }
-
-    /// A feeder of a program from a block on, with what is in force before it.
-    pub(crate) fn new_feeder_from(
-        &self,
-        program: Arc<Program>,
-        block: u32,
-        machine: &Position,
-        limits: Box2,
-        status: Status,
-    ) -> Feeder {
-        let mut rules = Rules::of(self.link.list());
-        rules.machine_zero = self.machine_zero();
-        let settings = Settings {
-            model: self.model,
-            rules,
-            texts: self.link.machine_texts().clone(),
-            tools: self.tools.shapes(),
-            barred_tools: self.tools.barred(),
-            datum_table: self.datum_table(),
-            strict: self.checking.strict,
-            skip_unknown: self.checking.skip_unknown,
-            q_values: self.q.clone(),
-            start: self.offsets.to_path(machine),
-            tool_length_mm: Some(self.offsets.tool_length),
-            status,
-            machine: true,
-            max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
-            inch_feed: self.inch_feed,
-            ..Settings::default()
-        };
-        let programs = Arc::clone(&self.programs);
-        let mut feeder = Feeder::new(program, settings, programs, self.offsets, limits);
-        if self.run.defers {
-            feeder.interpreter_mut().defer_work();
-        }
-        if block > 0 {
-            feeder.interpreter_mut().goto(block);
-        }
-        feeder
-    }
-
-    /// The program of the mode.
-    pub(crate) fn open_program(&self) -> Result<Arc<Program>, Message> {
-        if self.mode == Mode::Mdi {
-            let blocks = self
-                .run
-                .mdi
-                .as_ref()
-                .ok_or(Message::Plain(MessageId::KeyNonFunctional))?;
-            let text = format!("BEGIN PGM MDI MM\n{blocks}\nEND PGM MDI MM\n");
-            return Ok(Arc::new(Program::from_bytes("$MDI", text.into_bytes())));
-        }
-        let not_found = Message::Plain(MessageId::ProgramNotFound);
-        let name = self.run.selected.as_ref().ok_or(not_found.clone())?;
-        match self.programs.open(name, "") {
-            Ok(Some(program)) => Ok(program),
-            Ok(None) | Err(_) => Err(not_found),
-        }
+    fn break_off(&mut self, site: &mut Site) {
+        self.progress.break_off();
+        self.track.break_off();
+        self.answer = None;
+        self.restoration.break_off();
+        self.source.break_off(site.now.mode == Mode::Mdi);
+        self.probe.end(site.exchange);
+        site.handshakes.abort(site.exchange);
+        site.tools.take_back(&mut site.chain.offsets);
+        site.positioning.end_all(site.exchange);
+        site.axes.release(|mover| mover == Mover::Path);
+        site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
+        site.exchange.nc_put(signal::BLOCK_SCAN_ACTIVE, false);
     }
 
     /// A fault interrupts the run [003:1578]; the next start begins with the block that was not executed.
-    pub(crate) fn abort_run(&mut self, resume: Resume) {
-        self.path.clear();
-        self.run.resume_from = Some(resume);
-        self.break_off();
-        if self.mode != Mode::Mdi {
-            self.run.broken = true;
-            self.run.state = RunState::Interrupted;
+    fn abort(&mut self, resume: Resume, site: &mut Site) {
+        self.track.path.clear();
+        self.source.resume_at(Some(resume));
+        self.break_off(site);
+        if site.now.mode != Mode::Mdi {
+            self.progress.fail();
         }
     }
 
-    /// Machine zero in workpiece coordinates; unknown for axes that have not passed their reference mark
-    /// [000:4568-4576].
-    fn machine_zero(&self) -> Position {
-        let mut zero: Position = Axis::ALL.map(|axis| -self.offsets.datum[axis]).into();
-        for unit in self
-            .axes
-            .iter()
-            .filter(|unit| !unit.referenced && !unit.is_plc_axis())
-        {
-            zero[unit.axis] = f64::NAN;
-        }
-        zero
-    }
-
-    /// What the block at the gate of the path asks for is refused: the run ends before it.
-    pub(crate) fn refuse_block(&mut self) {
-        match self.path.element().map(|element| element.sequence) {
-            Some(sequence) if self.path_stands() && self.run.is_active() => {
-                self.abort_run(Resume::Block(sequence));
+    /// What the block at the gate of the path asks for is refused: the run ends before it. `false` when it is
+    /// only to be stopped.
+    pub fn refuse_block(&mut self, site: &mut Site) -> bool {
+        match self.track.path.element().map(|element| element.sequence) {
+            Some(sequence) if self.track.stands(&site.axes) && self.is_active() => {
+                self.abort(Resume::Block(sequence), site);
+                true
             }
-            _ => self.stop_run(),
+            _ => false,
         }
     }
 
     /// END PGM, M2 or M30.
-    pub(crate) fn end_run(&mut self) {
-        self.run.q_due = true;
-        self.break_off();
-        self.run.ended = true;
-        if self.mode != Mode::Mdi {
-            self.run.resume_from = None;
-            self.run.start_block = 0;
-            self.put(bahn_exchange::signal::PROGRAM_END_EXECUTED, true);
+    fn end(&mut self, site: &mut Site) {
+        self.source.end();
+        self.break_off(site);
+        self.progress.end();
+        if site.now.mode != Mode::Mdi {
+            self.source.resume_at(None);
+            self.selection.start_block = 0;
+            site.exchange.nc_put(signal::PROGRAM_END_EXECUTED, true);
         }
     }
 
-    /// Q parameters that are not 0, by number. Behind the end of a run they are those that its end has left.
-    pub(crate) fn q_values(&self) -> Vec<(u16, f64)> {
-        let over = self.run.ended && !self.run.q_due;
-        let Some(feeder) = self.run.feeder.as_ref().filter(|_| !over) else {
-            return self.q.clone();
+    /// What is to be done once a run is over, outside the cycle.
+    pub fn close(&mut self, site: &mut Site, basis: &Basis) {
+        let (track, q_transfer) = (&mut self.track, &mut self.q_transfer);
+        let closed = self.source.close(|| {
+            track.path.clear();
+            q_transfer.take_all()
+        });
+        if closed && basis.list.program_end_clearing().at_program_end && !self.source.was_mdi() {
+            self.source.cancel_status(basis.list, site);
+        }
+        self.source.take_back();
+    }
+
+    /// Interprets ahead; begins a run.
+    pub fn prepare(&mut self, site: &mut Site, basis: &Basis) {
+        if self.progress.take_begin(|| site.axes.rest()) {
+            self.begin(site, basis);
+        }
+        self.track.reserve();
+        if !self.is_active() && site.handshakes.is_idle() {
+            site.call_inserted_tool();
+        }
+        self.replacement
+            .prepare(self.source.feeder_mut(), &mut self.track, site);
+        let wear = Wear::of(site.tools);
+        let scans = self.restoration.scans();
+        let Some(feeder) = self
+            .source
+            .feeder_mut()
+            .filter(|_| self.progress.is_on_its_way() && !scans)
+        else {
+            return;
         };
-        (0u16..)
-            .zip(feeder.interpreter().q_values())
-            .filter(|(_, value)| **value != 0.0)
-            .map(|(number, value)| (number, *value))
-            .collect()
+        let path = &mut self.track.path;
+        if let Some(recalled) = path.take_recalled() {
+            feeder.put_back(recalled.into_iter());
+        }
+        let zero = machine_zero(&site.axes, site.chain);
+        feeder.set_datum(site.chain.offsets.datum, zero, site.axes.traverse_box());
+        if let Some(answer) = self.answer.take() {
+            let probed = answer.touch.is_some();
+            if !probed {
+                // The PLC may have moved the axes, or corrected the datum [000:8914].
+                feeder.interpreter_mut().stand_at(&site.here());
+            }
+            path.resume(feeder, answer);
+            if let Some(call) = site.tools.inserted_call.take() {
+                feeder.insert(&call);
+            } else if let Wear::Replace(tool) = wear
+                && !probed
+            {
+                feeder.replace_tool(site.tools.number, tool);
+            }
+        }
+        if let Some(element) = path.element() {
+            feeder.forget_before(element.sequence);
+        }
+        feeder.allow_work();
+        let before = feeder.elements_read();
+        let allowed = self.block_time.allow(site.now.us, BUDGET);
+        path.prepare(feeder, allowed);
+        self.block_time.spend(feeder.elements_read() - before);
+    }
+
+    fn begin(&mut self, site: &mut Site, basis: &Basis) {
+        let mdi = site.now.mode == Mode::Mdi;
+        site.exchange.nc_put(signal::PROGRAM_END_EXECUTED, false);
+        self.progress.begin();
+        self.track.forget_position();
+        self.answer = None;
+        if mdi {
+            self.source.set_aside();
+        }
+        if !self.source.go_on(site) {
+            match self.open(mdi) {
+                Ok(program) => {
+                    // Counted from TOOL CALL on [000:9181]; blocks of MDI are no program.
+                    site.tools.counts &= mdi;
+                    site.tools.replaces_worn &= mdi;
+                    site.tools.takes_larger &= mdi;
+                    let block = if mdi { 0 } else { self.selection.start_block };
+                    let feeder = self.source.feeder_for_run(program, block, site, basis);
+                    self.source.put(feeder);
+                }
+                Err(message) => {
+                    self.show(message, site);
+                    return;
+                }
+            }
+        }
+        self.track.path.set_position(site.here());
+        self.progress.enter(RunState::Running);
+    }
+
+    fn open(&self, mdi: bool) -> Result<std::sync::Arc<bahn_program::Program>, Message> {
+        self.selection.open(mdi, &*self.source.reading.programs)
+    }
+
+    /// RESTORE AT N: scans to a block.
+    pub fn restore_at(
+        &mut self,
+        block: u32,
+        rules: &RestartParameters,
+        site: &mut Site,
+        basis: &Basis,
+    ) -> bool {
+        if self.is_active() || !rules.block_scan {
+            return false;
+        }
+        let mdi = site.now.mode == Mode::Mdi;
+        let Ok(program) = self.open(mdi) else {
+            return false;
+        };
+        // The scan starts at the cursor, or with MP7680 bit 5 at the begin of the program.
+        if rules.from_start {
+            self.selection.start_block = 0;
+        }
+        let start = if mdi { 0 } else { self.selection.start_block };
+        let feeder = self.source.feeder_for_run(program, start, site, basis);
+        self.source.put(feeder);
+        self.progress.scan();
+        self.restoration.scan(block, site.exchange);
+        true
+    }
+
+    /// Goes on with a scan; may allocate.
+    pub fn prepare_restore(&mut self, rules: &RestartParameters, site: &mut Site) {
+        let Some(feeder) = self.source.feeder_mut().filter(|_| self.restoration.scans()) else {
+            return;
+        };
+        feeder.allow_work();
+        let (q, track) = (&mut self.q_transfer, &mut self.track);
+        match self.restoration.prepare(feeder, q, rules, track, site) {
+            None => return,
+            Some(ScanEnd::NotAddressed) => self.show(ScanEnd::NOT_ADDRESSED, site),
+            Some(ScanEnd::Fault(fault)) => self.show_fault(fault, site),
+        }
+        self.internal_stop(site);
+    }
+
+    /// MANUAL OPERATION while a run is interrupted.
+    pub fn manual_operation(&mut self, rules: &RestartParameters, site: &mut Site) -> bool {
+        let coupled = self.track.path.is_coupled();
+        let possible = self.progress.state() == RunState::Interrupted
+            && !self.restoration.is_on()
+            && (rules.return_to_contour && self.track.stands(&site.axes) || coupled);
+        if possible {
+            site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, true);
+            if !coupled {
+                site.axes.release(|mover| mover == Mover::Path);
+            }
+        }
+        possible
+    }
+
+    /// Whether the operator may move axes while a run is interrupted.
+    pub fn is_operated_manually(&self, nc: &Image) -> bool {
+        self.progress.state() == RunState::Interrupted && nc.bit(signal::MANUAL_OPERATION_PRESSED)
+    }
+
+    /// RESTORE POSITION.
+    pub fn restore_position(&mut self, site: &mut Site) -> bool {
+        let may = self.is_operated_manually(site.exchange.nc());
+        self.restoration.arm(may, &self.track, site)
+    }
+
+    /// Moves the axes back to the contour for a cycle, when that is what is to be done.
+    pub fn move_back(&mut self, site: &mut Site) {
+        self.restoration
+            .moves(self.source.feeder_mut(), &mut self.q_transfer, site);
+    }
+
+    /// Moves the axes along the path for a cycle.
+    pub fn moves(&mut self, site: &mut Site, plant: &mut dyn Plant) {
+        if !self.progress.is_on_its_way() || self.restoration.is_on() {
+            return;
+        }
+        if !self.track.is_able(&site.axes) {
+            // Without feed enable the axes stand at once [000:5352].
+            self.track.path.halt();
+            self.track.hold(&mut site.axes, site.now.time_s);
+            return;
+        }
+        if self.probe.is_on() {
+            let probed = self.probe.moves(self.progress.goes_on(), site, plant);
+            self.take_probed(probed, site);
+            return;
+        }
+        self.tapping.couple(&mut self.track, site);
+        let settled = self.is_in_position(site);
+        let wear = Wear::of(site.tools).message();
+        let drive = self.drive(settled, wear.is_some(), site);
+        let cycle = self.track.path.cycle(&drive);
+        self.track.set_speed(cycle.speed_mm_s);
+        self.tapping.lead(cycle.lead, site.spindle);
+        self.track
+            .follow(&cycle.position, &mut site.axes, site.chain, site.now.time_s);
+        let inch = self.source.inch();
+        self.track.output(site, &mut self.q_transfer, inch, settled);
+        self.take_state(cycle.state, &drive, wear, site);
+    }
+
+    /// What the interpolator may do in this cycle.
+    fn drive(&self, settled: bool, worn: bool, site: &Site) -> Drive {
+        let now = site.now;
+        let coupled = self.track.path.is_coupled();
+        let [back, on] = if self.is_operated_manually(site.exchange.nc()) {
+            thread::way_out(&self.track, site)
+        } else {
+            [false; 2]
+        };
+        let runs_out = self.tapping.runs_out(self.element(), site);
+        let stopped = !self.progress.goes_on() && !on && !runs_out;
+        Drive {
+            feed_override_percent: now.program_percent,
+            rapid_override_percent: now.program_percent,
+            spindle_override_percent: site.spindle.effective_percent(),
+            master: self.tapping.master(&self.track, site),
+            back,
+            rapid_limit_mm_min: now.rapid_limit_mm_min,
+            // Without spindle enable nothing is led. Functions at which the axes do not stop (MP7440 bit 2) may
+            // come faster than the PLC takes them.
+            hold: stopped || site.handshakes.is_crowded() || coupled && !site.spindle.is_enabled(),
+            single_block: now.mode == Mode::SingleBlock || on || worn || site.handshakes.inhibit_read_in(),
+            stop_before: self.replacement.place(),
+            in_position: settled,
+            clamped: track::clamped_axes(&site.axes),
+            clamping: track::clamping_axes(&site.axes, site.exchange.nc()),
+        }
+    }
+
+    /// What the path came to in this cycle.
+    fn take_state(&mut self, state: State, drive: &Drive, wear: Option<MessageId>, site: &mut Site) {
+        let settled = drive.in_position;
+        let all_output = self.track.has_output_all() && site.handshakes.is_idle();
+        match state {
+            State::Gate(_) if all_output && !site.positioning.is_on() => {
+                self.track.path.release();
+                self.track.regain(site);
+            }
+            State::Master if self.tapping.prepare(&self.track, site) == Preparation::Refused => {
+                // No manual names the message of a spindle without analogue output or encoder (inferred).
+                self.show(Message::Plain(MessageId::WrongRpm), site);
+                let block = self.track.path.element().map_or(0, |element| element.sequence);
+                self.abort(Resume::Block(block), site);
+            }
+            State::Clamped => self.track.ask_to_unclamp(drive.clamped, &mut site.axes),
+            State::BlockEnd if settled && self.progress.goes_on() => {
+                if let Some(message) = wear {
+                    self.show(Message::Plain(message), site);
+                }
+                if self.replacement.is_here(&self.track, site) {
+                    // What follows is given by the next preparation.
+                } else if site.now.mode == Mode::SingleBlock || wear.is_some() {
+                    self.progress.enter(RunState::BlockEnd);
+                } else if !site.handshakes.inhibit_read_in() {
+                    self.track.path.go_on();
+                }
+            }
+            State::Stopped if settled && all_output && !site.handshakes.inhibit_read_in() => {
+                self.take_stop(site);
+            }
+            _ => {}
+        }
+    }
+
+    fn is_in_position(&self, site: &Site) -> bool {
+        if self.track.path.is_coupled() {
+            return thread::is_in_position(&self.track, site);
+        }
+        track::are_in_position(&site.axes)
+    }
+
+    /// The axes stand as far as the loops may be opened: those of a thread as far as they can.
+    pub fn axes_stand(&self, site: &Site) -> bool {
+        if self.track.path.is_coupled() {
+            thread::stands(&self.track, &site.axes)
+        } else {
+            site.axes.stand()
+        }
+    }
+
+    /// The path came to what the source said after it.
+    fn take_stop(&mut self, site: &mut Site) {
+        match self.track.path.take_stop() {
+            None => {}
+            Some(Stop::Barrier(Barrier::Stop { .. })) => self.progress.enter(RunState::Stopped),
+            Some(Stop::Barrier(Barrier::Acknowledge { .. })) => {
+                self.answer = Some(self.q_transfer.answer());
+            }
+            Some(Stop::Barrier(Barrier::Probe {
+                block,
+                from,
+                to,
+                feed_mm_min,
+                ..
+            })) => self.probe.begin(block, [from, to], feed_mm_min, site),
+            Some(Stop::End) => self.end(site),
+            Some(Stop::Error(fault)) => {
+                self.show_fault(fault, site);
+                self.abort(Resume::Fault, site);
+            }
+        }
+    }
+
+    /// A probing goes on, hands the touch to the program, or ends the run at its block with a message; the next
+    /// start then probes again.
+    fn take_probed(&mut self, probed: Probed, site: &mut Site) {
+        match probed {
+            Probed::Moves => {}
+            Probed::Over(touch) => {
+                let at = touch.map_or_else(|| site.here(), |touch| touch.position);
+                self.track.path.set_position(at);
+                self.track.forget_position();
+                self.answer = Some(LiveData {
+                    touch,
+                    q_values: Vec::new(),
+                });
+            }
+            Probed::Refused(message, block) => {
+                let sequence = self.source.interpreter().map_or(0, Interpreter::blocks_executed);
+                site.messages.show(message, false, Some(block));
+                self.abort(Resume::Block(sequence), site);
+            }
+        }
+    }
+
+    /// Shows why the run cannot go on, at the block that is refused.
+    fn show_fault(&mut self, fault: RunFault, site: &mut Site) {
+        match fault {
+            RunFault::Program(error) => self.show(Message::Program(error), site),
+            RunFault::Limit {
+                axis,
+                direction,
+                block,
+                ..
+            } => {
+                let message = track::limit_message(&mut site.axes, axis, direction);
+                site.messages.show(message, false, Some(block));
+            }
+        }
+    }
+
+    /// Q parameters that are not 0, by number.
+    pub fn q_values(&self) -> Vec<(u16, f64)> {
+        self.source.q_values(self.progress.has_ended())
     }
 
     /// The PLC writes a Q parameter: for a program that runs with the next M, S or T strobe
     /// [000:11657-11663].
-    pub(crate) fn set_q(&mut self, number: u16, value: f64) {
-        if self.run.is_active() {
-            self.run.q_transfer.write(number, value);
+    pub fn set_q(&mut self, number: u16, value: f64) {
+        if self.is_active() {
+            self.q_transfer.write(number, value);
         } else {
-            if let Some(feeder) = &mut self.run.feeder {
-                feeder.interpreter_mut().set_q(number, value);
-            }
-            self.keep_q(number, value);
+            self.source.set_q(number, value);
         }
-    }
-
-    fn keep_q(&mut self, number: u16, value: f64) {
-        self.q.retain(|(known, _)| *known != number);
-        self.q.push((number, value));
     }
 
     /// Selects a program.
-    pub(crate) fn select(&mut self, name: String) -> bool {
-        if self.run.is_active() {
-            return false;
+    pub fn select(&mut self, name: String, site: &mut Site, basis: &Basis) -> bool {
+        let possible = !self.is_active();
+        if possible {
+            self.source.keep_q_values(self.progress.has_ended());
+            self.source.cancel_status(basis.list, site);
+            self.selection.program = Some(name);
+            self.begin_at(0);
         }
-        self.q = self.q_values();
-        self.cancel_status();
-        self.run.selected = Some(name);
-        self.run.start_block = 0;
-        self.run.feeder = None;
-        self.run.forget_interruption();
-        true
+        possible
+    }
+
+    /// The next run starts at a block.
+    pub fn goto(&mut self, block: u32) -> bool {
+        let possible = !self.is_active();
+        if possible {
+            self.source.keep_q_values(self.progress.has_ended());
+            self.begin_at(block);
+        }
+        possible
+    }
+
+    /// The next start begins anew, not with the block of an interruption.
+    fn begin_at(&mut self, block: u32) {
+        self.selection.start_block = block;
+        self.source.forget();
+        self.progress.leave_fault();
+    }
+
+    /// The blocks of MDI.
+    pub fn set_mdi(&mut self, blocks: String) -> bool {
+        let possible = !self.is_active();
+        if possible {
+            self.selection.mdi = Some(blocks);
+        }
+        possible
+    }
+
+    /// A feeder for TEST RUN of a program, which finds nothing in force when it is selected.
+    pub fn test_feeder(&self, name: &str, site: &Site, basis: &Basis) -> Option<Feeder> {
+        let Ok(Some(program)) = self.source.reading.programs.open(name, "") else {
+            return None;
+        };
+        Some(self.source.feeder_from(program, Status::default(), site, basis))
     }
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.
-    pub(crate) fn distance_to_go(&self, unit: &AxisUnit) -> f64 {
-        match self.path.element() {
-            Some(element) if self.run.is_active() => {
-                let end = element.end[unit.axis] + self.offsets.of(unit.axis);
+    pub fn distance_to_go(&self, unit: &AxisUnit, chain: &Chain) -> f64 {
+        match self.element() {
+            Some(element) => {
+                let end = chain.to_axes(&element.end)[unit.axis];
                 if end.is_finite() { end - unit.nominal } else { 0.0 }
             }
-            _ => 0.0,
+            None => 0.0,
         }
     }
 }

@@ -4,41 +4,17 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_exchange::Exchange;
-use bahn_interpreter::ToolState;
 use bahn_parameters::{InchFeed, ParameterList};
-use bahn_path::{Axis, Position, ToolShape};
-use bahn_plc::{PlcProgram, TableKind};
+use bahn_path::{Axis, Position};
+use bahn_plc::PlcProgram;
 
-use crate::feeder::Programs;
-use crate::life::ToolLife;
-use crate::plc_link::NcFiles;
-
-/// A tool of the tool table.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tool {
-    /// Length, radius, corner radius, mm.
-    pub shape: ToolShape,
-    /// Its pocket in the magazine.
-    pub pocket: Option<u16>,
-    /// A special tool, which takes more than one pocket.
-    pub special: bool,
-    /// It cuts when the spindle turns counter-clockwise (M4): DIRECT [000:9028].
-    pub left_hand: bool,
-    /// TL: it is locked and must not be called.
-    pub locked: bool,
-    /// How long it may work.
-    pub life: ToolLife,
-}
-
-impl Tool {
-    /// Whether it may be called.
-    pub fn state(&self) -> ToolState {
-        match self.locked {
-            true => ToolState::Locked,
-            false => self.life.state(),
-        }
-    }
-}
+use crate::axis::AxisId;
+use crate::kinematics::Kinematics;
+use crate::plc_link::{NcFiles, WrittenElement};
+use crate::programs::Programs;
+use crate::spindle::SpindleWiring;
+use crate::tool::{MovedTool, Tool};
+use crate::window::Window;
 
 /// How programs are taken that use what is not executed here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -76,6 +52,44 @@ pub struct Setup {
     pub exchange: Exchange,
 }
 
+/// A channel beside the first one.
+#[derive(Clone)]
+pub struct ChannelSetup {
+    /// Its machine parameters; what they say of the machine as a whole (PLC, EMERGENCY STOP) is not looked at.
+    pub parameters: ParameterList,
+    /// The number on the machine of each of its axes, by their indices in the list. An axis without number is not
+    /// there.
+    pub axes: [Option<AxisId>; 5],
+    /// Where its spindle is connected.
+    pub spindle: SpindleWiring,
+    /// Tools by number; `None` when tools are defined in the programs.
+    pub tools: Option<BTreeMap<u32, Tool>>,
+    /// Where its programs come from.
+    pub programs: Arc<dyn Programs>,
+    /// How its axes stand to its path.
+    pub kinematics: Arc<dyn Kinematics>,
+    /// Where its markers and words stand in the memory of the PLC.
+    pub window: Window,
+    /// What was remembered of it over power-off: datums, tool, Q parameters, program.
+    pub remembered: Remembered,
+}
+
+/// Channels cannot be put together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ChannelError {
+    /// There are more than eight.
+    #[error("a control has at most {} channels", ChannelError::CHANNELS_MAX)]
+    TooMany,
+    /// Two channels name the same axis.
+    #[error("axis {} belongs to two channels", .0.number())]
+    AxisTwice(AxisId),
+}
+
+impl ChannelError {
+    /// Channels that a control has at most.
+    pub const CHANNELS_MAX: usize = 8;
+}
+
 /// What survives power-off beside the memory of the PLC.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Remembered {
@@ -105,32 +119,6 @@ pub struct Remembered {
     pub datum_table: Option<String>,
     /// What the PLC wrote with module 9094 into datum tables, by their names.
     pub written_datums: Vec<(String, WrittenElement)>,
-}
-
-/// A tool that is not in the pocket of the tool table any more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MovedTool {
-    /// Its number.
-    pub tool: u32,
-    /// Its pocket now.
-    pub pocket: Option<u16>,
-    /// Its pocket in the tool table. Where the table says another one, the magazine was loaded anew.
-    pub table: Option<u16>,
-}
-
-/// An element of a table that the PLC has written with module 9094.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WrittenElement {
-    /// The table.
-    pub table: TableKind,
-    /// Number of tool, vector or pocket.
-    pub line: i32,
-    /// Number of the element [000:15414-15454].
-    pub element: usize,
-    /// Its value.
-    pub value: f64,
-    /// Its value in the file of the table. Where that says another one, the file counts.
-    pub file: f64,
 }
 
 impl Remembered {

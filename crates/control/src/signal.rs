@@ -5,7 +5,9 @@ use std::str::FromStr;
 
 use bahn_exchange::{Bit, Number};
 
-use crate::control::Control;
+use crate::axis::AxisUnit;
+use crate::channel::Channel;
+use crate::machine::MachineSide;
 
 /// What of an axis is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,31 +143,41 @@ impl Signal {
     }
 }
 
-impl Control {
-    /// The value of a signal now; an axis that the machine does not have reads 0.
-    pub fn observe(&self, signal: &Signal) -> f64 {
-        match signal {
+impl Signal {
+    /// Its value now; an axis that the channel does not have reads 0.
+    pub(crate) fn value(&self, channel: &Channel, machine: &MachineSide) -> f64 {
+        let track = &channel.run.track;
+        let plc = machine.memory.of(channel.number()).plc();
+        let spindle = machine.spindles.of(channel.number());
+        match self {
             Signal::Axis(letter, signal) => {
-                let unit = self.axes.iter().find(|unit| unit.axis.letter() == *letter);
-                unit.map_or(0.0, |unit| match signal {
-                    AxisSignal::Actual => unit.servo.actual_mm(),
-                    AxisSignal::Nominal => unit.servo.nominal_mm(),
-                    AxisSignal::Lag => unit.servo.lag_mm(),
-                    AxisSignal::Speed => unit.servo.actual_velocity_mm_min(),
-                    AxisSignal::NominalSpeed => unit.speed * 60.0,
-                    AxisSignal::Volts => unit.servo.volts(),
-                })
+                let mut axes = machine.axes.owned(channel.number());
+                axes.find(|unit| unit.axis.letter() == *letter)
+                    .map_or(0.0, |unit| signal.value(unit))
             }
-            Signal::PathSpeed => self.run.speed * 60.0,
-            Signal::Block => self
-                .path
-                .element()
-                .map_or(0.0, |element| element.block.block.into()),
-            Signal::SpindleRpm => self.spindle.state().actual_rpm,
-            Signal::SpindleVolts => self.spindle.state().volts,
-            Signal::SpindleAngle => self.spindle.turned_deg(),
-            Signal::Bit(bit) => f64::from(u8::from(self.exchange.plc().bit(*bit))),
-            Signal::Number(number) => self.exchange.plc().number(*number).into(),
+            Signal::PathSpeed => track.speed_mm_s() * 60.0,
+            Signal::Block => {
+                let element = track.path.element();
+                element.map_or(0.0, |element| element.block.block.into())
+            }
+            Signal::SpindleRpm => spindle.state().actual_rpm,
+            Signal::SpindleVolts => spindle.state().volts,
+            Signal::SpindleAngle => spindle.turned_deg(),
+            Signal::Bit(bit) => f64::from(u8::from(plc.bit(*bit))),
+            Signal::Number(number) => plc.number(*number).into(),
+        }
+    }
+}
+
+impl AxisSignal {
+    fn value(self, unit: &AxisUnit) -> f64 {
+        match self {
+            AxisSignal::Actual => unit.servo.actual_mm(),
+            AxisSignal::Nominal => unit.servo.nominal_mm(),
+            AxisSignal::Lag => unit.servo.lag_mm(),
+            AxisSignal::Speed => unit.servo.actual_velocity_mm_min(),
+            AxisSignal::NominalSpeed => unit.speed * 60.0,
+            AxisSignal::Volts => unit.servo.volts(),
         }
     }
 }

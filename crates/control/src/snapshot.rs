@@ -2,12 +2,15 @@
 
 use bahn_path::BlockRef;
 
-use crate::axes::AxisUnit;
+use crate::axis::AxisUnit;
+use crate::channel::Channel;
 use crate::command::Mode;
-use crate::control::Control;
 use crate::handshake::Waiting;
+use crate::kinematics::Chain;
+use crate::machine::MachineSide;
 use crate::message::Shown;
-use crate::run::RunState;
+use crate::progress::RunState;
+use crate::run::ProgramRun;
 use crate::spindle::SpindleState;
 
 /// The state of an axis.
@@ -76,55 +79,10 @@ pub struct Snapshot {
     pub plc_percent: [f64; 2],
 }
 
-impl Control {
-    /// The state as of now.
-    pub fn snapshot(&self) -> Snapshot {
-        self.snapshot_in(Vec::new(), Vec::new(), None)
-    }
-
-    /// The state as of now, in the memory of an earlier one: it does not allocate unless another program or
-    /// message is shown.
-    pub fn snapshot_again(&self, earlier: Snapshot) -> Snapshot {
-        self.snapshot_in(earlier.axes, earlier.messages, earlier.program)
-    }
-
-    fn snapshot_in(
-        &self,
-        mut axes: Vec<AxisState>,
-        mut messages: Vec<Shown>,
-        mut program: Option<String>,
-    ) -> Snapshot {
-        let time = self.plc.machine.time();
-        axes.clear();
-        axes.extend(self.axes.iter().map(|unit| self.axis_state(unit)));
-        if messages != self.messages.shown() {
-            messages = self.messages.shown().to_vec();
-        }
-        if program != self.run.selected {
-            program.clone_from(&self.run.selected);
-        }
-        Snapshot {
-            time_us: self.now_us,
-            mode: self.mode,
-            run: self.run.state,
-            ended: self.run.ended,
-            program,
-            block: self.path.element().map(|element| element.block),
-            axes,
-            feed_mm_min: self.run.speed * 60.0,
-            programmed_feed_mm_min: self.programmed_feed(),
-            feed_override_percent: self.feed_override.percent(),
-            spindle_override_percent: self.spindle_override.percent(),
-            spindle: self.spindle.state(),
-            tool: self.tools.number,
-            messages,
-            waiting: self.handshakes.waiting(self.exchange.nc()),
-            plc_percent: [time.current_percent(), time.maximum_percent()],
-        }
-    }
-
-    fn axis_state(&self, unit: &AxisUnit) -> AxisState {
-        let offset = self.offsets.of(unit.axis);
+impl AxisState {
+    /// The state of an axis of a channel.
+    fn of(unit: &AxisUnit, run: &ProgramRun, chain: &Chain) -> AxisState {
+        let offset = chain.offsets.of(unit.axis);
         AxisState {
             letter: unit.axis.letter(),
             index: unit.index,
@@ -133,52 +91,52 @@ impl Control {
             machine: unit.shown(unit.servo.actual_mm()),
             lag: unit.lag_mm(),
             max_lag: unit.max_lag,
-            distance_to_go: self.distance_to_go(unit),
+            distance_to_go: run.distance_to_go(unit, chain),
             referenced: unit.referenced,
             closed: unit.servo.closed(),
             enabled: unit.enabled,
             in_position: unit.in_position,
         }
     }
+}
 
-    /// The messages that came up since the last call, in their order.
-    pub fn take_messages(&mut self) -> Vec<Shown> {
-        self.messages.take_news()
-    }
-
-    /// The text of a message as this control shows it.
-    pub fn message_text(&self, message: &crate::message::Message) -> String {
-        message.text(self.model, &self.letters, self.link.messages())
-    }
-
-    /// Keeps the path elements of runs that begin from now on, for [`Control::take_path`].
-    pub fn keep_path(&mut self, keep: bool) {
-        self.run.tap = keep;
-    }
-
-    /// Of what [`Control::take_path`] has handed out so far, the elements from a sequence on are not executed: the tool
-    /// is replaced before them. To be asked for before it.
-    pub fn take_dropped_path(&mut self) -> Option<u64> {
-        self.run
-            .feeder
-            .as_mut()
-            .and_then(crate::feeder::Feeder::take_dropped)
-    }
-
-    /// The path elements that were prepared since the last call, in workpiece coordinates.
-    pub fn take_path(&mut self) -> Vec<bahn_path::PathElement> {
-        self.run
-            .feeder
-            .as_mut()
-            .map(crate::feeder::Feeder::take_tap)
-            .unwrap_or_default()
-    }
-
-    /// The interpreter's warnings since the last call.
-    pub fn take_warnings(&mut self) -> Vec<bahn_interpreter::Warning> {
-        match &mut self.run.feeder {
-            Some(feeder) => feeder.interpreter_mut().take_warnings(),
-            None => Vec::new(),
+impl Snapshot {
+    /// The state of a channel, in the memory of an earlier one.
+    pub(crate) fn of(channel: &Channel, machine: &MachineSide, earlier: Option<Snapshot>) -> Snapshot {
+        let time = machine.plc.machine.time();
+        let (run, desk) = (&channel.run, channel.desk());
+        let (mut axes, mut messages, mut program) = match earlier {
+            Some(earlier) => (earlier.axes, earlier.messages, earlier.program),
+            None => Default::default(),
+        };
+        axes.clear();
+        let units = machine.axes.owned(channel.number());
+        axes.extend(units.map(|unit| AxisState::of(unit, run, channel.chain())));
+        if messages != machine.messages.shown() {
+            messages = machine.messages.shown().to_vec();
+        }
+        if program != run.selection.program {
+            program.clone_from(&run.selection.program);
+        }
+        Snapshot {
+            time_us: machine.messages.time_us(),
+            mode: desk.mode(),
+            run: run.progress().state(),
+            ended: run.progress().has_ended(),
+            program,
+            block: run.track.path.element().map(|element| element.block),
+            axes,
+            feed_mm_min: run.track.speed_mm_s() * 60.0,
+            programmed_feed_mm_min: run.track.programmed_feed(),
+            feed_override_percent: desk.feed_percent(),
+            spindle_override_percent: desk.spindle_percent(),
+            spindle: machine.spindles.of(channel.number()).state(),
+            tool: channel.tools.number,
+            messages,
+            waiting: channel
+                .handshakes
+                .waiting(machine.memory.of(channel.number()).nc()),
+            plc_percent: [time.current_percent(), time.maximum_percent()],
         }
     }
 }

@@ -9,10 +9,6 @@ use bahn_servo::{Fault, Plant, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 use crate::handshake::Transfer;
 use crate::panel::PlcFaultCode;
 
-/// Analogue output of the spindle [000:3393-3406].
-const OUTPUT_S: usize = 5;
-/// Encoder input of the spindle, X6 [000:3376].
-const INPUT_X6: usize = 5;
 /// Range of the analogue outputs, V.
 const OUTPUT_VOLTS: f64 = 10.0;
 /// D356, D756 and module 9171 count in 1/1000 rpm.
@@ -41,9 +37,26 @@ pub struct SpindleState {
     pub rotation: Rotation,
 }
 
+/// Where a spindle is connected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SpindleWiring {
+    /// Its analogue output.
+    pub output: usize,
+    /// Its encoder input.
+    pub input: usize,
+}
+
+impl Default for SpindleWiring {
+    /// Output S [000:3393-3406] and encoder input X6 [000:3376].
+    fn default() -> SpindleWiring {
+        SpindleWiring { output: 5, input: 5 }
+    }
+}
+
 /// The spindle.
 #[derive(Clone, Debug)]
 pub(crate) struct SpindleUnit {
+    wiring: SpindleWiring,
     parameters: SpindleParameters,
     servo: Spindle,
     rotation: Rotation,
@@ -69,8 +82,9 @@ pub(crate) struct SpindleUnit {
 }
 
 impl SpindleUnit {
-    pub fn new(parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
+    pub fn new(wiring: SpindleWiring, parameters: SpindleParameters, timing: Timing) -> SpindleUnit {
         SpindleUnit {
+            wiring,
             servo: Spindle::new(parameters, timing),
             parameters,
             rotation: Rotation::M5,
@@ -107,18 +121,18 @@ impl SpindleUnit {
     }
 
     pub fn measure(&mut self, plant: &mut dyn Plant) {
-        self.servo.measure(plant.encoder(INPUT_X6));
+        self.servo.measure(plant.encoder(self.wiring.input));
     }
 
     /// One servo step.
     pub fn output(&mut self, plant: &mut dyn Plant) {
         let volts = self.servo.step();
         if self.is_analogue() {
-            plant.set_nominal(OUTPUT_S, volts);
+            plant.set_nominal(self.wiring.output, volts);
         } else {
             match self.parameters.free_output {
-                FreeOutput::Plc => plant.set_nominal(OUTPUT_S, self.plc_volts),
-                FreeOutput::Feed { .. } => plant.set_nominal(OUTPUT_S, self.feed_volts),
+                FreeOutput::Plc => plant.set_nominal(self.wiring.output, self.plc_volts),
+                FreeOutput::Feed { .. } => plant.set_nominal(self.wiring.output, self.feed_volts),
                 FreeOutput::None | FreeOutput::MFunctions => {}
             }
         }

@@ -1,17 +1,20 @@
 //! What the NC tells the PLC of itself: markers and words of state, before every scan.
 
-use bahn_exchange::signal;
-use bahn_plc::StatusItem;
+use bahn_exchange::{Exchange, signal};
+use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Plant;
 
-use crate::axes::Mover;
+use crate::axes::OwnAxes;
+use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
-use crate::control::Control;
+use crate::manual::Manual;
 use crate::markers::{
-    ANALOGUE, ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING,
+    ANALOGUE, AXES, ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING,
 };
 use crate::panel::Direction;
-use crate::run::RunState;
+use crate::plc_link::PlcLink;
+use crate::progress::RunState;
+use crate::run::ProgramRun;
 
 /// Mode markers of the TNC 355 kind that the later controls keep.
 const MODES: [(bahn_exchange::Bit, Mode); 6] = [
@@ -36,151 +39,166 @@ const LAST_KEYS: [bahn_exchange::Bit; 5] = [
     signal::AXIS_KEY_V_PRESSED_LAST,
 ];
 
-impl Control {
-    /// Brings markers and words up to date.
-    pub(crate) fn publish(&mut self) {
-        self.publish_mode();
-        self.publish_axes();
-        self.publish_run();
-        for (marker, value) in self.messages.markers() {
-            self.put(marker, value);
-        }
-        self.spindle.publish(&mut self.exchange);
-        self.publish_coordinates();
-        self.publish_status();
-    }
-
-    /// Analogue inputs of the extensions that MP4410 names: voltages in 0.1 V, temperatures in 0.5 degrees
-    /// [000:8449-8484].
-    pub(crate) fn publish_analogue(&mut self, plant: &mut dyn Plant) {
-        let extensions = self.plc_parameters.analogue_inputs;
-        let mut input = 0;
-        for ([voltages, temperatures], there) in ANALOGUE.iter().zip(extensions) {
-            for (voltage, temperature) in voltages.iter().zip(temperatures) {
-                if there {
-                    let volts = (plant.analogue_input(input) * 10.0).round();
-                    self.put_number(*voltage, volts.clamp(-100.0, 100.0) as i32);
-                    let celsius = (plant.temperature_input(input) * 2.0).round();
-                    self.put_number(*temperature, celsius.clamp(0.0, 200.0) as i32);
-                }
-                input += 1;
+/// Analogue inputs of the extensions that MP4410 names: voltages in 0.1 V, temperatures in 0.5 degrees
+/// [000:8449-8484].
+pub(crate) fn analogue(extensions: [bool; 2], plant: &mut dyn Plant, exchange: &mut Exchange) {
+    let mut input = 0;
+    for ([voltages, temperatures], there) in ANALOGUE.iter().zip(extensions) {
+        for (voltage, temperature) in voltages.iter().zip(temperatures) {
+            if there {
+                let volts = (plant.analogue_input(input) * 10.0).round();
+                exchange.nc_put_number(*voltage, volts.clamp(-100.0, 100.0) as i32);
+                let celsius = (plant.temperature_input(input) * 2.0).round();
+                exchange.nc_put_number(*temperature, celsius.clamp(0.0, 200.0) as i32);
             }
+            input += 1;
         }
     }
+}
 
-    fn publish_mode(&mut self) {
-        let mode = self.mode;
-        self.put_number(signal::OPERATING_MODE, mode.code());
-        for (marker, of) in MODES {
-            self.put(marker, of == mode);
-        }
-        for (place, marker) in MODE_BITS.into_iter().enumerate() {
-            self.put(marker, mode.code() >> place & 1 != 0);
-        }
-        let last = self.manual.last_key;
-        for (index, marker) in LAST_KEYS.into_iter().enumerate() {
-            self.put(marker, index == last);
+/// Markers and words with a value at power-on.
+pub(crate) fn preset<'a>(axes: impl Iterator<Item = &'a AxisUnit>, english: bool, exchange: &mut Exchange) {
+    // They lie among the markers that power-off keeps, but belong to the NC.
+    let of_the_nc = [
+        &signal::RISING_EDGES,
+        &signal::FALLING_EDGES,
+        &signal::DECODED_M_FUNCTIONS,
+    ];
+    for marker in of_the_nc.into_iter().flat_map(|range| range.iter()) {
+        exchange.nc_put(marker, false);
+    }
+    for unit in axes {
+        if let Some(marker) = REFERENCE_MISSING.get(unit.index) {
+            exchange.nc_set(*marker, unit.parameters.controlled);
         }
     }
+    exchange.nc_set_number(signal::RAPID_TRAVERSE_LIMIT, 300_000);
+    exchange.nc_set(signal::ENGLISH_SELECTED, english);
+}
 
-    /// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534].
-    fn publish_axes(&mut self) {
-        for place in 0..self.axes.len() {
-            let Some(unit) = self.axes.get_mut(place) else {
-                continue;
-            };
-            let index = unit.index;
-            let slave = unit.parameters.synchronization.master.is_some();
-            let moving = !unit.stands();
-            if moving || unit.mover == Mover::Reference {
-                unit.in_position = false;
-            } else if unit.servo.closed() && unit.servo.in_position() {
-                unit.in_position = true;
-            }
-            // In Handwheel no axis is in position [000:5371-5384].
-            let in_position = unit.in_position && self.mode != Mode::Handwheel;
-            let in_motion = moving && self.mode.is_automatic() && !slave;
-            let negative = unit.direction == Direction::Minus && !slave;
-            let missing = !unit.referenced && !unit.is_plc_axis();
-            let closed = unit.servo.closed();
-            let at_limit = unit.at_limit;
-            let values = [
-                (&ENABLED, closed),
-                (&IN_POSITION, in_position),
-                (&IN_MOTION, in_motion),
-                (&NEGATIVE_TRAVERSE, negative),
-                (&REFERENCE_MISSING, missing),
-            ];
-            for (markers, value) in values {
-                if let Some(marker) = markers.get(index) {
-                    self.put(*marker, value);
-                }
-            }
-            if let Some([plus, minus]) = LIMIT.get(index) {
-                self.put(*plus, at_limit == Some(Direction::Plus));
-                self.put(*minus, at_limit == Some(Direction::Minus));
-            }
+/// The operating mode, and the axis key that was pressed last.
+pub(crate) fn mode(mode: Mode, last_key: usize, exchange: &mut Exchange) {
+    exchange.nc_put_number(signal::OPERATING_MODE, mode.code());
+    for (marker, of) in MODES {
+        exchange.nc_put(marker, of == mode);
+    }
+    for (place, marker) in MODE_BITS.into_iter().enumerate() {
+        exchange.nc_put(marker, mode.code() >> place & 1 != 0);
+    }
+    for (index, marker) in LAST_KEYS.into_iter().enumerate() {
+        exchange.nc_put(marker, index == last_key);
+    }
+}
+
+/// The markers of each axis [000:5341-5401] [000:3278-3286] [000:4669-4674] [000:3522-3534].
+pub(crate) fn axes(mode: Mode, axes: &mut OwnAxes, exchange: &mut Exchange) {
+    for unit in axes.iter_mut() {
+        let index = unit.index;
+        let slave = unit.parameters.synchronization.master.is_some();
+        let moving = !unit.stands();
+        if moving || unit.mover == Mover::Reference {
+            unit.in_position = false;
+        } else if unit.servo.closed() && unit.servo.in_position() {
+            unit.in_position = true;
         }
-    }
-
-    /// `*`: on while something is executed, flashing after an external stop [000:6581-6587]; feeds
-    /// [000:6521-6536].
-    fn publish_run(&mut self) {
-        let state = self.run.state;
-        let waiting = !self.handshakes.is_idle();
-        self.put(
-            signal::CONTROL_IN_OPERATION,
-            matches!(state, RunState::Running | RunState::Interrupted) || waiting,
-        );
-        self.put(signal::PROGRAM_INTERRUPTED, state == RunState::Interrupted);
-        let programmed = self.programmed_feed();
-        self.put(
-            signal::RAPID_TRAVERSE_PROGRAMMED,
-            programmed.is_none() && self.run.is_active(),
-        );
-        self.put_number(signal::PROGRAMMED_FEED, programmed.unwrap_or(0.0).round() as i32);
-        self.put_number(signal::CURRENT_FEED, (self.run.speed * 60.0).round() as i32);
-    }
-
-    /// Programmed feed of the element that is executed, mm/min; `None` for rapid traverse.
-    pub(crate) fn programmed_feed(&self) -> Option<f64> {
-        match self.path.element()?.feed {
-            bahn_path::FeedRate::Programmed(feed) => Some(feed),
-            bahn_path::FeedRate::Rapid => None,
-        }
-    }
-
-    /// What module 9035 reads.
-    fn publish_status(&mut self) {
-        let handwheel = i32::try_from(self.manual.handwheel_axis).unwrap_or(-1);
-        let last_key = i32::try_from(self.manual.last_key).unwrap_or(0);
-        let items = [
-            (StatusItem::MachineMode, self.mode.code()),
-            (StatusItem::MachineAxis, last_key),
-            (StatusItem::HandwheelAxis, handwheel),
-            (
-                StatusItem::HandwheelAxes,
-                1i32.checked_shl(handwheel.max(0) as u32).unwrap_or(0),
-            ),
-            (
-                StatusItem::ExecutedFile,
-                kind_of_file(self.run.selected.as_deref()),
-            ),
-            (StatusItem::EditedFile, kind_of_file(self.tested_program())),
+        // In Handwheel no axis is in position [000:5371-5384].
+        let in_position = unit.in_position && mode != Mode::Handwheel;
+        let values = [
+            (&ENABLED, unit.servo.closed()),
+            (&IN_POSITION, in_position),
+            (&IN_MOTION, moving && mode.is_automatic() && !slave),
+            (&NEGATIVE_TRAVERSE, unit.direction == Direction::Minus && !slave),
+            (&REFERENCE_MISSING, !unit.referenced && !unit.is_plc_axis()),
         ];
-        for (item, value) in items {
-            self.link.set_status(item, value);
+        for (markers, value) in values {
+            if let Some(marker) = markers.get(index) {
+                exchange.nc_put(*marker, value);
+            }
         }
-        let subdivisions = [
-            StatusItem::SubdivisionX,
-            StatusItem::SubdivisionY,
-            StatusItem::SubdivisionZ,
-            StatusItem::Subdivision4,
-            StatusItem::Subdivision5,
-        ];
-        for (item, factor) in subdivisions.into_iter().zip(self.manual.factors) {
-            self.link.set_status(item, factor.into());
+        if let Some([plus, minus]) = LIMIT.get(index) {
+            exchange.nc_put(*plus, unit.at_limit == Some(Direction::Plus));
+            exchange.nc_put(*minus, unit.at_limit == Some(Direction::Minus));
         }
+    }
+}
+
+/// `*`: on while something is executed or a transfer `waits`, flashing after an external stop [000:6581-6587];
+/// feeds [000:6521-6536].
+pub(crate) fn run(run: &ProgramRun, waits: bool, exchange: &mut Exchange) {
+    let state = run.progress().state();
+    exchange.nc_put(
+        signal::CONTROL_IN_OPERATION,
+        matches!(state, RunState::Running | RunState::Interrupted) || waits,
+    );
+    exchange.nc_put(signal::PROGRAM_INTERRUPTED, state == RunState::Interrupted);
+    let programmed = run.track.programmed_feed();
+    exchange.nc_put(
+        signal::RAPID_TRAVERSE_PROGRAMMED,
+        programmed.is_none() && run.is_active(),
+    );
+    exchange.nc_put_number(signal::PROGRAMMED_FEED, programmed.unwrap_or(0.0).round() as i32);
+    let feed = (run.track.speed_mm_s() * 60.0).round();
+    exchange.nc_put_number(signal::CURRENT_FEED, feed as i32);
+}
+
+/// The coordinates of an axis that modules 9040 and 9041 read, in the order of [`CoordinateKind`]: actual and
+/// nominal from the datum, actual from the machine datum, lag, distance to go.
+pub(crate) type Coordinates = [f64; 5];
+
+/// The coordinates that modules 9040 and 9041 read in the next scan.
+pub(crate) fn coordinates<'a>(
+    axes: impl Iterator<Item = &'a AxisUnit>,
+    of: impl Fn(&AxisUnit) -> Coordinates,
+    link: &mut PlcLink,
+) {
+    let mut rows = [[0.0; AXES]; 5];
+    for unit in axes {
+        for (row, value) in rows.iter_mut().zip(of(unit)) {
+            if let Some(cell) = row.get_mut(unit.index) {
+                *cell = value;
+            }
+        }
+    }
+    for (kind, row) in CoordinateKind::ALL.iter().zip(rows) {
+        link.set_coordinates(*kind, row);
+    }
+    let [actual, ..] = rows;
+    link.set_coordinates(CoordinateKind::ShiftedDatum, actual);
+}
+
+/// What module 9035 reads.
+pub(crate) fn items(
+    mode: Mode,
+    manual: &Manual,
+    executed: Option<&str>,
+    tested: Option<&str>,
+    link: &mut PlcLink,
+) {
+    let handwheel = i32::try_from(manual.handwheel_axis()).unwrap_or(-1);
+    let last_key = i32::try_from(manual.last_key()).unwrap_or(0);
+    let items = [
+        (StatusItem::MachineMode, mode.code()),
+        (StatusItem::MachineAxis, last_key),
+        (StatusItem::HandwheelAxis, handwheel),
+        (
+            StatusItem::HandwheelAxes,
+            1i32.checked_shl(handwheel.max(0) as u32).unwrap_or(0),
+        ),
+        (StatusItem::ExecutedFile, kind_of_file(executed)),
+        (StatusItem::EditedFile, kind_of_file(tested)),
+    ];
+    for (item, value) in items {
+        link.set_status(item, value);
+    }
+    let subdivisions = [
+        StatusItem::SubdivisionX,
+        StatusItem::SubdivisionY,
+        StatusItem::SubdivisionZ,
+        StatusItem::Subdivision4,
+        StatusItem::Subdivision5,
+    ];
+    for (item, factor) in subdivisions.into_iter().zip(manual.factors()) {
+        link.set_status(item, factor.into());
     }
 }
 

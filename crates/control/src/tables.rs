@@ -1,14 +1,13 @@
 //! Tool and pocket table as modules 9092 to 9094 see them [000:15375-15545]: what the PLC writes there counts
 //! at once and survives power-off.
 
-use std::collections::BTreeMap;
-
 use bahn_path::ToolShape;
 use bahn_plc::{MemoryTable, TableFile, TableKind};
 
-use crate::control::Control;
-use crate::life::ToolLife;
-use crate::setup::{Tool, WrittenElement};
+use crate::kinematics::Offsets;
+use crate::plc_link::{NcFiles, WrittenElement, differences};
+use crate::tool::{Tool, ToolLife};
+use crate::tools::Tools;
 
 /// Elements of the tool table [000:15431-15454].
 const L: usize = 0;
@@ -64,120 +63,37 @@ impl LoadedTables {
     }
 }
 
-/// The datum tables as their files say: what differs from them was written.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct LoadedDatums {
-    pub tables: BTreeMap<String, MemoryTable>,
-    /// Blocks that are read from now on find other datums.
-    pub changed: bool,
-}
-
-impl Control {
+impl LoadedTables {
     /// The tables at power-on, with what was written before. Elements whose table has changed since are as it
     /// says.
-    pub(crate) fn set_up_tables(&mut self, written: &[WrittenElement]) {
-        let Some(tools) = self.tools.all() else { return };
-        self.loaded_tables = LoadedTables::of(tools);
-        for table in &self.loaded_tables.0 {
-            self.link.files.tables.insert(table.kind(), table.clone());
+    pub fn set_up(tools: &mut Tools, files: &mut NcFiles, written: &[WrittenElement]) -> LoadedTables {
+        let Some(all) = tools.all() else {
+            return LoadedTables::default();
+        };
+        let loaded = LoadedTables::of(all);
+        for table in &loaded.0 {
+            files.tables.insert(table.kind(), table.clone());
         }
-        self.mirror_pockets();
+        mirror_pockets(tools, files);
         for element in written {
-            let loaded = self
-                .loaded_tables
-                .0
-                .iter()
-                .find(|table| table.kind() == element.table);
+            let table = loaded.0.iter().find(|table| table.kind() == element.table);
             let as_before =
-                loaded.and_then(|table| table.value(element.line, element.element)) == Some(element.file);
-            if let Some(table) = self.link.files.tables.get_mut(&element.table)
+                table.and_then(|table| table.value(element.line, element.element)) == Some(element.file);
+            if let Some(table) = files.tables.get_mut(&element.table)
                 && as_before
             {
                 table.set_value(element.line, element.element, element.value);
             }
         }
-        self.take_tables();
-    }
-
-    /// The tools have changed their pockets: the pocket table says so.
-    pub(crate) fn mirror_pockets(&mut self) {
-        let (Some(tools), Some(magazine)) = (
-            self.tools.all(),
-            self.link.files.tables.get_mut(&TableKind::Pocket),
-        ) else {
-            return;
-        };
-        let mut line = magazine.next_line(0);
-        while let Some(pocket) = line {
-            magazine.set_value(pocket, T, NO_TOOL);
-            magazine.set_value(pocket, ST, 0.0);
-            line = magazine.next_line(pocket.saturating_add(1));
-        }
-        for (number, tool) in tools {
-            if let Some(pocket) = tool.pocket {
-                magazine.set_value(pocket.into(), T, number.into());
-                magazine.set_value(pocket.into(), ST, f64::from(u8::from(tool.special)));
-            }
-        }
-    }
-
-    /// Module 9094 wrote: the tools are as the tables say, the tool in the spindle too.
-    pub(crate) fn initialise_geometry(&mut self) {
-        let before = self.tools.length(self.tools.number);
-        self.take_tables();
-        let longer = self.tools.length(self.tools.number) - before;
-        // A tool whose data are cancelled counts without length until it is called.
-        let cancelled = self.offsets.tool_length == 0.0 && before != 0.0;
-        if !self.tools.lengthen_held(longer) && !cancelled {
-            self.offsets.tool_length += longer;
-        }
-    }
-
-    /// The tools as the tables say.
-    fn take_tables(&mut self) {
-        let files = &self.link.files.tables;
-        let (Some(table), Some(magazine)) = (files.get(&TableKind::Tool), files.get(&TableKind::Pocket))
-        else {
-            return;
-        };
-        self.tools.take(|number, loaded| {
-            let line = i32::try_from(number).ok()?;
-            let value = |element| table.value(line, element);
-            let replacement = value(RT)?;
-            Some(Tool {
-                shape: ToolShape {
-                    length: value(L)? + value(DL)?,
-                    radius: value(R)? + value(DR)?,
-                    corner_radius: value(R2)? + value(DR2)?,
-                    ..loaded.shape
-                },
-                locked: value(TL)? != 0.0,
-                life: ToolLife {
-                    time1_min: value(TIME1)?,
-                    time2_min: value(TIME2)?,
-                    current_min: value(CURRENT_TIME)?,
-                    replacement: (replacement >= 0.0).then_some(replacement as u32),
-                },
-                ..loaded
-            })
-        });
-        self.life.changed = true;
-        self.tools.empty_magazine();
-        let mut line = magazine.next_line(0);
-        while let Some(pocket) = line {
-            let value = |element| magazine.value(pocket, element).unwrap_or_default();
-            if value(T) >= 0.0 {
-                self.tools.put(value(T) as u32, pocket, value(ST) != 0.0);
-            }
-            line = magazine.next_line(pocket.saturating_add(1));
-        }
+        take_tables(tools, files);
+        loaded
     }
 
     /// What module 9094 wrote and no tool change can say.
-    pub(crate) fn written_elements(&self) -> Vec<WrittenElement> {
+    pub fn written(&self, files: &NcFiles) -> Vec<WrittenElement> {
         let mut written = Vec::new();
-        for loaded in &self.loaded_tables.0 {
-            let Some(table) = self.link.files.tables.get(&loaded.kind()) else {
+        for loaded in &self.0 {
+            let Some(table) = files.tables.get(&loaded.kind()) else {
                 continue;
             };
             written.extend(differences(loaded, table).filter(|row| {
@@ -189,16 +105,73 @@ impl Control {
     }
 }
 
-/// The elements of a table that are not as they were loaded.
-pub(crate) fn differences(loaded: &MemoryTable, table: &MemoryTable) -> impl Iterator<Item = WrittenElement> {
-    table.elements().filter_map(|(line, element, value)| {
-        let file = loaded.value(line, element).filter(|file| *file != value)?;
-        Some(WrittenElement {
-            table: loaded.kind(),
-            line,
-            element,
-            value,
-            file,
+/// The tools have changed their pockets: the pocket table says so.
+pub(crate) fn mirror_pockets(tools: &Tools, files: &mut NcFiles) {
+    let (Some(tools), Some(magazine)) = (tools.all(), files.tables.get_mut(&TableKind::Pocket)) else {
+        return;
+    };
+    let mut line = magazine.next_line(0);
+    while let Some(pocket) = line {
+        magazine.set_value(pocket, T, NO_TOOL);
+        magazine.set_value(pocket, ST, 0.0);
+        line = magazine.next_line(pocket.saturating_add(1));
+    }
+    for (number, tool) in tools {
+        if let Some(pocket) = tool.pocket {
+            magazine.set_value(pocket.into(), T, number.into());
+            magazine.set_value(pocket.into(), ST, f64::from(u8::from(tool.special)));
+        }
+    }
+}
+
+/// Module 9094 wrote: the tools are as the tables say, the tool in the spindle too.
+pub(crate) fn initialise_geometry(tools: &mut Tools, files: &NcFiles, offsets: &mut Offsets) {
+    let before = tools.length(tools.number);
+    take_tables(tools, files);
+    let longer = tools.length(tools.number) - before;
+    // A tool whose data are cancelled counts without length until it is called.
+    let cancelled = offsets.tool_length == 0.0 && before != 0.0;
+    if !tools.lengthen_held(longer) && !cancelled {
+        offsets.tool_length += longer;
+    }
+}
+
+/// The tools as the tables say.
+fn take_tables(tools: &mut Tools, files: &NcFiles) {
+    let (Some(table), Some(magazine)) = (
+        files.tables.get(&TableKind::Tool),
+        files.tables.get(&TableKind::Pocket),
+    ) else {
+        return;
+    };
+    tools.take(|number, loaded| {
+        let line = i32::try_from(number).ok()?;
+        let value = |element| table.value(line, element);
+        let replacement = value(RT)?;
+        Some(Tool {
+            shape: ToolShape {
+                length: value(L)? + value(DL)?,
+                radius: value(R)? + value(DR)?,
+                corner_radius: value(R2)? + value(DR2)?,
+                ..loaded.shape
+            },
+            locked: value(TL)? != 0.0,
+            life: ToolLife {
+                time1_min: value(TIME1)?,
+                time2_min: value(TIME2)?,
+                current_min: value(CURRENT_TIME)?,
+                replacement: (replacement >= 0.0).then_some(replacement as u32),
+            },
+            ..loaded
         })
-    })
+    });
+    tools.empty_magazine();
+    let mut line = magazine.next_line(0);
+    while let Some(pocket) = line {
+        let value = |element| magazine.value(pocket, element).unwrap_or_default();
+        if value(T) >= 0.0 {
+            tools.put(value(T) as u32, pocket, value(ST) != 0.0);
+        }
+        line = magazine.next_line(pocket.saturating_add(1));
+    }
 }

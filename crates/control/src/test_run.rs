@@ -1,13 +1,13 @@
 //! TEST RUN beside what the machine does: a program is executed without moving an axis, to find what is
 //! wrong with it [003:1514-1535]. Nothing goes to the PLC.
 
-use bahn_interpreter::Status;
 use bahn_parameters::MessageId;
 use bahn_path::{Barrier, BlockRef, ElementSource, Function, LiveData, Step, Touch};
 
-use crate::control::Control;
+use crate::axis::{AxisId, AxisUnit};
 use crate::feeder::{Feeder, RunFault};
 use crate::message::Message;
+use crate::spindle::SpindleUnit;
 
 /// Elements that one call of prepare tests at most: the machine comes first.
 const BUDGET: usize = 500;
@@ -27,12 +27,6 @@ fn speed(function: &Function) -> Option<f64> {
         Function::Tool(call) => Some(call.speed_rpm),
         Function::SpindleSpeed(rpm) => Some(*rpm),
         _ => None,
-    }
-}
-
-impl TestRun {
-    pub fn feeder(&mut self) -> &mut Feeder {
-        &mut self.feeder
     }
 }
 
@@ -61,90 +55,82 @@ pub struct TestReport {
     pub state: TestState,
 }
 
-impl Control {
-    /// TEST RUN of a program, from its first block; the machine goes on with what it does. Errors are in
-    /// [`Control::test_report`]. `false` when there is no such program.
-    pub fn test(&mut self, name: &str) -> bool {
-        let Ok(Some(program)) = self.programs.open(name, "") else {
-            return false;
-        };
-        let machine = self.machine_position();
-        // A program that is selected finds nothing in force.
-        let status = Status::default();
-        let feeder = self.new_feeder_from(program, 0, &machine, self.traverse_box(), status);
-        self.test = Some(TestRun {
+impl TestRun {
+    /// A test run of a program, from its first block.
+    pub fn new(name: &str, feeder: Feeder) -> TestRun {
+        TestRun {
             program: name.to_owned(),
             feeder: Box::new(feeder),
             state: TestState::Running,
             block: BlockRef::default(),
-        });
-        true
+        }
     }
 
-    /// Breaks a test run off, or clears its result.
-    pub fn end_test(&mut self) {
-        self.test = None;
+    pub fn feeder(&mut self) -> &mut Feeder {
+        &mut self.feeder
     }
 
-    /// The program in TEST RUN.
-    pub(crate) fn tested_program(&self) -> Option<&str> {
-        self.test.as_ref().map(|test| test.program.as_str())
+    /// The program that is tested.
+    pub fn program(&self) -> &str {
+        &self.program
     }
 
-    /// The test run that was started last.
-    pub fn test_report(&self) -> Option<TestReport> {
-        self.test.as_ref().map(|test| TestReport {
-            program: test.program.clone(),
-            block: test.block,
-            blocks: test.feeder.interpreter().blocks_executed(),
-            state: test.state.clone(),
-        })
+    pub fn report(&self) -> TestReport {
+        TestReport {
+            program: self.program.clone(),
+            block: self.block,
+            blocks: self.feeder.interpreter().blocks_executed(),
+            state: self.state.clone(),
+        }
     }
 
-    /// Goes on with a test run; may allocate.
-    pub(crate) fn prepare_test(&mut self) {
-        let Some(test) = self.test.as_mut().filter(|test| test.state == TestState::Running) else {
+    /// Goes on; may allocate.
+    pub fn prepare<'a>(&mut self, spindle: &SpindleUnit, axes: impl Iterator<Item = &'a AxisUnit>) {
+        if self.state != TestState::Running {
             return;
-        };
-        test.feeder.allow_work();
+        }
+        self.feeder.allow_work();
         for _ in 0..BUDGET {
-            match test.feeder.next() {
+            match self.feeder.next() {
                 Step::Element(element) => {
-                    test.block = element.block;
-                    test.feeder.forget_before(element.sequence);
-                    let spindle = &self.spindle;
+                    self.block = element.block;
+                    self.feeder.forget_before(element.sequence);
                     let mut speeds = element
                         .functions()
                         .iter()
                         .filter_map(|output| speed(&output.function));
                     if speeds.any(|rpm| !spindle.has_speed(rpm)) {
-                        test.state = TestState::Failed(Message::Plain(MessageId::WrongRpm));
+                        self.state = TestState::Failed(Message::Plain(MessageId::WrongRpm));
                         return;
                     }
                 }
                 // Every probing touches where the block says it will.
-                Step::Barrier(Barrier::Probe { to, .. }) => test.feeder.resume(LiveData {
+                Step::Barrier(Barrier::Probe { to, .. }) => self.feeder.resume(LiveData {
                     touch: Some(Touch { position: to }),
                     q_values: Vec::new(),
                 }),
-                Step::Barrier(_) => test.feeder.resume(LiveData::default()),
+                Step::Barrier(_) => self.feeder.resume(LiveData::default()),
                 Step::Starved => return,
                 Step::End => {
-                    test.state = TestState::Finished;
+                    self.state = TestState::Finished;
                     return;
                 }
                 Step::Error(fault) => {
-                    let message = match fault {
-                        RunFault::Program(error) => Message::Program(error),
-                        RunFault::Limit { axis, direction, .. } => {
-                            let unit = self.axes.iter().find(|unit| unit.axis == axis);
-                            Message::limit(unit.map_or(0, |unit| unit.index), direction)
-                        }
-                    };
-                    test.state = TestState::Failed(message);
+                    self.state = TestState::Failed(message(fault, axes));
                     return;
                 }
             }
+        }
+    }
+}
+
+/// The message of a fault.
+fn message<'a>(fault: RunFault, mut axes: impl Iterator<Item = &'a AxisUnit>) -> Message {
+    match fault {
+        RunFault::Program(error) => Message::Program(error),
+        RunFault::Limit { axis, direction, .. } => {
+            let unit = axes.find(|unit| unit.axis == axis);
+            Message::limit(unit.map_or(AxisId::FIRST, |unit| unit.id), direction)
         }
     }
 }

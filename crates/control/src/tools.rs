@@ -8,10 +8,10 @@ use bahn_parameters::{ToolOutput, ToolOutputKind, ToolParameters};
 use bahn_path::{Axis, ToolCall};
 use bahn_plc::ToolCallBlock;
 
-use crate::feeder::Offsets;
 use crate::handshake::{Handshakes, Transfer};
-use crate::life::ToolLife;
-use crate::setup::{MovedTool, Remembered, Tool};
+use crate::kinematics::Offsets;
+use crate::setup::Remembered;
+use crate::tool::{MovedTool, Tool, ToolLife};
 
 /// W262 for a tool without pocket [000:9273-9283].
 const NO_POCKET: i16 = 255;
@@ -41,6 +41,8 @@ pub(crate) struct Tools {
     geometry_taken: bool,
     /// Tool of the last TOOL DEF.
     defined: Option<u32>,
+    /// Lives or locks have changed: the interpreter is to know which tools must not be called.
+    pub states_changed: bool,
     /// A TOOL CALL that module 9150 inserted.
     pub inserted_call: Option<ToolCallBlock>,
 }
@@ -79,6 +81,7 @@ impl Tools {
             takes_larger: false,
             geometry_taken: false,
             defined: None,
+            states_changed: false,
             inserted_call: None,
         };
         for moved in &remembered.pockets {
@@ -149,9 +152,13 @@ impl Tools {
         self.tool(number).life
     }
 
-    /// The lives of a tool that the table has.
-    pub fn life_mut(&mut self, number: u32) -> Option<&mut ToolLife> {
-        self.table.as_mut()?.get_mut(&number).map(|tool| &mut tool.life)
+    /// Sets the current life of a tool, minutes; `false` when the table does not have it.
+    pub fn set_life(&mut self, number: u32, minutes: f64) -> bool {
+        let tool = self.table.as_mut().and_then(|table| table.get_mut(&number));
+        let Some(tool) = tool else { return false };
+        tool.life.current_min = minutes;
+        self.states_changed = true;
+        true
     }
 
     /// Takes the tools as a table has them.
@@ -159,6 +166,7 @@ impl Tools {
         for (number, tool) in self.table.iter_mut().flatten() {
             *tool = read(*number, *tool).unwrap_or(*tool);
         }
+        self.states_changed = true;
     }
 
     /// No tool has a pocket, until it is put into one.

@@ -51,6 +51,20 @@ impl Exchange {
         self.queued.note(number.cell(), number.size().bytes().into());
     }
 
+    /// Sets a bit for the NC when it changes.
+    pub fn nc_put(&mut self, bit: Bit, value: bool) {
+        if self.nc.bit(bit) != value {
+            self.nc_set(bit, value);
+        }
+    }
+
+    /// Sets a byte, word or doubleword for the NC when it changes.
+    pub fn nc_put_number(&mut self, number: Number, value: i32) {
+        if self.nc.number(number) != value {
+            self.nc_set_number(number, value);
+        }
+    }
+
     /// What the PLC sees.
     pub fn plc(&self) -> &Image {
         &self.plc

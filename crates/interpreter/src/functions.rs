@@ -121,24 +121,7 @@ impl Run {
             109 => self.modal.feed_law = FeedLaw::Edge,
             110 => self.modal.feed_law = FeedLaw::EdgeReduced,
             111 => self.modal.feed_law = FeedLaw::Centre,
-            112 => {
-                let value = |letter| -> Result<Option<f64>, Fault> {
-                    m.argument(112, letter)
-                        .map(|value| self.q.value(value))
-                        .transpose()
-                };
-                let (tolerance, angle) = (value('T')?, value('A')?);
-                let rules = &settings.rules;
-                let plane = self.modal.plane;
-                self.modal.corner_arcs = Some(CornerArcs {
-                    tolerance_mm: tolerance.map_or(f64::INFINITY, |value| value * self.unit_mm),
-                    angle_deg: angle.unwrap_or(0.0),
-                    acceleration_m_s2: [plane.first, plane.second]
-                        .into_iter()
-                        .filter_map(|axis| rules.acceleration_m_s2.get(axis.index()))
-                        .fold(rules.radial_acceleration_m_s2, |least, value| least.min(*value)),
-                });
-            }
+            112 => self.modal.corner_arcs = Some(self.corner_arcs(m, settings)?),
             113 => self.modal.corner_arcs = None,
             // For who counts tool lives, and for the position loops.
             101 | 102 | 107 | 108 => block.output.push(inside(code)),
@@ -154,6 +137,26 @@ impl Run {
                 .push(output(Function::M(code), code, rules.axes_wait));
         }
         Ok(())
+    }
+
+    /// M112 with T and A: arcs at the corners of uncompensated lines.
+    fn corner_arcs(&self, m: &MFunctions, settings: &Settings) -> Result<CornerArcs, Fault> {
+        let value = |letter| -> Result<Option<f64>, Fault> {
+            m.argument(112, letter)
+                .map(|value| self.q.value(value))
+                .transpose()
+        };
+        let (tolerance, angle) = (value('T')?, value('A')?);
+        let rules = &settings.rules;
+        let plane = self.modal.plane;
+        Ok(CornerArcs {
+            tolerance_mm: tolerance.map_or(f64::INFINITY, |value| value * self.unit_mm),
+            angle_deg: angle.unwrap_or(0.0),
+            acceleration_m_s2: [plane.first, plane.second]
+                .into_iter()
+                .filter_map(|axis| rules.acceleration_m_s2.get(axis.index()))
+                .fold(rules.radial_acceleration_m_s2, |least, value| least.min(*value)),
+        })
     }
 
     fn set_coolant(&mut self, on: bool) {

@@ -40,7 +40,7 @@ const SHARE: f64 = 0.8;
 const NO_CHANGE: f64 = 1e-8;
 
 /// What happens between two motions.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Joint {
     /// The path stops.
     Stop,

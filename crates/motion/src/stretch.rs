@@ -109,7 +109,7 @@ impl Stretches {
 }
 
 /// The way back over the stretches.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Back<'a> {
     queue: &'a VecDeque<Stretch>,
     /// Stretches that begin at the element or before it.

@@ -18,7 +18,7 @@ use crate::profile::{Profile, Speed};
 pub const MAX_LOOK_AHEAD: usize = 65_536;
 
 /// The elements whose exit speed is not final yet, as far as dynamics go.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Window {
     segments: VecDeque<Segment>,
     /// Number of the first segment, and of the joint at its end.

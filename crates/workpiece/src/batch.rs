@@ -146,7 +146,7 @@ struct Cut<'a> {
 }
 
 impl Sink for Cut<'_> {
-    #[inline]
+    #[inline(always)]
     fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
         let start = (row - self.first_row) * self.width;
         for cell in self
@@ -158,7 +158,7 @@ impl Sink for Cut<'_> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
         let start = (row - self.first_row) * self.width;
         let cells = self
@@ -178,34 +178,22 @@ impl Sink for Cut<'_> {
             .cells
             .get_mut(start + columns.start..start + columns.end)
             .unwrap_or_default();
-        let (groups, rest) = cells.as_chunks_mut::<GROUP>();
-        let first_of_rest = GROUP * groups.len();
-        for (n, group) in groups.iter_mut().enumerate() {
-            let heights = heights(GROUP * n);
-            *group = std::array::from_fn(|k| {
-                if heights[k] < group[k] {
-                    heights[k]
-                } else {
-                    group[k]
+        // One call for whole groups and the rest, so that it is compiled into the loop.
+        for first in (0..cells.len()).step_by(GROUP) {
+            let heights = heights(first);
+            let cells = cells.get_mut(first..).unwrap_or_default();
+            match cells.first_chunk_mut::<GROUP>() {
+                Some(group) => {
+                    for (cell, height) in group.iter_mut().zip(heights) {
+                        *cell = if height < *cell { height } else { *cell };
+                    }
                 }
-            });
-        }
-        if !rest.is_empty() {
-            for (cell, height) in rest.iter_mut().zip(heights(first_of_rest)) {
-                *cell = if height < *cell { height } else { *cell };
+                None => {
+                    for (cell, height) in cells.iter_mut().zip(heights) {
+                        *cell = if height < *cell { height } else { *cell };
+                    }
+                }
             }
-        }
-    }
-
-    #[inline]
-    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {
-        let start = (row - self.first_row) * self.width;
-        let cells = self
-            .cells
-            .get_mut(start + columns.start..start + columns.end)
-            .unwrap_or_default();
-        for (cell, height) in cells.iter_mut().zip(heights) {
-            *cell = if *height < *cell { *height } else { *cell };
         }
     }
 }
@@ -218,12 +206,8 @@ struct Detect<'a> {
     found: bool,
 }
 
-impl Sink for Detect<'_> {
-    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
-        self.shaped(row, columns, |_| height);
-    }
-
-    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
+impl Detect<'_> {
+    fn each(&mut self, row: usize, columns: Range<usize>, heights: impl Iterator<Item = f32>) {
         if self.found {
             return;
         }
@@ -234,17 +218,21 @@ impl Sink for Detect<'_> {
             .unwrap_or_default();
         self.found = cells
             .iter()
-            .enumerate()
-            .any(|(k, cell)| *cell > height(k as f32) + RAPID_CUT_MM);
+            .zip(heights)
+            .any(|(cell, height)| *cell > height + RAPID_CUT_MM);
+    }
+}
+
+impl Sink for Detect<'_> {
+    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
+        self.each(row, columns, std::iter::repeat(height));
+    }
+
+    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
+        self.each(row, columns, (0..).map(|k| height(k as f32)));
     }
 
     fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
-        self.shaped(row, columns, |k| heights(k as usize)[0]);
-    }
-
-    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {
-        self.shaped(row, columns, |k| {
-            heights.get(k as usize).copied().unwrap_or(f32::INFINITY)
-        });
+        self.each(row, columns, (0..).step_by(GROUP).flat_map(heights));
     }
 }

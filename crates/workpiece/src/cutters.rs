@@ -107,31 +107,31 @@ pub(crate) struct Mark<'a> {
     pub mark: u8,
 }
 
-impl Sink for Mark<'_> {
-    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
-        self.shaped(row, columns, |_| height);
-    }
-
-    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
+impl Mark<'_> {
+    fn each(&mut self, row: usize, columns: Range<usize>, heights: impl Iterator<Item = f32>) {
         let start = (row - self.first_row) * self.width;
         let columns = start + columns.start..start + columns.end;
         let cells = self.cells.get(columns.clone()).unwrap_or_default();
         let marks = self.marks.get_mut(columns).unwrap_or_default();
-        for (k, (cell, mark)) in cells.iter().zip(marks).enumerate() {
-            if height(k as f32) + LEAST_CUT_MM < *cell {
+        for ((cell, mark), height) in cells.iter().zip(marks).zip(heights) {
+            if height + LEAST_CUT_MM < *cell {
                 *mark = self.mark;
             }
         }
     }
+}
 
-    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
-        self.shaped(row, columns, |k| heights(k as usize)[0]);
+impl Sink for Mark<'_> {
+    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
+        self.each(row, columns, std::iter::repeat(height));
     }
 
-    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]) {
-        self.shaped(row, columns, |k| {
-            heights.get(k as usize).copied().unwrap_or(f32::INFINITY)
-        });
+    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
+        self.each(row, columns, (0..).map(|k| height(k as f32)));
+    }
+
+    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
+        self.each(row, columns, (0..).step_by(GROUP).flat_map(heights));
     }
 }
 

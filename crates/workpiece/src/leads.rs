@@ -15,88 +15,129 @@ pub(crate) const FLATTEST: f32 = 1e-3;
 /// angle `p` from the track the point of the corner with the tangent `slope / cos p` is such a point:
 /// `(flat + corner * sin) * cos p` before the axis and `(flat + corner * sin) * sin p` beside it. The
 /// height that follows from the place has its minimum there, so a small error of the place does not
-/// count.
+/// count: heights are too high by less than 1e-4 of the radius, most of it where a flat ends on a faint slope.
+///
+/// The lead as part of the half chord of the tool has no steep place, up to the rim where both end. So these
+/// parts are kept at places across the track, as far apart as the columns of a row lie across it: in every row
+/// they are met one after the other, each row at another share between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Leads {
-    /// By equal steps of the half chord as part of the radius, which straightens the curve.
-    leads: [f32; Leads::COUNT + 1],
-    /// Bounds of the lead as part of the half chord.
+    /// From one side of the track to the other, and beyond.
+    parts: Vec<f32>,
+    /// What the height is over that of the axis between the ends of the track, at the same places; nothing for a
+    /// short one, nor where columns lie otherwise.
+    heights: Vec<f32>,
+    /// From place to place, and of the first one, mm across the track.
+    step: f32,
+    first: f32,
+    /// Places on a millimetre.
+    per_mm: f32,
+    pub spacing: Spacing,
+    /// Bounds of the parts.
     pub least: f32,
     pub most: f32,
-    radius: f32,
-    flat: f32,
+    bottom: [f32; 2],
     slope: f32,
     /// Whether some columns are surely touched between the ends of the track.
     pub is_long: bool,
-    /// By the steps of a row from column to column.
-    pub fan: Option<Fan>,
 }
 
-/// Leads across the whole track from one side to the other, as far apart as the columns of a row lie across the
-/// track: in every row they are met one after the other, each row at another place between them.
-#[derive(Clone, Debug)]
-pub(crate) struct Fan {
-    leads: Vec<f32>,
-    /// What the height is over that of the axis between the ends of the track; nothing for a short one.
-    heights: Vec<f32>,
-    /// From column to column across the track, mm.
-    step: f32,
-    /// So far from the track the heights are sure, mm: at the sides they change too fast.
-    pub beside: f32,
+/// How far apart the columns of a row lie across the track.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Spacing {
+    /// So little that parts lie on a straight line over so many columns.
+    Fine(usize),
+    /// As the places.
+    Equal,
+    /// So many places.
+    Coarse(usize),
 }
 
-impl Fan {
-    /// Columns beyond either side of the track.
-    const BEYOND: usize = 16;
-    /// Columns at either side whose heights are not sure.
-    const SIDE: f32 = 6.0;
-    /// Bounds of the step as part of the radius: a finer one takes too long to make, a coarser one loses the curve.
-    const STEPS: Range<f32> = 1.0 / 256.0..1.0 / 32.0;
+impl Spacing {
+    /// Steps as part of the radius at which places are as far apart as columns: finer ones take too long to reckon,
+    /// coarser ones lose the curve.
+    const EQUAL: Range<f32> = 1.0 / 256.0..1.0 / 32.0;
+    /// Steps at which a straight line is no worse than the places are.
+    const STRAIGHT: f32 = 1.0 / 64.0;
 
-    /// Where the columns of a row from `b` on lie: the place before the first one, and how far behind it that is.
-    #[inline]
-    fn place(&self, radius: f32, row: &Row) -> (usize, f32) {
-        let [_, b] = row.place(0.0);
-        // What is to the right of the track is to the left as well.
-        let b = if row.uy < 0.0 { -b } else { b };
-        let place = positive((b + radius) / self.step + Fan::BEYOND as f32);
-        let first = place as i32;
-        (first as usize, place - first as f32)
+    /// More groups of columns than a row has.
+    const MOST_GROUPS: usize = 1 << 24;
+
+    /// By the step from column to column as part of the radius.
+    fn of(step: f32) -> Spacing {
+        if step < Spacing::EQUAL.start {
+            let groups = (Spacing::STRAIGHT / (step * GROUP as f32)) as usize;
+            Spacing::Fine(GROUP * groups.clamp(1, Spacing::MOST_GROUPS))
+        } else if step < Spacing::EQUAL.end {
+            Spacing::Equal
+        } else {
+            Spacing::Coarse((step / Spacing::EQUAL.end).ceil() as usize)
+        }
+    }
+}
+
+/// Values at places for the columns of a row, each between two or four of them.
+pub(crate) struct Near<'a> {
+    values: &'a [f32],
+    /// How far behind a place each column lies.
+    share: f32,
+}
+
+impl Near<'_> {
+    /// Of columns from the number `k` on that lie as far apart as the places.
+    #[inline(always)]
+    pub fn equal(&self, k: usize) -> [f32; GROUP] {
+        let Some(near) = self.values.get(k..k + GROUP + 1) else {
+            return [0.0; GROUP];
+        };
+        let mut found = [0.0; GROUP];
+        for n in 0..GROUP {
+            found[n] = near[n] + (near[n + 1] - near[n]) * self.share;
+        }
+        found
     }
 
-    /// Heights between four places of the fan (Lagrange): in a row all with the same shares.
-    pub fn heights_of(&self, row: &Row) -> Curved<'_> {
-        let radius = self.beside + Fan::SIDE * self.step;
-        let (first, t) = self.place(radius, row);
-        let shares = [
+    /// The same, so many places apart.
+    #[inline(always)]
+    pub fn coarse(&self, k: usize, places: usize) -> [f32; GROUP] {
+        let mut found = [0.0; GROUP];
+        for (n, found) in found.iter_mut().enumerate() {
+            if let Some([near, next, ..]) = self.values.get((k + n) * places..) {
+                *found = near + (next - near) * self.share;
+            }
+        }
+        found
+    }
+
+    /// What each of four places counts for a column between the middle ones (Lagrange): in a row all have the same.
+    #[inline(always)]
+    pub fn weights(&self) -> [f32; 4] {
+        let t = self.share;
+        [
             -t * (t - 1.0) * (t - 2.0) / 6.0,
             (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
             -(t + 1.0) * t * (t - 2.0) / 2.0,
             (t + 1.0) * t * (t - 1.0) / 6.0,
-        ];
-        let near = self.heights.get(first.saturating_sub(1)..).unwrap_or_default();
-        Curved { near, shares }
+        ]
     }
-}
 
-/// Values of the fan for the columns of a row, between four neighbours each.
-pub(crate) struct Curved<'a> {
-    near: &'a [f32],
-    shares: [f32; 4],
-}
-
-impl Curved<'_> {
+    /// As [`Near::equal`] between four places. Where the flat ends the curvature jumps by `1 / corner`, which leaves
+    /// up to a thirtieth of that times the square of the step.
     #[inline(always)]
-    pub fn group(&self, k: usize) -> [f32; GROUP] {
-        let Some(near) = self.near.get(k..k + GROUP + 3) else {
-            return [f32::INFINITY; GROUP];
-        };
-        let s = self.shares;
-        std::array::from_fn(|n| near[n] * s[0] + near[n + 1] * s[1] + near[n + 2] * s[2] + near[n + 3] * s[3])
+    pub fn curved(&self, k: usize, weights: &[f32; 4]) -> [f32; GROUP] {
+        let mut found = [f32::INFINITY; GROUP];
+        if let Some(near) = self.values.get(k..k + GROUP + 3) {
+            for n in 0..GROUP {
+                let outer = near[n] * weights[0] + near[n + 3] * weights[3];
+                found[n] = outer + (near[n + 1] * weights[1] + near[n + 2] * weights[2]);
+            }
+        }
+        found
     }
 }
 
 /// The first and the last number of steps from `start` that lie in a range.
+#[inline(always)]
 pub(crate) fn between(start: f32, step: f32, range: Range<f32>) -> [f32; 2] {
     if step == 0.0 {
         let is_inside = range.contains(&start);
@@ -111,141 +152,195 @@ pub(crate) fn between(start: f32, step: f32, range: Range<f32>) -> [f32; 2] {
 }
 
 impl Leads {
-    const COUNT: usize = 64;
+    /// Columns beyond either side of the track.
+    const BEYOND: usize = 16;
+    /// Columns at either side whose heights between places are not sure: they change too fast there.
+    const SIDE: f32 = 6.0;
 
-    pub fn new([flat, corner]: [f32; 2], slope: f32, length: f32, step: f32) -> Leads {
-        let radius = flat + corner;
-        let points: [(f32, f32); Leads::COUNT + 1] = std::array::from_fn(|k| {
-            let cos = 1.0 - k as i32 as f32 / Leads::COUNT as f32;
-            let sine = slope / (slope * slope + cos * cos).sqrt();
-            let r = flat + corner * sine;
-            // radius² - (r sin p)², without its loss of digits at the rim.
-            let chord = positive((radius - r) * (radius + r) + r * r * cos * cos).sqrt() / radius;
-            (chord, r * cos)
-        });
-        let mut leads = Leads {
-            leads: [0.0; Leads::COUNT + 1],
-            least: f32::INFINITY,
-            most: 0.0,
-            radius,
-            flat,
-            slope,
-            is_long: false,
-            fan: None,
+    pub fn new(bottom: [f32; 2], slope: f32, length: f32, step: f32) -> Leads {
+        let radius = bottom[0] + bottom[1];
+        let spacing = Spacing::of(step.abs() / radius);
+        let (step, places) = match spacing {
+            Spacing::Fine(_) => (Spacing::STRAIGHT * radius, 1),
+            Spacing::Equal => (step.abs(), 1),
+            Spacing::Coarse(places) => (step.abs() / places as f32, places),
         };
-        let mut next = 1;
-        for (k, lead) in leads.leads.iter_mut().enumerate().rev() {
-            let chord = k as i32 as f32 / Leads::COUNT as f32;
-            while next < Leads::COUNT && points[next].0 > chord {
-                next += 1;
-            }
-            let (near, far) = (points[next - 1], points[next]);
-            let share = if near.0 > far.0 {
-                (near.0 - chord) / (near.0 - far.0)
-            } else {
-                0.0
-            };
-            *lead = near.1 + (far.1 - near.1) * least(positive(share), 1.0);
-            if k > 0 {
-                let part = *lead / (chord * radius);
-                leads.least = leads.least.min(part);
-                leads.most = leads.most.max(part);
-            }
+        let aside = (radius / step) as usize + Leads::BEYOND * places;
+        let curve = Curve::new(bottom, slope);
+        let (mut parts, [least, most]) = (vec![0.0; 2 * aside + 1], curve.bounds());
+        curve.fill(step, parts.get_mut(aside..).unwrap_or_default());
+        // What is to the right of the track is to the left as well.
+        for k in 0..aside {
+            parts[k] = parts[2 * aside - k];
         }
-        leads.is_long = length > 2.0 * leads.longest();
-        let step = step.abs();
-        if Fan::STEPS.contains(&(step / radius)) {
-            let count = (2.0 * radius / step) as usize + 2 * Fan::BEYOND;
-            let first = -radius - Fan::BEYOND as f32 * step;
-            let mut fan = vec![0.0; count];
-            leads.look_up(first, step, &mut fan);
-            let heights = (0..if leads.is_long { count } else { 0 }).zip(&fan);
-            leads.fan = Some(Fan {
-                heights: heights
-                    .map(|(k, lead)| leads.height(first + k as i32 as f32 * step, *lead))
-                    .collect(),
-                leads: fan,
-                step,
-                beside: radius - Fan::SIDE * step,
-            });
+        let mut leads = Leads {
+            parts,
+            heights: Vec::new(),
+            step,
+            first: -(aside as f32) * step,
+            per_mm: 1.0 / step,
+            spacing,
+            least,
+            most,
+            bottom,
+            slope,
+            is_long: length > 2.0 * most.max(FLATTEST) * radius,
+        };
+        if leads.is_long && spacing == Spacing::Equal {
+            let heights = (0..leads.parts.len()).zip(&leads.parts);
+            leads.heights = heights
+                .map(|(k, part)| leads.height(leads.first + k as i32 as f32 * step, *part))
+                .collect();
         }
         leads
     }
 
-    /// The leads of neighbouring columns of a row.
-    #[inline]
-    pub fn fill(&self, row: &Row, leads: &mut [f32]) {
-        let [_, b] = row.place(0.0);
-        let step = row.dx * row.uy;
-        let width = step.abs() * leads.len() as f32;
-        if width <= FLATTEST * self.radius {
-            let middle = b + 0.5 * step * leads.len() as f32;
-            let chord = positive((self.radius - middle) * (self.radius + middle)).sqrt();
-            leads.fill(self.at(chord / self.radius));
-            return;
-        }
-        if let Some(fan) = &self.fan {
-            let (first, share) = fan.place(self.radius, row);
-            if let Some([_, next @ ..]) = fan.leads.get(first..first + leads.len() + 1) {
-                let near = fan.leads.get(first..).unwrap_or_default();
-                for ((lead, near), next) in leads.iter_mut().zip(near).zip(next) {
-                    *lead = near + (next - near) * share;
-                }
-                // At the rim the leads change too fast for a straight line between places of the fan.
-                let count = leads.len();
-                let inside = between(b, step, -fan.beside..fan.beside);
-                let [start, end] = inside.map(|k| (k.max(0.0) as usize).min(count));
-                let (before, rest) = leads.split_at_mut(start);
-                self.look_up(b, step, before);
-                let behind = rest.get_mut(end.max(start) - start..).unwrap_or_default();
-                self.look_up(b + end.max(start) as f32 * step, step, behind);
-                return;
-            }
-        }
-        self.look_up(b, step, leads);
-    }
-
-    /// As [`Leads::fill`], without a fan.
-    fn look_up(&self, b: f32, step: f32, leads: &mut [f32]) {
-        let per_radius = 1.0 / self.radius;
-        for (k, lead) in leads.iter_mut().enumerate() {
-            let b = b + k as i32 as f32 * step;
-            *lead = positive((self.radius - b) * (self.radius + b)).sqrt() * per_radius;
-        }
-        for lead in leads {
-            *lead = self.at(*lead);
-        }
-    }
-
-    /// The lead at a place across the track.
-    #[inline]
-    fn beside(&self, b: f32) -> f32 {
-        self.at(positive((self.radius - b) * (self.radius + b)).sqrt() / self.radius)
+    fn radius(&self) -> f32 {
+        self.bottom[0] + self.bottom[1]
     }
 
     /// The greatest lead, mm.
     pub fn longest(&self) -> f32 {
-        self.most.max(FLATTEST) * self.radius
+        self.most.max(FLATTEST) * self.radius()
     }
 
-    /// As [`Leads::height`] without a lead at hand.
-    pub fn height_at(&self, b: f32) -> f32 {
-        self.height(b, self.beside(b))
+    /// So far from the track heights between places are sure, mm; nowhere when there are none.
+    pub fn beside(&self) -> Option<f32> {
+        (!self.heights.is_empty()).then(|| self.radius() - Leads::SIDE * self.step)
+    }
+
+    /// The place before one across the track, and how far behind it that is.
+    #[inline(always)]
+    fn place(&self, b: f32) -> (usize, f32) {
+        let place = positive((b - self.first) * self.per_mm);
+        // A cast that needs no care for what does not fit.
+        let first = place as i32;
+        (first as usize, place - first as f32)
+    }
+
+    /// The place of the first column of a row, seen from the side from which the columns come.
+    #[inline(always)]
+    fn start(&self, row: &Row) -> (usize, f32) {
+        let [_, b] = row.place(0.0);
+        self.place(if row.uy < 0.0 { -b } else { b })
+    }
+
+    /// The parts near the columns of a row.
+    #[inline(always)]
+    pub fn parts_of(&self, row: &Row) -> Near<'_> {
+        let (first, share) = self.start(row);
+        let values = self.parts.get(first..).unwrap_or_default();
+        Near { values, share }
+    }
+
+    /// The heights near the columns of a row: from the place before the first one on.
+    #[inline(always)]
+    pub fn heights_of(&self, row: &Row) -> Near<'_> {
+        let (first, share) = self.start(row);
+        let values = self.heights.get(first.saturating_sub(1)..).unwrap_or_default();
+        Near { values, share }
+    }
+
+    /// The part at the first of some columns of a row, and its change from column to column.
+    #[inline(always)]
+    pub fn line(&self, row: &Row, columns: usize) -> [f32; 2] {
+        let [part, end] = [0.0, columns as i32 as f32].map(|k| self.part(row.place(k)[1]));
+        [part, (end - part) / columns as i32 as f32]
+    }
+
+    #[inline(always)]
+    fn part(&self, b: f32) -> f32 {
+        let (first, share) = self.place(b);
+        match self.parts.get(first..) {
+            Some([near, next, ..]) => near + (next - near) * share,
+            _ => 0.0,
+        }
     }
 
     /// What the height between the ends of the track is over that of the axis at a place across the track.
-    fn height(&self, b: f32, lead: f32) -> f32 {
-        let rise = positive((b * b + lead * lead).sqrt() - self.flat);
-        let corner = self.radius - self.flat;
-        corner - positive((corner - rise) * (corner + rise)).sqrt() - self.slope * lead
+    pub fn height_at(&self, b: f32) -> f32 {
+        self.height(b, self.part(b))
     }
 
-    #[inline]
-    fn at(&self, chord: f32) -> f32 {
-        let place = chord * Leads::COUNT as f32;
-        // A cast that needs no care for what does not fit; the place is between 0 and COUNT.
-        let k = (place as i32 as usize).min(Leads::COUNT - 1);
-        let (a, b) = (self.leads[k], self.leads[k + 1]);
-        a + (b - a) * (place - k as f32)
+    fn height(&self, b: f32, part: f32) -> f32 {
+        let [flat, corner] = self.bottom;
+        let lead = part * half_chord(self.radius(), b);
+        let rise = positive((b * b + lead * lead).sqrt() - flat);
+        corner - positive((corner - rise) * (corner + rise)).sqrt() - self.slope * lead
+    }
+}
+
+#[inline(always)]
+pub(crate) fn half_chord(radius: f32, b: f32) -> f32 {
+    positive((radius - b) * (radius + b)).sqrt()
+}
+
+/// Points of the curve of the leads, from the track to its side.
+struct Curve {
+    /// Square of the distance from the track, mm².
+    squares: [f32; Curve::POINTS],
+    /// Lead as part of the half chord.
+    parts: [f32; Curve::POINTS],
+}
+
+impl Curve {
+    const POINTS: usize = 65;
+
+    fn new([flat, corner]: [f32; 2], slope: f32) -> Curve {
+        let radius = flat + corner;
+        let mut curve = Curve {
+            squares: [0.0; Curve::POINTS],
+            parts: [0.0; Curve::POINTS],
+        };
+        for (k, (square, part)) in curve.squares.iter_mut().zip(&mut curve.parts).enumerate() {
+            let cos = Curve::cosine(k, slope);
+            let tilt = (slope * slope + cos * cos).sqrt();
+            let r = flat + corner * slope / tilt;
+            *square = r * r * (1.0 - cos) * (1.0 + cos);
+            // r cos p by the root of radius² - (r sin p)², where radius - r = corner * (1 - sin) is so taken that
+            // no digits are lost at the rim, and both shortened by cos p.
+            let rest = corner * (radius + r) / (tilt * (tilt + slope));
+            *part = r / (r * r + rest).sqrt();
+        }
+        curve
+    }
+
+    /// Cosine of the angle from the track at the point number `k`, falling from 1 to 0.
+    ///
+    /// On a faint slope the tangent `slope / cos` rises in the last cosines alone. So half of the points go in equal
+    /// steps of the cosine, and the others, from the square root of the slope on, as that of the cotangent falls.
+    fn cosine(k: usize, slope: f32) -> f32 {
+        const HALF: usize = Curve::POINTS / 2;
+        let border = least(slope.sqrt(), 1.0);
+        let share = |k: usize| k as i32 as f32 / HALF as f32;
+        match k.checked_sub(HALF) {
+            None => 1.0 - share(k) * (1.0 - border),
+            Some(k) => border * border * (1.0 - share(k)) / (border + share(k)),
+        }
+    }
+
+    fn bounds(&self) -> [f32; 2] {
+        let bound = |of: fn(f32, f32) -> f32| self.parts.into_iter().reduce(of).unwrap_or_default();
+        [bound(f32::min), bound(f32::max)]
+    }
+
+    /// The parts at places from the track on.
+    fn fill(&self, step: f32, parts: &mut [f32]) {
+        let (mut next, mut rise) = (0, 0.0);
+        for (k, part) in parts.iter_mut().enumerate() {
+            let b = k as i32 as f32 * step;
+            let square = b * b;
+            while self.squares.get(next).is_some_and(|end| *end <= square) {
+                next += 1;
+                rise = match (self.squares.get(next - 1..), self.parts.get(next - 1..)) {
+                    (Some([from, to, ..]), Some([first, last, ..])) if to > from => {
+                        (last - first) / (to - from)
+                    }
+                    _ => 0.0,
+                };
+            }
+            let last = next.saturating_sub(1);
+            *part = self.parts[last] + rise * (square - self.squares[last]);
+        }
     }
 }

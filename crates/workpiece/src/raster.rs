@@ -8,8 +8,8 @@ use crate::grid::Grid;
 /// a batch can be shared out by bands of rows.
 pub(crate) const BAND_ROWS: usize = 32;
 
-/// Columns that are cut side by side: a register of the x86-64 base line.
-pub(crate) const GROUP: usize = 4;
+/// Columns that are cut side by side: a register of AVX2.
+pub(crate) const GROUP: usize = 8;
 
 /// Columns farther from the tool than any map is wide.
 const FAR: i64 = 1 << 29;
@@ -48,6 +48,7 @@ pub(crate) struct Raster {
 }
 
 impl Raster {
+    #[inline(always)]
     pub fn new([x, y]: [f64; 2], base: i64, grid: &Grid, rows: &Range<usize>) -> Raster {
         Raster {
             first_y: ((rows.start as f64 + 0.5) * grid.dy - y) as f32,
@@ -81,6 +82,7 @@ pub(crate) struct Borders {
 }
 
 impl Borders {
+    #[inline(always)]
     pub fn new(base: i64, grid: &Grid) -> Borders {
         Borders {
             base,
@@ -91,7 +93,7 @@ impl Borders {
     }
 
     /// The columns in the row number `k`.
-    #[inline]
+    #[inline(always)]
     pub fn row(&self, k: usize) -> Range<usize> {
         let (Some(start), Some(end)) = (self.start.get(k), self.end.get(k)) else {
             return 0..0;
@@ -104,6 +106,7 @@ impl Borders {
 
 /// Arithmetic of borders, all rows side by side.
 impl Borders {
+    #[inline(always)]
     pub fn nothing(&self) -> Borders {
         Borders {
             start: [0; BAND_ROWS],
@@ -113,6 +116,7 @@ impl Borders {
     }
 
     /// Only the columns of the map.
+    #[inline(always)]
     pub fn clip_to_map(&mut self) {
         let border = |of: i64| (of - self.base).clamp(-FAR, FAR) as i32;
         let (first, last) = (border(0), border(self.columns));
@@ -123,6 +127,7 @@ impl Borders {
     }
 
     /// Only the columns that are in `other` too, by `margin` within it.
+    #[inline(always)]
     pub fn clip(&mut self, other: &Borders, margin: i32) {
         for k in 0..BAND_ROWS {
             self.start[k] = self.start[k].max(other.start[k] + margin);
@@ -130,6 +135,7 @@ impl Borders {
         }
     }
 
+    #[inline(always)]
     pub fn widen(&mut self, margin: i32) {
         for k in 0..BAND_ROWS {
             let margin = if self.start[k] < self.end[k] { margin } else { 0 };
@@ -139,6 +145,7 @@ impl Borders {
     }
 
     /// The columns of both, and those between them.
+    #[inline(always)]
     pub fn join(&mut self, other: &Borders) {
         for k in 0..BAND_ROWS {
             let (start, end) = (self.start[k], self.end[k]);
@@ -155,6 +162,7 @@ impl Borders {
 
     /// What is left and right of the columns `but`; some columns of these as well, so that whole groups go
     /// without leftovers, which are slow. Nowhere under the tool, in `all`, does it harm to look at a column.
+    #[inline(always)]
     pub fn without(&self, but: &Borders, all: &Borders) -> [Borders; 2] {
         let whole = |length: i32| (length.max(0) + GROUP as i32 - 1) & !(GROUP as i32 - 1);
         let (mut left, mut right) = (*self, *self);

@@ -10,12 +10,9 @@
 use std::ops::Range;
 
 use crate::grid::Grid;
-use crate::leads::{FLATTEST, between};
+use crate::leads::{FLATTEST, Spacing, between, half_chord};
 use crate::raster::{BAND_ROWS, Borders, GROUP, Raster, Row, least, positive};
 use crate::track::{End, Sink, Track};
-
-/// Columns of a row whose heights are kept at once.
-const AT_ONCE: usize = 64;
 
 /// The half of an ellipse before a place on the track, and the strip behind it: `ahead` long, `beside` to
 /// either side, mm.
@@ -26,6 +23,7 @@ struct Cap {
 }
 
 impl Track {
+    #[inline(always)]
     pub(super) fn sweep_ball(
         &self,
         before: Option<&Track>,
@@ -48,6 +46,7 @@ impl Track {
         });
     }
 
+    #[inline(always)]
     pub(super) fn sweep_torus(
         &self,
         before: Option<&Track>,
@@ -57,54 +56,60 @@ impl Track {
     ) {
         let wanted = self.wanted(before, grid, &rows);
         for (k, row) in rows.enumerate() {
-            for columns in wanted.each_ref().map(|part| part.row(k)) {
+            for columns in wanted.iter().map(|part| part.row(k)) {
                 if columns.is_empty() {
                     continue;
                 }
-                let Some(middle) = self.middle(grid, row, &columns) else {
-                    self.sweep_ends(grid, row, columns, sink);
-                    continue;
-                };
-                self.sweep_ends(grid, row, columns.start..middle.start, sink);
-                self.sweep_ends(grid, row, middle.end..columns.end, sink);
+                let middle = self.middle(grid, row, &columns);
+                let middle = middle.unwrap_or(columns.end..columns.end);
+                for ends in [columns.start..middle.start, middle.end..columns.end] {
+                    self.sweep_ends(grid, row, ends, sink);
+                }
                 self.sweep_middle(grid, row, middle, sink);
             }
         }
     }
 
     /// Columns of a row that may be touched anywhere on the track.
-    #[inline]
-    fn sweep_ends(&self, grid: &Grid, row: usize, columns: Range<usize>, sink: &mut impl Sink) {
-        let mut heights = [0.0; AT_ONCE];
-        for first in columns.clone().step_by(AT_ONCE) {
-            let columns = first..columns.end.min(first + AT_ONCE);
-            let heights = heights.get_mut(..columns.len()).unwrap_or_default();
-            self.torus_heights(&self.row(grid, first, row), heights);
-            sink.listed(row, columns, heights);
+    #[inline(always)]
+    fn sweep_ends(&self, grid: &Grid, at: usize, columns: Range<usize>, sink: &mut impl Sink) {
+        if columns.is_empty() {
+            return;
         }
-    }
-
-    /// The heights of neighbouring columns of a row.
-    #[inline]
-    fn torus_heights(&self, row: &Row, heights: &mut [f32]) {
-        let [flat, corner] = [self.tool.flat(), self.tool.corner].map(|value| value as f32);
-        match &self.leads {
-            Some(leads) => leads.fill(row, heights),
-            None => heights.fill(0.0),
-        }
-        let low = row.low + corner;
-        // What is a lead becomes the height.
-        for (k, height) in heights.iter_mut().enumerate() {
-            let [a, b] = row.place(k as i32 as f32);
-            let s = least(positive(a - *height), row.length);
-            let e = a - s;
-            let rise = positive((b * b + e * e).sqrt() - flat);
-            *height = positive(low + row.slope * s - positive((corner - rise) * (corner + rise)).sqrt());
+        let row = &self.row(grid, columns.start, at);
+        let bottom = [self.tool.flat(), self.tool.corner].map(|value| value as f32);
+        let Some(leads) = &self.leads else {
+            return sink.grouped(at, columns, |k| end_group(row, bottom, k, [0.0; GROUP]));
+        };
+        match leads.spacing {
+            Spacing::Fine(most) => {
+                for first in columns.clone().step_by(most) {
+                    let columns = first..columns.end.min(first + most);
+                    let row = &self.row(grid, first, at);
+                    let [part, change] = leads.line(row, columns.len());
+                    sink.grouped(at, columns, |k| {
+                        let mut parts = [0.0; GROUP];
+                        for (n, part_here) in parts.iter_mut().enumerate() {
+                            *part_here = part + change * (k as i32 as f32 + n as i32 as f32);
+                        }
+                        end_group(row, bottom, k, parts)
+                    });
+                }
+            }
+            Spacing::Equal => {
+                let near = leads.parts_of(row);
+                sink.grouped(at, columns, |k| end_group(row, bottom, k, near.equal(k)));
+            }
+            Spacing::Coarse(places) => {
+                let near = leads.parts_of(row);
+                sink.grouped(at, columns, |k| end_group(row, bottom, k, near.coarse(k, places)));
+            }
         }
     }
 
     /// The columns of a row that are touched surely between the ends of the track: there the height is that of
     /// the axis and a share that depends on the place across the track alone.
+    #[inline(always)]
     fn middle(&self, grid: &Grid, row: usize, columns: &Range<usize>) -> Option<Range<usize>> {
         let leads = self.leads.as_ref().filter(|leads| leads.is_long)?;
         let Row { dx, ux, uy, .. } = self.row(grid, columns.start, row);
@@ -112,41 +117,43 @@ impl Track {
         let beside = if uy == 0.0 {
             self.tool.radius as f32
         } else {
-            leads.fan.as_ref()?.beside
+            leads.beside()?
         };
         let along = between(a, dx * ux, leads.longest()..self.length as f32);
         let across = between(b, dx * uy, -beside..beside);
         let first = along[0].max(across[0]).clamp(0.0, columns.len() as f32);
         let end = along[1].min(across[1]).clamp(first, columns.len() as f32);
-        Some(columns.start + first as usize..columns.start + end as usize)
+        // Whole groups before and behind it, since leftovers are slow.
+        let start = columns.start + (first as usize).next_multiple_of(GROUP);
+        let behind = (columns.len() - end as usize).next_multiple_of(GROUP);
+        let end = columns.end.saturating_sub(behind);
+        (end >= start + GROUP).then_some(start..end)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sweep_middle(&self, grid: &Grid, at: usize, columns: Range<usize>, sink: &mut impl Sink) {
         let Some(leads) = self.leads.as_ref().filter(|_| !columns.is_empty()) else {
             return;
         };
         let row = &self.row(grid, columns.start, at);
-        let heights = |k: usize, shares: [f32; GROUP]| middle_group(row, k, shares);
-        match &leads.fan {
-            Some(fan) => {
-                let found = fan.heights_of(row);
-                sink.grouped(at, columns, |k| heights(k, found.group(k)));
-            }
-            // Along the rows.
-            None => {
-                let share = leads.height_at(row.place(0.0)[1]);
-                sink.grouped(at, columns, |k| heights(k, [share; GROUP]));
-            }
+        if row.uy == 0.0 {
+            let share = leads.height_at(row.place(0.0)[1]);
+            sink.grouped(at, columns, |k| middle_group(row, k, [share; GROUP]));
+        } else {
+            let near = leads.heights_of(row);
+            let weights = near.weights();
+            sink.grouped(at, columns, |k| middle_group(row, k, near.curved(k, &weights)));
         }
     }
 
     /// Sine of the slope.
+    #[inline(always)]
     fn sine(&self) -> f64 {
         self.slope / (self.slope * self.slope + 1.0).sqrt()
     }
 
     /// A cap that holds the curve of the columns that are touched.
+    #[inline(always)]
     fn outer(&self) -> Cap {
         let radius = self.tool.radius;
         let share = match &self.leads {
@@ -160,6 +167,7 @@ impl Track {
     }
 
     /// Caps within that curve: either of them.
+    #[inline(always)]
     fn inner(&self) -> (Cap, Option<Cap>) {
         let radius = self.tool.radius;
         match &self.leads {
@@ -181,6 +189,7 @@ impl Track {
 
     /// The columns that the cap at a place of the track holds, in each of the rows, side by side as in
     /// [`Track::spans`].
+    #[inline(always)]
     fn behind(&self, place: f64, cap: Cap, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
         let raster = Raster::new([self.low[0], self.low[1]], base, grid, rows);
         let [ux, uy] = self.u.map(|u| u as f32);
@@ -219,6 +228,7 @@ impl Track {
     }
 
     /// The columns that are lowest behind the lower end: at least these.
+    #[inline(always)]
     fn behind_low(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
         let (first, second) = self.inner();
         let mut borders = self.behind(0.0, first, base, grid, rows);
@@ -238,11 +248,13 @@ impl Track {
     }
 
     /// The columns that are lowest behind the higher end: at most these.
+    #[inline(always)]
     fn behind_high(&self, base: i64, grid: &Grid, rows: &Range<usize>) -> Borders {
         self.behind(self.length, self.outer(), base, grid, rows)
     }
 
     /// The columns that the track has to look at, in two parts, in whole groups where there are so many.
+    #[inline(always)]
     fn wanted(&self, before: Option<&Track>, grid: &Grid, rows: &Range<usize>) -> [Borders; 2] {
         let mut all = self.spans(grid, rows).all;
         all.clip_to_map();
@@ -268,6 +280,21 @@ impl Track {
         }
         outer.without(&but, &all)
     }
+}
+
+/// Heights of neighbouring columns of a row under a corner radius, with the leads as parts of the half chord.
+#[inline(always)]
+fn end_group(row: &Row, [flat, corner]: [f32; 2], k: usize, parts: [f32; GROUP]) -> [f32; GROUP] {
+    let mut heights = [0.0; GROUP];
+    for n in 0..GROUP {
+        let [a, b] = row.place(k as i32 as f32 + n as i32 as f32);
+        let s = least(positive(a - parts[n] * half_chord(flat + corner, b)), row.length);
+        let e = a - s;
+        let rise = positive((b * b + e * e).sqrt() - flat);
+        let up = corner - positive((corner - rise) * (corner + rise)).sqrt();
+        heights[n] = positive(row.low + row.slope * s + up);
+    }
+    heights
 }
 
 /// Heights of neighbouring columns by what they are over the axis.

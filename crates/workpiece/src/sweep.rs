@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::grid::Grid;
 use crate::raster::{Row, least, positive};
 use crate::tool::Bottom;
@@ -12,6 +14,32 @@ use crate::track::{End, Sink, Track};
 
 /// Columns that are cut side by side: two registers of the x86-64 base line.
 const GROUP: usize = 8;
+
+/// The sweep of a round tool with the widest registers of the processor. Neither their width nor the processor
+/// changes a bit: nothing is summed across columns, and no product and sum are made one.
+struct Round<'a, S> {
+    track: &'a Track,
+    before: Option<&'a Track>,
+    grid: &'a Grid,
+    rows: Range<usize>,
+    sink: &'a mut S,
+}
+
+impl<S: Sink> WithSimd for Round<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<Registers: Simd>(self, _: Registers) {
+        match self.track.tool.bottom() {
+            Bottom::Ball => self
+                .track
+                .sweep_ball(self.before, self.grid, self.rows, self.sink),
+            _ => self
+                .track
+                .sweep_torus(self.before, self.grid, self.rows, self.sink),
+        }
+    }
+}
 
 impl Track {
     /// Presents all columns under the tool in the given rows, at most [`BAND_ROWS`](crate::raster::BAND_ROWS) of them. Where the track
@@ -22,8 +50,13 @@ impl Track {
         }
         match self.tool.bottom() {
             Bottom::Flat => self.sweep_flat(grid, rows, sink),
-            Bottom::Ball => self.sweep_ball(before, grid, rows, sink),
-            Bottom::Torus => self.sweep_torus(before, grid, rows, sink),
+            Bottom::Ball | Bottom::Torus => Arch::new().dispatch(Round {
+                track: self,
+                before,
+                grid,
+                rows,
+                sink,
+            }),
             Bottom::Cone => self.sweep_cone(grid, rows, sink, self.tool.cone as f32),
         }
     }

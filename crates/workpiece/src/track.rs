@@ -42,8 +42,6 @@ pub(crate) trait Sink {
     fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32);
     /// As [`Sink::shaped`] for [`GROUP`] columns at once from a distance on; what is beyond the last column is not used.
     fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]);
-    /// As [`Sink::level`] with a list of heights.
-    fn listed(&mut self, row: usize, columns: Range<usize>, heights: &[f32]);
 }
 
 impl Segment {
@@ -170,6 +168,7 @@ impl Track {
     ///
     /// At either side of the capsule the outermost disc is the one whose edge point has the track's
     /// normal there, or the end disc next to it.
+    #[inline(always)]
     pub(crate) fn spans(&self, grid: &Grid, rows: &Range<usize>) -> Spans {
         let base = (self.low[0] / grid.dx).floor() as i64;
         let raster = Raster::new([self.low[0], self.low[1]], base, grid, rows);
@@ -224,7 +223,7 @@ impl Track {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn row(&self, grid: &Grid, first: usize, row: usize) -> Row {
         let y = (row as f64 + 0.5) * grid.dy - self.low[1];
         Row {

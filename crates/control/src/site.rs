@@ -1,33 +1,44 @@
-//! What the functions of a program do when the path comes to them.
+//! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
-use bahn_path::{Axis, Function, ToolCall};
+use bahn_path::{Axis, Function, Position, ToolCall};
 
-use crate::axes::AxisUnit;
-use crate::feeder::Offsets;
+use crate::axes::OwnAxes;
 use crate::handshake::{Handshakes, Transfer};
+use crate::kinematics::Chain;
 use crate::markers::TOOL_AXIS;
+use crate::message::Messages;
+use crate::now::Now;
+use crate::positioning::Positioning;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
 
 /// Highest M function that goes to the PLC [000:7206].
 const M_MAX: u16 = 99;
 
-/// The parts of the control that functions act on.
-pub(crate) struct Target<'a> {
+/// Where a channel acts: its axes, its spindle and tools, its part of the PLC's memory, the messages. Who
+/// executes blocks or functions is given this, and nothing else of machine and channel.
+pub(crate) struct Site<'a> {
+    pub now: Now,
+    pub axes: OwnAxes<'a>,
     pub spindle: &'a mut SpindleUnit,
     pub tools: &'a mut Tools,
-    pub offsets: &'a mut Offsets,
+    pub chain: &'a mut Chain,
     pub handshakes: &'a mut Handshakes,
+    pub positioning: &'a mut Positioning,
     pub exchange: &'a mut Exchange,
-    pub axes: &'a mut [AxisUnit],
-    /// The program is in inches.
-    pub inch: bool,
+    pub messages: &'a mut Messages,
 }
 
-impl Target<'_> {
-    /// Outputs a function: its effect in the control, and what goes to the PLC.
-    pub fn output(&mut self, function: &Function) {
+impl Site<'_> {
+    /// The path position at which the axes stand.
+    pub fn here(&self) -> Position {
+        self.chain.to_path(&self.axes.machine_position())
+    }
+
+    /// Outputs a function: its effect in the control, and what goes to the PLC. FN19 says whether its program is
+    /// in inches.
+    pub fn output(&mut self, function: &Function, inch: bool) {
         match function {
             Function::M(code) => self.m(*code),
             Function::Tool(call) => self.tool(call),
@@ -40,7 +51,7 @@ impl Target<'_> {
             Function::OrientationAngle(angle) => self.spindle.set_cycle_angle(*angle, self.exchange),
             Function::Plc(values) => self.handshakes.push(Transfer::Plc {
                 values: values.map(|value| value.map(|value| value.round() as i32)),
-                inch: self.inch,
+                inch,
             }),
             // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
             // printing and the blank concern nothing that moves.
@@ -74,21 +85,39 @@ impl Target<'_> {
             // The call is refused as a whole.
             return;
         }
-        let before = (self.offsets.tool_length, self.offsets.tool_axis);
+        let before = (self.chain.offsets.tool_length, self.chain.offsets.tool_axis);
         self.tools.call(call, self.exchange, self.handshakes);
         self.tools.hold_geometry(before.0, before.1);
-        self.offsets.tool_axis = call.axis;
-        self.offsets.tool_length = call.shape.length;
+        self.chain.offsets.tool_axis = call.axis;
+        self.chain.offsets.tool_length = call.shape.length;
         let axes = [Axis::X, Axis::Y, Axis::Z];
         for (place, marker) in TOOL_AXIS.iter().enumerate() {
             let set = axes
                 .get(place)
                 .map_or(!axes.contains(&call.axis), |axis| *axis == call.axis);
-            if self.exchange.nc().bit(*marker) != set {
-                self.exchange.nc_set(*marker, set);
-            }
+            self.exchange.nc_put(*marker, set);
         }
         self.speed(call.speed_rpm, true);
+    }
+
+    /// Module 9150 without a program: the TOOL CALL is executed at once; a wrong one is passed over without a message
+    /// [000:16063-16075].
+    pub fn call_inserted_tool(&mut self) {
+        let Some(inserted) = self.tools.inserted_call.take() else {
+            return;
+        };
+        let Some(call) = self.tools.tool_call(&inserted, self.chain.offsets.tool_axis) else {
+            return;
+        };
+        let called = inserted.tool.is_some() && call.tool != 0;
+        if called && !self.tools.may_be_called(call.tool) {
+            return;
+        }
+        match inserted.tool {
+            Some(_) => self.tool(&call),
+            None if inserted.speed.is_some() => self.speed(call.speed_rpm, true),
+            None => {}
+        }
     }
 
     /// A speed: gear range or S code, by MP3010.

@@ -1,0 +1,311 @@
+//! One axis of the machine as the kernel sees it: its loop, its nominal position, what moves it.
+
+use bahn_motion::{Aim, PointToPoint};
+use bahn_parameters::AxisParameters;
+use bahn_path::Axis;
+use bahn_servo::{Axis as Servo, Gantry, Method, Timing};
+
+use crate::panel::Direction;
+
+/// So far below 0 an axis counts as being at 0, degrees.
+const TURN_TOLERANCE_DEG: f64 = 1e-3;
+
+/// A servo axis of the machine: 0 to 4 are those of the first channel by their index in markers and machine
+/// parameters. 5 is left to the spindle, which counts as the sixth axis in messages [000:3310-3318].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct AxisId(u8);
+
+impl AxisId {
+    /// Axes that a machine has at most, the place of the spindle among them.
+    pub const COUNT: u8 = 38;
+    pub(crate) const FIRST: AxisId = AxisId(0);
+    /// The spindle among the axes of messages.
+    pub(crate) const SPINDLE: AxisId = AxisId(5);
+
+    /// The axis of a number; `None` for the spindle's, and beyond the greatest.
+    pub fn new(number: u8) -> Option<AxisId> {
+        (number < AxisId::COUNT && number != AxisId::SPINDLE.0).then_some(AxisId(number))
+    }
+
+    /// Its number.
+    pub fn number(self) -> u8 {
+        self.0
+    }
+}
+
+/// What moves an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Mover {
+    /// Nothing: it is held where it is.
+    #[default]
+    None,
+    /// The path of a program.
+    Path,
+    /// Direction keys, handwheel, jog increment.
+    Manual,
+    /// The reference run.
+    Reference,
+    /// PLC positioning, return to the contour.
+    Positioning,
+    /// A PLC axis on command of modules.
+    Plc,
+    /// Free rotation.
+    Rotation,
+}
+
+/// The coupling of a slave.
+#[derive(Clone, Debug)]
+pub(crate) struct Coupling {
+    /// Place of its master.
+    pub master: usize,
+    pub gantry: Gantry,
+    /// The relation of the two at switch-on was taken.
+    pub switched_on: bool,
+}
+
+/// An axis.
+#[derive(Clone, Debug)]
+pub(crate) struct AxisUnit {
+    pub id: AxisId,
+    /// The channel and the index that its machine parameters are of.
+    pub home: (usize, usize),
+    /// The channel that moves it.
+    pub channel: usize,
+    /// Axis index of markers and machine parameters in that channel.
+    pub index: usize,
+    /// Its slot in that channel: its place in positions of the path.
+    pub axis: Axis,
+    pub parameters: AxisParameters,
+    pub servo: Servo,
+    /// Its reference mark was passed.
+    pub referenced: bool,
+    pub mover: Mover,
+    /// Nominal position at the end of the contour cycle, machine coordinates, mm or degrees.
+    pub nominal: f64,
+    /// Nominal speed, mm/s, with its sign.
+    pub speed: f64,
+    /// Generator of movements that are no path.
+    pub ptp: PointToPoint,
+    /// The feed is enabled.
+    pub enabled: bool,
+    /// Direction of the last movement.
+    pub direction: Direction,
+    /// Way since the last lubrication, mm.
+    pub travelled: f64,
+    /// Actual position of the last cycle, for the way travelled.
+    last_actual: f64,
+    /// Largest lag since power-on, mm.
+    pub max_lag: f64,
+    /// Status marker M2008 ff.: in position after a movement.
+    pub in_position: bool,
+    /// Software limits of the active traverse range with the AXIS LIMIT of MOD, least and greatest.
+    pub limits: [f64; 2],
+    /// At a software limit.
+    pub at_limit: Option<Direction>,
+    /// The feed enable was withdrawn while it moved: 0 V until the enable is back.
+    pub halted: bool,
+    /// Where an interrupted path has left it, when the actual position became the nominal one meanwhile.
+    pub left_at: Option<f64>,
+    /// A synchronized slave is led by its master.
+    pub coupling: Option<Coupling>,
+}
+
+impl AxisUnit {
+    pub fn new(id: AxisId, channel: usize, parameters: AxisParameters, timing: Timing) -> Option<AxisUnit> {
+        let axis = parameters.letter.filter(|_| parameters.active)?;
+        Some(AxisUnit {
+            id,
+            channel,
+            home: (channel, parameters.index.into()),
+            index: parameters.index.into(),
+            axis,
+            servo: Servo::new(parameters, timing),
+            referenced: false,
+            mover: Mover::None,
+            nominal: 0.0,
+            speed: 0.0,
+            ptp: PointToPoint::new(0.0),
+            enabled: false,
+            direction: Direction::Plus,
+            travelled: 0.0,
+            last_actual: 0.0,
+            max_lag: 0.0,
+            in_position: true,
+            limits: [f64::NEG_INFINITY, f64::INFINITY],
+            at_limit: None,
+            halted: false,
+            left_at: None,
+            coupling: None,
+            parameters,
+        })
+    }
+
+    /// A PLC axis is driven by modules only [000:4094-4116].
+    pub fn is_plc_axis(&self) -> bool {
+        self.parameters.plc_axis
+    }
+
+    /// It is moved for itself: neither by modules of the PLC nor by its master.
+    pub fn is_free(&self) -> bool {
+        !self.is_plc_axis() && self.coupling.is_none()
+    }
+
+    /// What the status display shows as lag: a slave shows how far it is from its master [000:4490].
+    pub fn lag_mm(&self) -> f64 {
+        match &self.coupling {
+            Some(coupling) => coupling.gantry.difference_mm(),
+            None => self.servo.lag_mm(),
+        }
+    }
+
+    /// The software limits are effective: the axis is referenced and shows no modulo value [000:3442]
+    /// [000:4570].
+    pub fn limited(&self) -> Option<[f64; 2]> {
+        (self.referenced && self.parameters.travel.modulo_deg.is_none()).then_some(self.limits)
+    }
+
+    /// Moves for a cycle, no path; no faster than the rapid traverse.
+    pub fn drive(&mut self, time_s: f64, aim: Aim, feed_mm_min: f64) {
+        let acceleration = self.parameters.motion.acceleration_m_s2;
+        let feed = feed_mm_min.min(self.parameters.motion.rapid_mm_min);
+        self.nominal = self.ptp.cycle(time_s, aim, feed, acceleration);
+        self.speed = self.ptp.speed_mm_s();
+    }
+
+    /// Takes the nominal position of the path.
+    pub fn follow(&mut self, position: f64, time_s: f64) {
+        self.speed = (position - self.nominal) / time_s;
+        self.nominal = position;
+        self.ptp = PointToPoint::moving(position, self.speed);
+    }
+
+    /// Takes over the nominal position of its master.
+    pub fn follow_master(&mut self, position: f64, speed_mm_s: f64) {
+        self.speed = speed_mm_s;
+        self.nominal = position;
+        self.ptp = PointToPoint::moving(position, speed_mm_s);
+    }
+
+    /// A clamped axis is wanted: its marker M2008 ff. falls, and the PLC is to close its loop [000:5407].
+    pub fn ask_to_unclamp(&mut self) {
+        if !self.servo.closed() {
+            self.in_position = false;
+        }
+    }
+
+    /// Stands at once where it is: the loop was opened, or the feed enable withdrawn.
+    pub fn stand(&mut self, position: f64) {
+        self.nominal = position;
+        self.speed = 0.0;
+        self.ptp = PointToPoint::new(position);
+    }
+
+    /// Makes the actual position the nominal one. On an interrupted path it is remembered where the path
+    /// left the axis: it goes on there.
+    pub fn transfer(&mut self) {
+        if self.mover == Mover::Path {
+            self.left_at.get_or_insert(self.nominal);
+        }
+        self.servo.transfer();
+        self.stand(self.servo.actual_mm());
+    }
+
+    /// Whether nothing is commanded to move.
+    pub fn stands(&self) -> bool {
+        self.speed == 0.0
+    }
+
+    /// Whether it is held at its place, or not held at all.
+    pub fn is_at_rest(&self) -> bool {
+        !self.servo.closed() || self.stands() && self.servo.in_position()
+    }
+
+    /// The method of positioning for a kind of operation [000:4721-4733]. PLC axes always run with lag, all others
+    /// with pre-control in rigid tapping [000:6122].
+    fn wanted_method(&self, automatic: bool, rigid: bool) -> Method {
+        let precontrol = &self.parameters.precontrol;
+        let wanted = if automatic {
+            precontrol.in_automatic
+        } else {
+            precontrol.in_manual
+        };
+        if (wanted || rigid) && !self.is_plc_axis() {
+            Method::Precontrol
+        } else {
+            Method::Lag
+        }
+    }
+
+    /// Chooses lag or feed pre-control for a kind of operation; an axis that moves changes when it has come
+    /// to a standstill (inferred). Whether it has the method.
+    pub fn choose_method(&mut self, automatic: bool, rigid: bool) -> bool {
+        if self.has_method(automatic, rigid) {
+            return true;
+        }
+        let wanted = self.wanted_method(automatic, rigid);
+        let rests = self.is_at_rest();
+        if rests {
+            self.servo.set_method(wanted);
+        }
+        rests
+    }
+
+    /// Whether it has the method for a kind of operation.
+    pub fn has_method(&self, automatic: bool, rigid: bool) -> bool {
+        self.servo.method() == self.wanted_method(automatic, rigid)
+    }
+
+    /// Says at which machine position a count is; nominal and actual position shift alike, by the value
+    /// returned.
+    pub fn set_datum(&mut self, count: i64, position_mm: f64) -> f64 {
+        let shift = self.servo.set_datum(count, position_mm);
+        self.nominal += shift;
+        self.last_actual += shift;
+        self.ptp = PointToPoint::moving(self.nominal, self.speed);
+        shift
+    }
+
+    /// Counts within one turn again (MP810), after it has turned farther; nothing moves.
+    pub fn wrap(&mut self) {
+        let Some(modulo) = self.parameters.travel.modulo_deg else {
+            return;
+        };
+        let turns = ((self.nominal + TURN_TOLERANCE_DEG) / modulo).floor();
+        if turns != 0.0 {
+            let shift = -turns * modulo;
+            self.servo.shift(shift);
+            self.nominal += shift;
+            self.last_actual += shift;
+            self.ptp = PointToPoint::moving(self.nominal, self.speed);
+        }
+    }
+
+    /// A position as it is shown: within one turn where MP810 says so [000:6468-6484].
+    pub fn shown(&self, position: f64) -> f64 {
+        match self.parameters.travel.modulo_deg {
+            Some(modulo) => position.rem_euclid(modulo),
+            None => position,
+        }
+    }
+
+    /// Goes over to changed machine parameters, as far as they take effect without a restart.
+    pub fn set_parameters(&mut self, parameters: AxisParameters) {
+        self.servo.set_parameters(parameters);
+        self.parameters = parameters;
+    }
+
+    /// Goes on by a contour cycle: counts the way, remembers direction and lag.
+    pub fn count(&mut self) {
+        let actual = self.servo.actual_mm();
+        self.travelled += (actual - self.last_actual).abs();
+        self.last_actual = actual;
+        if self.servo.closed() {
+            self.max_lag = self.max_lag.max(self.servo.lag_mm().abs());
+        }
+        if self.speed > 0.0 {
+            self.direction = Direction::Plus;
+        } else if self.speed < 0.0 {
+            self.direction = Direction::Minus;
+        }
+    }
+}

@@ -1,0 +1,693 @@
+//! A channel: operating mode, program run and all that belongs to it. It moves its axes and drives its spindle
+//! on the machine side, and has its own window into the memory of the PLC.
+
+use bahn_exchange::signal;
+use bahn_interpreter::Rules;
+use bahn_parameters::{MessageId, ParameterList};
+use bahn_path::{Axis, BlockRef};
+use bahn_servo::{OperatorInputs, Plant};
+
+use crate::axes::Axes;
+use crate::axis::{AxisId, AxisUnit};
+use crate::command::{Command, Mode};
+use crate::datums::Datums;
+use crate::desk::{self, Desk};
+use crate::feeder::Feeder;
+use crate::handshake::{Handshakes, Transfer};
+use crate::kinematics::{Chain, Kinematics};
+use crate::life::{self, LifeCount};
+use crate::loops::{self, Permission};
+use crate::machine::MachineSide;
+use crate::message::Message;
+use crate::now::Now;
+use crate::plc_link::PalletRequest;
+use crate::positioning::{Moving, Positioning};
+use crate::programs::Selection;
+use crate::reference;
+use crate::run::ProgramRun;
+use crate::setup::Remembered;
+use crate::site::Site;
+use crate::source::{Basis, Reading, Source};
+use crate::test_run::TestRun;
+use crate::tools::Tools;
+use crate::track::{Track, path_limits};
+use crate::{status, strobes, tables, upkeep};
+
+/// A channel.
+#[derive(Clone)]
+pub(crate) struct Channel {
+    number: usize,
+    /// Its own list of machine parameters; `None` for that of the machine.
+    own_list: Option<ParameterList>,
+    desk: Desk,
+    positioning: Positioning,
+    pub handshakes: Handshakes,
+    datums: Datums,
+    pub tools: Tools,
+    /// Of the tool in the spindle.
+    life: LifeCount,
+    pub run: ProgramRun,
+    test: Option<TestRun>,
+}
+
+/// What a channel is made of.
+pub(crate) struct Parts {
+    pub number: usize,
+    pub own_list: Option<ParameterList>,
+    pub kinematics: std::sync::Arc<dyn Kinematics>,
+    pub tools: Tools,
+    pub reading: Reading,
+}
+
+impl Channel {
+    /// A channel at power-on, with what was remembered.
+    pub fn new(parts: Parts, remembered: &Remembered, machine: &mut MachineSide) -> Channel {
+        let list = parts.own_list.as_ref().unwrap_or(machine.link.list());
+        let operation = list.operation_parameters();
+        let limits = path_limits(list, machine.axes.owned(parts.number));
+        let selection = Selection {
+            program: remembered.program.clone(),
+            ..Selection::default()
+        };
+        let source = Source::new(parts.reading, remembered.q.clone());
+        let mut channel = Channel {
+            number: parts.number,
+            own_list: parts.own_list,
+            positioning: Positioning::default(),
+            handshakes: Handshakes::default(),
+            datums: Datums::new(
+                remembered,
+                operation.datums.datum_for_each_range,
+                parts.kinematics,
+            ),
+            tools: parts.tools,
+            life: LifeCount::default(),
+            run: ProgramRun::new(selection, source, Track::new(&limits)),
+            test: None,
+            desk: Desk::new(operation),
+        };
+        channel.select_range(0, machine);
+        let exchange = machine.memory.of_mut(channel.number);
+        let axes = machine.axes.owned(channel.number);
+        status::preset(axes, channel.desk.rules().english, exchange);
+        machine.spindles.of(channel.number).preset(exchange);
+        channel
+    }
+
+    fn list<'a>(&'a self, machine: &'a MachineSide) -> &'a ParameterList {
+        self.own_list.as_ref().unwrap_or(machine.link.list())
+    }
+
+    pub fn desk(&self) -> &Desk {
+        &self.desk
+    }
+
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// Its kinematics with what is superimposed on it.
+    pub fn chain(&self) -> &Chain {
+        &self.datums.chain
+    }
+
+    /// What holds now.
+    fn now(&self, machine: &MachineSide) -> Now {
+        let mut axes = machine.axes.owned(self.number);
+        let fault = axes.any(|unit| unit.servo.fault().is_some());
+        let probe_mm_min = self.list(machine).probe().rapid_mm_min;
+        let nc = machine.memory.of(self.number).nc();
+        self.desk.now(nc, probe_mm_min, machine.facts(fault))
+    }
+
+    /// Its run, and what that acts on.
+    fn parts<'a>(&'a mut self, machine: &'a mut MachineSide) -> (&'a mut ProgramRun, Site<'a>, Basis<'a>) {
+        let now = self.now(machine);
+        let site = Site {
+            now,
+            axes: machine.axes.of(self.number),
+            spindle: machine.spindles.of_mut(self.number),
+            tools: &mut self.tools,
+            chain: &mut self.datums.chain,
+            handshakes: &mut self.handshakes,
+            positioning: &mut self.positioning,
+            exchange: machine.memory.of_mut(self.number),
+            messages: &mut machine.messages,
+        };
+        let basis = Basis {
+            list: self.own_list.as_ref().unwrap_or(machine.link.list()),
+            link: &machine.link,
+        };
+        (&mut self.run, site, basis)
+    }
+
+    /// Shows a message at the block that is executed.
+    fn show(&self, message: Message, flashing: bool, machine: &mut MachineSide) {
+        machine.messages.show(message, flashing, self.run.running_block());
+    }
+
+    /// NC stop, or anything that stops like it.
+    pub fn stop(&mut self) {
+        self.run.stop();
+        self.desk.stop();
+    }
+
+    /// The control voltage has come: with the first time the control asks for the reference run.
+    pub fn loops_closed(&mut self, axes: &mut Axes) {
+        self.desk.ask_for_reference(&mut axes.of(self.number));
+    }
+
+    /// The loops are opened: nothing moves on.
+    pub fn loops_opened(&mut self, machine: &mut MachineSide) {
+        self.run.part_thread();
+        machine.spindles.of_mut(self.number).open();
+        self.desk.let_go();
+        self.positioning.stop();
+        self.run.track.path.halt();
+    }
+
+    /// What the PLC positions ends with an EMERGENCY STOP; the strobes are reset [000:4013-4019]. Whether the axes
+    /// stand.
+    pub fn end_for_emergency(&mut self, machine: &mut MachineSide) -> bool {
+        self.positioning.end_all(machine.memory.of_mut(self.number));
+        self.positioning.stop();
+        let (run, site, _) = self.parts(machine);
+        run.axes_stand(&site)
+    }
+
+    /// Loops, feed enable and faults of a contour cycle.
+    pub fn follow_loops(&mut self, monitoring_off: bool, machine: &mut MachineSide) {
+        let permission = Permission {
+            loops_closed: machine.loops_closed,
+            feed_enable: self.desk.panel().feed_enable,
+            monitoring_off,
+        };
+        let nc = machine.memory.of(self.number).nc();
+        loops::follow(&mut machine.axes.of(self.number), nc, permission);
+        if nc.bit(signal::NC_STOP_AND_OPEN_LOOPS) {
+            self.run.part_thread();
+            machine.spindles.of_mut(self.number).open();
+            self.stop();
+        }
+    }
+
+    /// New faults of loops and spindle stop the channel.
+    pub fn take_faults(&mut self, machine: &mut MachineSide) {
+        let block = self.run.running_block();
+        let axes = machine.axes.of(self.number);
+        let spindle = machine.spindles.of(self.number);
+        if loops::show_faults(&axes, spindle, &mut machine.messages, block) {
+            self.run.part_thread();
+            self.stop();
+            // An error with stop ends what the PLC positions [000:4013-4019].
+            self.positioning.end_all(machine.memory.of_mut(self.number));
+        }
+    }
+
+    /// Looks at the stylus, and takes the position of the axes when it is deflected; once in each servo step.
+    pub fn watch_probe(&mut self, machine: &MachineSide, plant: &mut dyn Plant) {
+        let nc = machine.memory.of(self.number).nc();
+        let guards = nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION)
+            && !self
+                .own_list
+                .as_ref()
+                .unwrap_or(machine.link.list())
+                .probe()
+                .on_standby;
+        let axes = || machine.axes.owned(self.number);
+        self.desk
+            .watch_stylus(plant, guards, &self.run.probe, || axes().all(AxisUnit::stands));
+        self.run.probe.watch(plant, axes(), &self.datums.chain);
+    }
+
+    /// Finds the nominal positions of its axes for the end of the contour cycle. NC start is kept as long as the
+    /// operating mode waits for axes to come to a standstill.
+    pub fn move_axes(&mut self, machine: &mut MachineSide, plant: &mut dyn Plant) {
+        let now = self.now(machine);
+        let handwheel = plant.operator().handwheel_count;
+        let mut axes = machine.axes.of(self.number);
+        reference::count_display_axes(&mut axes);
+        self.desk.count_handwheel(handwheel);
+        let automatic = now.mode.is_automatic();
+        let rigid = self.run.taps_rigidly();
+        let ready = axes.choose_methods(automatic && !self.desk.runs_reference(), rigid);
+        // What the mode before moved comes to a standstill first.
+        let waits = automatic && !ready && !self.run.is_active();
+        if !waits {
+            self.move_by_mode(handwheel, &now, machine, plant);
+        }
+        self.move_for_plc(&now, machine);
+        machine.axes.of(self.number).slow_down(now.time_s);
+        if !waits {
+            self.desk.forget_start();
+        }
+    }
+
+    fn move_by_mode(&mut self, handwheel: i64, now: &Now, machine: &mut MachineSide, plant: &mut dyn Plant) {
+        match now.mode {
+            Mode::Manual | Mode::Handwheel => {
+                if now.start && !now.stop {
+                    self.output_entered(machine);
+                }
+                self.move_manually(handwheel, now, machine);
+            }
+            Mode::Reference => {
+                let mut axes = machine.axes.of(self.number);
+                let nc = machine.memory.of(self.number).nc();
+                self.desk.move_reference(&mut axes, nc, now);
+            }
+            Mode::Mdi | Mode::SingleBlock | Mode::FullSequence => {
+                let nc = machine.memory.of(self.number).nc();
+                let by_hand = self.run.is_operated_manually(nc);
+                if by_hand && !self.run.track.path.is_coupled() {
+                    self.move_manually(handwheel, now, machine);
+                } else {
+                    if now.stop {
+                        self.stop();
+                    } else if now.start {
+                        let (run, mut site, _) = self.parts(machine);
+                        run.start(&mut site);
+                    }
+                    let (run, mut site, _) = self.parts(machine);
+                    run.moves(&mut site, plant);
+                }
+                let (run, mut site, _) = self.parts(machine);
+                run.move_back(&mut site);
+            }
+        }
+    }
+
+    fn output_entered(&mut self, machine: &mut MachineSide) {
+        let mut manual = self.desk.manual;
+        let (_, mut site, _) = self.parts(machine);
+        manual.output_entered(&mut site);
+        self.desk.manual = manual;
+    }
+
+    fn move_manually(&mut self, handwheel: i64, now: &Now, machine: &mut MachineSide) {
+        let mut axes = machine.axes.of(self.number);
+        let nc = machine.memory.of(self.number).nc();
+        let block = self.run.running_block();
+        self.desk
+            .move_by_hand(handwheel, &mut axes, nc, &mut machine.messages, block, now);
+    }
+
+    /// Moves what the PLC commands.
+    fn move_for_plc(&mut self, now: &Now, machine: &mut MachineSide) {
+        let moving = Moving {
+            now: *now,
+            active: self.run.is_active(),
+            restores: self.run.restores(),
+        };
+        let exchange = machine.memory.of_mut(self.number);
+        let mut axes = machine.axes.of(self.number);
+        self.positioning.moves(&mut axes, exchange, &moving);
+        if self.number == 0 {
+            // Modules know the axes of the first channel.
+            let statuses = &mut machine.link.plc_axes;
+            self.positioning.move_plc_axes(&mut axes, statuses, now);
+        }
+        self.positioning.move_rotation(&mut axes, exchange.nc(), now);
+    }
+
+    /// The loops are closed, but nothing is moved: NC start is not kept.
+    pub fn forget_start(&mut self) {
+        self.desk.forget_start();
+    }
+
+    /// Without a run axes that stand count within one turn, and nothing is left to go back to.
+    pub fn settle(&mut self, axes: &mut Axes) {
+        if !self.run.progress().is_on_its_way() {
+            axes.of(self.number).settle();
+        }
+    }
+
+    /// Tools, handshakes and spindle of a contour cycle. `keeps`: what changes must be stored before its strobe
+    /// is reset.
+    pub fn follow_plc(&mut self, keeps: bool, machine: &mut MachineSide) {
+        let exchange = machine.memory.of_mut(self.number);
+        let runs = self.run.is_active() && matches!(self.desk.mode(), Mode::SingleBlock | Mode::FullSequence);
+        let counting = life::Counting {
+            cycle_us: machine.timing.contour_us(),
+            runs,
+        };
+        let (life, files) = (&mut self.life, &mut machine.link.files);
+        let changed = life.follow(counting, &mut self.tools, &self.handshakes, exchange, files);
+        machine.unsaved |= changed;
+        let waits = keeps && machine.unsaved;
+        if !waits {
+            self.tools.end_geometry_strobe(exchange);
+        }
+        let acknowledged = self.handshakes.cycle(exchange, !waits);
+        let spindle = machine.spindles.of_mut(self.number);
+        if let Some(Transfer::Gear { .. }) = acknowledged {
+            spindle.gear_changed();
+        }
+        let (run, mut site, _) = self.parts(machine);
+        run.follow_tapping(&mut site);
+        self.follow_spindle(machine);
+        upkeep::lubricate(&machine.axes.of(self.number), machine.memory.of_mut(self.number));
+    }
+
+    fn follow_spindle(&mut self, machine: &mut MachineSide) {
+        let exchange = machine.memory.of_mut(self.number);
+        let spindle = machine.spindles.of_mut(self.number);
+        spindle.set_feed(self.run.track.speed_mm_s() * 60.0);
+        // In cycle 2 the override of the spindle is off [003:5032].
+        let percent = if self.run.taps_floating() {
+            100.0
+        } else {
+            self.desk.spindle_percent()
+        };
+        spindle.cycle(exchange, percent);
+        if spindle.take_wrong_speed() {
+            self.show(Message::Plain(MessageId::WrongRpm), false, machine);
+            let (run, mut site, _) = self.parts(machine);
+            if !run.refuse_block(&mut site) {
+                self.stop();
+            }
+        }
+    }
+
+    /// Brings markers and words up to date before a scan.
+    pub fn publish(&mut self, operator: &OperatorInputs, machine: &mut MachineSide) {
+        let exchange = machine.memory.of_mut(self.number);
+        self.desk.publish(operator, exchange);
+        status::axes(self.desk.mode(), &mut machine.axes.of(self.number), exchange);
+        status::run(&self.run, !self.handshakes.is_idle(), exchange);
+        machine.spindles.of(self.number).publish(exchange);
+    }
+
+    /// What modules read of the channel in the next scan.
+    pub fn inform(&self, machine: &mut MachineSide) {
+        let (run, chain) = (&self.run, &self.datums.chain);
+        let (axes, link) = (&machine.axes, &mut machine.link);
+        let spindle = machine.spindles.of(self.number);
+        status::coordinates(
+            axes.owned(self.number),
+            |unit| {
+                let offset = chain.offsets.of(unit.axis);
+                [
+                    unit.servo.actual_mm() - offset,
+                    unit.nominal - offset,
+                    unit.servo.actual_mm(),
+                    unit.servo.lag_mm(),
+                    run.distance_to_go(unit, chain),
+                ]
+            },
+            link,
+        );
+        let executed = run.selection.program.as_deref();
+        let tested = self.test.as_ref().map(TestRun::program);
+        status::items(self.desk.mode(), &self.desk.manual, executed, tested, link);
+        link.orienting = spindle.is_orienting();
+        link.spindle = spindle.position();
+    }
+
+    /// What the PLC asked for in the scan that has ended.
+    pub fn after_scan(&mut self, machine: &mut MachineSide) {
+        if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
+            self.show(Message::PlcMarkers(code), true, machine);
+        }
+    }
+
+    /// Takes the strobes that the PLC set in a scan, and resets them.
+    pub fn take_strobes(&mut self, machine: &mut MachineSide) {
+        let now = self.now(machine);
+        let exchange = machine.memory.of_mut(self.number);
+        let wanted = self.positioning.is_wanted(exchange.nc());
+        if strobes::is_transfer_doubly_used(wanted, exchange.nc()) {
+            self.show(Message::PlcMarkers(*b"1R"), true, machine);
+            return;
+        }
+        let mut axes = machine.axes.of(self.number);
+        let running = self.run.progress().is_running();
+        let strobe = self.handshakes.strobe_is_set();
+        let keys = now.axis_keys.iter().any(Option::is_some);
+        let free = (!running || strobe) && !keys && !now.stop;
+        let most = usize::from(machine.model.limits().plc_positioning_axes_max);
+        self.positioning.take_strobes(exchange.nc(), free, most, &axes);
+        self.positioning.take_free_rotation(exchange);
+        if let Some(range) = strobes::range(exchange) {
+            if let Some(range) = range {
+                self.datums.select_range(range, &mut axes);
+            }
+            self.run.track.range_changed = self.run.is_active();
+        }
+        if let Some(correction) = strobes::datum_correction(strobe || !running, exchange) {
+            self.datums.correct(correction, &axes);
+        }
+        if let Some((number, value)) = strobes::q_parameter(exchange) {
+            self.run.set_q(number, value);
+        }
+        strobes::take_actual_values(now.mode, &mut axes, exchange.nc());
+        if let Some(command) = strobes::key(exchange.nc()) {
+            let done = command.is_some_and(|command| self.execute(command, machine));
+            strobes::end_key(done, machine.memory.of_mut(self.number));
+        }
+        let exchange = machine.memory.of_mut(self.number);
+        let mut axes = machine.axes.of(self.number);
+        strobes::take_lubrication(&mut axes, exchange);
+        strobes::take_lag_tracking(machine.plc_parameters.tracking_step_mm, &mut axes, exchange.nc());
+        self.tools
+            .take_geometry_strobe(exchange, &mut self.datums.chain.offsets);
+        let spindle = machine.spindles.of_mut(self.number);
+        if let Some(code) = spindle.take_markers(exchange) {
+            self.show(Message::PlcMarkers(code), true, machine);
+        }
+    }
+
+    /// What modules asked for in a scan of the channel, which they take for the only one.
+    pub fn take_module_requests(&mut self, machine: &mut MachineSide) {
+        let exchange = machine.memory.of_mut(self.number);
+        let spindle = machine.spindles.of_mut(self.number);
+        let requests = &mut machine.link.requests;
+        self.positioning.take_requests(requests);
+        if let Some(orientation) = requests.orientation.take() {
+            spindle.orient(orientation, exchange);
+        }
+        if let Some(call) = requests.tool_call.take() {
+            self.tools.inserted_call = Some(call);
+        }
+        if let Some(volts) = requests.spindle_volts.take() {
+            spindle.set_plc_volts(volts);
+        }
+        self.desk.manual.take_status(std::mem::take(&mut requests.status));
+        if let Some(request) = requests.pallet.take() {
+            self.select_pallet(request, machine);
+        }
+        let requests = &mut machine.link.requests;
+        if std::mem::take(&mut requests.geometry) {
+            tables::initialise_geometry(
+                &mut self.tools,
+                &machine.link.files,
+                &mut self.datums.chain.offsets,
+            );
+            machine.loaded_datums.changed = true;
+            machine.unsaved = true;
+        }
+    }
+
+    /// Module 9090: program and datum table are selected, and are so after power-off.
+    fn select_pallet(&mut self, request: PalletRequest, machine: &mut MachineSide) {
+        if !self.execute(Command::Select(request.program), machine) {
+            return;
+        }
+        let pallet = &mut machine.link.pallet;
+        pallet.line = Some(request.line);
+        if request.datum_table.is_some() {
+            pallet.datum_table = request.datum_table;
+        }
+        machine.unsaved = true;
+    }
+
+    /// Changed machine parameters take effect now, in a program that runs with the blocks that are not yet read;
+    /// those of the path with the next run.
+    pub fn take_parameters(&mut self, machine: &mut MachineSide) {
+        let list = self.own_list.as_ref().unwrap_or(machine.link.list());
+        if let Some(interpreter) = self.run.source.interpreter_mut() {
+            interpreter.set_rules(Rules::of(list));
+        }
+        let operation = list.operation_parameters();
+        self.datums.each_range = operation.datums.datum_for_each_range;
+        self.desk.set_rules(operation);
+        let spindle = machine.spindles.of_mut(self.number);
+        spindle.set_parameters(list.spindle_parameters());
+        let mut axes = machine.axes.of(self.number);
+        axes.set_parameters(list, self.datums.range());
+        let intervals = axes.iter().map(|unit| unit.parameters.output.offset_interval_s);
+        let interval = intervals.last().unwrap_or(0.0);
+        machine.offsets.set_interval(interval);
+        self.run.track.limits_changed = true;
+    }
+
+    /// Its axes are others from now on: the path has their limits, the datum their corrections.
+    pub fn take_axes(&mut self, machine: &mut MachineSide) {
+        self.run.track.limits_changed = true;
+        self.select_range(self.datums.range(), machine);
+    }
+
+    /// An axis may leave it: no program is on its way, and the axis stands free.
+    pub fn may_hand_over(&self, id: AxisId, axes: &mut Axes) -> bool {
+        !self.run.is_active() && axes.of(self.number).may_leave(id)
+    }
+
+    fn select_range(&mut self, range: usize, machine: &mut MachineSide) {
+        let mut axes = machine.axes.of(self.number);
+        self.datums.select_range(range, &mut axes);
+    }
+
+    /// Interprets and plans ahead; may allocate. `datums_changed`: blocks that are read from now on find other
+    /// datums in the tables.
+    pub fn prepare(&mut self, datums_changed: bool, machine: &mut MachineSide) {
+        if self.run.track.limits_changed && !self.run.is_active() {
+            let list = self.own_list.as_ref().unwrap_or(machine.link.list());
+            let limits = path_limits(list, machine.axes.owned(self.number));
+            self.run.track.take_limits(&limits);
+        }
+        let rules = self.desk.rules().restart;
+        let (run, mut site, basis) = self.parts(machine);
+        run.prepare_restore(&rules, &mut site);
+        run.close(&mut site, &basis);
+        if std::mem::take(&mut site.tools.states_changed)
+            && let Some(interpreter) = run.source.interpreter_mut()
+        {
+            interpreter.set_barred_tools(site.tools.barred());
+        }
+        if datums_changed && let Some(interpreter) = run.source.interpreter_mut() {
+            interpreter.set_datum_table(basis.link.datums(basis.list));
+        }
+        run.prepare(&mut site, &basis);
+        if let Some(test) = &mut self.test {
+            let axes = machine.axes.owned(self.number);
+            test.prepare(machine.spindles.of(self.number), axes);
+        }
+    }
+
+    /// The programs that are read: that of the run, and that of a test run.
+    pub fn feeders(&mut self) -> impl Iterator<Item = &mut Feeder> {
+        let run = self.run.source.feeder_mut().into_iter();
+        run.chain(self.test.as_mut().map(TestRun::feeder))
+    }
+
+    /// Executes a command; `false` when it is not possible now.
+    pub fn execute(&mut self, command: Command, machine: &mut MachineSide) -> bool {
+        let rules = self.desk.rules().restart;
+        match command {
+            Command::Mode(mode) => {
+                let progress = self.run.progress();
+                let mut axes = machine.axes.of(self.number);
+                self.desk.choose_mode(mode, progress, &mut axes)
+            }
+            Command::Ce => machine.clear_message(),
+            Command::InternalStop => {
+                let (run, mut site, _) = self.parts(machine);
+                run.internal_stop(&mut site)
+            }
+            Command::Select(name) => {
+                let (run, mut site, basis) = self.parts(machine);
+                run.select(name, &mut site, &basis)
+            }
+            Command::Goto(block) => self.run.goto(block),
+            Command::Mdi(blocks) => self.run.set_mdi(blocks),
+            Command::MFunction(m) => self.desk.enter(Some(m), None),
+            Command::Speed(rpm) => self.desk.enter(None, Some(rpm)),
+            Command::Datum(axis, value) => self.set_datum(axis, value, machine),
+            Command::JogIncrement(mm) => {
+                self.desk.manual.increment = mm;
+                true
+            }
+            Command::ToolLife(tool, minutes) => {
+                machine.unsaved = true;
+                let done = self.tools.set_life(tool, minutes);
+                if done {
+                    life::write_life(&mut machine.link.files, tool, minutes);
+                }
+                done
+            }
+            Command::Handwheel(axis, factor) => {
+                let axes = machine.axes.of(self.number);
+                let index = axes.at(axis).map(|unit| unit.index);
+                index.is_some_and(|index| {
+                    self.desk.manual.choose_handwheel(index, factor);
+                    true
+                })
+            }
+            Command::ManualOperation => {
+                let (run, mut site, _) = self.parts(machine);
+                run.manual_operation(&rules, &mut site)
+            }
+            Command::RestorePosition => {
+                let (run, mut site, _) = self.parts(machine);
+                run.restore_position(&mut site)
+            }
+            Command::RestoreAt(block) => {
+                let (run, mut site, basis) = self.parts(machine);
+                run.restore_at(block, &rules, &mut site, &basis)
+            }
+            Command::Code(code) => {
+                let exchange = machine.memory.of_mut(self.number);
+                machine.offsets.shown |= desk::enter_code(code, exchange);
+                true
+            }
+            Command::Key(code) => {
+                desk::press_key(code, machine.memory.of_mut(self.number));
+                true
+            }
+            Command::Test(name) => {
+                let (run, site, basis) = self.parts(machine);
+                let feeder = run.test_feeder(&name, &site, &basis);
+                feeder.is_some_and(|feeder| {
+                    self.test = Some(TestRun::new(&name, feeder));
+                    true
+                })
+            }
+            Command::EndTest => {
+                self.test = None;
+                true
+            }
+            Command::OffsetAdjustment(adjust) => {
+                let done = machine.offsets.answer(adjust, &mut machine.axes);
+                machine.unsaved |= done;
+                done
+            }
+        }
+    }
+
+    /// DATUM SET: the actual position becomes a value.
+    fn set_datum(&mut self, axis: Axis, value: f64, machine: &mut MachineSide) -> bool {
+        let axes = machine.axes.of(self.number);
+        let done = self.desk.is_by_hand() && self.datums.set(axis, value, &axes);
+        machine.unsaved |= done;
+        done
+    }
+
+    /// The test run that was started last.
+    pub fn test(&self) -> Option<&TestRun> {
+        self.test.as_ref()
+    }
+
+    /// What survives power-off of the channel: datums, tool, Q parameters, program.
+    pub fn remember(&self) -> Remembered {
+        let offsets = (
+            self.datums.chain.offsets.tool_length,
+            self.datums.chain.offsets.tool_axis,
+        );
+        let (tool_length, tool_axis) = self.tools.held_geometry().unwrap_or(offsets);
+        Remembered {
+            datums: self.datums.points().map(crate::setup::Position0),
+            tool: self.tools.number,
+            tool_length,
+            tool_axis: Some(tool_axis),
+            pockets: self.tools.moved(),
+            q: self.run.q_values(),
+            program: self.run.selection.program.clone(),
+            ..Remembered::default()
+        }
+    }
+
+    /// The block that is executed, while a run is on.
+    pub fn running_block(&self) -> Option<BlockRef> {
+        self.run.running_block()
+    }
+}

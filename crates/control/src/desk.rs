@@ -1,0 +1,296 @@
+//! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
+
+use bahn_exchange::{Exchange, Image, signal};
+use bahn_parameters::OperationParameters;
+use bahn_path::BlockRef;
+use bahn_servo::{OperatorInputs, Plant};
+
+use crate::axes::OwnAxes;
+use crate::axis::Mover;
+use crate::command::Mode;
+use crate::manual::{Manual, Reach};
+use crate::message::Messages;
+use crate::now::{Facts, Now};
+use crate::overrides::Override;
+use crate::panel::{Panel, PlcFaultCode};
+use crate::probing::{Guarded, Probe, Stylus};
+use crate::progress::{Progress, RunState};
+use crate::reference::ReferenceRun;
+use crate::status;
+
+/// Code numbers [000:6928-6947].
+const ERASE_MEMORY: u32 = 531_210;
+const OFFSET_ADJUSTMENT: u32 = 75_368;
+const CODE_84159: u32 = 84_159;
+/// Marker of a key = code + this [000:7326-7404].
+const KEY_MARKER: u16 = 2796;
+
+/// The operator's side of a channel.
+#[derive(Clone)]
+pub(crate) struct Desk {
+    rules: OperationParameters,
+    mode: Mode,
+    /// NC start was pressed and not yet used.
+    start_pressed: bool,
+    panel: Panel,
+    feed_override: Override,
+    spindle_override: Override,
+    pub manual: Manual,
+    reference: ReferenceRun,
+    stylus: Stylus,
+}
+
+impl Desk {
+    pub fn new(rules: OperationParameters) -> Desk {
+        Desk {
+            mode: Mode::Manual,
+            start_pressed: false,
+            panel: Panel::default(),
+            feed_override: Override::feed(rules.overrides.feed_steps),
+            spindle_override: Override::spindle(rules.overrides.spindle_steps),
+            manual: Manual::default(),
+            reference: ReferenceRun::default(),
+            stylus: Stylus::default(),
+            rules,
+        }
+    }
+
+    /// Goes over to changed machine parameters.
+    pub fn set_rules(&mut self, rules: OperationParameters) {
+        let before = self.rules.overrides;
+        if rules.overrides.feed_steps != before.feed_steps {
+            self.feed_override = Override::feed(rules.overrides.feed_steps);
+        }
+        if rules.overrides.spindle_steps != before.spindle_steps {
+            self.spindle_override = Override::spindle(rules.overrides.spindle_steps);
+        }
+        self.rules = rules;
+    }
+
+    pub fn rules(&self) -> &OperationParameters {
+        &self.rules
+    }
+
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Axes are moved by hand: Manual and Handwheel.
+    pub fn is_by_hand(&self) -> bool {
+        matches!(self.mode, Mode::Manual | Mode::Handwheel)
+    }
+
+    pub fn panel(&self) -> &Panel {
+        &self.panel
+    }
+
+    /// Feed override in force, %.
+    pub fn feed_percent(&self) -> f64 {
+        self.feed_override.percent()
+    }
+
+    /// Spindle override in force, %.
+    pub fn spindle_percent(&self) -> f64 {
+        self.spindle_override.percent()
+    }
+
+    /// A reference run is on its way.
+    pub fn runs_reference(&self) -> bool {
+        self.reference.is_running()
+    }
+
+    /// What holds now, with the rapid traverse of the probe, mm/min.
+    pub fn now(&self, nc: &Image, probe_mm_min: f64, facts: Facts) -> Now {
+        let feed_percent = self.feed_override.percent();
+        // MP7620 bit 0 = 0 takes the feed override away while the rapid traverse key is pressed [000:10512]
+        // [001:3262] [003:7434-7443].
+        let rapid = self.panel.rapid && !self.rules.overrides.on_rapid_key;
+        // D596: rapid traverse as the PLC limits it [000:4812-4814]. With a probe in the spindle MP6150 limits
+        // it, too [000:7654].
+        let by_plc = f64::from(nc.number(signal::RAPID_TRAVERSE_LIMIT).max(0));
+        let rapid_limit_mm_min = if nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION) {
+            by_plc.min(probe_mm_min)
+        } else {
+            by_plc
+        };
+        let stop = self.panel.stop
+            || self.stylus.stops
+            || nc.bit(signal::NC_STOP_AND_OPEN_LOOPS)
+            || !facts.ready
+            || facts.fault;
+        Now {
+            time_s: facts.time_s,
+            us: facts.us,
+            mode: self.mode,
+            start: self.start_pressed,
+            stop,
+            stop_pressed: self.panel.stop,
+            ready: facts.ready,
+            loops_closed: facts.loops_closed,
+            feed_percent,
+            program_percent: if rapid { 100.0 } else { feed_percent },
+            axis_keys: self.panel.axis_keys,
+            rapid_limit_mm_min,
+        }
+    }
+
+    /// NC stop, or anything that stops like it.
+    pub fn stop(&mut self) {
+        self.manual.stop();
+        if self.reference.is_running() && self.mode != Mode::Reference {
+            self.reference.abort();
+        }
+    }
+
+    /// The loops are opened: nothing moves on.
+    pub fn let_go(&mut self) {
+        self.manual.stop();
+        self.reference.abort();
+    }
+
+    /// NC start was used, or came to nothing.
+    pub fn forget_start(&mut self) {
+        self.start_pressed = false;
+    }
+
+    /// Chooses an operating mode, as far as the progress of the run allows it.
+    pub fn choose_mode(&mut self, mode: Mode, progress: &Progress, axes: &mut OwnAxes) -> bool {
+        let possible = match progress.state() {
+            _ if mode == self.mode => true,
+            _ if !progress.is_active() => true,
+            RunState::Idle => false,
+            // Single block ends a full sequence at the end of its block, and back.
+            _ => self.mode != Mode::Mdi && matches!(mode, Mode::SingleBlock | Mode::FullSequence),
+        };
+        let missing = axes.iter().any(|unit| !unit.referenced && !unit.is_plc_axis());
+        if !possible || mode == Mode::Reference && !missing {
+            return false;
+        }
+        self.set_mode(mode, axes);
+        true
+    }
+
+    /// Changes the operating mode, and with it the kind of positioning.
+    fn set_mode(&mut self, mode: Mode, axes: &mut OwnAxes) {
+        if mode == self.mode {
+            return;
+        }
+        if self.mode == Mode::Reference {
+            self.reference.abort();
+        }
+        // What the old mode moved comes to a standstill on its ramp.
+        axes.release(|mover| matches!(mover, Mover::Reference | Mover::Manual));
+        self.mode = mode;
+        self.manual.stop();
+    }
+
+    /// The control voltage has come: with the first time the control asks for the reference run.
+    pub fn ask_for_reference(&mut self, axes: &mut OwnAxes) {
+        if self.reference.is_asked_for(axes) {
+            self.set_mode(Mode::Reference, axes);
+        }
+    }
+
+    /// M and S are entered in Manual and Handwheel.
+    pub fn enter(&mut self, m: Option<u16>, s: Option<f64>) -> bool {
+        let possible = self.is_by_hand();
+        if possible {
+            self.manual.enter(m, s);
+        }
+        possible
+    }
+
+    /// Operating mode and overrides before a PLC scan.
+    pub fn publish(&mut self, operator: &OperatorInputs, exchange: &mut Exchange) {
+        self.feed_override
+            .publish(exchange, operator.feed_override_percent);
+        self.spindle_override
+            .publish(exchange, operator.spindle_override_percent);
+        status::mode(self.mode, self.manual.last_key(), exchange);
+    }
+
+    /// Panel and overrides after a PLC scan.
+    ///
+    /// # Errors
+    /// The code of the first command whose marker and complement are equal.
+    pub fn take_panel(&mut self, exchange: &Exchange) -> Result<(), PlcFaultCode> {
+        self.feed_override.take(exchange);
+        self.spindle_override.take(exchange);
+        let panel = self.panel.read(exchange.nc())?;
+        self.start_pressed |= panel.started;
+        self.panel = panel;
+        Ok(())
+    }
+
+    /// Looks at the stylus, once in each servo step.
+    pub fn watch_stylus(
+        &mut self,
+        plant: &mut dyn Plant,
+        guards: bool,
+        probe: &Probe,
+        stand: impl FnOnce() -> bool,
+    ) {
+        let (keys, automatic) = (&self.panel.axis_keys, self.mode.is_automatic());
+        self.stylus.watch(plant, guards, probe, || Guarded {
+            rest: keys.iter().all(Option::is_none) && stand(),
+            automatic,
+        });
+    }
+
+    /// What is turned at the handwheel in another mode moves nothing later.
+    pub fn count_handwheel(&mut self, count: i64) {
+        if self.mode != Mode::Handwheel {
+            self.manual.forget_turns(count);
+        }
+    }
+
+    /// Moves the axes by hand for a cycle.
+    pub fn move_by_hand(
+        &mut self,
+        handwheel: i64,
+        axes: &mut OwnAxes,
+        nc: &Image,
+        messages: &mut Messages,
+        block: Option<BlockRef>,
+        now: &Now,
+    ) {
+        let mut reach = Reach {
+            axes,
+            panel: &mut self.panel,
+            rules: &self.rules,
+            nc,
+            messages,
+            block,
+        };
+        self.manual.moves(handwheel, &mut reach, now);
+    }
+
+    /// Moves the axes over their reference marks for a cycle; at the end the mode is Manual.
+    pub fn move_reference(&mut self, axes: &mut OwnAxes, nc: &Image, now: &Now) {
+        if self.reference.moves(axes, nc, now) {
+            self.set_mode(Mode::Manual, axes);
+        }
+    }
+}
+
+/// A code number; the last one stands in D276 for the PLC [000:6928-6947]. Whether it shows the offsets of the
+/// drives.
+pub(crate) fn enter_code(code: u32, exchange: &mut Exchange) -> bool {
+    let number = i32::try_from(code).unwrap_or(i32::MAX);
+    exchange.nc_put_number(signal::CODE_NUMBER, number);
+    match code {
+        ERASE_MEMORY => exchange.erase_retained(),
+        CODE_84159 => exchange.nc_put(signal::CODE_84159_ENTERED, true),
+        _ => {}
+    }
+    code == OFFSET_ADJUSTMENT
+}
+
+/// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319].
+pub(crate) fn press_key(code: u8, exchange: &mut Exchange) {
+    let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + u16::from(code));
+    if marker.is_some_and(|marker| exchange.nc().bit(marker)) {
+        exchange.nc_put_number(signal::INHIBITED_KEY_CODE, code.into());
+        exchange.nc_set(signal::INHIBITED_KEY_PRESSED, true);
+    }
+}

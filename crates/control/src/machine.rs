@@ -1,0 +1,396 @@
+//! The machine side: axes, spindles, PLC and its memory, EMERGENCY STOP, messages, inputs and outputs, and what
+//! survives power-off.
+
+use bahn_exchange::{Bit, BitArea, Exchange, signal};
+use bahn_parameters::{ControlModel, MessageId, ParameterList, PlcParameters, Station};
+use bahn_path::BlockRef;
+use bahn_plc::{Machine, PlcProgram, Start, mirror_parameters};
+use bahn_servo::{INPUTS, OUTPUTS, Plant, Timing};
+
+use crate::axes::Axes;
+use crate::axis::AxisId;
+use crate::compensation::Compensation;
+use crate::datum_tables::LoadedDatums;
+use crate::emergency::{Circuit, EmergencyStop};
+use crate::message::{Message, Messages};
+use crate::now::Facts;
+use crate::per_channel::PerChannel;
+use crate::plc_link::PlcLink;
+use crate::spindle::SpindleUnit;
+use crate::status;
+use crate::tables::LoadedTables;
+use crate::upkeep::{self, DriveOffsets};
+use crate::window::Window;
+
+const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
+const EMERGENCY_STOP: Message = Message::Plain(MessageId::ExternalEmergencyStop);
+
+/// What all channels share.
+#[derive(Clone)]
+pub(crate) struct MachineSide {
+    pub model: ControlModel,
+    pub timing: Timing,
+    station: Station,
+    pub plc_parameters: PlcParameters,
+    /// The memory of the PLC as each channel sees it; the first channel's is the memory itself.
+    pub memory: PerChannel<Exchange>,
+    /// Those of the channels beside the first one.
+    pub windows: Vec<Window>,
+    pub link: PlcLink,
+    pub plc: PlcUnit,
+    pub emergency: EmergencyStop,
+    pub messages: Messages,
+    pub axes: Axes,
+    pub spindles: PerChannel<SpindleUnit>,
+    /// The loops were closed since the control voltage came on.
+    pub loops_closed: bool,
+    pub offsets: DriveOffsets,
+    pub compensation: Compensation,
+    pub loaded_tables: LoadedTables,
+    pub loaded_datums: LoadedDatums,
+    /// What is to be stored has changed since it was stored.
+    pub unsaved: bool,
+    /// The control is to be restarted (module 9033).
+    pub restart_wanted: bool,
+    wiring: Wiring,
+}
+
+/// The PLC and its clock.
+#[derive(Clone)]
+pub(crate) struct PlcUnit {
+    pub machine: Machine,
+    due_us: u64,
+    period_us: u64,
+    /// Scans that were started.
+    scans: u64,
+}
+
+/// The inputs and outputs of the PLC with their operands.
+#[derive(Clone)]
+struct Wiring {
+    inputs: [bool; INPUTS],
+    outputs: [bool; OUTPUTS],
+    input_bits: Vec<(usize, Bit)>,
+    output_bits: Vec<(usize, Bit)>,
+}
+
+/// What the "control is ready" circuit asks of all channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CircuitOrder {
+    Nothing,
+    /// The control voltage has come: the axes are held where they are, M2000 ff. are set [000:5341-5350].
+    CloseLoops,
+    OpenLoops,
+    /// The acknowledgement was lost: as an external stop, a moving axis is ramped down under control
+    /// [000:6155-6157]. Then the loops are opened (inferred).
+    Stop,
+    /// With M2827 nothing is reported and the loops open at once [000:5403-5421].
+    StopSilently,
+}
+
+impl PlcUnit {
+    pub fn new(program: std::sync::Arc<PlcProgram>, model: ControlModel) -> PlcUnit {
+        PlcUnit {
+            machine: Machine::new(program, Start::PowerOn),
+            due_us: 0,
+            period_us: model.limits().plc_cycle_us.into(),
+            scans: 0,
+        }
+    }
+}
+
+impl Wiring {
+    fn of(model: ControlModel) -> Wiring {
+        let bits = |area: BitArea, boards: &[(u16, u16)]| {
+            let numbers = boards.iter().flat_map(|(first, last)| *first..=*last);
+            numbers
+                .filter_map(|number| Some((usize::from(number), Bit::new(area, number)?)))
+                .collect()
+        };
+        Wiring {
+            inputs: [false; INPUTS],
+            outputs: [false; OUTPUTS],
+            input_bits: bits(BitArea::I, model.limits().inputs),
+            output_bits: bits(BitArea::O, model.limits().outputs),
+        }
+    }
+}
+
+impl MachineSide {
+    /// A machine at power-on.
+    pub fn new(
+        parameters: &ParameterList,
+        plc: PlcUnit,
+        link: PlcLink,
+        exchange: Exchange,
+        windows: Vec<Window>,
+        axes: Axes,
+        spindle: SpindleUnit,
+    ) -> MachineSide {
+        let model = parameters.model();
+        let operation = parameters.operation_parameters();
+        let memory = PerChannel::new(exchange, windows.iter().map(Window::memory).collect());
+        let interval_s = axes
+            .iter()
+            .next()
+            .map_or(0.0, |unit| unit.parameters.output.offset_interval_s);
+        let assignment = link.files.compensation.as_ref();
+        let line = assignment.and_then(|assignment| assignment.active);
+        MachineSide {
+            model,
+            timing: Timing::of(model),
+            station: operation.station,
+            plc_parameters: parameters.plc_parameters(),
+            compensation: Compensation::of(&link.files, line),
+            memory,
+            windows,
+            link,
+            plc,
+            emergency: EmergencyStop::new(model, operation.power_interrupted),
+            messages: Messages::default(),
+            axes,
+            spindles: PerChannel::new(spindle, Vec::new()),
+            loops_closed: false,
+            offsets: DriveOffsets::new(interval_s),
+            loaded_tables: LoadedTables::default(),
+            loaded_datums: LoadedDatums::default(),
+            unsaved: false,
+            restart_wanted: false,
+            wiring: Wiring::of(model),
+        }
+    }
+
+    /// What holds now for a channel whose loops have a fault, or not.
+    pub fn facts(&self, fault: bool) -> Facts {
+        Facts {
+            time_s: f64::from(self.timing.contour_us()) * 1e-6,
+            us: self.messages.time_us(),
+            ready: self.emergency.circuit() == Circuit::Ready,
+            loops_closed: self.loops_closed,
+            fault: fault || self.messages.is_fatal(),
+        }
+    }
+
+    /// Letters of the axes, by their numbers.
+    pub fn letters(&self) -> Vec<char> {
+        let mut letters = vec!['X', 'Y', 'Z', '4', '5', 'S'];
+        for unit in self.axes.iter() {
+            let place = usize::from(unit.id.number());
+            if letters.len() <= place {
+                letters.resize(place + 1, ' ');
+            }
+            if let Some(letter) = letters.get_mut(place) {
+                *letter = unit.axis.letter();
+            }
+        }
+        letters
+    }
+
+    /// What a servo step begins with: "control is ready", encoders.
+    pub fn begin_step(&mut self, now_us: u64, plant: &mut dyn Plant) {
+        self.emergency.step(now_us, plant.control_ready());
+        plant.set_control_ready(self.emergency.output());
+        self.axes.measure(plant);
+        for spindle in self.spindles.iter_mut() {
+            spindle.measure(plant);
+        }
+    }
+
+    /// The voltages of a servo step.
+    pub fn output(&mut self, plant: &mut dyn Plant) {
+        self.axes.output(plant);
+        for spindle in self.spindles.iter_mut() {
+            spindle.output(plant);
+        }
+    }
+
+    /// Whether a PLC scan is due. The PLC runs from the end of `POWER INTERRUPTED` on [000:7033-7040].
+    pub fn scan_is_due(&mut self, now_us: u64) -> bool {
+        if self.station == Station::WithoutPlc || self.plc.machine.stopped().is_some() {
+            return false;
+        }
+        let runs = !matches!(
+            self.emergency.circuit(),
+            Circuit::PowerInterrupted | Circuit::Defective
+        );
+        if runs && self.plc.scans == 0 && self.plc.due_us < now_us {
+            self.plc.due_us = now_us;
+        }
+        let due = runs && now_us >= self.plc.due_us;
+        if due {
+            self.plc.due_us += self.plc.period_us;
+        }
+        due
+    }
+
+    /// Reads the inputs for a scan.
+    pub fn read_inputs(&mut self, plant: &mut dyn Plant) {
+        let wiring = &mut self.wiring;
+        let exchange = self.memory.first_mut();
+        plant.inputs(&mut wiring.inputs);
+        for (number, bit) in &wiring.input_bits {
+            exchange.nc_put(*bit, wiring.inputs.get(*number).copied().unwrap_or(false));
+        }
+        status::analogue(self.plc_parameters.analogue_inputs, plant, exchange);
+        for (marker, value) in self.messages.markers() {
+            exchange.nc_put(marker, value);
+        }
+    }
+
+    /// Runs the PLC program. `false` when it has stopped.
+    pub fn scan(&mut self, block: Option<BlockRef>) -> bool {
+        self.plc.scans += 1;
+        let (exchange, others) = self.memory.split_mut();
+        for (window, own) in self.windows.iter().zip(others.iter_mut()) {
+            window.publish(own, exchange);
+        }
+        let scanned = self.plc.machine.scan(exchange, &mut self.link);
+        for (window, own) in self.windows.iter().zip(others) {
+            window.take(own, exchange);
+        }
+        let Err(error) = scanned else { return true };
+        let message = Message::PlcStopped {
+            number: error.error.number(),
+            file: error.file,
+            line: error.line,
+        };
+        self.messages.show(message, true, block);
+        false
+    }
+
+    /// Sets the outputs as a scan left them.
+    pub fn write_outputs(&mut self, plant: &mut dyn Plant) {
+        let nc = self.memory.first().nc();
+        for (number, bit) in &self.wiring.output_bits {
+            if let Some(output) = self.wiring.outputs.get_mut(*number) {
+                *output = nc.bit(*bit);
+            }
+        }
+        plant.set_outputs(&self.wiring.outputs);
+    }
+
+    /// Follows the "control is ready" circuit.
+    pub fn follow_circuit(&mut self, block: Option<BlockRef>) -> CircuitOrder {
+        if self.station != Station::Machine {
+            // A programming station has no machine: its loops stay open [000:6951].
+            return CircuitOrder::Nothing;
+        }
+        if self.messages.is_fatal() {
+            self.emergency.fail();
+        }
+        let circuit = self.emergency.circuit();
+        if circuit == Circuit::VoltageMissing {
+            self.messages.show(VOLTAGE_MISSING, false, block);
+        } else if self.messages.contains(&VOLTAGE_MISSING) {
+            self.messages.remove(&VOLTAGE_MISSING);
+        }
+        match circuit {
+            Circuit::Ready if !self.loops_closed => CircuitOrder::CloseLoops,
+            Circuit::PowerInterrupted | Circuit::VoltageMissing | Circuit::Testing | Circuit::Ready => {
+                CircuitOrder::Nothing
+            }
+            Circuit::Defective => {
+                if !self.messages.is_fatal() {
+                    let defective = Message::Plain(MessageId::EmergencyStopDefective);
+                    self.messages.show(defective, true, block);
+                }
+                CircuitOrder::OpenLoops
+            }
+            Circuit::EmergencyStop | Circuit::VoltageBack => {
+                let nc = self.memory.first().nc();
+                if nc.bit(signal::EMERGENCY_STOP_AS_NC_STOP) {
+                    CircuitOrder::StopSilently
+                } else {
+                    CircuitOrder::Stop
+                }
+            }
+        }
+    }
+
+    /// The stop of the circuit is reported.
+    pub fn show_emergency_stop(&mut self, block: Option<BlockRef>) {
+        self.messages.show(EMERGENCY_STOP, false, block);
+    }
+
+    /// The silent stop of M2827 is over with the control voltage.
+    pub fn end_silent_stop(&mut self) {
+        if self.emergency.circuit() == Circuit::VoltageBack {
+            self.emergency.clear();
+        }
+    }
+
+    pub fn close_loops(&mut self) {
+        self.loops_closed = true;
+        self.axes.close_loops();
+    }
+
+    pub fn open_loops(&mut self) {
+        self.loops_closed = false;
+        self.axes.open_loops();
+    }
+
+    /// W522 bit 0 lets the input MP4130, sampled in each control cycle, switch the monitoring off
+    /// [000:5178-5188].
+    pub fn monitoring_is_off(&mut self, plant: &mut dyn Plant) -> bool {
+        let nc = self.memory.first().nc();
+        let permitted = nc.number(signal::MONITORING_SUPPRESSION) & 1 != 0;
+        let Some(input) = self.plc_parameters.monitoring_input.filter(|_| permitted) else {
+            return false;
+        };
+        plant.inputs(&mut self.wiring.inputs);
+        self.wiring
+            .inputs
+            .get(usize::from(input.input))
+            .is_some_and(|high| *high == input.active_high)
+    }
+
+    /// CE: clears a message, and what it stands for.
+    pub fn clear_message(&mut self) -> bool {
+        let circuit = self.emergency.circuit();
+        let may = |message: &Message| match message {
+            // Only when the control voltage is back [000:6203-6204].
+            Message::Plain(MessageId::ExternalEmergencyStop) => {
+                matches!(circuit, Circuit::VoltageBack | Circuit::Ready)
+            }
+            Message::Plain(MessageId::RelayExtDcVoltageMissing) => false,
+            _ => true,
+        };
+        let Some(message) = self.messages.clear(self.memory.first_mut(), may) else {
+            return false;
+        };
+        match message {
+            Message::Plain(MessageId::PowerInterrupted | MessageId::ExternalEmergencyStop) => {
+                self.emergency.clear();
+            }
+            Message::Axis {
+                id: MessageId::PositioningError,
+                axis,
+                ..
+            } => {
+                let unit = AxisId::new(axis).and_then(|id| self.axes.with_id_mut(id));
+                if let Some(unit) = unit {
+                    unit.servo.acknowledge();
+                    unit.transfer();
+                }
+            }
+            _ => {}
+        }
+        true
+    }
+
+    /// Once in each contour cycle, behind all movements.
+    pub fn look_after(&mut self) {
+        let off = self.spindles.iter().all(|spindle| spindle.state().volts == 0.0);
+        self.offsets
+            .adjust_cyclically(self.timing.contour_us(), off, &mut self.axes);
+        self.compensation.correct(&mut self.axes);
+        upkeep::leave_limits(&mut self.axes, &self.messages);
+    }
+
+    /// Goes over to the machine parameters that module 9031 has changed.
+    pub fn take_parameters(&mut self) {
+        let list = self.link.list();
+        mirror_parameters(list, self.memory.first_mut());
+        self.plc_parameters = list.plc_parameters();
+    }
+}

@@ -1,0 +1,58 @@
+//! Where programs come from, and which of them a channel has selected.
+
+use std::sync::Arc;
+
+use bahn_interpreter::Library;
+use bahn_parameters::MessageId;
+use bahn_program::Program;
+
+use crate::message::Message;
+
+/// Where programs come from. The control asks by name, as written in CALL PGM and chosen by the operator.
+pub trait Programs: Send + Sync {
+    /// The program of a name; `Ok(None)` when there is none.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
+}
+
+/// Programs as a library for the interpreter.
+pub(crate) struct Shelf(pub Arc<dyn Programs>);
+
+impl Library for Shelf {
+    fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.0.open(name, caller)
+    }
+}
+
+/// What runs in the automatic modes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Selection {
+    /// Name of the program that runs in single block and full sequence.
+    pub program: Option<String>,
+    /// Block at which the next run starts.
+    pub start_block: u32,
+    /// Blocks of MDI.
+    pub mdi: Option<String>,
+}
+
+impl Selection {
+    /// The program of MDI, or of the other automatic modes.
+    pub fn open(&self, mdi: bool, programs: &dyn Programs) -> Result<Arc<Program>, Message> {
+        if mdi {
+            let blocks = self
+                .mdi
+                .as_ref()
+                .ok_or(Message::Plain(MessageId::KeyNonFunctional))?;
+            let text = format!("BEGIN PGM MDI MM\n{blocks}\nEND PGM MDI MM\n");
+            return Ok(Arc::new(Program::from_bytes("$MDI", text.into_bytes())));
+        }
+        let not_found = Message::Plain(MessageId::ProgramNotFound);
+        let name = self.program.as_ref().ok_or(not_found.clone())?;
+        match programs.open(name, "") {
+            Ok(Some(program)) => Ok(program),
+            Ok(None) | Err(_) => Err(not_found),
+        }
+    }
+}

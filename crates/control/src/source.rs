@@ -1,0 +1,294 @@
+//! Where the blocks of a run come from: the program that is read, the one that MDI has set aside, where a
+//! run that was broken off goes on, what is in force between runs.
+
+use std::sync::Arc;
+
+use bahn_interpreter::{Interpreter, Rules, Settings, Status};
+use bahn_parameters::{ControlModel, InchFeed, ParameterList};
+use bahn_path::{Axis, Position};
+use bahn_program::Program;
+use bahn_servo::Rotation;
+
+use crate::axes::OwnAxes;
+use crate::feeder::Feeder;
+use crate::kinematics::Chain;
+use crate::plc_link::PlcLink;
+use crate::programs::Programs;
+use crate::setup::Checking;
+use crate::site::Site;
+
+/// Blocks that take no time after which a program is taken for an endless loop (inferred): at 4 ms for a
+/// block the control would have stood for 400 s.
+const BLOCKS_WITHOUT_MOTION: u64 = 100_000;
+
+/// What programs find of the machine: machine parameters, texts and datum tables.
+pub(crate) struct Basis<'a> {
+    pub list: &'a ParameterList,
+    pub link: &'a PlcLink,
+}
+
+/// How programs are read.
+#[derive(Clone)]
+pub(crate) struct Reading {
+    pub model: ControlModel,
+    pub checking: Checking,
+    /// What F counts in a program in inches, when that is not what it counts on the model.
+    pub inch_feed: Option<InchFeed>,
+    pub programs: Arc<dyn Programs>,
+}
+
+/// Where a run goes on that was broken off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Resume {
+    /// At a block, by its place in the order of execution.
+    Block(u64),
+    /// At the block that could not be executed.
+    Fault,
+}
+
+/// The source of a run.
+#[derive(Clone)]
+pub(crate) struct Source {
+    pub reading: Reading,
+    feeder: Option<Feeder>,
+    /// The program whose run was interrupted, while blocks of MDI run.
+    aside: Option<(Option<Feeder>, Option<Resume>)>,
+    /// Blocks of MDI have run: back to the program.
+    mdi_over: bool,
+    /// After an internal stop or a fault: where the next start goes on.
+    resume_from: Option<Resume>,
+    /// What the last run left in force.
+    status: Status,
+    /// Q parameters between runs.
+    q: Vec<(u16, f64)>,
+    /// The run has ended: its Q parameters are to be kept.
+    q_due: bool,
+    /// Keep the executed elements.
+    pub tap: bool,
+    /// Long computations are done beside.
+    pub defers: bool,
+}
+
+impl Source {
+    pub fn new(reading: Reading, q: Vec<(u16, f64)>) -> Source {
+        Source {
+            reading,
+            feeder: None,
+            aside: None,
+            mdi_over: false,
+            resume_from: None,
+            status: Status::default(),
+            q,
+            q_due: false,
+            tap: false,
+            defers: false,
+        }
+    }
+
+    /// The program that runs, or ran last.
+    pub fn feeder_mut(&mut self) -> Option<&mut Feeder> {
+        self.feeder.as_mut()
+    }
+
+    /// Another program is read from now on.
+    pub fn put(&mut self, feeder: Feeder) {
+        self.feeder = Some(feeder);
+    }
+
+    /// The program that runs is in inches.
+    pub fn inch(&self) -> bool {
+        self.feeder.as_ref().is_some_and(Feeder::inch)
+    }
+
+    pub fn interpreter(&self) -> Option<&Interpreter> {
+        self.feeder.as_ref().map(Feeder::interpreter)
+    }
+
+    pub fn interpreter_mut(&mut self) -> Option<&mut Interpreter> {
+        self.feeder.as_mut().map(Feeder::interpreter_mut)
+    }
+
+    /// Where the next start goes on; `None` for at the start block.
+    pub fn resume_at(&mut self, resume: Option<Resume>) {
+        self.resume_from = resume;
+    }
+
+    /// The next run begins anew.
+    pub fn forget(&mut self) {
+        self.feeder = None;
+        self.resume_from = None;
+    }
+
+    /// A run is broken off, of MDI or of a program.
+    pub fn break_off(&mut self, mdi: bool) {
+        self.mdi_over = mdi;
+        if let Some(interpreter) = self.interpreter_mut() {
+            interpreter.give_up_work();
+        }
+    }
+
+    /// Sets the program aside for blocks of MDI.
+    pub fn set_aside(&mut self) {
+        if self.aside.is_none() {
+            self.aside = Some((self.feeder.take(), self.resume_from.take()));
+        }
+    }
+
+    /// Goes back to where the run was broken off, when it was.
+    pub fn go_on(&mut self, site: &Site) -> bool {
+        let (Some(resume), Some(feeder)) = (self.resume_from.take(), &mut self.feeder) else {
+            return false;
+        };
+        let (machine, limits) = (site.axes.machine_position(), site.axes.traverse_box());
+        match resume {
+            Resume::Block(sequence) => feeder.return_to(sequence, &machine, site.chain, limits),
+            Resume::Fault => feeder.retry(&machine, site.chain, limits),
+        }
+        true
+    }
+
+    /// The run has come to its end: its Q parameters are to be kept.
+    pub fn end(&mut self) {
+        self.q_due = true;
+    }
+
+    /// The run that has ended is closed, outside the cycle: its Q parameters, with those that the PLC wrote
+    /// meanwhile, and what it left in force are kept. Whether there was one.
+    pub fn close(&mut self, by_plc: impl FnOnce() -> Vec<(u16, f64)>) -> bool {
+        let due = self.q_due;
+        if due {
+            self.q = self.q_values(true);
+            self.q_due = false;
+            for (number, value) in by_plc() {
+                self.keep_q(number, value);
+            }
+            if let Some(interpreter) = self.interpreter() {
+                self.status = interpreter.status();
+            }
+        }
+        due
+    }
+
+    /// It was a block of MDI that has run: no program that comes to its end (inferred).
+    pub fn was_mdi(&self) -> bool {
+        self.mdi_over
+    }
+
+    /// The program that MDI has set aside is back, once the blocks of MDI have run.
+    pub fn take_back(&mut self) {
+        if std::mem::take(&mut self.mdi_over)
+            && let Some((feeder, resume)) = self.aside.take()
+        {
+            self.feeder = feeder;
+            self.resume_from = resume;
+        }
+    }
+
+    /// Cancels what MP7300 names [000:6589-6601]. The tool stays in the spindle, without its data.
+    pub fn cancel_status(&mut self, list: &ParameterList, site: &mut Site) {
+        let clearing = list.program_end_clearing();
+        if clearing.q_parameters {
+            self.q.clear();
+        }
+        if clearing.status {
+            self.status.cancel_programmed();
+        }
+        if clearing.tool {
+            self.status.cancel_tool();
+            site.tools.forget_length(&mut site.chain.offsets);
+        }
+    }
+
+    /// Q parameters that are not 0, by number. Behind the end of a run they are those that its end has left.
+    pub fn q_values(&self, ended: bool) -> Vec<(u16, f64)> {
+        let over = ended && !self.q_due;
+        let Some(interpreter) = self.interpreter().filter(|_| !over) else {
+            return self.q.clone();
+        };
+        (0u16..)
+            .zip(interpreter.q_values())
+            .filter(|(_, value)| **value != 0.0)
+            .map(|(number, value)| (number, *value))
+            .collect()
+    }
+
+    /// Keeps the Q parameters of the run for the next one.
+    pub fn keep_q_values(&mut self, ended: bool) {
+        self.q = self.q_values(ended);
+    }
+
+    /// Sets a Q parameter between runs.
+    pub fn set_q(&mut self, number: u16, value: f64) {
+        if let Some(interpreter) = self.interpreter_mut() {
+            interpreter.set_q(number, value);
+        }
+        self.keep_q(number, value);
+    }
+
+    fn keep_q(&mut self, number: u16, value: f64) {
+        self.q.retain(|(known, _)| *known != number);
+        self.q.push((number, value));
+    }
+
+    /// A feeder of a program that is to run, from a block on, with what the last run left in force.
+    pub fn feeder_for_run(&self, program: Arc<Program>, block: u32, site: &Site, basis: &Basis) -> Feeder {
+        let mut status = self.status.clone();
+        if status.tool() != Some(site.tools.number) {
+            status.cancel_tool();
+        }
+        let spindle = site.spindle.state();
+        let clockwise = match spindle.rotation {
+            Rotation::M3 => Some(true),
+            Rotation::M4 => Some(false),
+            Rotation::M5 => None,
+        };
+        status.take_spindle(clockwise, spindle.programmed_rpm);
+        let mut feeder = self.feeder_from(program, status, site, basis);
+        if block > 0 {
+            feeder.interpreter_mut().goto(block);
+        }
+        feeder.set_tap(self.tap);
+        feeder
+    }
+
+    /// A feeder of a program with what is in force before it.
+    pub fn feeder_from(&self, program: Arc<Program>, status: Status, site: &Site, basis: &Basis) -> Feeder {
+        let mut rules = Rules::of(basis.list);
+        rules.machine_zero = machine_zero(&site.axes, site.chain);
+        let settings = Settings {
+            model: self.reading.model,
+            rules,
+            texts: basis.link.machine_texts().clone(),
+            tools: site.tools.shapes(),
+            barred_tools: site.tools.barred(),
+            datum_table: basis.link.datums(basis.list),
+            strict: self.reading.checking.strict,
+            skip_unknown: self.reading.checking.skip_unknown,
+            q_values: self.q.clone(),
+            start: site.here(),
+            tool_length_mm: Some(site.chain.offsets.tool_length),
+            status,
+            machine: true,
+            max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
+            inch_feed: self.reading.inch_feed,
+            ..Settings::default()
+        };
+        let programs = Arc::clone(&self.reading.programs);
+        let limits = site.axes.traverse_box();
+        let mut feeder = Feeder::new(program, settings, programs, site.chain.clone(), limits);
+        if self.defers {
+            feeder.interpreter_mut().defer_work();
+        }
+        feeder
+    }
+}
+
+/// Machine zero in workpiece coordinates; unknown for axes that have not passed their reference mark
+/// [000:4568-4576].
+pub(crate) fn machine_zero(axes: &OwnAxes, chain: &Chain) -> Position {
+    let mut zero: Position = Axis::ALL.map(|axis| -chain.offsets.datum[axis]).into();
+    for unit in axes.iter().filter(|unit| !unit.referenced && !unit.is_plc_axis()) {
+        zero[unit.axis] = f64::NAN;
+    }
+    zero
+}

@@ -1,0 +1,102 @@
+//! A tool of the tool table with its lives [000:9160-9192].
+
+use bahn_interpreter::ToolState;
+use bahn_path::ToolShape;
+
+/// A tool of the tool table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tool {
+    /// Length, radius, corner radius, mm.
+    pub shape: ToolShape,
+    /// Its pocket in the magazine.
+    pub pocket: Option<u16>,
+    /// A special tool, which takes more than one pocket.
+    pub special: bool,
+    /// It cuts when the spindle turns counter-clockwise (M4): DIRECT [000:9028].
+    pub left_hand: bool,
+    /// TL: it is locked and must not be called.
+    pub locked: bool,
+    /// How long it may work.
+    pub life: ToolLife,
+}
+
+impl Tool {
+    /// Whether it may be called.
+    pub fn state(&self) -> ToolState {
+        match self.locked {
+            true => ToolState::Locked,
+            false => self.life.state(),
+        }
+    }
+}
+
+/// A tool that is not in the pocket of the tool table any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MovedTool {
+    /// Its number.
+    pub tool: u32,
+    /// Its pocket now.
+    pub pocket: Option<u16>,
+    /// Its pocket in the tool table. Where the table says another one, the magazine was loaded anew.
+    pub table: Option<u16>,
+}
+
+/// The lives of a tool in the tool table, minutes; 0 is no limit (inferred).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToolLife {
+    /// TIME1: behind it the PLC is told (M2094).
+    pub time1_min: f64,
+    /// TIME2: behind it TOOL CALL calls the replacement tool.
+    pub time2_min: f64,
+    /// CUR.TIME: how long it has worked.
+    pub current_min: f64,
+    /// RT: its replacement tool.
+    pub replacement: Option<u32>,
+}
+
+impl ToolLife {
+    /// Whether it may be called.
+    pub fn state(&self) -> ToolState {
+        match (self.is_beyond(self.time2_min), self.replacement) {
+            (false, _) => ToolState::Usable,
+            (true, None) => ToolState::Expired,
+            (true, Some(replacement)) => ToolState::Replaced(replacement),
+        }
+    }
+
+    /// TIME1 is over.
+    pub(crate) fn time1_elapsed(&self) -> bool {
+        self.is_beyond(self.time1_min)
+    }
+
+    /// M101 replaces it: the first of the two lives is over (inferred: the manual names both).
+    pub(crate) fn is_worn(&self) -> bool {
+        self.time1_elapsed() || self.is_beyond(self.time2_min)
+    }
+
+    fn is_beyond(&self, life_min: f64) -> bool {
+        life_min > 0.0 && self.current_min > life_min
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_life_of_zero_never_ends() {
+        let life = |time1_min, time2_min, current_min| ToolLife {
+            time1_min,
+            time2_min,
+            current_min,
+            replacement: None,
+        };
+        assert_eq!(life(0.0, 0.0, 1e6).state(), ToolState::Usable);
+        assert!(!life(0.0, 0.0, 1e6).is_worn());
+        // Greater than, not equal [000:9168-9173].
+        assert_eq!(life(10.0, 20.0, 20.0).state(), ToolState::Usable);
+        assert_eq!(life(10.0, 20.0, 20.1).state(), ToolState::Expired);
+        assert!(!life(10.0, 20.0, 10.0).time1_elapsed() && life(10.0, 20.0, 10.1).time1_elapsed());
+        assert!(life(0.0, 20.0, 20.1).is_worn() && life(10.0, 0.0, 10.1).is_worn());
+    }
+}

@@ -1,0 +1,279 @@
+//! The axes along the path, contour cycle by contour cycle, and what is output on it.
+
+use std::collections::VecDeque;
+
+use bahn_exchange::Image;
+use bahn_motion::{FunctionOutput, Interpolator, Limits};
+use bahn_parameters::ParameterList;
+use bahn_path::{Axis, AxisSet, Curve, FeedRate, PathElement, Position};
+use bahn_servo::Timing;
+
+use crate::axes::OwnAxes;
+use crate::axis::{AxisId, AxisUnit, Mover};
+use crate::feeder::RunFault;
+use crate::handshake::LOOK_AHEAD;
+use crate::kinematics::Chain;
+use crate::markers::WAIT_OPEN_LOOP;
+use crate::message::Message;
+use crate::panel::Direction;
+use crate::q_transfer::QTransfer;
+use crate::site::Site;
+
+/// So near is no other place, mm or degrees.
+const SAME_MM: f64 = 1e-6;
+/// Outputs of functions that wait at most.
+const OUTPUTS: usize = 64;
+
+/// The path of a run with what follows it.
+#[derive(Clone, Debug)]
+pub(crate) struct Track {
+    pub path: Interpolator<RunFault>,
+    /// Functions on the path that wait for the axes to be in position.
+    waiting: VecDeque<FunctionOutput>,
+    /// Position of the path in the last cycle.
+    last: Option<Position>,
+    /// The path speed, mm/s.
+    speed: f64,
+    /// The PLC chose another traverse range: the blocks that are on their way are to be looked at anew.
+    pub range_changed: bool,
+    /// The limits of the path have changed; they take effect when no program runs.
+    pub limits_changed: bool,
+}
+
+impl Track {
+    pub fn new(limits: &Limits) -> Track {
+        Track {
+            path: Interpolator::new(limits, LOOK_AHEAD),
+            waiting: VecDeque::new(),
+            last: None,
+            speed: 0.0,
+            range_changed: false,
+            limits_changed: false,
+        }
+    }
+
+    /// A path within other limits, between programs; allocates.
+    pub fn take_limits(&mut self, limits: &Limits) {
+        self.limits_changed = false;
+        self.path = Interpolator::new(limits, LOOK_AHEAD);
+    }
+
+    /// Makes room for the functions that wait, outside the cycle.
+    pub fn reserve(&mut self) {
+        if self.waiting.capacity() == 0 {
+            self.waiting.reserve(OUTPUTS);
+        }
+    }
+
+    /// The path speed, mm/s.
+    pub fn speed_mm_s(&self) -> f64 {
+        self.speed
+    }
+
+    /// The path moves at a speed, mm/s.
+    pub fn set_speed(&mut self, speed_mm_s: f64) {
+        self.speed = speed_mm_s;
+    }
+
+    /// The path begins somewhere else.
+    pub fn forget_position(&mut self) {
+        self.last = None;
+    }
+
+    /// Nothing waits any more, and nothing moves.
+    pub fn break_off(&mut self) {
+        self.waiting.clear();
+        self.speed = 0.0;
+    }
+
+    /// No function waits to be output.
+    pub fn has_output_all(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// No axis moves along the path.
+    pub fn stands(&self, axes: &OwnAxes) -> bool {
+        self.path.speed_mm_s() == 0.0
+            && axes
+                .iter()
+                .filter(|unit| unit.mover == Mover::Path)
+                .all(AxisUnit::stands)
+    }
+
+    /// The axes that the current element moves are held in their loops and have feed enable. An element
+    /// that waits for a clamped axis may do so.
+    pub fn is_able(&self, axes: &OwnAxes) -> bool {
+        let Some(element) = self.path.element() else {
+            return true;
+        };
+        let stands = self.path.speed_mm_s() == 0.0;
+        axes.iter()
+            .filter(|unit| element.moves(unit.axis))
+            .all(|unit| unit.enabled && (unit.servo.closed() || stands))
+    }
+
+    /// A block wants a clamped axis: its marker M2008 ff. falls, and the PLC unclamps it [000:5407].
+    pub fn ask_to_unclamp(&self, clamped: AxisSet, axes: &mut OwnAxes) {
+        let Some(element) = self.path.element() else {
+            return;
+        };
+        for unit in axes.iter_mut() {
+            if clamped.contains(unit.axis) && element.moves(unit.axis) {
+                unit.in_position = false;
+            }
+        }
+    }
+
+    /// The axes stand where they are.
+    pub fn hold(&self, axes: &mut OwnAxes, time_s: f64) {
+        for unit in axes.iter_mut().filter(|unit| unit.mover == Mover::Path) {
+            unit.follow(unit.nominal, time_s);
+        }
+    }
+
+    /// The nominal positions of the axes from that of the path.
+    pub fn follow(&mut self, position: &Position, axes: &mut OwnAxes, chain: &Chain, time_s: f64) {
+        let moved = self.last != Some(*position);
+        self.last = Some(*position);
+        let element = self.path.element();
+        let nominal = chain.to_axes(position);
+        for unit in axes.iter_mut() {
+            let value = nominal[unit.axis];
+            if value.is_nan() || !matches!(unit.mover, Mover::None | Mover::Path) || unit.is_plc_axis() {
+                continue;
+            }
+            unit.servo
+                .set_circular(element.is_some_and(|element| is_circular(element, unit.axis)));
+            if moved {
+                unit.mover = Mover::Path;
+                unit.follow(value, time_s);
+            } else {
+                unit.follow(unit.nominal, time_s);
+            }
+        }
+    }
+
+    /// The axes stand elsewhere than the path: the PLC has moved them, corrected the datum or changed the
+    /// tool length. The path then goes on from where they are, within the traverse range as it is now.
+    pub fn regain(&mut self, site: &Site) {
+        if self.path.is_coupled() {
+            return;
+        }
+        // A tool call lets the tip stand elsewhere without a movement.
+        let end = match self.path.element() {
+            Some(element) if element.curve == Curve::Hold => element.end,
+            _ => self.path.position(),
+        };
+        let at = self.path.position();
+        let here = site.here();
+        let differs = |a: f64, b: f64| (a - b).abs() > SAME_MM;
+        let elsewhere = site.axes.iter().map(|unit| unit.axis).any(|axis| {
+            differs(here[axis], at[axis]) && (differs(here[axis], end[axis]) || end[axis].is_nan())
+        });
+        let needed = elsewhere || self.range_changed;
+        if !needed || !self.waiting.is_empty() || self.path.speed_mm_s() != 0.0 {
+            return;
+        }
+        self.range_changed = false;
+        self.path.recall(here);
+        self.last = None;
+    }
+
+    /// Outputs the functions of the path in their order, once the axes are in position.
+    pub fn output(&mut self, site: &mut Site, q_transfer: &mut QTransfer, inch: bool, settled: bool) {
+        while let Some(output) = self.path.next_output() {
+            // Behind a function that waits there is none before it is acknowledged.
+            debug_assert!(self.waiting.len() < OUTPUTS, "the path waits at its gate");
+            self.waiting.push_back(output);
+            self.output_waiting(site, q_transfer, inch, settled);
+        }
+        self.output_waiting(site, q_transfer, inch, settled);
+    }
+
+    fn output_waiting(&mut self, site: &mut Site, q_transfer: &mut QTransfer, inch: bool, settled: bool) {
+        while let Some(output) = self.waiting.front().copied() {
+            if output.waits && !settled {
+                return;
+            }
+            self.waiting.pop_front();
+            q_transfer.strobe();
+            for function in self.path.functions(&output) {
+                site.output(&function.function, inch);
+            }
+        }
+    }
+
+    /// Programmed feed of the element that is executed, mm/min; `None` for rapid traverse.
+    pub fn programmed_feed(&self) -> Option<f64> {
+        match self.path.element()?.feed {
+            FeedRate::Programmed(feed) => Some(feed),
+            FeedRate::Rapid => None,
+        }
+    }
+}
+
+/// Axes whose loop is open: no block may move them.
+pub(crate) fn clamped_axes(axes: &OwnAxes) -> AxisSet {
+    let open = axes
+        .iter()
+        .filter(|unit| unit.parameters.controlled && !unit.servo.closed());
+    open.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
+}
+
+/// Axes that the PLC wants to clamp after their block (M2492 ff.), and whose loop is still closed.
+pub(crate) fn clamping_axes(axes: &OwnAxes, nc: &Image) -> AxisSet {
+    let wanted = axes.iter().filter(|unit| {
+        let marker = WAIT_OPEN_LOOP.get(unit.index);
+        unit.servo.closed() && marker.is_some_and(|marker| nc.bit(*marker))
+    });
+    wanted.fold(AxisSet::EMPTY, |axes, unit| axes.with(unit.axis))
+}
+
+/// The axes of the path stand within their windows.
+pub(crate) fn are_in_position(axes: &OwnAxes) -> bool {
+    axes.iter()
+        .filter(|unit| unit.mover == Mover::Path && unit.servo.closed())
+        .all(|unit| unit.stands() && unit.servo.in_position())
+}
+
+/// The message of an axis that a block would lead beyond its limit.
+pub(crate) fn limit_message(axes: &mut OwnAxes, axis: Axis, direction: Direction) -> Message {
+    let id = axes.iter_mut().find(|unit| unit.axis == axis).map(|unit| {
+        unit.at_limit = Some(direction);
+        unit.id
+    });
+    Message::limit(id.unwrap_or(AxisId::FIRST), direction)
+}
+
+/// Whether an axis moves on the circle of an element, where reversal peaks are compensated.
+fn is_circular(element: &PathElement, axis: Axis) -> bool {
+    match &element.curve {
+        Curve::Arc(arc) => axis == arc.plane.first || axis == arc.plane.second,
+        Curve::Line | Curve::Hold => false,
+    }
+}
+
+/// The limits of a path: those of the axes by their slots.
+pub(crate) fn path_limits<'a>(
+    parameters: &ParameterList,
+    axes: impl Iterator<Item = &'a AxisUnit> + Clone,
+) -> Limits {
+    let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
+        Axis::ALL.map(|axis| {
+            let mut axes = axes.clone();
+            axes.find(|unit| unit.axis == axis).map_or(otherwise, value)
+        })
+    };
+    Limits {
+        max_feed_mm_min: of(|unit| unit.parameters.motion.rapid_mm_min, 0.0),
+        acceleration_m_s2: of(|unit| unit.parameters.motion.acceleration_m_s2, 1.0),
+        radial_acceleration_m_s2: parameters.radial_acceleration_m_s2(),
+        corner_angle_deg: parameters.corner_angle_deg(),
+        servo_lag: !parameters.feed_precontrol(),
+        cycle_s: f64::from(Timing::of(parameters.model()).contour_us()) * 1e-6,
+        servo_window_s: bahn_motion::SERVO_WINDOW_S,
+        spindle: parameters.spindle_parameters().rigid_ramps().map(Into::into),
+        feed_override_percent: 100.0,
+        rapid_override_percent: 100.0,
+    }
+}

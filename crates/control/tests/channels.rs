@@ -1,0 +1,311 @@
+//! Two channels on one machine: one clock, one PLC, one EMERGENCY STOP; each with its axes, its panel, its program.
+#![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
+
+mod support;
+
+use std::sync::Arc;
+
+use bahn_control::{
+    AxisId, Cartesian, ChannelError, ChannelSetup, Command, Control, Mode, Remembered, RunState, Setup,
+    Snapshot, SpindleWiring, Window,
+};
+use bahn_machine::Machine;
+use support::bench::{bench, fourth};
+use support::{Build, Rig, Shelf};
+
+/// Panel, transfers and cam of the second channel: its window lies from M300 on. M50 is a wait mark: it is
+/// acknowledged in both channels when both have come to it.
+const SECOND: &str = "
+       L     I20
+       = M300
+       =N M316
+       L     I21
+       = M340
+       LN    I151
+       = M303
+       =N M319
+       L     I4
+       = M370
+       L     W260
+       == K+50
+       = M390
+       L     M390
+       A     M2045
+       = M390
+       L     W128
+       == K+50
+       = M391
+       L     M391
+       A     M380
+       = M391
+       L     M390
+       A     M391
+       = M392
+       L     M2045
+       AN    M390
+       O     M392
+       = M2482
+       L     M380
+       AN    M391
+       O     M392
+       = M334
+       L     M381
+       = M335
+       L     M382
+       = M336
+";
+
+/// The window of the second channel.
+fn window() -> Window {
+    let bit = |name: &str| name.parse().unwrap();
+    Window::default()
+        // Panel M2448-M2479, acknowledgements from M2480 on, NC stop M2488.
+        .markers(bit("M2448"), bit("M300"), 64)
+        .markers(bit("M2556"), bit("M370"), 1)
+        .markers(bit("M2045"), bit("M380"), 3)
+        .number("W260".parse().unwrap(), "W128".parse().unwrap())
+}
+
+/// X, Y, Z of the first channel at outputs 1 to 3; the second has one axis at output 4, which it calls X, too.
+fn setups(first: &str, second: &str) -> (Setup, ChannelSetup, Machine) {
+    let build: Build = bench(SECOND)
+        .with(&fourth('C', ""))
+        .plant(
+            "NO_FEED = \"I151\"",
+            "NO_FEED = \"I151\"\nSTART2 = \"I20\"\nSTOP2 = \"not I21\"",
+        )
+        .program("1.H", first);
+    let (setup, machine) = build.setup();
+    let mut parameters = setup.parameters.clone();
+    for assignment in ["10=%00001", "50=%00001", "110.0=3", "120.0=3", "3010=0"] {
+        parameters.assign(assignment).unwrap();
+    }
+    let mut programs = Shelf::default();
+    let text = format!("BEGIN PGM 2 MM\n{second}\nEND PGM 2 MM\n");
+    programs.0.insert("2.H".to_owned(), text);
+    let other = ChannelSetup {
+        parameters,
+        axes: [AxisId::new(3), None, None, None, None],
+        spindle: SpindleWiring { output: 6, input: 6 },
+        tools: None,
+        programs: Arc::new(programs),
+        kinematics: Arc::new(Cartesian),
+        window: window(),
+        remembered: Remembered::default(),
+    };
+    (setup, other, machine)
+}
+
+fn state(rig: &Rig, channel: usize) -> Snapshot {
+    rig.control.snapshot_of(channel).unwrap()
+}
+
+fn nominal(rig: &Rig, channel: usize, letter: char) -> f64 {
+    let axes = state(rig, channel).axes;
+    axes.iter().find(|axis| axis.letter == letter).unwrap().nominal
+}
+
+fn tell(rig: &mut Rig, channel: usize, text: &str) {
+    let command: Command = text.parse().unwrap();
+    assert!(
+        rig.control.command_to(channel, command),
+        "{text}: {:?}",
+        rig.messages()
+    );
+}
+
+/// Both channels after the reference run, program 1 selected in the first, 2 in the second.
+fn twin(first: &str, second: &str) -> Rig {
+    let (setup, other, machine) = setups(first, second);
+    let control = Control::with_channels(setup, vec![other]).unwrap();
+    let mut rig = Rig { control, machine };
+    if rig.messages() == ["POWER INTERRUPTED"] {
+        rig.command("ce");
+    }
+    for mode in [Mode::Reference, Mode::Manual] {
+        rig.until(60.0, "both channels are in a mode", |rig| {
+            [0, 1].iter().all(|channel| state(rig, *channel).mode == mode)
+        });
+        if mode == Mode::Reference {
+            start(&mut rig);
+        }
+    }
+    for channel in [0, 1] {
+        tell(&mut rig, channel, "mode full");
+        tell(&mut rig, channel, &format!("select {}.H", channel + 1));
+    }
+    rig
+}
+
+/// NC start in both channels.
+fn start(rig: &mut Rig) {
+    for event in ["press", "release"] {
+        rig.event(&format!("key NC_START {event}"));
+        rig.event(&format!("key START2 {event}"));
+        rig.seconds(0.1);
+    }
+}
+
+fn until_ended(rig: &mut Rig) {
+    rig.until(60.0, "both programs end", |rig| {
+        [0, 1].iter().all(|channel| state(rig, *channel).ended)
+    });
+}
+
+/// 60 mm at 600 mm/min take 6 s, 30 mm at 1200 mm/min 1.5 s: the second program ends while the first runs.
+#[test]
+fn two_programs_run_at_once() {
+    let mut rig = twin(
+        "L X+100 R0 FMAX\nL X+160 R0 F600",
+        "L X+100 R0 FMAX\nL X+130 R0 F1200",
+    );
+    start(&mut rig);
+    rig.until(20.0, "both cut", |rig| {
+        [600.0, 1200.0]
+            .iter()
+            .enumerate()
+            .all(|(channel, feed)| (state(rig, channel).feed_mm_min - feed).abs() < 1.0)
+    });
+    rig.until(5.0, "the second ends", |rig| state(rig, 1).ended);
+    assert_eq!(state(&rig, 0).run, RunState::Running);
+    assert!(!state(&rig, 0).ended);
+    until_ended(&mut rig);
+    assert_eq!((nominal(&rig, 0, 'X'), nominal(&rig, 1, 'X')), (160.0, 130.0));
+}
+
+/// NC stop in the window of the second channel stops its axis; the first goes on to its end.
+#[test]
+fn stopping_one_channel_leaves_the_other_running() {
+    let blocks = "L X+100 R0 FMAX\nL X+160 R0 F600";
+    let mut rig = twin(blocks, blocks);
+    start(&mut rig);
+    rig.until(20.0, "both cut", |rig| {
+        (0..2).all(|channel| (state(rig, channel).feed_mm_min - 600.0).abs() < 1.0)
+    });
+    rig.event("key STOP2 press");
+    rig.seconds(0.5);
+    assert_eq!(state(&rig, 1).run, RunState::Interrupted);
+    let stopped = nominal(&rig, 1, 'X');
+    rig.until(20.0, "the first ends", |rig| state(rig, 0).ended);
+    assert_eq!((nominal(&rig, 0, 'X'), nominal(&rig, 1, 'X')), (160.0, stopped));
+    assert!(stopped < 160.0);
+    rig.event("key STOP2 release");
+    rig.seconds(0.1);
+    start(&mut rig);
+    until_ended(&mut rig);
+    assert_eq!(nominal(&rig, 1, 'X'), 160.0);
+}
+
+#[test]
+fn emergency_stop_stops_both() {
+    let blocks = "L X+100 R0 FMAX\nL X+160 R0 F600";
+    let mut rig = twin(blocks, blocks);
+    start(&mut rig);
+    rig.until(20.0, "both cut", |rig| {
+        (0..2).all(|channel| (state(rig, channel).feed_mm_min - 600.0).abs() < 1.0)
+    });
+    rig.event("emergency press");
+    rig.seconds(1.0);
+    for channel in [0, 1] {
+        let state = state(&rig, channel);
+        assert_eq!(state.run, RunState::Interrupted, "channel {channel}");
+        assert!(state.axes.iter().all(|axis| !axis.closed), "channel {channel}");
+    }
+    assert_eq!(rig.messages(), ["EXTERNAL EMERGENCY STOP"]);
+}
+
+/// M50 holds the first channel at 120 until the second one comes to its M50: 60 mm at 600 mm/min later.
+#[test]
+fn programs_wait_for_each_other() {
+    let mut rig = twin(
+        "L X+120 R0 FMAX\nM50\nL X+150 R0 F3000",
+        "L X+100 R0 FMAX\nL X+160 R0 F600\nM50\nL X+100 R0 F3000",
+    );
+    start(&mut rig);
+    rig.until(20.0, "the second cuts", |rig| {
+        (state(rig, 1).feed_mm_min - 600.0).abs() < 1.0
+    });
+    rig.until(20.0, "the second is there", |rig| nominal(rig, 1, 'X') == 160.0);
+    assert_eq!(nominal(&rig, 0, 'X'), 120.0, "the first waits");
+    rig.until(1.0, "the first goes on", |rig| nominal(rig, 0, 'X') != 120.0);
+    // Both strobes fall with the same scan; the second has still to come into position.
+    rig.seconds(0.1);
+    assert!(nominal(&rig, 1, 'X') < 160.0);
+    until_ended(&mut rig);
+    assert_eq!((nominal(&rig, 0, 'X'), nominal(&rig, 1, 'X')), (150.0, 100.0));
+}
+
+/// Z goes from the first channel to the second between their programs, and a program of the second one moves it.
+#[test]
+fn an_axis_is_handed_over_between_programs() {
+    let mut rig = twin("L Z+100 R0 FMAX", "L X+90 R0 FMAX\nL Z+140 R0 FMAX");
+    let z = AxisId::new(2).unwrap();
+    let axis = bahn_path::Axis::Z;
+    tell(&mut rig, 0, "select 1.H");
+    rig.event("key NC_START press");
+    rig.until(2.0, "the first runs", |rig| {
+        state(rig, 0).run == RunState::Running
+    });
+    assert!(!rig.control.hand_over(z, 1, axis, 2), "a program is on its way");
+    rig.event("key NC_START release");
+    rig.until(20.0, "the first ends", |rig| state(rig, 0).ended);
+    rig.seconds(0.2);
+    assert!(
+        !rig.control.hand_over(z, 1, bahn_path::Axis::X, 2),
+        "the slot is taken"
+    );
+    assert!(!rig.control.hand_over(z, 2, axis, 2), "there is no such channel");
+    assert!(rig.control.hand_over(z, 1, axis, 2));
+    let letters =
+        |rig: &Rig, channel| -> String { state(rig, channel).axes.iter().map(|axis| axis.letter).collect() };
+    assert_eq!(
+        (letters(&rig, 0), letters(&rig, 1)),
+        ("XY".to_owned(), "ZX".to_owned())
+    );
+    rig.event("key START2 press");
+    rig.until(20.0, "the second ends", |rig| state(rig, 1).ended);
+    assert_eq!((nominal(&rig, 1, 'X'), nominal(&rig, 1, 'Z')), (90.0, 140.0));
+    assert!(
+        (rig.table('Z') - 140.0).abs() < 0.1,
+        "the table stands at {}",
+        rig.table('Z')
+    );
+}
+
+/// A clone goes on as the control does: the same bits.
+#[test]
+fn a_clone_goes_on_in_the_same_way() {
+    let blocks = "L X+100 R0 FMAX\nL X+160 R0 F600 M8\nL X+90 F2000";
+    let mut rig = twin(blocks, blocks);
+    start(&mut rig);
+    rig.seconds(2.0);
+    let mut copy = Rig {
+        control: rig.control.clone(),
+        machine: rig.machine.clone(),
+    };
+    for _ in 0..2000 {
+        rig.cycle();
+        copy.cycle();
+        for channel in [0, 1] {
+            assert_eq!(state(&rig, channel), state(&copy, channel));
+        }
+    }
+    assert!((0..2).all(|channel| state(&rig, channel).time_us > 2_000_000));
+}
+
+#[test]
+fn channels_are_put_together_with_care() {
+    let (setup, mut other, _) = setups("L X+1 R0 F100", "L X+1 R0 F100");
+    let many = vec![other.clone(); 8];
+    assert_eq!(
+        Control::with_channels(setup.clone(), many).err(),
+        Some(ChannelError::TooMany)
+    );
+    let x = AxisId::new(0).unwrap();
+    other.axes = [Some(x), None, None, None, None];
+    assert_eq!(
+        Control::with_channels(setup, vec![other]).err(),
+        Some(ChannelError::AxisTwice(x))
+    );
+    assert_eq!(AxisId::new(5), None, "left to the spindle");
+}
