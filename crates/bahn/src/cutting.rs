@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bahn_path::{
-    At, Axis, Blank, BlockRef, Curve, Function, OverrideLaw, PathElement, Position, ToolShape, Touch,
+    At, Axis, Blank, BlockRef, Curve, Function, OverrideLaw, PathElement, Position, SpindleOrder,
+    TechnologyFunction, ToolShape, Touch,
 };
 use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{
@@ -103,12 +104,15 @@ enum Turn {
 }
 
 impl Spindle {
-    /// Takes a function of the program [003:7459-7577]: M0, M2, M6 and M30 stop the spindle as M5 does.
-    fn take(&mut self, function: &Function) {
-        match function {
-            Function::M(3 | 13) => self.turns = Some(Turn::Clockwise),
-            Function::M(4 | 14) => self.turns = Some(Turn::CounterClockwise),
-            Function::M(0 | 2 | 5 | 6 | 30) => self.turns = None,
+    /// Takes a function of the program.
+    fn take(&mut self, function: &TechnologyFunction) {
+        match function.spindle {
+            Some(SpindleOrder::Clockwise) => self.turns = Some(Turn::Clockwise),
+            Some(SpindleOrder::CounterClockwise) => self.turns = Some(Turn::CounterClockwise),
+            Some(SpindleOrder::Stop | SpindleOrder::StopWithRun) => self.turns = None,
+            None => {}
+        }
+        match &function.function {
             Function::Tool(call) => self.speed_rpm = call.speed_rpm,
             Function::SpindleSpeed(speed_rpm) => self.speed_rpm = *speed_rpm,
             _ => {}
@@ -211,7 +215,7 @@ impl Cutting {
             if matches!(function.at, At::End | At::BeforeEnd(_)) != at_end {
                 continue;
             }
-            self.spindle.take(&function.function);
+            self.spindle.take(function);
             match &function.function {
                 Function::Tool(call) => {
                     self.take_events(record);

@@ -7,7 +7,7 @@ use bahn_servo::{Gantry, Plant, Timing};
 
 use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::gantry;
-use crate::kinematics::Box2;
+use crate::kinematics::{Box2, Chain};
 use crate::markers::AXES;
 
 /// All axes of the machine. Each belongs to one channel, which gives it a slot of its path and an index of
@@ -270,6 +270,18 @@ impl OwnAxes<'_> {
             unit.mover = Mover::None;
         }
     }
+}
+
+/// Where axes stand, as path positions: the actual one, and the nominal one.
+pub(crate) fn path_positions<'a>(
+    axes: impl Iterator<Item = &'a AxisUnit> + Clone,
+    chain: &Chain,
+) -> [Position; 2] {
+    let mut actual = Position::UNKNOWN;
+    for unit in axes.clone() {
+        actual[unit.axis] = unit.servo.actual_mm();
+    }
+    [actual, machine_position(axes)].map(|machine| chain.to_path(&machine))
 }
 
 /// Where axes stand, machine coordinates; unknown where there is none.

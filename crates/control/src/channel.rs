@@ -7,7 +7,7 @@ use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, BlockRef};
 use bahn_servo::{OperatorInputs, Plant};
 
-use crate::axes::Axes;
+use crate::axes::{Axes, path_positions};
 use crate::axis::{AxisId, AxisUnit};
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
@@ -44,6 +44,8 @@ pub(crate) struct Channel {
     pub handshakes: Handshakes,
     datums: Datums,
     pub tools: Tools,
+    /// The version of the magazine that the interpreter knows.
+    tools_seen: u64,
     /// Of the tool in the spindle.
     life: LifeCount,
     pub run: ProgramRun,
@@ -55,7 +57,6 @@ pub(crate) struct Parts {
     pub number: usize,
     pub own_list: Option<ParameterList>,
     pub kinematics: std::sync::Arc<dyn Kinematics>,
-    pub tools: Tools,
     pub reading: Reading,
 }
 
@@ -80,7 +81,8 @@ impl Channel {
                 operation.datums.datum_for_each_range,
                 parts.kinematics,
             ),
-            tools: parts.tools,
+            tools: Tools::new(operation.tools, remembered),
+            tools_seen: 0,
             life: LifeCount::default(),
             run: ProgramRun::new(selection, source, Track::new(&limits)),
             test: None,
@@ -128,6 +130,7 @@ impl Channel {
             axes: machine.axes.of(self.number),
             spindle: machine.spindles.of_mut(self.number),
             tools: &mut self.tools,
+            magazine: &machine.magazine,
             chain: &mut self.datums.chain,
             handshakes: &mut self.handshakes,
             positioning: &mut self.positioning,
@@ -278,9 +281,9 @@ impl Channel {
     }
 
     fn output_entered(&mut self, machine: &mut MachineSide) {
-        let mut manual = self.desk.manual;
+        let (mut manual, model) = (self.desk.manual, machine.model);
         let (_, mut site, _) = self.parts(machine);
-        manual.output_entered(&mut site);
+        manual.output_entered(model, &mut site);
         self.desk.manual = manual;
     }
 
@@ -331,8 +334,9 @@ impl Channel {
             cycle_us: machine.timing.contour_us(),
             runs,
         };
-        let (life, files) = (&mut self.life, &mut machine.link.files);
-        let changed = life.follow(counting, &mut self.tools, &self.handshakes, exchange, files);
+        let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
+        let (life, tools) = (&mut self.life, &mut self.tools);
+        let changed = life.follow(counting, tools, magazine, &self.handshakes, exchange, files);
         machine.unsaved |= changed;
         let waits = keeps && machine.unsaved;
         if !waits {
@@ -383,13 +387,13 @@ impl Channel {
         let (run, chain) = (&self.run, &self.datums.chain);
         let (axes, link) = (&machine.axes, &mut machine.link);
         let spindle = machine.spindles.of(self.number);
+        let [actual, nominal] = path_positions(axes.owned(self.number), chain);
         status::coordinates(
             axes.owned(self.number),
             |unit| {
-                let offset = chain.offsets.of(unit.axis);
                 [
-                    unit.servo.actual_mm() - offset,
-                    unit.nominal - offset,
+                    actual[unit.axis],
+                    nominal[unit.axis],
                     unit.servo.actual_mm(),
                     unit.servo.lag_mm(),
                     run.distance_to_go(unit, chain),
@@ -449,8 +453,9 @@ impl Channel {
         let mut axes = machine.axes.of(self.number);
         strobes::take_lubrication(&mut axes, exchange);
         strobes::take_lag_tracking(machine.plc_parameters.tracking_step_mm, &mut axes, exchange.nc());
+        let offsets = &mut self.datums.chain.offsets;
         self.tools
-            .take_geometry_strobe(exchange, &mut self.datums.chain.offsets);
+            .take_geometry_strobe(&machine.magazine, exchange, offsets);
         let spindle = machine.spindles.of_mut(self.number);
         if let Some(code) = spindle.take_markers(exchange) {
             self.show(Message::PlcMarkers(code), true, machine);
@@ -480,6 +485,7 @@ impl Channel {
         if std::mem::take(&mut requests.geometry) {
             tables::initialise_geometry(
                 &mut self.tools,
+                &mut machine.magazine,
                 &machine.link.files,
                 &mut self.datums.chain.offsets,
             );
@@ -546,13 +552,13 @@ impl Channel {
             self.run.track.take_limits(&limits);
         }
         let rules = self.desk.rules().restart;
+        let version = machine.magazine.version();
+        let tools_changed = std::mem::replace(&mut self.tools_seen, version) != version;
         let (run, mut site, basis) = self.parts(machine);
         run.prepare_restore(&rules, &mut site);
         run.close(&mut site, &basis);
-        if std::mem::take(&mut site.tools.states_changed)
-            && let Some(interpreter) = run.source.interpreter_mut()
-        {
-            interpreter.set_barred_tools(site.tools.barred());
+        if tools_changed && let Some(interpreter) = run.source.interpreter_mut() {
+            interpreter.set_barred_tools(site.magazine.barred());
         }
         if datums_changed && let Some(interpreter) = run.source.interpreter_mut() {
             interpreter.set_datum_table(basis.link.datums(basis.list));
@@ -599,11 +605,7 @@ impl Channel {
             }
             Command::ToolLife(tool, minutes) => {
                 machine.unsaved = true;
-                let done = self.tools.set_life(tool, minutes);
-                if done {
-                    life::write_life(&mut machine.link.files, tool, minutes);
-                }
-                done
+                life::set(&mut machine.magazine, &mut machine.link.files, tool, minutes)
             }
             Command::Handwheel(axis, factor) => {
                 let axes = machine.axes.of(self.number);
@@ -679,7 +681,6 @@ impl Channel {
             tool: self.tools.number,
             tool_length,
             tool_axis: Some(tool_axis),
-            pockets: self.tools.moved(),
             q: self.run.q_values(),
             program: self.run.selection.program.clone(),
             ..Remembered::default()

@@ -16,7 +16,8 @@ use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::handshake::Waiting;
 use crate::kinematics::Cartesian;
-use crate::machine::{CircuitOrder, MachineSide, PlcUnit};
+use crate::machine::{CircuitOrder, MachineParts, MachineSide, PlcUnit};
+use crate::magazine::Magazine;
 use crate::markers::AXES;
 use crate::message::{Message, Shown};
 use crate::per_channel::PerChannel;
@@ -27,9 +28,9 @@ use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::source::Reading;
 use crate::spindle::{SpindleState, SpindleUnit, SpindleWiring};
+use crate::status;
 use crate::tables::LoadedTables;
 use crate::test_run::{TestReport, TestRun};
-use crate::tools::Tools;
 use crate::upkeep::by_index;
 
 /// How often the EMERGENCY STOP test looks at the acknowledgement at least, µs.
@@ -112,13 +113,20 @@ impl Control {
             datum_table: remembered.datum_table.clone(),
         };
         let loaded_datums = LoadedDatums::set_up(&mut link, &remembered.written_datums);
-        let mut tools = Tools::new(tools, operation.tools, &remembered);
-        let loaded_tables = LoadedTables::set_up(&mut tools, &mut link.files, &remembered.written);
-        let plc = PlcUnit::new(plc, model);
-        let windows = others.iter().map(|other| other.window.clone()).collect();
-        let mut machine = MachineSide::new(&parameters, plc, link, exchange, windows, axes, spindle);
-        machine.loaded_datums = loaded_datums;
-        machine.loaded_tables = loaded_tables;
+        let mut magazine = Magazine::new(tools, &remembered.pockets);
+        let loaded_tables = LoadedTables::set_up(&mut magazine, &mut link.files, &remembered.written);
+        let parts = MachineParts {
+            plc: PlcUnit::new(plc, model),
+            link,
+            exchange,
+            windows: others.iter().map(|other| other.window.clone()).collect(),
+            axes,
+            spindle,
+            magazine,
+            loaded_tables,
+            loaded_datums,
+        };
+        let mut machine = MachineSide::new(&parameters, parts);
         let reading = Reading {
             model,
             checking,
@@ -129,27 +137,13 @@ impl Control {
             number: 0,
             own_list: None,
             kinematics: std::sync::Arc::new(Cartesian),
-            tools,
             reading: reading.clone(),
         };
         let first = Channel::new(parts, &remembered, &mut machine);
         let mut channels = PerChannel::new(first, Vec::new());
         for other in others {
-            let parameters = other.parameters.spindle_parameters();
-            let spindle = SpindleUnit::new(other.spindle, parameters, timing);
-            machine.spindles.push(spindle);
-            let tools = other.parameters.operation_parameters().tools;
-            let parts = Parts {
-                number: channels.count(),
-                own_list: Some(other.parameters),
-                kinematics: other.kinematics,
-                tools: Tools::new(other.tools, tools, &other.remembered),
-                reading: Reading {
-                    programs: other.programs,
-                    ..reading.clone()
-                },
-            };
-            channels.push(Channel::new(parts, &other.remembered, &mut machine));
+            let channel = beside(other, channels.count(), &reading, &mut machine);
+            channels.push(channel);
         }
         if operation.power_interrupted {
             let message = Message::Plain(MessageId::PowerInterrupted);
@@ -191,9 +185,10 @@ impl Control {
     /// cycle, as [`Control::prepare`].
     pub fn hand_over(&mut self, id: AxisId, channel: usize, slot: Axis, index: usize) -> bool {
         let axes = &mut self.machine.axes;
-        let Some(from) = axes.iter().find(|unit| unit.id == id).map(|unit| unit.channel) else {
+        let Some(unit) = axes.iter().find(|unit| unit.id == id) else {
             return false;
         };
+        let (from, before) = (unit.channel, unit.index);
         let Some(to) = self.channels.get(channel) else {
             return false;
         };
@@ -201,6 +196,7 @@ impl Control {
         if !may || !axes.give(id, channel, slot, index) {
             return false;
         }
+        status::leave(before, self.machine.memory.of_mut(from));
         for number in [from, channel] {
             self.channels.of_mut(number).take_axes(&mut self.machine);
         }
@@ -495,6 +491,7 @@ impl Control {
         let link = &self.machine.link;
         let axes = self.machine.axes.owned(0);
         Remembered {
+            pockets: self.machine.magazine.moved(),
             written: self.machine.loaded_tables.written(&link.files),
             offsets_volts: by_index(axes, |unit| unit.servo.offset_compensation_volts()),
             parameter_list: link.selected_list.clone(),
@@ -649,6 +646,23 @@ impl Control {
     pub fn observe(&self, signal: &Signal) -> f64 {
         signal.value(self.channels.first(), &self.machine)
     }
+}
+
+/// A channel beside the first one, with its spindle.
+fn beside(setup: ChannelSetup, number: usize, reading: &Reading, machine: &mut MachineSide) -> Channel {
+    let parameters = setup.parameters.spindle_parameters();
+    let spindle = SpindleUnit::new(setup.spindle, parameters, machine.timing);
+    machine.spindles.push(spindle);
+    let parts = Parts {
+        number,
+        own_list: Some(setup.parameters),
+        kinematics: setup.kinematics,
+        reading: Reading {
+            programs: setup.programs,
+            ..reading.clone()
+        },
+    };
+    Channel::new(parts, &setup.remembered, machine)
 }
 
 /// The numbers of the axes of the first channel.

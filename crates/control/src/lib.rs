@@ -5,9 +5,12 @@
 //! - [`Command`] is what an operator asks for, [`Snapshot`] what he sees, [`Message`] what the control says;
 //! - [`Signal`] names what can be recorded.
 //!
+//! - [`Control::with_channels`] puts several channels on one machine, [`ChannelSetup`] each of them: with its axes
+//!   ([`AxisId`]), its [`Kinematics`] and its [`Window`] into the memory of the PLC.
+//!
 //! Time is a count of microseconds; there is no wall clock, no thread and no randomness here, so the same
-//! setup, machine and commands give the same bits. What is decided once in a contour cycle stands in
-//! `movement`; each operating mode has its file: `manual`, `reference`, `run`, `restore`.
+//! setup, machine and commands give the same bits. `control` orders what happens, `machine` is what the channels
+//! share, `channel` one of them.
 //!
 //! Citations like `[000:7188]` name the manual and the line of its text: `000` is the technical manual of
 //! the TNC 407/415/425, `003` the user's manual of the TNC 360.
@@ -36,6 +39,7 @@ mod kinematics;
 mod life;
 mod loops;
 mod machine;
+mod magazine;
 mod manual;
 mod markers;
 mod message;

@@ -6,6 +6,7 @@ use bahn_plc::{TableFile, TableKind};
 
 use crate::command::CURRENT_MAX_MIN;
 use crate::handshake::{Handshakes, Transfer};
+use crate::magazine::Magazine;
 use crate::plc_link::NcFiles;
 use crate::tables;
 use crate::tools::Tools;
@@ -39,6 +40,7 @@ impl LifeCount {
         &mut self,
         counting: Counting,
         tools: &mut Tools,
+        magazine: &mut Magazine,
         handshakes: &Handshakes,
         exchange: &mut Exchange,
         files: &mut NcFiles,
@@ -47,43 +49,38 @@ impl LifeCount {
         if let Some(Transfer::ToolCall { more: false, .. }) = handshakes.acknowledged(exchange.nc())
             && tools.is_changing()
         {
-            tools.inserted(exchange);
+            tools.inserted(magazine, exchange);
         }
-        if let Some((tool, minutes)) = self.count(counting, tools) {
-            write_life(files, tool, minutes);
-        }
-        self.tell_time1(tools, exchange);
+        self.count(counting, tools, magazine, files);
+        self.tell_time1(tools.number, magazine, exchange);
         let changed = std::mem::take(&mut tools.changed);
         if changed {
-            tables::mirror_pockets(tools, files);
-            tools.states_changed = true;
+            tables::mirror_pockets(magazine, files);
+            magazine.touch();
         }
         changed
     }
 
-    /// Counts a cycle. The tool whose life has changed, with its life in minutes.
-    fn count(&mut self, counting: Counting, tools: &mut Tools) -> Option<(u32, f64)> {
+    /// Counts a cycle.
+    fn count(&mut self, counting: Counting, tools: &Tools, magazine: &mut Magazine, files: &mut NcFiles) {
         let counts = tools.counts && counting.runs && !tools.is_changing();
         let goes_on = counts && self.tool == tools.number;
         let due = if goes_on { STEP_US } else { 1 };
-        let mut counted = None;
         if self.uncounted_us >= due {
             let minutes = std::mem::take(&mut self.uncounted_us) as f64 / US_PER_MIN;
-            let before = tools.life(self.tool).current_min;
+            let before = magazine.life(self.tool).current_min;
             let current = (before + minutes).min(CURRENT_MAX_MIN);
-            counted = tools.set_life(self.tool, current).then_some((self.tool, current));
+            set(magazine, files, self.tool, current);
         }
         self.tool = tools.number;
         if counts {
             self.uncounted_us += u64::from(counting.cycle_us);
         }
-        counted
     }
 
     /// M2094 follows TIME1 of the tool in the spindle on its edges: the PLC may reset it, too [000:9173].
-    fn tell_time1(&mut self, tools: &Tools, exchange: &mut Exchange) {
-        let number = tools.number;
-        let elapsed = tools.life(number).time1_elapsed().then_some(number);
+    fn tell_time1(&mut self, number: u32, magazine: &Magazine, exchange: &mut Exchange) {
+        let elapsed = magazine.life(number).time1_elapsed().then_some(number);
         if elapsed != self.told {
             self.told = elapsed;
             exchange.nc_set(signal::TOOL_LIFE_TIME1_ELAPSED, elapsed.is_some());
@@ -91,9 +88,12 @@ impl LifeCount {
     }
 }
 
-/// The current life of a tool, minutes, in the tool table that modules see.
-pub(crate) fn write_life(files: &mut NcFiles, number: u32, minutes: f64) {
-    if let (Some(table), Ok(line)) = (files.tables.get_mut(&TableKind::Tool), i32::try_from(number)) {
+/// The current life of a tool, minutes, with the tool table that modules see; `false` when there is no such tool.
+pub(crate) fn set(magazine: &mut Magazine, files: &mut NcFiles, number: u32, minutes: f64) -> bool {
+    let known = magazine.set_life(number, minutes);
+    let table = files.tables.get_mut(&TableKind::Tool);
+    if let (true, Some(table), Ok(line)) = (known, table, i32::try_from(number)) {
         table.set_value(line, tables::CURRENT_TIME, minutes);
     }
+    known
 }

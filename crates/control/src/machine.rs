@@ -12,6 +12,7 @@ use crate::axis::AxisId;
 use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::emergency::{Circuit, EmergencyStop};
+use crate::magazine::Magazine;
 use crate::message::{Message, Messages};
 use crate::now::Facts;
 use crate::per_channel::PerChannel;
@@ -42,6 +43,7 @@ pub(crate) struct MachineSide {
     pub messages: Messages,
     pub axes: Axes,
     pub spindles: PerChannel<SpindleUnit>,
+    pub magazine: Magazine,
     /// The loops were closed since the control voltage came on.
     pub loops_closed: bool,
     pub offsets: DriveOffsets,
@@ -53,6 +55,21 @@ pub(crate) struct MachineSide {
     /// The control is to be restarted (module 9033).
     pub restart_wanted: bool,
     wiring: Wiring,
+}
+
+/// What a machine side is made of.
+pub(crate) struct MachineParts {
+    pub plc: PlcUnit,
+    pub link: PlcLink,
+    /// The memory of the PLC, and the windows of the channels beside the first one.
+    pub exchange: Exchange,
+    pub windows: Vec<Window>,
+    pub axes: Axes,
+    /// Of the first channel.
+    pub spindle: SpindleUnit,
+    pub magazine: Magazine,
+    pub loaded_tables: LoadedTables,
+    pub loaded_datums: LoadedDatums,
 }
 
 /// The PLC and its clock.
@@ -118,15 +135,18 @@ impl Wiring {
 
 impl MachineSide {
     /// A machine at power-on.
-    pub fn new(
-        parameters: &ParameterList,
-        plc: PlcUnit,
-        link: PlcLink,
-        exchange: Exchange,
-        windows: Vec<Window>,
-        axes: Axes,
-        spindle: SpindleUnit,
-    ) -> MachineSide {
+    pub fn new(parameters: &ParameterList, parts: MachineParts) -> MachineSide {
+        let MachineParts {
+            plc,
+            link,
+            exchange,
+            windows,
+            axes,
+            spindle,
+            magazine,
+            loaded_tables,
+            loaded_datums,
+        } = parts;
         let model = parameters.model();
         let operation = parameters.operation_parameters();
         let memory = PerChannel::new(exchange, windows.iter().map(Window::memory).collect());
@@ -150,10 +170,11 @@ impl MachineSide {
             messages: Messages::default(),
             axes,
             spindles: PerChannel::new(spindle, Vec::new()),
+            magazine,
             loops_closed: false,
             offsets: DriveOffsets::new(interval_s),
-            loaded_tables: LoadedTables::default(),
-            loaded_datums: LoadedDatums::default(),
+            loaded_tables,
+            loaded_datums,
             unsaved: false,
             restart_wanted: false,
             wiring: Wiring::of(model),

@@ -2,8 +2,9 @@
 
 use bahn_exchange::{Image, signal};
 use bahn_motion::Aim;
-use bahn_parameters::{Handwheel, OperationParameters};
-use bahn_path::{BlockRef, Function};
+use bahn_parameters::technology::Technology;
+use bahn_parameters::{ControlModel, Handwheel, OperationParameters};
+use bahn_path::BlockRef;
 use bahn_plc::JogLimit;
 
 use crate::axes::OwnAxes;
@@ -115,15 +116,17 @@ impl Manual {
     }
 
     /// NC start in Manual and Handwheel: outputs what was entered.
-    pub fn output_entered(&mut self, site: &mut Site) {
+    pub fn output_entered(&mut self, model: ControlModel, site: &mut Site) {
         if !site.handshakes.is_idle() {
             return;
         }
         if let Some(rpm) = self.s.take() {
             site.speed(rpm, false);
         }
-        if let Some(m) = self.m.take() {
-            site.output(&Function::M(m), false);
+        if let Some(m) = self.m.take()
+            && let Some(technology) = Technology::of_m(model, m)
+        {
+            site.m_by_hand(technology, m);
         }
     }
 

@@ -10,9 +10,10 @@ use bahn_interpreter::{DatumTable, MachineTexts};
 use bahn_parameters::ParameterList;
 use bahn_path::{Axis, Position};
 use bahn_plc::{
-    CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable, Nc, NotSaved, PalletLine,
-    ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
-    SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
+    CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable, NcInterfaces, NcMemory,
+    NcMotion, NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault, ParameterFileFault,
+    PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition, StatusChange, StatusItem,
+    TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
 use crate::compensation_table::{CompensationAssignment, CompensationTable};
@@ -267,7 +268,7 @@ pub fn datum_shifts(table: &MemoryTable, list: &ParameterList) -> DatumTable {
     shifts
 }
 
-impl Nc for PlcLink {
+impl NcParameters for PlcLink {
     fn parameters(&self) -> &ParameterList {
         &self.parameters
     }
@@ -297,17 +298,11 @@ impl Nc for PlcLink {
         }
         Ok(())
     }
+}
 
+impl NcStatus for PlcLink {
     fn program_running(&self) -> bool {
         self.program_running
-    }
-
-    fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>> {
-        let lines = match file {
-            TextFile::Messages => &self.messages,
-            TextFile::Dialogues => &self.dialogues,
-        };
-        Some(lines.get(usize::from(line))?.clone().into_bytes())
     }
 
     fn status(&self, item: StatusItem) -> i32 {
@@ -325,6 +320,16 @@ impl Nc for PlcLink {
     fn spindle_position(&self) -> SpindlePosition {
         self.spindle
     }
+}
+
+impl NcScreen for PlcLink {
+    fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>> {
+        let lines = match file {
+            TextFile::Messages => &self.messages,
+            TextFile::Dialogues => &self.dialogues,
+        };
+        Some(lines.get(usize::from(line))?.clone().into_bytes())
+    }
 
     fn window(&mut self) -> &mut PlcWindow {
         &mut self.window
@@ -333,14 +338,16 @@ impl Nc for PlcLink {
     fn window_view(&self) -> WindowView {
         self.window_view
     }
+}
+
+impl NcMemory for PlcLink {
+    fn has_file(&self, name: &str) -> bool {
+        self.files.names.contains(name)
+    }
 
     fn pallet_line(&self, line: i32) -> Result<PalletLine, LineFault> {
         let lines = self.files.pallet.as_ref().ok_or(LineFault::NoFile)?;
         lines.get(&line).cloned().ok_or(LineFault::NoLine)
-    }
-
-    fn has_file(&self, name: &str) -> bool {
-        self.files.names.contains(name)
     }
 
     fn select_program(&mut self, line: i32, program: &str, datum_table: Option<&str>) {
@@ -373,7 +380,9 @@ impl Nc for PlcLink {
     fn initialise_geometry(&mut self) {
         self.requests.geometry = true;
     }
+}
 
+impl NcInterfaces for PlcLink {
     fn data_interface(&mut self, number: usize) -> &mut DataInterface {
         let [rs232, rs422] = &mut self.interfaces;
         if number == 0 { rs232 } else { rs422 }
@@ -382,7 +391,9 @@ impl Nc for PlcLink {
     fn host(&mut self) -> Option<&mut HostLink> {
         self.host.as_mut()
     }
+}
 
+impl NcMotion for PlcLink {
     fn plc_axis_status(&self, axis: usize) -> PlcAxisStatus {
         self.plc_axes.get(axis).copied().unwrap_or_default()
     }

@@ -3,6 +3,7 @@
 use bahn_parameters::MessageId;
 
 use crate::feeder::Feeder;
+use crate::magazine::Magazine;
 use crate::site::Site;
 use crate::tools::Tools;
 use crate::track::Track;
@@ -27,20 +28,20 @@ impl Wear {
     /// The first of its replacement tools, and of theirs, that may be called and is not worn itself takes its place
     /// (inferred). Programs count on its radius: a smaller one leaves material, a larger one is refused unless M107
     /// allows it [000:9175-9177].
-    pub fn of(tools: &Tools) -> Wear {
+    pub fn of(tools: &Tools, magazine: &Magazine) -> Wear {
         let worn = tools.number;
-        if !tools.replaces_worn || !tools.counts || tools.is_changing() || !tools.life(worn).is_worn() {
+        if !tools.replaces_worn || !tools.counts || tools.is_changing() || !magazine.life(worn).is_worn() {
             return Wear::None;
         }
         let mut tool = worn;
         // In a longer chain a tool stands twice.
-        for _ in 0..tools.count() {
-            let Some(replacement) = tools.life(tool).replacement else {
+        for _ in 0..magazine.count() {
+            let Some(replacement) = magazine.life(tool).replacement else {
                 return Wear::Expired;
             };
             tool = replacement;
-            if tools.may_be_called(tool) && !tools.life(tool).is_worn() {
-                let larger = tools.radius(tool) > tools.radius(worn) + SAME_RADIUS_MM;
+            if magazine.may_be_called(tool) && !magazine.life(tool).is_worn() {
+                let larger = magazine.radius(tool) > magazine.radius(worn) + SAME_RADIUS_MM;
                 return match larger && !tools.takes_larger {
                     true => Wear::TooLarge,
                     false => Wear::Replace(tool),
@@ -91,7 +92,7 @@ impl Replacement {
     pub fn prepare(&mut self, feeder: Option<&mut Feeder>, track: &mut Track, site: &Site) {
         let due = std::mem::take(&mut self.due);
         self.before = None;
-        let (Wear::Replace(tool), Some(feeder)) = (Wear::of(site.tools), feeder) else {
+        let (Wear::Replace(tool), Some(feeder)) = (Wear::of(site.tools, site.magazine), feeder) else {
             return;
         };
         let Some(behind) = track.path.element().map(|element| element.sequence) else {

@@ -262,7 +262,7 @@ impl ProgramRun {
         }
         self.replacement
             .prepare(self.source.feeder_mut(), &mut self.track, site);
-        let wear = Wear::of(site.tools);
+        let wear = Wear::of(site.tools, site.magazine);
         let scans = self.restoration.scans();
         let Some(feeder) = self
             .source
@@ -428,7 +428,7 @@ impl ProgramRun {
         }
         self.tapping.couple(&mut self.track, site);
         let settled = self.is_in_position(site);
-        let wear = Wear::of(site.tools).message();
+        let wear = Wear::of(site.tools, site.magazine).message();
         let drive = self.drive(settled, wear.is_some(), site);
         let cycle = self.track.path.cycle(&drive);
         self.track.set_speed(cycle.speed_mm_s);

@@ -62,8 +62,6 @@ pub struct ChannelSetup {
     pub axes: [Option<AxisId>; 5],
     /// Where its spindle is connected.
     pub spindle: SpindleWiring,
-    /// Tools by number; `None` when tools are defined in the programs.
-    pub tools: Option<BTreeMap<u32, Tool>>,
     /// Where its programs come from.
     pub programs: Arc<dyn Programs>,
     /// How its axes stand to its path.

@@ -1,20 +1,19 @@
 //! Where a channel acts, and what the functions of a program do there when the path comes to them.
 
 use bahn_exchange::Exchange;
-use bahn_path::{Axis, Function, Position, ToolCall};
+use bahn_parameters::technology::{Deed, Output, Technology};
+use bahn_path::{Axis, ControlFunction, Function, Position, ToolCall};
 
 use crate::axes::OwnAxes;
 use crate::handshake::{Handshakes, Transfer};
 use crate::kinematics::Chain;
+use crate::magazine::Magazine;
 use crate::markers::TOOL_AXIS;
 use crate::message::Messages;
 use crate::now::Now;
 use crate::positioning::Positioning;
 use crate::spindle::SpindleUnit;
 use crate::tools::Tools;
-
-/// Highest M function that goes to the PLC [000:7206].
-const M_MAX: u16 = 99;
 
 /// Where a channel acts: its axes, its spindle and tools, its part of the PLC's memory, the messages. Who
 /// executes blocks or functions is given this, and nothing else of machine and channel.
@@ -23,6 +22,7 @@ pub(crate) struct Site<'a> {
     pub axes: OwnAxes<'a>,
     pub spindle: &'a mut SpindleUnit,
     pub tools: &'a mut Tools,
+    pub magazine: &'a Magazine,
     pub chain: &'a mut Chain,
     pub handshakes: &'a mut Handshakes,
     pub positioning: &'a mut Positioning,
@@ -40,10 +40,16 @@ impl Site<'_> {
     /// in inches.
     pub fn output(&mut self, function: &Function, inch: bool) {
         match function {
-            Function::M(code) => self.m(*code),
+            Function::M(code) => {
+                // Each that goes to the PLC has a code of two digits [000:7206].
+                if let Ok(code) = u8::try_from(*code) {
+                    self.handshakes.push(Transfer::M(code));
+                }
+            }
+            Function::Control(function) => self.control(*function),
             Function::Tool(call) => self.tool(call),
             Function::NextTool(tool) => {
-                if let Some(transfer) = self.tools.define(*tool) {
+                if let Some(transfer) = self.tools.define(*tool, self.magazine) {
                     self.handshakes.push(transfer);
                 }
             }
@@ -59,23 +65,28 @@ impl Site<'_> {
         }
     }
 
-    fn m(&mut self, code: u16) {
-        // M105 chooses the second set of kv and reversal peaks, M106 the first [000:7251-7305].
-        if matches!(code, 105 | 106) {
-            for unit in self.axes.iter_mut() {
-                unit.servo.set_second_set(code == 105);
+    /// What acts here and never reaches the PLC.
+    fn control(&mut self, function: ControlFunction) {
+        match function {
+            ControlFunction::SecondServoSet(second) => {
+                for unit in self.axes.iter_mut() {
+                    unit.servo.set_second_set(second);
+                }
+            }
+            ControlFunction::ReplaceWornTools(replaces) => self.tools.replaces_worn = replaces,
+            ControlFunction::TakeLargerTools(takes) => self.tools.takes_larger = takes,
+        }
+    }
+
+    /// An M function that the operator enters: to whom it goes says its row.
+    pub fn m_by_hand(&mut self, technology: &Technology, code: u16) {
+        for deed in technology.deeds() {
+            if let Deed::Control(function) = deed {
+                self.control(function);
             }
         }
-        if matches!(code, 101 | 102) {
-            self.tools.replaces_worn = code == 101;
-        }
-        if matches!(code, 107 | 108) {
-            self.tools.takes_larger = code == 107;
-        }
-        if code <= M_MAX
-            && let Ok(code) = u8::try_from(code)
-        {
-            self.handshakes.push(Transfer::M(code));
+        if technology.output == Output::Plc {
+            self.output(&Function::M(code), false);
         }
     }
 
@@ -86,7 +97,8 @@ impl Site<'_> {
             return;
         }
         let before = (self.chain.offsets.tool_length, self.chain.offsets.tool_axis);
-        self.tools.call(call, self.exchange, self.handshakes);
+        self.tools
+            .call(call, self.magazine, self.exchange, self.handshakes);
         self.tools.hold_geometry(before.0, before.1);
         self.chain.offsets.tool_axis = call.axis;
         self.chain.offsets.tool_length = call.shape.length;
@@ -106,11 +118,12 @@ impl Site<'_> {
         let Some(inserted) = self.tools.inserted_call.take() else {
             return;
         };
-        let Some(call) = self.tools.tool_call(&inserted, self.chain.offsets.tool_axis) else {
+        let axis = self.chain.offsets.tool_axis;
+        let Some(call) = self.tools.tool_call(&inserted, axis, self.magazine) else {
             return;
         };
         let called = inserted.tool.is_some() && call.tool != 0;
-        if called && !self.tools.may_be_called(call.tool) {
+        if called && !self.magazine.may_be_called(call.tool) {
             return;
         }
         match inserted.tool {

@@ -1,7 +1,8 @@
 //! The state of the control for a display, a report or a test.
 
-use bahn_path::BlockRef;
+use bahn_path::{BlockRef, Position};
 
+use crate::axes::path_positions;
 use crate::axis::AxisUnit;
 use crate::channel::Channel;
 use crate::command::Mode;
@@ -80,14 +81,14 @@ pub struct Snapshot {
 }
 
 impl AxisState {
-    /// The state of an axis of a channel.
-    fn of(unit: &AxisUnit, run: &ProgramRun, chain: &Chain) -> AxisState {
-        let offset = chain.offsets.of(unit.axis);
+    /// The state of an axis of a channel whose path is at an actual and a nominal position.
+    fn of(unit: &AxisUnit, at: &[Position; 2], run: &ProgramRun, chain: &Chain) -> AxisState {
+        let [actual, nominal] = at;
         AxisState {
             letter: unit.axis.letter(),
             index: unit.index,
-            actual: unit.shown(unit.servo.actual_mm() - offset),
-            nominal: unit.shown(unit.nominal - offset),
+            actual: unit.shown(actual[unit.axis]),
+            nominal: unit.shown(nominal[unit.axis]),
             machine: unit.shown(unit.servo.actual_mm()),
             lag: unit.lag_mm(),
             max_lag: unit.max_lag,
@@ -111,7 +112,8 @@ impl Snapshot {
         };
         axes.clear();
         let units = machine.axes.owned(channel.number());
-        axes.extend(units.map(|unit| AxisState::of(unit, run, channel.chain())));
+        let at = path_positions(units.clone(), channel.chain());
+        axes.extend(units.map(|unit| AxisState::of(unit, &at, run, channel.chain())));
         if messages != machine.messages.shown() {
             messages = machine.messages.shown().to_vec();
         }

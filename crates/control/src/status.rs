@@ -122,6 +122,24 @@ pub(crate) fn axes(mode: Mode, axes: &mut OwnAxes, exchange: &mut Exchange) {
     }
 }
 
+/// An axis has left the channel: its markers rest.
+pub(crate) fn leave(index: usize, exchange: &mut Exchange) {
+    for markers in [
+        &ENABLED,
+        &IN_POSITION,
+        &IN_MOTION,
+        &NEGATIVE_TRAVERSE,
+        &REFERENCE_MISSING,
+    ] {
+        if let Some(marker) = markers.get(index) {
+            exchange.nc_put(*marker, false);
+        }
+    }
+    for marker in LIMIT.get(index).into_iter().flatten() {
+        exchange.nc_put(*marker, false);
+    }
+}
+
 /// `*`: on while something is executed or a transfer `waits`, flashing after an external stop [000:6581-6587];
 /// feeds [000:6521-6536].
 pub(crate) fn run(run: &ProgramRun, waits: bool, exchange: &mut Exchange) {

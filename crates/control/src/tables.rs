@@ -5,6 +5,7 @@ use bahn_path::ToolShape;
 use bahn_plc::{MemoryTable, TableFile, TableKind};
 
 use crate::kinematics::Offsets;
+use crate::magazine::Magazine;
 use crate::plc_link::{NcFiles, WrittenElement, differences};
 use crate::tool::{Tool, ToolLife};
 use crate::tools::Tools;
@@ -66,7 +67,7 @@ impl LoadedTables {
 impl LoadedTables {
     /// The tables at power-on, with what was written before. Elements whose table has changed since are as it
     /// says.
-    pub fn set_up(tools: &mut Tools, files: &mut NcFiles, written: &[WrittenElement]) -> LoadedTables {
+    pub fn set_up(tools: &mut Magazine, files: &mut NcFiles, written: &[WrittenElement]) -> LoadedTables {
         let Some(all) = tools.all() else {
             return LoadedTables::default();
         };
@@ -106,7 +107,7 @@ impl LoadedTables {
 }
 
 /// The tools have changed their pockets: the pocket table says so.
-pub(crate) fn mirror_pockets(tools: &Tools, files: &mut NcFiles) {
+pub(crate) fn mirror_pockets(tools: &Magazine, files: &mut NcFiles) {
     let (Some(tools), Some(magazine)) = (tools.all(), files.tables.get_mut(&TableKind::Pocket)) else {
         return;
     };
@@ -125,10 +126,15 @@ pub(crate) fn mirror_pockets(tools: &Tools, files: &mut NcFiles) {
 }
 
 /// Module 9094 wrote: the tools are as the tables say, the tool in the spindle too.
-pub(crate) fn initialise_geometry(tools: &mut Tools, files: &NcFiles, offsets: &mut Offsets) {
-    let before = tools.length(tools.number);
-    take_tables(tools, files);
-    let longer = tools.length(tools.number) - before;
+pub(crate) fn initialise_geometry(
+    tools: &mut Tools,
+    magazine: &mut Magazine,
+    files: &NcFiles,
+    offsets: &mut Offsets,
+) {
+    let before = magazine.length(tools.number);
+    take_tables(magazine, files);
+    let longer = magazine.length(tools.number) - before;
     // A tool whose data are cancelled counts without length until it is called.
     let cancelled = offsets.tool_length == 0.0 && before != 0.0;
     if !tools.lengthen_held(longer) && !cancelled {
@@ -137,7 +143,7 @@ pub(crate) fn initialise_geometry(tools: &mut Tools, files: &NcFiles, offsets: &
 }
 
 /// The tools as the tables say.
-fn take_tables(tools: &mut Tools, files: &NcFiles) {
+fn take_tables(tools: &mut Magazine, files: &NcFiles) {
     let (Some(table), Some(magazine)) = (
         files.tables.get(&TableKind::Tool),
         files.tables.get(&TableKind::Pocket),

@@ -1,27 +1,18 @@
 //! Tools: what TOOL CALL and TOOL DEF hand to the PLC (MP7480).
 
-use std::collections::BTreeMap;
-
 use bahn_exchange::{Exchange, signal};
-use bahn_interpreter::ToolState;
 use bahn_parameters::{ToolOutput, ToolOutputKind, ToolParameters};
 use bahn_path::{Axis, ToolCall};
 use bahn_plc::ToolCallBlock;
 
 use crate::handshake::{Handshakes, Transfer};
 use crate::kinematics::Offsets;
+use crate::magazine::{Kind, Magazine, NO_POCKET};
 use crate::setup::Remembered;
-use crate::tool::{MovedTool, Tool, ToolLife};
 
-/// W262 for a tool without pocket [000:9273-9283].
-const NO_POCKET: i16 = 255;
-
-/// The tool table and the tool in the spindle.
+/// The tool in the spindle of a channel, and the one that is called.
 #[derive(Clone, Debug)]
 pub(crate) struct Tools {
-    table: Option<BTreeMap<u32, Tool>>,
-    /// The pockets as the tool table has them.
-    pockets: BTreeMap<u32, Option<u16>>,
     parameters: ToolParameters,
     /// Tool in the spindle.
     pub number: u32,
@@ -41,36 +32,13 @@ pub(crate) struct Tools {
     geometry_taken: bool,
     /// Tool of the last TOOL DEF.
     defined: Option<u32>,
-    /// Lives or locks have changed: the interpreter is to know which tools must not be called.
-    pub states_changed: bool,
     /// A TOOL CALL that module 9150 inserted.
     pub inserted_call: Option<ToolCallBlock>,
 }
 
-/// The kinds of tools that decide how many codes go out [000:9287-9307].
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    /// With a pocket.
-    Normal,
-    /// Without a pocket: changed by hand.
-    Manual,
-    /// A special tool.
-    Special,
-}
-
 impl Tools {
-    pub fn new(
-        table: Option<BTreeMap<u32, Tool>>,
-        parameters: ToolParameters,
-        remembered: &Remembered,
-    ) -> Tools {
-        let mut tools = Tools {
-            pockets: table
-                .iter()
-                .flatten()
-                .map(|(number, tool)| (*number, tool.pocket))
-                .collect(),
-            table,
+    pub fn new(parameters: ToolParameters, remembered: &Remembered) -> Tools {
+        Tools {
             parameters,
             number: remembered.tool,
             called: remembered.tool,
@@ -81,106 +49,7 @@ impl Tools {
             takes_larger: false,
             geometry_taken: false,
             defined: None,
-            states_changed: false,
             inserted_call: None,
-        };
-        for moved in &remembered.pockets {
-            if let Some(tool) = tools.table.as_mut().and_then(|table| table.get_mut(&moved.tool)) {
-                tool.pocket = moved.pocket;
-            }
-        }
-        tools
-    }
-
-    /// The tools that are elsewhere than in the pocket of the tool table.
-    pub fn moved(&self) -> Vec<MovedTool> {
-        let moved = |(tool, table): (&u32, &Option<u16>)| {
-            let pocket = self.tool(*tool).pocket;
-            (pocket != *table).then_some(MovedTool {
-                tool: *tool,
-                pocket,
-                table: *table,
-            })
-        };
-        self.pockets.iter().filter_map(moved).collect()
-    }
-
-    /// The shapes for the interpreter; `None` when tools are defined in the programs.
-    pub fn shapes(&self) -> Option<bahn_interpreter::ToolTable> {
-        let table = self.table.as_ref()?;
-        Some(table.iter().map(|(number, tool)| (*number, tool.shape)).collect())
-    }
-
-    /// The tools that must not be called, for the interpreter.
-    pub fn barred(&self) -> BTreeMap<u32, ToolState> {
-        let tools = self.table.iter().flatten();
-        let states = tools.map(|(number, tool)| (*number, tool.state()));
-        states.filter(|(_, state)| *state != ToolState::Usable).collect()
-    }
-
-    /// Whether the table has a tool and lets it be called; without a table the programs know.
-    pub fn may_be_called(&self, number: u32) -> bool {
-        let Some(table) = &self.table else { return true };
-        table
-            .get(&number)
-            .is_some_and(|tool| tool.state() == ToolState::Usable)
-    }
-
-    /// All tools of the table.
-    pub fn all(&self) -> Option<impl Iterator<Item = (u32, &Tool)> + Clone> {
-        let table = self.table.as_ref()?;
-        Some(table.iter().map(|(number, tool)| (*number, tool)))
-    }
-
-    /// Length of a tool in the table, mm.
-    pub fn length(&self, number: u32) -> f64 {
-        self.tool(number).shape.length
-    }
-
-    /// Radius of a tool in the table, mm.
-    pub fn radius(&self, number: u32) -> f64 {
-        self.tool(number).shape.radius
-    }
-
-    /// How many tools the table has.
-    pub fn count(&self) -> usize {
-        self.table.as_ref().map_or(0, BTreeMap::len)
-    }
-
-    /// The lives of a tool.
-    pub fn life(&self, number: u32) -> ToolLife {
-        self.tool(number).life
-    }
-
-    /// Sets the current life of a tool, minutes; `false` when the table does not have it.
-    pub fn set_life(&mut self, number: u32, minutes: f64) -> bool {
-        let tool = self.table.as_mut().and_then(|table| table.get_mut(&number));
-        let Some(tool) = tool else { return false };
-        tool.life.current_min = minutes;
-        self.states_changed = true;
-        true
-    }
-
-    /// Takes the tools as a table has them.
-    pub fn take(&mut self, read: impl Fn(u32, Tool) -> Option<Tool>) {
-        for (number, tool) in self.table.iter_mut().flatten() {
-            *tool = read(*number, *tool).unwrap_or(*tool);
-        }
-        self.states_changed = true;
-    }
-
-    /// No tool has a pocket, until it is put into one.
-    pub fn empty_magazine(&mut self) {
-        for tool in self.table.iter_mut().flatten().map(|(_, tool)| tool) {
-            tool.pocket = None;
-        }
-    }
-
-    /// A tool is in a pocket.
-    pub fn put(&mut self, number: u32, pocket: i32, special: bool) {
-        if let Some(tool) = self.table.as_mut().and_then(|table| table.get_mut(&number)) {
-            tool.pocket = u16::try_from(pocket).ok();
-            tool.special = special;
         }
     }
 
@@ -193,75 +62,58 @@ impl Tools {
         true
     }
 
-    fn tool(&self, number: u32) -> Tool {
-        self.table
-            .as_ref()
-            .and_then(|table| table.get(&number))
-            .copied()
-            .unwrap_or_default()
-    }
-
-    fn kind(&self, number: u32) -> Kind {
-        let tool = self.tool(number);
-        match (tool.pocket, tool.special) {
-            (None, _) => Kind::Manual,
-            (_, true) => Kind::Special,
-            _ => Kind::Normal,
-        }
-    }
-
     /// W262 and W264 of a tool [000:9221-9263].
-    fn code(&self, output: ToolOutput, number: u32) -> (i16, i16) {
+    fn code(output: ToolOutput, number: u32, magazine: &Magazine) -> (i16, i16) {
         let tool = i16::try_from(number).unwrap_or(i16::MAX);
         match output.what {
             ToolOutputKind::None | ToolOutputKind::Tool => (tool, 0),
-            ToolOutputKind::Pocket | ToolOutputKind::FixedPocket => (self.pocket(number), tool),
+            ToolOutputKind::Pocket | ToolOutputKind::FixedPocket => (magazine.pocket(number), tool),
         }
     }
 
-    fn pocket(&self, number: u32) -> i16 {
-        self.tool(number)
-            .pocket
-            .and_then(|pocket| i16::try_from(pocket).ok())
-            .unwrap_or(NO_POCKET)
-    }
-
     /// TOOL DEF for the next tool. A tool without pocket means nothing to the PLC [000:9285].
-    pub fn define(&mut self, number: u32) -> Option<Transfer> {
+    pub fn define(&mut self, number: u32, magazine: &Magazine) -> Option<Transfer> {
         let output = self.parameters.definition;
         let changed = self.defined != Some(number);
         let by_pocket = matches!(output.what, ToolOutputKind::Pocket | ToolOutputKind::FixedPocket);
         self.defined = Some(number);
         if output.what == ToolOutputKind::None
             || !(changed || output.always)
-            || by_pocket && self.pocket(number) == NO_POCKET
+            || by_pocket && magazine.pocket(number) == NO_POCKET
         {
             return None;
         }
-        let (w262, w264) = self.code(output, number);
+        let (w262, w264) = Tools::code(output, number, magazine);
         Some(Transfer::ToolDef { w262, w264 })
     }
 
     /// TOOL CALL: one or two codes, by the kinds of the old and the new tool [000:9287-9410].
-    pub fn call(&mut self, call: &ToolCall, exchange: &mut Exchange, handshakes: &mut Handshakes) {
+    pub fn call(
+        &mut self,
+        call: &ToolCall,
+        magazine: &Magazine,
+        exchange: &mut Exchange,
+        handshakes: &mut Handshakes,
+    ) {
         let number = call.tool;
         let output = self.parameters.call;
         let (old, changed) = (self.called, self.called != number);
         self.called = number;
         self.counts = true;
-        self.mark(call, exchange);
+        self.mark(call, magazine, exchange);
         if output.what == ToolOutputKind::None || !(changed || output.always) {
             self.number = number;
             return;
         }
         let own_pocket = exchange.nc().bit(signal::SPECIAL_TOOL_TO_OWN_POCKET)
             || output.what == ToolOutputKind::FixedPocket;
-        let two = output.what != ToolOutputKind::Tool && changed && self.needs_two(old, number, own_pocket);
+        let two =
+            output.what != ToolOutputKind::Tool && changed && magazine.needs_two(old, number, own_pocket);
         let (w262, w264) = if number == 0 && output.what != ToolOutputKind::Tool {
             // The old tool goes to its pocket, or the operator takes it out.
-            (self.pocket(old), 0)
+            (magazine.pocket(old), 0)
         } else {
-            self.code(output, number)
+            Tools::code(output, number, magazine)
         };
         if !two {
             handshakes.push(Transfer::ToolCall {
@@ -271,9 +123,9 @@ impl Tools {
             });
             return;
         }
-        let by_hand = self.kind(old) == Kind::Manual || self.kind(number) == Kind::Manual;
+        let by_hand = magazine.kind(old) == Kind::Manual || magazine.kind(number) == Kind::Manual;
         let new_first = exchange.nc().bit(signal::TOOL_NUMBER_ORDER) && !by_hand;
-        let mut codes = [(self.pocket(old), 0), (w262, w264)];
+        let mut codes = [(magazine.pocket(old), 0), (w262, w264)];
         if new_first {
             codes.reverse();
         }
@@ -282,20 +134,8 @@ impl Tools {
         }
     }
 
-    /// Whether the old tool has a code of its own: it does not go where the new one comes from.
-    fn needs_two(&self, old: u32, new: u32, own_pocket: bool) -> bool {
-        if old == 0 || new == 0 {
-            return false;
-        }
-        match (self.kind(old), self.kind(new)) {
-            (Kind::Normal, Kind::Normal) | (Kind::Manual, Kind::Manual) => false,
-            (Kind::Special, Kind::Special) => own_pocket,
-            _ => true,
-        }
-    }
-
     /// The TOOL CALL of module 9150; `None` when it is none that can be executed. What is not given stays.
-    pub fn tool_call(&self, block: &ToolCallBlock, axis: Axis) -> Option<ToolCall> {
+    pub fn tool_call(&self, block: &ToolCallBlock, axis: Axis, magazine: &Magazine) -> Option<ToolCall> {
         let tool = block
             .tool
             .map_or(Some(self.called), |tool| u32::try_from(tool).ok())?;
@@ -303,7 +143,7 @@ impl Tools {
             None => axis,
             Some(number) => inserted_axis(number)?,
         };
-        let mut shape = self.tool(tool).shape;
+        let mut shape = magazine.tool(tool).shape;
         shape.length += block.length_oversize;
         Some(ToolCall {
             tool,
@@ -315,15 +155,15 @@ impl Tools {
     }
 
     /// M2400 to M2404 [000:9229] [000:9294-9297].
-    fn mark(&self, call: &ToolCall, exchange: &mut Exchange) {
+    fn mark(&self, call: &ToolCall, magazine: &Magazine, exchange: &mut Exchange) {
         let number = call.tool;
         let by_pocket = self.parameters.call.what == ToolOutputKind::Pocket && number != 0;
-        let has_pocket = self.tool(number).pocket.is_some();
+        let has_pocket = magazine.tool(number).pocket.is_some();
         for (marker, value) in [
             (signal::TOOL_0_PROGRAMMED, number == 0),
             (signal::ACTIVE_TOOL_HAS_POCKET, by_pocket && has_pocket),
             (signal::ACTIVE_TOOL_HAS_NO_POCKET, by_pocket && !has_pocket),
-            (signal::ACTIVE_TOOL_IS_SPECIAL, self.tool(number).special),
+            (signal::ACTIVE_TOOL_IS_SPECIAL, magazine.tool(number).special),
             (signal::TOOL_CALL_ORIGIN, call.at_end_of_life),
         ] {
             if exchange.nc().bit(marker) != value {
@@ -369,7 +209,7 @@ impl Tools {
     /// The last code of a TOOL CALL was acknowledged: the tool is in the spindle. With variable pocket
     /// coding the old tool has taken the pocket of the new one, unless it went to its own (inferred), and
     /// M2612 = 0 [000:9281].
-    pub fn inserted(&mut self, exchange: &Exchange) {
+    pub fn inserted(&mut self, magazine: &mut Magazine, exchange: &Exchange) {
         let (old, new) = (self.number, self.called);
         self.number = new;
         self.held = None;
@@ -379,26 +219,20 @@ impl Tools {
         if self.parameters.call.what != ToolOutputKind::Pocket
             || nc.bit(signal::KEEP_POCKET_NUMBERS)
             || [old, new].contains(&0)
-            || self.needs_two(old, new, own_pocket)
+            || magazine.needs_two(old, new, own_pocket)
         {
             return;
         }
-        if let Some(table) = &mut self.table {
-            let pocket = |tool| table.get(&tool).and_then(|tool: &Tool| tool.pocket);
-            let pockets = [(old, pocket(new)), (new, pocket(old))];
-            for (number, pocket) in pockets {
-                if let Some(tool) = table.get_mut(&number)
-                    && tool.pocket.is_some()
-                    && pocket.is_some()
-                {
-                    tool.pocket = pocket;
-                }
-            }
-        }
+        magazine.swap(old, new);
     }
 
     /// M2717: the geometry of the tool in W264 is active [000:9217-9219]. The marker falls when that is stored.
-    pub fn take_geometry_strobe(&mut self, exchange: &mut Exchange, offsets: &mut Offsets) {
+    pub fn take_geometry_strobe(
+        &mut self,
+        magazine: &Magazine,
+        exchange: &mut Exchange,
+        offsets: &mut Offsets,
+    ) {
         if !exchange.nc().bit(signal::ACTIVATE_TOOL_GEOMETRY) || self.geometry_taken {
             return;
         }
@@ -407,7 +241,7 @@ impl Tools {
             self.number = number;
             self.called = number;
             self.held = None;
-            offsets.tool_length = self.tool(number).shape.length;
+            offsets.tool_length = magazine.tool(number).shape.length;
         }
         self.changed = true;
         self.geometry_taken = true;
@@ -434,8 +268,34 @@ pub(crate) fn inserted_axis(number: i32) -> Option<Axis> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tool::Tool;
 
-    fn tools(what: ToolOutputKind) -> Tools {
+    /// The tool in the spindle with its magazine.
+    struct Changer {
+        tools: Tools,
+        magazine: Magazine,
+    }
+
+    impl Changer {
+        fn call(&mut self, call: &ToolCall, exchange: &mut Exchange, handshakes: &mut Handshakes) {
+            self.tools.call(call, &self.magazine, exchange, handshakes);
+        }
+
+        fn inserted(&mut self, exchange: &Exchange) {
+            self.tools.inserted(&mut self.magazine, exchange);
+        }
+
+        fn define(&mut self, number: u32) -> Option<Transfer> {
+            self.tools.define(number, &self.magazine)
+        }
+
+        /// A tool is in the spindle.
+        fn holds(&mut self, number: u32) {
+            (self.tools.number, self.tools.called) = (number, number);
+        }
+    }
+
+    fn tools(what: ToolOutputKind) -> Changer {
         let tool = |pocket, special| Tool {
             pocket,
             special,
@@ -457,11 +317,10 @@ mod tests {
             call: output,
             definition: output,
         };
-        Tools::new(
-            Some(table.into_iter().collect()),
-            parameters,
-            &Remembered::default(),
-        )
+        Changer {
+            tools: Tools::new(parameters, &Remembered::default()),
+            magazine: Magazine::new(Some(table.into_iter().collect()), &[]),
+        }
     }
 
     fn tool_call(tool: u32) -> ToolCall {
@@ -475,7 +334,7 @@ mod tests {
     }
 
     /// The codes (W262, W264, M2093) of a row of calls; what the PLC has set, it has set before.
-    fn codes_with(tools: &mut Tools, exchange: &mut Exchange, calls: &[u32]) -> Vec<(i16, i16, bool)> {
+    fn codes_with(tools: &mut Changer, exchange: &mut Exchange, calls: &[u32]) -> Vec<(i16, i16, bool)> {
         let mut codes = Vec::new();
         for call in calls {
             let mut handshakes = Handshakes::default();
@@ -502,7 +361,7 @@ mod tests {
         codes
     }
 
-    fn codes(tools: &mut Tools, calls: &[u32]) -> Vec<(i16, i16, bool)> {
+    fn codes(tools: &mut Changer, calls: &[u32]) -> Vec<(i16, i16, bool)> {
         codes_with(tools, &mut Exchange::default(), calls)
     }
 
@@ -552,10 +411,10 @@ mod tests {
         ];
         for (old, new, expected) in both {
             let mut tools = tools(ToolOutputKind::Pocket);
-            (tools.number, tools.called) = (old, old);
+            tools.holds(old);
             assert_eq!(codes(&mut tools, &[new]), expected, "{old} -> {new}, single arm");
             let mut tools = super::tests::tools(ToolOutputKind::Pocket);
-            (tools.number, tools.called) = (old, old);
+            tools.holds(old);
             let swapped: Vec<_> = match (old, new, expected) {
                 (1 | 4, 1 | 4, [(p, t, _), (q, u, _)]) => vec![(*q, *u, true), (*p, *t, false)],
                 _ => expected.to_vec(),
@@ -566,7 +425,7 @@ mod tests {
         }
         // M2601: a special tool goes back to its own pocket.
         let mut tools = tools(ToolOutputKind::Pocket);
-        (tools.number, tools.called) = (4, 4);
+        tools.holds(4);
         let mut own = plc_sets(signal::SPECIAL_TOOL_TO_OWN_POCKET);
         assert_eq!(
             codes_with(&mut tools, &mut own, &[6]),

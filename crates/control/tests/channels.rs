@@ -6,10 +6,12 @@ mod support;
 use std::sync::Arc;
 
 use bahn_control::{
-    AxisId, Cartesian, ChannelError, ChannelSetup, Command, Control, Mode, Remembered, RunState, Setup,
-    Snapshot, SpindleWiring, Window,
+    AxisId, Cartesian, ChannelError, ChannelSetup, Command, Control, Kinematics, Mode, Offsets, Remembered,
+    RunState, Setup, Snapshot, SpindleWiring, Window,
 };
 use bahn_machine::Machine;
+use bahn_parameters::ParameterList;
+use bahn_path::{Axis, Curve, Position};
 use support::bench::{bench, fourth};
 use support::{Build, Rig, Shelf};
 
@@ -66,34 +68,42 @@ fn window() -> Window {
         .number("W260".parse().unwrap(), "W128".parse().unwrap())
 }
 
-/// X, Y, Z of the first channel at outputs 1 to 3; the second has one axis at output 4, which it calls X, too.
-fn setups(first: &str, second: &str) -> (Setup, ChannelSetup, Machine) {
-    let build: Build = bench(SECOND)
+/// The machine with a second panel, and the programs 1.H and 2.H.
+fn machine(first: &str) -> Build {
+    bench(SECOND)
         .with(&fourth('C', ""))
         .plant(
             "NO_FEED = \"I151\"",
             "NO_FEED = \"I151\"\nSTART2 = \"I20\"\nSTOP2 = \"not I21\"",
         )
-        .program("1.H", first);
-    let (setup, machine) = build.setup();
+        .program("1.H", first)
+}
+
+/// X, Y, Z of the first channel at outputs 1 to 3; the second has one axis at output 4, which it calls X, too.
+fn setups(first: &str, second: &str) -> (Setup, ChannelSetup, Machine) {
+    let (setup, machine) = machine(first).setup();
     let mut parameters = setup.parameters.clone();
     for assignment in ["10=%00001", "50=%00001", "110.0=3", "120.0=3", "3010=0"] {
         parameters.assign(assignment).unwrap();
     }
+    let axes = [AxisId::new(3), None, None, None, None];
+    (setup, channel(parameters, axes, second), machine)
+}
+
+/// A channel with the program 2.H.
+fn channel(parameters: ParameterList, axes: [Option<AxisId>; 5], blocks: &str) -> ChannelSetup {
     let mut programs = Shelf::default();
-    let text = format!("BEGIN PGM 2 MM\n{second}\nEND PGM 2 MM\n");
+    let text = format!("BEGIN PGM 2 MM\n{blocks}\nEND PGM 2 MM\n");
     programs.0.insert("2.H".to_owned(), text);
-    let other = ChannelSetup {
+    ChannelSetup {
         parameters,
-        axes: [AxisId::new(3), None, None, None, None],
+        axes,
         spindle: SpindleWiring { output: 6, input: 6 },
-        tools: None,
         programs: Arc::new(programs),
         kinematics: Arc::new(Cartesian),
         window: window(),
         remembered: Remembered::default(),
-    };
-    (setup, other, machine)
+    }
 }
 
 fn state(rig: &Rig, channel: usize) -> Snapshot {
@@ -117,6 +127,10 @@ fn tell(rig: &mut Rig, channel: usize, text: &str) {
 /// Both channels after the reference run, program 1 selected in the first, 2 in the second.
 fn twin(first: &str, second: &str) -> Rig {
     let (setup, other, machine) = setups(first, second);
+    ready(setup, other, machine)
+}
+
+fn ready(setup: Setup, other: ChannelSetup, machine: Machine) -> Rig {
     let control = Control::with_channels(setup, vec![other]).unwrap();
     let mut rig = Rig { control, machine };
     if rig.messages() == ["POWER INTERRUPTED"] {
@@ -240,7 +254,7 @@ fn programs_wait_for_each_other() {
 fn an_axis_is_handed_over_between_programs() {
     let mut rig = twin("L Z+100 R0 FMAX", "L X+90 R0 FMAX\nL Z+140 R0 FMAX");
     let z = AxisId::new(2).unwrap();
-    let axis = bahn_path::Axis::Z;
+    let axis = Axis::Z;
     tell(&mut rig, 0, "select 1.H");
     rig.event("key NC_START press");
     rig.until(2.0, "the first runs", |rig| {
@@ -250,12 +264,15 @@ fn an_axis_is_handed_over_between_programs() {
     rig.event("key NC_START release");
     rig.until(20.0, "the first ends", |rig| state(rig, 0).ended);
     rig.seconds(0.2);
-    assert!(
-        !rig.control.hand_over(z, 1, bahn_path::Axis::X, 2),
-        "the slot is taken"
-    );
+    assert!(!rig.control.hand_over(z, 1, Axis::X, 2), "the slot is taken");
     assert!(!rig.control.hand_over(z, 2, axis, 2), "there is no such channel");
+    assert!(
+        rig.bit("M2002"),
+        "Z is held in its loop, says the window of the first"
+    );
     assert!(rig.control.hand_over(z, 1, axis, 2));
+    rig.seconds(0.1);
+    assert!(!rig.bit("M2002"), "it has no Z any more");
     let letters =
         |rig: &Rig, channel| -> String { state(rig, channel).axes.iter().map(|axis| axis.letter).collect() };
     assert_eq!(
@@ -308,4 +325,70 @@ fn channels_are_put_together_with_care() {
         Some(ChannelError::AxisTwice(x))
     );
     assert_eq!(AxisId::new(5), None, "left to the spindle");
+}
+
+/// A portal that leans: its X axis goes half a millimetre with each millimetre in Y.
+#[derive(Debug)]
+struct Leaning;
+
+impl Kinematics for Leaning {
+    fn to_axes(&self, path: &Position, offsets: &Offsets) -> Position {
+        let mut axes = Cartesian.to_axes(path, offsets);
+        axes[Axis::X] += 0.5 * path[Axis::Y];
+        axes
+    }
+
+    fn to_path(&self, axes: &Position, offsets: &Offsets) -> Position {
+        let mut path = Cartesian.to_path(axes, offsets);
+        path[Axis::X] -= 0.5 * path[Axis::Y];
+        path
+    }
+
+    fn bounds(&self, _: &Curve, start: &Position, end: &Position, offsets: &Offsets) -> [Position; 2] {
+        // On a straight line the axes are farthest at its ends.
+        let ends = [start, end].map(|at| self.to_axes(at, offsets));
+        let bound = |of: fn(f64, f64) -> f64| Axis::ALL.map(|axis| of(ends[0][axis], ends[1][axis])).into();
+        [bound(f64::min), bound(f64::max)]
+    }
+}
+
+/// The second channel has X and Y on the leaning portal: X+60 Y+80 is X at 60 + 40 = 100 mm. X+120 Y+110 would be X at
+/// 175 mm, beyond its limit of 170 mm, while X+110 Y+110 at 165 mm is not.
+#[test]
+fn limits_are_checked_behind_the_kinematics() {
+    let program = "L X+60 Y+80 R0 F3000\nL X+110 Y+110\nL X+120 Y+110";
+    let build = machine("L Z+60 R0 FMAX").mps("10=%00100 50=%00100");
+    let (setup, machine) = build.setup();
+    let mut parameters = setup.parameters.clone();
+    for assignment in ["10=%00011", "50=%00011", "3010=0"] {
+        parameters.assign(assignment).unwrap();
+    }
+    let axes = [AxisId::new(6), AxisId::new(7), None, None, None];
+    let mut other = channel(parameters, axes, program);
+    other.kinematics = Arc::new(Leaning);
+    other.window = other
+        .window
+        .markers("M2556".parse().unwrap(), "M2556".parse().unwrap(), 2);
+    let mut rig = ready(setup, other, machine);
+    let machine_x = |rig: &Rig| {
+        let axes = state(rig, 1).axes;
+        axes.iter().find(|axis| axis.letter == 'X').unwrap().machine
+    };
+    rig.event("key START2 press");
+    rig.until(20.0, "the first block ends", |rig| nominal(rig, 1, 'Y') == 80.0);
+    rig.until(20.0, "the last block is refused", |rig| {
+        !rig.messages().is_empty()
+    });
+    assert_eq!(rig.messages(), ["LIMIT SWITCH X+"]);
+    assert!((nominal(&rig, 1, 'X') - 110.0).abs() < 1e-9 && nominal(&rig, 1, 'Y') == 110.0);
+    assert!(
+        (machine_x(&rig) - 165.0).abs() < 0.1,
+        "X is at {}",
+        machine_x(&rig)
+    );
+    assert!(
+        (rig.table('X') - 165.0).abs() < 0.1,
+        "the table is at {}",
+        rig.table('X')
+    );
 }

@@ -340,3 +340,20 @@ fn free_functions_go_to_the_plc() {
     }
     assert_eq!(codes, free);
 }
+
+/// By hand as in the program: M1 goes to the PLC, M90 to M99 act on blocks alone and are not output [001:703-711].
+#[test]
+fn functions_by_hand() {
+    let mut rig = bench_with(PATTERN, "L X+60 R0 F6000");
+    rig.command("mode manual");
+    for (code, goes) in [(90, false), (1, true), (99, false), (101, false), (2, true)] {
+        rig.command(&format!("m {code}"));
+        rig.start();
+        let mut sent = false;
+        for _ in 0..200 {
+            rig.cycle();
+            sent |= rig.bit("M2045") && rig.number("W260") == code;
+        }
+        assert_eq!(sent, goes, "M{code}");
+    }
+}

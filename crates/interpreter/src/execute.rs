@@ -1,6 +1,6 @@
 //! The execution of one block.
 
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, technology};
 use bahn_path::Function;
 use bahn_program::{Block, InvalidBlock, Operation, Value};
 
@@ -234,7 +234,11 @@ impl Run {
                 Value::Q { .. } => format!("{:+}", self.q.value(*item)?),
             });
         }
-        self.output_function(Function::Print(line.join(" ")), true)
+        self.output_function(
+            Function::Print(line.join(" ")),
+            technology::Block::Print,
+            settings,
+        )
     }
 
     /// FN19: two values to the PLC in the unit of the control model [003:4387-4395] [000:11597-11655].
@@ -246,7 +250,7 @@ impl Run {
         let scale = if per_mm < 1e4 { 1.0 } else { per_mm };
         let a = self.q.value(a)? * scale;
         let b = b.map(|b| self.q.value(b)).transpose()?.map(|b| b * scale);
-        self.output_function(Function::Plc([Some(a), b]), true)
+        self.output_function(Function::Plc([Some(a), b]), technology::Block::Plc, settings)
     }
 
     /// A block that could not be read. With [`Settings::skip_unknown`] a word that nothing knows is left

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use bahn_parameters::technology::{self, Technology};
 use bahn_parameters::{InchFeed, MessageId};
 use bahn_path::{
     At, Axis, AxisSet, Barrier, Blank, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement,
@@ -237,18 +238,17 @@ impl Run {
     }
 
     /// A function with a block of its own.
-    pub fn output_function(&mut self, function: Function, waits: bool) -> Result<(), Fault> {
-        let synchronisation = if waits {
-            Synchronisation::MvsSvs
-        } else {
-            Synchronisation::Mos
+    pub fn output_function(
+        &mut self,
+        function: Function,
+        block: technology::Block,
+        settings: &Settings,
+    ) -> Result<(), Fault> {
+        let Some(technology) = Technology::of_block(settings.model, block) else {
+            return Ok(());
         };
         let functions = BlockFunctions {
-            output: vec![TechnologyFunction {
-                function,
-                at: At::Start,
-                synchronisation,
-            }],
+            output: vec![settings.rules.m_functions.output(function, technology)],
             ..Default::default()
         };
         self.hold(functions)?;
@@ -273,11 +273,8 @@ impl Run {
     ) -> Result<Flow, Fault> {
         let mut barrier = None;
         if functions.stop {
-            functions.output.push(TechnologyFunction {
-                function: Function::Stop,
-                at: At::End,
-                synchronisation: Synchronisation::MnsSns,
-            });
+            let stop = TechnologyFunction::new(Function::Stop, At::End, Synchronisation::MnsSns);
+            functions.output.push(stop);
             barrier = Some(Barrier::Stop { block: self.block });
         } else if self.machine && !functions.cycle_call && self.may_wait_for_plc(&element, &functions.output)
         {

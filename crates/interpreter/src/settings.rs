@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes, SpindleParameters};
-use bahn_path::{Axis, Position, ToolShape};
+use bahn_path::{Axis, Function, Position, TechnologyFunction, ToolShape};
 
 use crate::status::Status;
 
@@ -323,6 +324,15 @@ impl MFunctionRules {
             m105_enabled: bits & 8 != 0,
             m103_enabled: bits & 16 != 0,
         }
+    }
+
+    /// A function with its place and synchronisation.
+    pub(crate) fn output(&self, function: Function, technology: &Technology) -> TechnologyFunction {
+        let halts = AxisHalts {
+            at_m_functions: self.axes_wait,
+            at_speeds: self.axes_wait_for_speed,
+        };
+        TechnologyFunction::new(function, technology.at, technology.synchronisation(halts))
     }
 }
 

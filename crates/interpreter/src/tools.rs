@@ -1,14 +1,10 @@
 //! Tools and the blank.
 
-use bahn_parameters::MessageId;
-use bahn_path::{
-    At, Axis, Blank, Curve, FeedRate, Function, Plane, Position, Synchronisation, TechnologyFunction,
-    ToolCall, ToolShape,
-};
+use bahn_parameters::{MessageId, technology};
+use bahn_path::{Axis, Blank, Curve, FeedRate, Function, Plane, Position, ToolCall, ToolShape};
 use bahn_program::{Coordinates, Value};
 
 use crate::availability::{Feature, words};
-use crate::block_functions::BlockFunctions;
 use crate::error::{Cause, Fault, WarningKind};
 use crate::positioning::known;
 use crate::run::Run;
@@ -32,7 +28,7 @@ impl Run {
         if length.is_none() && radius.is_none() {
             // What TOOL CALL will call is made ready (inferred).
             let next = usable(number, 0, settings).map_or(number, |(next, _)| next);
-            return self.output_function(Function::NextTool(next), true);
+            return self.output_function(Function::NextTool(next), technology::Block::ToolDef, settings);
         }
         let length = length
             .map(|length| self.length(length))
@@ -90,8 +86,8 @@ impl Run {
                 self.finish_contour()?;
                 self.set_tool_axis(axis)?;
             }
-            let waits = settings.rules.m_functions.axes_wait_for_speed;
-            return self.output_function(Function::SpindleSpeed(self.modal.speed_rpm), waits);
+            let speed = Function::SpindleSpeed(self.modal.speed_rpm);
+            return self.output_function(speed, technology::Block::SpindleSpeed, settings);
         };
         self.finish_contour()?;
         let (number, index) = self.indexed_tool_number(tool, settings)?;
@@ -137,16 +133,7 @@ impl Run {
             shape,
             at_end_of_life,
         };
-        let functions = BlockFunctions {
-            output: vec![TechnologyFunction {
-                function: Function::Tool(call),
-                at: At::Start,
-                synchronisation: Synchronisation::MvsSvs,
-            }],
-            ..Default::default()
-        };
-        self.hold(functions)?;
-        Ok(())
+        self.output_function(Function::Tool(call), technology::Block::ToolCall, settings)
     }
 
     /// The replacement tool takes the place of the one in the spindle, whose axis and oversizes count for it, too.
@@ -380,7 +367,7 @@ impl Run {
         }
         let blank = Blank { plane, min, max };
         self.blank.get_or_insert(blank);
-        self.output_function(Function::Blank(blank), false)
+        self.output_function(Function::Blank(blank), technology::Block::Blank, settings)
     }
 
     fn corner(&self, coordinates: &Coordinates, base: [f64; 3]) -> Result<[f64; 3], Fault> {

@@ -1,6 +1,6 @@
 //! Time that is no movement: dwell, tool changes, the spindle, M functions.
 
-use bahn_path::{Function, OverrideLaw, PathElement};
+use bahn_path::{Function, OverrideLaw, PathElement, SpindleOrder};
 
 use crate::gate::{Gate, wait};
 
@@ -87,11 +87,8 @@ impl Stopwatch {
         // In a thread the spindle turns on its ramps, and nothing waits for its speed.
         let tapping = matches!(element.override_law, OverrideLaw::Tapping { .. });
         for function in element.functions() {
-            let time = match (&function.function, self.time(&function.function)) {
-                (Function::M(_), _) if tapping => self.times.m_function_s,
-                (_, time) => time,
-            }
-            .max(0.0);
+            let (ordered, time) = (self.spindle_time(function.spindle), self.time(&function.function));
+            let time = if tapping { time } else { ordered + time }.max(0.0);
             match wait(function) {
                 Some(Gate::Start) => waiting.before += time,
                 Some(Gate::End) => waiting.after += time,
@@ -103,7 +100,7 @@ impl Stopwatch {
 
     fn time(&mut self, function: &Function) -> f64 {
         match function {
-            Function::M(number) => self.times.m_function_s + self.spindle_time(*number),
+            Function::M(_) => self.times.m_function_s,
             Function::Tool(call) if self.tool != Some(call.tool) => {
                 self.tool = Some(call.tool);
                 self.speed_rpm = call.speed_rpm;
@@ -115,7 +112,8 @@ impl Stopwatch {
                 self.spindle = Spindle::Stopped;
                 self.times.spindle_orientation_s
             }
-            Function::NextTool(_)
+            Function::Control(_)
+            | Function::NextTool(_)
             | Function::OrientationAngle(_)
             | Function::Stop
             | Function::Print(_)
@@ -125,17 +123,17 @@ impl Stopwatch {
     }
 
     /// Spindle functions act only when they change the state of the spindle [003:7463-7475].
-    fn spindle_time(&mut self, m: u16) -> f64 {
-        let wanted = match m {
-            3 | 13 => Spindle::Clockwise,
-            4 | 14 => Spindle::CounterClockwise,
-            5 => Spindle::Stopped,
+    fn spindle_time(&mut self, order: Option<SpindleOrder>) -> f64 {
+        let wanted = match order {
+            None => return 0.0,
+            Some(SpindleOrder::Clockwise) => Spindle::Clockwise,
+            Some(SpindleOrder::CounterClockwise) => Spindle::CounterClockwise,
+            Some(SpindleOrder::Stop) => Spindle::Stopped,
             // Stop and program end stop the spindle too, but are no machining time.
-            0 | 2 | 6 | 30 => {
+            Some(SpindleOrder::StopWithRun) => {
                 self.spindle = Spindle::Stopped;
                 return 0.0;
             }
-            _ => return 0.0,
         };
         let was = std::mem::replace(&mut self.spindle, wanted);
         match (was, wanted) {

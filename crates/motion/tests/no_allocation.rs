@@ -21,10 +21,8 @@ fn path() -> Path {
             path.turn(f64::from(i), 0.5, 180.0, 0.1);
         }
         if i % 7 == 0 {
-            let function = |at, synchronisation| TechnologyFunction {
-                function: Function::Print(format!("line {i}")),
-                at,
-                synchronisation,
+            let function = |at, synchronisation| {
+                TechnologyFunction::new(Function::Print(format!("line {i}")), at, synchronisation)
             };
             path.last().functions = Some(Box::new([
                 function(At::Start, Synchronisation::Mos),

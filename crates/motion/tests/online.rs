@@ -69,11 +69,7 @@ fn close(a: f64, b: f64) {
 }
 
 fn m(number: u16, at: At, synchronisation: Synchronisation) -> TechnologyFunction {
-    TechnologyFunction {
-        function: Function::M(number),
-        at,
-        synchronisation,
-    }
+    TechnologyFunction::new(Function::M(number), at, synchronisation)
 }
 
 /// 100 mm at 100 mm/s with 1000 mm/s²: 1.1 s are 366 cycles of 3 ms and a rest.

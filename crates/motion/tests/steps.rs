@@ -6,10 +6,10 @@ use bahn_motion::{
     AuxiliaryTimes, Identity, Kinematics, MAX_LOOK_AHEAD, PlannedStep, Planner, Sample, Sampler,
 };
 use bahn_path::{
-    At, Axis, Barrier, BlockRef, Function, LiveData, PathElement, Position, Step, Synchronisation,
-    TechnologyFunction, ToolCall, ToolShape,
+    At, Axis, Barrier, BlockRef, Function, LiveData, PathElement, Position, Step, Synchronisation, ToolCall,
+    ToolShape,
 };
-use common::{Path, limits, list, plan};
+use common::{Path, function, limits, list, plan};
 
 const X: Axis = Axis::X;
 
@@ -26,14 +26,6 @@ fn straight(count: u32) -> Vec<PathElement> {
         path.line(&[(X, f64::from(i))]);
     }
     path.elements
-}
-
-fn function(function: Function, at: At, synchronisation: Synchronisation) -> TechnologyFunction {
-    TechnologyFunction {
-        function,
-        at,
-        synchronisation,
-    }
 }
 
 /// Before a barrier and where a source starves the path is planned to a stop and handed out, then the

@@ -4,10 +4,8 @@
 mod common;
 
 use bahn_motion::{Cycle, Drive, Interpolator, Limits, Master, SpindleGear, State};
-use bahn_path::{
-    At, Axis, Curve, Function, OverrideLaw, Position, Step, Synchronisation, TechnologyFunction, Thread,
-};
-use common::{List, Path, list, plan, time_s};
+use bahn_path::{At, Axis, Curve, Function, OverrideLaw, Position, Step, Synchronisation, Thread};
+use common::{List, Path, function, list, plan, time_s};
 
 const PITCH: f64 = 1.5;
 const DEPTH: f64 = 30.0;
@@ -284,11 +282,8 @@ fn the_path_waits_for_the_spindle() {
 fn with_m(path: &mut Path, code: u16, at: At, synchronisation: Synchronisation, law: OverrideLaw) {
     let element = path.last();
     element.override_law = law;
-    element.functions = Some(Box::new([TechnologyFunction {
-        function: Function::M(code),
-        at,
-        synchronisation,
-    }]));
+    let function = function(Function::M(code), at, synchronisation);
+    element.functions = Some(Box::new([function]));
 }
 
 /// In and out with a floating holder; M05 goes out so long before the depth.

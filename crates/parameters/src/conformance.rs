@@ -213,7 +213,7 @@ pub fn find(model: ControlModel, kind: Kind, object: &str) -> Option<&'static En
     entries(model).find(|entry| entry.kind == kind && entry.range.contains(&object))
 }
 
-const fn bit(model: ControlModel) -> u8 {
+pub(crate) const fn bit(model: ControlModel) -> u8 {
     1 << model as u8
 }
 
@@ -247,7 +247,7 @@ fn row(kind: Kind, line: &'static str) -> Option<Entry> {
 }
 
 /// Reads `all`, `360` or `407-425`.
-fn models(text: &str) -> Option<u8> {
+pub(crate) fn models(text: &str) -> Option<u8> {
     let place = |text: &str| {
         let is_named = |model: &ControlModel| model.id().strip_prefix("tnc") == Some(text);
         ControlModel::ALL.iter().position(is_named)

@@ -11,7 +11,8 @@
 //! - [`ParameterSpace`]: what machine parameters have in common with other kinds, as the system and channel parameters
 //!   of a System 900, [`QParameters`];
 //! - [`ListText`]: the text of a list, whose values change in their places;
-//! - [`conformance`]: what each function of a control does here, and what it does not.
+//! - [`conformance`]: what each function of a control does here, and what it does not;
+//! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them.
 //!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
@@ -37,6 +38,7 @@ mod message;
 mod model;
 mod settings;
 mod space;
+pub mod technology;
 mod text;
 
 pub use advice::Advice;

@@ -123,6 +123,44 @@ pub struct TechnologyFunction {
     pub at: At,
     /// Whether axes wait for the acknowledgement.
     pub synchronisation: Synchronisation,
+    /// What it orders the spindle to do.
+    pub spindle: Option<SpindleOrder>,
+}
+
+impl TechnologyFunction {
+    /// A function that orders nothing of the spindle.
+    pub fn new(function: Function, at: At, synchronisation: Synchronisation) -> TechnologyFunction {
+        TechnologyFunction {
+            function,
+            at,
+            synchronisation,
+            spindle: None,
+        }
+    }
+}
+
+/// What a function orders the spindle to do [003:7463-7475].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpindleOrder {
+    /// Turn clockwise: M3, M13.
+    Clockwise,
+    /// Turn counter-clockwise: M4, M14.
+    CounterClockwise,
+    /// Stop: M5.
+    Stop,
+    /// Stop, for the run stops or ends there: M0, M2, M6, M30.
+    StopWithRun,
+}
+
+/// What acts in the control when the path comes to it, and never reaches the PLC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ControlFunction {
+    /// M105 chooses the second set of kv and reversal peaks, M106 the first [000:7251-7305].
+    SecondServoSet(bool),
+    /// M101: a tool whose life is over is replaced while it works; M102: no longer [000:9175].
+    ReplaceWornTools(bool),
+    /// M107: also by a larger one; M108: no longer [000:9177].
+    TakeLargerTools(bool),
 }
 
 /// Place of a function on its element.
@@ -152,8 +190,10 @@ pub enum Synchronisation {
 /// The functions that a program can output.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Function {
-    /// Miscellaneous function M.
+    /// Miscellaneous function M of the PLC.
     M(u16),
+    /// What acts in the control: M101, M102, M105 to M108.
+    Control(ControlFunction),
     /// Tool call: tool data, tool axis and spindle speed.
     Tool(ToolCall),
     /// Pre-selection of the next tool (TOOL DEF with a tool table) [003:1931-1933].

@@ -23,8 +23,8 @@ mod source;
 pub use axis::{Axis, AxisSet, Position};
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use element::{
-    At, Blank, BlockRef, FeedRate, Function, OverrideLaw, PathElement, Synchronisation, TechnologyFunction,
-    Thread, ToolCall, ToolShape,
+    At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
+    Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape,
 };
 pub use frame::Frame;
 pub use plane::{Plane, Point2};

@@ -21,10 +21,14 @@ pub use window::{Bar, Cell, PlcWindow, WindowView};
 use bahn_exchange::{Exchange, signal};
 use bahn_parameters::ParameterList;
 
-/// The control as the PLC sees it beside the exchanged operands. Modules check arguments and machine
+/// The control as the PLC sees it beside the exchanged operands, by concern. Modules check arguments and machine
 /// parameters before they call; an implementation may rely on the ranges that are given here.
-/// Axes count from 0: X, Y, Z, 4, 5.
-pub trait Nc {
+pub trait Nc: NcParameters + NcStatus + NcScreen + NcMemory + NcInterfaces + NcMotion {}
+
+impl<T: NcParameters + NcStatus + NcScreen + NcMemory + NcInterfaces + NcMotion> Nc for T {}
+
+/// The machine parameters, as PLC modules read and change them.
+pub trait NcParameters {
     /// The machine parameters in force. Presets of timers (MP4110) and counters (MP4120) come from here.
     fn parameters(&self) -> &ParameterList;
 
@@ -47,12 +51,12 @@ pub trait Nc {
     /// # Errors
     /// When there is no such file in the RAM, or it is faulty.
     fn select_parameter_file(&mut self, name: &str) -> Result<(), ParameterFileFault>;
+}
 
+/// What the NC does, and where the axes and the spindle are. Axes count from 0: X, Y, Z, 4, 5.
+pub trait NcStatus {
     /// Whether an NC program was started.
     fn program_running(&self) -> bool;
-
-    /// A line of the PLC's message or dialogue file, in the selected language; `None` when it has none.
-    fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>>;
 
     /// An item of status (9035).
     fn status(&self, item: StatusItem) -> i32;
@@ -66,21 +70,30 @@ pub trait Nc {
 
     /// Where the spindle is (9042).
     fn spindle_position(&self) -> SpindlePosition;
+}
+
+/// The PLC window, and the texts of the machine.
+pub trait NcScreen {
+    /// A line of the PLC's message or dialogue file, in the selected language; `None` when it has none.
+    fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>>;
 
     /// The PLC window (9080, 9082, 9083).
     fn window(&mut self) -> &mut PlcWindow;
 
     /// Whether the PLC window is to be seen (9081).
     fn window_view(&self) -> WindowView;
+}
+
+/// Files and tables of the NC memory.
+pub trait NcMemory {
+    /// Whether the NC memory has a file of this name with extension.
+    fn has_file(&self, name: &str) -> bool;
 
     /// A line of the pallet file with M status (9090).
     ///
     /// # Errors
     /// When there is no such file or line.
     fn pallet_line(&self, line: i32) -> Result<PalletLine, LineFault>;
-
-    /// Whether the NC memory has a file of this name with extension.
-    fn has_file(&self, name: &str) -> bool;
 
     /// Selects an existing NC program and perhaps an existing datum table for execution, as a line of the
     /// pallet file says (9090).
@@ -101,13 +114,19 @@ pub trait Nc {
 
     /// Initialises the geometry anew, after a table was written (9094).
     fn initialise_geometry(&mut self);
+}
 
+/// The data interfaces.
+pub trait NcInterfaces {
     /// A data interface: 0 RS-232-C/V.24, any other number RS-422/V.11 (9100 to 9107).
     fn data_interface(&mut self, number: usize) -> &mut DataInterface;
 
     /// The connection to a host by LSV/2; `None` when there is none (9110, 9111).
     fn host(&mut self) -> Option<&mut HostLink>;
+}
 
+/// What modules move and call: PLC axes, spindle, tools. Axes count from 0: X, Y, Z, 4, 5.
+pub trait NcMotion {
     /// What a PLC axis was doing when the scan started; commands of the scan show in the next one (9122).
     fn plc_axis_status(&self, axis: usize) -> PlcAxisStatus;
 

@@ -1,7 +1,7 @@
 //! Cycles 1, 2 and 17: pecking, tapping, rigid tapping.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Function, OverrideLaw, Thread};
+use bahn_path::{OverrideLaw, SpindleOrder, Thread};
 
 use super::machining::{Heights, Tracer, infeeds};
 use crate::definition::Definition;
@@ -74,7 +74,11 @@ impl Run {
         let feed = definition.feed(4, 0)?;
         let heights = self.heights(definition, [setup, depth], None, settings)?;
         let clockwise = !matches!(self.modal.spindle, Spindle::CounterClockwise);
-        let (forward, back) = if clockwise { (3, 4) } else { (4, 3) };
+        let mut orders = [SpindleOrder::Clockwise, SpindleOrder::CounterClockwise];
+        if !clockwise {
+            orders.reverse();
+        }
+        let [forward, back] = orders;
         let rules = &settings.rules.tapping;
         let lead_s = rules
             .spindle
@@ -85,15 +89,15 @@ impl Run {
             from_percent,
             to_percent,
         });
-        trace.function_before_end(Function::M(5), lead_s);
+        trace.order_before_end(SpindleOrder::Stop, lead_s);
         trace.feed_height(heights.at_depth(heights.depth), feed);
         trace.dwell(rules.reversal_dwell_s);
-        trace.function(Function::M(back));
+        trace.order(back);
         trace.dwell(dwell);
         trace.feed_height(heights.clearance, feed);
         trace.set_override_law(OverrideLaw::Free);
-        trace.function(Function::M(5));
-        trace.function(Function::M(forward));
+        trace.order(SpindleOrder::Stop);
+        trace.order(forward);
         trace.finish()
     }
 
@@ -130,7 +134,7 @@ impl Run {
         let right_hand = pitch > 0.0;
         let mut trace = self.tracer();
         if turns {
-            trace.function(Function::M(5));
+            trace.order(SpindleOrder::Stop);
         }
         trace.set_override_law(thread(right_hand, settings.rules.tapping.orients.then_some(0.0)));
         trace.feed_height(heights.at_depth(heights.depth), feed);

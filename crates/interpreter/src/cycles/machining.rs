@@ -2,7 +2,7 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{
-    Arc, At, Curve, FeedRate, Function, OverrideLaw, Plane, Point2, Position, Synchronisation,
+    Arc, At, Curve, FeedRate, Function, OverrideLaw, Plane, Point2, Position, SpindleOrder, Synchronisation,
     TechnologyFunction,
 };
 
@@ -243,25 +243,19 @@ impl Tracer<'_> {
         }
     }
 
-    /// A function where the tool stands.
-    pub fn function(&mut self, function: Function) {
+    /// An order to the spindle where the tool stands.
+    pub fn order(&mut self, order: SpindleOrder) {
         let mut element = self.run.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
         element.override_law = self.override_law;
-        element.functions = Some(Box::new([TechnologyFunction {
-            function,
-            at: At::Start,
-            synchronisation: Synchronisation::MvsSvs,
-        }]));
+        let order = spindle_function(order, At::Start, Synchronisation::MvsSvs);
+        element.functions = Some(Box::new([order]));
         self.run.out.push(element, None);
     }
 
-    /// A function so long before the end of the next movement, s, for which the path does not wait.
-    pub fn function_before_end(&mut self, function: Function, lead_s: f64) {
-        self.on_the_way = Some(TechnologyFunction {
-            function,
-            at: At::BeforeEnd(lead_s),
-            synchronisation: Synchronisation::Mos,
-        });
+    /// An order to the spindle so long before the end of the next movement, s, for which the path does not wait.
+    pub fn order_before_end(&mut self, order: SpindleOrder, lead_s: f64) {
+        let order = spindle_function(order, At::BeforeEnd(lead_s), Synchronisation::Mos);
+        self.on_the_way = Some(order);
     }
 
     /// Where the tool stands.
@@ -292,5 +286,18 @@ impl Tracer<'_> {
             self.origin[0] + local[0] * u[0] + local[1] * v[0],
             self.origin[1] + local[0] * u[1] + local[1] * v[1],
         ]
+    }
+}
+
+/// The M function with which a cycle orders the spindle.
+fn spindle_function(order: SpindleOrder, at: At, synchronisation: Synchronisation) -> TechnologyFunction {
+    let code = match order {
+        SpindleOrder::Clockwise => 3,
+        SpindleOrder::CounterClockwise => 4,
+        SpindleOrder::Stop | SpindleOrder::StopWithRun => 5,
+    };
+    TechnologyFunction {
+        spindle: Some(order),
+        ..TechnologyFunction::new(Function::M(code), at, synchronisation)
     }
 }

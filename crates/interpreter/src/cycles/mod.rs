@@ -78,7 +78,7 @@ impl Run {
             9 => self.dwell(&words, settings),
             10 => self.rotation(&words, has_q_parameter(block), settings),
             11 => self.scaling(&words, settings),
-            13 => self.spindle_orientation(&words),
+            13 => self.spindle_orientation(&words, settings),
             _ => self.contour_geometry(&words, settings),
         }
     }

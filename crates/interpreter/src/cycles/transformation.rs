@@ -1,6 +1,6 @@
 //! Cycles that act when they are defined: transformations, dwell, spindle orientation, contour labels.
 
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, technology};
 use bahn_path::{Axis, Curve, FeedRate, Function};
 
 use crate::definition::{Resolved, dwell_time};
@@ -201,7 +201,11 @@ impl Run {
 
     /// Cycle 13: angle of the oriented spindle stop, for M19 or another M function [003:6500-6528]; the PLC
     /// is told of it when the cycle is executed [000:5853-5865].
-    pub(super) fn spindle_orientation(&mut self, words: &[Resolved]) -> Result<(), Fault> {
+    pub(super) fn spindle_orientation(
+        &mut self,
+        words: &[Resolved],
+        settings: &Settings,
+    ) -> Result<(), Fault> {
         let Some(angle) = first_number(words) else {
             return Err(Fault::new(MessageId::CyclIncomplete, "the angle is missing"));
         };
@@ -212,7 +216,11 @@ impl Run {
             ));
         }
         self.modal.orientation_deg = Some(angle);
-        self.output_function(Function::OrientationAngle(angle), false)
+        self.output_function(
+            Function::OrientationAngle(angle),
+            technology::Block::OrientationAngle,
+            settings,
+        )
     }
 
     /// Cycle 14 CONTOUR GEOMETRY: the labels of the subcontours [003:5460-5470].

@@ -5,8 +5,8 @@ pub mod random;
 
 use bahn_motion::{AuxiliaryTimes, Limits, Planned, PlannedStep, Planner};
 use bahn_path::{
-    Arc, Axis, BlockRef, Curve, ElementSource, FeedRate, LiveData, OverrideLaw, PathElement, Plane, Position,
-    Step, sweep_deg,
+    Arc, At, Axis, BlockRef, Curve, ElementSource, FeedRate, Function, LiveData, OverrideLaw, PathElement,
+    Plane, Position, SpindleOrder, Step, Synchronisation, TechnologyFunction, sweep_deg,
 };
 
 /// 15 m/min, 1 m/s², radial 0.5 m/s², corners up to 10 degrees, servo lag.
@@ -218,4 +218,19 @@ pub fn reversed(elements: &[PathElement]) -> Vec<PathElement> {
             }
         })
         .collect()
+}
+
+/// A function of the path as the programs of the manuals have it: what M3, M4, M5 and M30 order the spindle to do.
+pub fn function(function: Function, at: At, synchronisation: Synchronisation) -> TechnologyFunction {
+    let spindle = match function {
+        Function::M(3 | 13) => Some(SpindleOrder::Clockwise),
+        Function::M(4 | 14) => Some(SpindleOrder::CounterClockwise),
+        Function::M(5) => Some(SpindleOrder::Stop),
+        Function::M(0 | 2 | 6 | 30) => Some(SpindleOrder::StopWithRun),
+        _ => None,
+    };
+    TechnologyFunction {
+        spindle,
+        ..TechnologyFunction::new(function, at, synchronisation)
+    }
 }

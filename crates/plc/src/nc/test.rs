@@ -5,9 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use bahn_parameters::ParameterList;
 
 use super::{
-    CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, Nc, NotSaved, PalletLine,
-    ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
-    SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
+    CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, NcInterfaces, NcMemory, NcMotion,
+    NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault, ParameterFileFault,
+    PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition, StatusChange, StatusItem,
+    TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
 /// A stand-in for the control on a desk: what modules read is set in its fields, what they do is found
@@ -242,7 +243,7 @@ impl TestNc {
     }
 }
 
-impl Nc for TestNc {
+impl NcParameters for TestNc {
     fn parameters(&self) -> &ParameterList {
         self.changed_parameters.as_ref().unwrap_or(&self.parameters)
     }
@@ -281,17 +282,11 @@ impl Nc for TestNc {
         }
         Ok(())
     }
+}
 
+impl NcStatus for TestNc {
     fn program_running(&self) -> bool {
         self.program_running
-    }
-
-    fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>> {
-        let lines = match file {
-            TextFile::Messages => &self.messages,
-            TextFile::Dialogues => &self.dialogues,
-        };
-        Some(lines.get(usize::from(line))?.clone().into_bytes())
     }
 
     fn status(&self, item: StatusItem) -> i32 {
@@ -319,6 +314,16 @@ impl Nc for TestNc {
     fn spindle_position(&self) -> SpindlePosition {
         self.spindle
     }
+}
+
+impl NcScreen for TestNc {
+    fn text_line(&self, file: TextFile, line: u16) -> Option<Vec<u8>> {
+        let lines = match file {
+            TextFile::Messages => &self.messages,
+            TextFile::Dialogues => &self.dialogues,
+        };
+        Some(lines.get(usize::from(line))?.clone().into_bytes())
+    }
 
     fn window(&mut self) -> &mut PlcWindow {
         &mut self.window
@@ -327,14 +332,16 @@ impl Nc for TestNc {
     fn window_view(&self) -> WindowView {
         self.window_view
     }
+}
+
+impl NcMemory for TestNc {
+    fn has_file(&self, name: &str) -> bool {
+        self.files.contains(name)
+    }
 
     fn pallet_line(&self, line: i32) -> Result<PalletLine, LineFault> {
         let lines = self.pallet.as_ref().ok_or(LineFault::NoFile)?;
         nth(lines, line).cloned().ok_or(LineFault::NoLine)
-    }
-
-    fn has_file(&self, name: &str) -> bool {
-        self.files.contains(name)
     }
 
     fn select_program(&mut self, _line: i32, program: &str, datum_table: Option<&str>) {
@@ -363,7 +370,9 @@ impl Nc for TestNc {
     fn initialise_geometry(&mut self) {
         self.geometry_initialised = self.geometry_initialised.saturating_add(1);
     }
+}
 
+impl NcInterfaces for TestNc {
     fn data_interface(&mut self, number: usize) -> &mut DataInterface {
         let [rs232, rs422] = &mut self.interfaces;
         if number == 0 { rs232 } else { rs422 }
@@ -372,7 +381,9 @@ impl Nc for TestNc {
     fn host(&mut self) -> Option<&mut HostLink> {
         self.host.as_mut()
     }
+}
 
+impl NcMotion for TestNc {
     fn plc_axis_status(&self, axis: usize) -> PlcAxisStatus {
         self.axes.get(axis).map(|axis| axis.status).unwrap_or_default()
     }

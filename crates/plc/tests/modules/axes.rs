@@ -1,4 +1,4 @@
-use bahn_plc::{CoordinateKind, Nc, PlcAxisCommand};
+use bahn_plc::{CoordinateKind, NcStatus, PlcAxisCommand};
 
 use crate::desk::{Desk, code, value};
 

@@ -1,5 +1,5 @@
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_plc::{Nc, ParameterFault};
+use bahn_plc::{NcParameters, ParameterFault};
 
 use crate::desk::{Desk, code, value};
 

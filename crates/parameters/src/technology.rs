@@ -1,0 +1,358 @@
+//! Technology functions: when they go out, to whom, where the path waits for them, and what the control itself does.
+//!
+//! The table stands in `data/technology-functions.tsv`, a line for each function or group of like functions of the
+//! models that have it. Interpreter and kernel act by it; whether a model's function acts at all is said by
+//! [`conformance`](crate::conformance). Functions of a model that stand nowhere in it do nothing.
+//!
+//! ```
+//! use bahn_parameters::ControlModel::Tnc415b;
+//! use bahn_parameters::technology::{Deed, Output, Technology, Wait};
+//! use bahn_path::{At, SpindleOrder};
+//!
+//! let m5 = Technology::of_m(Tnc415b, 5).unwrap();
+//! assert_eq!((m5.at, m5.output, m5.waits), (At::End, Output::Plc, Wait::AxisHalt));
+//! assert!(m5.does(Deed::Spindle(SpindleOrder::Stop)));
+//! ```
+
+use std::sync::LazyLock;
+
+use bahn_path::{At, ControlFunction, SpindleOrder, Synchronisation};
+
+use crate::ControlModel;
+use crate::conformance::{bit, models};
+
+/// A function that goes out with the path, as a table has it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Technology {
+    /// At the start or the end of its block.
+    pub at: At,
+    /// To whom it goes.
+    pub output: Output,
+    /// Whether the path waits for it there.
+    pub waits: Wait,
+    /// Where the manuals say it, as `[000:7081]`.
+    pub source: &'static str,
+    does: Vec<Deed>,
+    name: Name,
+    models: u8,
+}
+
+/// To whom a function goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// To the PLC, with its strobe.
+    Plc,
+    /// To the kernel, when the path comes to it.
+    Path,
+    /// To nobody: it acts on its block and on those that follow.
+    Block,
+}
+
+/// Whether the path waits for the acknowledgement of a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wait {
+    /// Always: the run stops there anyway, or the path cannot go on.
+    Always,
+    /// Unless axes may run on at M functions (MP7440 bit 2) [000:7298-7305] [001:1652].
+    AxisHalt,
+    /// Unless axes may run on at the output of a speed (MP3030) [000:5645-5651].
+    AxisHaltAtSpeed,
+    /// Never: nobody acknowledges it.
+    Never,
+}
+
+/// What the control itself does with an M function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Deed {
+    /// M0: the run stops.
+    ProgramStop,
+    /// M2, M30: the run ends.
+    ProgramEnd,
+    /// M6: the run stops, unless MP7440 bit 0 is set.
+    ToolChange,
+    /// It orders the spindle.
+    Spindle(SpindleOrder),
+    /// M19: the spindle is to be oriented.
+    SpindleOrientation,
+    /// Coolant, on or off, as Q111 has it.
+    Coolant(bool),
+    /// M89: calls the cycle in every block, where MP7440 bit 1 is set; it is not output then.
+    ModalCycleCall,
+    /// M99: calls the cycle once.
+    CycleCall,
+    /// M90.
+    ConstantSpeed,
+    /// M91.
+    MachineZero,
+    /// M92.
+    MachineDatum,
+    /// M93.
+    ToolPosition,
+    /// M94.
+    ReduceRotaryAxes,
+    /// M97.
+    Intersection,
+    /// M98.
+    OpenContour,
+    /// M103.
+    PlungingFeed,
+    /// M109.
+    FeedAtEdge,
+    /// M110.
+    FeedAtEdgeReduced,
+    /// M111.
+    FeedAtCentre,
+    /// M112.
+    CornerArcs,
+    /// M113.
+    SharpCorners,
+    /// It acts in the kernel.
+    Control(ControlFunction),
+}
+
+impl Deed {
+    /// All deeds with their names in the table.
+    const NAMES: [(&'static str, Deed); 31] = [
+        ("program-stop", Deed::ProgramStop),
+        ("program-end", Deed::ProgramEnd),
+        ("tool-change", Deed::ToolChange),
+        ("spindle-clockwise", Deed::Spindle(SpindleOrder::Clockwise)),
+        (
+            "spindle-counter-clockwise",
+            Deed::Spindle(SpindleOrder::CounterClockwise),
+        ),
+        ("spindle-stop", Deed::Spindle(SpindleOrder::Stop)),
+        ("spindle-stop-with-run", Deed::Spindle(SpindleOrder::StopWithRun)),
+        ("spindle-orientation", Deed::SpindleOrientation),
+        ("coolant-on", Deed::Coolant(true)),
+        ("coolant-off", Deed::Coolant(false)),
+        ("modal-cycle-call", Deed::ModalCycleCall),
+        ("cycle-call", Deed::CycleCall),
+        ("constant-speed", Deed::ConstantSpeed),
+        ("machine-zero", Deed::MachineZero),
+        ("machine-datum", Deed::MachineDatum),
+        ("tool-position", Deed::ToolPosition),
+        ("reduce-rotary-axes", Deed::ReduceRotaryAxes),
+        ("intersection", Deed::Intersection),
+        ("open-contour", Deed::OpenContour),
+        ("plunging-feed", Deed::PlungingFeed),
+        ("feed-at-edge", Deed::FeedAtEdge),
+        ("feed-at-edge-reduced", Deed::FeedAtEdgeReduced),
+        ("feed-at-centre", Deed::FeedAtCentre),
+        ("corner-arcs", Deed::CornerArcs),
+        ("sharp-corners", Deed::SharpCorners),
+        (
+            "replace-worn-tools",
+            Deed::Control(ControlFunction::ReplaceWornTools(true)),
+        ),
+        (
+            "keep-worn-tools",
+            Deed::Control(ControlFunction::ReplaceWornTools(false)),
+        ),
+        (
+            "first-servo-set",
+            Deed::Control(ControlFunction::SecondServoSet(false)),
+        ),
+        (
+            "second-servo-set",
+            Deed::Control(ControlFunction::SecondServoSet(true)),
+        ),
+        (
+            "take-larger-tools",
+            Deed::Control(ControlFunction::TakeLargerTools(true)),
+        ),
+        (
+            "refuse-larger-tools",
+            Deed::Control(ControlFunction::TakeLargerTools(false)),
+        ),
+    ];
+}
+
+/// Functions that are no M functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Block {
+    /// `TOOL CALL` with a tool.
+    ToolCall,
+    /// `TOOL DEF` without data: the next tool.
+    ToolDef,
+    /// `TOOL CALL S`: the spindle speed alone.
+    SpindleSpeed,
+    /// `CYCL DEF 13`: the angle of orientation.
+    OrientationAngle,
+    /// `FN15: PRINT`.
+    Print,
+    /// `FN19: PLC`.
+    Plc,
+    /// `BLK FORM`.
+    Blank,
+}
+
+impl Block {
+    /// All of them with their names in the table.
+    const NAMES: [(&'static str, Block); 7] = [
+        ("TOOL CALL", Block::ToolCall),
+        ("TOOL DEF", Block::ToolDef),
+        ("S", Block::SpindleSpeed),
+        ("CYCL DEF 13", Block::OrientationAngle),
+        ("FN15", Block::Print),
+        ("FN19", Block::Plc),
+        ("BLK FORM", Block::Blank),
+    ];
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Name {
+    /// The first and last of a group of M functions.
+    M(u16, u16),
+    Block(Block),
+}
+
+impl Technology {
+    /// An M function of a model; `None` when it does nothing there.
+    pub fn of_m(model: ControlModel, code: u16) -> Option<&'static Technology> {
+        let is_it =
+            |row: &Technology| matches!(row.name, Name::M(first, last) if (first..=last).contains(&code));
+        find(model, is_it)
+    }
+
+    /// A function of another block; `None` when the model does not have it.
+    pub fn of_block(model: ControlModel, block: Block) -> Option<&'static Technology> {
+        find(model, |row| row.name == Name::Block(block))
+    }
+
+    /// What the control itself does, in this order.
+    pub fn deeds(&self) -> impl Iterator<Item = Deed> {
+        self.does.iter().copied()
+    }
+
+    /// Whether the control itself does something.
+    pub fn does(&self, deed: Deed) -> bool {
+        self.does.contains(&deed)
+    }
+
+    /// What it orders the spindle to do.
+    pub fn spindle(&self) -> Option<SpindleOrder> {
+        self.deeds().find_map(|deed| match deed {
+            Deed::Spindle(order) => Some(order),
+            _ => None,
+        })
+    }
+
+    /// How it is synchronised with the path, on a machine whose axes halt at M functions (MP7440 bit 2 clear) and at
+    /// the output of a speed (MP3030 = 0).
+    pub fn synchronisation(&self, halts: AxisHalts) -> Synchronisation {
+        let waits = match self.waits {
+            Wait::Always => true,
+            Wait::AxisHalt => halts.at_m_functions,
+            Wait::AxisHaltAtSpeed => halts.at_speeds,
+            Wait::Never => false,
+        };
+        match (waits, self.at) {
+            (false, _) => Synchronisation::Mos,
+            (true, At::End) => Synchronisation::MnsSns,
+            (true, _) => Synchronisation::MvsSvs,
+        }
+    }
+}
+
+/// At which functions the axes of a machine halt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AxisHalts {
+    /// At M functions: MP7440 bit 2 is clear.
+    pub at_m_functions: bool,
+    /// At the output of a spindle speed without a tool: MP3030 = 0.
+    pub at_speeds: bool,
+}
+
+/// Every line of the table.
+fn rows() -> &'static [Technology] {
+    static ROWS: LazyLock<Vec<Technology>> = LazyLock::new(|| {
+        let table = include_str!("../data/technology-functions.tsv");
+        table.lines().skip(1).filter_map(row).collect()
+    });
+    &ROWS
+}
+
+fn find(model: ControlModel, is_it: impl Fn(&Technology) -> bool) -> Option<&'static Technology> {
+    rows()
+        .iter()
+        .find(|row| row.models & bit(model) != 0 && is_it(row))
+}
+
+/// Reads a line; a test proves that every line can be read.
+fn row(line: &'static str) -> Option<Technology> {
+    let mut columns = line.split('\t');
+    let mut next = || columns.next();
+    Some(Technology {
+        name: name(next()?)?,
+        models: models(next()?)?,
+        at: match next()? {
+            "start" => At::Start,
+            "end" => At::End,
+            _ => return None,
+        },
+        output: match next()? {
+            "plc" => Output::Plc,
+            "path" => Output::Path,
+            "block" => Output::Block,
+            _ => return None,
+        },
+        waits: match next()? {
+            "always" => Wait::Always,
+            "axis-halt" => Wait::AxisHalt,
+            "axis-halt-at-speed" => Wait::AxisHaltAtSpeed,
+            "never" => Wait::Never,
+            _ => return None,
+        },
+        does: next()?
+            .split(' ')
+            .filter(|deed| !deed.is_empty())
+            .map(|deed| named(&Deed::NAMES, deed))
+            .collect::<Option<_>>()?,
+        source: next()?,
+    })
+}
+
+/// Reads `M5`, `M15-M18` or `TOOL CALL`.
+fn name(text: &str) -> Option<Name> {
+    if let Some(block) = named(&Block::NAMES, text) {
+        return Some(Name::Block(block));
+    }
+    let code = |text: &str| text.strip_prefix('M')?.parse().ok();
+    let (first, last) = text.split_once('-').unwrap_or((text, text));
+    Some(Name::M(code(first)?, code(last)?))
+}
+
+fn named<T: Copy>(names: &[(&str, T)], name: &str) -> Option<T> {
+    names
+        .iter()
+        .find(|(known, _)| *known == name)
+        .map(|(_, value)| *value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_is_read() {
+        let table = include_str!("../data/technology-functions.tsv");
+        for line in table.lines().skip(1) {
+            assert!(row(line).is_some(), "{line}");
+            assert_eq!(line.split('\t').count(), 7, "{line}");
+        }
+    }
+
+    /// Nothing is written in the table's language that no line says, and every block has its line.
+    #[test]
+    fn every_name_is_used() {
+        for (name, deed) in Deed::NAMES {
+            assert!(rows().iter().any(|row| row.does(deed)), "{name}");
+        }
+        for (name, block) in Block::NAMES {
+            let of = |model: &ControlModel| Technology::of_block(*model, block).is_some();
+            assert!(ControlModel::ALL.iter().all(of), "{name}");
+        }
+    }
+}
