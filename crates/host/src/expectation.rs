@@ -128,63 +128,34 @@ expect lamp NC_START=1              a lamp of the panel
     fn of_state(text: &str, machine: &Machine) -> Result<Option<Expectation>, String> {
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
-        match word {
-            "message" => Ok(Some(Expectation::Message(quoted(rest)?, true))),
+        let expectation = match word {
+            "message" => Expectation::Message(quoted(rest)?, true),
             "no" => {
-                let rest = rest
-                    .strip_prefix("message")
-                    .ok_or("`expect no` takes `message`")?
-                    .trim();
+                let rest = rest.strip_prefix("message");
+                let rest = rest.ok_or("`expect no` takes `message`")?.trim();
                 let text = if rest.is_empty() {
                     String::new()
                 } else {
                     quoted(rest)?
                 };
-                Ok(Some(Expectation::Message(text, false)))
+                Expectation::Message(text, false)
             }
-            "mode" => {
-                let mode = Mode::ALL.into_iter().find(|mode| mode.name() == rest);
-                mode.map(|mode| Some(Expectation::Mode(mode))).ok_or_else(|| {
-                    format!(
-                        "`{rest}` is no mode; there are {}",
-                        Mode::ALL.map(Mode::name).join(", ")
-                    )
-                })
-            }
-            "run" => {
-                let run = RUNS.iter().find(|(name, _)| *name == rest);
-                run.map(|(_, run)| Some(Expectation::Run(*run))).ok_or_else(|| {
-                    format!(
-                        "`{rest}` is no state; there are {}",
-                        RUNS.map(|(name, _)| name).join(", ")
-                    )
-                })
-            }
-            "test" => {
-                let state = TESTS.iter().find(|(name, _)| *name == rest);
-                state
-                    .map(|(_, state)| Some(Expectation::Test(*state)))
-                    .ok_or_else(|| {
-                        format!(
-                            "`{rest}` is no state; there are {}",
-                            TESTS.map(|(name, _)| name).join(", ")
-                        )
-                    })
-            }
+            "mode" => Expectation::Mode(named(rest, "mode", &Mode::ALL.map(|mode| (mode.name(), mode)))?),
+            "run" => Expectation::Run(named(rest, "state", &RUNS)?),
+            "test" => Expectation::Test(named(rest, "state", &TESTS)?),
             "lamp" => {
                 let (name, value) = rest.split_once('=').ok_or("it is written `lamp NAME=1`")?;
                 let name = name.trim();
                 if machine.lamp(name).is_none() {
                     let known: Vec<&str> = machine.lamps().collect();
-                    return Err(format!(
-                        "the machine has no lamp `{name}`; there are {}",
-                        known.join(", ")
-                    ));
+                    let known = known.join(", ");
+                    return Err(format!("the machine has no lamp `{name}`; there are {known}"));
                 }
-                bit(value).map(|on| Some(Expectation::Lamp(name.to_owned(), on)))
+                Expectation::Lamp(name.to_owned(), bit(value)?)
             }
-            _ => Ok(None),
-        }
+            _ => return Ok(None),
+        };
+        Ok(Some(expectation))
     }
 
     /// A signal, or the tool, with its value.
@@ -280,6 +251,15 @@ expect lamp NC_START=1              a lamp of the panel
             }
         }
     }
+}
+
+/// What has this name.
+fn named<T: Copy>(name: &str, what: &str, all: &[(&str, T)]) -> Result<T, String> {
+    let found = all.iter().find(|(known, _)| *known == name);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let known: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
+        format!("`{name}` is no {what}; there are {}", known.join(", "))
+    })
 }
 
 fn quoted(text: &str) -> Result<String, String> {
