@@ -164,45 +164,16 @@ impl Record {
     ) -> Report {
         let place = |block: BlockRef| Place::of(run, block);
         self.warnings.sort_by_key(|(block, ..)| *block);
-        let warnings = self.warnings.into_iter().map(|(block, notice, count)| {
-            let message = notice.text(model, block);
-            let Place { program, block, line } = place(block);
-            WarningReport {
-                message,
-                program,
-                block,
-                line,
-                count,
-            }
-        });
-        let tool_calls = self.tool_calls.into_iter().map(|(block, tool, speed_rpm)| {
-            let Place { program, block, line } = place(block);
-            ToolCallReport {
-                program,
-                block,
-                line,
-                tool,
-                speed_rpm: tidy(speed_rpm),
-            }
-        });
-        let stops = self.stops.into_iter().map(|(block, function)| {
-            let Place { program, block, line } = place(block);
-            StopReport {
-                block,
-                function,
-                program,
-                line,
-            }
-        });
-        let printed = self.printed.into_iter().map(|(block, text)| {
-            let Place { program, block, line } = place(block);
-            PrintReport {
-                block,
-                text,
-                program,
-                line,
-            }
-        });
+        let warnings = self
+            .warnings
+            .into_iter()
+            .map(|(block, notice, count)| WarningReport::new(place(block), notice.text(model, block), count));
+        let tool_calls = self.tool_calls.into_iter();
+        let tool_calls = tool_calls.map(|(block, tool, rpm)| ToolCallReport::new(place(block), tool, rpm));
+        let stops = self.stops.into_iter();
+        let stops = stops.map(|(block, function)| StopReport::new(place(block), function));
+        let printed = self.printed.into_iter();
+        let printed = printed.map(|(block, text)| PrintReport::new(place(block), text));
         let completed = end == End::Completed;
         let stopped = end == End::Stopped;
         let unit = run.program(0).map_or(Unit::Mm, |program| program.unit());
@@ -381,6 +352,18 @@ pub(crate) struct ToolCallReport {
     pub line: u32,
 }
 
+impl ToolCallReport {
+    fn new(Place { program, block, line }: Place, tool: Option<u32>, speed_rpm: f64) -> ToolCallReport {
+        ToolCallReport {
+            block,
+            tool,
+            speed_rpm: tidy(speed_rpm),
+            program,
+            line,
+        }
+    }
+}
+
 #[derive(Clone, Debug, serde::Serialize)]
 pub(crate) struct WarningReport {
     pub message: String,
@@ -388,6 +371,18 @@ pub(crate) struct WarningReport {
     pub block: u32,
     pub line: u32,
     pub count: u64,
+}
+
+impl WarningReport {
+    fn new(Place { program, block, line }: Place, message: String, count: u64) -> WarningReport {
+        WarningReport {
+            message,
+            program,
+            block,
+            line,
+            count,
+        }
+    }
 }
 
 #[derive(Clone, Debug, serde::Serialize)]
@@ -398,6 +393,17 @@ pub(crate) struct StopReport {
     pub line: u32,
 }
 
+impl StopReport {
+    fn new(Place { program, block, line }: Place, function: &'static str) -> StopReport {
+        StopReport {
+            block,
+            function,
+            program,
+            line,
+        }
+    }
+}
+
 /// A line of FN15.
 #[derive(Clone, Debug, serde::Serialize)]
 pub(crate) struct PrintReport {
@@ -405,6 +411,17 @@ pub(crate) struct PrintReport {
     pub text: String,
     pub program: String,
     pub line: u32,
+}
+
+impl PrintReport {
+    fn new(Place { program, block, line }: Place, text: String) -> PrintReport {
+        PrintReport {
+            block,
+            text,
+            program,
+            line,
+        }
+    }
 }
 
 /// Where a block stands.

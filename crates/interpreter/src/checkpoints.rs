@@ -48,17 +48,14 @@ impl Kept {
         {
             self.states.pop_back();
         }
-        // Warnings are no state to go back to.
-        let warnings = std::mem::take(&mut run.warnings);
-        let said = std::mem::take(&mut run.said);
+        let told = std::mem::take(&mut run.told);
         self.states.push_back(Checkpoint {
             run: Box::new(run.clone()),
             ended: None,
             waiting: None,
             position,
         });
-        run.warnings = warnings;
-        run.said = said;
+        run.told = told;
     }
 
     pub fn handed(&mut self, sequence: u64) {

@@ -72,26 +72,8 @@ impl Run {
             Operation::CallLabel { label, repeats } => return self.call_label(*label, *repeats, settings),
             Operation::CallProgram(name) => return Ok(Flow::CallProgram(name.clone())),
             Operation::CircleCentre(coordinates) => self.circle_centre(coordinates)?,
-            Operation::Rounding { radius, feed } => {
-                let radius = self.length(*radius)? * self.plane_scale();
-                if radius < 0.0 {
-                    return Err(Fault::new(
-                        MessageId::EntryValueIncorrect,
-                        "a rounding radius is positive",
-                    ));
-                }
-                if radius > 0.0 {
-                    self.join(JoinKind::Rounding(radius), *feed, settings)?;
-                }
-            }
-            Operation::Chamfer { length, feed } => {
-                let length = self.length(*length)? * self.plane_scale();
-                if length <= 0.0 {
-                    let detail = "the length of a chamfer must be positive";
-                    return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
-                }
-                self.join(JoinKind::Chamfer(length), *feed, settings)?;
-            }
+            Operation::Rounding { radius, feed } => self.rounding(*radius, *feed, settings)?,
+            Operation::Chamfer { length, feed } => self.chamfer(*length, *feed, settings)?,
             Operation::BlankMin(coordinates, axis) => self.blank_min(coordinates, *axis)?,
             Operation::BlankMax(coordinates) => self.blank_max(coordinates, settings)?,
             Operation::ToolDefinition { tool, length, radius } => {
@@ -166,6 +148,29 @@ impl Run {
             ));
         }
         Ok(Flow::Repeat(label, count as u32))
+    }
+
+    fn rounding(&mut self, radius: Value, feed: Option<Value>, settings: &Settings) -> Result<(), Fault> {
+        let radius = self.length(radius)? * self.plane_scale();
+        if radius < 0.0 {
+            return Err(Fault::new(
+                MessageId::EntryValueIncorrect,
+                "a rounding radius is positive",
+            ));
+        }
+        if radius > 0.0 {
+            self.join(JoinKind::Rounding(radius), feed, settings)?;
+        }
+        Ok(())
+    }
+
+    fn chamfer(&mut self, length: Value, feed: Option<Value>, settings: &Settings) -> Result<(), Fault> {
+        let length = self.length(length)? * self.plane_scale();
+        if length <= 0.0 {
+            let detail = "the length of a chamfer must be positive";
+            return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
+        }
+        self.join(JoinKind::Chamfer(length), feed, settings)
     }
 
     fn join(&mut self, kind: JoinKind, feed: Option<Value>, settings: &Settings) -> Result<(), Fault> {

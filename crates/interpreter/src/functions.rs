@@ -125,15 +125,15 @@ impl Run {
             Deed::FeedAtEdge => self.modal.feed_law = FeedLaw::Edge,
             Deed::FeedAtEdgeReduced => self.modal.feed_law = FeedLaw::EdgeReduced,
             Deed::FeedAtCentre => self.modal.feed_law = FeedLaw::Centre,
-            Deed::CornerArcs => self.begin_corner_arcs(m, settings)?,
+            Deed::CornerArcs => self.modal.corner_arcs = Some(self.corner_arcs(m, settings)?),
             Deed::SharpCorners => self.modal.corner_arcs = None,
             _ => {}
         }
         Ok(())
     }
 
-    /// M112 T A: tolerance and greatest angle of the arcs at corners.
-    fn begin_corner_arcs(&mut self, m: &MFunctions, settings: &Settings) -> Result<(), Fault> {
+    /// M112 with T and A: arcs at the corners of uncompensated lines.
+    fn corner_arcs(&self, m: &MFunctions, settings: &Settings) -> Result<CornerArcs, Fault> {
         let value = |letter| -> Result<Option<f64>, Fault> {
             m.argument(112, letter)
                 .map(|value| self.q.value(value))
@@ -142,15 +142,14 @@ impl Run {
         let (tolerance, angle) = (value('T')?, value('A')?);
         let rules = &settings.rules;
         let plane = self.modal.plane;
-        self.modal.corner_arcs = Some(CornerArcs {
+        Ok(CornerArcs {
             tolerance_mm: tolerance.map_or(f64::INFINITY, |value| value * self.unit_mm),
             angle_deg: angle.unwrap_or(0.0),
             acceleration_m_s2: [plane.first, plane.second]
                 .into_iter()
                 .filter_map(|axis| rules.acceleration_m_s2.get(axis.index()))
                 .fold(rules.radial_acceleration_m_s2, |least, value| least.min(*value)),
-        });
-        Ok(())
+        })
     }
 
     fn set_coolant(&mut self, on: bool) {

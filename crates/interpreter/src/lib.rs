@@ -38,6 +38,7 @@ mod rehearsal;
 mod run;
 mod settings;
 mod status;
+mod told;
 mod tools;
 mod work;
 
@@ -154,17 +155,14 @@ impl Interpreter {
             .program(program)
             .and_then(|program| program.feed_doubt(reading));
         if let Some(doubt) = doubt {
-            self.run.warnings.push(Warning {
-                block: BlockRef {
-                    program,
-                    block: doubt.block,
-                },
-                kind: WarningKind::InchFeed {
-                    reading,
-                    feed_mm_min: doubt.feed_mm_min.round() as u32,
-                },
-                count: 1,
-            });
+            let block = BlockRef {
+                program,
+                block: doubt.block,
+            };
+            let feed_mm_min = doubt.feed_mm_min.round() as u32;
+            self.run
+                .told
+                .warn(block, WarningKind::InchFeed { reading, feed_mm_min });
         }
     }
 
@@ -202,7 +200,7 @@ impl Interpreter {
 
     /// Takes the warnings that came up since the last call.
     pub fn take_warnings(&mut self) -> Vec<Warning> {
-        std::mem::take(&mut self.run.warnings)
+        self.run.told.take_warnings()
     }
 
     /// Allows an amount of work, as [`Interpreter::next`] counts it, until the next call: a control has
@@ -231,12 +229,10 @@ impl Interpreter {
 
     /// Goes back to a checkpoint of this run.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
-        let warnings = std::mem::take(&mut self.run.warnings);
-        let said = std::mem::take(&mut self.run.said);
+        let told = std::mem::take(&mut self.run.told);
         self.pending = Pending::None;
         self.run = (*checkpoint.run).clone();
-        self.run.warnings = warnings;
-        self.run.said = said;
+        self.run.told = told;
         self.ended = checkpoint.ended.clone();
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;

@@ -296,7 +296,7 @@ impl Run {
         feed: FeedRate,
         functions: BlockFunctions,
     ) -> Result<Flow, Fault> {
-        if !std::mem::replace(&mut self.machine_zero_missed, true) {
+        if !std::mem::replace(&mut self.told.machine_zero, true) {
             self.warn(WarningKind::MachineZeroUnknown);
         }
         self.finish_contour()?;

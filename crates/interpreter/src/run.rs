@@ -10,16 +10,17 @@ use bahn_path::{
 };
 use bahn_program::{Compensation, InputSteps, Unit, Value};
 
-use crate::availability::{Feature, Said};
+use crate::availability::Feature;
 use crate::block_functions::BlockFunctions;
 use crate::contour::{Contour, ContourMove, Side};
-use crate::error::{Fault, Warning, WarningKind};
+use crate::error::{Fault, WarningKind};
 use crate::flow::{self, Flow};
 use crate::modal::Modal;
 use crate::output::Output;
 use crate::q_parameters::{QTable, preassigned};
 use crate::settings::Settings;
 use crate::status::{Spindle, Status};
+use crate::told::Told;
 
 /// A probing that waits for its touch.
 #[derive(Clone, Copy, Debug)]
@@ -54,13 +55,9 @@ pub(crate) struct Run {
     pub since_motion: u64,
     /// Block being executed: the call block while a cycle runs.
     pub block: BlockRef,
-    pub warnings: Vec<Warning>,
-    /// Functions that the user was told of.
-    pub said: Said,
+    pub told: Told,
     /// The first BLK FORM of the main program.
     pub blank: Option<Blank>,
-    /// It was said that the place of machine zero is not known.
-    pub machine_zero_missed: bool,
     /// The next block is a straight line with coordinates: neither a rounding nor a tangential arc can refer
     /// to the movement of this block, so nothing needs to be held back for it.
     pub line_follows: bool,
@@ -106,10 +103,8 @@ impl Run {
             sequence: 0,
             since_motion: 0,
             block: BlockRef::default(),
-            warnings: Vec::new(),
-            said: Said::default(),
+            told: Told::default(),
             blank: None,
-            machine_zero_missed: false,
             line_follows: false,
             join_follows: false,
             increments_from: None,
@@ -162,16 +157,7 @@ impl Run {
 
     /// [`Run::warn`] at another block than the one being executed.
     pub fn warn_at(&mut self, block: BlockRef, kind: WarningKind) {
-        const LOOKED_BACK: usize = 64;
-        let mut recent = self.warnings.iter_mut().rev().take(LOOKED_BACK);
-        match recent.find(|warning| warning.block == block && warning.kind == kind) {
-            Some(warning) => warning.count += 1,
-            None => self.warnings.push(Warning {
-                block,
-                kind,
-                count: 1,
-            }),
-        }
+        self.told.warn(block, kind);
     }
 
     /// Whether a function is to be executed. Where it is met first, the user is told when it is not, or not
@@ -180,14 +166,14 @@ impl Run {
     /// # Errors
     /// FUNCTION NOT AVAILABLE ON THIS CONTROL for what must not be passed over.
     pub(crate) fn executes(&mut self, feature: Feature, settings: &Settings) -> Result<bool, Fault> {
-        if let Some(executes) = self.said.executes(feature) {
+        if let Some(executes) = self.told.said.executes(feature) {
             return Ok(executes);
         }
         let (executes, remark) = feature.judge(settings)?;
         if let Some(kind) = remark {
             self.warn(kind);
         }
-        self.said.note(feature, executes);
+        self.told.said.note(feature, executes);
         Ok(executes)
     }
 
@@ -203,7 +189,7 @@ impl Run {
             Unit::Inch => "inch",
         };
         let step = format!("{} {unit} and {}°", steps.length(), steps.angle());
-        let first = self.said.is_first_rounded(self.block.program);
+        let first = self.told.said.is_first_rounded(self.block.program);
         // A rehearsal goes on after an error, and says this one once, too.
         if settings.strict && (first || !self.rehearsal) {
             let detail = format!("the input step of this control is {step}");

@@ -101,9 +101,10 @@ impl Pending {
         };
         let given_up = Arc::new(AtomicBool::new(false));
         *self = Pending::Taken(Wanted(Arc::clone(&given_up)));
-        let warnings = std::mem::take(&mut run.warnings);
+        // The copy goes on from what was said; its warnings are its own.
+        let warnings = run.told.take_warnings();
         let copy = Box::new(run.clone());
-        run.warnings = warnings;
+        run.told.put_before(warnings);
         Some(Work {
             run: copy,
             settings: settings.clone(),
@@ -119,10 +120,9 @@ impl Pending {
             return None;
         }
         *self = Pending::None;
-        let mut warnings = std::mem::take(&mut run.warnings);
+        let warnings = run.told.take_warnings();
         *run = *done.run;
-        warnings.append(&mut run.warnings);
-        run.warnings = warnings;
+        run.told.put_before(warnings);
         Some(done.result)
     }
 }

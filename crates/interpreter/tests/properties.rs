@@ -472,6 +472,7 @@ fn number() -> impl Strategy<Value = String> {
     ]
 }
 
+#[expect(clippy::too_many_lines, reason = "a list")]
 fn block() -> impl Strategy<Value = String> {
     const TEMPLATES: &[&str] = &[
         "L X# Y# FMAX",

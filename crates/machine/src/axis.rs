@@ -94,19 +94,59 @@ pub(crate) struct Axis {
     pub table: f64,
 }
 
+impl Cam {
+    /// `[axis.X.reference_cam]`.
+    fn of_reference(axis: &Section) -> Option<Cam> {
+        let section = axis.section("reference_cam")?;
+        let [from, to] = section.range("range").unwrap_or([0.0, 1.0]);
+        let contact = section.contact("input");
+        section.finish();
+        Some(Cam { from, to, contact })
+    }
+
+    /// `[axis.X.limit_minus]` or `limit_plus`: pressed from a place on to the end.
+    fn of_limit(axis: &Section, key: &'static str) -> Option<Cam> {
+        let section = axis.section(key)?;
+        let at = section.needed_number("at", -1e6..=1e6);
+        let contact = section.contact("input");
+        section.finish();
+        let (from, to) = if key == "limit_minus" {
+            (f64::NEG_INFINITY, at)
+        } else {
+            (at, f64::INFINITY)
+        };
+        Some(Cam { from, to, contact })
+    }
+}
+
+/// The letter of `[axis.X]`.
+fn letter(name: &str, section: &Section) -> Option<char> {
+    let mut letters = "XYZABCUVW".chars();
+    let letter = letters.find(|letter| name.len() == 1 && name.starts_with(*letter));
+    if letter.is_none() {
+        section.fault(format!("`{name}` is no axis: X Y Z A B C U V W"));
+    }
+    letter
+}
+
+/// The place of the nominal value output of an axis.
+fn output(section: &Section) -> usize {
+    let names = ["1", "2", "3", "4", "5", "S"];
+    section.word("output", &names).unwrap_or_else(|| {
+        if !section.has("output") {
+            section.fault(format!("[{}] needs output", section.name));
+        }
+        0
+    })
+}
+
 /// Speeds below this count as standing, units/s.
 const STANDING: f64 = 1e-12;
 
 impl Axis {
     /// Reads `[axis.X]`.
     pub fn read(name: &str, section: Section, step_s: f64, seed: u64) -> Option<Axis> {
-        let letter = name.chars().next().filter(|letter| {
-            name.len() == 1 && matches!(letter, 'X' | 'Y' | 'Z' | 'A' | 'B' | 'C' | 'U' | 'V' | 'W')
-        });
-        let Some(letter) = letter else {
-            section.fault(format!("`{name}` is no axis: X Y Z A B C U V W"));
-            return None;
-        };
+        let letter = letter(name, &section)?;
         let part = u64::from(u32::from(letter));
         // N and kg give m/s², Nm and kg m² give radians/s².
         let unit = if matches!(letter, 'A' | 'B' | 'C') {
@@ -138,14 +178,7 @@ impl Axis {
         let friction = force("friction");
         let axis = Axis {
             letter,
-            output: section
-                .word("output", &["1", "2", "3", "4", "5", "S"])
-                .unwrap_or_else(|| {
-                    if !section.has("output") {
-                        section.fault(format!("[{}] needs output", section.name));
-                    }
-                    0
-                }),
+            output: output(&section),
             enable: section.coil("enable"),
             ready: section.contact("ready"),
             gain: turn * speed / volts,
@@ -170,24 +203,8 @@ impl Axis {
             per_force,
             play: section.number("backlash", 0.0..=100.0).unwrap_or(0.0),
             travel,
-            reference_cam: section.section("reference_cam").map(|section| {
-                let [from, to] = section.range("range").unwrap_or([0.0, 1.0]);
-                let contact = section.contact("input");
-                section.finish();
-                Cam { from, to, contact }
-            }),
-            limits: ["limit_minus", "limit_plus"].map(|key| {
-                let section = section.section(key)?;
-                let at = section.needed_number("at", -1e6..=1e6);
-                let contact = section.contact("input");
-                section.finish();
-                let (from, to) = if key == "limit_minus" {
-                    (f64::NEG_INFINITY, at)
-                } else {
-                    (at, f64::INFINITY)
-                };
-                Some(Cam { from, to, contact })
-            }),
+            reference_cam: Cam::of_reference(&section),
+            limits: ["limit_minus", "limit_plus"].map(|key| Cam::of_limit(&section, key)),
             on_motor: section
                 .section("encoder")
                 .is_some_and(|encoder| encoder.word("on", &["table", "motor"]) == Some(1)),

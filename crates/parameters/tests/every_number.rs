@@ -153,6 +153,7 @@ fn each_reaches(model: ControlModel, context: &[&str], table: &str) {
 /// takes the number of another parameter or axis fails, unless the data have the same error. What a title means is
 /// said here by hand; that the value arrives unchanged, in its unit, other tests prove.
 #[test]
+#[expect(clippy::too_many_lines, reason = "two tables")]
 fn each_number_reaches_its_getter() {
     const OLD: &str = "\
 Rapid traverse * | axis.*.motion.rapid_mm_min

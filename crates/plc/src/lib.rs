@@ -6,7 +6,7 @@
 //! - [`Machine`] runs a program scan by scan on a [`bahn_exchange::Exchange`]: timers, counters, edges, submit
 //!   jobs, nominal processing time; [`Tracer`] sees every executed line;
 //! - [`modules`] lists the modules 9000 to 9171; [`Nc`] is what they need from the control, with the types
-//!   that it speaks in; [`TestNc`] stands in for it on a desk;
+//!   that it speaks in; with the feature `desk`, `TestNc` stands in for it;
 //! - [`mirror_parameters`] puts the machine parameters of the PLC into its words and markers;
 //! - [`Instruction`] and [`Op`] are the compiled form, for tools that list, cross-reference or translate it.
 //!
@@ -36,9 +36,11 @@ pub use nc::{
     Bar, Cell, Column, ControlledSpindle, CoordinateKind, DataInterface, HostLink, HostMessage,
     InterfaceUser, JogLimit, LineFault, MemoryTable, Nc, NotSaved, OrientationDirection, PalletLine,
     ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
-    SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TestAxis, TestNc, TextFile,
-    ToolCallBlock, WindowView, mirror_parameters,
+    SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
+    mirror_parameters,
 };
+#[cfg(feature = "desk")]
+pub use nc::{TestAxis, TestNc};
 pub use operand::{BitOperand, NumberOperand, TextOperand, Value};
 pub use program::{
     Arithmetic, BitOperation, Comparison, Condition, Field, Gate, Instruction, Label, LabelPlace, Op,

@@ -5,6 +5,7 @@ mod interface;
 mod motion;
 mod status;
 mod table;
+#[cfg(feature = "desk")]
 mod test;
 mod window;
 
@@ -13,6 +14,7 @@ pub use interface::{DataInterface, HostLink, HostMessage, InterfaceUser};
 pub use motion::{OrientationDirection, PlcAxisCommand, PlcAxisStatus, SpindleOrientation, ToolCallBlock};
 pub use status::{ControlledSpindle, CoordinateKind, JogLimit, SpindlePosition, StatusChange, StatusItem};
 pub use table::{Column, MemoryTable, TableFile, TableKind};
+#[cfg(feature = "desk")]
 pub use test::{TestAxis, TestNc};
 pub use window::{Bar, Cell, PlcWindow, WindowView};
 

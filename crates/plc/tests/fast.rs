@@ -188,6 +188,7 @@ fn program(main: &[(u8, u32)], subroutines: &[(u8, u32)]) -> String {
 }
 
 /// Writes one statement: complete chains, so that all may stand behind each other.
+#[expect(clippy::too_many_lines, reason = "one arm for each kind of statement")]
 fn statement(text: &mut String, kind: u8, dice: &mut Dice, label: &str) {
     let lines = match kind {
         0..=3 => logic(dice),

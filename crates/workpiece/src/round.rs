@@ -89,8 +89,8 @@ impl Track {
                     let [part, change] = leads.line(row, columns.len());
                     sink.grouped(at, columns, |k| {
                         let mut parts = [0.0; GROUP];
-                        for n in 0..GROUP {
-                            parts[n] = part + change * (k as i32 as f32 + n as i32 as f32);
+                        for (n, part_here) in parts.iter_mut().enumerate() {
+                            *part_here = part + change * (k as i32 as f32 + n as i32 as f32);
                         }
                         end_group(row, bottom, k, parts)
                     });

@@ -38,12 +38,12 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         }
         return Ok(Outcome::ProgramError);
     };
-    let mut retained = super::retained(options.retain.as_deref())?;
+    let retained = super::retained(options.retain.as_deref())?;
     let exchange = retained
         .as_ref()
         .map_or_else(Exchange::default, Retained::restore);
-    let mut bench = Bench::new(program, parameters, &options.bench, exchange)?;
-    let mut record = options
+    let bench = Bench::new(program, parameters, &options.bench, exchange)?;
+    let record = options
         .record
         .as_deref()
         .map(|path| Record::create(path, recorded(options, &bench)))
@@ -56,48 +56,22 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
             "warning: the script goes on to cycle {last}, the run ends with cycle {cycles}"
         ));
     }
-    let mut report = Report::not_run(None);
-    let mut trace = Trace::default();
-    let mut written = Ok(());
+    let mut scans = Scans {
+        bench,
+        record,
+        retained,
+        report: Report::not_run(None),
+        trace: Trace::default(),
+    };
     let interrupt = Interrupt::on_ctrl_c();
-    while bench.cycle < cycles && !interrupt.is_requested() {
-        trace.cycle = bench.cycle + 1;
-        let traced = options.trace.is_some_and(|range| range.contains(trace.cycle));
-        let result = bench.scan(traced.then_some(&mut trace));
-        if let Err(error) = result {
-            failure::print(bench.machine.program(), &error);
-            report.error = Some(Stop {
-                number: error.error.number(),
-                file: error.file,
-                line: error.line,
-            });
-            break;
-        }
-        report.cycles += 1;
-        report.failed_expectations.extend(bench.failures());
-        written = record.as_mut().map_or(Ok(()), |record| record.cycle(&bench));
-        if let Some(retained) = &mut retained {
-            written = written.and(retained.tick(bench.exchange.plc()).map_err(UsageError::from));
-        }
-        if written.is_err() {
-            break;
-        }
-    }
-    // A file that cannot be written loses neither the others nor the report.
-    if let Some(retained) = &mut retained {
-        written = written.and(retained.flush(bench.exchange.plc()).map_err(UsageError::from));
-    }
-    written = written.and(record.map_or(Ok(()), Record::finish));
-
-    for failure in report.failed_expectations.iter().take(PRINTED_MAX) {
-        let title = failure.to_string();
-        let found = format!("found {}", failure.found);
-        let fault = bench
-            .script
-            .failure(failure.line, &failure.operand, &title, found);
-        diagnostics::print_fault(&fault);
-    }
-    diagnostics::print_rest(report.failed_expectations.len().saturating_sub(PRINTED_MAX));
+    let mut written = scans.run(options, cycles, &interrupt);
+    scans.print_failures();
+    let Scans {
+        bench,
+        mut report,
+        trace,
+        ..
+    } = scans;
     if let Some(path) = &options.junit {
         written = written.and(write_junit(path, options, &bench, &report));
     }
@@ -123,6 +97,68 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         true => Outcome::Fine,
         false => Outcome::ProgramError,
     })
+}
+
+/// The cycles of a run, and what is written meanwhile.
+struct Scans {
+    bench: Bench,
+    record: Option<Record>,
+    retained: Option<Retained>,
+    report: Report,
+    trace: Trace,
+}
+
+impl Scans {
+    /// Runs up to a cycle, or to the first error.
+    ///
+    /// # Errors
+    /// When a file cannot be written. It loses neither the others nor the report.
+    fn run(&mut self, options: &RunOptions, cycles: u64, interrupt: &Interrupt) -> Result<(), UsageError> {
+        let mut written = Ok(());
+        while self.bench.cycle < cycles && !interrupt.is_requested() && written.is_ok() {
+            self.trace.cycle = self.bench.cycle + 1;
+            let traced = options
+                .trace
+                .is_some_and(|range| range.contains(self.trace.cycle));
+            if let Err(error) = self.bench.scan(traced.then_some(&mut self.trace)) {
+                failure::print(self.bench.machine.program(), &error);
+                self.report.error = Some(Stop {
+                    number: error.error.number(),
+                    file: error.file,
+                    line: error.line,
+                });
+                break;
+            }
+            self.report.cycles += 1;
+            self.report.failed_expectations.extend(self.bench.failures());
+            written = self
+                .record
+                .as_mut()
+                .map_or(Ok(()), |record| record.cycle(&self.bench));
+            if let Some(retained) = &mut self.retained {
+                let kept = retained.tick(self.bench.exchange.plc());
+                written = written.and(kept.map_err(UsageError::from));
+            }
+        }
+        if let Some(retained) = &mut self.retained {
+            let kept = retained.flush(self.bench.exchange.plc());
+            written = written.and(kept.map_err(UsageError::from));
+        }
+        written.and(self.record.take().map_or(Ok(()), Record::finish))
+    }
+
+    /// Prints the expectations that did not hold, with their lines of the script.
+    fn print_failures(&self) {
+        let failures = &self.report.failed_expectations;
+        for failure in failures.iter().take(PRINTED_MAX) {
+            let title = failure.to_string();
+            let found = format!("found {}", failure.found);
+            let script = &self.bench.script;
+            let fault = script.failure(failure.line, &failure.operand, &title, found);
+            diagnostics::print_fault(&fault);
+        }
+        diagnostics::print_rest(failures.len().saturating_sub(PRINTED_MAX));
+    }
 }
 
 /// The expectations of the script for a build server.

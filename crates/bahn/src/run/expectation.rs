@@ -102,10 +102,18 @@ expect lamp NC_START=1              a lamp of the panel
 
     /// Reads what stands behind `expect`.
     pub fn parse(text: &str, machine: &Machine) -> Result<Expectation, String> {
+        match Expectation::of_state(text, machine)? {
+            Some(expectation) => Ok(expectation),
+            None => Expectation::of_value(text),
+        }
+    }
+
+    /// What begins with a word: a message, a mode, a state, a lamp; `None` for anything else.
+    fn of_state(text: &str, machine: &Machine) -> Result<Option<Expectation>, String> {
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         match word {
-            "message" => return Ok(Expectation::Message(quoted(rest)?, true)),
+            "message" => return Ok(Some(Expectation::Message(quoted(rest)?, true))),
             "no" => {
                 let rest = rest
                     .strip_prefix("message")
@@ -116,11 +124,11 @@ expect lamp NC_START=1              a lamp of the panel
                 } else {
                     quoted(rest)?
                 };
-                return Ok(Expectation::Message(text, false));
+                return Ok(Some(Expectation::Message(text, false)));
             }
             "mode" => {
                 let mode = Mode::ALL.into_iter().find(|mode| mode.name() == rest);
-                return mode.map(Expectation::Mode).ok_or_else(|| {
+                return mode.map(|mode| Some(Expectation::Mode(mode))).ok_or_else(|| {
                     format!(
                         "`{rest}` is no mode; there are {}",
                         Mode::ALL.map(Mode::name).join(", ")
@@ -129,7 +137,7 @@ expect lamp NC_START=1              a lamp of the panel
             }
             "run" => {
                 let run = RUNS.iter().find(|(name, _)| *name == rest);
-                return run.map(|(_, run)| Expectation::Run(*run)).ok_or_else(|| {
+                return run.map(|(_, run)| Some(Expectation::Run(*run))).ok_or_else(|| {
                     format!(
                         "`{rest}` is no state; there are {}",
                         RUNS.map(|(name, _)| name).join(", ")
@@ -138,12 +146,14 @@ expect lamp NC_START=1              a lamp of the panel
             }
             "test" => {
                 let state = TESTS.iter().find(|(name, _)| *name == rest);
-                return state.map(|(_, state)| Expectation::Test(*state)).ok_or_else(|| {
-                    format!(
-                        "`{rest}` is no state; there are {}",
-                        TESTS.map(|(name, _)| name).join(", ")
-                    )
-                });
+                return state
+                    .map(|(_, state)| Some(Expectation::Test(*state)))
+                    .ok_or_else(|| {
+                        format!(
+                            "`{rest}` is no state; there are {}",
+                            TESTS.map(|(name, _)| name).join(", ")
+                        )
+                    });
             }
             "lamp" => {
                 let (name, value) = rest.split_once('=').ok_or("it is written `lamp NAME=1`")?;
@@ -155,10 +165,14 @@ expect lamp NC_START=1              a lamp of the panel
                         known.join(", ")
                     ));
                 }
-                return bit(value).map(|on| Expectation::Lamp(name.to_owned(), on));
+                return bit(value).map(|on| Some(Expectation::Lamp(name.to_owned(), on)));
             }
-            _ => {}
+            _ => Ok(None),
         }
+    }
+
+    /// A signal, or the tool, with its value.
+    fn of_value(text: &str) -> Result<Expectation, String> {
         let at = text
             .find(['=', '<', '>'])
             .ok_or("it takes a signal and its value, as X.actual=100±0.01, or message \"TEXT\"")?;

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::executed::stop_name;
 use crate::files::short_name;
+use crate::report_text::clock;
 
 /// Keys that are listed as confirmed at most.
 const CONFIRMED_MAX: usize = 1000;
@@ -25,6 +26,17 @@ pub(super) struct Said {
     pub block: Option<u32>,
 }
 
+impl Said {
+    pub fn text(&self) -> String {
+        let block = self
+            .block
+            .map(|block| format!(", {} block {block}", self.program));
+        let place = self.place.as_ref().map(|place| format!(": {place}"));
+        let place = block.unwrap_or_default() + &place.unwrap_or_default();
+        format!("{} {}{place}", clock(self.time_s), self.text)
+    }
+}
+
 /// A key that the operator pressed because the run waited for him.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Confirmed {
@@ -32,6 +44,13 @@ pub(super) struct Confirmed {
     pub key: String,
     pub why: &'static str,
     pub block: u32,
+}
+
+impl Confirmed {
+    pub fn text(&self) -> String {
+        let Confirmed { why, key, block, .. } = self;
+        format!("{} {why} with {key}, block {block}", clock(self.time_s))
+    }
 }
 
 /// An expectation of the script that did not hold.

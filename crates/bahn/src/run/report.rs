@@ -12,7 +12,7 @@ use super::session::Session;
 use super::times::Share;
 use crate::diagnostics::FileFault;
 use crate::report::{ErrorReport, Report, tidy};
-use crate::report_text::{self, LABEL, clock, list};
+use crate::report_text::{self, LABEL, list};
 
 /// What an axis did, mm or degrees.
 #[derive(Clone, Debug, Serialize)]
@@ -21,6 +21,18 @@ struct AxisReport {
     lag_block: Option<u32>,
     max_deviation: Option<f64>,
     deviation_block: Option<u32>,
+}
+
+impl AxisReport {
+    fn text(&self, letter: char) -> String {
+        let unit = if self.max_deviation.is_some() { "mm" } else { "°" };
+        let deviation = self.max_deviation.map(|deviation| {
+            let block = at(self.deviation_block);
+            format!(", off the contour {:.1} µm{block}", deviation * 1e3)
+        });
+        let (lag, block) = (self.max_lag, at(self.lag_block));
+        format!("{letter} {lag:.4} {unit}{block}{}", deviation.unwrap_or_default())
+    }
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -51,6 +63,18 @@ impl TestRunReport {
             message: message.map(|message| session.host.control().message_text(message)),
             place: message.and_then(|message| message.place()),
         }
+    }
+}
+
+impl TestRunReport {
+    fn text(&self) -> String {
+        let result = match (&self.message, self.completed) {
+            (Some(message), _) => message,
+            (None, true) => "completed",
+            (None, false) => "not completed",
+        };
+        let place = self.place.as_ref().map(|place| format!(": {place}"));
+        format!("{}: {result}{}", self.program, place.unwrap_or_default())
     }
 }
 
@@ -196,20 +220,7 @@ impl RunReport {
         });
         let axes: Vec<_> = self.axes.iter().collect();
         list(&mut row, "Largest lag", &axes, |(letter, axis)| {
-            let unit = if axis.max_deviation.is_some() { "mm" } else { "°" };
-            let deviation = axis.max_deviation.map(|deviation| {
-                format!(
-                    ", off the contour {:.1} µm{}",
-                    deviation * 1e3,
-                    at(axis.deviation_block)
-                )
-            });
-            format!(
-                "{letter} {:.4} {unit}{}{}",
-                axis.max_lag,
-                at(axis.lag_block),
-                deviation.unwrap_or_default()
-            )
+            axis.text(**letter)
         });
         if let Some(cause) = &self.contour_deviation_cause {
             row(
@@ -228,37 +239,13 @@ impl RunReport {
                 self.plc.mean_percent, self.plc.max_percent
             ),
         );
-        list(&mut row, "Messages", &self.messages, |said| {
-            let block = said
-                .block
-                .map(|block| format!(", {} block {block}", said.program));
-            let place = said.place.as_ref().map(|place| format!(": {place}"));
-            let place = block.unwrap_or_default() + &place.unwrap_or_default();
-            format!("{} {}{place}", clock(said.time_s), said.text)
-        });
-        list(&mut row, "Confirmed", &self.confirmed, |confirmed| {
-            format!(
-                "{} {} with {}, block {}",
-                clock(confirmed.time_s),
-                confirmed.why,
-                confirmed.key,
-                confirmed.block
-            )
-        });
+        list(&mut row, "Messages", &self.messages, Said::text);
+        list(&mut row, "Confirmed", &self.confirmed, Confirmed::text);
         if let ProgramReport::Ran(report) = &self.program {
             report_text::body(&mut row, report);
         }
         if let Some(test) = &self.test_run {
-            let result = match (&test.message, test.completed) {
-                (Some(message), _) => message.clone(),
-                (None, true) => "completed".to_owned(),
-                (None, false) => "not completed".to_owned(),
-            };
-            let place = test.place.as_ref().map(|place| format!(": {place}"));
-            row(
-                "Test run",
-                &format!("{}: {result}{}", test.program, place.unwrap_or_default()),
-            );
+            row("Test run", &test.text());
         }
         if let Some(lateness) = &self.realtime {
             row(

@@ -250,29 +250,7 @@ impl Translator<'_> {
                 self.place_of_structure(command);
                 self.open_structure(Kind::Repeat { start: here }, 1);
             }
-            Mnemonic::Else => {
-                let error = self.chains.label();
-                self.report(error, "");
-                let Some(open) = self.close_structure(Closer::Else) else {
-                    return;
-                };
-                self.emit(
-                    Op::Jump {
-                        condition: Condition::Always,
-                        target: 0,
-                    },
-                    command,
-                );
-                self.goes_on();
-                if let Kind::If { jump, .. } = open.kind {
-                    self.land(jump, here + 1);
-                }
-                let kind = Kind::If {
-                    jump: here,
-                    has_else: true,
-                };
-                self.structures.push(Structure { kind, ..open });
-            }
+            Mnemonic::Else => self.otherwise(command),
             Mnemonic::EndIf => {
                 self.place_of_structure(command);
                 if let Some(Structure {
@@ -296,14 +274,7 @@ impl Translator<'_> {
             _ => {
                 let error = self.chains.condition();
                 self.report(error, "");
-                self.emit(
-                    Op::Jump {
-                        condition: Condition::Always,
-                        target: 0,
-                    },
-                    command,
-                );
-                self.goes_on();
+                self.jump_always(command);
                 if let Some(Structure {
                     kind: Kind::While { test },
                     ..
@@ -314,6 +285,32 @@ impl Translator<'_> {
                 }
             }
         }
+    }
+
+    /// ELSE: the branch before it jumps over the one that begins here.
+    fn otherwise(&mut self, command: &Command) {
+        let here = self.out.code.len();
+        let error = self.chains.label();
+        self.report(error, "");
+        let Some(open) = self.close_structure(Closer::Else) else {
+            return;
+        };
+        self.jump_always(command);
+        if let Kind::If { jump, .. } = open.kind {
+            self.land(jump, here + 1);
+        }
+        let kind = Kind::If {
+            jump: here,
+            has_else: true,
+        };
+        self.structures.push(Structure { kind, ..open });
+    }
+
+    /// A jump whose target is set when the structure is closed.
+    fn jump_always(&mut self, command: &Command) {
+        let condition = Condition::Always;
+        self.emit(Op::Jump { condition, target: 0 }, command);
+        self.goes_on();
     }
 
     /// A conditional jump whose target is set when the structure is closed.

@@ -61,6 +61,10 @@ pub(super) fn run(fast: &FastProgram, processor: &mut Processor<'_, '_>, budget:
 }
 
 impl State<'_, '_, '_, '_> {
+    #[expect(
+        clippy::too_many_lines,
+        reason = "one arm for each instruction; its registers are locals of one function"
+    )]
     fn run(&mut self) -> End {
         let fast = self.fast;
         // Local, so that they are registers of the host; `self` has them while something else needs them.

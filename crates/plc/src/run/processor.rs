@@ -54,6 +54,7 @@ impl<'p> Processor<'p, '_> {
     }
 
     /// Executes one instruction.
+    #[expect(clippy::too_many_lines, reason = "one arm for each instruction")]
     pub(crate) fn execute(&mut self, op: &Op) -> Result<Step, PlcError> {
         let index = self.registers.index;
         match op {

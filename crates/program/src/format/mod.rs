@@ -118,6 +118,7 @@ impl Output {
         }
     }
 
+    #[expect(clippy::too_many_lines, reason = "one arm for each kind of block")]
     fn operation(&mut self, operation: &Operation) {
         match operation {
             Operation::Begin(header) => self.header("BEGIN PGM", header),

@@ -405,6 +405,7 @@ pub fn block() -> impl Strategy<Value = Block> {
 }
 
 /// A piece of program text, sensible or not.
+#[expect(clippy::too_many_lines, reason = "a list")]
 pub fn fragment() -> impl Strategy<Value = String> {
     let pieces = vec![
         "L ",
