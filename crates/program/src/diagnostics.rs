@@ -7,6 +7,7 @@ use bahn_parameters::MessageId::{
     LabelNumberAllocated, LabelNumberNotAllocated, UnexpectedText,
 };
 
+use crate::lines::lines;
 use crate::sequence::{Sequence, SequenceFault};
 use crate::text::trim_continuation;
 use crate::{BlockError, CycleWord, Header, NumberedBlock, Operation, Program, Reading, check_limits};
@@ -320,15 +321,15 @@ impl Pass<'_> {
 /// Line within the text of a block, column and length of the value behind an address, or of the address
 /// itself if that ends with its number; else of the code in the first line.
 fn locate(text: &str, address: &str) -> (u32, u32, u32) {
-    let lines = text.split("\r\n").flat_map(|lines| lines.split(['\n', '\r']));
+    let lines = || lines(text.as_bytes()).map(|line| std::str::from_utf8(line).unwrap_or_default());
     if !address.is_empty() {
-        for (number, line) in lines.clone().enumerate() {
+        for (number, line) in lines().enumerate() {
             if let Some((column, length)) = locate_in_line(line, address) {
                 return (number as u32, column, length);
             }
         }
     }
-    let first = lines.into_iter().next().unwrap_or_default();
+    let first = lines().next().unwrap_or_default();
     let code = first
         .split(';')
         .next()

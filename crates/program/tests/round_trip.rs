@@ -149,6 +149,7 @@ fn nasty_texts_keep_the_laws() {
         "...L  ~\nBEGIN PGM ",
         "Q1; ~\n~",
         "a\n ~\n\0\u{c}BEGIN PGM 1",
+        "CYCL DEF 5...~\u{c}L L ",
         "a\u{c}\u{c} ~\u{c}\0\u{c}\0\u{c}BEGIN PGM 1\u{c}END PGM 1\u{c}~\u{c}\0\u{c}a",
         "\n\u{feff}\nBEGIN PGM ",
         "\n\u{feff}\r\n \n\u{feff}x\nBEGIN PGM ",

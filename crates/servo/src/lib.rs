@@ -85,5 +85,5 @@ pub use timing::{OUTPUT_VOLTS, Timing};
 
 /// The example of `docs/plant.md`.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/plant.md")]
+#[doc = include_str!("../docs/plant.md")]
 struct PlantOfYourOwn;
