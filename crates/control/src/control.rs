@@ -259,6 +259,8 @@ impl Control {
             length_us,
         };
         let before = self.seam.measured.control_ready;
+        let behind_us = self.now_us + u64::from(length_us);
+        self.seam.commands.reads_inputs = self.machine.looks_at_inputs(behind_us);
         plant.exchange(step, &self.seam.commands, &mut self.seam.measured);
         if length_us > 0 {
             self.machine.emergency.pass(step, before, &self.seam.measured);

@@ -240,6 +240,11 @@ impl MachineSide {
         due
     }
 
+    /// Whether somebody may look at the inputs in the servo step that begins then: a scan, or what monitors them.
+    pub fn looks_at_inputs(&self, at_us: u64) -> bool {
+        at_us >= self.plc.due_us || self.may_suppress_monitoring()
+    }
+
     /// Reads the inputs for a scan.
     pub fn read_inputs(&mut self, measured: &Measured) {
         let exchange = self.memory.first_mut();
@@ -346,8 +351,7 @@ impl MachineSide {
     /// W522 bit 0 lets the input MP4130, sampled in each control cycle, switch the monitoring off
     /// [000:5178-5188].
     pub fn monitoring_is_off(&self, measured: &Measured) -> bool {
-        let nc = self.memory.first().nc();
-        let permitted = nc.number(signal::MONITORING_SUPPRESSION) & 1 != 0;
+        let permitted = self.may_suppress_monitoring();
         let Some(input) = self.plc_parameters.monitoring_input.filter(|_| permitted) else {
             return false;
         };
@@ -355,6 +359,10 @@ impl MachineSide {
             .inputs
             .get(usize::from(input.input))
             .is_some_and(|high| *high == input.active_high)
+    }
+
+    fn may_suppress_monitoring(&self) -> bool {
+        self.memory.first().nc().number(signal::MONITORING_SUPPRESSION) & 1 != 0
     }
 
     /// CE: clears a message, and what it stands for.

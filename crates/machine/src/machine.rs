@@ -270,7 +270,9 @@ impl Plant for Machine {
             seen.mark = seen.mark.or(mark);
         }
         measured.control_ready = self.control_ready();
-        self.inputs(&mut measured.inputs);
+        if commands.reads_inputs {
+            self.inputs(&mut measured.inputs);
+        }
         measured.operator = self.panel.operator;
         measured.probe = self.touch_probe();
         measured.volts = self.volts;

@@ -46,6 +46,8 @@ pub struct Commands {
     pub outputs: [bool; OUTPUTS],
     /// The output X41/34 "control is ready" [000:6151].
     pub control_ready: bool,
+    /// The PLC inputs are looked at behind this step; else a plant may leave them as they were.
+    pub reads_inputs: bool,
 }
 
 impl Default for Commands {
@@ -54,6 +56,7 @@ impl Default for Commands {
             axes: [AxisCommand::default(); NOMINALS],
             outputs: [false; OUTPUTS],
             control_ready: false,
+            reads_inputs: true,
         }
     }
 }
