@@ -8,6 +8,7 @@ use bahn_program::{MotionKind, Operation, Value};
 
 use crate::Interpreter;
 use crate::checkpoints::{Checkpoint, Kept};
+use crate::code::Code;
 use crate::contour::Contour;
 use crate::settings::{DatumTable, Rules, ToolState};
 
@@ -67,8 +68,11 @@ impl Interpreter {
     }
 
     /// Whether the tool in the spindle may be replaced before the next block: no contour with radius compensation is on
-    /// its way (inferred), and nothing waits to be handed out.
-    pub fn may_replace_tool(&self, tool: u32) -> bool {
+    /// its way (inferred), nothing waits to be handed out, and the block itself calls no tool.
+    pub fn may_replace_tool(&mut self, tool: u32) -> bool {
+        if keeps_tool(&mut self.code, self.run.at.block_ref()) {
+            return false;
+        }
         let run = &self.run;
         self.waiting.is_none()
             && self.pending.is_none()
@@ -83,11 +87,9 @@ impl Interpreter {
         let Interpreter { kept, code, .. } = self;
         let mut states = kept.iter().flat_map(Kept::states);
         let found = states.find(|state| {
-            let mut refers_back = |at: BlockRef| {
-                let fetched = code.block(at.program, at.block);
-                fetched.is_some_and(|fetched| refers_back(&fetched.block.operation))
-            };
-            state.sequence() > behind && state.run.is_between_contours(tool) && !refers_back(state.at())
+            state.sequence() > behind
+                && state.run.is_between_contours(tool)
+                && !keeps_tool(code, state.at())
         });
         found.map(Checkpoint::sequence)
     }
@@ -117,6 +119,15 @@ impl Interpreter {
         }
         self.run.sequence += 1;
     }
+}
+
+/// Whether the tool stays before a block: it goes on from the movement before it, or calls a tool itself.
+fn keeps_tool(code: &mut Code, at: BlockRef) -> bool {
+    let fetched = code.block(at.program, at.block);
+    fetched.is_some_and(|fetched| {
+        let operation = &fetched.block.operation;
+        refers_back(operation) || matches!(operation, Operation::ToolCall { tool: Some(_), .. })
+    })
 }
 
 /// Whether a block changes or goes on from the movement before it.
