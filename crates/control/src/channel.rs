@@ -46,6 +46,8 @@ pub(crate) struct Channel {
     pub tools: Tools,
     /// The version of the magazine that the interpreter knows.
     tools_seen: u64,
+    /// The interpreter is to know other datums.
+    datums_changed: bool,
     /// Of the tool in the spindle.
     life: LifeCount,
     pub run: ProgramRun,
@@ -83,6 +85,7 @@ impl Channel {
             ),
             tools: Tools::new(operation.tools, remembered),
             tools_seen: 0,
+            datums_changed: false,
             life: LifeCount::default(),
             run: ProgramRun::new(selection, source, Track::new(&limits)),
             test: None,
@@ -445,7 +448,9 @@ impl Channel {
             self.run.set_q(number, value);
         }
         strobes::take_actual_values(now.mode, &mut axes, exchange.nc());
-        if let Some(command) = strobes::key(exchange.nc()) {
+        // A key waits for the program that is read elsewhere.
+        let key = strobes::key(exchange.nc()).filter(|_| !self.run.source.is_lent());
+        if let Some(command) = key {
             let done = command.is_some_and(|command| self.execute(command, machine));
             strobes::end_key(done, machine.memory.of_mut(self.number));
         }
@@ -478,7 +483,8 @@ impl Channel {
             spindle.set_plc_volts(volts);
         }
         self.desk.manual.take_status(std::mem::take(&mut requests.status));
-        if let Some(request) = requests.pallet.take() {
+        let pallet = &mut requests.pallet;
+        if let Some(request) = pallet.take_if(|_| !self.run.source.is_lent()) {
             self.select_pallet(request, machine);
         }
         let requests = &mut machine.link.requests;
@@ -511,9 +517,7 @@ impl Channel {
     /// those of the path with the next run.
     pub fn take_parameters(&mut self, machine: &mut MachineSide) {
         let list = self.own_list.as_ref().unwrap_or(machine.link.list());
-        if let Some(interpreter) = self.run.source.interpreter_mut() {
-            interpreter.set_rules(Rules::of(list));
-        }
+        self.run.source.set_rules(Rules::of(list));
         let operation = list.operation_parameters();
         self.datums.each_range = operation.datums.datum_for_each_range;
         self.desk.set_rules(operation);
@@ -551,6 +555,11 @@ impl Channel {
             let limits = path_limits(list, machine.axes.owned(self.number));
             self.run.track.take_limits(&limits);
         }
+        self.datums_changed |= datums_changed;
+        if self.run.source.is_lent() {
+            return self.prepare_test(machine);
+        }
+        let datums_changed = std::mem::take(&mut self.datums_changed);
         let rules = self.desk.rules().restart;
         let version = machine.magazine.version();
         let tools_changed = std::mem::replace(&mut self.tools_seen, version) != version;
@@ -564,10 +573,20 @@ impl Channel {
             interpreter.set_datum_table(basis.link.datums(basis.list));
         }
         run.prepare(&mut site, &basis);
+        self.prepare_test(machine);
+    }
+
+    fn prepare_test(&mut self, machine: &MachineSide) {
         if let Some(test) = &mut self.test {
             let axes = machine.axes.owned(self.number);
             test.prepare(machine.spindles.of(self.number), axes);
         }
+    }
+
+    /// Its program, to be read beside the control, and the number of the loan.
+    pub fn lend(&mut self) -> Option<(Feeder, u64)> {
+        let runs = self.run.progress().is_on_its_way();
+        runs.then(|| self.run.source.lend()).flatten()
     }
 
     /// The programs that are read: that of the run, and that of a test run.
@@ -579,6 +598,9 @@ impl Channel {
     /// Executes a command; `false` when it is not possible now.
     pub fn execute(&mut self, command: Command, machine: &mut MachineSide) -> bool {
         let rules = self.desk.rules().restart;
+        if self.run.source.is_lent() && command.needs_program() {
+            return false;
+        }
         match command {
             Command::Mode(mode) => {
                 let progress = self.run.progress();

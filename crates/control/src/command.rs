@@ -131,6 +131,16 @@ const COORDINATE_MAX: f64 = 999_999_999.0 / 10_000.0;
 #[error("{0}")]
 pub struct CommandError(String);
 
+impl Command {
+    /// It acts on the program that runs, or puts another one in its place.
+    pub(crate) fn needs_program(&self) -> bool {
+        matches!(
+            self,
+            Command::InternalStop | Command::Select(_) | Command::Goto(_) | Command::RestoreAt(_)
+        )
+    }
+}
+
 impl FromStr for Command {
     type Err = CommandError;
 

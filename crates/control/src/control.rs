@@ -10,6 +10,7 @@ use bahn_servo::{Commands, Measured, Plant, Step, Timing};
 
 use crate::axes::Axes;
 use crate::axis::{AxisId, AxisUnit};
+use crate::beside::ReadAhead;
 use crate::channel::{Channel, Parts};
 use crate::command::{Command, Mode};
 use crate::compensation::Compensation;
@@ -414,6 +415,36 @@ impl Control {
         }
     }
 
+    /// Part programs are read by [`ReadAhead::read`] alone from now on, wherever it is called, or by
+    /// [`Control::prepare`] again.
+    pub fn read_beside(&mut self, on: bool) {
+        for channel in self.channels.iter_mut() {
+            channel.run.source.read_beside(on);
+        }
+    }
+
+    /// The program of a channel that wants to be read ahead. Until it is [back](Control::take_back) the cycles go on with
+    /// what was read before; commands that need the program are not possible, a clone of the control is without it,
+    /// and [`Control::interpreter`] and [`Control::remember`] do not know what it came to.
+    pub fn lend_reading(&mut self) -> Option<ReadAhead> {
+        (0..).zip(self.channels.iter_mut()).find_map(|(channel, lender)| {
+            let (feeder, loan) = lender.lend()?;
+            Some(ReadAhead {
+                channel,
+                loan,
+                feeder,
+            })
+        })
+    }
+
+    /// A program is back that was lent.
+    pub fn take_back(&mut self, read: ReadAhead) {
+        if read.channel < self.channels.count() {
+            let source = &mut self.channels.of_mut(read.channel).run.source;
+            source.end_loan(read.feeder, read.loan);
+        }
+    }
+
     /// Simulates the block processing time: no more elements of the path are read than the control has time
     /// for, each taking so long, µs. 0 for no time.
     pub fn set_block_time(&mut self, time_us: u32) {
@@ -611,7 +642,7 @@ impl Control {
         self.channels.first().run.track.path.rest_mm()
     }
 
-    /// The interpreter of the program that runs, or ran last.
+    /// The interpreter of the program that runs, or ran last; `None` while it is [lent](Control::lend_reading).
     pub fn interpreter(&self) -> Option<&Interpreter> {
         self.channels.first().run.source.interpreter()
     }

@@ -15,6 +15,10 @@ use crate::programs::{Programs, Shelf};
 
 /// Work of the interpreter in one preparation at most, as [`Interpreter::allow`] counts it: some ms.
 const WORK: u32 = 4096;
+/// Work of the interpreter beside the control at most before the feeder is back: a command waits so long for it.
+const WORK_BESIDE: u32 = 1024;
+/// Steps that are read ahead beside the control at most.
+const AHEAD: usize = 1024;
 
 /// Why a run cannot go on.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,10 +35,29 @@ pub(crate) enum RunFault {
     },
 }
 
+/// Steps of the interpreter that were read beside the control and nobody has taken yet.
+#[derive(Clone, Default)]
+struct Ahead {
+    /// It is read beside the control alone: what is not read yet is waited for.
+    on: bool,
+    steps: VecDeque<Step<Box<ProgramError>>>,
+    /// Behind the last step nothing is to be read before it is answered.
+    dammed: bool,
+}
+
+impl Ahead {
+    fn clear(&mut self) {
+        self.steps.clear();
+        self.dammed = false;
+    }
+}
+
 /// Feeds the interpolator from a program.
 #[derive(Clone)]
 pub(crate) struct Feeder {
     interpreter: Interpreter,
+    /// What the interpreter was read ahead by, beside the control.
+    ahead: Ahead,
     /// Kinematics with the offsets as of the last element handed out.
     chain: Chain,
     limits: Box2,
@@ -65,6 +88,7 @@ impl Feeder {
         interpreter.keep_checkpoints();
         Feeder {
             interpreter,
+            ahead: Ahead::default(),
             chain,
             limits,
             fault: None,
@@ -82,6 +106,45 @@ impl Feeder {
 
     pub fn interpreter_mut(&mut self) -> &mut Interpreter {
         &mut self.interpreter
+    }
+
+    /// The program is read beside the control from now on, by [`Feeder::read_ahead`], or no more.
+    pub fn read_beside(&mut self, on: bool) {
+        self.ahead.on = on;
+        if on {
+            self.ahead.steps.reserve(AHEAD);
+        }
+    }
+
+    /// There is something to be read, and not much of it is there.
+    pub fn wants_reading(&self) -> bool {
+        let ahead = &self.ahead;
+        ahead.on && !ahead.dammed && ahead.steps.len() <= AHEAD / 2 && !self.interpreter.is_computing()
+    }
+
+    /// Reads ahead what one preparation may need, beside the control.
+    pub fn read_ahead(&mut self) {
+        self.interpreter.allow(WORK_BESIDE);
+        while !self.ahead.dammed && self.ahead.steps.len() < AHEAD {
+            let step = self.interpreter.next();
+            match step {
+                Step::Starved => return,
+                Step::Element(_) => {}
+                Step::Barrier(_) | Step::End | Step::Error(_) => self.ahead.dammed = true,
+            }
+            self.ahead.steps.push_back(step);
+        }
+    }
+
+    /// The place in the order of execution of the block that comes next.
+    pub fn next_sequence(&self) -> u64 {
+        let refused = self.refused.as_ref().map(|(element, _)| element);
+        let read = self.ahead.steps.front().and_then(|step| match step {
+            Step::Element(element) => Some(element),
+            _ => None,
+        });
+        let next = refused.or(self.found.front()).or(read);
+        next.map_or(self.interpreter.blocks_executed() + 1, |element| element.sequence)
     }
 
     /// The program that is executed is in inches.
@@ -116,6 +179,7 @@ impl Feeder {
     pub fn replace_tool_before(&mut self, sequence: u64, tool: u32, chain: &Chain) {
         self.interpreter
             .go_back(|checkpoint| checkpoint.sequence() == sequence);
+        self.ahead.clear();
         self.found.clear();
         self.refused = None;
         self.fault = None;
@@ -129,7 +193,8 @@ impl Feeder {
 
     /// Replaces the tool in the spindle before the next block, if it may be.
     pub fn replace_tool(&mut self, worn: u32, tool: u32) {
-        if self.found.is_empty() && self.refused.is_none() && self.interpreter.may_replace_tool(worn) {
+        let next = self.ahead.steps.is_empty() && self.found.is_empty();
+        if next && self.refused.is_none() && self.interpreter.may_replace_tool(worn) {
             self.interpreter.replace_tool(tool);
         }
     }
@@ -197,6 +262,7 @@ impl Feeder {
     }
 
     fn begin_again(&mut self, machine: &Position, chain: &Chain, limits: Box2) {
+        self.ahead.clear();
         self.found.clear();
         self.refused = None;
         self.fault = None;
@@ -208,7 +274,12 @@ impl Feeder {
 
     /// The next step of the program.
     fn read(&mut self) -> Step<RunFault> {
-        let element = match self.interpreter.next() {
+        let step = match self.ahead.steps.pop_front() {
+            Some(step) => step,
+            None if self.ahead.on => self.answer_of_dam(),
+            None => self.interpreter.next(),
+        };
+        let element = match step {
             Step::Element(element) => element,
             Step::Barrier(barrier) => return Step::Barrier(barrier),
             Step::Starved => return Step::Starved,
@@ -227,6 +298,14 @@ impl Feeder {
             tap.push(element.clone());
         }
         Step::Element(element)
+    }
+
+    /// Behind a barrier or the end the interpreter says the same again; what is not read yet is waited for.
+    fn answer_of_dam(&mut self) -> Step<Box<ProgramError>> {
+        match self.ahead.dammed {
+            true => self.interpreter.next(),
+            false => Step::Starved,
+        }
     }
 
     /// The first axis that would leave its range on an element.
@@ -296,7 +375,10 @@ impl ElementSource for Feeder {
                     self.interpreter.set_q(number, value);
                 }
             }
-            None => self.interpreter.resume(live),
+            None => {
+                self.ahead.dammed = false;
+                self.interpreter.resume(live);
+            }
         }
     }
 }

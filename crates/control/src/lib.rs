@@ -4,6 +4,8 @@
 //!   contour cycle on a machine ([`bahn_servo::Plant`]), [`Control::prepare`] plans ahead;
 //! - [`Command`] is what an operator asks for, [`Snapshot`] what he sees, [`Message`] what the control says;
 //! - [`Signal`] names what can be recorded.
+//! - [`Control::lend_reading`] lets part programs be read on another thread ([`ReadAhead`]), [`Control::take_work`] long
+//!   computations be done there ([`Work`]).
 //!
 //! - [`Control::with_channels`] puts several channels on one machine, [`ChannelSetup`] each of them: with its axes
 //!   ([`AxisId`]), its [`Kinematics`] and its [`Window`] into the memory of the PLC.
@@ -22,6 +24,7 @@
 
 mod axes;
 mod axis;
+mod beside;
 mod block_time;
 mod channel;
 mod command;
@@ -76,6 +79,7 @@ mod window;
 
 pub use axis::AxisId;
 pub use bahn_interpreter::{Done, Work};
+pub use beside::ReadAhead;
 pub use command::{Command, CommandError, Mode};
 pub use compensation_table::{CompensationAssignment, CompensationError, CompensationTable};
 pub use control::Control;

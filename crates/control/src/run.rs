@@ -173,10 +173,7 @@ impl ProgramRun {
             return false;
         }
         let cut = self.track.path.clear().map(|cut| cut.sequence);
-        let next = self
-            .source
-            .interpreter()
-            .map(|interpreter| interpreter.blocks_executed() + 1);
+        let next = self.source.feeder().map(Feeder::next_sequence);
         // The block that probes is executed as far as its path goes.
         let resume = if self.probe.is_on() {
             next.map(|next| next - 1)

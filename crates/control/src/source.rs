@@ -10,6 +10,7 @@ use bahn_program::Program;
 use bahn_servo::Rotation;
 
 use crate::axes::OwnAxes;
+use crate::beside::Loan;
 use crate::feeder::Feeder;
 use crate::kinematics::Chain;
 use crate::plc_link::PlcLink;
@@ -51,6 +52,12 @@ pub(crate) enum Resume {
 pub(crate) struct Source {
     pub reading: Reading,
     feeder: Option<Feeder>,
+    /// The program that runs is read elsewhere: it is not here.
+    loan: Option<Loan>,
+    /// Loans so far.
+    loans: u64,
+    /// Programs are read beside the control.
+    beside: bool,
     /// The program whose run was interrupted, while blocks of MDI run.
     aside: Option<(Option<Feeder>, Option<Resume>)>,
     /// Blocks of MDI have run: back to the program.
@@ -74,6 +81,9 @@ impl Source {
         Source {
             reading,
             feeder: None,
+            loan: None,
+            loans: 0,
+            beside: false,
             aside: None,
             mdi_over: false,
             resume_from: None,
@@ -85,19 +95,67 @@ impl Source {
         }
     }
 
-    /// The program that runs, or ran last.
+    /// The program that runs, or ran last; `None` while it is lent.
+    pub fn feeder(&self) -> Option<&Feeder> {
+        self.feeder.as_ref()
+    }
+
+    /// The program that runs, or ran last; `None` while it is lent.
     pub fn feeder_mut(&mut self) -> Option<&mut Feeder> {
         self.feeder.as_mut()
     }
 
     /// Another program is read from now on.
-    pub fn put(&mut self, feeder: Feeder) {
+    pub fn put(&mut self, mut feeder: Feeder) {
+        feeder.read_beside(self.beside);
         self.feeder = Some(feeder);
+    }
+
+    /// Programs are read beside the control from now on, or no more.
+    pub fn read_beside(&mut self, on: bool) {
+        self.beside = on;
+        let aside = self.aside.as_mut().and_then(|(feeder, _)| feeder.as_mut());
+        for feeder in self.feeder.iter_mut().chain(aside) {
+            feeder.read_beside(on);
+        }
+    }
+
+    /// The program, to be read elsewhere, and the number of the loan; `None` when there is nothing to read.
+    pub fn lend(&mut self) -> Option<(Feeder, u64)> {
+        let feeder = self.feeder.take_if(|feeder| feeder.wants_reading())?;
+        self.loans += 1;
+        self.loan = Some(Loan::new(self.loans, feeder.inch()));
+        Some((feeder, self.loans))
+    }
+
+    /// The program is back. One that nobody waits for any more is dropped.
+    pub fn end_loan(&mut self, mut feeder: Feeder, loan: u64) {
+        if let Some(loan) = self.loan.take_if(|current| current.number == loan) {
+            loan.settle(&mut feeder);
+            self.put(feeder);
+        }
+    }
+
+    /// The program is read elsewhere.
+    pub fn is_lent(&self) -> bool {
+        self.loan.is_some()
+    }
+
+    /// The rules of machine parameters, for the blocks that are read from now on.
+    pub fn set_rules(&mut self, rules: Rules) {
+        if let Some(loan) = &mut self.loan {
+            loan.rules = Some(rules);
+        } else if let Some(interpreter) = self.interpreter_mut() {
+            interpreter.set_rules(rules);
+        }
     }
 
     /// The program that runs is in inches.
     pub fn inch(&self) -> bool {
-        self.feeder.as_ref().is_some_and(Feeder::inch)
+        match &self.loan {
+            Some(loan) => loan.inch,
+            None => self.feeder.as_ref().is_some_and(Feeder::inch),
+        }
     }
 
     pub fn interpreter(&self) -> Option<&Interpreter> {
@@ -116,12 +174,16 @@ impl Source {
     /// The next run begins anew.
     pub fn forget(&mut self) {
         self.feeder = None;
+        self.loan = None;
         self.resume_from = None;
     }
 
     /// A run is broken off, of MDI or of a program.
     pub fn break_off(&mut self, mdi: bool) {
         self.mdi_over = mdi;
+        if let Some(loan) = &mut self.loan {
+            loan.broken_off = true;
+        }
         if let Some(interpreter) = self.interpreter_mut() {
             interpreter.give_up_work();
         }
@@ -219,6 +281,9 @@ impl Source {
 
     /// Sets a Q parameter between runs.
     pub fn set_q(&mut self, number: u16, value: f64) {
+        if let Some(loan) = &mut self.loan {
+            loan.q.push((number, value));
+        }
         if let Some(interpreter) = self.interpreter_mut() {
             interpreter.set_q(number, value);
         }

@@ -263,7 +263,8 @@ fn blocks_with_functions_let_the_tool_be_replaced() {
 #[test]
 fn a_worn_tool_is_changed_once_where_the_next_block_calls_one() {
     for function in ["", " M8"] {
-        let blocks = format!("L X+0 Y+0 Z+20 R0 FMAX M101\nL X+8 R0 F60{function}\nTOOL CALL 1 Z S500\nL X+0 F600");
+        let blocks =
+            format!("L X+0 Y+0 Z+20 R0 FMAX M101\nL X+8 R0 F60{function}\nTOOL CALL 1 Z S500\nL X+0 F600");
         let mut rig = started(passes(&blocks, [5.0, 0.0], Some(3)));
         rig.until(60.0, "a tool is asked for", |rig| rig.bit("M2046"));
         assert_eq!((rig.number("W262"), rig.bit("M2404")), (1, false), "`{function}`");

@@ -87,9 +87,7 @@ impl Interpreter {
         let Interpreter { kept, code, .. } = self;
         let mut states = kept.iter().flat_map(Kept::states);
         let found = states.find(|state| {
-            state.sequence() > behind
-                && state.run.is_between_contours(tool)
-                && !keeps_tool(code, state.at())
+            state.sequence() > behind && state.run.is_between_contours(tool) && !keeps_tool(code, state.at())
         });
         found.map(Checkpoint::sequence)
     }

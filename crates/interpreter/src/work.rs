@@ -146,6 +146,11 @@ impl Interpreter {
         self.pending = Pending::None;
     }
 
+    /// The run waits for a computation that is done, or to be done, beside.
+    pub fn is_computing(&self) -> bool {
+        !self.pending.is_none() && !self.pending.is_lost()
+    }
+
     /// Whether this computation is what the run waits for.
     pub fn waits_for(&self, done: &Done) -> bool {
         self.pending.is_of(done)

@@ -12,9 +12,6 @@ use crate::probe::Probe;
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 
-/// Outputs 1 to 5 and S, inputs X1 to X6.
-const CONNECTORS: usize = 6;
-
 /// Contacts, relays and things move once in so many µs.
 const TICK_US: u32 = 1000;
 
@@ -257,18 +254,11 @@ impl Machine {
 
 impl Plant for Machine {
     fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
-        for (output, command) in commands.axes.iter().enumerate().take(CONNECTORS) {
-            self.set_nominal(output, command.volts);
-        }
+        self.take_nominals(commands);
         self.set_outputs(&commands.outputs);
         self.set_control_ready(commands.control_ready);
         measured.control_ready_changed_at = self.pass(step.length_us);
-        let again = !std::mem::take(&mut self.moved_on);
-        for (input, seen) in measured.encoders.iter_mut().enumerate().take(CONNECTORS) {
-            let mark = seen.mark.filter(|_| again);
-            *seen = self.read_encoder(input, again);
-            seen.mark = seen.mark.or(mark);
-        }
+        self.read_encoders(measured);
         measured.control_ready = self.control_ready();
         if commands.reads_inputs {
             self.inputs(&mut measured.inputs);
@@ -277,6 +267,55 @@ impl Plant for Machine {
         measured.probe = self.touch_probe();
         measured.volts = self.volts;
         measured.temperatures = self.temperatures;
+    }
+}
+
+impl Machine {
+    /// The voltage of each drive: by the drives, of which there are fewer than connectors.
+    fn take_nominals(&mut self, commands: &Commands) {
+        let volts = |output: usize| {
+            commands
+                .axes
+                .get(output)
+                .map_or(0.0, |command| limited(command.volts))
+        };
+        for axis in &mut self.axes {
+            axis.volts = volts(axis.output);
+        }
+        if let Some(spindle) = &mut self.spindle {
+            spindle.volts = volts(spindle.output);
+        }
+    }
+
+    /// What the encoders answer; inputs without encoder stay as they are.
+    fn read_encoders(&mut self, measured: &mut Measured) {
+        let again = !std::mem::take(&mut self.moved_on);
+        let mut put = |input: usize, read: Encoder| {
+            if let Some(seen) = measured.encoders.get_mut(input) {
+                let mark = seen.mark.filter(|_| again);
+                *seen = read;
+                seen.mark = seen.mark.or(mark);
+            }
+        };
+        for axis in &mut self.axes {
+            if let Some(input) = axis.counter.as_ref().map(|counter| counter.input) {
+                put(input, axis.read_encoder(again));
+            }
+        }
+        if let Some(spindle) = &mut self.spindle
+            && let Some(input) = spindle.counter.as_ref().map(|counter| counter.input)
+        {
+            put(input, spindle.read_encoder(again));
+        }
+    }
+}
+
+/// A nominal value as a converter puts it out, V.
+fn limited(volts: f64) -> f64 {
+    if volts.is_finite() {
+        volts.clamp(-10.0, 10.0)
+    } else {
+        0.0
     }
 }
 
@@ -315,11 +354,7 @@ impl Machine {
 
     /// Sets a nominal value output, V.
     pub fn set_nominal(&mut self, output: usize, volts: f64) {
-        let volts = if volts.is_finite() {
-            volts.clamp(-10.0, 10.0)
-        } else {
-            0.0
-        };
+        let volts = limited(volts);
         for axis in self.axes.iter_mut().filter(|axis| axis.output == output) {
             axis.volts = volts;
         }

@@ -1,0 +1,61 @@
+//! Part programs that are read ahead beside the control: on a thread of whoever drives it.
+
+use bahn_interpreter::Rules;
+
+use crate::feeder::Feeder;
+
+/// The program of a channel, lent by [`Control::lend_reading`](crate::Control::lend_reading) to be read ahead
+/// elsewhere. The cycles go on meanwhile with what was read before.
+pub struct ReadAhead {
+    pub(crate) channel: usize,
+    pub(crate) loan: u64,
+    pub(crate) feeder: Feeder,
+}
+
+impl ReadAhead {
+    /// Reads ahead, a thousand blocks or elements at most. [`Control::take_back`](crate::Control::take_back) gives it
+    /// back.
+    pub fn read(&mut self) {
+        self.feeder.read_ahead();
+    }
+}
+
+/// A program that is lent, and what it is told when it is back.
+#[derive(Clone, Debug)]
+pub(crate) struct Loan {
+    /// Which loan of the channel it is.
+    pub number: u64,
+    pub inch: bool,
+    /// Q parameters that the PLC has set.
+    pub q: Vec<(u16, f64)>,
+    /// Machine parameters have changed.
+    pub rules: Option<Rules>,
+    /// The run was broken off.
+    pub broken_off: bool,
+}
+
+impl Loan {
+    pub fn new(number: u64, inch: bool) -> Loan {
+        Loan {
+            number,
+            inch,
+            q: Vec::new(),
+            rules: None,
+            broken_off: false,
+        }
+    }
+
+    /// Tells it to the program that is back.
+    pub fn settle(self, feeder: &mut Feeder) {
+        let interpreter = feeder.interpreter_mut();
+        if self.broken_off {
+            interpreter.give_up_work();
+        }
+        if let Some(rules) = self.rules {
+            interpreter.set_rules(rules);
+        }
+        for (number, value) in self.q {
+            interpreter.set_q(number, value);
+        }
+    }
+}
