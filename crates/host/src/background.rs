@@ -7,20 +7,48 @@ use std::time::Duration;
 
 use bahn_control::{Control, Done, Work};
 
+use crate::reading::Reading;
+
 /// How often it is looked whether the run is to end.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// What computes beside.
+/// What computes and reads beside.
 #[derive(Default)]
 pub(crate) struct Background {
     result: Option<Receiver<Done>>,
+    reading: Option<Reading>,
 }
 
 impl Background {
+    /// Part programs are read on a thread of their own from now on, or with every preparation again.
+    pub fn read_beside(&mut self, control: &mut Control, on: bool) {
+        self.settle(control);
+        self.reading = if on { Reading::start() } else { None };
+        control.read_beside(self.reading.is_some());
+    }
+
+    /// Waits until everything that is read beside is back.
+    pub fn settle(&mut self, control: &mut Control) {
+        if let Some(reading) = &mut self.reading {
+            reading.settle(control);
+        }
+    }
+
+    /// Lets the control interpret and plan ahead, and lends what is to be read beside.
+    pub fn prepare(&mut self, control: &mut Control, realtime: bool, break_off: &AtomicBool) {
+        if let Some(reading) = &mut self.reading {
+            reading.collect(control);
+        }
+        self.compute(control, realtime, break_off);
+        if let Some(reading) = &mut self.reading {
+            reading.lend(control);
+        }
+    }
+
     /// Lets the control interpret and plan ahead. With the clock on the wall the machine goes on while
     /// something is computed; otherwise time stands still, so that every run is the same, but for a run that is
     /// to be broken off.
-    pub fn prepare(&mut self, control: &mut Control, realtime: bool, break_off: &AtomicBool) {
+    fn compute(&mut self, control: &mut Control, realtime: bool, break_off: &AtomicBool) {
         loop {
             control.prepare();
             if self.result.is_none()

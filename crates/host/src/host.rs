@@ -212,6 +212,9 @@ impl<P: Operable> Host<P> {
         if let Some(sink) = &mut self.sink {
             sink.note(self.control.time_us(), &source, &deed.to_string())?;
         }
+        if matches!(deed, Deed::Command(_)) {
+            self.background.settle(&mut self.control);
+        }
         let answer = match &deed {
             Deed::Command(command) => match self.control.command(command.clone()) {
                 true => Answer::Done,
@@ -232,6 +235,9 @@ impl<P: Operable> Host<P> {
             return Ok(());
         };
         let waits = self.control.unsaved().is_some();
+        if !self.repeats && (waits || state.is_due()) {
+            self.background.settle(&mut self.control);
+        }
         if self.repeats {
             if waits {
                 self.control.stored();
@@ -281,6 +287,7 @@ impl<P: Operable> Host<P> {
     /// # Errors
     /// [`HostError::NotStored`].
     pub fn store(&mut self) -> Result<(), HostError> {
+        self.background.settle(&mut self.control);
         match &mut self.state {
             Some(state) => state
                 .flush(&self.control)
@@ -324,10 +331,13 @@ impl<P: Operable> Host<P> {
         self.snapshot_us = Some((every_us, self.control.time_us()));
     }
 
-    /// Runs by another clock from now on. Planning ahead and the cycle share the control, and so a thread.
+    /// Runs by another clock from now on. By that on the wall part programs are read on a thread of their own: what a
+    /// program needs to be read holds no cycle. It is back for every deed, and for what is stored.
     pub fn set_clock(&mut self, clock: Clock) {
         self.clock = clock;
         self.pace = Pace::of(clock, self.control.time_us());
+        let beside = self.pace.is_some();
+        self.background.read_beside(&mut self.control, beside);
     }
 
     /// The clock begins anew: the machine is at another time.

@@ -24,6 +24,44 @@ pub struct Lateness {
     pub late_cycles: u64,
     /// By how much the worst one did.
     pub worst_lateness_ms: f64,
+    /// Late cycles by how late they were, in ms: at most so much, and more than the one before.
+    pub late_by: [Late; 5],
+    /// Cycles that needed more of the processor than the time they had. What else is late is so because the operating
+    /// system let something else run, or a medium was slow.
+    pub overrun_cycles: u64,
+    /// Processor time of the longest cycle.
+    pub longest_ms: f64,
+}
+
+/// Cycles that were late by at most so much.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Late {
+    /// ms; `None` for any more.
+    pub at_most_ms: Option<f64>,
+    /// How many.
+    pub cycles: u64,
+}
+
+impl Lateness {
+    fn new() -> Lateness {
+        let late = |at_most_ms| Late {
+            at_most_ms,
+            cycles: 0,
+        };
+        Lateness {
+            late_by: [Some(0.1), Some(1.0), Some(10.0), Some(100.0), None].map(late),
+            ..Lateness::default()
+        }
+    }
+
+    fn add(&mut self, late_ms: f64) {
+        self.late_cycles += 1;
+        self.worst_lateness_ms = self.worst_lateness_ms.max(late_ms);
+        let fits = |late: &&mut Late| late.at_most_ms.is_none_or(|most| late_ms <= most);
+        if let Some(late) = self.late_by.iter_mut().find(fits) {
+            late.cycles += 1;
+        }
+    }
 }
 
 pub(crate) struct Pace {
@@ -31,7 +69,15 @@ pub(crate) struct Pace {
     /// Time of the machine then, µs.
     origin_us: u64,
     factor: f64,
+    /// Time of the machine at the end of the cycle before, µs, and processor time of the thread behind it.
+    before: (u64, Duration),
     pub lateness: Lateness,
+}
+
+/// Processor time of this thread.
+fn processor_time() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::try_from(time).unwrap_or_default()
 }
 
 impl Pace {
@@ -42,7 +88,8 @@ impl Pace {
                 started: Instant::now(),
                 origin_us: time_us,
                 factor,
-                lateness: Lateness::default(),
+                before: (time_us, processor_time()),
+                lateness: Lateness::new(),
             }),
             _ => None,
         }
@@ -50,6 +97,12 @@ impl Pace {
 
     /// A contour cycle is done whose time has ended: waits for it, or notes that it is over.
     pub fn cycle(&mut self, time_us: u64) {
+        let (before_us, used) = self.before;
+        let used = processor_time().saturating_sub(used);
+        let cycle_ms = time_us.saturating_sub(before_us) as f64 * 1e-3 / self.factor;
+        let used_ms = used.as_secs_f64() * 1e3;
+        self.lateness.overrun_cycles += u64::from(used_ms > cycle_ms);
+        self.lateness.longest_ms = self.lateness.longest_ms.max(used_ms);
         let passed_us = time_us.saturating_sub(self.origin_us);
         let due = Duration::try_from_secs_f64(passed_us as f64 * 1e-6 / self.factor).unwrap_or(Duration::MAX);
         let now = self.started.elapsed();
@@ -63,11 +116,41 @@ impl Pace {
                     std::hint::spin_loop();
                 }
             }
-            None => {
-                let late_ms = (now - due).as_secs_f64() * 1e3;
-                self.lateness.late_cycles += 1;
-                self.lateness.worst_lateness_ms = self.lateness.worst_lateness_ms.max(late_ms);
-            }
+            None => self.lateness.add((now - due).as_secs_f64() * 1e3),
         }
+        self.before = (time_us, processor_time());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn late_cycles_are_counted_by_how_late_they_are() {
+        let mut lateness = Lateness::new();
+        for late_ms in [0.05, 0.1, 0.5, 30.0, 2000.0] {
+            lateness.add(late_ms);
+        }
+        assert_eq!(lateness.late_by.map(|late| late.cycles), [2, 1, 0, 1, 1]);
+        assert_eq!((lateness.late_cycles, lateness.worst_lateness_ms), (5, 2000.0));
+    }
+
+    /// 10 ms of work for a cycle of 3 ms are too much; what is waited for is no work.
+    #[test]
+    fn a_cycle_that_needs_more_than_its_time_is_an_overrun() {
+        let mut pace = Pace::of(Clock::Wall(1.0), 0).expect("the clock is on the wall");
+        let busy = Instant::now();
+        let used = processor_time();
+        while processor_time() - used < Duration::from_millis(10) && busy.elapsed() < Duration::from_secs(60)
+        {
+        }
+        pace.cycle(3_000);
+        for cycle in 1..=20 {
+            pace.cycle(100_000 + cycle * 3_000);
+        }
+        assert_eq!(pace.lateness.overrun_cycles, 1);
+        assert!(pace.lateness.longest_ms >= 10.0);
+        assert_eq!(pace.lateness.cycles, 21);
     }
 }

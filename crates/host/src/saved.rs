@@ -33,7 +33,8 @@ impl<P> Saved<P> {
 
 impl<P: Operable + Clone> Host<P> {
     /// Everything as it is now.
-    pub fn save(&self) -> Saved<P> {
+    pub fn save(&mut self) -> Saved<P> {
+        self.background.settle(&mut self.control);
         Saved {
             control: self.control.clone(),
             plant: self.plant.clone(),
@@ -96,6 +97,8 @@ impl<P: Operable + Clone> Host<P> {
 
     fn go_back(&mut self, saved: &Saved<P>) {
         self.control = saved.control.clone();
+        // What is repeated is read as it comes, so that it is the same.
+        self.control.read_beside(false);
         self.plant = saved.plant.clone();
         self.operator = saved.operator.clone();
         self.waiting = saved.waiting.clone();
@@ -125,7 +128,7 @@ impl<P: Operable + Clone> Timeline<P> {
     }
 
     /// Saves the moment when it is time; to be called after every cycle.
-    pub fn follow(&mut self, host: &Host<P>) {
+    pub fn follow(&mut self, host: &mut Host<P>) {
         let now = host.control().time_us();
         // Moments of a time that was left lead nowhere.
         while self.moments.pop_if(|last| last.time_us() > now).is_some() {}

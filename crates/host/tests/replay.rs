@@ -72,7 +72,7 @@ fn a_moment_is_reached_again_to_the_bit() {
         trail.push(bits(&host));
         act(&mut host, cycle);
         host.step().unwrap();
-        timeline.follow(&host);
+        timeline.follow(&mut host);
     }
     // It is a run in which much happens.
     let speeds = trail.iter().filter(|bits| f64::from_bits(bits[0]) > 0.0).count();

@@ -51,7 +51,8 @@ contour_deviation_cause (in words), contour_deviation_block;
 plc (max_percent, mean_percent of the nominal time); messages (time_s, text, place, flashing,
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
 failed_expectations (line, text, actual); test_run (null, or program, completed, message, place of the last
-TEST RUN of a script); realtime (null, or cycles, late_cycles, worst_lateness_ms).
+TEST RUN of a script); realtime (null, or cycles, late_cycles, worst_lateness_ms,
+late_by, overrun_cycles, longest_ms).
 
 Exit codes: 0 fine, 1 the program or the machine has an error, the run hangs or takes longer than allowed,
 an expectation fails, or the script ends the run before the program is complete or with a flashing message

@@ -251,14 +251,30 @@ impl RunReport {
             row(
                 "Real time",
                 &format!(
-                    "{} cycles, {} late, the worst by {:.3} ms",
-                    lateness.cycles, lateness.late_cycles, lateness.worst_lateness_ms
+                    "{} cycles, {} late, the worst by {:.3} ms; the longest took {:.3} ms of the processor, {} more than \
+                     their time",
+                    lateness.cycles,
+                    lateness.late_cycles,
+                    lateness.worst_lateness_ms,
+                    lateness.longest_ms,
+                    lateness.overrun_cycles
                 ),
             );
+            list(&mut row, "Late by", &late_by(lateness), Clone::clone);
         }
         list(&mut row, "Written", written, Clone::clone);
         text
     }
+}
+
+/// How many cycles were how late.
+fn late_by(lateness: &Lateness) -> Vec<String> {
+    let counted = lateness.late_by.iter().filter(|late| late.cycles > 0);
+    let words = counted.map(|late| match late.at_most_ms {
+        Some(most) => format!("up to {most} ms: {} cycles", late.cycles),
+        None => format!("more: {} cycles", late.cycles),
+    });
+    words.collect()
 }
 
 fn at(block: Option<u32>) -> String {

@@ -89,6 +89,11 @@ impl State {
         })
     }
 
+    /// It is time to look for changes.
+    pub fn is_due(&self) -> bool {
+        self.looked.elapsed() >= PERIOD
+    }
+
     /// Writes what changed: at once what the control waits for, everything else now and then.
     ///
     /// # Errors
@@ -100,7 +105,7 @@ impl State {
             control.stored();
             return Ok(());
         }
-        if self.looked.elapsed() < PERIOD {
+        if !self.is_due() {
             return Ok(());
         }
         self.looked = Instant::now();
