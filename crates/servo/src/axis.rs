@@ -298,6 +298,10 @@ impl Axis {
         };
         let decay = (1.0 - slope * self.timing.step_min()).max(0.0);
         self.bias_mm_min *= decay;
+        // It never comes to 0 by itself, and processors are slow with numbers that are nearly 0.
+        if self.bias_mm_min.is_subnormal() {
+            self.bias_mm_min = 0.0;
+        }
         if std::mem::take(&mut self.changed) {
             self.bias_mm_min = if self.drove {
                 self.velocity_mm_min - velocity
