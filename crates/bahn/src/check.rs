@@ -10,7 +10,7 @@ use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
 use bahn_program::{Diagnostic as Fault, MAX_DIAGNOSTICS, Program, Reading, Severity, Uncounted};
 
-use crate::diagnostics::{self, Diagnostic, Marked};
+use crate::diagnostics::{self, FileFault, Marked};
 use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Interrupt;
 use crate::options::{CheckOptions, Format};
@@ -283,13 +283,13 @@ fn print(found: &Found, programs: &[Arc<Program>], path: &Path, model: ControlMo
         // Called programs lie beside their caller.
         _ => path.with_file_name(files::short_name(program)),
     };
-    diagnostics::print(&Diagnostic {
+    diagnostics::print_fault(&FileFault {
         severity: match fault.severity {
             Severity::Error => diagnostics::Severity::Error,
             Severity::Warning => diagnostics::Severity::Warning,
         },
-        title: found.title(model),
-        path: &path.to_string_lossy(),
+        title: found.title(model).to_owned(),
+        path,
         marked: Marked {
             line: fault.line,
             text: program.text_of_line(fault.line),
@@ -299,9 +299,9 @@ fn print(found: &Found, programs: &[Arc<Program>], path: &Path, model: ControlMo
             "" => format!("block {}", fault.block),
             detail => format!("block {}: {detail}", fault.block),
         },
-        help: help(fault),
+        help: help(fault).map(str::to_owned),
+        opened: None,
     });
-    diagnostics::print_line("");
 }
 
 /// A fault of the whole file, which holds nothing to be examined.

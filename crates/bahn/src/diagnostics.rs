@@ -11,32 +11,9 @@ pub(crate) const PRINTED_MAX: usize = 100;
 /// Characters of a line that are shown; a line of a broken file may have millions.
 const MAX_COLUMNS: usize = 200;
 
-/// Something to be said about a place in a program.
-#[derive(Clone, Debug)]
-pub(crate) struct Diagnostic<'a> {
-    pub severity: Severity,
-    /// The control's message.
-    pub title: &'a str,
-    /// Path of the file as the user wrote it.
-    pub path: &'a str,
-    pub marked: Marked,
-    /// Block and what exactly is wrong.
-    pub label: String,
-    /// What to do about it.
-    pub help: Option<&'a str>,
-}
-
 /// Prints a fault as rustc does, with an empty line behind it.
 pub(crate) fn print_fault(fault: &FileFault) {
-    let diagnostic = Diagnostic {
-        severity: fault.severity,
-        title: &fault.title,
-        path: &fault.path.to_string_lossy(),
-        marked: fault.marked.clone(),
-        label: fault.label.clone(),
-        help: fault.help.as_deref(),
-    };
-    print_line(&diagnostic.render_with(fault.opened.as_ref(), is_styled()));
+    print_line(&render(fault, is_styled()));
     print_line("");
 }
 
@@ -74,53 +51,44 @@ fn shown(marked: &Marked) -> (String, std::ops::Range<usize>) {
     (text.to_owned(), range)
 }
 
-impl Diagnostic<'_> {
-    /// The text for people.
-    pub fn render(&self, styled: bool) -> String {
-        self.render_with(None, styled)
-    }
-
-    /// The text for people, with another place of the file where that was opened which is meant.
-    pub fn render_with(&self, opened: Option<&Marked>, styled: bool) -> String {
-        let level = match self.severity {
-            Severity::Error => Level::ERROR,
-            Severity::Warning => Level::WARNING,
-        };
-        let (source, range) = shown(&self.marked);
-        let mut snippet = Snippet::source(source)
-            .line_start(self.marked.line as usize)
-            .path(printable(self.path))
-            .annotation(AnnotationKind::Primary.span(range).label(printable(&self.label)));
-        let mut other = None;
-        if let Some(opened) = opened {
-            let (source, range) = shown(opened);
-            let mark = AnnotationKind::Context.span(range).label("opened here");
-            if opened.line == self.marked.line {
-                snippet = snippet.annotation(mark);
-            } else {
-                let place = Snippet::source(source).line_start(opened.line as usize);
-                other = Some(place.path(self.path).annotation(mark));
-            }
-        }
-        let mut group = level.primary_title(printable(self.title)).element(snippet);
-        if let Some(other) = other {
-            group = group.element(other);
-        }
-        if let Some(help) = self.help {
-            group = group.element(Level::HELP.message(help));
-        }
-        let renderer = if styled {
-            Renderer::styled()
+/// The text for people; where that was opened which is meant is marked, too.
+fn render(fault: &FileFault, styled: bool) -> String {
+    let level = match fault.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    let path = printable(&fault.path.to_string_lossy());
+    let (source, range) = shown(&fault.marked);
+    let mut snippet = Snippet::source(source)
+        .line_start(fault.marked.line as usize)
+        .path(path.clone())
+        .annotation(AnnotationKind::Primary.span(range).label(printable(&fault.label)));
+    let mut other = None;
+    if let Some(opened) = &fault.opened {
+        let (source, range) = shown(opened);
+        let mark = AnnotationKind::Context.span(range).label("opened here");
+        if opened.line == fault.marked.line {
+            snippet = snippet.annotation(mark);
         } else {
-            Renderer::plain()
-        };
-        renderer.render(&[group])
+            let place = Snippet::source(source).line_start(opened.line as usize);
+            other = Some(place.path(path).annotation(mark));
+        }
     }
-}
-
-/// Prints to standard error, in colours on a terminal.
-pub(crate) fn print(diagnostic: &Diagnostic) {
-    print_line(&diagnostic.render(is_styled()));
+    let mut group = level
+        .primary_title(printable(&fault.title))
+        .element(snippet);
+    if let Some(other) = other {
+        group = group.element(other);
+    }
+    if let Some(help) = &fault.help {
+        group = group.element(Level::HELP.message(help.as_str()));
+    }
+    let renderer = if styled {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    renderer.render(&[group])
 }
 
 /// Prints what is wrong with the use of the command.
@@ -196,19 +164,16 @@ mod tests {
                     text,
                     columns,
                 };
-                let diagnostic = Diagnostic {
+                let fault = FileFault {
                     severity: Severity::Error,
-                    title: "0 not a valid command",
-                    path: "A",
+                    title: "0 not a valid command".into(),
+                    path: "A".into(),
                     marked: marked.clone(),
                     label: format!("{c}"),
-                    help: Some("help"),
+                    help: Some("help".into()),
+                    opened: Some(marked),
                 };
-                assert!(
-                    diagnostic
-                        .render_with(Some(&marked), true)
-                        .contains("not a valid")
-                );
+                assert!(render(&fault, true).contains("not a valid"));
             }
         }
     }
@@ -227,16 +192,17 @@ mod tests {
             help in proptest::option::of("\\PC{0,60}"),
         ) {
             let marked = |line, columns| Marked { line, text: text.clone(), columns };
-            let diagnostic = Diagnostic {
-                severity: Severity::Warning,
-                title: &label,
-                path: &text,
-                marked: marked(line, columns),
-                label: label.clone(),
-                help: help.as_deref(),
-            };
             for opened in [None, Some(marked(opened, None)), Some(marked(line, Some((3, 1))))] {
-                proptest::prop_assert!(!diagnostic.render_with(opened.as_ref(), false).is_empty());
+                let fault = FileFault {
+                    severity: Severity::Warning,
+                    title: label.clone(),
+                    path: text.clone().into(),
+                    marked: marked(line, columns),
+                    label: label.clone(),
+                    help: help.clone(),
+                    opened,
+                };
+                proptest::prop_assert!(!render(&fault, false).is_empty());
             }
         }
     }
@@ -249,20 +215,21 @@ mod tests {
             text: text.to_owned(),
             columns: Some(columns),
         };
-        let diagnostic = Diagnostic {
+        let fault = |opened| FileFault {
             severity: Severity::Error,
-            title: "16 jump within a parenthesis",
-            path: "M.PLC",
+            title: "16 jump within a parenthesis".into(),
+            path: "M.PLC".into(),
             marked: marked(12, "  JP 5", (3, 2)),
             label: String::new(),
             help: None,
+            opened: Some(opened),
         };
-        let text = diagnostic.render_with(Some(&marked(9, "A[", (1, 2))), false);
+        let text = render(&fault(marked(9, "A[", (1, 2))), false);
         assert!(
             text.contains(":12:3") && text.contains("9 | A[") && text.contains("opened here"),
             "{text}"
         );
-        let same = diagnostic.render_with(Some(&marked(12, "  JP 5", (6, 1))), false);
+        let same = render(&fault(marked(12, "  JP 5", (6, 1))), false);
         assert_eq!(same.matches("JP 5").count(), 1, "{same}");
         assert!(same.contains("opened here"), "{same}");
     }
@@ -270,13 +237,14 @@ mod tests {
     #[test]
     fn errors_look_like_those_of_rustc() {
         let program = bahn_program::Program::from_bytes("1.H", b"BEGIN PGM 1 MM\nL X+1 ~\n  Ynan".to_vec());
-        let diagnostic = Diagnostic {
+        let fault = FileFault {
             severity: Severity::Error,
-            title: "ENTRY VALUE INCORRECT",
-            path: "1.H",
+            title: "ENTRY VALUE INCORRECT".into(),
+            path: "1.H".into(),
             marked: Marked::of_block(&program, 1),
             label: "block 1: no number".into(),
             help: None,
+            opened: None,
         };
         let expected = "\
 error: ENTRY VALUE INCORRECT
@@ -284,6 +252,6 @@ error: ENTRY VALUE INCORRECT
   |
 3 |   Ynan
   |   ^^^^ block 1: no number";
-        assert_eq!(diagnostic.render(false), expected);
+        assert_eq!(render(&fault, false), expected);
     }
 }

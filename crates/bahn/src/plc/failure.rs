@@ -2,7 +2,7 @@
 
 use bahn_plc::{PlcProgram, RuntimeError};
 
-use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::diagnostics::{self, FileFault, Marked, Severity};
 
 /// Prints a run-time error with its line.
 pub(super) fn print(program: &PlcProgram, error: &RuntimeError) {
@@ -15,10 +15,10 @@ pub(super) fn print(program: &PlcProgram, error: &RuntimeError) {
     let code = super::list::split_comment(&text).0;
     let start = code.chars().take_while(|c| c.is_whitespace()).count();
     let length = code.trim().chars().count();
-    diagnostics::print(&Diagnostic {
+    diagnostics::print_fault(&FileFault {
         severity: Severity::Error,
-        title: &format!("{} {}", error.error.number(), error.error.text()),
-        path: &error.file,
+        title: format!("{} {}", error.error.number(), error.error.text()),
+        path: error.file.as_str().into(),
         marked: Marked {
             line: error.line,
             columns: Some((
@@ -31,7 +31,7 @@ pub(super) fn print(program: &PlcProgram, error: &RuntimeError) {
             Some(job) => format!("submit job {job} stopped the PLC here"),
             None => "the PLC stopped here".to_owned(),
         },
-        help: Some(&format!("{} {}", error.error.cause(), error.error.cure())),
+        help: Some(format!("{} {}", error.error.cause(), error.error.cure())),
+        opened: None,
     });
-    diagnostics::print_line("");
 }

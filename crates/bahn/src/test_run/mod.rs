@@ -23,7 +23,7 @@ pub(crate) use outputs::Outputs;
 pub(crate) use survey::Survey;
 
 use crate::cutting::{self, Columns, Written};
-use crate::diagnostics::{self, Diagnostic, Marked, Severity};
+use crate::diagnostics::{self, FileFault, Marked, Severity};
 use crate::interrupt::{Interrupt, Stop};
 use crate::options::Format;
 use crate::report::{End, ErrorReport, Report};
@@ -122,16 +122,17 @@ pub(crate) fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
         0 => main.to_owned(),
         _ => main.with_file_name(files::short_name(program)),
     };
-    diagnostics::print(&Diagnostic {
+    diagnostics::print_fault(&FileFault {
         severity: Severity::Error,
-        title: &error.message,
-        path: &path.to_string_lossy(),
+        title: error.message.clone(),
+        path,
         marked: Marked::of_block(program, error.block),
         label: match error.detail.as_str() {
             "" => format!("block {}", error.block),
             detail => format!("block {}: {detail}", error.block),
         },
-        help: error.remedy,
+        help: error.remedy.map(str::to_owned),
+        opened: None,
     });
 }
 
