@@ -12,7 +12,7 @@ use crate::probe::Probe;
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 
-/// Outputs 1 to 5 and S, inputs X1 to X6.
+/// Outputs 1 to 5 and S, inputs X1 to X6: what every control has.
 const CONNECTORS: usize = 6;
 
 /// Contacts, relays and things move once in so many µs.
@@ -54,7 +54,10 @@ pub struct Machine {
     pub(crate) axes: Vec<Axis>,
     /// The axes X, Y, Z of the probe in `axes`.
     probe_axes: [Option<usize>; 3],
-    pub(crate) spindle: Option<Spindle>,
+    /// That of the control, and those of further channels.
+    pub(crate) spindles: Vec<Spindle>,
+    /// Outputs and inputs of encoders that are looked at.
+    connectors: usize,
     pub(crate) chain: Chain,
     pub(crate) devices: Vec<Device>,
     pub(crate) panel: Panel,
@@ -101,7 +104,7 @@ impl Machine {
             .filter_map(|(name, section)| Axis::read(&name, section, step_s, seed))
             .collect();
         let index = |letter| axes.iter().position(|axis| axis.letter == letter);
-        let machine = Machine {
+        let mut machine = Machine {
             name: root.text("name").unwrap_or("machine").to_owned(),
             step_us,
             step_s,
@@ -109,9 +112,12 @@ impl Machine {
             tick_us: 0,
             time_us: 0,
             probe_axes: ['X', 'Y', 'Z'].map(index),
-            spindle: root
-                .section("spindle")
-                .map(|section| Spindle::read(section, step_s, seed)),
+            spindles: root
+                .one_or_more("spindle")
+                .into_iter()
+                .map(|section| Spindle::read(section, step_s, seed))
+                .collect(),
+            connectors: CONNECTORS,
             chain: Chain::read(&root),
             devices: root
                 .named_sections("device")
@@ -129,9 +135,21 @@ impl Machine {
             wires: Vec::new(),
             axes,
         };
+        machine.connectors = machine.connectors_used().max(CONNECTORS);
         machine.check(&root);
         root.finish();
         machine
+    }
+
+    /// The first outputs and inputs of encoders among which are all that something is connected to.
+    fn connectors_used(&self) -> usize {
+        let axes = self.axes.iter().map(|axis| (axis.output, &axis.counter));
+        let spindles = self.spindles.iter().map(|spindle| (spindle.output, &spindle.counter));
+        let used = axes.chain(spindles).map(|(output, counter)| {
+            let input = counter.as_ref().map_or(0, |counter| counter.input);
+            output.max(input) + 1
+        });
+        used.max().unwrap_or(0)
     }
 
     /// What only shows when all parts are known.
@@ -210,9 +228,14 @@ impl Machine {
         self.axes().find(|axis| axis.letter == letter)
     }
 
-    /// The true state of the spindle.
+    /// The true state of the spindle, or of the first one.
     pub fn spindle(&self) -> Option<SpindleState> {
-        self.spindle.as_ref().map(Spindle::state)
+        self.spindles().next()
+    }
+
+    /// The true state of all spindles, in the order of the description.
+    pub fn spindles(&self) -> impl Iterator<Item = SpindleState> {
+        self.spindles.iter().map(Spindle::state)
     }
 
     /// The state of all things with two states.
@@ -248,7 +271,7 @@ impl Machine {
                 .iter()
                 .any(|device| device.clamps == Some(axis.letter) && device.is_forth());
         }
-        if let Some(spindle) = &mut self.spindle {
+        for spindle in &mut self.spindles {
             spindle.set_power(voltage, &self.live);
             spindle.shift(&self.live);
         }
@@ -257,14 +280,14 @@ impl Machine {
 
 impl Plant for Machine {
     fn exchange(&mut self, step: Step, commands: &Commands, measured: &mut Measured) {
-        for (output, command) in commands.axes.iter().enumerate().take(CONNECTORS) {
+        for (output, command) in commands.axes.iter().enumerate().take(self.connectors) {
             self.set_nominal(output, command.volts);
         }
         self.set_outputs(&commands.outputs);
         self.set_control_ready(commands.control_ready);
         measured.control_ready_changed_at = self.pass(step.length_us);
         let again = !std::mem::take(&mut self.moved_on);
-        for (input, seen) in measured.encoders.iter_mut().enumerate().take(CONNECTORS) {
+        for (input, seen) in measured.encoders.iter_mut().enumerate().take(self.connectors) {
             let mark = seen.mark.filter(|_| again);
             *seen = self.read_encoder(input, again);
             seen.mark = seen.mark.or(mark);
@@ -298,7 +321,7 @@ impl Machine {
             for axis in &mut self.axes {
                 axis.step(self.step_s);
             }
-            if let Some(spindle) = &mut self.spindle {
+            for spindle in &mut self.spindles {
                 spindle.step(self.step_s);
             }
             self.tick_us += self.step_us;
@@ -323,7 +346,7 @@ impl Machine {
         for axis in self.axes.iter_mut().filter(|axis| axis.output == output) {
             axis.volts = volts;
         }
-        if let Some(spindle) = self.spindle.as_mut().filter(|spindle| spindle.output == output) {
+        for spindle in self.spindles.iter_mut().filter(|spindle| spindle.output == output) {
             spindle.volts = volts;
         }
     }
@@ -340,10 +363,8 @@ impl Machine {
         if let Some(axis) = self.axes.iter_mut().find(|axis| at(&axis.counter)) {
             return axis.read_encoder(again);
         }
-        match &mut self.spindle {
-            Some(spindle) if at(&spindle.counter) => spindle.read_encoder(again),
-            _ => Encoder::default(),
-        }
+        let spindle = self.spindles.iter_mut().find(|spindle| at(&spindle.counter));
+        spindle.map_or_else(Encoder::default, |spindle| spindle.read_encoder(again))
     }
 
     /// Reads the PLC inputs.
@@ -354,7 +375,7 @@ impl Machine {
         for axis in &self.axes {
             axis.set_inputs(inputs);
         }
-        if let Some(spindle) = &self.spindle {
+        for spindle in &self.spindles {
             spindle.set_inputs(inputs);
         }
         for device in &self.devices {
