@@ -211,7 +211,11 @@ fn read_station(section: Section) -> OperatorKeys {
     let keys = OperatorKeys {
         start: needed_text(&section, "start"),
         control_voltage: None,
-        tool_change: section.texts("tool_change").into_iter().map(|(_, key)| key.to_owned()).collect(),
+        tool_change: section
+            .texts("tool_change")
+            .into_iter()
+            .map(|(_, key)| key.to_owned())
+            .collect(),
     };
     section.finish();
     keys

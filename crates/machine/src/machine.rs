@@ -144,7 +144,10 @@ impl Machine {
     /// The first outputs and inputs of encoders among which are all that something is connected to.
     fn connectors_used(&self) -> usize {
         let axes = self.axes.iter().map(|axis| (axis.output, &axis.counter));
-        let spindles = self.spindles.iter().map(|spindle| (spindle.output, &spindle.counter));
+        let spindles = self
+            .spindles
+            .iter()
+            .map(|spindle| (spindle.output, &spindle.counter));
         let used = axes.chain(spindles).map(|(output, counter)| {
             let input = counter.as_ref().map_or(0, |counter| counter.input);
             output.max(input) + 1
@@ -346,7 +349,11 @@ impl Machine {
         for axis in self.axes.iter_mut().filter(|axis| axis.output == output) {
             axis.volts = volts;
         }
-        for spindle in self.spindles.iter_mut().filter(|spindle| spindle.output == output) {
+        for spindle in self
+            .spindles
+            .iter_mut()
+            .filter(|spindle| spindle.output == output)
+        {
             spindle.volts = volts;
         }
     }

@@ -137,11 +137,21 @@ fn further_channels_have_connectors_of_their_own() {
     machine.set_nominal(11, -10.0);
     machine.advance(2_000_000);
     // 1500 mm/min for 2 s are 50 mm: 2500 signal periods.
-    assert!((machine.encoder(6).count - 2500 * 1024).abs() <= 2, "{}", machine.encoder(6).count);
+    assert!(
+        (machine.encoder(6).count - 2500 * 1024).abs() <= 2,
+        "{}",
+        machine.encoder(6).count
+    );
     assert_eq!(machine.encoder(0).count, 0);
     let turning: Vec<f64> = machine.spindles().map(|spindle| spindle.rpm).collect();
-    assert!(turning[0] == 0.0 && (turning[1] + 1500.0).abs() < 1.0, "{turning:?}");
+    assert!(
+        turning[0] == 0.0 && (turning[1] + 1500.0).abs() < 1.0,
+        "{turning:?}"
+    );
     for (wrong, right) in [("\"7\"", "\"6\""), ("\"X7\"", "\"X41\"")] {
-        assert!(Machine::from_toml(&text.replace(wrong, right)).is_err(), "{right}");
+        assert!(
+            Machine::from_toml(&text.replace(wrong, right)).is_err(),
+            "{right}"
+        );
     }
 }

@@ -7,6 +7,7 @@ use bahn_host::{FailedExpectation, Lateness};
 use bahn_parameters::ControlModel;
 use serde::Serialize;
 
+use super::deviation::Deviation;
 use super::listed::{Confirmed, Said};
 use super::session::Session;
 use super::times::Share;
@@ -142,6 +143,9 @@ pub(super) struct RunReport {
     messages: Vec<Said>,
     confirmed: Vec<Confirmed>,
     pub waits_for: Option<String>,
+    /// The channels beside the first one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub channels: Vec<ChannelReport>,
     failed_expectations: Vec<FailedExpectation>,
     test_run: Option<TestRunReport>,
     realtime: Option<Lateness>,
@@ -151,16 +155,6 @@ impl RunReport {
     pub fn new(session: &Session, program: ProgramReport, machine: &str, model: ControlModel) -> RunReport {
         let seconds = |us: u64| us as f64 * 1e-6;
         let (sum, count, longest) = session.measured.plc_percent;
-        let axes = session.measured.deviation.axes.iter().map(|axis| {
-            let linear = axis.is_linear();
-            let report = AxisReport {
-                max_lag: tidy(axis.max_lag),
-                lag_block: axis.lag_block.map(|block| block.block),
-                max_deviation: linear.then(|| tidy(axis.max_deviation)),
-                deviation_block: axis.deviation_block.filter(|_| linear).map(|block| block.block),
-            };
-            (axis.letter, report)
-        });
         let cause = session.measured.deviation.cause;
         RunReport {
             machine: machine.to_owned(),
@@ -168,7 +162,7 @@ impl RunReport {
             power_up_s: seconds(session.measured.power_up_us),
             reference_s: seconds(session.measured.reference_us),
             times: session.measured.times.shares(),
-            axes: axes.collect(),
+            axes: axes(&session.measured.deviation),
             contour_deviation_mm: tidy(session.measured.deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
             contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
@@ -179,6 +173,7 @@ impl RunReport {
             messages: session.listed.messages.clone(),
             confirmed: session.listed.confirmed.clone(),
             waits_for: None,
+            channels: Vec::new(),
             failed_expectations: session.play.failed.clone(),
             test_run: session
                 .host
@@ -244,6 +239,9 @@ impl RunReport {
         if let ProgramReport::Ran(report) = &self.program {
             report_text::body(&mut row, report);
         }
+        for channel in &self.channels {
+            channel.text(&mut row);
+        }
         if let Some(test) = &self.test_run {
             row("Test run", &test.text());
         }
@@ -259,6 +257,64 @@ impl RunReport {
         list(&mut row, "Written", written, Clone::clone);
         text
     }
+}
+
+/// A channel beside the first one.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct ChannelReport {
+    /// Its number, from 1.
+    channel: usize,
+    #[serde(flatten)]
+    program: ProgramReport,
+    axes: BTreeMap<char, AxisReport>,
+    contour_deviation_mm: f64,
+    contour_deviation_cause: Option<String>,
+    contour_deviation_block: Option<u32>,
+}
+
+impl ChannelReport {
+    /// Of a channel, from 0.
+    pub fn new(channel: usize, program: ProgramReport, deviation: &Deviation) -> ChannelReport {
+        let cause = deviation.cause;
+        ChannelReport {
+            channel: channel + 1,
+            program,
+            axes: axes(deviation),
+            contour_deviation_mm: tidy(deviation.max_mm),
+            contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
+            contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
+        }
+    }
+
+    fn text(&self, row: &mut impl FnMut(&str, &str)) {
+        let ProgramReport::Ran(report) = &self.program else {
+            return;
+        };
+        row(&format!("Channel {}", self.channel), &report_text::in_a_line(report));
+        row("", &format!("at the end {}", report.final_position));
+        if let Some(cause) = &self.contour_deviation_cause {
+            let (microns, block) = (self.contour_deviation_mm * 1e3, at(self.contour_deviation_block));
+            row("", &format!("off the contour {microns:.1} µm{block}: {cause}"));
+        }
+        for warning in &report.warnings {
+            row("", &format!("block {}: {}", warning.block, warning.message));
+        }
+    }
+}
+
+/// What the axes of a channel did.
+fn axes(deviation: &Deviation) -> BTreeMap<char, AxisReport> {
+    let axes = deviation.axes.iter().map(|axis| {
+        let linear = axis.is_linear();
+        let report = AxisReport {
+            max_lag: tidy(axis.max_lag),
+            lag_block: axis.lag_block.map(|block| block.block),
+            max_deviation: linear.then(|| tidy(axis.max_deviation)),
+            deviation_block: axis.deviation_block.filter(|_| linear).map(|block| block.block),
+        };
+        (axis.letter, report)
+    });
+    axes.collect()
 }
 
 fn at(block: Option<u32>) -> String {
