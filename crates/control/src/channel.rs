@@ -170,7 +170,7 @@ impl Channel {
         machine.spindles.of_mut(self.number).open();
         self.desk.let_go();
         self.positioning.stop();
-        self.run.track.path.halt();
+        self.run.track.halt();
     }
 
     /// What the PLC positions ends with an EMERGENCY STOP; the strobes are reset [000:4013-4019]. Whether the axes

@@ -78,6 +78,12 @@ impl Track {
         self.speed
     }
 
+    /// The path stands at once: nothing moves the axes any more.
+    pub fn halt(&mut self) {
+        self.path.halt();
+        self.speed = 0.0;
+    }
+
     /// The path moves at a speed, mm/s.
     pub fn set_speed(&mut self, speed_mm_s: f64) {
         self.speed = speed_mm_s;

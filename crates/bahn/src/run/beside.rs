@@ -61,7 +61,12 @@ impl Beside {
 
     /// What became of the program; `None` when there was none. `error` is what has ended the whole run, when it
     /// came from this channel.
-    pub fn report(&mut self, host: &Host, error: Option<ErrorReport>, model: ControlModel) -> Option<ChannelReport> {
+    pub fn report(
+        &mut self,
+        host: &Host,
+        error: Option<ErrorReport>,
+        model: ControlModel,
+    ) -> Option<ChannelReport> {
         let channel = host.control().channel(self.channel)?;
         let run = channel.interpreter()?;
         let mut record = std::mem::replace(&mut self.executed.record, Record::new(Position::UNKNOWN));

@@ -71,7 +71,10 @@ impl Listed {
             other => other.place(),
         };
         let channel = control.channel(shown.channel.unwrap_or(0));
-        let program = shown.block.zip(channel).map(|(block, channel)| program_name(channel, block));
+        let program = shown
+            .block
+            .zip(channel)
+            .map(|(block, channel)| program_name(channel, block));
         let program = program.unwrap_or_default();
         let block = shown.block.filter(|_| !program.is_empty());
         self.messages.push(Said {

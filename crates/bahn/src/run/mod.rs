@@ -316,8 +316,13 @@ fn finish(
     }
     let mut report = RunReport::new(&session, program, &machine.folder.name, model);
     for channel in &mut session.beside {
-        let error = failure.as_deref().filter(|_| channel.channel == failed_in).cloned();
-        report.channels.extend(channel.report(&session.host, error, model));
+        let error = failure
+            .as_deref()
+            .filter(|_| channel.channel == failed_in)
+            .cloned();
+        report
+            .channels
+            .extend(channel.report(&session.host, error, model));
     }
     let outcome = match &ended {
         Ended::Completed if session.play.failed.is_empty() => Outcome::Fine,
@@ -393,9 +398,7 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
             "the script ended the run before it was complete".to_owned(),
             String::new(),
         ),
-        Ended::Hangs(what, Some(shown)) => {
-            (session.host.control().shown_text(shown), what.clone())
-        }
+        Ended::Hangs(what, Some(shown)) => (session.host.control().shown_text(shown), what.clone()),
         Ended::TooLong => (
             "the time allowed is over".to_owned(),
             "--max-time allows more".to_owned(),

@@ -98,7 +98,11 @@ impl Recording {
         // Writing to a string cannot fail.
         let _ = write!(self.row, "{:.4}", now as f64 * 1e-6);
         for signal in &self.signals {
-            let _ = write!(self.row, ",{}", decimals(&signal.signal, observe(control, signal)));
+            let _ = write!(
+                self.row,
+                ",{}",
+                decimals(&signal.signal, observe(control, signal))
+            );
         }
         if self.events.contains([',', '"']) {
             let _ = write!(self.row, ",\"{}\"", self.events.replace('"', "\"\""));
@@ -134,7 +138,9 @@ pub(super) fn usual_signals(control: &Control) -> Vec<ChannelSignal> {
         signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_STROBE));
         signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_ACK));
         let channel = channel.number();
-        signals.into_iter().map(move |signal| ChannelSignal { channel, signal })
+        signals
+            .into_iter()
+            .map(move |signal| ChannelSignal { channel, signal })
     };
     channels.flat_map(of_channel).collect()
 }

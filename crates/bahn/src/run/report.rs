@@ -290,7 +290,10 @@ impl ChannelReport {
         let ProgramReport::Ran(report) = &self.program else {
             return;
         };
-        row(&format!("Channel {}", self.channel), &report_text::in_a_line(report));
+        row(
+            &format!("Channel {}", self.channel),
+            &report_text::in_a_line(report),
+        );
         row("", &format!("at the end {}", report.final_position));
         if let Some(cause) = &self.contour_deviation_cause {
             let (microns, block) = (self.contour_deviation_mm * 1e3, at(self.contour_deviation_block));

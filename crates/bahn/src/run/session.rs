@@ -289,7 +289,8 @@ impl Session {
 
     fn is_dwelling(&self) -> bool {
         self.channels().any(|channel| {
-            let dwells = |element: &PathElement| element.dwell_s > 0.0 && !self.waits_too_long(element.dwell_s);
+            let dwells =
+                |element: &PathElement| element.dwell_s > 0.0 && !self.waits_too_long(element.dwell_s);
             channel.run_state() == RunState::Running
                 && channel.waiting().is_none()
                 && channel.element().is_some_and(dwells)
@@ -373,7 +374,10 @@ impl Session {
             }
             match channel.run_state() {
                 RunState::Running | RunState::Idle => {}
-                state => reasons.push(format!("{number}the run is {}: NC start goes on", run_name(state))),
+                state => reasons.push(format!(
+                    "{number}the run is {}: NC start goes on",
+                    run_name(state)
+                )),
             }
         }
         reasons.extend(
