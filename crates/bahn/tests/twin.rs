@@ -167,16 +167,13 @@ fn a_log_repeats_the_run() {
 fn a_machine_of_two_channels_is_made_anew() {
     let folder = Folder::new();
     let made = folder.bahn("machine new own --from twin --name Own");
-    assert_eq!(made.code(), Some(0));
+    assert_eq!(made.code(), 0);
     let text = std::fs::read_to_string(folder.path("own/machine.toml")).unwrap();
     assert!(text.contains("name = \"Own\"\n") && text.contains("program = \"RIGHT.H\""));
-    assert_eq!(folder.bahn("machine check own").code(), Some(0));
-    assert_eq!(
-        folder.bahn("run --machine own --fresh --no-graphics").code(),
-        Some(0)
-    );
+    assert_eq!(folder.bahn("machine check own").code(), 0);
+    assert_eq!(folder.bahn("run --machine own --fresh --no-graphics").code(), 0);
     assert_eq!(
         folder.bahn("machine new other --from twin --model tnc360").code(),
-        Some(2)
+        2
     );
 }

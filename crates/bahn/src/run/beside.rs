@@ -2,14 +2,12 @@
 
 use bahn_control::{ChannelView, RunState};
 use bahn_host::Host;
-use bahn_parameters::ControlModel;
 use bahn_path::{FeedRate, Position};
 
 use super::deviation::Deviation;
 use super::executed::Executed;
-use super::report::{ChannelReport, ProgramReport};
 use crate::UsageError;
-use crate::report::{End, ErrorReport, Record};
+use crate::report::Record;
 use crate::test_run::Outputs;
 
 /// Follows a channel.
@@ -17,7 +15,7 @@ pub(super) struct Beside {
     /// Which one, from 0.
     pub channel: usize,
     executed: Executed,
-    deviation: Deviation,
+    pub deviation: Deviation,
     /// Time of its program, µs.
     program_us: u64,
 }
@@ -59,24 +57,10 @@ impl Beside {
         self.executed.finish(host.control())
     }
 
-    /// What became of the program; `None` when there was none. `error` is what has ended the whole run, when it
-    /// came from this channel.
-    pub fn report(
-        &mut self,
-        host: &Host,
-        error: Option<ErrorReport>,
-        model: ControlModel,
-    ) -> Option<ChannelReport> {
-        let channel = host.control().channel(self.channel)?;
-        let run = channel.interpreter()?;
+    /// What was done of its program; it is taken out.
+    pub fn take_record(&mut self) -> Record {
         let mut record = std::mem::replace(&mut self.executed.record, Record::new(Position::UNKNOWN));
         record.machining_time_s = self.program_us as f64 * 1e-6;
-        let end = match error {
-            Some(error) => End::Failed(Box::new(error)),
-            None if channel.has_ended() => End::Completed,
-            None => End::Interrupted,
-        };
-        let program = ProgramReport::Ran(Box::new(record.report(run, end, None, model)));
-        Some(ChannelReport::new(self.channel, program, &self.deviation))
+        record
     }
 }

@@ -44,7 +44,7 @@ use crate::test_run::{Outputs, print_error};
 use crate::{Outcome, UsageError, console, files, report_text, settings};
 use executed::Executed;
 use recording::Recording;
-use report::{ProgramReport, Refusal, RunReport};
+use report::{ChannelReport, ProgramReport, Refusal, RunReport};
 use session::{Ended, Patience, Session};
 
 /// Runs a program on a machine and reports.
@@ -322,7 +322,7 @@ fn finish(
             .cloned();
         report
             .channels
-            .extend(channel.report(&session.host, error, model));
+            .extend(ChannelReport::of(channel, &session.host, error, model));
     }
     let outcome = match &ended {
         Ended::Completed if session.play.failed.is_empty() => Outcome::Fine,

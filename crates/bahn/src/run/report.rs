@@ -3,16 +3,17 @@
 use std::collections::BTreeMap;
 
 use bahn_control::{TestReport, TestState};
-use bahn_host::{FailedExpectation, Lateness};
+use bahn_host::{FailedExpectation, Host, Lateness};
 use bahn_parameters::ControlModel;
 use serde::Serialize;
 
+use super::beside::Beside;
 use super::deviation::Deviation;
 use super::listed::{Confirmed, Said};
 use super::session::Session;
 use super::times::Share;
 use crate::diagnostics::FileFault;
-use crate::report::{ErrorReport, Report, tidy};
+use crate::report::{End, ErrorReport, Report, tidy};
 use crate::report_text::{self, LABEL, list};
 
 /// What an axis did, mm or degrees.
@@ -273,17 +274,32 @@ pub(super) struct ChannelReport {
 }
 
 impl ChannelReport {
-    /// Of a channel, from 0.
-    pub fn new(channel: usize, program: ProgramReport, deviation: &Deviation) -> ChannelReport {
+    /// What became of the program of a channel; `None` when there was none. `error` is what has ended the whole run,
+    /// when it came from this channel.
+    pub fn of(
+        beside: &mut Beside,
+        host: &Host,
+        error: Option<ErrorReport>,
+        model: ControlModel,
+    ) -> Option<ChannelReport> {
+        let channel = host.control().channel(beside.channel)?;
+        let run = channel.interpreter()?;
+        let end = match error {
+            Some(error) => End::Failed(Box::new(error)),
+            None if channel.has_ended() => End::Completed,
+            None => End::Interrupted,
+        };
+        let program = beside.take_record().report(run, end, None, model);
+        let deviation = &beside.deviation;
         let cause = deviation.cause;
-        ChannelReport {
-            channel: channel + 1,
-            program,
+        Some(ChannelReport {
+            channel: beside.channel + 1,
+            program: ProgramReport::Ran(Box::new(program)),
             axes: axes(deviation),
             contour_deviation_mm: tidy(deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
             contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
-        }
+        })
     }
 
     fn text(&self, row: &mut impl FnMut(&str, &str)) {

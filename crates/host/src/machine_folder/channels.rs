@@ -1,4 +1,4 @@
-//! The channels of `machine.toml` beside the first one, and the axes that go from one to another.
+//! Reads the channels of `machine.toml` beside the first one, and the axes that go from one to another.
 
 use std::collections::BTreeSet;
 
@@ -6,38 +6,10 @@ use bahn_control::{AxisId, ChannelError, HandOver, Window};
 use bahn_exchange::{Bit, BitArea, Number};
 use bahn_machine::{ChannelFolder, HandOverFolder, Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ParameterList};
-use bahn_path::{Axis, Position};
+use bahn_path::Axis;
 
-use super::load::{Loader, letter_of, position};
-
-/// Axes that a list of machine parameters has at most.
-const AXES: usize = 5;
-
-/// A channel beside the first one.
-#[derive(Clone)]
-pub struct LoadedChannel {
-    /// What `machine.toml` says of it.
-    pub folder: ChannelFolder,
-    /// Its machine parameters.
-    pub parameters: ParameterList,
-    /// The number on the machine of each of its axes, by their indices.
-    pub axes: [Option<AxisId>; AXES],
-    /// Where its markers and words stand in the memory of the PLC.
-    pub window: Window,
-}
-
-impl LoadedChannel {
-    /// Its datum of `machine.toml`, for the axes that it names.
-    pub fn datum(&self) -> Position {
-        position(&self.folder.datum)
-    }
-}
-
-/// What there is of channels and hand-overs besides the first channel.
-pub(super) struct Channels {
-    pub channels: Vec<LoadedChannel>,
-    pub hand_overs: Vec<HandOver>,
-}
+use super::channel::{AXES, Channels, LoadedChannel, letter_of};
+use super::load::Loader;
 
 /// The axes of a list by their indices: the letters of those that there are.
 fn letters(list: &ParameterList) -> [Option<Axis>; AXES] {

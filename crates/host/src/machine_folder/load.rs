@@ -8,10 +8,10 @@ use bahn_control::{CompensationAssignment, CompensationError, CompensationTable,
 use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ListText, ParameterList};
-use bahn_path::{Axis, Position};
+use bahn_path::Position;
 use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
 
-use super::channels::{Channels, LoadedChannel};
+use super::channel::{Channels, LoadedChannel, position};
 use super::state;
 use crate::fault::{FileFault, Marked, Severity};
 use crate::plc_source::PlcSource;
@@ -101,21 +101,6 @@ impl LoadedMachine {
         };
         program.as_deref()
     }
-}
-
-pub(super) fn letter_of(letter: char) -> Option<Axis> {
-    u8::try_from(letter).ok().and_then(Axis::from_letter)
-}
-
-/// Values of axes as a position; all others are 0.
-pub(super) fn position(values: &[(char, f64)]) -> Position {
-    let mut position = Position::ZERO;
-    for (letter, value) in values {
-        if let Some(axis) = letter_of(*letter) {
-            position[axis] = *value;
-        }
-    }
-    position
 }
 
 /// See [`LoadedMachine::load`].

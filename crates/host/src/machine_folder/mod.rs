@@ -3,6 +3,7 @@
 //! `load`: everything in it, all faults at once, with its `channels`; `nc_memory`: its tables; `programs`: its part programs; `state`:
 //! what survives power-off, `remembered` as a file.
 
+mod channel;
 mod channels;
 mod load;
 mod nc_memory;
@@ -10,7 +11,7 @@ mod programs;
 mod remembered;
 mod state;
 
-pub use channels::LoadedChannel;
+pub use channel::LoadedChannel;
 pub use load::{LoadedMachine, decode};
 pub use programs::FolderPrograms;
 pub use state::{Found, State};
