@@ -21,7 +21,7 @@ Examples:
       The second run repeats the first one, bit by bit, when both have --fresh and the same --mp.
   bahn run --machine mill --script jog.txt
       Without a program: power-up, reference run, then the script.
-  bahn run --machine machines/twin --record twin.csv --signals X.actual,2:X.actual,2:path.speed,M2045
+  bahn run --machine machines/twin --record twin.csv --signals X.actual,2:X.actual
       Two channels, each with the program that machine.toml names; LEFT.H RIGHT.H before --machine would name them.
 
 FILE is a path, or a program in the folder of programs of the machine. Where the machine has several channels, the
