@@ -43,8 +43,14 @@ pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360" for "tnc360", "tn
     "plc/run.txt", "programs/COVER.H",
 );
 
-/// All of them.
-pub const ALL: [ShippedMachine; 2] = [MILL, MILL_TNC360];
+/// A portal mill with two channels; its control is a TNC 415 B. It is a start where it is asked for by its name.
+pub const TWIN: ShippedMachine = machine!("twin" for "tnc415b":
+    "README.md", "machine.toml", "left.mp", "right.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
+    "plc/together.txt", "programs/LEFT.H", "programs/RIGHT.H", "scripts/emergency.txt", "scripts/stop.txt",
+);
+
+/// All of them; the first one that has a model is the start for it.
+pub const ALL: [ShippedMachine; 3] = [MILL, MILL_TNC360, TWIN];
 
 impl ShippedMachine {
     /// The text of a file.
@@ -73,7 +79,7 @@ mod tests {
             }
         }
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-        for machine in [MILL, MILL_TNC360] {
+        for machine in ALL {
             let mut found = Vec::new();
             files(&root.join(machine.name), "", &mut found);
             found.sort();

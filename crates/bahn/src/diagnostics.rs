@@ -74,9 +74,7 @@ fn render(fault: &FileFault, styled: bool) -> String {
             other = Some(place.path(path).annotation(mark));
         }
     }
-    let mut group = level
-        .primary_title(printable(&fault.title))
-        .element(snippet);
+    let mut group = level.primary_title(printable(&fault.title)).element(snippet);
     if let Some(other) = other {
         group = group.element(other);
     }

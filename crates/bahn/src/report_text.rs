@@ -118,6 +118,19 @@ pub(crate) fn body(row: &mut impl FnMut(&str, &str), report: &Report) {
     }
 }
 
+/// Program, result, time and blocks in one line.
+pub(crate) fn in_a_line(report: &Report) -> String {
+    let time = report
+        .machining_time_s
+        .map_or_else(String::new, |time| format!(", {time:.1} s"));
+    format!(
+        "{}: {}{time}, {} blocks",
+        report.program,
+        result(report),
+        report.blocks_executed
+    )
+}
+
 fn result(report: &Report) -> String {
     match &report.error {
         Some(error) => {

@@ -2,7 +2,7 @@
 
 use bahn_motion::Aim;
 use bahn_parameters::ParameterList;
-use bahn_path::{Axis, Position};
+use bahn_path::{Axis, AxisSet, Position};
 use bahn_servo::{Commands, Gantry, Measured, Timing};
 
 use crate::axis::{AxisId, AxisUnit, Mover};
@@ -75,15 +75,29 @@ impl Axes {
         unit.channel = channel;
         unit.axis = slot;
         unit.index = index;
+        unit.mover = Mover::None;
+        unit.left_at = None;
         true
+    }
+
+    /// An axis may go to another channel: it stands, and moves for nobody but a path; it is coupled to none.
+    pub fn may_leave(&self, id: AxisId) -> bool {
+        let mut couplings = self.units.iter().filter_map(|unit| unit.coupling.as_ref());
+        let leads = |place: usize| couplings.any(|coupling| coupling.master == place);
+        let place = self.units.iter().position(|unit| unit.id == id);
+        let found = place.and_then(|place| self.units.get(place));
+        found.is_some_and(|unit| {
+            let moved = !matches!(unit.mover, Mover::None | Mover::Path);
+            !moved && unit.is_at_rest() && unit.stands() && unit.is_free()
+        }) && !place.is_some_and(leads)
     }
 
     /// Reads the encoders, once in each servo step.
     pub fn measure(&mut self, measured: &Measured) {
         for unit in &mut self.units {
-            let encoder = measured.encoder(unit.parameters.encoder.input.into());
+            let encoder = measured.encoder(unit.input());
             unit.servo.measure(encoder);
-            let drive = measured.drive(unit.parameters.output.output.into());
+            let drive = measured.drive(unit.output());
             unit.servo.take_drive_fault(drive.fault);
         }
     }
@@ -92,7 +106,7 @@ impl Axes {
     pub fn output(&mut self, commands: &mut Commands) {
         for unit in &mut self.units {
             unit.servo.step();
-            if let Some(output) = commands.axes.get_mut(usize::from(unit.parameters.output.output)) {
+            if let Some(output) = commands.axes.get_mut(unit.output()) {
                 *output = unit.servo.output();
             }
         }
@@ -123,6 +137,23 @@ impl Axes {
             unit.mover = Mover::None;
         }
     }
+}
+
+/// The numbers of the axes of the first channel.
+pub(crate) fn first_ids() -> [Option<AxisId>; AXES] {
+    [0, 1, 2, 3, 4].map(AxisId::new)
+}
+
+/// The axes that a list of machine parameters gives to a channel, whose connectors count from a place on the machine.
+pub(crate) fn units(
+    parameters: &ParameterList,
+    of: (usize, usize),
+    ids: [Option<AxisId>; AXES],
+) -> Vec<AxisUnit> {
+    let timing = Timing::of(parameters.model());
+    let ids = (0u8..).zip(ids);
+    ids.filter_map(|(index, id)| AxisUnit::new(id?, of, parameters.axis_parameters(index), timing))
+        .collect()
 }
 
 /// The axes of a channel.
@@ -182,6 +213,12 @@ impl OwnAxes<'_> {
     /// Where the axes stand, machine coordinates; unknown where there is no axis.
     pub fn machine_position(&self) -> Position {
         machine_position(self.iter())
+    }
+
+    /// The slots in which there are axes.
+    pub fn slots(&self) -> AxisSet {
+        self.iter()
+            .fold(AxisSet::EMPTY, |slots, unit| slots.with(unit.axis))
     }
 
     /// The box of the active traverse range.
@@ -252,20 +289,6 @@ impl OwnAxes<'_> {
                 unit.limits = *limits;
             }
         }
-    }
-
-    /// An axis may go to another channel: it stands, nothing moves it, and it is coupled to none.
-    pub fn may_leave(&self, id: AxisId) -> bool {
-        let master = |place: usize| {
-            let mut couplings = self.units.iter().filter_map(|unit| unit.coupling.as_ref());
-            couplings.any(|coupling| coupling.master == place)
-        };
-        self.places().any(|place| {
-            self.get(place).is_some_and(|unit| {
-                let free = unit.mover == Mover::None && unit.stands() && unit.is_free();
-                unit.id == id && free && !master(place)
-            })
-        })
     }
 
     /// Those that something moves belong to nobody.

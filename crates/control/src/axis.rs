@@ -69,6 +69,8 @@ pub(crate) struct AxisUnit {
     pub id: AxisId,
     /// The channel and the index that its machine parameters are of.
     pub home: (usize, usize),
+    /// Its list counts outputs and inputs of encoders from here.
+    connectors: usize,
     /// The channel that moves it.
     pub channel: usize,
     /// Axis index of markers and machine parameters in that channel.
@@ -111,12 +113,20 @@ pub(crate) struct AxisUnit {
 }
 
 impl AxisUnit {
-    pub fn new(id: AxisId, channel: usize, parameters: AxisParameters, timing: Timing) -> Option<AxisUnit> {
+    /// An axis of a channel whose connectors count from a place on the machine; `None` when its parameters say that
+    /// there is none.
+    pub fn new(
+        id: AxisId,
+        (channel, connectors): (usize, usize),
+        parameters: AxisParameters,
+        timing: Timing,
+    ) -> Option<AxisUnit> {
         let axis = parameters.letter.filter(|_| parameters.active)?;
         Some(AxisUnit {
             id,
             channel,
             home: (channel, parameters.index.into()),
+            connectors,
             index: parameters.index.into(),
             axis,
             servo: Servo::new(parameters, timing),
@@ -208,6 +218,16 @@ impl AxisUnit {
         }
         self.servo.transfer();
         self.stand(self.servo.actual_mm());
+    }
+
+    /// The place of its encoder among the inputs of the machine.
+    pub fn input(&self) -> usize {
+        self.connectors + usize::from(self.parameters.encoder.input)
+    }
+
+    /// The place of its nominal value output among those of the machine.
+    pub fn output(&self) -> usize {
+        self.connectors + usize::from(self.parameters.output.output)
     }
 
     /// Whether nothing is commanded to move.

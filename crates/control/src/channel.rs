@@ -8,7 +8,7 @@ use bahn_path::{Axis, BlockRef};
 use bahn_servo::{Measured, OperatorInputs};
 
 use crate::axes::{Axes, path_positions};
-use crate::axis::{AxisId, AxisUnit};
+use crate::axis::AxisUnit;
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
 use crate::desk::{self, Desk};
@@ -138,7 +138,7 @@ impl Channel {
             handshakes: &mut self.handshakes,
             positioning: &mut self.positioning,
             exchange: machine.memory.of_mut(self.number),
-            messages: &mut machine.messages,
+            messages: machine.messages.of_channel(self.number),
         };
         let basis = Basis {
             list: self.own_list.as_ref().unwrap_or(machine.link.list()),
@@ -149,7 +149,11 @@ impl Channel {
 
     /// Shows a message at the block that is executed.
     fn show(&self, message: Message, flashing: bool, machine: &mut MachineSide) {
-        machine.messages.show(message, flashing, self.run.running_block());
+        let block = self.run.running_block();
+        machine
+            .messages
+            .of_channel(self.number)
+            .show(message, flashing, block);
     }
 
     /// NC stop, or anything that stops like it.
@@ -169,7 +173,7 @@ impl Channel {
         machine.spindles.of_mut(self.number).open();
         self.desk.let_go();
         self.positioning.stop();
-        self.run.track.path.halt();
+        self.run.track.halt();
     }
 
     /// What the PLC positions ends with an EMERGENCY STOP; the strobes are reset [000:4013-4019]. Whether the axes
@@ -202,7 +206,7 @@ impl Channel {
         let block = self.run.running_block();
         let axes = machine.axes.of(self.number);
         let spindle = machine.spindles.of(self.number);
-        if loops::show_faults(&axes, spindle, &mut machine.messages, block) {
+        if loops::show_faults(&axes, spindle, machine.messages.of_channel(self.number), block) {
             self.run.part_thread();
             self.stop();
             // An error with stop ends what the PLC positions [000:4013-4019].
@@ -294,8 +298,9 @@ impl Channel {
         let mut axes = machine.axes.of(self.number);
         let nc = machine.memory.of(self.number).nc();
         let block = self.run.running_block();
+        let messages = machine.messages.of_channel(self.number);
         self.desk
-            .move_by_hand(handwheel, &mut axes, nc, &mut machine.messages, block, now);
+            .move_by_hand(handwheel, &mut axes, nc, messages, block, now);
     }
 
     /// Moves what the PLC commands.
@@ -533,13 +538,9 @@ impl Channel {
 
     /// Its axes are others from now on: the path has their limits, the datum their corrections.
     pub fn take_axes(&mut self, machine: &mut MachineSide) {
-        self.run.track.limits_changed = true;
+        let limits = path_limits(self.list(machine), machine.axes.owned(self.number));
+        self.run.track.change_limits(&limits, self.run.is_active());
         self.select_range(self.datums.range(), machine);
-    }
-
-    /// An axis may leave it: no program is on its way, and the axis stands free.
-    pub fn may_hand_over(&self, id: AxisId, axes: &mut Axes) -> bool {
-        !self.run.is_active() && axes.of(self.number).may_leave(id)
     }
 
     fn select_range(&mut self, range: usize, machine: &mut MachineSide) {

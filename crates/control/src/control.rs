@@ -3,18 +3,19 @@
 
 use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Warning, Work};
-use bahn_parameters::{MessageId, ParameterList};
-use bahn_path::{Axis, PathElement};
+use bahn_parameters::MessageId;
+use bahn_path::PathElement;
 use bahn_plc::mirror_parameters;
 use bahn_servo::{Commands, Measured, Plant, Step, Timing};
 
-use crate::axes::Axes;
-use crate::axis::{AxisId, AxisUnit};
+use crate::axes::{Axes, first_ids, units};
+use crate::axis::AxisUnit;
 use crate::beside::ReadAhead;
 use crate::channel::{Channel, Parts};
 use crate::command::{Command, Mode};
 use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
+use crate::hand_over::{HandOver, Ordered};
 use crate::handshake::Waiting;
 use crate::kinematics::Cartesian;
 use crate::machine::{CircuitOrder, MachineParts, MachineSide, PlcUnit};
@@ -29,10 +30,10 @@ use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::source::Reading;
 use crate::spindle::{SpindleState, SpindleUnit, SpindleWiring};
-use crate::status;
 use crate::tables::LoadedTables;
 use crate::test_run::{TestReport, TestRun};
 use crate::upkeep::by_index;
+use crate::view::{ChannelView, offsets_volts};
 
 /// Commands that are kept at most until they are taken.
 const LOG_MAX: usize = 100_000;
@@ -50,12 +51,14 @@ pub struct Control {
     seam: Seam,
     /// Tool changes and datums must be stored before their strobe is reset.
     keeps: bool,
-    /// The commands, when somebody wants them.
-    log: Option<Vec<(u64, Command)>>,
+    /// The axes that the PLC may hand over.
+    ordered: Vec<Ordered>,
+    /// The commands with their channels, when somebody wants them.
+    log: Option<Vec<(u64, usize, Command)>>,
 }
 
-fn take_offsets(axes: &mut Axes, remembered: &Remembered) {
-    for unit in axes.of(0).iter_mut() {
+fn take_offsets(axes: &mut Axes, channel: usize, remembered: &Remembered) {
+    for unit in axes.of(channel).iter_mut() {
         let volts = remembered.offsets_volts.get(unit.index).copied();
         unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
     }
@@ -71,7 +74,7 @@ struct Seam {
 impl Control {
     /// A control of one channel at power-on. The PLC does not run yet, and the loops are open.
     pub fn new(setup: Setup) -> Control {
-        let axes = units(&setup.parameters, 0, first_ids());
+        let axes = units(&setup.parameters, (0, 0), first_ids());
         Control::build(setup, Vec::new(), axes)
     }
 
@@ -84,9 +87,10 @@ impl Control {
         if others.len() >= ChannelError::CHANNELS_MAX {
             return Err(ChannelError::TooMany);
         }
-        let mut axes = units(&setup.parameters, 0, first_ids());
+        let mut axes = units(&setup.parameters, (0, 0), first_ids());
         for (channel, other) in (1..).zip(&others) {
-            axes.extend(units(&other.parameters, channel, other.axes));
+            let of = (channel, other.connectors.into());
+            axes.extend(units(&other.parameters, of, other.axes));
         }
         let mut ids = std::collections::BTreeSet::new();
         match axes.iter().find(|unit| !ids.insert(unit.id)) {
@@ -113,7 +117,10 @@ impl Control {
         let timing = Timing::of(model);
         let operation = parameters.operation_parameters();
         let mut axes = Axes::new(units, timing);
-        take_offsets(&mut axes, &remembered);
+        take_offsets(&mut axes, 0, &remembered);
+        for (channel, other) in (1..).zip(&others) {
+            take_offsets(&mut axes, channel, &other.remembered);
+        }
         mirror_parameters(&parameters, &mut exchange);
         let spindle = SpindleUnit::new(SpindleWiring::default(), parameters.spindle_parameters(), timing);
         let mut link = PlcLink::new(parameters.clone(), plc_messages, plc_dialogues, files);
@@ -166,6 +173,7 @@ impl Control {
             channels,
             seam: Seam::default(),
             keeps: false,
+            ordered: Vec::new(),
             log: None,
         }
     }
@@ -175,44 +183,25 @@ impl Control {
         self.channels.count()
     }
 
-    /// Gives a command of the operator to a channel, as [`Control::command`] to the first one; it is not logged.
-    /// `false` when it is not possible now, or there is no such channel.
-    pub fn command_to(&mut self, channel: usize, command: Command) -> bool {
-        channel < self.channels.count() && self.give(channel, command)
+    /// A channel as of now, by its number from 0.
+    pub fn channel(&self, number: usize) -> Option<ChannelView<'_>> {
+        let channel = self.channels.get(number)?;
+        Some(ChannelView::new(channel, &self.machine))
+    }
+
+    /// The first channel as of now.
+    pub fn first(&self) -> ChannelView<'_> {
+        ChannelView::new(self.channels.first(), &self.machine)
     }
 
     /// The state of a channel as of now.
     pub fn snapshot_of(&self, channel: usize) -> Option<Snapshot> {
-        let channel = self.channels.get(channel)?;
-        Some(Snapshot::of(channel, &self.machine, None))
+        self.channel(channel).map(|channel| channel.snapshot())
     }
 
-    /// What survives power-off of a channel beside the first one: datums, tool, Q parameters, program.
-    pub fn remember_of(&self, channel: usize) -> Option<Remembered> {
-        self.channels.get(channel).map(Channel::remember)
-    }
-
-    /// Hands an axis over to another channel, where it has a slot of the path and an index of markers that are free.
-    /// `false` when it cannot go: it moves or is coupled, or a program is on its way in either channel. Outside the
-    /// cycle, as [`Control::prepare`].
-    pub fn hand_over(&mut self, id: AxisId, channel: usize, slot: Axis, index: usize) -> bool {
-        let axes = &mut self.machine.axes;
-        let Some(unit) = axes.iter().find(|unit| unit.id == id) else {
-            return false;
-        };
-        let (from, before) = (unit.channel, unit.index);
-        let Some(to) = self.channels.get(channel) else {
-            return false;
-        };
-        let may = !to.run.is_active() && self.channels.of(from).may_hand_over(id, axes);
-        if !may || !axes.give(id, channel, slot, index) {
-            return false;
-        }
-        status::leave(before, self.machine.memory.of_mut(from));
-        for number in [from, channel] {
-            self.channels.of_mut(number).take_axes(&mut self.machine);
-        }
-        true
+    /// From now on the PLC orders by these markers that axes go to other channels.
+    pub fn hand_over_by(&mut self, hand_overs: Vec<HandOver>) {
+        self.ordered = hand_overs.into_iter().map(Ordered::new).collect();
     }
 
     /// Time since power-on, µs.
@@ -387,6 +376,9 @@ impl Control {
 
     /// Interprets and plans ahead; may allocate. To be called after every cycle.
     pub fn prepare(&mut self) {
+        for ordered in &mut self.ordered {
+            ordered.follow(&mut self.channels, &mut self.machine);
+        }
         let datums_changed = std::mem::take(&mut self.machine.loaded_datums.changed);
         for channel in self.channels.iter_mut() {
             channel.prepare(datums_changed, &mut self.machine);
@@ -453,22 +445,27 @@ impl Control {
         }
     }
 
-    /// Gives a command of the operator; it is logged with the time when a log is kept. `false` when it is not
-    /// possible now.
+    /// Gives a command of the operator to the first channel: [`Control::command_to`].
     pub fn command(&mut self, command: Command) -> bool {
-        if let Some(log) = self.log.as_mut().filter(|log| log.len() < LOG_MAX) {
-            log.push((self.now_us, command.clone()));
-        }
-        self.give(0, command)
+        self.command_to(0, command)
     }
 
-    fn give(&mut self, channel: usize, command: Command) -> bool {
+    /// Gives a command of the operator to a channel; it is logged with the time when a log is kept. `false` when it is
+    /// not possible now, or there is no such channel.
+    pub fn command_to(&mut self, channel: usize, command: Command) -> bool {
+        if channel >= self.channels.count() {
+            return false;
+        }
+        if let Some(log) = self.log.as_mut().filter(|log| log.len() < LOG_MAX) {
+            log.push((self.now_us, channel, command.clone()));
+        }
         let channel = self.channels.of_mut(channel);
         let done = channel.execute(command, &mut self.machine);
         if !done {
             let refused = Message::Plain(MessageId::KeyNonFunctional);
             let block = channel.running_block();
-            self.machine.messages.show(refused, false, block);
+            let messages = self.machine.messages.of_channel(channel.number());
+            messages.show(refused, false, block);
         }
         done
     }
@@ -478,9 +475,9 @@ impl Control {
         self.log = Some(Vec::new());
     }
 
-    /// The commands since the last call with their times, µs: given again at these times they repeat the run.
+    /// The commands since the last call with their times, µs, and channels: given again they repeat the run.
     /// `None` when they were not kept, or were more than fit before they were taken.
-    pub fn take_command_log(&mut self) -> Option<Vec<(u64, Command)>> {
+    pub fn take_command_log(&mut self) -> Option<Vec<(u64, usize, Command)>> {
         let log = std::mem::take(self.log.as_mut()?);
         (log.len() < LOG_MAX).then_some(log)
     }
@@ -540,11 +537,10 @@ impl Control {
     /// What survives power-off, as of now.
     pub fn remember(&self) -> Remembered {
         let link = &self.machine.link;
-        let axes = self.machine.axes.owned(0);
         Remembered {
             pockets: self.machine.magazine.moved(),
             written: self.machine.loaded_tables.written(&link.files),
-            offsets_volts: by_index(axes, |unit| unit.servo.offset_compensation_volts()),
+            offsets_volts: offsets_volts(&self.machine, 0),
             parameter_list: link.selected_list.clone(),
             pallet_line: link.pallet.line,
             datum_table: link.pallet.datum_table.clone(),
@@ -557,7 +553,7 @@ impl Control {
     /// 0.15 mV [000:5014-5016].
     pub fn offsets_shown(&self) -> Option<[i32; AXES]> {
         let axes = self.machine.axes.owned(0);
-        let units = by_index(axes, |unit| unit.servo.offset_units());
+        let units = by_index(axes, |unit| unit.index, |unit| unit.servo.offset_units());
         self.machine.offsets.shown.then_some(units)
     }
 
@@ -582,33 +578,44 @@ impl Control {
         self.machine.messages.take_news()
     }
 
+    /// The text of a message that is or was shown, with the number of its channel where there are several.
+    pub fn shown_text(&self, shown: &Shown) -> String {
+        let text = self.message_text(&shown.message);
+        match shown.channel.filter(|_| self.channels() > 1) {
+            Some(channel) => format!("{}: {text}", channel + 1),
+            None => text,
+        }
+    }
+
     /// The text of a message as this control shows it.
     pub fn message_text(&self, message: &Message) -> String {
         let machine = &self.machine;
         message.text(machine.model, &machine.letters(), machine.link.messages())
     }
 
-    /// Keeps the path elements of runs that begin from now on, for [`Control::take_path`].
+    /// Keeps the path elements of runs of all channels that begin from now on, for [`Control::take_path`].
     pub fn keep_path(&mut self, keep: bool) {
-        self.channels.first_mut().run.source.tap = keep;
+        for channel in self.channels.iter_mut() {
+            channel.run.source.tap = keep;
+        }
     }
 
     /// Of what [`Control::take_path`] has handed out so far, the elements from a sequence on are not executed: the tool
     /// is replaced before them. To be asked for before it.
-    pub fn take_dropped_path(&mut self) -> Option<u64> {
-        let feeder = self.channels.first_mut().run.source.feeder_mut();
+    pub fn take_dropped_path(&mut self, channel: usize) -> Option<u64> {
+        let feeder = self.channels.of_mut(channel).run.source.feeder_mut();
         feeder.and_then(|feeder| feeder.take_dropped())
     }
 
-    /// The path elements that were prepared since the last call, in workpiece coordinates.
-    pub fn take_path(&mut self) -> Vec<PathElement> {
-        let feeder = self.channels.first_mut().run.source.feeder_mut();
+    /// The path elements of a channel that were prepared since the last call, in workpiece coordinates.
+    pub fn take_path(&mut self, channel: usize) -> Vec<PathElement> {
+        let feeder = self.channels.of_mut(channel).run.source.feeder_mut();
         feeder.map(|feeder| feeder.take_tap()).unwrap_or_default()
     }
 
-    /// The interpreter's warnings since the last call.
-    pub fn take_warnings(&mut self) -> Vec<Warning> {
-        let interpreter = self.channels.first_mut().run.source.interpreter_mut();
+    /// The warnings of a channel's interpreter since the last call.
+    pub fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
+        let interpreter = self.channels.of_mut(channel).run.source.interpreter_mut();
         interpreter.map(Interpreter::take_warnings).unwrap_or_default()
     }
 
@@ -714,17 +721,4 @@ fn beside(setup: ChannelSetup, number: usize, reading: &Reading, machine: &mut M
         },
     };
     Channel::new(parts, &setup.remembered, machine)
-}
-
-/// The numbers of the axes of the first channel.
-fn first_ids() -> [Option<AxisId>; AXES] {
-    [0, 1, 2, 3, 4].map(AxisId::new)
-}
-
-/// The axes that a list of machine parameters gives to a channel.
-fn units(parameters: &ParameterList, channel: usize, ids: [Option<AxisId>; AXES]) -> Vec<AxisUnit> {
-    let timing = Timing::of(parameters.model());
-    let ids = (0u8..).zip(ids);
-    ids.filter_map(|(index, id)| AxisUnit::new(id?, channel, parameters.axis_parameters(index), timing))
-        .collect()
 }

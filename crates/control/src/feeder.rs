@@ -4,8 +4,11 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_interpreter::{Interpreter, ProgramError, Settings};
-use bahn_path::{Axis, Barrier, BlockRef, Curve, ElementSource, LiveData, PathElement, Position, Step};
+use bahn_interpreter::{Cause, Interpreter, Message, ProgramError, Settings};
+use bahn_parameters::MessageId;
+use bahn_path::{
+    Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, LiveData, PathElement, Position, Step,
+};
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
 
@@ -33,6 +36,25 @@ pub(crate) enum RunFault {
         block: BlockRef,
         sequence: u64,
     },
+    /// A block would move an axis that the channel does not have: it has gone to another one, or never was there.
+    Absent {
+        axis: Axis,
+        /// Which block, and its place in the order of execution.
+        block: BlockRef,
+        sequence: u64,
+    },
+}
+
+/// The error of a block that would move an axis that the channel does not have.
+pub(crate) fn absent(axis: Axis, block: BlockRef, run: Option<&Interpreter>) -> ProgramError {
+    let program = run.and_then(|run| run.program(block.program));
+    ProgramError {
+        message: Message::Control(MessageId::WrongAxisProgrammed),
+        program: program.map_or_else(String::new, |program| program.name().to_owned()),
+        block,
+        detail: format!("there is no axis {} here", axis.letter()),
+        cause: Cause::default(),
+    }
 }
 
 /// Steps of the interpreter that were read beside the control and nobody has taken yet.
@@ -61,6 +83,8 @@ pub(crate) struct Feeder {
     /// Kinematics with the offsets as of the last element handed out.
     chain: Chain,
     limits: Box2,
+    /// The axes that there are.
+    axes: AxisSet,
     fault: Option<RunFault>,
     /// Elements that were given back: they come next.
     found: VecDeque<PathElement>,
@@ -81,7 +105,7 @@ impl Feeder {
         settings: Settings,
         programs: Arc<dyn Programs>,
         chain: Chain,
-        limits: Box2,
+        (limits, axes): (Box2, AxisSet),
     ) -> Feeder {
         let shelf = Box::new(Shelf(programs));
         let mut interpreter = Interpreter::new(main, settings, shelf);
@@ -91,6 +115,7 @@ impl Feeder {
             ahead: Ahead::default(),
             chain,
             limits,
+            axes,
             fault: None,
             found: VecDeque::new(),
             refused: None,
@@ -153,11 +178,16 @@ impl Feeder {
         program.is_some_and(|program| program.unit() == bahn_program::Unit::Inch)
     }
 
-    /// Datum, machine zero in workpiece coordinates and traverse range as they are now.
-    pub fn set_datum(&mut self, datum: Position, machine_zero: Position, limits: Box2) {
-        self.limits = limits;
+    /// Datum, machine zero in workpiece coordinates, traverse range and axes as they are now.
+    pub fn set_datum(&mut self, datum: Position, machine_zero: Position, (limits, axes): (Box2, AxisSet)) {
+        (self.limits, self.axes) = (limits, axes);
         self.chain.offsets.datum = datum;
         self.interpreter.set_machine_zero(machine_zero);
+    }
+
+    /// Every axis may come to the channel before a block moves it.
+    pub fn expect_all_axes(&mut self) {
+        self.axes = Axis::ALL.into_iter().collect();
     }
 
     /// Inserts a TOOL CALL of module 9150 before the next block.
@@ -249,7 +279,7 @@ impl Feeder {
     /// Goes back to the block that could not be executed.
     pub fn retry(&mut self, machine: &Position, chain: &Chain, limits: Box2) {
         match self.fault.take() {
-            Some(RunFault::Limit { sequence, .. }) => {
+            Some(RunFault::Limit { sequence, .. } | RunFault::Absent { sequence, .. }) => {
                 return self.return_to(sequence, machine, chain, limits);
             }
             Some(RunFault::Program(error)) if self.interpreter.at() != error.block => {
@@ -308,10 +338,19 @@ impl Feeder {
         }
     }
 
-    /// The first axis that would leave its range on an element.
+    /// The first axis that would leave its range on an element, or is not there.
     fn outside(&self, element: &PathElement) -> Option<RunFault> {
         // The resolution of positions is no violation.
         const ROUNDING: f64 = 1e-6;
+        let mut axes = Axis::ALL.into_iter();
+        if let Some(axis) = axes.find(|axis| !self.axes.contains(*axis) && element.moves(*axis)) {
+            let (block, sequence) = (element.block, element.sequence);
+            return Some(RunFault::Absent {
+                axis,
+                block,
+                sequence,
+            });
+        }
         let [min, max] = self.chain.bounds(&element.curve, &element.start, &element.end);
         let [least, greatest] = &self.limits;
         for axis in Axis::ALL {
@@ -415,7 +454,8 @@ mod tests {
             ..Settings::default()
         };
         let chain = Chain::new(Arc::new(Cartesian), offsets);
-        Feeder::new(program, settings, Arc::new(Empty), chain, limits)
+        let axes = Axis::ALL.into_iter().collect();
+        Feeder::new(program, settings, Arc::new(Empty), chain, (limits, axes))
     }
 
     fn end(blocks: &str) -> Step<RunFault> {

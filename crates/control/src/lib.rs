@@ -8,7 +8,8 @@
 //!   computations be done there ([`Work`]).
 //!
 //! - [`Control::with_channels`] puts several channels on one machine, [`ChannelSetup`] each of them: with its axes
-//!   ([`AxisId`]), its [`Kinematics`] and its [`Window`] into the memory of the PLC.
+//!   ([`AxisId`]), its [`Kinematics`] and its [`Window`] into the memory of the PLC; a [`ChannelView`] shows it, and by a
+//!   [`HandOver`] the PLC gives an axis to another one.
 //!
 //! Time is a count of microseconds; there is no wall clock, no thread and no randomness here, so the same
 //! setup, machine and commands give the same bits. `control` orders what happens, `machine` is what the channels
@@ -37,6 +38,7 @@ mod desk;
 mod emergency;
 mod feeder;
 mod gantry;
+mod hand_over;
 mod handshake;
 mod kinematics;
 mod life;
@@ -75,6 +77,7 @@ mod tool;
 mod tools;
 mod track;
 mod upkeep;
+mod view;
 mod window;
 
 pub use axis::AxisId;
@@ -83,17 +86,19 @@ pub use beside::ReadAhead;
 pub use command::{Command, CommandError, Mode};
 pub use compensation_table::{CompensationAssignment, CompensationError, CompensationTable};
 pub use control::Control;
+pub use hand_over::HandOver;
 pub use handshake::{Handshake, Transfer, Waiting};
 pub use kinematics::{Cartesian, Kinematics, Offsets};
 pub use manual::HANDWHEEL_STEPS;
-pub use message::{Message, Shown};
+pub use message::{HandOverError, Message, Shown};
 pub use plc_link::{NcFiles, WrittenElement, datum_shifts};
 pub use programs::Programs;
 pub use progress::RunState;
 pub use setup::{ChannelError, ChannelSetup, Checking, Position0, Remembered, Setup};
-pub use signal::{AxisSignal, Signal, SignalError};
+pub use signal::{AxisSignal, ChannelSignal, Signal, SignalError, split_channel};
 pub use snapshot::{AxisState, Snapshot};
 pub use spindle::{SpindleState, SpindleWiring};
 pub use test_run::{TestReport, TestState};
 pub use tool::{MovedTool, Tool, ToolLife};
+pub use view::ChannelView;
 pub use window::Window;

@@ -274,7 +274,7 @@ impl MachineSide {
             file: error.file,
             line: error.line,
         };
-        self.messages.show(message, true, block);
+        self.messages.of_machine().show(message, true, block);
         false
     }
 
@@ -299,7 +299,7 @@ impl MachineSide {
         }
         let circuit = self.emergency.circuit();
         if circuit == Circuit::VoltageMissing {
-            self.messages.show(VOLTAGE_MISSING, false, block);
+            self.messages.of_machine().show(VOLTAGE_MISSING, false, block);
         } else if self.messages.contains(&VOLTAGE_MISSING) {
             self.messages.remove(&VOLTAGE_MISSING);
         }
@@ -311,7 +311,7 @@ impl MachineSide {
             Circuit::Defective => {
                 if !self.messages.is_fatal() {
                     let defective = Message::Plain(MessageId::EmergencyStopDefective);
-                    self.messages.show(defective, true, block);
+                    self.messages.of_machine().show(defective, true, block);
                 }
                 CircuitOrder::OpenLoops
             }
@@ -328,7 +328,7 @@ impl MachineSide {
 
     /// The stop of the circuit is reported.
     pub fn show_emergency_stop(&mut self, block: Option<BlockRef>) {
-        self.messages.show(EMERGENCY_STOP, false, block);
+        self.messages.of_machine().show(EMERGENCY_STOP, false, block);
     }
 
     /// The silent stop of M2827 is over with the control voltage.

@@ -11,6 +11,24 @@ use bahn_path::BlockRef;
 use crate::axis::AxisId;
 use crate::panel::Direction;
 
+/// An axis cannot go to another channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum HandOverError {
+    /// There is no such axis or no such channel.
+    #[error("NO SUCH AXIS OR CHANNEL")]
+    Unknown,
+    /// A program is on its way in one of the channels, and does not stand at the strobe of an M function, at a
+    /// programmed stop or at its end.
+    #[error("A PROGRAM IS RUNNING")]
+    Running,
+    /// The axis moves, or it is coupled to another one.
+    #[error("THE AXIS MOVES")]
+    Moving,
+    /// The channel has an axis of this letter or index.
+    #[error("LETTER OR INDEX IS TAKEN")]
+    Taken,
+}
+
 /// A message of the running control.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
@@ -47,6 +65,13 @@ pub enum Message {
     Plc(u8),
     /// A fault of the part program.
     Program(Box<ProgramError>),
+    /// An axis that the PLC wants to hand over to another channel cannot go *(inferred)*.
+    HandOver {
+        /// Number of the axis ([`AxisId`]).
+        axis: u8,
+        /// Why.
+        why: HandOverError,
+    },
 }
 
 impl Message {
@@ -104,6 +129,10 @@ impl Message {
                 .cloned()
                 .unwrap_or_else(|| format!("PLC: ERROR {number}")),
             Message::Program(error) => error.message.text(model).to_owned(),
+            Message::HandOver { axis, why } => {
+                let letter = letters.get(usize::from(*axis)).copied().unwrap_or('S');
+                format!("AXIS {letter} NOT HANDED OVER: {why}")
+            }
         }
     }
 
@@ -146,6 +175,8 @@ pub struct Shown {
     pub time_us: u64,
     /// The block that was executed, or that it refuses.
     pub block: Option<BlockRef>,
+    /// The channel that says it, from 0; `None` for the machine as a whole.
+    pub channel: Option<usize>,
 }
 
 /// The messages that are shown, and their history.
@@ -156,6 +187,8 @@ pub(crate) struct Messages {
     news: Vec<Shown>,
     /// Time since power-on, µs.
     now_us: u64,
+    /// Who shows messages now; `None` for the machine as a whole.
+    channel: Option<usize>,
 }
 
 /// News that nobody took are dropped beyond this, the oldest first.
@@ -172,9 +205,26 @@ impl Messages {
         self.now_us
     }
 
+    /// What is shown now comes from a channel.
+    pub fn of_channel(&mut self, channel: usize) -> &mut Messages {
+        self.channel = Some(channel);
+        self
+    }
+
+    /// What is shown now comes from the machine as a whole.
+    pub fn of_machine(&mut self) -> &mut Messages {
+        self.channel = None;
+        self
+    }
+
     /// Shows a message; the same one again changes nothing.
     pub fn show(&mut self, message: Message, flashing: bool, block: Option<BlockRef>) {
-        if self.shown.iter().any(|shown| shown.message == message) {
+        let own = self.channel;
+        let is_same = |shown: &Shown| {
+            let other = shown.channel.zip(own).is_some_and(|(one, other)| one != other);
+            shown.message == message && !other
+        };
+        if self.shown.iter().any(is_same) {
             return;
         }
         let shown = Shown {
@@ -182,6 +232,7 @@ impl Messages {
             flashing,
             time_us: self.now_us,
             block,
+            channel: self.channel,
         };
         if self.news.len() >= NEWS_MAX {
             self.news.remove(0);
@@ -232,6 +283,7 @@ impl Messages {
     /// After a PLC scan: the PLC's messages by their markers. With M2815 they flash; M2815 alone is
     /// `EMERGENCY STOP PLC` [000:6625-6633].
     pub fn follow_plc(&mut self, exchange: &Exchange, block: Option<BlockRef>) {
+        self.channel = None;
         let nc = exchange.nc();
         let flashes = nc.bit(signal::PLC_MESSAGE_FLASHES);
         let mut any = false;

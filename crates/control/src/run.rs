@@ -10,7 +10,7 @@ use bahn_servo::Measured;
 use crate::axis::{AxisUnit, Mover};
 use crate::block_time::BlockTime;
 use crate::command::Mode;
-use crate::feeder::{Feeder, RunFault};
+use crate::feeder::{self, Feeder, RunFault};
 use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::probing::{Probe, Probed};
@@ -273,7 +273,8 @@ impl ProgramRun {
             feeder.put_back(recalled.into_iter());
         }
         let zero = machine_zero(&site.axes, site.chain);
-        feeder.set_datum(site.chain.offsets.datum, zero, site.axes.traverse_box());
+        let limits = (site.axes.traverse_box(), site.axes.slots());
+        feeder.set_datum(site.chain.offsets.datum, zero, limits);
         if let Some(answer) = self.answer.take() {
             let probed = answer.touch.is_some();
             if !probed {
@@ -575,6 +576,10 @@ impl ProgramRun {
                 let message = track::limit_message(&mut site.axes, axis, direction);
                 site.messages.show(message, false, Some(block));
             }
+            RunFault::Absent { axis, block, .. } => {
+                let error = feeder::absent(axis, block, self.source.interpreter());
+                self.show(Message::Program(Box::new(error)), site);
+            }
         }
     }
 
@@ -636,7 +641,10 @@ impl ProgramRun {
         let Ok(Some(program)) = self.source.reading.programs.open(name, "") else {
             return None;
         };
-        Some(self.source.feeder_from(program, Status::default(), site, basis))
+        let mut feeder = self.source.feeder_from(program, Status::default(), site, basis);
+        // Nobody hands an axis over meanwhile.
+        feeder.expect_all_axes();
+        Some(feeder)
     }
 
     /// The rest of the way of an axis in the block that is executed, mm or degrees.

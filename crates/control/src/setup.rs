@@ -60,6 +60,8 @@ pub struct ChannelSetup {
     /// The number on the machine of each of its axes, by their indices in the list. An axis without number is not
     /// there.
     pub axes: [Option<AxisId>; 5],
+    /// Output 1 and encoder input X1 of its list are this one of the machine, from 0.
+    pub connectors: u8,
     /// Where its spindle is connected.
     pub spindle: SpindleWiring,
     /// Where its programs come from.

@@ -8,6 +8,7 @@ use bahn_exchange::{Bit, Number};
 use crate::axis::AxisUnit;
 use crate::channel::Channel;
 use crate::machine::MachineSide;
+use crate::setup::ChannelError;
 
 /// What of an axis is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +54,66 @@ pub enum Signal {
     Bit(Bit),
     /// A byte, word or doubleword as the PLC sees it.
     Number(Number),
+}
+
+/// A signal of a channel: `X.actual` and `1:X.actual` of the first one, `2:X.actual` of the second.
+///
+/// ```
+/// use bahn_control::ChannelSignal;
+/// let second: ChannelSignal = "2:X.lag".parse()?;
+/// assert_eq!((second.channel, second.to_string().as_str()), (1, "2:X.lag"));
+/// assert_eq!("1:M2045".parse::<ChannelSignal>()?.to_string(), "M2045");
+/// # Ok::<(), bahn_control::SignalError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChannelSignal {
+    /// Which channel, from 0.
+    pub channel: usize,
+    /// What of it; operands of the PLC are those of its window.
+    pub signal: Signal,
+}
+
+impl FromStr for ChannelSignal {
+    type Err = SignalError;
+
+    fn from_str(text: &str) -> Result<ChannelSignal, SignalError> {
+        let (channel, signal) = split_channel(text);
+        Ok(ChannelSignal {
+            channel: channel.unwrap_or(0),
+            signal: signal.parse()?,
+        })
+    }
+}
+
+impl fmt::Display for ChannelSignal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.channel > 0 {
+            write!(f, "{}:", self.channel + 1)?;
+        }
+        self.signal.fmt(f)
+    }
+}
+
+impl From<Signal> for ChannelSignal {
+    /// That of the first channel.
+    fn from(signal: Signal) -> ChannelSignal {
+        ChannelSignal { channel: 0, signal }
+    }
+}
+
+/// The channel before the colon, from 0, and what stands behind it: `2:X.actual`, `2: mode full`. Without channel the
+/// whole text.
+pub fn split_channel(text: &str) -> (Option<usize>, &str) {
+    let text = text.trim();
+    let parts = text.split_once(':').and_then(|(channel, rest)| {
+        let digits = channel.len() == 1 && channel.bytes().all(|byte| byte.is_ascii_digit());
+        let number = channel.parse::<usize>().ok().filter(|_| digits)?;
+        Some((number.checked_sub(1)?, rest.trim()))
+    });
+    match parts.filter(|(channel, _)| *channel < ChannelError::CHANNELS_MAX) {
+        Some((channel, rest)) => (Some(channel), rest),
+        None => (None, text),
+    }
 }
 
 /// A text is no signal.

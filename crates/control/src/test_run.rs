@@ -5,7 +5,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{Barrier, BlockRef, ElementSource, Function, LiveData, Step, Touch};
 
 use crate::axis::{AxisId, AxisUnit};
-use crate::feeder::{Feeder, RunFault};
+use crate::feeder::{self, Feeder, RunFault};
 use crate::message::Message;
 use crate::spindle::SpindleUnit;
 
@@ -132,5 +132,6 @@ fn message<'a>(fault: RunFault, mut axes: impl Iterator<Item = &'a AxisUnit>) ->
             let unit = axes.find(|unit| unit.axis == axis);
             Message::limit(unit.map_or(AxisId::FIRST, |unit| unit.id), direction)
         }
+        RunFault::Absent { axis, block, .. } => Message::Program(Box::new(feeder::absent(axis, block, None))),
     }
 }

@@ -58,6 +58,14 @@ impl Track {
         self.path = Interpolator::new(limits, LOOK_AHEAD);
     }
 
+    /// Other limits for what is not read yet: those of a run take effect at once, and otherwise with the next one.
+    pub fn change_limits(&mut self, limits: &Limits, running: bool) {
+        match running {
+            true => self.path.set_limits(limits),
+            false => self.limits_changed = true,
+        }
+    }
+
     /// Makes room for the functions that wait, outside the cycle.
     pub fn reserve(&mut self) {
         if self.waiting.capacity() == 0 {
@@ -68,6 +76,12 @@ impl Track {
     /// The path speed, mm/s.
     pub fn speed_mm_s(&self) -> f64 {
         self.speed
+    }
+
+    /// The path stands at once: nothing moves the axes any more.
+    pub fn halt(&mut self) {
+        self.path.halt();
+        self.speed = 0.0;
     }
 
     /// The path moves at a speed, mm/s.

@@ -70,14 +70,15 @@ impl DriveOffsets {
     }
 }
 
-/// Something of each axis of a channel, by axis index.
+/// Something of each axis, by an axis index.
 pub(crate) fn by_index<'a, T: Copy + Default>(
     axes: impl Iterator<Item = &'a AxisUnit>,
+    index: impl Fn(&AxisUnit) -> usize,
     of: impl Fn(&AxisUnit) -> T,
 ) -> [T; AXES] {
     let mut values = [T::default(); AXES];
     for unit in axes {
-        if let Some(slot) = values.get_mut(unit.index) {
+        if let Some(slot) = values.get_mut(index(unit)) {
             *slot = of(unit);
         }
     }

@@ -6,17 +6,17 @@ mod support;
 use std::sync::Arc;
 
 use bahn_control::{
-    AxisId, Cartesian, ChannelError, ChannelSetup, Command, Control, Kinematics, Mode, Offsets, Remembered,
-    RunState, Setup, Snapshot, SpindleWiring, Window,
+    AxisId, Cartesian, ChannelError, ChannelSetup, Command, Control, HandOver, Kinematics, Mode, Offsets,
+    Remembered, RunState, Setup, Snapshot, SpindleWiring, Window,
 };
 use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
 use bahn_path::{Axis, Curve, Position};
-use support::bench::{bench, fourth};
+use support::bench::{bench, close, fourth};
 use support::{Build, Rig, Shelf};
 
 /// Panel, transfers and cam of the second channel: its window lies from M300 on. M50 is a wait mark: it is
-/// acknowledged in both channels when both have come to it.
+/// acknowledged in both channels when both have come to it. At M60 of both, or with I30, Z goes to the second channel.
 const SECOND: &str = "
        L     I20
        = M300
@@ -43,13 +43,36 @@ const SECOND: &str = "
        L     M390
        A     M391
        = M392
+       L     W260
+       == K+60
+       = M393
+       L     M393
+       A     M2045
+       = M393
+       L     W128
+       == K+60
+       = M394
+       L     M394
+       A     M380
+       = M394
+       L     M393
+       A     M394
+       O     I30
+       = M500
+       L     M500
+       A     M501
+       = M395
        L     M2045
        AN    M390
+       AN    M393
        O     M392
+       O     M395
        = M2482
        L     M380
        AN    M391
+       AN    M394
        O     M392
+       O     M395
        = M334
        L     M381
        = M335
@@ -98,6 +121,7 @@ fn channel(parameters: ParameterList, axes: [Option<AxisId>; 5], blocks: &str) -
     ChannelSetup {
         parameters,
         axes,
+        connectors: 0,
         spindle: SpindleWiring { output: 6, input: 6 },
         programs: Arc::new(programs),
         kinematics: Arc::new(Cartesian),
@@ -131,7 +155,15 @@ fn twin(first: &str, second: &str) -> Rig {
 }
 
 fn ready(setup: Setup, other: ChannelSetup, machine: Machine) -> Rig {
-    let control = Control::with_channels(setup, vec![other]).unwrap();
+    let mut control = Control::with_channels(setup, vec![other]).unwrap();
+    control.hand_over_by(vec![HandOver {
+        axis: AxisId::new(2).unwrap(),
+        to: 1,
+        letter: Axis::Z,
+        index: 2,
+        order: "M500".parse().unwrap(),
+        done: "M501".parse().unwrap(),
+    }]);
     let mut rig = Rig { control, machine };
     if rig.messages() == ["POWER INTERRUPTED"] {
         rig.command("ce");
@@ -249,44 +281,154 @@ fn programs_wait_for_each_other() {
     assert_eq!((nominal(&rig, 0, 'X'), nominal(&rig, 1, 'X')), (150.0, 100.0));
 }
 
+fn letters(rig: &Rig, channel: usize) -> String {
+    let view = rig.control.channel(channel).unwrap();
+    view.axis_letters().collect()
+}
+
 /// Z goes from the first channel to the second between their programs, and a program of the second one moves it.
 #[test]
 fn an_axis_is_handed_over_between_programs() {
     let mut rig = twin("L Z+100 R0 FMAX", "L X+90 R0 FMAX\nL Z+140 R0 FMAX");
-    let z = AxisId::new(2).unwrap();
-    let axis = Axis::Z;
-    tell(&mut rig, 0, "select 1.H");
     rig.event("key NC_START press");
     rig.until(2.0, "the first runs", |rig| {
         state(rig, 0).run == RunState::Running
     });
-    assert!(!rig.control.hand_over(z, 1, axis, 2), "a program is on its way");
+    rig.input("I30", true);
+    rig.seconds(0.1);
+    assert_eq!(rig.messages(), ["AXIS Z NOT HANDED OVER: A PROGRAM IS RUNNING"]);
+    assert_eq!((rig.bit("M501"), letters(&rig, 0)), (false, "XYZ".to_owned()));
+    rig.command("ce");
+    rig.input("I30", false);
     rig.event("key NC_START release");
     rig.until(20.0, "the first ends", |rig| state(rig, 0).ended);
     rig.seconds(0.2);
-    assert!(!rig.control.hand_over(z, 1, Axis::X, 2), "the slot is taken");
-    assert!(!rig.control.hand_over(z, 2, axis, 2), "there is no such channel");
     assert!(
-        rig.bit("M2002"),
+        rig.bit("M2002") && !rig.bit("M501"),
         "Z is held in its loop, says the window of the first"
     );
-    assert!(rig.control.hand_over(z, 1, axis, 2));
+    rig.input("I30", true);
     rig.seconds(0.1);
-    assert!(!rig.bit("M2002"), "it has no Z any more");
-    let letters =
-        |rig: &Rig, channel| -> String { state(rig, channel).axes.iter().map(|axis| axis.letter).collect() };
+    assert!(rig.bit("M501") && !rig.bit("M2002"), "it has no Z any more");
     assert_eq!(
         (letters(&rig, 0), letters(&rig, 1)),
         ("XY".to_owned(), "ZX".to_owned())
     );
+    rig.input("I30", false);
+    rig.seconds(0.1);
+    assert!(!rig.bit("M501"), "done falls with the order");
     rig.event("key START2 press");
     rig.until(20.0, "the second ends", |rig| state(rig, 1).ended);
     assert_eq!((nominal(&rig, 1, 'X'), nominal(&rig, 1, 'Z')), (90.0, 140.0));
-    assert!(
-        (rig.table('Z') - 140.0).abs() < 0.1,
-        "the table stands at {}",
-        rig.table('Z')
+    close(rig.table('Z'), 140.0, 0.1);
+    assert!(rig.messages().is_empty());
+}
+
+/// Both programs come to M60, the second one 6 s later; there Z goes over, and the blocks behind it move what each
+/// channel has then. Nobody has begun them before.
+#[test]
+fn an_axis_is_handed_over_while_programs_run() {
+    let mut rig = twin(
+        "L Z+100 R0 FMAX\nM60\nL X+150 R0 F3000",
+        "L X+100 R0 FMAX\nL X+160 R0 F600\nM60\nL Z+140 X+120 R0 F3000\nL IZ+5 R0 F3000",
     );
+    let stood = nominal(&rig, 0, 'X');
+    start(&mut rig);
+    rig.until(20.0, "the second cuts", |rig| {
+        (state(rig, 1).feed_mm_min - 600.0).abs() < 1.0
+    });
+    rig.until(10.0, "Z goes over", |rig| letters(rig, 1) == "ZX");
+    assert_eq!(
+        (
+            nominal(&rig, 0, 'X'),
+            nominal(&rig, 1, 'X'),
+            nominal(&rig, 1, 'Z')
+        ),
+        (stood, 160.0, 100.0)
+    );
+    close(rig.table('Z'), 100.0, 0.1);
+    until_ended(&mut rig);
+    assert_eq!(letters(&rig, 0), "XY");
+    assert_eq!(nominal(&rig, 0, 'X'), 150.0);
+    assert_eq!((nominal(&rig, 1, 'X'), nominal(&rig, 1, 'Z')), (120.0, 145.0));
+    close(rig.table('Z'), 145.0, 0.1);
+    assert!(!rig.bit("M500") && !rig.bit("M501") && rig.messages().is_empty());
+}
+
+/// A block that moves an axis which the channel has given away, or has not got yet, is refused where it stands.
+#[test]
+fn an_axis_of_the_other_channel_is_not_moved() {
+    let mut rig = twin(
+        "L Z+100 R0 FMAX\nM60\nL X+60 R0 F3000\nL Z+90 R0 FMAX",
+        "L X+100 R0 FMAX\nL Z+120 R0 FMAX\nM60\nL X+90 R0 FMAX",
+    );
+    start(&mut rig);
+    rig.until(20.0, "the second is refused", |rig| !rig.messages().is_empty());
+    let refused = |channel: usize, block: u32| {
+        format!("{channel}: WRONG AXIS PROGRAMMED program {channel}.H block {block}: there is no axis Z here")
+    };
+    let shown = |rig: &Rig| -> Vec<String> {
+        let shown = state(rig, 0).messages;
+        let text = |shown: &bahn_control::Shown| rig.control.shown_text(shown);
+        shown
+            .iter()
+            .map(|shown| format!("{} {}", text(shown), shown.message.place().unwrap()))
+            .collect()
+    };
+    assert_eq!(shown(&rig), [refused(2, 2)]);
+    assert_eq!(nominal(&rig, 1, 'X'), 100.0, "the block before it was executed");
+    rig.command("ce");
+    // From block 3 on it goes: Z goes over, and the first channel cannot move it any more.
+    tell(&mut rig, 1, "goto 3");
+    rig.event("key START2 press");
+    rig.until(20.0, "the first is refused", |rig| !rig.messages().is_empty());
+    assert_eq!(shown(&rig), [refused(1, 4)]);
+    assert_eq!((nominal(&rig, 0, 'X'), letters(&rig, 0)), (60.0, "XY".to_owned()));
+    rig.until(20.0, "the second ends", |rig| state(rig, 1).ended);
+}
+
+/// What was told to which channel is logged; given again it repeats the run to the bit.
+#[test]
+fn the_command_log_knows_the_channels() {
+    let drive = |given: &[(u64, usize, Command)]| {
+        let mut rig = twin(
+            "L Z+100 R0 FMAX\nM60\nL X+150 R0 F3000",
+            "L X+160 R0 F1200\nM60\nL Z+140 R0 F3000",
+        );
+        rig.control.keep_command_log();
+        let (begin, mut seen, mut given) = (rig.control.time_us(), Vec::new(), given.iter().peekable());
+        start(&mut rig);
+        while rig.control.time_us() < begin + 12_000_000 {
+            while let Some((_, channel, command)) = given.next_if(|(time, ..)| *time <= rig.control.time_us())
+            {
+                rig.control.command_to(*channel, command.clone());
+            }
+            rig.cycle();
+            let both = [0, 1].map(|channel| format!("{:?}", state(&rig, channel)));
+            seen.push(both);
+        }
+        assert!(state(&rig, 1).ended);
+        (rig.control.take_command_log().unwrap(), seen)
+    };
+    let begin = twin("M8", "M8").control.time_us();
+    let given: Vec<(u64, usize, Command)> = [
+        (500_000, 1, "jog 2"),
+        (900_000, 0, "ce"),
+        (9_000_000, 1, "mode manual"),
+        (9_600_000, 1, "datum X 12.5"),
+    ]
+    .map(|(time, channel, text)| (begin + time, channel, text.parse().unwrap()))
+    .into();
+    let (log, seen) = drive(&given);
+    let told: Vec<(usize, String)> = log
+        .iter()
+        .map(|(_, channel, command)| (*channel, command.to_string()))
+        .collect();
+    let expected = [(1, "jog 2"), (0, "ce"), (1, "mode manual"), (1, "datum X 12.5")];
+    assert_eq!(told, expected.map(|(channel, text)| (channel, text.to_owned())));
+    let (again, repeated) = drive(&log);
+    assert_eq!((again, repeated == seen), (log, true));
+    assert!(!seen.last().unwrap()[0].contains("12.5") && seen.last().unwrap()[1].contains("12.5"));
 }
 
 /// A clone goes on as the control does: the same bits.

@@ -132,7 +132,7 @@ fn the_command_log_replays() {
         (6_300_000, "key NC_START tap"),
         (9_000_000, "key NC_START tap"),
     ];
-    let drive = |commands: &[(u64, Command)]| {
+    let drive = |commands: &[(u64, usize, Command)]| {
         let mut rig = bench(ACKNOWLEDGE).program("1.H", PROGRAM).rig();
         rig.control.keep_command_log();
         let mut trace = Trace::new(&rig);
@@ -147,15 +147,15 @@ fn the_command_log_replays() {
             while let Some((_, text)) = events.next_if(|(time, _)| *time <= now) {
                 rig.event(text);
             }
-            while let Some((_, command)) = commands.next_if(|(time, _)| *time <= now) {
-                rig.control.command(command.clone());
+            while let Some((_, channel, command)) = commands.next_if(|(time, ..)| *time <= now) {
+                rig.control.command_to(*channel, command.clone());
             }
             rig.cycle();
             trace.note(&rig);
         }
         (rig, trace)
     };
-    let given: Vec<(u64, Command)> = [
+    let given: Vec<(u64, usize, Command)> = [
         (4_600_000, "mode full"),
         (4_700_000, "select 1.H"),
         (6_200_000, "stop"),
@@ -163,7 +163,7 @@ fn the_command_log_replays() {
         (8_900_000, "mode full"),
     ]
     .into_iter()
-    .map(|(time, text)| (time, text.parse().unwrap()))
+    .map(|(time, text)| (time, 0, text.parse().unwrap()))
     .collect();
     let (mut first, trace) = drive(&given);
     assert!(

@@ -100,7 +100,7 @@ fn ends(rig: &mut Rig, slow: &mut Slow) -> Vec<[u64; 2]> {
     for _ in 0..1_000_000 {
         slow.turn(rig);
         rig.cycle();
-        let path = rig.control.take_path().into_iter();
+        let path = rig.control.take_path(0).into_iter();
         ends.extend(path.map(|element| axes.map(|axis| element.end[axis].to_bits())));
         if rig.control.run_state() == RunState::Stopped {
             rig.start();

@@ -58,7 +58,7 @@ impl Trail {
 }
 
 /// Runs with keys and commands at fixed times; the hash of everything.
-fn scripted(seconds: u64) -> (u64, Vec<(u64, Command)>) {
+fn scripted(seconds: u64) -> (u64, Vec<(u64, usize, Command)>) {
     let mut rig = build();
     rig.control.keep_command_log();
     let mut trail = Trail::new();
@@ -110,7 +110,7 @@ fn the_log_has_the_commands_with_their_times() {
     let log = scripted(60).1;
     let texts: Vec<String> = log
         .iter()
-        .map(|(at, command)| format!("{} {command}", at / 1000))
+        .map(|(at, _, command)| format!("{} {command}", at / 1000))
         .collect();
     assert_eq!(texts, ["102 ce", "9000 mode full", "9102 select 1.H"]);
 }

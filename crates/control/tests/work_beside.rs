@@ -49,7 +49,7 @@ fn ends(rig: &mut Rig) -> Vec<[u64; 2]> {
         if let Some(work) = rig.control.take_work() {
             rig.control.finish_work(work.compute());
         }
-        let path = rig.control.take_path().into_iter();
+        let path = rig.control.take_path(0).into_iter();
         ends.extend(
             path.map(|element| {
                 [bahn_path::Axis::X, bahn_path::Axis::Y].map(|axis| element.end[axis].to_bits())

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use bahn_control::Command;
+use bahn_control::{Command, CommandError, split_channel};
 use bahn_machine::{Event, KeyAction, Machine};
 use bahn_servo::Plant;
 use thiserror::Error;
@@ -28,11 +28,17 @@ impl Operable for Machine {
 /// use bahn_host::Deed;
 /// assert!(matches!(Deed::parse("mode full"), Ok(Deed::Command(_))));
 /// assert_eq!(Deed::parse("key NC_START tap"), Ok(Deed::tap("NC_START")));
+/// let second = Deed::parse("2: mode full")?;
+/// assert!(matches!(second, Deed::CommandTo(1, _)));
+/// assert_eq!(second.to_string(), "2: mode full");
+/// # Ok::<(), bahn_host::DeedError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Deed {
-    /// To the control.
+    /// To the control, or the first of its channels.
     Command(Command),
+    /// To a channel beside the first one, 1 being the second.
+    CommandTo(usize, Command),
     /// To the machine, with its text.
     Event(Event, String),
 }
@@ -49,13 +55,16 @@ pub enum DeedError {
 }
 
 impl Deed {
-    /// Reads a command of the control or an event of the machine. `key 107` is a key of the keyboard,
+    /// Reads a command of the control or an event of the machine; `2: mode full` goes to the second channel. `key 107` is a key of the keyboard,
     /// `key NC_START tap` one of the panel; `handwheel X 3` chooses the axis of the handwheel, `handwheel 500`
     /// turns it.
     ///
     /// # Errors
     /// When it is neither.
     pub fn parse(text: &str) -> Result<Deed, DeedError> {
+        if let (Some(channel), command) = split_channel(text) {
+            return Deed::command_to(channel, command);
+        }
         let (word, rest) = text
             .trim()
             .split_once(char::is_whitespace)
@@ -71,13 +80,30 @@ impl Deed {
             let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
             return Ok(Deed::Event(event, text));
         }
-        text.parse().map(Deed::Command).map_err(|error| {
+        text.parse().map(Deed::Command).map_err(|error: CommandError| {
             let error = error.to_string();
             match error.ends_with("is no command") {
                 true => DeedError::Unknown(word.to_owned()),
                 false => DeedError::Wrong(error),
             }
         })
+    }
+
+    /// A command to a channel, from 0.
+    pub fn to_channel(channel: usize, command: Command) -> Deed {
+        match channel {
+            0 => Deed::Command(command),
+            further => Deed::CommandTo(further, command),
+        }
+    }
+
+    /// Events happen to the machine as a whole: only commands go to a channel.
+    fn command_to(channel: usize, text: &str) -> Result<Deed, DeedError> {
+        let command = text.parse().map_err(|error: CommandError| {
+            let what = format!("{error}; a channel takes commands, events happen to the machine");
+            DeedError::Wrong(what)
+        });
+        command.map(|command| Deed::to_channel(channel, command))
     }
 
     /// A key of the panel is tapped.
@@ -91,6 +117,7 @@ impl fmt::Display for Deed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Deed::Command(command) => command.fmt(f),
+            Deed::CommandTo(channel, command) => write!(f, "{}: {command}", channel + 1),
             Deed::Event(_, text) => f.write_str(text),
         }
     }

@@ -1,6 +1,6 @@
 //! What a script expects of control and machine.
 
-use bahn_control::{Control, Mode, RunState, Signal, TestState};
+use bahn_control::{ChannelView, Control, Mode, RunState, Signal, TestState, split_channel};
 use bahn_machine::Machine;
 
 use crate::decimals::decimals;
@@ -29,6 +29,8 @@ pub enum Expectation {
     Test(Tested),
     /// `lamp NC_START=1`.
     Lamp(String, bool),
+    /// `2:X.actual=100`, `2: run ended`: of a channel, from 0; signal, message, mode, run or tool.
+    Of(usize, Box<Expectation>),
 }
 
 /// How a value compares.
@@ -111,6 +113,7 @@ expect run stopped                  idle, running, interrupted, stopped, block-e
 expect tool=3                       the tool in the spindle
 expect test finished                the test run beside: running, finished, failed
 expect lamp NC_START=1              a lamp of the panel
+expect 2:X.actual=100               of the second channel; also 2: message, 2: mode, 2: run, 2: tool
 ";
 
     /// Reads what stands behind `expect`.
@@ -118,6 +121,17 @@ expect lamp NC_START=1              a lamp of the panel
     /// # Errors
     /// In words, when it is none.
     pub fn parse(text: &str, machine: &Machine) -> Result<Expectation, String> {
+        if let (Some(channel), of_it) = split_channel(text) {
+            let what = Expectation::parse(of_it, machine)?;
+            return match what {
+                Expectation::Signal(..)
+                | Expectation::Message(..)
+                | Expectation::Mode(_)
+                | Expectation::Run(_)
+                | Expectation::Tool(_) => Ok(Expectation::Of(channel, Box::new(what))),
+                _ => Err("it is no matter of a channel: leave the number away".to_owned()),
+            };
+        }
         match Expectation::of_state(text, machine)? {
             Some(expectation) => Ok(expectation),
             None => Expectation::of_value(text),
@@ -197,9 +211,24 @@ expect lamp NC_START=1              a lamp of the panel
 
     /// `None` when it is so; otherwise what is.
     pub fn check(&self, control: &Control, machine: &Machine) -> Option<String> {
+        self.check_in(control.first(), None, control, machine)
+    }
+
+    /// The same of a channel; `only` its messages count, or all.
+    fn check_in(
+        &self,
+        channel: ChannelView,
+        only: Option<usize>,
+        control: &Control,
+        machine: &Machine,
+    ) -> Option<String> {
         match self {
+            Expectation::Of(number, what) => match control.channel(*number) {
+                Some(channel) => what.check_in(channel, Some(*number), control, machine),
+                None => Some(format!("the machine has no channel {}", number + 1)),
+            },
             Expectation::Signal(signal, relation, value) => {
-                let actual = control.observe(signal);
+                let actual = channel.observe(signal);
                 let holds = match relation {
                     Relation::Equal(tolerance) => (actual - value).abs() <= *tolerance,
                     Relation::Less => actual < *value,
@@ -215,7 +244,8 @@ expect lamp NC_START=1              a lamp of the panel
                 let shown: Vec<String> = control
                     .shown()
                     .iter()
-                    .map(|shown| control.message_text(&shown.message))
+                    .filter(|shown| only.is_none() || shown.channel == only)
+                    .map(|shown| control.shown_text(shown))
                     .collect();
                 let is_shown = shown.iter().any(|message| message.contains(text.as_str()));
                 (is_shown != *wanted).then(|| match shown.as_slice() {
@@ -224,18 +254,18 @@ expect lamp NC_START=1              a lamp of the panel
                 })
             }
             Expectation::Mode(mode) => {
-                let actual = control.mode();
+                let actual = channel.mode();
                 (actual != *mode).then(|| format!("the mode is {}", actual.name()))
             }
             Expectation::Run(run) => {
                 let holds = match run {
-                    Run::State(state) => control.run_state() == *state,
-                    Run::Ended => control.has_ended(),
+                    Run::State(state) => channel.run_state() == *state,
+                    Run::Ended => channel.has_ended(),
                 };
-                (!holds).then(|| format!("the run is {}", run_name(control.run_state())))
+                (!holds).then(|| format!("the run is {}", run_name(channel.run_state())))
             }
             Expectation::Tool(tool) => {
-                let actual = control.tool();
+                let actual = channel.tool();
                 (actual != *tool).then(|| format!("tool {actual} is in the spindle"))
             }
             Expectation::Test(state) => {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_control::{Control, Programs, Setup, Snapshot};
+use bahn_control::{Cartesian, ChannelSetup, Command, Control, Programs, Setup, Snapshot, SpindleWiring};
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
 use bahn_path::PathElement;
@@ -14,12 +14,12 @@ use crate::error::HostError;
 use crate::feed::{Feed, Reader};
 use crate::journal::{Given, Journal};
 use crate::log::Sink;
-use crate::machine_folder::{LoadedMachine, State};
+use crate::machine_folder::{LoadedChannel, LoadedMachine, State};
 use crate::notice::{Before, Notice, Stamped, Why};
 use crate::operator::Operator;
 use crate::orders::{Desk, Waiting, When};
 use crate::pace::{Clock, Lateness, Pace};
-use crate::power_on::PowerOn;
+use crate::power_on::{ChannelPowerOn, PowerOn};
 
 /// Notices that wait for slow readers.
 const NOTICES: usize = 1024;
@@ -76,7 +76,7 @@ impl<P: Operable> Host<P> {
         operator: Operator,
     ) -> Host<P> {
         let block_time_ms = power_on.parameters.model().limits().block_time_ms;
-        let mut control = Control::new(Setup {
+        let setup = Setup {
             parameters: power_on.parameters,
             plc: Arc::clone(&machine.plc),
             plc_messages: machine.plc_messages.clone(),
@@ -88,7 +88,14 @@ impl<P: Operable> Host<P> {
             files: machine.files.clone(),
             remembered: power_on.remembered,
             exchange: power_on.exchange,
-        });
+        };
+        let others = channel_setups(machine, power_on.channels);
+        // `LoadedMachine::load` refuses what cannot be put together.
+        let mut control = match Control::with_channels(setup.clone(), others) {
+            Ok(control) => control,
+            Err(_) => Control::new(setup),
+        };
+        control.hand_over_by(machine.hand_overs.clone());
         if power_on.block_time {
             control.set_block_time((block_time_ms * 1e3) as u32);
         }
@@ -138,12 +145,12 @@ impl<P: Operable> Host<P> {
         while let Some(order) = self.waiting.due(self.control.time_us()) {
             self.execute(order.source, order.deed)?;
         }
-        if let Some((deed, why)) = self.operator.act(&self.control) {
+        if let Some((channel, deed, why)) = self.operator.act(&self.control) {
             if let (Deed::Event(bahn_machine::Event::Key(key, _), _), Why::Stop | Why::ToolChange) =
                 (&deed, why)
             {
                 let key = key.clone();
-                self.tell(Notice::Confirmed { key, why });
+                self.tell_in(channel, Notice::Confirmed { key, why });
             }
             self.execute(Source::Operator, deed)?;
         }
@@ -212,14 +219,12 @@ impl<P: Operable> Host<P> {
         if let Some(sink) = &mut self.sink {
             sink.note(self.control.time_us(), &source, &deed.to_string())?;
         }
-        if matches!(deed, Deed::Command(_)) {
+        if matches!(deed, Deed::Command(_) | Deed::CommandTo(..)) {
             self.background.settle(&mut self.control);
         }
         let answer = match &deed {
-            Deed::Command(command) => match self.control.command(command.clone()) {
-                true => Answer::Done,
-                false => Answer::Refused,
-            },
+            Deed::Command(command) => self.command(0, command),
+            Deed::CommandTo(channel, command) => self.command(*channel, command),
             Deed::Event(event, _) => match self.plant.operate(event) {
                 Ok(()) => Answer::Done,
                 Err(what) => Answer::Impossible(what),
@@ -227,6 +232,16 @@ impl<P: Operable> Host<P> {
         };
         self.tell(Notice::Given(source, deed, answer.clone()));
         Ok(answer)
+    }
+
+    fn command(&mut self, channel: usize, command: &Command) -> Answer {
+        if channel >= self.control.channels() {
+            return Answer::Impossible(format!("the machine has no channel {}", channel + 1));
+        }
+        match self.control.command_to(channel, command.clone()) {
+            true => Answer::Done,
+            false => Answer::Refused,
+        }
     }
 
     /// Stores what the control waits for at once, everything else now and then.
@@ -258,9 +273,13 @@ impl<P: Operable> Host<P> {
     fn look(&mut self) {
         let time_us = self.control.time_us();
         let (notices, repeats) = (&self.notices, self.repeats);
-        self.before.compare(&mut self.control, |notice| {
+        self.before.compare(&mut self.control, |channel, notice| {
             if !repeats {
-                notices.put(|_| Stamped { time_us, notice });
+                notices.put(|_| Stamped {
+                    time_us,
+                    channel,
+                    notice,
+                });
             }
         });
         if let Some((every_us, due_us)) = self.snapshot_us.as_mut().filter(|_| !repeats)
@@ -276,9 +295,21 @@ impl<P: Operable> Host<P> {
     }
 
     pub(crate) fn tell(&self, notice: Notice) {
+        let channel = match &notice {
+            Notice::Given(_, Deed::CommandTo(channel, _), _) => *channel,
+            _ => 0,
+        };
+        self.tell_in(channel, notice);
+    }
+
+    fn tell_in(&self, channel: usize, notice: Notice) {
         if !self.repeats {
             let time_us = self.control.time_us();
-            self.notices.put(|_| Stamped { time_us, notice });
+            self.notices.put(|_| Stamped {
+                time_us,
+                channel,
+                notice,
+            });
         }
     }
 
@@ -386,23 +417,47 @@ impl<P: Operable> Host<P> {
         self.break_off = flag;
     }
 
-    /// Keeps the path elements of runs that begin from now on, for [`Host::take_path`].
+    /// Keeps the path elements of runs of all channels that begin from now on, for [`Host::take_path`].
     pub fn keep_path(&mut self) {
         self.control.keep_path(true);
     }
 
-    /// The path elements that were prepared since the last call, in workpiece coordinates.
-    pub fn take_path(&mut self) -> Vec<PathElement> {
-        self.control.take_path()
+    /// The path elements of a channel that were prepared since the last call, in workpiece coordinates.
+    pub fn take_path(&mut self, channel: usize) -> Vec<PathElement> {
+        self.control.take_path(channel)
     }
 
     /// The first element that is executed no more, of those that were taken: see [`Control::take_dropped_path`].
-    pub fn take_dropped_path(&mut self) -> Option<u64> {
-        self.control.take_dropped_path()
+    pub fn take_dropped_path(&mut self, channel: usize) -> Option<u64> {
+        self.control.take_dropped_path(channel)
     }
 
-    /// The interpreter's warnings since the last call.
-    pub fn take_warnings(&mut self) -> Vec<Warning> {
-        self.control.take_warnings()
+    /// The warnings of a channel's interpreter since the last call.
+    pub fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
+        self.control.take_warnings(channel)
     }
+}
+
+/// The channels beside the first one, as the control takes them.
+fn channel_setups(machine: &LoadedMachine, found: Vec<ChannelPowerOn>) -> Vec<ChannelSetup> {
+    let channels = machine.channels.iter().zip(found);
+    let setup = |(channel, found): (&LoadedChannel, ChannelPowerOn)| {
+        // Counted from 0 on the machine, and the spindle is the sixth.
+        let connectors = channel.folder.connectors.saturating_sub(1);
+        let spindle = usize::from(connectors) + 5;
+        ChannelSetup {
+            parameters: channel.parameters.clone(),
+            axes: channel.axes,
+            connectors,
+            spindle: SpindleWiring {
+                output: spindle,
+                input: spindle,
+            },
+            programs: found.programs,
+            kinematics: Arc::new(Cartesian),
+            window: channel.window.clone(),
+            remembered: found.remembered,
+        }
+    };
+    channels.map(setup).collect()
 }

@@ -80,7 +80,7 @@ pub use fault::{FileFault, Marked, Severity};
 pub use feed::{Next, Reader};
 pub use host::Host;
 pub use log::{Log, LogFile, Sink, is_whole};
-pub use machine_folder::{FolderPrograms, Found, LoadedMachine, State, decode};
+pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, decode};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
 #[doc(hidden)]
 pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
@@ -97,7 +97,7 @@ pub use orders::{Desk, Order, When};
 pub use pace::{Clock, Late, Lateness};
 pub use play::{Case, FailedExpectation, Play, Verdict};
 pub use plc_source::PlcSource;
-pub use power_on::PowerOn;
+pub use power_on::{ChannelPowerOn, PowerOn};
 pub use retained::Retained;
 pub use saved::{Saved, Timeline};
 pub use script::{Action, Base, Line, Script};

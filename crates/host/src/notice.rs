@@ -1,6 +1,6 @@
 //! What happens while a machine is on, told once when it happens.
 
-use bahn_control::{Control, Message, Mode, RunState, Shown};
+use bahn_control::{ChannelView, Control, Message, Mode, RunState, Shown};
 use bahn_path::BlockRef;
 
 use crate::deed::{Answer, Deed, Source};
@@ -55,6 +55,8 @@ pub enum Why {
 pub struct Stamped {
     /// Since power-on, µs.
     pub time_us: u64,
+    /// The channel in which it happened, from 0; 0 for the machine as a whole, too.
+    pub channel: usize,
     /// What happened.
     pub notice: Notice,
 }
@@ -62,34 +64,52 @@ pub struct Stamped {
 /// What was so after the last cycle.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Before {
+    channels: Vec<ChannelBefore>,
+    shown: Vec<Message>,
+}
+
+/// The same of a channel.
+#[derive(Clone, Debug, Default)]
+struct ChannelBefore {
     mode: Mode,
     run: RunState,
     ended: bool,
     block: Option<BlockRef>,
-    shown: Vec<Message>,
 }
 
 impl Before {
-    /// Tells what a cycle has changed.
-    pub fn compare(&mut self, control: &mut Control, mut tell: impl FnMut(Notice)) {
+    /// Tells what a cycle has changed, and in which channel.
+    pub fn compare(&mut self, control: &mut Control, mut tell: impl FnMut(usize, Notice)) {
         for shown in control.take_messages() {
-            tell(Notice::Shown(shown));
+            tell(shown.channel.unwrap_or(0), Notice::Shown(shown));
         }
         let shown = control.shown();
         let is_same = |message: &Message| shown.iter().any(|shown| shown.message == *message);
         if self.shown.len() != shown.len() || !self.shown.iter().all(is_same) {
             let cleared = self.shown.iter().filter(|message| !is_same(message));
-            cleared.for_each(|message| tell(Notice::Cleared(message.clone())));
+            cleared.for_each(|message| tell(0, Notice::Cleared(message.clone())));
             self.shown = shown.iter().map(|shown| shown.message.clone()).collect();
         }
-        let (mode, run, ended) = (control.mode(), control.run_state(), control.has_ended());
+        self.channels
+            .resize_with(control.channels(), ChannelBefore::default);
+        for (number, before) in self.channels.iter_mut().enumerate() {
+            if let Some(channel) = control.channel(number) {
+                before.compare(channel, |notice| tell(number, notice));
+            }
+        }
+    }
+}
+
+impl ChannelBefore {
+    fn compare(&mut self, channel: ChannelView, mut tell: impl FnMut(Notice)) {
+        let (mode, run, ended) = (channel.mode(), channel.run_state(), channel.has_ended());
         if std::mem::replace(&mut self.mode, mode) != mode {
             tell(Notice::Mode(mode));
         }
         if std::mem::replace(&mut self.run, run) != run {
             tell(Notice::Run(run));
         }
-        let block = control.element().map(|element| element.block);
+        let block = channel.element().map(|element| element.block);
         let block = block.filter(|_| run != RunState::Idle);
         if std::mem::replace(&mut self.block, block) != block {
             tell(Notice::Block(block));

@@ -1,7 +1,7 @@
 //! The operator who stands by: switches on, passes the reference marks, starts the program, and lets the
 //! run go on where it waits for him.
 
-use bahn_control::{Command, Control, Message, Mode, RunState, Waiting};
+use bahn_control::{ChannelView, Command, Control, Message, Mode, RunState, Waiting};
 use bahn_exchange::signal;
 use bahn_machine::OperatorKeys;
 use bahn_parameters::MessageId;
@@ -64,10 +64,18 @@ impl Job {
     }
 }
 
-/// The operator who stands by.
+/// The operator who stands by: at the panel of each channel.
 #[derive(Clone, Debug)]
 pub struct Operator {
     attendance: Attendance,
+    stations: Vec<Station>,
+}
+
+/// What he does for a channel.
+#[derive(Clone, Debug)]
+struct Station {
+    /// Which channel, from 0.
+    channel: usize,
     keys: OperatorKeys,
     job: Option<Job>,
     phase: Phase,
@@ -88,6 +96,65 @@ impl Operator {
     pub fn new(attendance: Attendance, keys: OperatorKeys, job: Option<Job>) -> Operator {
         Operator {
             attendance,
+            stations: vec![Station::new(0, keys, job)],
+        }
+    }
+
+    /// He stands by at the next channel, too, with its keys and its job.
+    #[must_use]
+    pub fn with_channel(mut self, keys: OperatorKeys, job: Option<Job>) -> Operator {
+        self.stations.push(Station::new(self.stations.len(), keys, job));
+        self
+    }
+
+    /// How far he is: the least of all channels; while programs are to run, [`Phase::Program`].
+    pub fn phase(&self) -> Phase {
+        let is = |phase| self.stations.iter().any(|station| station.phase == phase);
+        let phases = [Phase::PowerUp, Phase::Reference, Phase::Program];
+        phases
+            .into_iter()
+            .find(|phase| is(*phase))
+            .unwrap_or(Phase::Ready)
+    }
+
+    /// NC start was pressed for a program.
+    pub fn has_started(&self) -> bool {
+        self.stations.iter().any(|station| station.started)
+    }
+
+    /// There is a program to start.
+    pub fn has_job(&self) -> bool {
+        self.stations.iter().any(|station| station.job.is_some())
+    }
+
+    /// The channels, from 0, that have a program to start.
+    pub fn channels_with_job(&self) -> impl Iterator<Item = usize> {
+        let stations = self.stations.iter().filter(|station| station.job.is_some());
+        stations.map(|station| station.channel)
+    }
+
+    /// What he does in this cycle, and for which channel.
+    pub(crate) fn act(&mut self, control: &Control) -> Option<(usize, Deed, Why)> {
+        let attendance = self.attendance;
+        let mut deed = None;
+        for station in &mut self.stations {
+            let Some(channel) = control.channel(station.channel) else {
+                continue;
+            };
+            station.follow(control, channel);
+            if deed.is_none() && attendance != Attendance::Absent {
+                let done = station.act(attendance, control, channel);
+                deed = done.map(|(deed, why)| (station.channel, deed, why));
+            }
+        }
+        deed
+    }
+}
+
+impl Station {
+    fn new(channel: usize, keys: OperatorKeys, job: Option<Job>) -> Station {
+        Station {
+            channel,
             keys,
             job,
             phase: Phase::PowerUp,
@@ -99,36 +166,21 @@ impl Operator {
         }
     }
 
-    /// How far he is.
-    pub fn phase(&self) -> Phase {
-        self.phase
-    }
-
-    /// NC start was pressed for the program.
-    pub fn has_started(&self) -> bool {
-        self.started
-    }
-
-    /// There is a program to start.
-    pub fn has_job(&self) -> bool {
-        self.job.is_some()
-    }
-
-    /// What he does in this cycle.
-    pub(crate) fn act(&mut self, control: &Control) -> Option<(Deed, Why)> {
-        self.follow(control);
-        if self.attendance == Attendance::Absent {
-            return None;
-        }
+    fn act(
+        &mut self,
+        attendance: Attendance,
+        control: &Control,
+        channel: ChannelView,
+    ) -> Option<(Deed, Why)> {
         let now = control.time_us();
         let waited = now.saturating_sub(self.acted_us);
+        let start = || Some((Deed::tap(&self.keys.start), Why::Routine));
         let deed = match self.phase {
             Phase::PowerUp if waited >= PAUSE_US => self.power_up(control),
-            Phase::Reference if waited >= 2 * PAUSE_US && control.stands() => {
-                Some((Deed::tap(&self.keys.start), Why::Routine))
-            }
+            Phase::Reference if channel.mode() != Mode::Reference => None,
+            Phase::Reference if waited >= 2 * PAUSE_US && control.stands() => start(),
             Phase::Program if !self.started && waited >= PAUSE_US => self.choose(),
-            Phase::Program if self.attendance == Attendance::Full => self.stand_by(control, now, waited),
+            Phase::Program if attendance == Attendance::Full => self.stand_by(channel, now, waited),
             _ => None,
         };
         if deed.is_some() {
@@ -137,11 +189,16 @@ impl Operator {
         deed
     }
 
-    /// The phase follows the control, whoever operates it.
-    fn follow(&mut self, control: &Control) {
+    /// The phase follows the control, whoever operates it. Programs wait until all channels know where they are.
+    fn follow(&mut self, control: &Control, channel: ChannelView) {
+        let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
         let phase = match self.phase {
             Phase::PowerUp if !control.loops_closed() => Phase::PowerUp,
-            Phase::PowerUp | Phase::Reference if control.mode() == Mode::Reference => Phase::Reference,
+            Phase::PowerUp | Phase::Reference
+                if channels.any(|channel| channel.mode() == Mode::Reference) =>
+            {
+                Phase::Reference
+            }
             Phase::PowerUp | Phase::Reference if self.job.is_some() => Phase::Program,
             Phase::PowerUp | Phase::Reference => Phase::Ready,
             phase => phase,
@@ -150,7 +207,7 @@ impl Operator {
             self.phase = phase;
             self.acted_us = control.time_us();
         }
-        let state = control.run_state();
+        let state = channel.run_state();
         if self.phase == Phase::Program && state == RunState::Running {
             self.started = true;
         }
@@ -160,6 +217,10 @@ impl Operator {
     }
 
     fn power_up(&self, control: &Control) -> Option<(Deed, Why)> {
+        if self.channel > 0 {
+            // The first channel does it for the machine.
+            return None;
+        }
         let shows = |id| {
             let message = Message::Plain(id);
             control.shown().iter().any(|shown| shown.message == message)
@@ -190,11 +251,11 @@ impl Operator {
                     return Some((Deed::tap(&self.keys.start), Why::Routine));
                 }
             };
-            return Some((Deed::Command(command), Why::Routine));
+            return Some((Deed::to_channel(self.channel, command), Why::Routine));
         }
     }
 
-    fn stand_by(&mut self, control: &Control, now: u64, waited: u64) -> Option<(Deed, Why)> {
+    fn stand_by(&mut self, channel: ChannelView, now: u64, waited: u64) -> Option<(Deed, Why)> {
         let start = |why| Some((Deed::tap(&self.keys.start), why));
         let (state, since) = self.state;
         let waited = waited.min(now.saturating_sub(since));
@@ -204,7 +265,7 @@ impl Operator {
             _ => {}
         }
         let changes = matches!(
-            control.waiting(),
+            channel.waiting(),
             Some(Waiting::Acknowledge(pair)) if pair.strobe == signal::TOOL_CALL_STROBE
         );
         if !changes {

@@ -1,11 +1,13 @@
 //! What a machine begins with when it is switched on.
 
-use bahn_control::{Checking, NcFiles, Position0, Remembered};
+use std::sync::Arc;
+
+use bahn_control::{Checking, NcFiles, Position0, Programs, Remembered};
 use bahn_exchange::Exchange;
 use bahn_parameters::{InchFeed, ParameterList};
 
 use crate::error::HostError;
-use crate::machine_folder::{LoadedMachine, State};
+use crate::machine_folder::{FolderPrograms, LoadedMachine, State};
 
 /// What a control finds at power-on, and how it takes programs. What is read here can be changed until the
 /// [`Host`](crate::Host) is made of it.
@@ -26,6 +28,17 @@ pub struct PowerOn {
     pub block_time: bool,
     /// What was lost, in words.
     pub warnings: Vec<String>,
+    /// The same of the channels beside the first one.
+    pub channels: Vec<ChannelPowerOn>,
+}
+
+/// What a channel beside the first one begins with.
+#[derive(Clone)]
+pub struct ChannelPowerOn {
+    /// What it remembers.
+    pub remembered: Remembered,
+    /// Its part programs.
+    pub programs: Arc<dyn Programs>,
 }
 
 impl PowerOn {
@@ -43,6 +56,16 @@ impl PowerOn {
             inch_feed: None,
             block_time: false,
             warnings: Vec::new(),
+            channels: (1..)
+                .zip(&machine.channels)
+                .map(|(number, channel)| ChannelPowerOn {
+                    remembered: Remembered {
+                        datums: [Position0(channel.datum()); 3],
+                        ..Remembered::default()
+                    },
+                    programs: Arc::new(FolderPrograms::of_folder(&machine.programs(number))),
+                })
+                .collect(),
         }
     }
 
@@ -51,13 +74,19 @@ impl PowerOn {
     /// # Errors
     /// When it is switched on already, what was kept cannot be read, or what was selected is missing.
     pub fn kept(machine: &LoadedMachine) -> Result<PowerOn, HostError> {
-        let found = State::open(&machine.root.join(&machine.folder.state))?;
+        let found = State::open(
+            &machine.root.join(&machine.folder.state),
+            1 + machine.channels.len(),
+        )?;
         let mut power_on = PowerOn {
             exchange: found.exchange,
             state: Some(found.state),
             warnings: found.warnings,
             ..PowerOn::fresh(machine)
         };
+        for (channel, found) in power_on.channels.iter_mut().zip(found.others) {
+            channel.remembered = found.unwrap_or_else(|| channel.remembered.clone());
+        }
         let Some(mut remembered) = found.remembered else {
             return Ok(power_on);
         };

@@ -87,7 +87,10 @@ impl<P: Operable + Clone> Host<P> {
                 break Err(error);
             }
             // Whoever follows the path has it already.
-            drop((self.take_dropped_path(), self.take_path(), self.take_warnings()));
+            for channel in 0..self.control().channels() {
+                drop((self.take_dropped_path(channel), self.take_path(channel)));
+                drop(self.take_warnings(channel));
+            }
         };
         self.repeats = false;
         self.reset_clock();

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use bahn_control::split_channel;
 use bahn_machine::{Event, Machine};
 
 use crate::deed::{Deed, DeedError};
@@ -262,12 +263,19 @@ impl Reader {
 }
 
 /// What stands before and behind the first colon outside quotes.
+/// A channel behind `when` belongs to the condition: `when 2:X.actual > 50: ce`.
 fn split_time(line: &str) -> Option<(&str, &str)> {
+    let condition = line.trim_start().strip_prefix("when ").map(str::trim_start);
+    let before = condition.map_or(0, |condition| match split_channel(condition) {
+        (Some(_), _) => line.len() - condition.len() + 2,
+        (None, _) => 0,
+    });
     let mut quoted = false;
-    let at = line.find(|character: char| {
+    let at = line.get(before..)?.find(|character: char| {
         quoted ^= character == '"';
         character == ':' && !quoted
     })?;
+    let at = before + at;
     Some((line.get(..at)?, line.get(at + 1..)?))
 }
 
@@ -394,6 +402,35 @@ mod tests {
         assert_eq!(script.lines[3].condition, message("LIMIT SWITCH"));
         assert_eq!(script.lines[5].condition, message("A: B"));
         let faults = read("when X.heat > 5: ce\nafter rain: ce\n+2.5 cycles: ce\n1e7: ce").unwrap_err();
+        let lines: Vec<u32> = faults.iter().map(|fault| fault.marked.line).collect();
+        assert_eq!(lines, [1, 2, 3, 4]);
+    }
+
+    /// A channel is told by its number before a colon: in commands, in what is expected, in conditions.
+    #[test]
+    fn lines_speak_of_channels() {
+        let script = read(
+            "1: 2: mode full\nwhen 2:X.actual > 50: ce\nwhen 2: run ended: 1: ce\n2: expect 2:X.actual=3",
+        )
+        .unwrap();
+        let actions: Vec<String> = script
+            .lines
+            .iter()
+            .map(|line| match &line.action {
+                Action::Do(deed) => deed.to_string(),
+                other => format!("{other:?}"),
+            })
+            .collect();
+        assert_eq!(actions[..3], ["2: mode full", "ce", "ce"]);
+        assert!(actions[3].starts_with("Expect(Of(1, Signal("), "{}", actions[3]);
+        let conditions: Vec<bool> = script
+            .lines
+            .iter()
+            .map(|line| matches!(line.condition, Some(Expectation::Of(1, _))))
+            .collect();
+        assert_eq!(conditions, [false, true, true, false]);
+        let faults = read("1: 2: key NC_START tap\n1: 2: voltage off\n1: 9: ce\n1: expect 2: test finished")
+            .unwrap_err();
         let lines: Vec<u32> = faults.iter().map(|fault| fault.marked.line).collect();
         assert_eq!(lines, [1, 2, 3, 4]);
     }

@@ -100,8 +100,8 @@ impl Machine {
     }
 
     fn spindle_mut(&mut self) -> Result<&mut Spindle, EventError> {
-        self.spindle
-            .as_mut()
+        self.spindles
+            .first_mut()
             .ok_or_else(|| no("part", "spindle", std::iter::empty()))
     }
 
@@ -169,7 +169,7 @@ impl Machine {
             for letter in letters {
                 self.repair_axis(letter)?;
             }
-            if self.spindle.is_some() {
+            if !self.spindles.is_empty() {
                 self.repair("S")?;
                 self.repair("gear")?;
             }

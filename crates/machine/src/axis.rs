@@ -131,8 +131,7 @@ fn letter(name: &str, section: &Section) -> Option<char> {
 
 /// The place of the nominal value output of an axis.
 fn output(section: &Section) -> usize {
-    let names = ["1", "2", "3", "4", "5", "S"];
-    section.word("output", &names).unwrap_or_else(|| {
+    section.output("output").unwrap_or_else(|| {
         if !section.has("output") {
             section.fault(format!("[{}] needs output", section.name));
         }

@@ -51,7 +51,7 @@ pub(crate) struct Counter {
 impl Counter {
     /// Reads the `encoder` table of an axis; `travel` are the ends, `start` the position at power-on.
     pub fn read(section: &Section, travel: [f64; 2], start: f64, noise: Noise) -> Option<Counter> {
-        let input = section.word("input", &["X1", "X2", "X3", "X4", "X5", "X6"]);
+        let input = section.encoder_input("input");
         if !section.has("input") {
             section.fault(format!("[{}] needs input", section.name));
         }

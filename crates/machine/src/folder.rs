@@ -1,5 +1,7 @@
 //! The folder of a machine: which file is what.
 
+use std::collections::BTreeMap;
+
 use crate::reader::{PlantError, Reader, Section};
 
 /// What `machine.toml` in the folder of a machine says. Paths count from the folder; no file is opened here.
@@ -44,6 +46,54 @@ pub struct MachineFolder {
     pub datum: Vec<(char, f64)>,
     /// What an operator does who stands by while programs run.
     pub operator: OperatorKeys,
+    /// The program that runs when nobody names another one, with more than one channel.
+    pub program: Option<String>,
+    /// The channels beside the first one, which all the above is about.
+    pub channels: Vec<ChannelFolder>,
+    /// The axes that go from one channel to another while programs run.
+    pub hand_overs: Vec<HandOverFolder>,
+}
+
+/// A channel beside the first one: `[[channel]]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelFolder {
+    /// List of machine parameters.
+    pub parameters: String,
+    /// The number on the machine of each of its axes, in the order of the indices of its list.
+    pub axes: Vec<u8>,
+    /// Output 1 and encoder input X1 of its list are those with this number on the machine.
+    pub connectors: u8,
+    /// Folder of its part programs.
+    pub programs: Option<String>,
+    /// The program that runs when nobody names another one.
+    pub program: Option<String>,
+    /// Where its markers and words stand in the memory of the PLC, `M2448-M2511 = M300`, with their lines.
+    pub window: Vec<(usize, String)>,
+    /// Workpiece datum in machine coordinates, mm or degrees, as long as the state holds no other.
+    pub datum: Vec<(char, f64)>,
+    /// What an operator does who stands by.
+    pub operator: OperatorKeys,
+    /// Its line in the file, from 1, and those of its keys.
+    pub lines: (usize, BTreeMap<String, usize>),
+}
+
+/// An axis that goes to another channel when the PLC orders it: `[[hand_over]]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HandOverFolder {
+    /// The number of the axis on the machine.
+    pub axis: u8,
+    /// The channel that gets it, from 1.
+    pub to: u8,
+    /// Its letter there.
+    pub letter: String,
+    /// Its index of markers there.
+    pub index: u8,
+    /// The marker by which the PLC orders it.
+    pub order: String,
+    /// The marker by which the control says that it is done, while the order stands.
+    pub done: String,
+    /// Its line in the file, from 1, and those of its keys.
+    pub lines: (usize, BTreeMap<String, usize>),
 }
 
 /// The keys of the panel that an operator presses who stands by.
@@ -115,10 +165,74 @@ impl MachineFolder {
             state: optional("state").unwrap_or_else(|| "state".to_owned()),
             datum: root.section("datum").map(read_datum).unwrap_or_default(),
             operator: root.section("operator").map(read_operator).unwrap_or_default(),
+            program: optional("program"),
+            channels: root.list("channel").into_iter().map(read_channel).collect(),
+            hand_overs: root.list("hand_over").into_iter().map(read_hand_over).collect(),
         };
         root.finish();
         (folder, reader.faults())
     }
+}
+
+/// A text that must be there.
+fn needed_text(section: &Section, key: &'static str) -> String {
+    if !section.has(key) {
+        section.fault(format!("[[{}]] needs {key}", section.name));
+    }
+    section.text(key).unwrap_or_default().to_owned()
+}
+
+fn read_channel(section: Section) -> ChannelFolder {
+    let window = section.texts("window").into_iter();
+    let window = window.map(|(at, text)| (section.reader.place(at).0, text.to_owned()));
+    if !section.has("operator") {
+        section.fault("[[channel]] needs operator, with its start".to_owned());
+    }
+    let channel = ChannelFolder {
+        parameters: needed_text(&section, "parameters"),
+        axes: section.whole_numbers("axes", 0..=u8::MAX),
+        connectors: section.number("connectors", 1.0..=35.0).unwrap_or(1.0) as u8,
+        programs: section.text("programs").map(str::to_owned),
+        program: section.text("program").map(str::to_owned),
+        window: window.collect(),
+        datum: section.section("datum").map(read_datum).unwrap_or_default(),
+        operator: section.section("operator").map(read_station).unwrap_or_default(),
+        lines: section.lines(),
+    };
+    if !section.has("axes") {
+        section.fault("[[channel]] needs axes".to_owned());
+    }
+    section.finish();
+    channel
+}
+
+/// The keys of a channel beside the first one: the control voltage is not among them.
+fn read_station(section: Section) -> OperatorKeys {
+    let keys = OperatorKeys {
+        start: needed_text(&section, "start"),
+        control_voltage: None,
+        tool_change: section
+            .texts("tool_change")
+            .into_iter()
+            .map(|(_, key)| key.to_owned())
+            .collect(),
+    };
+    section.finish();
+    keys
+}
+
+fn read_hand_over(section: Section) -> HandOverFolder {
+    let hand_over = HandOverFolder {
+        axis: section.needed_number("axis", 0.0..=255.0) as u8,
+        to: section.needed_number("to", 1.0..=255.0) as u8,
+        letter: needed_text(&section, "letter"),
+        index: section.needed_number("index", 0.0..=4.0) as u8,
+        order: needed_text(&section, "order"),
+        done: needed_text(&section, "done"),
+        lines: section.lines(),
+    };
+    section.finish();
+    hand_over
 }
 
 fn read_datum(section: Section) -> Vec<(char, f64)> {

@@ -31,7 +31,7 @@ pub use chain::RelayFault;
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
 pub use event::{Event, EventError, Fault, KeyAction};
-pub use folder::{MachineFolder, OperatorKeys};
+pub use folder::{ChannelFolder, HandOverFolder, MachineFolder, OperatorKeys};
 pub use machine::Machine;
 pub use reader::{PlantError, Wire};
 pub use spindle::SpindleState;

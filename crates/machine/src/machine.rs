@@ -51,7 +51,8 @@ pub struct Machine {
     pub(crate) axes: Vec<Axis>,
     /// The axes X, Y, Z of the probe in `axes`.
     probe_axes: [Option<usize>; 3],
-    pub(crate) spindle: Option<Spindle>,
+    /// That of the control, and those of further channels.
+    pub(crate) spindles: Vec<Spindle>,
     pub(crate) chain: Chain,
     pub(crate) devices: Vec<Device>,
     pub(crate) panel: Panel,
@@ -106,9 +107,11 @@ impl Machine {
             tick_us: 0,
             time_us: 0,
             probe_axes: ['X', 'Y', 'Z'].map(index),
-            spindle: root
-                .section("spindle")
-                .map(|section| Spindle::read(section, step_s, seed)),
+            spindles: root
+                .one_or_more("spindle")
+                .into_iter()
+                .map(|section| Spindle::read(section, step_s, seed))
+                .collect(),
             chain: Chain::read(&root),
             devices: root
                 .named_sections("device")
@@ -207,9 +210,14 @@ impl Machine {
         self.axes().find(|axis| axis.letter == letter)
     }
 
-    /// The true state of the spindle.
+    /// The true state of the spindle, or of the first one.
     pub fn spindle(&self) -> Option<SpindleState> {
-        self.spindle.as_ref().map(Spindle::state)
+        self.spindles().next()
+    }
+
+    /// The true state of all spindles, in the order of the description.
+    pub fn spindles(&self) -> impl Iterator<Item = SpindleState> {
+        self.spindles.iter().map(Spindle::state)
     }
 
     /// The state of all things with two states.
@@ -245,7 +253,7 @@ impl Machine {
                 .iter()
                 .any(|device| device.clamps == Some(axis.letter) && device.is_forth());
         }
-        if let Some(spindle) = &mut self.spindle {
+        for spindle in &mut self.spindles {
             spindle.set_power(voltage, &self.live);
             spindle.shift(&self.live);
         }
@@ -282,7 +290,7 @@ impl Machine {
         for axis in &mut self.axes {
             axis.volts = volts(axis.output);
         }
-        if let Some(spindle) = &mut self.spindle {
+        for spindle in &mut self.spindles {
             spindle.volts = volts(spindle.output);
         }
     }
@@ -302,10 +310,10 @@ impl Machine {
                 put(input, axis.read_encoder(again));
             }
         }
-        if let Some(spindle) = &mut self.spindle
-            && let Some(input) = spindle.counter.as_ref().map(|counter| counter.input)
-        {
-            put(input, spindle.read_encoder(again));
+        for spindle in &mut self.spindles {
+            if let Some(input) = spindle.counter.as_ref().map(|counter| counter.input) {
+                put(input, spindle.read_encoder(again));
+            }
         }
     }
 }
@@ -337,7 +345,7 @@ impl Machine {
             for axis in &mut self.axes {
                 axis.step(self.step_s);
             }
-            if let Some(spindle) = &mut self.spindle {
+            for spindle in &mut self.spindles {
                 spindle.step(self.step_s);
             }
             self.tick_us += self.step_us;
@@ -358,7 +366,11 @@ impl Machine {
         for axis in self.axes.iter_mut().filter(|axis| axis.output == output) {
             axis.volts = volts;
         }
-        if let Some(spindle) = self.spindle.as_mut().filter(|spindle| spindle.output == output) {
+        for spindle in self
+            .spindles
+            .iter_mut()
+            .filter(|spindle| spindle.output == output)
+        {
             spindle.volts = volts;
         }
     }
@@ -375,10 +387,8 @@ impl Machine {
         if let Some(axis) = self.axes.iter_mut().find(|axis| at(&axis.counter)) {
             return axis.read_encoder(again);
         }
-        match &mut self.spindle {
-            Some(spindle) if at(&spindle.counter) => spindle.read_encoder(again),
-            _ => Encoder::default(),
-        }
+        let spindle = self.spindles.iter_mut().find(|spindle| at(&spindle.counter));
+        spindle.map_or_else(Encoder::default, |spindle| spindle.read_encoder(again))
     }
 
     /// Reads the PLC inputs.
@@ -389,7 +399,7 @@ impl Machine {
         for axis in &self.axes {
             axis.set_inputs(inputs);
         }
-        if let Some(spindle) = &self.spindle {
+        for spindle in &self.spindles {
             spindle.set_inputs(inputs);
         }
         for device in &self.devices {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::RangeInclusive;
 
-use bahn_servo::{INPUTS, OUTPUTS};
+use bahn_servo::{ENCODERS, INPUTS, NOMINALS, OUTPUTS};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -144,7 +144,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Line and column of a place of the text, from 1.
-    fn place(&self, at: usize) -> (usize, usize) {
+    pub fn place(&self, at: usize) -> (usize, usize) {
         let line = self.lines.partition_point(|start| *start <= at);
         let start = self.lines.get(line.saturating_sub(1)).copied().unwrap_or(0);
         let before = self.text.get(start..at).unwrap_or_default();
@@ -227,6 +227,14 @@ impl<'r, 't> Section<'r, 't> {
         }
     }
 
+    /// The line of the table, and of each of its keys, from 1.
+    pub fn lines(&self) -> (usize, BTreeMap<String, usize>) {
+        let line = |at| self.reader.place(at).0;
+        let keys = self.table.iter();
+        let keys = keys.map(|(key, _)| (key.get_ref().to_string(), line(key.span().start)));
+        (line(self.at), keys.collect())
+    }
+
     /// Whether the key is there.
     pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
@@ -294,6 +302,27 @@ impl<'r, 't> Section<'r, 't> {
         Some(numbers)
     }
 
+    /// A list of whole numbers within a range.
+    pub fn whole_numbers(&self, key: &'static str, range: RangeInclusive<u8>) -> Vec<u8> {
+        let Some(value) = self.value(key) else {
+            return Vec::new();
+        };
+        let whole = |entry: &Spanned<DeValue<'t>>| {
+            let number = entry.get_ref().as_integer()?.as_str().parse().ok()?;
+            range.contains(&number).then_some(number)
+        };
+        let list = value.get_ref().as_array();
+        list.and_then(|list| list.iter().map(whole).collect())
+            .unwrap_or_else(|| {
+                let (min, max) = (range.start(), range.end());
+                self.reader.fault(
+                    value.span().start,
+                    format!("{key} is a list of whole numbers from {min} to {max}"),
+                );
+                Vec::new()
+            })
+    }
+
     pub fn flag(&self, key: &'static str) -> Option<bool> {
         let value = self.value(key)?;
         let flag = value.get_ref().as_bool();
@@ -339,6 +368,32 @@ impl<'r, 't> Section<'r, 't> {
             self.fault_at(key, format!("{key} is one of {}", words.join(", ")));
         }
         index
+    }
+
+    /// A nominal value output: 1 to 5 and S are those of a control, 7 and following those of further channels; its
+    /// place among all.
+    pub fn output(&self, key: &'static str) -> Option<usize> {
+        let place = |text: &str| match text {
+            "S" => Some(SPINDLE),
+            _ => connector(text, NOMINALS).filter(|place| *place != SPINDLE),
+        };
+        let form = format!("one of 1, 2, 3, 4, 5, S, and 7 to {NOMINALS} of further channels");
+        self.place(key, place, &form)
+    }
+
+    /// An input of an encoder, X1 to X6, X7 and following of further channels; its place among all.
+    pub fn encoder_input(&self, key: &'static str) -> Option<usize> {
+        let place = |text: &str| connector(text.strip_prefix('X')?, ENCODERS);
+        let form = format!("one of X1, X2, X3, X4, X5, X6, and X7 to X{ENCODERS} of further channels");
+        self.place(key, place, &form)
+    }
+
+    fn place(&self, key: &'static str, place: impl Fn(&str) -> Option<usize>, form: &str) -> Option<usize> {
+        let place = place(self.text(key)?);
+        if place.is_none() {
+            self.fault_at(key, format!("{key} is {form}"));
+        }
+        place
     }
 
     /// A PLC input: `I24`, or `not I24` for a contact that opens.
@@ -468,6 +523,14 @@ impl<'r, 't> Section<'r, 't> {
             .collect()
     }
 
+    /// One table, or the tables of a list: `[spindle]`, or several `[[spindle]]`.
+    pub fn one_or_more(&self, key: &'static str) -> Vec<Section<'r, 't>> {
+        match self.value(key).is_some_and(|value| value.get_ref().is_array()) {
+            true => self.list(key),
+            false => self.section(key).into_iter().collect(),
+        }
+    }
+
     /// The tables of a list, as several `[[spindle.gear]]`.
     pub fn list(&self, key: &'static str) -> Vec<Section<'r, 't>> {
         let Some(value) = self.value(key) else {
@@ -506,6 +569,16 @@ impl<'r, 't> Section<'r, 't> {
             }
         }
     }
+}
+
+/// The output of the spindle, behind 1 to 5.
+const SPINDLE: usize = 5;
+
+/// The place of a connector that is numbered from 1.
+fn connector(text: &str, count: usize) -> Option<usize> {
+    let digits = !text.starts_with('0') && text.bytes().all(|byte| byte.is_ascii_digit());
+    let number = text.parse::<usize>().ok().filter(|_| digits)?;
+    (number <= count).then(|| number.checked_sub(1))?
 }
 
 /// `I12` or `not I12`.

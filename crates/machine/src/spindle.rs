@@ -97,9 +97,7 @@ impl Spindle {
             section.fault_at("start_gear", format!("there are {} gears", gears.len()));
         }
         let spindle = Spindle {
-            output: section
-                .word("output", &["1", "2", "3", "4", "5", "S"])
-                .unwrap_or(5),
+            output: section.output("output").unwrap_or(5),
             enable: section.coil("enable"),
             ready: section.contact("ready"),
             at_speed: section.contact("at_speed"),
@@ -261,7 +259,7 @@ fn read_gear(section: Section) -> Gear {
 }
 
 fn read_encoder(section: Section, seed: u64) -> Option<Counter> {
-    let input = section.word("input", &["X1", "X2", "X3", "X4", "X5", "X6"]);
+    let input = section.encoder_input("input");
     let lines = section.needed_number("lines", 1.0..=100_000.0);
     let mark = section.number("mark_deg", 0.0..=360.0).unwrap_or(0.0) / 360.0;
     let reversed = section.flag("reversed").unwrap_or(false);

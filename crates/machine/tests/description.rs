@@ -24,7 +24,7 @@ seed = -1
 acknowledgement = \"I3\"
 pull_im_ms = 10
 [axis.X]
-output = \"7\"
+output = \"6\"
 speed = 15000
 volts = 20
 travel = [100, -100]
@@ -39,7 +39,7 @@ START = \"O192\"
             "2:8: seed is a number from 0 to 1000000000000000",
             "5:1: unknown key `pull_im_ms` in [emergency_stop]; there are acknowledgement, control_voltage_key, \
              drop_out_ms, limit_switches, pull_in_ms, switched_outputs",
-            "7:10: output is one of 1, 2, 3, 4, 5, S",
+            "7:10: output is one of 1, 2, 3, 4, 5, S, and 7 to 40 of further channels",
             "9:9: volts is a number from 0.1 to 10",
             "10:10: travel runs from a lower to a higher value",
             "11:44: input is an input \"I0\" to \"I383\", or \"not I0\"",
@@ -98,6 +98,60 @@ fn what_is_missing_is_named() {
         assert!(
             faults.iter().any(|fault| fault.ends_with(missing)),
             "{missing}: {faults:?}"
+        );
+    }
+}
+
+/// Connectors of further channels: an axis at output 7 and X7, a second spindle at output 12.
+#[test]
+fn further_channels_have_connectors_of_their_own() {
+    let text = r#"
+        name = "two"
+        [emergency_stop]
+        acknowledgement = "I3"
+        [axis.X]
+        output = "1"
+        speed = 6000
+        volts = 10
+        encoder = { input = "X1", period_um = 20 }
+        [axis.U]
+        output = "7"
+        speed = 3000
+        volts = 10
+        encoder = { input = "X7", period_um = 20 }
+        [[spindle]]
+        output = "S"
+        rpm = 6000
+        volts = 10
+        [[spindle]]
+        output = "12"
+        rpm = 3000
+        volts = 10
+        [[spindle.gear]]
+        ratio = 2
+    "#;
+    let mut machine = Machine::from_toml(text).unwrap();
+    machine.set_control_ready(true);
+    machine.advance(100_000);
+    machine.set_nominal(6, 5.0);
+    machine.set_nominal(11, -10.0);
+    machine.advance(2_000_000);
+    // 1500 mm/min for 2 s are 50 mm: 2500 signal periods.
+    assert!(
+        (machine.encoder(6).count - 2500 * 1024).abs() <= 2,
+        "{}",
+        machine.encoder(6).count
+    );
+    assert_eq!(machine.encoder(0).count, 0);
+    let turning: Vec<f64> = machine.spindles().map(|spindle| spindle.rpm).collect();
+    assert!(
+        turning[0] == 0.0 && (turning[1] + 1500.0).abs() < 1.0,
+        "{turning:?}"
+    );
+    for (wrong, right) in [("\"7\"", "\"6\""), ("\"X7\"", "\"X41\"")] {
+        assert!(
+            Machine::from_toml(&text.replace(wrong, right)).is_err(),
+            "{right}"
         );
     }
 }

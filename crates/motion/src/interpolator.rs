@@ -458,6 +458,20 @@ impl<E> Interpolator<E> {
         }
     }
 
+    /// Why no more elements come behind those that are known, as long as that was not taken.
+    pub fn stop(&self) -> Option<&Stop<E>> {
+        match &self.after {
+            After::Stop(stop) => Some(stop),
+            After::Open | After::Taken => None,
+        }
+    }
+
+    /// What comes from now on is planned within other limits; what was read already keeps its own. Overrides stay.
+    pub fn set_limits(&mut self, limits: &Limits) {
+        self.ring
+            .set_limits(limits, self.overrides, self.rapid_limit_mm_min);
+    }
+
     /// Lets the source go on after a barrier.
     pub fn resume<S>(&mut self, source: &mut S, live: LiveData)
     where

@@ -9,7 +9,7 @@ use crate::envelope::Envelope;
 use crate::gate::Gates;
 use crate::item::Item;
 use crate::joints::Joints;
-use crate::limits::Dynamics;
+use crate::limits::{Dynamics, Limits};
 use crate::motion::Motion;
 use crate::stretch::Wish;
 
@@ -192,6 +192,13 @@ impl Ring {
         self.end = item.element.end;
         self.outputs += item.outputs();
         self.items.push_back(item);
+    }
+
+    /// Other limits for what comes from now on, with overrides, %, and rapid traverse, mm/min, as they are.
+    pub(crate) fn set_limits(&mut self, limits: &Limits, percent: [f64; 3], rapid_mm_min: f64) {
+        self.dynamics = Dynamics::new(limits);
+        self.dynamics.set_overrides(percent);
+        self.dynamics.set_rapid_limit(rapid_mm_min);
     }
 
     /// Other overrides, %: feed, rapid traverse, spindle.

@@ -7,6 +7,7 @@ use serde::Serialize;
 use bahn_control::datum_shifts;
 use bahn_host::{LoadedMachine, tool_table};
 use bahn_interpreter::{Rules, Settings};
+use bahn_parameters::ParameterList;
 
 use super::load;
 use super::options::CheckOptions;
@@ -113,28 +114,43 @@ fn check_programs(
     format: Format,
     interrupt: &Interrupt,
 ) -> Result<Vec<CheckReport>, UsageError> {
+    let mut reports = Vec::new();
+    let mut folders = Vec::new();
+    let others = machine.channels.iter().map(|channel| &channel.parameters);
+    for (channel, list) in [&machine.parameters].into_iter().chain(others).enumerate() {
+        let folder = machine.programs(channel);
+        // Channels may share a folder; the first of them says how its programs are read.
+        if folders.contains(&folder) {
+            continue;
+        }
+        let how = how(machine, list, format);
+        for path in programs(&folder) {
+            reports.push(check::check(&path, &how, interrupt)?);
+            if interrupt.is_requested() {
+                return Ok(reports);
+            }
+        }
+        folders.push(folder);
+    }
+    Ok(reports)
+}
+
+/// How the programs of a channel with these machine parameters are checked.
+fn how(machine: &LoadedMachine, list: &ParameterList, format: Format) -> Check {
     let tools = machine.tools.as_ref();
-    let how = Check {
+    Check {
         settings: Settings {
-            model: machine.parameters.model(),
-            rules: Rules::of(&machine.parameters),
+            model: list.model(),
+            rules: Rules::of(list),
             barred_tools: tool_table::barred(tools.into_iter().flatten()),
             datum_table: machine
                 .datum_table()
-                .map(|table| datum_shifts(table, &machine.parameters).into()),
+                .map(|table| datum_shifts(table, list).into()),
             tools: tools.map(|tools| tools.iter().map(|(number, tool)| (*number, tool.shape)).collect()),
             ..Settings::default()
         },
         format,
-    };
-    let mut reports = Vec::new();
-    for path in programs(&machine.root.join(&machine.folder.programs)) {
-        reports.push(check::check(&path, &how, interrupt)?);
-        if interrupt.is_requested() {
-            break;
-        }
     }
-    Ok(reports)
 }
 
 /// The programs in a folder, in the order of their names; none where it cannot be read.

@@ -31,6 +31,7 @@ key CODE                            a key of the keyboard by its code, 58 to 127
 test PROGRAM                        TEST RUN beside what the machine does
 end-test                            breaks it off
 offset adjust|off                   answers to code number 75368
+2: COMMAND                          a command to the second channel
 ";
 
 /// Prints the names of a machine.
@@ -51,6 +52,20 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
         printable(&machine.folder.name),
         machine.parameters.model()
     );
+    for (number, channel) in (2..).zip(&machine.channels) {
+        let axes = channel.axes.iter().enumerate().filter_map(|(index, id)| {
+            let letter = channel
+                .parameters
+                .axis_parameters(u8::try_from(index).ok()?)
+                .letter?;
+            Some(format!("{number}:{} (axis {})", letter.letter(), (*id)?.number()))
+        });
+        let axes: Vec<String> = axes.collect();
+        text += &row(
+            &format!("channel {number}"),
+            axes.iter().map(String::as_str).collect(),
+        );
+    }
     text += &row("axes", axes.iter().map(String::as_str).collect());
     text += &row("keys", plant.keys().collect());
     text += &row("lamps", plant.lamps().collect());

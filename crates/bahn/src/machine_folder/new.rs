@@ -26,8 +26,7 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         .into_owned();
     let name = options.name.clone().unwrap_or(own_name);
     let model = options.model;
-    let (shipped, shipped_model) = shipped_for(model)
-        .ok_or_else(|| UsageError::new(format!("no machine to start from is shipped for the {model}")))?;
+    let (shipped, shipped_model) = shipped_for(model, options.from.as_deref())?;
     let files = shipped
         .files
         .iter()
@@ -75,6 +74,7 @@ const OLD_DATUM: &[(&str, &str)] = &[("X", "-274"), ("Y", "-147"), ("Z", "-221.5
 fn description(text: &str, name: &str, model: ControlModel) -> String {
     let quoted = toml::Value::from(name).to_string();
     let datum = |key: &str| OLD_DATUM.iter().find(|(axis, _)| is_old(model) && *axis == key);
+    // Only the machine as a whole has a name and a model.
     let line = |line: &str| {
         let key = line.split('=').next().map_or("", str::trim);
         match (key, datum(key)) {
@@ -140,12 +140,24 @@ fn parameters(text: &str, model: ControlModel) -> String {
 }
 
 /// The shipped machine that is a start for a model, and its own model.
-fn shipped_for(model: ControlModel) -> Option<(bahn_machines::ShippedMachine, ControlModel)> {
-    let shipped = bahn_machines::ALL
-        .into_iter()
-        .find(|shipped| shipped.models.contains(&model.id()))?;
-    let own = shipped.models.first()?.parse().ok()?;
-    Some((shipped, own))
+fn shipped_for(
+    model: ControlModel,
+    name: Option<&str>,
+) -> Result<(bahn_machines::ShippedMachine, ControlModel), UsageError> {
+    let is_meant = |shipped: &&bahn_machines::ShippedMachine| {
+        shipped.models.contains(&model.id()) && name.is_none_or(|name| shipped.name == name)
+    };
+    let shipped = bahn_machines::ALL.iter().find(is_meant);
+    let own = shipped.and_then(|shipped| shipped.models.first()?.parse().ok());
+    shipped.copied().zip(own).ok_or_else(|| {
+        let named = name.map_or(String::new(), |name| format!(" `{name}`"));
+        let names =
+            bahn_machines::ALL.map(|shipped| format!("{} ({})", shipped.name, shipped.models.join(", ")));
+        UsageError::new(format!(
+            "no machine{named} to start from is shipped for the {model}; there are {}",
+            names.join(", ")
+        ))
+    })
 }
 
 fn is_old(model: ControlModel) -> bool {

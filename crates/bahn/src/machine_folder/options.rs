@@ -32,9 +32,10 @@ Examples:
   bahn machine new mymill --model tnc407
   bahn machine check mymill
   bahn run INDEX.H --machine mymill
+  bahn machine new mytwin --from twin
 
 Models of the 400 series start from a mill with rotary table and gear spindle, the others from a small mill
-without. The README.md in the folder explains every file and key.";
+without; twin is a portal mill with two channels. The README.md in the folder explains every file and key.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
@@ -56,6 +57,9 @@ pub(crate) struct NewOptions {
     /// Control model.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
+    /// A shipped machine by its name, instead of the usual one for the model: mill, mill-tnc360, twin.
+    #[arg(long, value_name = "MACHINE")]
+    pub from: Option<String>,
     /// Name for people; that of the folder without it.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,

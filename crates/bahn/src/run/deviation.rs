@@ -5,7 +5,7 @@
 
 use std::collections::VecDeque;
 
-use bahn_control::{AxisSignal, Control, Signal};
+use bahn_control::{AxisSignal, ChannelView, Signal};
 use bahn_path::BlockRef;
 
 use super::cause::{Cause, Moment};
@@ -54,36 +54,47 @@ pub(super) struct Deviation {
 }
 
 impl Deviation {
-    pub fn new(control: &Control) -> Deviation {
+    pub fn new(channel: ChannelView) -> Deviation {
         // Three linear axes span the contour; others run beside it.
-        let linear: Vec<char> = control
+        let linear: Vec<char> = channel
             .axis_letters()
             .filter(|letter| matches!(letter, 'X' | 'Y' | 'Z'))
             .collect();
-        let axes = control.axis_letters().map(|letter| AxisExtremes {
-            letter,
-            max_lag: 0.0,
-            lag_block: None,
-            max_deviation: 0.0,
-            deviation_block: None,
-            linear: linear.iter().position(|own| *own == letter),
-        });
-        Deviation {
-            axes: axes.collect(),
+        let mut deviation = Deviation {
+            axes: Vec::new(),
             linear,
             path: VecDeque::with_capacity(POINTS),
             passed: 0,
             speeds: VecDeque::with_capacity(SPEEDS),
             max_mm: 0.0,
             cause: None,
+        };
+        deviation.meet(channel);
+        deviation
+    }
+
+    /// Axes may come from another channel.
+    fn meet(&mut self, channel: ChannelView) {
+        for letter in channel.axis_letters() {
+            if !self.axes.iter().any(|axis| axis.letter == letter) {
+                self.axes.push(AxisExtremes {
+                    letter,
+                    max_lag: 0.0,
+                    lag_block: None,
+                    max_deviation: 0.0,
+                    deviation_block: None,
+                    linear: self.linear.iter().position(|own| *own == letter),
+                });
+            }
         }
     }
 
     /// Takes a contour cycle of a running program. `contour` says that it is machined, not positioned.
-    pub fn cycle(&mut self, control: &Control, contour: bool) {
-        let block = control.element().map(|element| element.block);
+    pub fn cycle(&mut self, channel: ChannelView, contour: bool) {
+        self.meet(channel);
+        let block = channel.element().map(|element| element.block);
         for axis in &mut self.axes {
-            let lag = control.observe(&Signal::Axis(axis.letter, AxisSignal::Lag)).abs();
+            let lag = channel.observe(&Signal::Axis(axis.letter, AxisSignal::Lag)).abs();
             if lag > axis.max_lag {
                 (axis.max_lag, axis.lag_block) = (lag, block);
             }
@@ -91,7 +102,7 @@ impl Deviation {
         let read = |signal| {
             let mut point = [0.0; 3];
             for (value, letter) in point.iter_mut().zip(&self.linear) {
-                *value = control.observe(&Signal::Axis(*letter, signal));
+                *value = channel.observe(&Signal::Axis(*letter, signal));
             }
             point
         };
@@ -107,7 +118,7 @@ impl Deviation {
         if self.speeds.len() == SPEEDS {
             self.speeds.pop_front();
         }
-        let path_speed = control.observe(&Signal::PathSpeed);
+        let path_speed = channel.observe(&Signal::PathSpeed);
         self.speeds.push_back(path_speed);
         let Some(across) = self.nearest(actual) else {
             return;

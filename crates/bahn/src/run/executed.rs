@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use bahn_control::{Control, RunState};
+use bahn_control::{ChannelView, Control, RunState};
 use bahn_host::Host;
 use bahn_path::{BlockRef, PathElement};
 
@@ -14,6 +14,8 @@ use crate::test_run::{Outputs, stop_function};
 
 /// Follows the path.
 pub(super) struct Executed {
+    /// Of which channel, from 0.
+    channel: usize,
     pub record: Record,
     pub cutting: Option<Cutting>,
     pub outputs: Outputs,
@@ -26,8 +28,9 @@ pub(super) struct Executed {
 }
 
 impl Executed {
-    pub fn new(cutting: Option<Cutting>, outputs: Outputs) -> Executed {
+    pub fn new(channel: usize, cutting: Option<Cutting>, outputs: Outputs) -> Executed {
         Executed {
+            channel,
             record: Record::new(bahn_path::Position::UNKNOWN),
             cutting,
             outputs,
@@ -40,30 +43,32 @@ impl Executed {
 
     /// Takes what a cycle has executed; `running` says that a run is on its way.
     pub fn cycle(&mut self, host: &mut Host, running: bool) -> Result<(), UsageError> {
-        if running {
+        if running && self.channel == 0 {
             self.turning.cycle(host.control(), host.plant());
         }
-        if let Some(dropped) = host.take_dropped_path() {
+        if let Some(dropped) = host.take_dropped_path(self.channel) {
             self.ahead.retain(|element| element.sequence < dropped);
         }
-        self.ahead.extend(host.take_path());
-        for warning in host.take_warnings() {
+        self.ahead.extend(host.take_path(self.channel));
+        for warning in host.take_warnings(self.channel) {
             self.record
                 .warn(warning.block, Notice::Program(warning.kind), warning.count);
         }
-        let control = host.control();
-        let all = control.has_ended();
-        if let Some(element) = control.element() {
-            self.last_seen = Some((ElementId::of(element), control.rest_mm()));
+        let Some(channel) = host.control().channel(self.channel) else {
+            return Ok(());
+        };
+        let all = channel.has_ended();
+        if let Some(element) = channel.element() {
+            self.last_seen = Some((ElementId::of(element), channel.rest_mm()));
         }
-        let current = control.element().map(|element| element.sequence);
+        let current = channel.element().map(|element| element.sequence);
         while let Some(element) = self.ahead.front() {
             if !all && current.is_none_or(|current| element.sequence >= current) {
                 break;
             }
-            self.take_front(control)?;
+            self.take_front(channel)?;
         }
-        self.note_stop(control);
+        self.note_stop(channel);
         Ok(())
     }
 
@@ -71,7 +76,7 @@ impl Executed {
     pub fn finish(&mut self, control: &Control) -> Result<(), UsageError> {
         /// Way that may be left when an element is done.
         const DONE_MM: f64 = 1e-6;
-        let Some((current, rest_mm)) = self.last_seen else {
+        let Some(((current, rest_mm), channel)) = self.last_seen.zip(control.channel(self.channel)) else {
             return Ok(());
         };
         while let Some(element) = self.ahead.front() {
@@ -79,7 +84,7 @@ impl Executed {
             if element.sequence > current.sequence || is_current && rest_mm > DONE_MM {
                 break;
             }
-            self.take_front(control)?;
+            self.take_front(channel)?;
             if is_current {
                 break;
             }
@@ -88,7 +93,7 @@ impl Executed {
     }
 
     /// Hands on the next element.
-    fn take_front(&mut self, control: &Control) -> Result<(), UsageError> {
+    fn take_front(&mut self, control: ChannelView) -> Result<(), UsageError> {
         let Some(element) = self.ahead.pop_front() else {
             return Ok(());
         };
@@ -107,7 +112,7 @@ impl Executed {
     }
 
     /// Lists programmed stops.
-    fn note_stop(&mut self, control: &Control) {
+    fn note_stop(&mut self, control: ChannelView) {
         let stopped = control.run_state() == RunState::Stopped;
         if stopped && !self.last_stop {
             let block = control.element().map(|element| element.block);
@@ -121,7 +126,7 @@ impl Executed {
 }
 
 /// The function of a block that stops the run.
-pub(super) fn stop_name(control: &Control, block: Option<BlockRef>) -> &'static str {
+pub(super) fn stop_name(control: ChannelView, block: Option<BlockRef>) -> &'static str {
     let run = control.interpreter();
     let function = run.zip(block).and_then(|(run, block)| stop_function(run, block));
     function.unwrap_or("programmed stop")

@@ -1,6 +1,6 @@
 //! What a session lists for its report.
 
-use bahn_control::{Control, Message, Shown};
+use bahn_control::{ChannelView, Control, Message, Shown};
 use bahn_host::Why;
 use bahn_path::BlockRef;
 use serde::Serialize;
@@ -70,12 +70,16 @@ impl Listed {
             Message::Program(error) => Some(error.detail.clone()).filter(|detail| !detail.is_empty()),
             other => other.place(),
         };
-        let program = shown.block.map(|block| program_name(control, block));
+        let channel = control.channel(shown.channel.unwrap_or(0));
+        let program = shown
+            .block
+            .zip(channel)
+            .map(|(block, channel)| program_name(channel, block));
         let program = program.unwrap_or_default();
         let block = shown.block.filter(|_| !program.is_empty());
         self.messages.push(Said {
             time_s: shown.time_us as f64 * 1e-6,
-            text: control.message_text(&shown.message),
+            text: control.shown_text(shown),
             place,
             flashing: shown.flashing,
             block: block.map(|block| block.block),
@@ -84,13 +88,13 @@ impl Listed {
     }
 
     /// The operator pressed a key because the run waited for him.
-    pub fn confirm(&mut self, control: &Control, key: String, why: Why) {
+    pub fn confirm(&mut self, control: ChannelView, time_us: u64, key: String, why: Why) {
         if self.confirmed.len() >= CONFIRMED_MAX {
             return;
         }
         let block = control.element().map(|element| element.block);
         self.confirmed.push(Confirmed {
-            time_s: control.time_us() as f64 * 1e-6,
+            time_s: time_us as f64 * 1e-6,
             key,
             why: match why {
                 Why::Stop => stop_name(control, block),
@@ -102,7 +106,7 @@ impl Listed {
 }
 
 /// Name of the program of a block.
-fn program_name(control: &Control, block: BlockRef) -> String {
+fn program_name(control: ChannelView, block: BlockRef) -> String {
     control
         .interpreter()
         .and_then(|run| run.program(block.program))

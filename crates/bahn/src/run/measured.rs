@@ -21,7 +21,7 @@ pub(super) struct Measured {
 impl Measured {
     pub fn new(control: &Control) -> Measured {
         Measured {
-            deviation: Deviation::new(control),
+            deviation: Deviation::new(control.first()),
             times: Times::default(),
             power_up_us: 0,
             reference_us: 0,
@@ -48,7 +48,7 @@ impl Measured {
             self.times.cycle(control);
             let feed = control.element().map(|element| element.feed);
             let contour = matches!(feed, Some(FeedRate::Programmed(_)));
-            self.deviation.cycle(control, contour);
+            self.deviation.cycle(control.first(), contour);
         } else {
             self.deviation.restart();
         }

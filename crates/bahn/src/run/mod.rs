@@ -2,10 +2,11 @@
 //!
 //! - `options`: options and help text;
 //! - `session`: a host, cycle after cycle, with the script that it plays and those who follow it;
-//! - `executed`: what was done of the path; `measured`: `deviation` and `times`; `listed`: messages and keys;
+//! - `beside`: the channels beside the first one; `executed`: what was done of the path; `measured`: `deviation` and `times`; `listed`: messages and keys;
 //!   `recording`: signals over time;
 //! - `report`: what is said in the end.
 
+mod beside;
 mod cause;
 mod deviation;
 mod executed;
@@ -43,7 +44,7 @@ use crate::test_run::{Outputs, print_error};
 use crate::{Outcome, UsageError, console, files, report_text, settings};
 use executed::Executed;
 use recording::Recording;
-use report::{ProgramReport, Refusal, RunReport};
+use report::{ChannelReport, ProgramReport, Refusal, RunReport};
 use session::{Ended, Patience, Session};
 
 /// Runs a program on a machine and reports.
@@ -56,8 +57,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let inputs = machine.inputs();
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     files::keep_inputs(&inputs, &options.written())?;
-    let folder = machine.root.join(&machine.folder.programs);
-    let programs = Arc::new(FolderPrograms::new(&folder, options.file.as_deref())?);
+    let mut programs = all_programs(options, &machine)?;
     let script = match load_script(options, &machine)? {
         Ok(script) => script,
         Err(faults) => return refused(&faults, options),
@@ -67,6 +67,12 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     settings::say_without_effect(&power_on.parameters, &options.run.mp);
     machine.parameters = power_on.parameters.clone();
     let operator = operator(options, &machine, &programs);
+    for (channel, programs) in power_on.channels.iter_mut().zip(programs.split_off(1)) {
+        channel.programs = programs;
+    }
+    let Some(programs) = programs.pop() else {
+        return Ok(Outcome::WrongUse);
+    };
     let shared = Arc::clone(&programs) as Arc<dyn bahn_control::Programs>;
     let mut host = Host::new(&machine, power_on, shared, operator);
     if let Some(path) = &options.run.log {
@@ -91,8 +97,8 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
             settings::left_hand(machine.tools.as_ref()),
         )
     });
-    let recording = recording(options, host.control())?;
-    let executed = Executed::new(cutting, Outputs::create(&options.output)?);
+    let recording = recording(options, &machine, host.control())?;
+    let executed = Executed::new(0, cutting, Outputs::create(&options.output)?);
     let patience = Patience {
         time_us: (options.run.max_time * 1e6) as u64,
         wait_us: (options.run.max_wait * 1e6) as u64,
@@ -161,7 +167,34 @@ fn power_on(options: &RunMachineOptions, machine: &LoadedMachine) -> Result<Powe
     Ok(power_on)
 }
 
-fn operator(options: &RunMachineOptions, machine: &LoadedMachine, programs: &FolderPrograms) -> Operator {
+/// The programs of each channel: those that were named in their order, or those of machine.toml.
+fn all_programs(
+    options: &RunMachineOptions,
+    machine: &LoadedMachine,
+) -> Result<Vec<Arc<FolderPrograms>>, UsageError> {
+    let channels = 1 + machine.channels.len();
+    if options.files.len() > channels {
+        return Err(UsageError::new(match channels {
+            1 => "the machine has one channel: it runs one program".to_owned(),
+            _ => format!("the machine has {channels} channels: there are more programs"),
+        }));
+    }
+    let mut programs = Vec::new();
+    for channel in 0..channels {
+        let main = match options.files.is_empty() {
+            true => machine.usual_program(channel).map(Path::new),
+            false => options.files.get(channel).map(PathBuf::as_path),
+        };
+        programs.push(Arc::new(FolderPrograms::new(&machine.programs(channel), main)?));
+    }
+    Ok(programs)
+}
+
+fn operator(
+    options: &RunMachineOptions,
+    machine: &LoadedMachine,
+    programs: &[Arc<FolderPrograms>],
+) -> Operator {
     let attendance = options
         .run
         .operator
@@ -171,26 +204,45 @@ fn operator(options: &RunMachineOptions, machine: &LoadedMachine, programs: &Fol
             run if run.script.is_some() => Attendance::Start,
             _ => Attendance::Full,
         });
-    let job = programs.main_name().map(|name| Job {
-        program: name.to_owned(),
-        mode: if options.run.single_block {
-            Mode::SingleBlock
-        } else {
-            Mode::FullSequence
-        },
-        start_block: options.run.start_block,
-    });
-    Operator::new(attendance, machine.folder.operator.clone(), job)
+    let mode = match options.run.single_block {
+        true => Mode::SingleBlock,
+        false => Mode::FullSequence,
+    };
+    let job = |channel: usize| {
+        let name = programs.get(channel)?.main_name()?;
+        Some(Job {
+            program: name.to_owned(),
+            mode,
+            start_block: options.run.start_block.filter(|_| channel == 0),
+        })
+    };
+    let first = Operator::new(attendance, machine.folder.operator.clone(), job(0));
+    let others = (1..).zip(&machine.channels);
+    others.fold(first, |operator, (number, channel)| {
+        operator.with_channel(channel.folder.operator.clone(), job(number))
+    })
 }
 
-fn recording(options: &RunMachineOptions, control: &Control) -> Result<Option<Recording>, UsageError> {
+fn recording(
+    options: &RunMachineOptions,
+    machine: &LoadedMachine,
+    control: &Control,
+) -> Result<Option<Recording>, UsageError> {
     let wanted = &options.recording;
     let Some(path) = &wanted.record else {
         return Ok(None);
     };
-    let letters: Vec<char> = control.axis_letters().collect();
     for signal in &wanted.signals {
-        if let Signal::Axis(letter, _) = signal
+        let Some(channel) = control.channel(signal.channel) else {
+            return Err(UsageError::new(format!(
+                "--signals {signal}: the machine has no channel {}",
+                signal.channel + 1
+            )));
+        };
+        let guests = machine.hand_overs.iter().filter(|one| one.to == signal.channel);
+        let guests = guests.map(|one| one.letter.letter());
+        let letters: Vec<char> = channel.axis_letters().chain(guests).collect();
+        if let Signal::Axis(letter, _) = &signal.signal
             && !letters.contains(letter)
         {
             let known: Vec<String> = letters.iter().map(char::to_string).collect();
@@ -240,6 +292,13 @@ fn finish(
         End::Failed(error) => Some(error.clone()),
         _ => None,
     };
+    let failed_in = failed_channel(&ended);
+    // What another channel ended is no fault of the first one.
+    let end = match end {
+        End::Failed(_) if failed_in > 0 && session.host.control().has_ended() => End::Completed,
+        End::Failed(_) if failed_in > 0 => End::Interrupted,
+        end => end,
+    };
     let record = &mut session.executed.record;
     let mut record = std::mem::replace(record, Record::new(bahn_path::Position::UNKNOWN));
     record.machining_time_s = session.measured.program_us as f64 * 1e-6;
@@ -253,9 +312,18 @@ fn finish(
         },
     };
     if let Some(error) = &failure {
-        say_failure(error, &session, programs);
+        say_failure(error, failed_in, &session, programs);
     }
     let mut report = RunReport::new(&session, program, &machine.folder.name, model);
+    for channel in &mut session.beside {
+        let error = failure
+            .as_deref()
+            .filter(|_| channel.channel == failed_in)
+            .cloned();
+        report
+            .channels
+            .extend(ChannelReport::of(channel, &session.host, error, model));
+    }
     let outcome = match &ended {
         Ended::Completed if session.play.failed.is_empty() => Outcome::Fine,
         Ended::Interrupted => {
@@ -297,10 +365,19 @@ fn finish(
     })
 }
 
+/// The channel, from 0, whose message broke the run off.
+fn failed_channel(ended: &Ended) -> usize {
+    match ended {
+        Ended::Broken(Some(shown)) | Ended::Hangs(_, Some(shown)) => shown.channel.unwrap_or(0),
+        _ => 0,
+    }
+}
+
 /// What broke the run off.
 fn error(session: &Session, ended: &Ended) -> ErrorReport {
     use bahn_control::Message;
-    let run = session.host.control().interpreter();
+    let channel = session.host.control().channel(failed_channel(ended));
+    let run = channel.and_then(|channel| channel.interpreter());
     let mut at = session.block().unwrap_or_default();
     let shown = match ended {
         Ended::Broken(shown) | Ended::Hangs(_, shown) => shown.as_deref(),
@@ -311,7 +388,7 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
     }
     let (message, detail) = match ended {
         Ended::Broken(Some(shown)) => {
-            let text = session.host.control().message_text(&shown.message);
+            let text = session.host.control().shown_text(shown);
             match &shown.message {
                 Message::Program(error) => (text, error.detail.clone()),
                 other => (text, other.place().unwrap_or_default()),
@@ -321,9 +398,7 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
             "the script ended the run before it was complete".to_owned(),
             String::new(),
         ),
-        Ended::Hangs(what, Some(shown)) => {
-            (session.host.control().message_text(&shown.message), what.clone())
-        }
+        Ended::Hangs(what, Some(shown)) => (session.host.control().shown_text(shown), what.clone()),
         Ended::TooLong => (
             "the time allowed is over".to_owned(),
             "--max-time allows more".to_owned(),
@@ -364,8 +439,14 @@ fn error(session: &Session, ended: &Ended) -> ErrorReport {
 }
 
 /// Says it with the block where that is known.
-fn say_failure(error: &ErrorReport, session: &Session, programs: &FolderPrograms) {
-    match (session.host.control().interpreter(), programs.main()) {
+fn say_failure(error: &ErrorReport, channel: usize, session: &Session, programs: &FolderPrograms) {
+    let channel = session.host.control().channel(channel);
+    let run = channel.and_then(|channel| channel.interpreter());
+    let main = match channel.map_or(0, |channel| channel.number()) {
+        0 => programs.main(),
+        _ => run.and_then(|run| run.program(0)),
+    };
+    match (run, main) {
         (Some(run), Some(main)) if error.line > 0 => print_error(error, run, Path::new(main.name())),
         _ if error.detail.is_empty() => diagnostics::print_usage_error(&error.message),
         _ => diagnostics::print_usage_error(&format!("{}: {}", error.message, error.detail)),

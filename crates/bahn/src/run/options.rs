@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_control::Signal;
+use bahn_control::ChannelSignal;
 use bahn_host::Attendance;
 use clap::{Args, ValueHint};
 
@@ -21,8 +21,11 @@ Examples:
       The second run repeats the first one, bit by bit, when both have --fresh and the same --mp.
   bahn run --machine mill --script jog.txt
       Without a program: power-up, reference run, then the script.
+  bahn run --machine machines/twin --record twin.csv --signals X.actual,2:X.actual
+      Two channels, each with the program that machine.toml names; LEFT.H RIGHT.H before --machine would name them.
 
-FILE is a path, or a program in the folder of programs of the machine.
+FILE is a path, or a program in the folder of programs of the machine. Where the machine has several channels, the
+first FILE is that of the first channel and so on; a channel without stands by.
 
 The operator who stands by (--operator): full confirms programmed stops and tool changes with the keys of
 [operator] in machine.toml, and reports it; start ends with the start of the program; absent does nothing.
@@ -38,6 +41,7 @@ the program was started (start+3), `+20 cycles` of the control, or a condition: 
   +0: key NC_START tap
   start+20: expect X.actual=100±0.01
   +0: expect message \"DOOR IS OPEN\"
+A number before a colon is a channel: `+1: 2: mode manual`, `+1: expect 2:X.actual=100`, `when 2: run ended: end`.
 `bahn machine list` names all events, commands, keys and lamps.
 
 State: what survives power-off is read from the state folder of the machine and kept there; --fresh begins
@@ -50,7 +54,8 @@ lag_block, max_deviation, deviation_block; mm, degrees; null where there is none
 contour_deviation_cause (in words), contour_deviation_block;
 plc (max_percent, mean_percent of the nominal time); messages (time_s, text, place, flashing,
 program, block); confirmed (time_s, key, why, block); waits_for (null, or what a hanging run waited for);
-failed_expectations (line, text, actual); test_run (null, or program, completed, message, place of the last
+channels (only where there are several, those beside the first: channel, the fields of `bahn test`, axes,
+contour_deviation_mm, _cause, _block); failed_expectations (line, text, actual); test_run (null, or program, completed, message, place of the last
 TEST RUN of a script); realtime (null, or cycles, late_cycles, worst_lateness_ms,
 late_by, overrun_cycles, longest_ms).
 
@@ -63,9 +68,10 @@ line, column, title, message).";
 /// Options of `bahn run`.
 #[derive(Args, Debug)]
 pub(crate) struct RunMachineOptions {
-    /// The part program; without one the script does everything after the reference run.
+    /// The part program, or one for each channel; without any the script does everything after the reference run, and
+    /// a machine with several channels runs the programs of its machine.toml.
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub file: Option<PathBuf>,
+    pub files: Vec<PathBuf>,
     /// Folder of the machine.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub machine: PathBuf,
@@ -84,8 +90,9 @@ pub(crate) struct RunMachineOptions {
 impl RunMachineOptions {
     /// Files that are read.
     pub fn inputs(&self) -> Vec<&Path> {
-        let all = [&self.file, &self.run.script, &self.run.replay];
-        all.into_iter().flatten().map(PathBuf::as_path).collect()
+        let further = [&self.run.script, &self.run.replay];
+        let all = self.files.iter().chain(further.into_iter().flatten());
+        all.map(PathBuf::as_path).collect()
     }
 
     /// Files that are written, with their options.
@@ -190,10 +197,11 @@ pub(crate) struct RecordingOptions {
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub record: Option<PathBuf>,
     /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, path.speed,
-    /// path.block, S.rpm, S.volts, S.angle, operands of the PLC like M2045, I4, W260; by default speeds, positions,
+    /// path.block, S.rpm, S.volts, S.angle, operands of the PLC like M2045, I4, W260, of the second channel as
+    /// 2:X.actual; by default speeds, positions,
     /// lags, and the handshake of M functions.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
-    pub signals: Vec<Signal>,
+    pub signals: Vec<ChannelSignal>,
     /// Time between two rows, ms; every contour cycle without it.
     #[arg(long, value_name = "MS", requires = "record", value_parser = clap::value_parser!(u32).range(1..))]
     pub every: Option<u32>,

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use bahn_control::{AxisSignal, Control, RunState, Signal};
+use bahn_control::{AxisSignal, ChannelSignal, ChannelView, Control, RunState, Signal};
 use bahn_host::decimals;
 
 use crate::UsageError;
@@ -14,7 +14,7 @@ use crate::files::{self, NewFile};
 pub(super) struct Recording {
     path: PathBuf,
     file: NewFile,
-    signals: Vec<Signal>,
+    signals: Vec<ChannelSignal>,
     every_us: u64,
     due_us: u64,
     row: String,
@@ -28,7 +28,7 @@ pub(super) struct Recording {
 
 impl Recording {
     /// Begins a table; `every_us` of 0 records every contour cycle.
-    pub fn create(path: &Path, signals: Vec<Signal>, every_us: u64) -> Result<Recording, UsageError> {
+    pub fn create(path: &Path, signals: Vec<ChannelSignal>, every_us: u64) -> Result<Recording, UsageError> {
         let mut recording = Recording {
             path: path.to_owned(),
             file: NewFile::create(path)?,
@@ -42,7 +42,7 @@ impl Recording {
         };
         recording.row.push_str("time [s]");
         for signal in &recording.signals {
-            match unit(signal) {
+            match unit(&signal.signal) {
                 "" => write!(recording.row, ",{signal}"),
                 unit => write!(recording.row, ",{signal} [{unit}]"),
             }
@@ -98,7 +98,11 @@ impl Recording {
         // Writing to a string cannot fail.
         let _ = write!(self.row, "{:.4}", now as f64 * 1e-6);
         for signal in &self.signals {
-            let _ = write!(self.row, ",{}", decimals(signal, control.observe(signal)));
+            let _ = write!(
+                self.row,
+                ",{}",
+                decimals(&signal.signal, observe(control, signal))
+            );
         }
         if self.events.contains([',', '"']) {
             let _ = write!(self.row, ",\"{}\"", self.events.replace('"', "\"\""));
@@ -123,15 +127,27 @@ impl Recording {
 
 /// What is recorded when nothing else is asked for: speed along the path and of the spindle, position and
 /// lag of each axis, the strobe of M functions and its acknowledgement.
-pub(super) fn usual_signals(control: &Control) -> Vec<Signal> {
-    let mut signals = vec![Signal::PathSpeed, Signal::SpindleRpm];
-    for letter in control.axis_letters() {
-        signals.push(Signal::Axis(letter, AxisSignal::Actual));
-        signals.push(Signal::Axis(letter, AxisSignal::Lag));
-    }
-    signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_STROBE));
-    signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_ACK));
-    signals
+pub(super) fn usual_signals(control: &Control) -> Vec<ChannelSignal> {
+    let channels = (0..control.channels()).filter_map(|number| control.channel(number));
+    let of_channel = |channel: ChannelView| {
+        let mut signals = vec![Signal::PathSpeed, Signal::SpindleRpm];
+        for letter in channel.axis_letters() {
+            signals.push(Signal::Axis(letter, AxisSignal::Actual));
+            signals.push(Signal::Axis(letter, AxisSignal::Lag));
+        }
+        signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_STROBE));
+        signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_ACK));
+        let channel = channel.number();
+        signals
+            .into_iter()
+            .map(move |signal| ChannelSignal { channel, signal })
+    };
+    channels.flat_map(of_channel).collect()
+}
+
+fn observe(control: &Control, signal: &ChannelSignal) -> f64 {
+    let channel = control.channel(signal.channel);
+    channel.map_or(0.0, |channel| channel.observe(&signal.signal))
 }
 
 /// Unit of a signal; rotary axes have degrees.

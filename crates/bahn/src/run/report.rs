@@ -3,15 +3,17 @@
 use std::collections::BTreeMap;
 
 use bahn_control::{TestReport, TestState};
-use bahn_host::{FailedExpectation, Lateness};
+use bahn_host::{FailedExpectation, Host, Lateness};
 use bahn_parameters::ControlModel;
 use serde::Serialize;
 
+use super::beside::Beside;
+use super::deviation::Deviation;
 use super::listed::{Confirmed, Said};
 use super::session::Session;
 use super::times::Share;
 use crate::diagnostics::FileFault;
-use crate::report::{ErrorReport, Report, tidy};
+use crate::report::{End, ErrorReport, Report, tidy};
 use crate::report_text::{self, LABEL, list};
 
 /// What an axis did, mm or degrees.
@@ -142,6 +144,9 @@ pub(super) struct RunReport {
     messages: Vec<Said>,
     confirmed: Vec<Confirmed>,
     pub waits_for: Option<String>,
+    /// The channels beside the first one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub channels: Vec<ChannelReport>,
     failed_expectations: Vec<FailedExpectation>,
     test_run: Option<TestRunReport>,
     realtime: Option<Lateness>,
@@ -151,16 +156,6 @@ impl RunReport {
     pub fn new(session: &Session, program: ProgramReport, machine: &str, model: ControlModel) -> RunReport {
         let seconds = |us: u64| us as f64 * 1e-6;
         let (sum, count, longest) = session.measured.plc_percent;
-        let axes = session.measured.deviation.axes.iter().map(|axis| {
-            let linear = axis.is_linear();
-            let report = AxisReport {
-                max_lag: tidy(axis.max_lag),
-                lag_block: axis.lag_block.map(|block| block.block),
-                max_deviation: linear.then(|| tidy(axis.max_deviation)),
-                deviation_block: axis.deviation_block.filter(|_| linear).map(|block| block.block),
-            };
-            (axis.letter, report)
-        });
         let cause = session.measured.deviation.cause;
         RunReport {
             machine: machine.to_owned(),
@@ -168,7 +163,7 @@ impl RunReport {
             power_up_s: seconds(session.measured.power_up_us),
             reference_s: seconds(session.measured.reference_us),
             times: session.measured.times.shares(),
-            axes: axes.collect(),
+            axes: axes(&session.measured.deviation),
             contour_deviation_mm: tidy(session.measured.deviation.max_mm),
             contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
             contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
@@ -179,6 +174,7 @@ impl RunReport {
             messages: session.listed.messages.clone(),
             confirmed: session.listed.confirmed.clone(),
             waits_for: None,
+            channels: Vec::new(),
             failed_expectations: session.play.failed.clone(),
             test_run: session
                 .host
@@ -244,6 +240,9 @@ impl RunReport {
         if let ProgramReport::Ran(report) = &self.program {
             report_text::body(&mut row, report);
         }
+        for channel in &self.channels {
+            channel.text(&mut row);
+        }
         if let Some(test) = &self.test_run {
             row("Test run", &test.text());
         }
@@ -275,6 +274,82 @@ fn late_by(lateness: &Lateness) -> Vec<String> {
         None => format!("more: {} cycles", late.cycles),
     });
     words.collect()
+}
+
+/// A channel beside the first one.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct ChannelReport {
+    /// Its number, from 1.
+    channel: usize,
+    #[serde(flatten)]
+    program: ProgramReport,
+    axes: BTreeMap<char, AxisReport>,
+    contour_deviation_mm: f64,
+    contour_deviation_cause: Option<String>,
+    contour_deviation_block: Option<u32>,
+}
+
+impl ChannelReport {
+    /// What became of the program of a channel; `None` when there was none. `error` is what has ended the whole run,
+    /// when it came from this channel.
+    pub fn of(
+        beside: &mut Beside,
+        host: &Host,
+        error: Option<ErrorReport>,
+        model: ControlModel,
+    ) -> Option<ChannelReport> {
+        let channel = host.control().channel(beside.channel)?;
+        let run = channel.interpreter()?;
+        let end = match error {
+            Some(error) => End::Failed(Box::new(error)),
+            None if channel.has_ended() => End::Completed,
+            None => End::Interrupted,
+        };
+        let program = beside.take_record().report(run, end, None, model);
+        let deviation = &beside.deviation;
+        let cause = deviation.cause;
+        Some(ChannelReport {
+            channel: beside.channel + 1,
+            program: ProgramReport::Ran(Box::new(program)),
+            axes: axes(deviation),
+            contour_deviation_mm: tidy(deviation.max_mm),
+            contour_deviation_cause: cause.map(|(cause, _)| cause.to_string()),
+            contour_deviation_block: cause.and_then(|(_, block)| block).map(|block| block.block),
+        })
+    }
+
+    fn text(&self, row: &mut impl FnMut(&str, &str)) {
+        let ProgramReport::Ran(report) = &self.program else {
+            return;
+        };
+        row(
+            &format!("Channel {}", self.channel),
+            &report_text::in_a_line(report),
+        );
+        row("", &format!("at the end {}", report.final_position));
+        if let Some(cause) = &self.contour_deviation_cause {
+            let (microns, block) = (self.contour_deviation_mm * 1e3, at(self.contour_deviation_block));
+            row("", &format!("off the contour {microns:.1} µm{block}: {cause}"));
+        }
+        for warning in &report.warnings {
+            row("", &format!("block {}: {}", warning.block, warning.message));
+        }
+    }
+}
+
+/// What the axes of a channel did.
+fn axes(deviation: &Deviation) -> BTreeMap<char, AxisReport> {
+    let axes = deviation.axes.iter().map(|axis| {
+        let linear = axis.is_linear();
+        let report = AxisReport {
+            max_lag: tidy(axis.max_lag),
+            lag_block: axis.lag_block.map(|block| block.block),
+            max_deviation: linear.then(|| tidy(axis.max_deviation)),
+            deviation_block: axis.deviation_block.filter(|_| linear).map(|block| block.block),
+        };
+        (axis.letter, report)
+    });
+    axes.collect()
 }
 
 fn at(block: Option<u32>) -> String {

@@ -1,13 +1,14 @@
 //! A program, a script and an operator on a machine: cycle after cycle until the run ends.
 
-use bahn_control::{Command, Message, RunState, Shown};
+use bahn_control::{ChannelView, Command, Message, RunState, Shown};
 use bahn_host::{
     Action, Answer, Deed, Expectation, Host, HostError, Line, Next, Notice, Phase, Play, Reader, Source,
     Stamped, run_name,
 };
 use bahn_machine::Event;
-use bahn_path::BlockRef;
+use bahn_path::{BlockRef, PathElement};
 
+use super::beside::{Beside, is_idle};
 use super::executed::Executed;
 use super::listed::Listed;
 use super::measured::Measured;
@@ -53,6 +54,8 @@ pub(super) struct Session {
     pub host: Host,
     pub play: Play,
     pub executed: Executed,
+    /// The channels beside the first one.
+    pub beside: Vec<Beside>,
     pub measured: Measured,
     pub listed: Listed,
     pub recording: Option<Recording>,
@@ -77,6 +80,10 @@ impl Session {
         Session {
             play,
             executed,
+            beside: (1..host.control().channels())
+                .filter_map(|number| host.control().channel(number))
+                .map(Beside::new)
+                .collect(),
             measured: Measured::new(host.control()),
             listed: Listed::default(),
             recording,
@@ -98,6 +105,9 @@ impl Session {
             self.follow_notices()?;
             if let Some(ended) = self.ended.take() {
                 self.executed.finish(self.host.control())?;
+                for channel in &mut self.beside {
+                    channel.finish(&self.host)?;
+                }
                 self.play.finish(self.host.control().time_us() as f64 * 1e-6);
                 self.host.remark(&Source::Script, "end")?;
                 return Ok(ended);
@@ -153,11 +163,11 @@ impl Session {
     /// What `end` of the script makes of the run: a flashing message that it did not expect breaks it off.
     fn ended_by_script(&self) -> Ended {
         let control = self.host.control();
-        let ended = control.has_ended() || !self.host.operator().has_job();
+        let ended = self.all_ended();
         if !ended || !self.is_idle() {
             return Ended::Stopped;
         }
-        let text = |shown: &Shown| control.message_text(&shown.message);
+        let text = |shown: &Shown| control.shown_text(shown);
         let mut flashing = control.shown().iter().filter(|shown| shown.flashing);
         let unexpected = flashing.find(|shown| !self.play.has_expected(&text(shown)));
         unexpected.map_or(Ended::Completed, |shown| {
@@ -194,7 +204,12 @@ impl Session {
             let Next::Item(stamped) = next else { continue };
             match stamped.notice {
                 Notice::Shown(shown) => self.say(shown),
-                Notice::Confirmed { key, why } => self.listed.confirm(self.host.control(), key, why),
+                Notice::Confirmed { key, why } => {
+                    let control = self.host.control();
+                    if let Some(channel) = control.channel(stamped.channel) {
+                        self.listed.confirm(channel, control.time_us(), key, why);
+                    }
+                }
                 Notice::Given(Source::Operator, deed, answer) => self.follow_operator(deed, answer)?,
                 _ => {}
             }
@@ -205,7 +220,9 @@ impl Session {
     /// Without what the operator wants to do the run does not go on.
     fn follow_operator(&mut self, deed: Deed, answer: Answer) -> Result<(), UsageError> {
         match (deed, answer) {
-            (Deed::Command(command), Answer::Refused) if command != Command::Ce => {
+            (Deed::Command(command) | Deed::CommandTo(_, command), Answer::Refused)
+                if command != Command::Ce =>
+            {
                 let refusal = format!("the control refuses `{command}`");
                 self.ended = Some(Ended::Hangs(refusal, None));
             }
@@ -222,9 +239,10 @@ impl Session {
     /// Looks at what the cycle brought.
     fn watch(&mut self) -> Result<(), UsageError> {
         self.follow_notices()?;
-        let running = !self.is_idle();
+        let running = !is_idle(self.host.control().first());
+        let any = !self.is_idle();
         let phase = self.host.operator().phase();
-        if running && self.start_us.is_none() && phase != Phase::PowerUp {
+        if any && self.start_us.is_none() && phase != Phase::PowerUp {
             // What the script gives from the start on counts from here.
             let now = self.host.control().time_us();
             self.start_us = Some(now);
@@ -232,6 +250,9 @@ impl Session {
         }
         self.measured.cycle(self.host.control(), phase, running);
         self.executed.cycle(&mut self.host, running)?;
+        for channel in &mut self.beside {
+            channel.cycle(&mut self.host)?;
+        }
         let control = self.host.control();
         if !control.stands() || self.is_dwelling() {
             self.moved_us = control.time_us();
@@ -246,10 +267,14 @@ impl Session {
     fn say(&mut self, shown: Shown) {
         // A message of the PLC does not break a run off that has not begun.
         let refused = self.host.operator().has_started() && !matches!(shown.message, Message::Plc(_));
-        let breaks_off = shown.flashing || self.is_idle() && (self.start_us.is_some() || refused);
         let control = self.host.control();
+        let idle = match shown.channel.and_then(|number| control.channel(number)) {
+            Some(channel) => is_idle(channel),
+            None => self.is_idle(),
+        };
+        let breaks_off = shown.flashing || idle && (self.start_us.is_some() || refused);
         if let Some(recording) = &mut self.recording {
-            recording.message(&control.message_text(&shown.message));
+            recording.message(&control.shown_text(&shown));
         }
         self.listed.message(control, &shown);
         if breaks_off {
@@ -257,14 +282,19 @@ impl Session {
         }
     }
 
+    fn channels(&self) -> impl Iterator<Item = ChannelView<'_>> {
+        let control = self.host.control();
+        (0..control.channels()).filter_map(|number| control.channel(number))
+    }
+
     fn is_dwelling(&self) -> bool {
-        self.host.control().run_state() == RunState::Running
-            && self.host.control().waiting().is_none()
-            && self
-                .host
-                .control()
-                .element()
-                .is_some_and(|element| element.dwell_s > 0.0 && !self.waits_too_long(element.dwell_s))
+        self.channels().any(|channel| {
+            let dwells =
+                |element: &PathElement| element.dwell_s > 0.0 && !self.waits_too_long(element.dwell_s);
+            channel.run_state() == RunState::Running
+                && channel.waiting().is_none()
+                && channel.element().is_some_and(dwells)
+        })
     }
 
     /// Nothing has moved for the time allowed and a dwell besides.
@@ -289,7 +319,7 @@ impl Session {
         let idle = self.is_idle();
         match self.host.operator().phase() {
             Phase::Program if self.start_us.is_some() && idle && script_done => {
-                return Some(if self.host.control().has_ended() {
+                return Some(if self.all_ended() {
                     Ended::Completed
                 } else {
                     Ended::Broken(self.broken_by.take())
@@ -318,28 +348,44 @@ impl Session {
 
     /// No run is on its way: none was started, it has ended, or a fault has interrupted it.
     fn is_idle(&self) -> bool {
-        self.host.control().run_state() == RunState::Idle || self.host.control().is_broken()
+        self.channels().all(is_idle)
+    }
+
+    /// The programs of all channels that had one have come to their end.
+    fn all_ended(&self) -> bool {
+        let control = self.host.control();
+        let mut jobs = self.host.operator().channels_with_job();
+        jobs.all(|number| control.channel(number).is_some_and(|channel| channel.has_ended()))
     }
 
     /// What keeps a run from going on.
     fn waits_for(&self) -> String {
         let mut reasons = Vec::new();
-        if let Some(waiting) = self.host.control().waiting() {
-            reasons.push(waiting.to_string());
-        }
-        if self.host.control().feed_override_percent() == 0.0 {
-            reasons.push("the feed override is 0 %".to_owned());
-        }
-        match self.host.control().run_state() {
-            RunState::Running | RunState::Idle => {}
-            state => reasons.push(format!("the run is {}: NC start goes on", run_name(state))),
+        for channel in self.channels() {
+            let number = match self.beside.is_empty() {
+                true => String::new(),
+                false => format!("{}: ", channel.number() + 1),
+            };
+            if let Some(waiting) = channel.waiting() {
+                reasons.push(format!("{number}{waiting}"));
+            }
+            if channel.feed_override_percent() == 0.0 {
+                reasons.push(format!("{number}the feed override is 0 %"));
+            }
+            match channel.run_state() {
+                RunState::Running | RunState::Idle => {}
+                state => reasons.push(format!(
+                    "{number}the run is {}: NC start goes on",
+                    run_name(state)
+                )),
+            }
         }
         reasons.extend(
             self.host
                 .control()
                 .shown()
                 .iter()
-                .map(|shown| format!("message {}", self.host.control().message_text(&shown.message))),
+                .map(|shown| format!("message {}", self.host.control().shown_text(shown))),
         );
         if reasons.is_empty() {
             reasons.push(match self.host.operator().phase() {

@@ -218,7 +218,11 @@ impl Trace {
             Some((name, unit)) => (name, unit.trim_end_matches(']')),
             None => (head, ""),
         };
-        let digits = name.strip_prefix(['M', 'I', 'O', 'T', 'C']).unwrap_or_default();
+        // A channel may stand before it, as in `2:M2045`.
+        let operand = name.split_once(':').map_or(name, |(_, operand)| operand);
+        let digits = operand
+            .strip_prefix(['M', 'I', 'O', 'T', 'C'])
+            .unwrap_or_default();
         let is_bit = unit.is_empty() && !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
         Trace {
             name: name.to_owned(),

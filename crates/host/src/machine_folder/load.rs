@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, NcFiles, Tool};
+use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Tool};
 use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ListText, ParameterList};
-use bahn_path::{Axis, Position};
+use bahn_path::Position;
 use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
 
+use super::channel::{Channels, LoadedChannel, position};
 use super::state;
 use crate::fault::{FileFault, Marked, Severity};
 use crate::plc_source::PlcSource;
@@ -41,6 +42,10 @@ pub struct LoadedMachine {
     pub files: NcFiles,
     /// Pallet file and datum tables.
     pub tables: Vec<PathBuf>,
+    /// The channels beside the first one.
+    pub channels: Vec<LoadedChannel>,
+    /// The axes that go from one channel to another.
+    pub hand_overs: Vec<HandOver>,
     /// What is accepted, but looks wrong.
     pub warnings: Vec<FileFault>,
 }
@@ -65,7 +70,8 @@ impl LoadedMachine {
             &folder.tools,
         ];
         let named = named.into_iter().chain(further.map(Option::as_ref)).flatten();
-        let files = named.map(|name| self.root.join(name));
+        let lists = self.channels.iter().map(|channel| &channel.folder.parameters);
+        let files = named.chain(lists).map(|name| self.root.join(name));
         let lock = self.root.join(&folder.state).join(state::LOCK);
         files.chain(self.tables.iter().cloned()).chain([lock]).collect()
     }
@@ -77,18 +83,24 @@ impl LoadedMachine {
 
     /// The datum of `machine.toml`, for the axes that it names.
     pub fn datum(&self) -> Position {
-        let mut datum = Position::ZERO;
-        for (letter, value) in &self.folder.datum {
-            if let Some(axis) = axis(*letter) {
-                datum[axis] = *value;
-            }
-        }
-        datum
+        position(&self.folder.datum)
     }
-}
 
-fn axis(letter: char) -> Option<Axis> {
-    u8::try_from(letter).ok().and_then(Axis::from_letter)
+    /// The folder of the part programs of a channel, from 0.
+    pub fn programs(&self, channel: usize) -> PathBuf {
+        let own = channel.checked_sub(1).and_then(|place| self.channels.get(place));
+        let own = own.and_then(|channel| channel.folder.programs.as_ref());
+        self.root.join(own.unwrap_or(&self.folder.programs))
+    }
+
+    /// The program that a channel runs when nobody names another one, from 0.
+    pub fn usual_program(&self, channel: usize) -> Option<&str> {
+        let program = match channel.checked_sub(1) {
+            None => &self.folder.program,
+            Some(place) => &self.channels.get(place)?.folder.program,
+        };
+        program.as_deref()
+    }
 }
 
 /// See [`LoadedMachine::load`].
@@ -151,6 +163,8 @@ impl Loader<'_> {
         let tables = self.nc_memory(&folder, &parameters, &mut files);
         self.further_lists(&mut files, model?);
         self.agree(&folder, &plant);
+        let channels = self.channels(&folder, model?, &parameters, &plant);
+        let Channels { channels, hand_overs } = channels?;
         Some(LoadedMachine {
             root: self.root.to_owned(),
             parameters,
@@ -161,6 +175,8 @@ impl Loader<'_> {
             tools: tools?,
             files,
             tables,
+            channels,
+            hand_overs,
             warnings: Vec::new(),
             folder,
         })
@@ -202,6 +218,16 @@ impl Loader<'_> {
         name: &str,
         reading: fn(&Path) -> Result<Vec<u8>, HostError>,
     ) -> Option<(PathBuf, Vec<u8>)> {
+        let line = self.line_of(key).unwrap_or(1);
+        self.read_at(line, name, reading)
+    }
+
+    fn read_at(
+        &mut self,
+        line: usize,
+        name: &str,
+        reading: fn(&Path) -> Result<Vec<u8>, HostError>,
+    ) -> Option<(PathBuf, Vec<u8>)> {
         if name.is_empty() {
             return None;
         }
@@ -209,14 +235,20 @@ impl Loader<'_> {
         match reading(&path) {
             Ok(bytes) => Some((path, bytes)),
             Err(error) => {
-                self.fault_at_key(key, &error.to_string());
+                self.fault_at_line(line, error.to_string());
                 None
             }
         }
     }
 
     fn parameters(&mut self, folder: &MachineFolder, model: ControlModel) -> Option<ParameterList> {
-        let (path, bytes) = self.read("parameters", &folder.parameters)?;
+        let line = self.line_of("parameters").unwrap_or(1);
+        self.list_at(line, &folder.parameters, model)
+    }
+
+    /// A list of machine parameters that a line of `machine.toml` names.
+    pub(super) fn list_at(&mut self, line: usize, name: &str, model: ControlModel) -> Option<ParameterList> {
+        let (path, bytes) = self.read_at(line, name, files::read_table)?;
         let text = ListText::from_bytes(model, &bytes);
         let mut list = ParameterList::reference(model);
         list.take(&text);
@@ -460,18 +492,27 @@ impl Loader<'_> {
         self.faults.len() == before
     }
 
-    /// The line of `machine.toml` that sets a key, from 1.
+    /// The line of `machine.toml` that sets a key, from 1; those of further channels know their own.
     fn line_of(&self, key: &str) -> Option<usize> {
         let sets = |line: &str| line.split('=').next().is_some_and(|name| name.trim() == key);
         let (_, text) = &self.description;
-        text.lines()
-            .position(|line| line.contains('=') && sets(line))
-            .map(|index| index + 1)
+        let mut elsewhere = false;
+        let found = text.lines().position(|line| {
+            if line.trim_start().starts_with('[') {
+                elsewhere = line.contains("[channel") || line.contains("[hand_over");
+            }
+            !elsewhere && line.contains('=') && sets(line)
+        });
+        found.map(|index| index + 1)
     }
 
     pub(super) fn fault_at_key(&mut self, key: &str, message: &str) {
         let line = self.line_of(key).unwrap_or(1);
         self.fault_in_description(line, 1, message.to_owned());
+    }
+
+    pub(super) fn fault_at_line(&mut self, line: usize, message: String) {
+        self.fault_in_description(line, 1, message);
     }
 
     fn fault_in_description(&mut self, line: usize, column: usize, message: String) {

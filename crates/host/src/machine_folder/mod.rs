@@ -1,14 +1,17 @@
 //! The folder of a machine.
 //!
-//! `load`: everything in it, all faults at once; `nc_memory`: its tables; `programs`: its part programs; `state`:
+//! `load`: everything in it, all faults at once, with its `channels`; `nc_memory`: its tables; `programs`: its part programs; `state`:
 //! what survives power-off, `remembered` as a file.
 
+mod channel;
+mod channels;
 mod load;
 mod nc_memory;
 mod programs;
 mod remembered;
 mod state;
 
+pub use channel::LoadedChannel;
 pub use load::{LoadedMachine, decode};
 pub use programs::FolderPrograms;
 pub use state::{Found, State};

@@ -1,6 +1,6 @@
 //! The part programs of a machine.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_control::Programs;
@@ -25,17 +25,25 @@ impl FolderPrograms {
     /// # Errors
     /// When the program cannot be read.
     pub fn new(folder: &Path, main: Option<&Path>) -> Result<FolderPrograms, HostError> {
-        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-        let main = main.map(|path| load(&folder, path)).transpose()?;
-        let library = match &main {
-            Some(main) => FileLibrary::with_main(main),
-            None => FileLibrary::default(),
+        let programs = FolderPrograms::of_folder(folder);
+        let Some(main) = main else {
+            return Ok(programs);
         };
+        let main = load(&absolute(folder), main)?;
         Ok(FolderPrograms {
-            caller: folder.join("operator").to_string_lossy().into_owned(),
-            main,
-            library: Mutex::new(library),
+            library: Mutex::new(FileLibrary::with_main(&main)),
+            main: Some(main),
+            ..programs
         })
+    }
+
+    /// The programs of a folder, without a main program.
+    pub fn of_folder(folder: &Path) -> FolderPrograms {
+        FolderPrograms {
+            caller: absolute(folder).join("operator").to_string_lossy().into_owned(),
+            main: None,
+            library: Mutex::default(),
+        }
     }
 
     /// The name by which the operator selects the main program.
@@ -47,6 +55,10 @@ impl FolderPrograms {
     pub fn main(&self) -> Option<&Arc<Program>> {
         self.main.as_ref()
     }
+}
+
+fn absolute(folder: &Path) -> PathBuf {
+    std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
 fn load(folder: &Path, path: &Path) -> Result<Arc<Program>, HostError> {

@@ -15,8 +15,13 @@ use crate::{HostError, kept};
 
 /// The journal of retained markers and bytes.
 const JOURNAL: &str = "plc.mem";
-/// What the control remembers.
-const CONTROL: &str = "control.toml";
+/// What the control remembers, of the first channel and of a further one.
+fn control_file(channel: usize) -> String {
+    match channel {
+        0 => "control.toml".to_owned(),
+        further => format!("control-{}.toml", further + 1),
+    }
+}
 /// Held while a control is on.
 pub(super) const LOCK: &str = "lock";
 /// How often changes are looked for that nothing waits for.
@@ -24,9 +29,9 @@ const PERIOD: Duration = Duration::from_millis(200);
 
 /// The state folder of a machine that is switched on.
 pub struct State {
-    file: PathBuf,
     journal: Retained,
-    written: String,
+    /// The file of each channel, and what stands in it.
+    files: Vec<(PathBuf, String)>,
     looked: Instant,
     /// Unlocked when the control is switched off.
     _lock: File,
@@ -38,6 +43,8 @@ pub struct Found {
     pub state: State,
     /// `None` when nothing is there yet.
     pub remembered: Option<Remembered>,
+    /// That of the channels beside the first one.
+    pub others: Vec<Option<Remembered>>,
     /// Both images with the retained markers and bytes.
     pub exchange: Exchange,
     /// What was lost, in words.
@@ -45,26 +52,36 @@ pub struct Found {
 }
 
 impl State {
-    /// Opens the folder; it is made when it is missing.
+    /// Opens the folder of a machine with so many channels; it is made when it is missing.
     ///
     /// # Errors
     /// When the folder cannot be used, another control uses it, or what the control remembered cannot be
     /// read: a machine does not start with another datum than it had.
-    pub fn open(folder: &Path) -> Result<Found, HostError> {
+    pub fn open(folder: &Path, channels: usize) -> Result<Found, HostError> {
         fs::create_dir_all(folder).map_err(|error| files::cannot("make", folder, &error))?;
-        let [lock_path, journal, file] = [LOCK, JOURNAL, CONTROL].map(|name| folder.join(name));
-        for path in [folder, &lock_path, &journal, &file] {
+        let [lock_path, journal] = [LOCK, JOURNAL].map(|name| folder.join(name));
+        let paths: Vec<PathBuf> = (0..channels.max(1))
+            .map(|channel| folder.join(control_file(channel)))
+            .collect();
+        for path in [folder, &lock_path, &journal]
+            .into_iter()
+            .chain(paths.iter().map(PathBuf::as_path))
+        {
             kept::refuse_link(path)?;
         }
         let lock = kept::open(&lock_path)?.map_or_else(|| kept::make(&lock_path), Ok)?;
         if !kept::lock(&lock, &lock_path)? {
             return Err(HostError::SwitchedOn(folder.display().to_string()));
         }
-        remove_half_written(folder);
-        let (written, remembered) = match remembered_in(&file)? {
-            Some((text, remembered)) => (text, Some(remembered)),
-            None => (String::new(), None),
-        };
+        let (mut files, mut found) = (Vec::new(), Vec::new());
+        for path in paths {
+            remove_half_written(folder, &path);
+            let (written, remembered) = remembered_in(&path)?.unzip();
+            files.push((path, written.unwrap_or_default()));
+            found.push(remembered);
+        }
+        let others = found.split_off(1);
+        let remembered = found.pop().flatten();
         let mut warnings = Vec::new();
         if remembered.is_some() && kept::open(&journal)?.is_none() {
             warnings.push(format!(
@@ -77,13 +94,13 @@ impl State {
         let exchange = journal.restore();
         Ok(Found {
             state: State {
-                file,
                 journal,
-                written,
+                files,
                 looked: Instant::now(),
                 _lock: lock,
             },
             remembered,
+            others,
             exchange,
             warnings,
         })
@@ -123,15 +140,21 @@ impl State {
     }
 
     fn write(&mut self, control: &Control) -> Result<(), HostError> {
-        let text = remembered::write(&control.remember());
-        if text == self.written {
-            return Ok(());
+        for (number, (path, written)) in self.files.iter_mut().enumerate() {
+            let remembered = match control.channel(number).filter(|_| number > 0) {
+                Some(channel) => channel.remember(),
+                None => control.remember(),
+            };
+            let text = remembered::write(&remembered);
+            if text == *written {
+                continue;
+            }
+            let mut file = NewFile::create(path)?;
+            file.write_all(text.as_bytes())
+                .map_err(|error| files::cannot("write", path, &error))?;
+            file.finish()?;
+            *written = text;
         }
-        let mut file = NewFile::create(&self.file)?;
-        file.write_all(text.as_bytes())
-            .map_err(|error| files::cannot("write", &self.file, &error))?;
-        file.finish()?;
-        self.written = text;
         Ok(())
     }
 }
@@ -169,8 +192,9 @@ fn unknown(file: &Path, aside: &Path, what: &str) -> HostError {
 }
 
 /// What a process that was killed was writing is of no use to anybody.
-fn remove_half_written(folder: &Path) {
-    let begun = format!(".{CONTROL}.");
+fn remove_half_written(folder: &Path, file: &Path) {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let begun = format!(".{name}.");
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries {
         let name = entry.file_name();

@@ -1,0 +1,120 @@
+//! A channel to be looked at.
+
+use bahn_interpreter::Interpreter;
+use bahn_path::PathElement;
+
+use crate::channel::Channel;
+use crate::command::Mode;
+use crate::handshake::Waiting;
+use crate::machine::MachineSide;
+use crate::progress::RunState;
+use crate::setup::Remembered;
+use crate::signal::Signal;
+use crate::snapshot::Snapshot;
+use crate::upkeep::by_index;
+
+/// A channel of a control as of now.
+#[derive(Clone, Copy)]
+pub struct ChannelView<'a> {
+    channel: &'a Channel,
+    machine: &'a MachineSide,
+}
+
+impl<'a> ChannelView<'a> {
+    pub(crate) fn new(channel: &'a Channel, machine: &'a MachineSide) -> ChannelView<'a> {
+        ChannelView { channel, machine }
+    }
+
+    /// Its number, from 0.
+    pub fn number(&self) -> usize {
+        self.channel.number()
+    }
+
+    /// Operating mode.
+    pub fn mode(&self) -> Mode {
+        self.channel.desk().mode()
+    }
+
+    /// State of the run.
+    pub fn run_state(&self) -> RunState {
+        self.channel.run.progress().state()
+    }
+
+    /// A fault has interrupted the run: nothing of it is on its way, and NC start tries its block again.
+    pub fn is_broken(&self) -> bool {
+        self.channel.run.progress().is_broken()
+    }
+
+    /// The run came to its end since it was started.
+    pub fn has_ended(&self) -> bool {
+        self.channel.run.progress().has_ended()
+    }
+
+    /// The element of the path that is executed, or was last.
+    pub fn element(&self) -> Option<&'a PathElement> {
+        self.channel.run.track.path.element()
+    }
+
+    /// Path length to the end of that element, mm.
+    pub fn rest_mm(&self) -> f64 {
+        self.channel.run.track.path.rest_mm()
+    }
+
+    /// The interpreter of the program that runs, or ran last.
+    pub fn interpreter(&self) -> Option<&'a Interpreter> {
+        self.channel.run.source.interpreter()
+    }
+
+    /// Handshake that the run waits for.
+    pub fn waiting(&self) -> Option<Waiting> {
+        let nc = self.machine.memory.of(self.number()).nc();
+        self.channel.handshakes.waiting(nc)
+    }
+
+    /// Tool in the spindle.
+    pub fn tool(&self) -> u32 {
+        self.channel.tools.number
+    }
+
+    /// Feed override in force, %.
+    pub fn feed_override_percent(&self) -> f64 {
+        self.channel.desk().feed_percent()
+    }
+
+    /// The letters of the axes that it has now.
+    pub fn axis_letters(&self) -> impl Iterator<Item = char> + use<'a> {
+        self.machine
+            .axes
+            .owned(self.channel.number())
+            .map(|unit| unit.axis.letter())
+    }
+
+    /// The value of a signal; an axis that the channel does not have reads 0.
+    pub fn observe(&self, signal: &Signal) -> f64 {
+        signal.value(self.channel, self.machine)
+    }
+
+    /// Its state.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot::of(self.channel, self.machine, None)
+    }
+
+    /// What survives power-off of a channel beside the first one: datums, tool, Q parameters, program, offsets of
+    /// the axes that its list describes.
+    pub fn remember(&self) -> Remembered {
+        Remembered {
+            offsets_volts: offsets_volts(self.machine, self.number()),
+            ..self.channel.remember()
+        }
+    }
+}
+
+/// The adjusted offsets of the axes that the list of a channel describes, whichever channel has them now, V.
+pub(crate) fn offsets_volts(machine: &MachineSide, channel: usize) -> [f64; crate::markers::AXES] {
+    let axes = machine.axes.iter().filter(|unit| unit.home.0 == channel);
+    by_index(
+        axes,
+        |unit| unit.home.1,
+        |unit| unit.servo.offset_compensation_volts(),
+    )
+}
