@@ -71,7 +71,7 @@ fn programs_are_named_in_the_order_of_the_channels() {
     let program = |name: &str, blocks: &str| {
         folder.write(
             name,
-            &format!("BEGIN PGM {name} MM\n{blocks}\nEND PGM {name} MM\n"),
+            format!("BEGIN PGM {name} MM\n{blocks}\nEND PGM {name} MM\n"),
         )
     };
     program("one.h", "L X+10 R0 FMAX");

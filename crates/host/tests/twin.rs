@@ -74,7 +74,7 @@ fn cuts(host: &Host, number: usize, feed: f64) -> bool {
 #[test]
 fn both_programs_run_and_the_arm_goes_to_the_other_channel_and_comes_back() {
     let mut host = twin();
-    let mut notices = host.notices();
+    let notices = host.notices();
     until(&mut host, 30.0, "both cut", |host| {
         cuts(host, 0, 1500.0) && cuts(host, 1, 800.0)
     });
@@ -128,7 +128,7 @@ fn both_programs_run_and_the_arm_goes_to_the_other_channel_and_comes_back() {
     seconds(&mut host, 0.5);
     assert!((arm(&host) - 90.0).abs() < 0.01, "{}", arm(&host));
     let mut ended = Vec::new();
-    while let Some(next) = notices.next() {
+    for next in notices {
         if let Next::Item(stamped) = next
             && stamped.notice == Notice::Ended
         {
@@ -193,7 +193,7 @@ fn messages_name_their_channel() {
     let mut power_on = PowerOn::fresh(&machine);
     power_on.channels[0].programs = Texts::new(&[("RIGHT.H", "L X+300 R0 FMAX\nL X+400 R0 FMAX")]);
     let mut host = switched_on(&machine, power_on, Attendance::Start);
-    let mut notices = host.notices();
+    let notices = host.notices();
     until(&mut host, 30.0, "the limit is found", |host| {
         channel(host, 1).is_broken()
     });
@@ -205,7 +205,7 @@ fn messages_name_their_channel() {
     assert_eq!(own, ["2: LIMIT SWITCH X+"]);
     assert_eq!(channel(&host, 0).run_state(), RunState::Running);
     let mut found: Option<Shown> = None;
-    while let Some(next) = notices.next() {
+    for next in notices {
         if let Next::Item(stamped) = next
             && let Notice::Shown(shown) = stamped.notice
             && stamped.channel == 1

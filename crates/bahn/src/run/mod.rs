@@ -277,28 +277,8 @@ fn finish(
     let cutting = executed.cutting.take();
     let part = cutting.and_then(|cutting| cutting.finish(&mut executed.record));
     let removed_mm3 = part.as_ref().map(|part| part.removed_mm3());
-    let end = match &ended {
-        Ended::Completed => End::Completed,
-        Ended::Interrupted => End::Interrupted,
-        Ended::Stopped
-        | Ended::TooLong
-        | Ended::Broken(_)
-        | Ended::Hangs(..)
-        | Ended::NotStored(_)
-        | Ended::Failed(_)
-        | Ended::Restart(_) => End::Failed(Box::new(error(&session, &ended))),
-    };
-    let failure = match &end {
-        End::Failed(error) => Some(error.clone()),
-        _ => None,
-    };
     let failed_in = failed_channel(&ended);
-    // What another channel ended is no fault of the first one.
-    let end = match end {
-        End::Failed(_) if failed_in > 0 && session.host.control().has_ended() => End::Completed,
-        End::Failed(_) if failed_in > 0 => End::Interrupted,
-        end => end,
-    };
+    let (end, failure) = end_of_first(&session, &ended);
     let record = &mut session.executed.record;
     let mut record = std::mem::replace(record, Record::new(bahn_path::Position::UNKNOWN));
     record.machining_time_s = session.measured.program_us as f64 * 1e-6;
@@ -363,6 +343,28 @@ fn finish(
         Written::All => outcome,
         Written::Interrupted => Outcome::Interrupted,
     })
+}
+
+/// How the run of the first channel ended, and what broke the run of all off.
+fn end_of_first(session: &Session, ended: &Ended) -> (End, Option<Box<ErrorReport>>) {
+    let failure = match ended {
+        Ended::Completed | Ended::Interrupted => None,
+        Ended::Stopped
+        | Ended::TooLong
+        | Ended::Broken(_)
+        | Ended::Hangs(..)
+        | Ended::NotStored(_)
+        | Ended::Failed(_)
+        | Ended::Restart(_) => Some(Box::new(error(session, ended))),
+    };
+    // What another channel ended is no fault of the first one.
+    let end = match &failure {
+        Some(failure) if failed_channel(ended) == 0 => End::Failed(failure.clone()),
+        Some(_) if !session.host.control().has_ended() => End::Interrupted,
+        None if *ended == Ended::Interrupted => End::Interrupted,
+        Some(_) | None => End::Completed,
+    };
+    (end, failure)
 }
 
 /// The channel, from 0, whose message broke the run off.
