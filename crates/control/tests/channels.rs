@@ -16,7 +16,8 @@ use support::bench::{bench, close, fourth};
 use support::{Build, Rig, Shelf};
 
 /// Panel, transfers and cam of the second channel: its window lies from M300 on. M50 is a wait mark: it is
-/// acknowledged in both channels when both have come to it. At M60 of both, or with I30, Z goes to the second channel.
+/// acknowledged in both channels when both have come to it. At M60 of both, or with I30, Z goes to the second channel, at
+/// M61 of both it comes back.
 const SECOND: &str = "
        L     I20
        = M300
@@ -49,6 +50,17 @@ const SECOND: &str = "
        L     M393
        A     M2045
        = M393
+       L     W260
+       == K+61
+       A     M2045
+       = M396
+       L     W128
+       == K+61
+       A     M380
+       = M397
+       L     M396
+       A     M397
+       = M502
        L     W128
        == K+60
        = M394
@@ -62,15 +74,21 @@ const SECOND: &str = "
        L     M500
        A     M501
        = M395
+       L     M502
+       A     M503
+       O     M395
+       = M395
        L     M2045
        AN    M390
        AN    M393
+       AN    M396
        O     M392
        O     M395
        = M2482
        L     M380
        AN    M391
        AN    M394
+       AN    M397
        O     M392
        O     M395
        = M334
@@ -156,14 +174,15 @@ fn twin(first: &str, second: &str) -> Rig {
 
 fn ready(setup: Setup, other: ChannelSetup, machine: Machine) -> Rig {
     let mut control = Control::with_channels(setup, vec![other]).unwrap();
-    control.hand_over_by(vec![HandOver {
+    let z = |to: usize, order: &str, done: &str| HandOver {
         axis: AxisId::new(2).unwrap(),
-        to: 1,
+        to,
         letter: Axis::Z,
         index: 2,
-        order: "M500".parse().unwrap(),
-        done: "M501".parse().unwrap(),
-    }]);
+        order: order.parse().unwrap(),
+        done: done.parse().unwrap(),
+    };
+    control.hand_over_by(vec![z(1, "M500", "M501"), z(0, "M502", "M503")]);
     let mut rig = Rig { control, machine };
     if rig.messages() == ["POWER INTERRUPTED"] {
         rig.command("ce");
@@ -385,6 +404,110 @@ fn an_axis_of_the_other_channel_is_not_moved() {
     assert_eq!(shown(&rig), [refused(1, 4)]);
     assert_eq!((nominal(&rig, 0, 'X'), letters(&rig, 0)), (60.0, "XY".to_owned()));
     rig.until(20.0, "the second ends", |rig| state(rig, 1).ended);
+}
+
+/// To and fro, again and again: each time the axis goes on from where the other channel has left it, and never faster
+/// than its rapid traverse of 6 m/min: 0.3 mm in a cycle of 3 ms.
+#[test]
+fn an_axis_goes_to_and_fro_without_a_jump() {
+    let mut rig = twin(
+        "L Z+100 R0 FMAX\nLBL 1\nM60\nL IX+5 R0 F3000\nM61\nL IZ-4 R0 F3000\nCALL LBL 1 REP 2/2",
+        "L X+100 R0 FMAX\nLBL 1\nM60\nL IZ+14 R0 F3000\nL IX+3 R0 F3000\nM61\nCALL LBL 1 REP 2/2\nL X+90 R0 FMAX",
+    );
+    start(&mut rig);
+    let (mut before, mut gone, mut own) = (rig.machine.axis('Z').unwrap().motor_position, 0, "X".to_owned());
+    let end = rig.control.time_us() + 40_000_000;
+    while !(0..2).all(|channel| state(&rig, channel).ended) {
+        assert!(
+            rig.control.time_us() < end,
+            "{:?} {:?}",
+            rig.messages(),
+            state(&rig, 0)
+        );
+        rig.cycle();
+        let now = rig.machine.axis('Z').unwrap().motor_position;
+        assert!((now - before).abs() < 0.301, "a jump of {} mm", now - before);
+        before = now;
+        let letters = letters(&rig, 1);
+        gone += usize::from(letters == "ZX" && own == "X");
+        own = letters;
+    }
+    assert_eq!(gone, 3);
+    // Three rounds of +14 and -4 from 100.
+    assert_eq!(nominal(&rig, 0, 'Z'), 130.0);
+    close(rig.table('Z'), 130.0, 0.1);
+    assert!(rig.messages().is_empty());
+}
+
+/// A programmed stop is a place, too; an axis that moves for somebody stays, and so does one whose letter is taken there.
+#[test]
+fn an_axis_is_handed_over_at_a_programmed_stop() {
+    let mut rig = twin(
+        "L Z+100 R0 FMAX\nSTOP\nL X+60 R0 FMAX",
+        "L X+100 R0 FMAX\nSTOP\nL Z+110 R0 FMAX",
+    );
+    start(&mut rig);
+    rig.until(20.0, "both have stopped", |rig| {
+        (0..2).all(|channel| state(rig, channel).run == RunState::Stopped)
+    });
+    rig.input("I30", true);
+    rig.until(1.0, "it goes over", |rig| letters(rig, 1) == "ZX");
+    rig.input("I30", false);
+    rig.seconds(0.1);
+    start(&mut rig);
+    until_ended(&mut rig);
+    assert_eq!((nominal(&rig, 0, 'X'), nominal(&rig, 1, 'Z')), (60.0, 110.0));
+    assert!(rig.messages().is_empty());
+    // By hand in the second channel: it moves there, and does not come back meanwhile.
+    tell(&mut rig, 0, "mode manual");
+    rig.event("key Z+ press");
+    rig.seconds(0.5);
+    assert_eq!(
+        nominal(&rig, 1, 'Z'),
+        110.0,
+        "the keys of the first channel have no Z"
+    );
+    rig.event("key Z+ release");
+}
+
+#[test]
+fn an_axis_that_moves_or_finds_no_place_stays() {
+    let (setup, other, machine) = setups("L Z+100 R0 FMAX", "L X+90 R0 FMAX");
+    let mut rig = ready(setup, other, machine);
+    // As X at index 0, which the second channel has.
+    let taken = HandOver {
+        axis: AxisId::new(2).unwrap(),
+        to: 1,
+        letter: Axis::X,
+        index: 2,
+        order: "M500".parse().unwrap(),
+        done: "M501".parse().unwrap(),
+    };
+    rig.control.hand_over_by(vec![taken]);
+    rig.input("I30", true);
+    rig.seconds(0.1);
+    assert_eq!(
+        rig.messages(),
+        ["AXIS Z NOT HANDED OVER: LETTER OR INDEX IS TAKEN"]
+    );
+    rig.command("ce");
+    rig.seconds(0.1);
+    assert!(rig.messages().is_empty(), "said once for an order");
+    rig.input("I30", false);
+    rig.seconds(0.1);
+    rig.control.hand_over_by(vec![HandOver {
+        letter: Axis::Z,
+        ..taken
+    }]);
+    tell(&mut rig, 0, "mode manual");
+    rig.event("key Z+ press");
+    rig.seconds(0.5);
+    rig.input("I30", true);
+    rig.seconds(0.1);
+    assert_eq!(rig.messages(), ["AXIS Z NOT HANDED OVER: THE AXIS MOVES"]);
+    assert_eq!(letters(&rig, 0), "XYZ");
+    rig.event("key Z+ release");
+    rig.until(2.0, "it goes when it stands", |rig| letters(rig, 1) == "ZX");
 }
 
 /// What was told to which channel is logged; given again it repeats the run to the bit.
