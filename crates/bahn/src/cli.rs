@@ -41,7 +41,7 @@ pub(crate) enum Command {
     Run(Box<RunMachineOptions>),
     /// Draw recorded signals like an oscilloscope, and sum them up.
     #[command(after_help = crate::scope::EXAMPLES)]
-    Scope(ScopeOptions),
+    Scope(Box<ScopeOptions>),
     /// Write, check and list folders of machines.
     Machine(MachineFolderOptions),
     /// Show all errors of programs that can be found without running them.

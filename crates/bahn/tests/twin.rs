@@ -137,6 +137,14 @@ fn both_channels_are_recorded_and_drawn() {
             .unwrap()
             .contains("2:X.actual")
     );
+    // The way of the second channel in X and Z.
+    let (_, code, said) = run(
+        &folder,
+        &["--record", "way.csv", "--signals", "2:X.actual,2:Z.actual"],
+    );
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(folder.bahn("scope way.csv --xy 2:X,2:Z -o way.png").code(), 0);
+    assert_eq!(folder.bahn("scope way.csv --xy X,Z -o way.png").code(), 2);
     for (signals, what) in [
         ("3:X.actual", "the machine has no channel 3"),
         ("2:V.actual", "the machine has no axis V"),

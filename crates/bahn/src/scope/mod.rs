@@ -50,7 +50,8 @@ pub(crate) fn command(options: &ScopeOptions) -> Result<Outcome, UsageError> {
     let in_file = |error: String| UsageError::new(format!("{}: {error}", options.file.display()));
     let circle = options
         .circle
-        .map(|axes| circle::test(&recording.table, names(&axes).each_ref().map(String::as_str)))
+        .as_ref()
+        .map(|axes| circle::test(&recording.table, axes.each_ref().map(String::as_str)))
         .transpose()
         .map_err(in_file)?;
     let step = options
@@ -117,9 +118,8 @@ impl Recordings {
         if let Some(test) = summary.circle() {
             return Ok(plane::circle(test, options.division, title, options.size));
         }
-        if let Some(axes) = options.xy {
-            let [x, y] = names(&axes);
-            let sheet = plane::way(&self.table, self.other.as_ref(), [&x, &y], title, options.size);
+        if let Some([x, y]) = &options.xy {
+            let sheet = plane::way(&self.table, self.other.as_ref(), [x, y], title, options.size);
             return sheet.ok_or_else(|| {
                 UsageError::new(format!("--xy: the recording has no {x}.actual and {y}.actual"))
             });
@@ -143,10 +143,6 @@ impl Recordings {
         }
         Ok(drawing.sheet())
     }
-}
-
-fn names(axes: &[char; 2]) -> [String; 2] {
-    axes.map(|letter| letter.to_string())
 }
 
 fn write(sheet: &Sheet, picture: &Picture) -> Result<(), UsageError> {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use bahn_control::split_channel;
 use clap::{Args, ValueHint};
 
 use crate::files;
@@ -56,12 +57,12 @@ pub(crate) struct ScopeOptions {
     /// One or two times at which values are read, s.
     #[arg(long, value_name = "S,S", value_delimiter = ',', value_parser = seconds)]
     pub cursor: Vec<f64>,
-    /// Draw the way of two axes instead of signals over time.
+    /// Draw the way of two axes instead of signals over time; 2:X,2:Y are those of the second channel.
     #[arg(long, value_name = "AXIS,AXIS", value_parser = two_axes, requires = "output", conflicts_with = "circle")]
-    pub xy: Option<[char; 2]>,
+    pub xy: Option<[String; 2]>,
     /// Test the roundness of a circle in the plane of two axes; drawn as a ballbar shows it.
     #[arg(long, value_name = "AXIS,AXIS", value_parser = two_axes)]
-    pub circle: Option<[char; 2]>,
+    pub circle: Option<[String; 2]>,
     /// Deviation of one ring of the circle test, mm; chosen to fit without it.
     #[arg(long, value_name = "MM", requires = "circle", value_parser = positive)]
     pub division: Option<f64>,
@@ -85,15 +86,21 @@ pub(crate) struct ScopeOptions {
     pub format: Format,
 }
 
-/// `X,Y`.
-fn two_axes(text: &str) -> Result<[char; 2], String> {
-    let letters: Vec<char> = text.split(',').flat_map(|part| part.trim().chars()).collect();
-    match letters.as_slice() {
-        [x, y] if x != y && x.is_ascii_alphabetic() && y.is_ascii_alphabetic() => {
-            Ok([*x, *y].map(|letter| letter.to_ascii_uppercase()))
-        }
-        _ => Err("two axes like X,Y".to_owned()),
-    }
+/// `X,Y`, `2:X,2:Y`.
+fn two_axes(text: &str) -> Result<[String; 2], String> {
+    let axis = |text: &str| {
+        let text = text.trim().to_ascii_uppercase();
+        let letter = split_channel(&text).1;
+        let is_axis = letter.len() == 1 && letter.bytes().all(|byte| byte.is_ascii_alphabetic());
+        is_axis.then_some(text)
+    };
+    // `XY` will do.
+    let parts = text.split_once(',').or_else(|| text.split_at_checked(1));
+    let axes = parts
+        .and_then(|(x, y)| axis(x).zip(axis(y)))
+        .filter(|(x, y)| x != y);
+    axes.map(|(x, y)| [x, y])
+        .ok_or_else(|| "two axes like X,Y, or 2:X,2:Y of the second channel".to_owned())
 }
 
 fn positive(text: &str) -> Result<f64, String> {
