@@ -151,4 +151,12 @@ fn documented_scripts_are_played() {
         let failed = report["failed_expectations"].as_array().unwrap();
         assert!(failed.is_empty(), "{script}{failed:?}");
     }
+    let ([bench], [plc]) = (
+        <[String; 1]>::try_from(blocks("bench")).unwrap(),
+        <[String; 1]>::try_from(blocks("plc")).unwrap(),
+    );
+    let folder = Folder::new();
+    folder.write("DOOR.PLC", plc).write("door.txt", bench);
+    let run = folder.bahn("plc run DOOR.PLC --script door.txt");
+    assert_eq!(run.code(), 0, "{}", run.err());
 }

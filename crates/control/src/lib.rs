@@ -20,6 +20,7 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+mod alteration;
 mod axes;
 mod axis;
 mod block_time;
@@ -44,6 +45,7 @@ mod manual;
 mod markers;
 mod message;
 mod now;
+mod observe;
 mod overrides;
 mod panel;
 mod per_channel;

@@ -1,10 +1,10 @@
 //! What a script expects of control and machine.
 
 use bahn_control::{Control, Mode, RunState, Signal, TestState};
+use bahn_exchange::{Content, Image, Operand, parts};
 use bahn_machine::Machine;
 
 use crate::decimals::decimals;
-use crate::operand::{Content, Operand};
 
 /// So near counts as equal when a script does not say how near, for values that are no whole numbers: the
 /// last digit of the display.
@@ -109,18 +109,59 @@ expect no message                   none is shown; with \"TEXT\" none with this 
 expect mode full                    manual, handwheel, mdi, single, full, reference
 expect run stopped                  idle, running, interrupted, stopped, block-end, ended
 expect tool=3                       the tool in the spindle
+expect M2045=1, W260=3              several: all must be so
 expect test finished                the test run beside: running, finished, failed
 expect lamp NC_START=1              a lamp of the panel
 ";
 
-    /// Reads what stands behind `expect`.
+    /// Reads what stands behind `expect`: one, or several with commas between. Without a machine only operands of the
+    /// PLC can be expected.
     ///
     /// # Errors
-    /// In words, when it is none.
-    pub fn parse(text: &str, machine: &Machine) -> Result<Expectation, String> {
+    /// In words, when one of them is none.
+    pub fn parse_all(text: &str, machine: Option<&Machine>) -> Result<Vec<Expectation>, String> {
+        parts(text)
+            .map(|text| Expectation::parse(text.trim(), machine))
+            .collect()
+    }
+
+    fn parse(text: &str, machine: Option<&Machine>) -> Result<Expectation, String> {
+        let Some(machine) = machine else {
+            let expectation = Expectation::of_value(text);
+            return expectation
+                .ok()
+                .filter(Expectation::is_of_the_plc)
+                .ok_or_else(|| {
+                    format!("`{text}` is nothing to expect on the bench of the PLC: it has operands, as O2=1")
+                });
+        };
         match Expectation::of_state(text, machine)? {
             Some(expectation) => Ok(expectation),
             None => Expectation::of_value(text),
+        }
+    }
+
+    /// It speaks of an operand.
+    fn is_of_the_plc(&self) -> bool {
+        matches!(
+            self,
+            Expectation::Text(..) | Expectation::Signal(Signal::Bit(_) | Signal::Number(_), ..)
+        )
+    }
+
+    /// `None` when it is so in the memory of the PLC; otherwise what is. Of anything but operands nothing is known
+    /// there.
+    pub fn check_memory(&self, image: &Image) -> Option<String> {
+        match self {
+            Expectation::Text(string, text) => check_text(*string, text, image),
+            Expectation::Signal(signal @ Signal::Bit(bit), relation, value) => {
+                let actual = u8::from(image.bit(*bit));
+                relation.check(signal, actual.into(), *value)
+            }
+            Expectation::Signal(signal @ Signal::Number(number), relation, value) => {
+                relation.check(signal, image.number(*number).into(), *value)
+            }
+            _ => Some("there is no control".to_owned()),
         }
     }
 
@@ -199,18 +240,9 @@ expect lamp NC_START=1              a lamp of the panel
     pub fn check(&self, control: &Control, machine: &Machine) -> Option<String> {
         match self {
             Expectation::Signal(signal, relation, value) => {
-                let actual = control.observe(signal);
-                let holds = match relation {
-                    Relation::Equal(tolerance) => (actual - value).abs() <= *tolerance,
-                    Relation::Less => actual < *value,
-                    Relation::Greater => actual > *value,
-                };
-                (!holds).then(|| format!("{signal} is {}", decimals(signal, actual)))
+                relation.check(signal, control.observe(signal), *value)
             }
-            Expectation::Text(string, text) => {
-                let actual = Operand::Text(*string).read(control.exchange().plc());
-                (actual != Content::Text(text.clone())).then(|| format!("S{string} is {actual}"))
-            }
+            Expectation::Text(string, text) => check_text(*string, text, control.exchange().plc()),
             Expectation::Message(text, wanted) => {
                 let shown: Vec<String> = control
                     .shown()
@@ -251,6 +283,23 @@ expect lamp NC_START=1              a lamp of the panel
             }
         }
     }
+}
+
+impl Relation {
+    /// `None` when an actual value is so; otherwise what it is.
+    fn check(self, signal: &Signal, actual: f64, value: f64) -> Option<String> {
+        let holds = match self {
+            Relation::Equal(tolerance) => (actual - value).abs() <= tolerance,
+            Relation::Less => actual < value,
+            Relation::Greater => actual > value,
+        };
+        (!holds).then(|| format!("{signal} is {}", decimals(signal, actual)))
+    }
+}
+
+fn check_text(string: usize, text: &str, image: &Image) -> Option<String> {
+    let actual = Operand::Text(string).read(image);
+    (actual != Content::Text(text.to_owned())).then(|| format!("S{string} is {actual}"))
 }
 
 /// What has this name.
@@ -308,7 +357,7 @@ mod tests {
             "name = 'one'\n[emergency_stop]\nacknowledgement = 'I3'\n\
              [axis.X]\noutput = '1'\nspeed = 15000\nvolts = 9\nencoder = { input = 'X1', period_um = 20 }",
         );
-        Expectation::parse(text, &machine.unwrap())
+        Expectation::parse(text, Some(&machine.unwrap()))
     }
 
     /// Numbers of the PLC are signed and may be hexadecimal; what does not fit is no value.

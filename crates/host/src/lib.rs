@@ -57,7 +57,6 @@ pub mod lists;
 mod log;
 mod machine_folder;
 mod notice;
-mod operand;
 mod operator;
 mod orders;
 mod pace;
@@ -87,10 +86,22 @@ pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
     tool_table::parse(text).map(drop).map_err(faults)
 }
 
+/// Reads a script for the machine of a description and for the bench of the PLC, for fuzzing; errors name their lines.
+#[doc(hidden)]
+pub fn check_script(machine: &bahn_machine::Machine, bytes: &[u8]) -> [Result<(), Vec<u32>>; 2] {
+    let parameters = bahn_parameters::ParameterList::reference(bahn_parameters::ControlModel::Tnc415b);
+    [Stage::machine(machine, &parameters), Stage::bench(&parameters)].map(|stage| {
+        let faults = |faults: Vec<FileFault>| faults.iter().map(|fault| fault.marked.line).collect();
+        Script::of(std::path::Path::new("SCRIPT"), bytes, &stage)
+            .map(drop)
+            .map_err(faults)
+    })
+}
+
+pub use bahn_exchange::{Assignment, Content, Operand};
 #[doc(hidden)]
 pub use machine_folder::{check_nc_tables, check_state};
 pub use notice::{Notice, Stamped, Why};
-pub use operand::{Assignment, Content, Operand};
 pub use operator::{Attendance, Job, Operator, Phase};
 pub use orders::{Desk, Order, When};
 pub use pace::{Clock, Lateness};
@@ -99,5 +110,5 @@ pub use plc_source::PlcSource;
 pub use power_on::PowerOn;
 pub use retained::Retained;
 pub use saved::{Saved, Timeline};
-pub use script::{Action, Base, Line, Script};
+pub use script::{Action, Base, Line, Script, Stage};
 pub use text::printable;

@@ -81,6 +81,8 @@ pub struct Operator {
     state: (RunState, u64),
     /// Since when a tool change waits, and how many of its keys were pressed.
     change: Option<(u64, usize)>,
+    /// How often the control had begun when he looked last.
+    starts: u32,
 }
 
 impl Operator {
@@ -96,6 +98,7 @@ impl Operator {
             started: false,
             state: (RunState::Idle, 0),
             change: None,
+            starts: 1,
         }
     }
 
@@ -139,6 +142,13 @@ impl Operator {
 
     /// The phase follows the control, whoever operates it.
     fn follow(&mut self, control: &Control) {
+        if control.starts() != self.starts {
+            // He switches on and passes the reference marks again; a program that was broken off he does not start.
+            self.starts = control.starts();
+            self.phase = Phase::PowerUp;
+            self.acted_us = control.time_us();
+            self.started |= self.chosen > 0;
+        }
         let phase = match self.phase {
             Phase::PowerUp if !control.loops_closed() => Phase::PowerUp,
             Phase::PowerUp | Phase::Reference if control.mode() == Mode::Reference => Phase::Reference,

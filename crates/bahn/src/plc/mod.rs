@@ -2,7 +2,6 @@
 //!
 //! - `options`: options and help texts;
 //! - `source`: the program, compile errors as rustc prints them;
-//! - `script`: stimuli and expectations;
 //! - `bench`: program, memory and stand-in for the control together;
 //! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
 
@@ -19,7 +18,6 @@ mod list;
 mod options;
 mod record;
 mod run;
-mod script;
 mod signals;
 mod source;
 mod trace;
@@ -49,12 +47,6 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
         PlcCommand::Xref(options) => xref::command(options),
         PlcCommand::Signals(options) => signals::command(options),
     }
-}
-
-/// Reads stimuli and expectations as `bahn plc run --script` does, for fuzzing; the error names file and line.
-#[doc(hidden)]
-pub fn check_script(name: &str, bytes: &[u8]) -> Result<(), String> {
-    script::Script::read(name, bytes).map(|_| ())
 }
 
 /// Opens the journal of the retained memory; says what is damaged in it.

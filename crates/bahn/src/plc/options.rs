@@ -64,12 +64,15 @@ Examples:
   bahn plc run MAIN.PLC --script door.txt --record door.csv --show I4,O2
       Stimuli and expectations from a file; operands after every cycle as a table.
 
-Script (--script): lines that are applied before or checked after a cycle; the first cycle is 1:
-  1: I4=1, W6=100          ; set before cycle 1
-  3: expect O2=1, B8=-3    ; checked after cycle 3
-  4: S0=\"OIL\", MP4110.2=4
-Values are decimal, $2A hexadecimal or \"text\". Text behind ; or # is a comment.
-Without --cycles the run ends with the last cycle of the script.
+Script (--script): what happens at which time, and what is expected, as for `bahn run`; docs/scripts.md tells all
+of it. A cycle is a scan; the first one is 1. A blank stands before the ; or # of a comment:
+  cycle 1: I4=1, W6=100          ; set before the first cycle
+  cycle 3: expect O2=1, B8=-3    ; so behind the third
+  0.5: S0=\"OIL\", MP4110.2=4     ; 0.5 s after power-on, or +0.5, +20 cycles behind the line before
+  when O2=1: I4=0                ; as soon as it is so
+  +2 cycles: end
+Values are decimal, $2A hexadecimal or \"text\". Without --cycles the run ends with the script; a condition that has
+not come true a minute behind the last thing that was done has failed.
 
 JSON: cycles, values, processing_percent (current, maximum), error (number, file, line, or null); with
 --trace also trace (the first 100000 executed lines) and trace_left_off (how many follow), with failed
@@ -134,8 +137,8 @@ pub(crate) struct BenchOptions {
     /// Operands and machine parameters before the first cycle, as I4=1,W6=100,MP4110.2=4 (repeatable).
     #[arg(long, value_name = "OPERAND=V,..")]
     pub set: Vec<String>,
-    /// Stimuli and expectations.
-    #[arg(long, value_name = "STIMULI", value_hint = ValueHint::FilePath)]
+    /// What happens at which time, and what is expected (docs/scripts.md).
+    #[arg(long, value_name = "SCRIPT", value_hint = ValueHint::FilePath)]
     pub script: Option<PathBuf>,
 }
 

@@ -16,7 +16,7 @@ use bahn_plc::{RuntimeError, TraceStep, Tracer};
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use super::bench::{Bench, set_operands};
+use super::bench::{self, Bench, set_operands};
 use super::options::WatchOptions;
 use super::source::Source;
 use crate::{Outcome, UsageError};
@@ -47,7 +47,7 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
             Assignment::Operand(operand, _) => Some(*operand),
             Assignment::Parameter(_) => None,
         }));
-        for operand in bench.script.operands() {
+        for operand in bench::operands(bench.play.script()) {
             if !operands.contains(&operand) {
                 operands.push(operand);
             }
@@ -271,7 +271,7 @@ impl Watch {
                     self.running = false;
                     self.message = change;
                 }
-                if let Some(failure) = self.bench.failures().first() {
+                if let Some(failure) = self.bench.take_failures().first() {
                     self.message = failure.to_string();
                 }
             }

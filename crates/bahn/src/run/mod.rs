@@ -26,9 +26,8 @@ use std::sync::Arc;
 use bahn_control::{Checking, Control, Mode, Signal};
 use bahn_host::{
     Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, Play, PowerOn,
-    Script, Source, is_whole,
+    Script, Source, Stage, is_whole,
 };
-use bahn_servo::Timing;
 use bahn_workpiece::Projection;
 
 use crate::cutting::{self, Columns, Cutting, Memory, Written};
@@ -132,7 +131,6 @@ fn load_script(
         (None, Some(path)) => (path, true),
         (None, None) => return Ok(Ok(Script::default())),
     };
-    let cycle_us = Timing::of(machine.parameters.model()).contour_us();
     let bytes = files::read_table(path)?;
     if is_log && !is_whole(&bytes) {
         diagnostics::print_text(&format!(
@@ -140,7 +138,8 @@ fn load_script(
             path.display()
         ));
     }
-    Ok(Script::of(path, &bytes, &machine.plant, cycle_us))
+    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    Ok(Script::of(path, &bytes, &stage))
 }
 
 /// What the control finds.
