@@ -8,7 +8,7 @@ use bahn_interpreter::{Done, Work};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 use bahn_plc::{Tracer, mirror_parameters};
-use bahn_servo::{Commands, Measured, Plant, Step, Timing};
+use bahn_servo::{Commands, Plant, Step, Timing};
 
 use crate::axes::Axes;
 use crate::axis::{AxisId, AxisUnit};
@@ -23,6 +23,7 @@ use crate::markers::AXES;
 use crate::message::Message;
 use crate::per_channel::PerChannel;
 use crate::plc_link::{PalletSelection, PlcLink};
+use crate::seam::Seam;
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::snapshot::Snapshot;
 use crate::source::Reading;
@@ -58,13 +59,6 @@ fn take_offsets(axes: &mut Axes, remembered: &Remembered) {
         let volts = remembered.offsets_volts.get(unit.index).copied();
         unit.servo.set_offset_compensation(volts.unwrap_or(0.0));
     }
-}
-
-/// What the machine was told last, and what it answered.
-#[derive(Clone, Default)]
-pub(crate) struct Seam {
-    pub commands: Commands,
-    pub measured: Measured,
 }
 
 /// The power supply, and what the control is made of when it comes.

@@ -59,6 +59,7 @@ mod reference;
 mod replacement;
 mod restore;
 mod run;
+mod seam;
 mod setup;
 mod signal;
 mod site;

@@ -1,6 +1,7 @@
 //! What others see of the control, and take from it.
 
 use bahn_interpreter::{Interpreter, Warning};
+use bahn_parameters::ControlModel;
 use bahn_path::PathElement;
 use bahn_plc::{PlcProgram, RuntimeError};
 
@@ -144,7 +145,12 @@ impl Control {
 
     /// The value of a signal now; an axis that the machine does not have reads 0.
     pub fn observe(&self, signal: &Signal) -> f64 {
-        signal.value(self.channels.first(), &self.machine)
+        signal.value(self.channels.first(), &self.machine, &self.seam)
+    }
+
+    /// The model.
+    pub fn model(&self) -> ControlModel {
+        self.machine.model
     }
 
     /// Scans of the PLC that were started since the control began.

@@ -4,7 +4,7 @@ use bahn_control::{Control, Mode, RunState, Signal, TestState};
 use bahn_exchange::{Content, Image, Operand, parts};
 use bahn_machine::Machine;
 
-use crate::decimals::decimals;
+use crate::observable::Observable;
 
 /// So near counts as equal when a script does not say how near, for values that are no whole numbers: the
 /// last digit of the display.
@@ -13,8 +13,8 @@ const TOLERANCE: f64 = 0.0005;
 /// Something that must be so.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expectation {
-    /// `X.actual=100±0.01`, `M2045=1`, `X.lag<0.01`, `S.rpm>900`.
-    Signal(Signal, Relation, f64),
+    /// `X.actual=100±0.01`, `M2045=1`, `X.lag<0.01`, `S.rpm>900`, `X.table>5`.
+    Value(Observable, Relation, f64),
     /// `S0="TEXT"`: a string of the PLC.
     Text(usize, String),
     /// `message "TEXT"`, `no message "TEXT"`: a message that is shown contains the text; any without text.
@@ -145,7 +145,8 @@ expect lamp NC_START=1              a lamp of the panel
     fn is_of_the_plc(&self) -> bool {
         matches!(
             self,
-            Expectation::Text(..) | Expectation::Signal(Signal::Bit(_) | Signal::Number(_), ..)
+            Expectation::Text(..)
+                | Expectation::Value(Observable::Signal(Signal::Bit(_) | Signal::Number(_)), ..)
         )
     }
 
@@ -154,11 +155,11 @@ expect lamp NC_START=1              a lamp of the panel
     pub fn check_memory(&self, image: &Image) -> Option<String> {
         match self {
             Expectation::Text(string, text) => check_text(*string, text, image),
-            Expectation::Signal(signal @ Signal::Bit(bit), relation, value) => {
+            Expectation::Value(signal @ Observable::Signal(Signal::Bit(bit)), relation, value) => {
                 let actual = u8::from(image.bit(*bit));
                 relation.check(signal, actual.into(), *value)
             }
-            Expectation::Signal(signal @ Signal::Number(number), relation, value) => {
+            Expectation::Value(signal @ Observable::Signal(Signal::Number(number)), relation, value) => {
                 relation.check(signal, image.number(*number).into(), *value)
             }
             _ => Some("there is no control".to_owned()),
@@ -218,11 +219,11 @@ expect lamp NC_START=1              a lamp of the panel
                 Content::Number(number) => Expectation::Text(string, number.to_string()),
             });
         }
-        let signal: Signal = name.trim().parse().map_err(|error| format!("{error}"))?;
+        let signal: Observable = name.trim().parse().map_err(|error| format!("{error}"))?;
         let number = |text: &str| value_of(&signal, text);
         match relation {
-            Some('<') => Ok(Expectation::Signal(signal, Relation::Less, number(value)?)),
-            Some('>') => Ok(Expectation::Signal(signal, Relation::Greater, number(value)?)),
+            Some('<') => Ok(Expectation::Value(signal, Relation::Less, number(value)?)),
+            Some('>') => Ok(Expectation::Value(signal, Relation::Greater, number(value)?)),
             _ => {
                 let parts = ["±", "+-", "+/-"]
                     .into_iter()
@@ -231,7 +232,7 @@ expect lamp NC_START=1              a lamp of the panel
                     Some((value, tolerance)) => (number(value)?, decimal(tolerance)?.abs()),
                     None => (number(value)?, TOLERANCE),
                 };
-                Ok(Expectation::Signal(signal, Relation::Equal(tolerance), value))
+                Ok(Expectation::Value(signal, Relation::Equal(tolerance), value))
             }
         }
     }
@@ -239,8 +240,8 @@ expect lamp NC_START=1              a lamp of the panel
     /// `None` when it is so; otherwise what is.
     pub fn check(&self, control: &Control, machine: &Machine) -> Option<String> {
         match self {
-            Expectation::Signal(signal, relation, value) => {
-                relation.check(signal, control.observe(signal), *value)
+            Expectation::Value(signal, relation, value) => {
+                relation.check(signal, signal.value(control, machine), *value)
             }
             Expectation::Text(string, text) => check_text(*string, text, control.exchange().plc()),
             Expectation::Message(text, wanted) => {
@@ -287,13 +288,13 @@ expect lamp NC_START=1              a lamp of the panel
 
 impl Relation {
     /// `None` when an actual value is so; otherwise what it is.
-    fn check(self, signal: &Signal, actual: f64, value: f64) -> Option<String> {
+    fn check(self, signal: &Observable, actual: f64, value: f64) -> Option<String> {
         let holds = match self {
             Relation::Equal(tolerance) => (actual - value).abs() <= tolerance,
             Relation::Less => actual < value,
             Relation::Greater => actual > value,
         };
-        (!holds).then(|| format!("{signal} is {}", decimals(signal, actual)))
+        (!holds).then(|| format!("{signal} is {}", signal.decimals(actual)))
     }
 }
 
@@ -327,10 +328,10 @@ fn bit(text: &str) -> Result<bool, String> {
 }
 
 /// A value of a signal; an operand takes what fits it, `$` is hexadecimal.
-fn value_of(signal: &Signal, text: &str) -> Result<f64, String> {
+fn value_of(signal: &Observable, text: &str) -> Result<f64, String> {
     let operand = match signal {
-        Signal::Bit(bit) => Operand::Bit(*bit),
-        Signal::Number(number) => Operand::Number(*number),
+        Observable::Signal(Signal::Bit(bit)) => Operand::Bit(*bit),
+        Observable::Signal(Signal::Number(number)) => Operand::Number(*number),
         _ => return decimal(text),
     };
     match operand.content(text)? {
@@ -364,7 +365,7 @@ mod tests {
     #[test]
     fn operands_take_what_fits_them() {
         let value = |text: &str| match read(text) {
-            Ok(Expectation::Signal(_, Relation::Equal(tolerance), value)) => Ok((value, tolerance)),
+            Ok(Expectation::Value(_, Relation::Equal(tolerance), value)) => Ok((value, tolerance)),
             other => Err(other),
         };
         assert_eq!(value("W6=$FFFE"), Ok((-2.0, TOLERANCE)));
@@ -374,7 +375,7 @@ mod tests {
         assert_eq!(value("X.actual=1.5±0.1"), Ok((1.5, 0.1)));
         assert!(matches!(
             read("W6>$10"),
-            Ok(Expectation::Signal(_, Relation::Greater, 16.0))
+            Ok(Expectation::Value(_, Relation::Greater, 16.0))
         ));
         let text = Expectation::Text(0, "A=B".to_owned());
         assert_eq!(

@@ -7,6 +7,7 @@ use bahn_control::{Control, Programs, Setup, Snapshot};
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
 use bahn_path::PathElement;
+use bahn_plc::Tracer;
 
 use crate::background::Background;
 use crate::deed::{Answer, Deed, Operable, Source};
@@ -155,10 +156,18 @@ impl<P: Operable> Host<P> {
     /// # Errors
     /// [`HostError::NotStored`].
     pub fn cycle(&mut self) -> Result<(), HostError> {
+        self.cycle_traced(None)
+    }
+
+    /// As [`Host::cycle`], and shows a tracer what the PLC executes.
+    ///
+    /// # Errors
+    /// [`HostError::NotStored`].
+    pub fn cycle_traced(&mut self, tracer: Option<&mut (dyn Tracer + '_)>) -> Result<(), HostError> {
         let beside = self.pace.is_some() && !self.repeats;
         self.background
             .prepare(&mut self.control, beside, &self.break_off);
-        self.control.cycle(&mut self.plant);
+        self.control.cycle_traced(&mut self.plant, tracer);
         if let Some(list) = self.control.take_restart() {
             self.tell(Notice::Restart(list.clone()));
             self.restart = Some(list);

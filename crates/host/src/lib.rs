@@ -43,8 +43,8 @@
 mod background;
 mod called;
 mod columns;
-mod decimals;
 mod deed;
+mod edges;
 mod error;
 mod expectation;
 mod fault;
@@ -57,6 +57,7 @@ pub mod lists;
 mod log;
 mod machine_folder;
 mod notice;
+mod observable;
 mod operator;
 mod orders;
 mod pace;
@@ -70,8 +71,8 @@ mod text;
 pub mod tool_table;
 
 pub use columns::TableFault;
-pub use decimals::{Decimals, decimals};
 pub use deed::{Answer, Deed, DeedError, Operable, Source};
+pub use edges::Edges;
 pub use error::HostError;
 pub use expectation::{Expectation, Relation, Run, Tested, run_name};
 pub use fault::{FileFault, Marked, Severity};
@@ -102,6 +103,7 @@ pub use bahn_exchange::{Assignment, Content, Operand};
 #[doc(hidden)]
 pub use machine_folder::{check_nc_tables, check_state};
 pub use notice::{Notice, Stamped, Why};
+pub use observable::{Decimals, Observable, Truth};
 pub use operator::{Attendance, Job, Operator, Phase};
 pub use orders::{Desk, Order, When};
 pub use pace::{Clock, Lateness};

@@ -13,7 +13,7 @@ use crate::diagnostics;
 use crate::{UsageError, files};
 use bahn_control::Signal;
 use bahn_host::{
-    Action, Assignment, Base, Content, Expectation, Line, Operand, Play, Relation, Script, Stage,
+    Action, Assignment, Base, Content, Expectation, Line, Observable, Operand, Play, Relation, Script, Stage,
 };
 
 /// A program with all it needs to run.
@@ -163,10 +163,10 @@ impl Bench {
 
     fn failure(&self, line: u32, expectation: &Expectation) -> Option<Failure> {
         let (operand, expected) = match expectation {
-            Expectation::Signal(Signal::Bit(bit), relation, value) => {
+            Expectation::Value(Observable::Signal(Signal::Bit(bit)), relation, value) => {
                 (Operand::Bit(*bit), (relation, *value))
             }
-            Expectation::Signal(Signal::Number(number), relation, value) => {
+            Expectation::Value(Observable::Signal(Signal::Number(number)), relation, value) => {
                 (Operand::Number(*number), (relation, *value))
             }
             Expectation::Text(string, text) => {
@@ -356,8 +356,10 @@ pub(super) fn operands(script: &Script) -> Vec<Operand> {
         }
         for expectation in expected {
             match expectation {
-                Expectation::Signal(Signal::Bit(bit), ..) => add(Operand::Bit(*bit)),
-                Expectation::Signal(Signal::Number(number), ..) => add(Operand::Number(*number)),
+                Expectation::Value(Observable::Signal(Signal::Bit(bit)), ..) => add(Operand::Bit(*bit)),
+                Expectation::Value(Observable::Signal(Signal::Number(number)), ..) => {
+                    add(Operand::Number(*number))
+                }
                 Expectation::Text(string, _) => add(Operand::Text(*string)),
                 _ => {}
             }

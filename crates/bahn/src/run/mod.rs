@@ -25,8 +25,8 @@ use std::sync::Arc;
 
 use bahn_control::{Checking, Control, Mode, Signal};
 use bahn_host::{
-    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, Play, PowerOn,
-    Script, Source, Stage, is_whole,
+    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Observable, Operator, Play,
+    PowerOn, Script, Source, Stage, is_whole,
 };
 use bahn_workpiece::Projection;
 
@@ -189,8 +189,17 @@ fn recording(options: &RunMachineOptions, control: &Control) -> Result<Option<Re
     };
     let letters: Vec<char> = control.axis_letters().collect();
     for signal in &wanted.signals {
-        if let Signal::Axis(letter, _) = signal
-            && !letters.contains(letter)
+        if let Observable::Signal(Signal::Q(number)) = signal
+            && *number > control.model().limits().q_max
+        {
+            return Err(UsageError::new(format!(
+                "--signals {signal}: the {} has Q0 to Q{}",
+                control.model(),
+                control.model().limits().q_max
+            )));
+        }
+        if let Some(letter) = signal.axis()
+            && !letters.contains(&letter)
         {
             let known: Vec<String> = letters.iter().map(char::to_string).collect();
             return Err(UsageError::new(format!(

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_control::Signal;
-use bahn_host::Attendance;
+use bahn_host::{Attendance, Observable};
 use clap::{Args, ValueHint};
 
 use crate::options::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
@@ -188,11 +187,12 @@ pub(crate) struct RecordingOptions {
     /// Write signals over time as a table.
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub record: Option<PathBuf>,
-    /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, path.speed,
-    /// path.block, S.rpm, S.volts, S.angle, operands of the PLC like M2045, I4, W260; by default speeds, positions,
-    /// lags, and the handshake of M functions.
+    /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, X.displayed, X.ref, X.distance,
+    /// X.table and X.force (what only the plant knows), path.speed, path.block, path.distance, S.rpm, S.volts, S.angle,
+    /// output.1 to output.5, output.S, mode, run, tool, Q5, X41/34, X42/4, operands of the PLC like M2045, I4, W260; by
+    /// default speeds, positions, lags, and the handshake of M functions. `bahn machine list` says what each is.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
-    pub signals: Vec<Signal>,
+    pub signals: Vec<Observable>,
     /// Time between two rows, ms; every contour cycle without it.
     #[arg(long, value_name = "MS", requires = "record", value_parser = clap::value_parser!(u32).range(1..))]
     pub every: Option<u32>,

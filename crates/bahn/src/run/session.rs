@@ -101,7 +101,8 @@ impl Session {
                 self.host.remark(&Source::Script, "end")?;
                 return Ok(ended);
             }
-            let stored = self.host.cycle();
+            let tracer = self.recording.as_mut().and_then(Recording::tracer);
+            let stored = self.host.cycle_traced(tracer);
             self.watch()?;
             if let Some(list) = self.host.restart() {
                 return Ok(Ended::Restart(list.to_owned()));
@@ -208,7 +209,7 @@ impl Session {
             self.moved_us = control.time_us();
         }
         match &mut self.recording {
-            Some(recording) => recording.cycle(control, self.start_us.is_some()),
+            Some(recording) => recording.cycle(control, self.host.plant(), self.start_us.is_some()),
             None => Ok(()),
         }
     }

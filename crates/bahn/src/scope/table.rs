@@ -219,7 +219,10 @@ impl Trace {
             None => (head, ""),
         };
         let digits = name.strip_prefix(['M', 'I', 'O', 'T', 'C']).unwrap_or_default();
-        let is_bit = unit.is_empty() && !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
+        // The pins of "control is ready".
+        let is_pin = matches!(name, "X41/34" | "X42/4");
+        let is_bit =
+            is_pin || unit.is_empty() && !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
         Trace {
             name: name.to_owned(),
             unit: unit.to_owned(),
