@@ -10,19 +10,22 @@ use std::sync::LazyLock;
 
 use bahn_fuzz as _;
 use bahn_machine::Machine;
+use bahn_parameters::{ControlModel, ParameterList};
 use libfuzzer_sys::fuzz_target;
 
-static MACHINE: LazyLock<Machine> = LazyLock::new(|| {
-    Machine::from_toml(
+static STAGE: LazyLock<(Machine, ParameterList)> = LazyLock::new(|| {
+    let machine = Machine::from_toml(
         "name = 'one'\n[keys]\nNC_START = 'I1'\n[emergency_stop]\nacknowledgement = 'I3'\n\
          [axis.X]\noutput = '1'\nspeed = 15000\nvolts = 9\nencoder = { input = 'X1', period_um = 20 }",
     )
-    .expect("the machine")
+    .expect("the machine");
+    (machine, ParameterList::reference(ControlModel::Tnc415b))
 });
 
 fuzz_target!(|bytes: &[u8]| {
     // The text may be UTF-16: it has no more lines than bytes.
-    for read in bahn::check_script(&MACHINE, bytes) {
+    let (machine, parameters) = &*STAGE;
+    for read in bahn::check_script(machine, parameters, bytes) {
         if let Err(lines) = read {
             assert!(!lines.is_empty() && lines.iter().all(|line| (1..=bytes.len() as u32).contains(line)));
         }

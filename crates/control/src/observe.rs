@@ -3,7 +3,6 @@
 use bahn_interpreter::{Interpreter, Warning};
 use bahn_parameters::ControlModel;
 use bahn_path::PathElement;
-use bahn_plc::{PlcProgram, RuntimeError};
 
 use crate::axis::AxisUnit;
 use crate::command::Mode;
@@ -158,13 +157,8 @@ impl Control {
         self.machine.plc.scans
     }
 
-    /// The error that stopped the PLC.
-    pub fn plc_error(&self) -> Option<&RuntimeError> {
-        self.machine.plc.machine.stopped()
-    }
-
-    /// The program of the PLC.
-    pub fn plc_program(&self) -> &PlcProgram {
-        self.machine.plc.machine.program()
+    /// The PLC: its program, accumulators, processing times, and the error that stopped it.
+    pub fn plc(&self) -> &bahn_plc::Machine {
+        &self.machine.plc.machine
     }
 }

@@ -89,9 +89,12 @@ pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
 
 /// Reads a script for the machine of a description and for the bench of the PLC, for fuzzing; errors name their lines.
 #[doc(hidden)]
-pub fn check_script(machine: &bahn_machine::Machine, bytes: &[u8]) -> [Result<(), Vec<u32>>; 2] {
-    let parameters = bahn_parameters::ParameterList::reference(bahn_parameters::ControlModel::Tnc415b);
-    [Stage::machine(machine, &parameters), Stage::bench(&parameters)].map(|stage| {
+pub fn check_script(
+    machine: &bahn_machine::Machine,
+    parameters: &bahn_parameters::ParameterList,
+    bytes: &[u8],
+) -> [Result<(), Vec<u32>>; 2] {
+    [Stage::machine(machine, parameters), Stage::bench(parameters)].map(|stage| {
         let faults = |faults: Vec<FileFault>| faults.iter().map(|fault| fault.marked.line).collect();
         Script::of(std::path::Path::new("SCRIPT"), bytes, &stage)
             .map(drop)

@@ -3,6 +3,7 @@
 //! - `options`: options and help texts;
 //! - `source`: the program, compile errors as rustc prints them;
 //! - `bench`: program, memory and stand-in for the control together;
+//! - `live`: the program in the control of a machine; `subject`: one of the two;
 //! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
 
 #[cfg_attr(
@@ -14,12 +15,19 @@ mod check;
 mod diagram;
 mod drawing;
 mod failure;
+mod halt;
 mod list;
+#[cfg_attr(
+    not(feature = "watch"),
+    expect(dead_code, reason = "part of it serves the screen alone")
+)]
+mod live;
 mod options;
 mod record;
 mod run;
 mod signals;
 mod source;
+mod subject;
 mod trace;
 #[cfg(feature = "watch")]
 mod watch;

@@ -1,5 +1,7 @@
 //! `bahn plc run`: cycle by cycle, with stimuli and expectations.
 
+use std::path::Path;
+
 use bahn_exchange::Exchange;
 use bahn_host::Retained;
 use bahn_plc::ProcessingTime;
@@ -7,6 +9,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::bench::{self, Bench, Failure};
 use super::failure;
+use super::live;
 use super::options::RunOptions;
 use super::print_json;
 use super::record::Record;
@@ -24,6 +27,7 @@ const CYCLES_IN_VAIN: u64 = 3000;
 
 /// Runs a program and shows what came out.
 pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
+    refuse_machine(&options.program.file)?;
     files::keep_inputs(&options.inputs(), &options.written())?;
     let source = Source::compile(&options.program)?;
     let first_error = source.compilation.errors.first().map(|fault| Stop {
@@ -103,6 +107,17 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         true => Outcome::Fine,
         false => Outcome::ProgramError,
     })
+}
+
+/// The folder of a machine is no program.
+fn refuse_machine(path: &Path) -> Result<(), UsageError> {
+    if !live::is_machine(path) {
+        return Ok(());
+    }
+    Err(UsageError::new(format!(
+        "{} is a folder: `bahn run --machine` runs a machine, `bahn plc trace`, `diagram` and `watch` look at its PLC",
+        path.display()
+    )))
 }
 
 /// The cycles of a run, and what is written meanwhile.
