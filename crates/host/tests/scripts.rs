@@ -108,6 +108,25 @@ fn wires_break_and_are_mended() {
     play(THERE, script);
 }
 
+/// What fails is found; a message that flashes is cleared by power-off alone.
+#[test]
+fn what_fails_inside_is_found() {
+    // The position is lost: the message flashes, and the circuit opens.
+    let script = "start+4: fault encoder X amplitude\nafter message MEASURING SYSTEM: repair X\n\
+        +0.3: expect X41/34=0, X42/4=0\n+0: ce\n+0.1: expect message \"MEASURING SYSTEM\"\n+0: power off\n+1: power on\n\
+        +1: expect no message\n+1: expect X42/4=1\n+0: end\n";
+    play(THERE, script);
+    // The axis runs away: the control clears that without power-off.
+    let script = "start+4: fault drive X runaway\nafter message POSITIONING ERROR: repair X\n+0.5: ce\n\
+        +0.1: expect no message, X41/34=1\n+0: end\n";
+    play(THERE, script);
+    // At power-on the control tests that its output takes the voltage away [000:6175-6228].
+    let script = "0: fault relay welded\nafter message EMERGENCY STOP DEFECTIVE: repair relay\n\
+        +1: expect message \"EMERGENCY STOP DEFECTIVE\"\n+0: power off\n+1: power on\n+20: expect no message, X42/4=1\n\
+        +0: end\n";
+    play("", script);
+}
+
 /// What is wired to the machine is not set from outside: a contact is made to stick.
 #[test]
 fn inputs_belong_to_the_machine() {

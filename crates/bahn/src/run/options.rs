@@ -30,11 +30,12 @@ Without --operator it is full, with --script start, with --replay absent.
 Script (--script): lines `TIME: EVENT`. TIME is s since power-on (12.5), since the line before (+2) or since
 the program was started (start+3), `+20 cycles` of the control, or a condition: `when X.actual > 50`,
 `after message TEXT`; docs/scripts.md tells all of it. Text behind ; or # is a comment. Events are those of the machine
-(machines/mill/README.md), commands of the control, what is expected, and `end`:
+(machines/mill/README.md), commands of the control, operands and machine parameters, power, what is expected, and `end`:
   start+2: key NC_STOP tap
   +3: expect run interrupted
   +0: override feed 50
   +0: key NC_START tap
+  start+10: M900=1, MP4110.5=200
   start+20: expect X.actual=100±0.01
   +0: expect message \"DOOR IS OPEN\"
 `bahn machine list` names all events, commands, keys and lamps.
