@@ -204,6 +204,15 @@ fn pulses_inside_a_scan_are_told() {
         "{} {scans}",
         told("W902 pulse")
     );
+    // The drawing has a line for each.
+    let table = folder.read("r.csv");
+    folder.write("without.csv", table.replace("M900 pulse", ""));
+    let lines = |name: &str| {
+        let run = folder.bahn(&format!("scope {name}.csv --signals M900 --all -o {name}.svg"));
+        assert_eq!(run.code(), 0, "{}", run.err());
+        folder.read(&format!("{name}.svg")).matches("<polyline").count()
+    };
+    assert_eq!(lines("r"), lines("without") + 2);
     // With fewer rows nothing is lost.
     let run = folder.bahn(
         "run --machine mill --fresh --no-graphics --script s.txt --record r.csv --every 500 --signals M900,W902",

@@ -193,3 +193,16 @@ fn documented_scripts_are_played() {
     let run = folder.bahn("plc run DOOR.PLC --script door.txt");
     assert_eq!(run.code(), 0, "{}", run.err());
 }
+
+/// The page lists what `bahn machine list` lists.
+#[test]
+fn the_page_on_scripts_is_complete() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scripts.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let listed = Folder::with_mill("").bahn("machine list mill").out();
+    let (_, forms) = listed.split_once("Events:\n").unwrap();
+    assert!(forms.lines().count() > 60);
+    for line in forms.lines() {
+        assert!(page.lines().any(|own| own == line), "{line}");
+    }
+}

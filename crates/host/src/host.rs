@@ -222,10 +222,18 @@ impl<P: Operable> Host<P> {
             sink.note(self.control.time_us(), &source, &deed.to_string())?;
         }
         let answer = match &deed {
-            Deed::Command(command) => match self.control.command(command.clone()) {
-                true => Answer::Done,
-                false => Answer::Refused,
-            },
+            Deed::Command(command) => {
+                let before = (self.control.starts(), self.control.is_off());
+                let done = self.control.command(command.clone());
+                if before != (self.control.starts(), self.control.is_off()) {
+                    // A computation that is on its way belongs to the control that was on before.
+                    self.background = Background::default();
+                }
+                match done {
+                    true => Answer::Done,
+                    false => Answer::Refused,
+                }
+            }
             Deed::Event(event, _) => match self.plant.operate(event) {
                 Ok(()) => Answer::Done,
                 Err(what) => Answer::Impossible(what),

@@ -31,7 +31,7 @@ key CODE                            a key of the keyboard by its code, 58 to 127
 test PROGRAM                        TEST RUN beside what the machine does
 end-test                            breaks it off
 offset adjust|off                   answers to code number 75368
-M100=1, W6=$10, S0=\"TEXT\"          operands, as in the table of the PLC menu; inputs are the machine's
+M100=1, W6=$10, S0=\"TEXT\"           operands, as in the table of the PLC menu; inputs are the machine's
 MP4110.2=4                          a machine parameter of the running control, with what its change needs
 power on|off                        the supply of the control
 ";
