@@ -1,4 +1,4 @@
-//! Any bytes are a script of stimuli for the PLC, or an error that names file and line.
+//! Any bytes are a script for a machine and for the bench of the PLC, or errors that name their lines.
 //!
 //! ```text
 //! cargo +nightly fuzz run read_script
@@ -6,13 +6,28 @@
 
 #![no_main]
 
+use std::sync::LazyLock;
+
 use bahn_fuzz as _;
+use bahn_machine::Machine;
+use bahn_parameters::{ControlModel, ParameterList};
 use libfuzzer_sys::fuzz_target;
 
+static STAGE: LazyLock<(Machine, ParameterList)> = LazyLock::new(|| {
+    let machine = Machine::from_toml(
+        "name = 'one'\n[keys]\nNC_START = 'I1'\n[emergency_stop]\nacknowledgement = 'I3'\n\
+         [axis.X]\noutput = '1'\nspeed = 15000\nvolts = 9\nencoder = { input = 'X1', period_um = 20 }",
+    )
+    .expect("the machine");
+    (machine, ParameterList::reference(ControlModel::Tnc415b))
+});
+
 fuzz_target!(|bytes: &[u8]| {
-    if let Err(error) = bahn::check_script("SCRIPT", bytes) {
-        let line = error.strip_prefix("SCRIPT:").and_then(|rest| rest.split(':').next());
-        let line: usize = line.and_then(|line| line.parse().ok()).expect("the line");
-        assert!((1..=String::from_utf8_lossy(bytes).lines().count()).contains(&line), "{error}");
+    // The text may be UTF-16: it has no more lines than bytes.
+    let (machine, parameters) = &*STAGE;
+    for read in bahn::check_script(machine, parameters, bytes) {
+        if let Err(lines) = read {
+            assert!(!lines.is_empty() && lines.iter().all(|line| (1..=bytes.len() as u32).contains(line)));
+        }
     }
 });

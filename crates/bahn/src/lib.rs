@@ -47,9 +47,7 @@ mod shelf;
 mod test_run;
 
 #[doc(hidden)]
-pub use bahn_host::{check_nc_tables, check_state, check_tool_table};
-#[doc(hidden)]
-pub use plc::check_script;
+pub use bahn_host::{check_nc_tables, check_script, check_state, check_tool_table};
 #[doc(hidden)]
 pub use scope::check_recording;
 

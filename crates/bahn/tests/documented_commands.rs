@@ -70,7 +70,7 @@ fn desk() -> Folder {
     folder.write("changes.mp", "MP1010.0 : 12000\n");
     folder.write("tool.t", "T L R R2 NAME\n1 80.5 10 0 END MILL\n2 62 4 4 BALL\n");
     folder.write("MAIN.PLC", "       LN    I4\n       =     O2\n       EM\n");
-    folder.write("door.txt", "1: I4=1\n5: I4=0\n");
+    folder.write("door.txt", "cycle 1: I4=1\ncycle 5: I4=0\n");
     folder.write(
         "stop.txt",
         "start+0.5: key NC_STOP tap\nstart+1.5: key NC_START tap\n",

@@ -198,6 +198,10 @@ fn a_list_names_what_scripts_can_speak_of() {
         "override feed|spindle",
         "restore-at N",
         "expect tool=3",
+        "MP4110.2=4",
+        "power on|off",
+        "X.table",
+        "X41/34 X42/4",
     ] {
         assert!(text.contains(part), "{part}\n{text}");
     }

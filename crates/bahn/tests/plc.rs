@@ -132,7 +132,8 @@ fn scripts_set_and_expect() {
     let folder = folder(DOOR);
     folder.write(
         "good.txt",
-        "; door\n1: I4=1\n1: expect O2=0\n2: I5=1 # closed\n2: expect O2=1, W8=2\n5: expect W8=5\n",
+        "; door\ncycle 1: I4=1\ncycle 1: expect O2=0\ncycle 2: I5=1 # closed\ncycle 2: expect O2=1, W8=2\n\
+         cycle 5: expect W8=5\n",
     );
     let run = folder.bahn("plc run MAIN.PLC --script good.txt --record out.csv");
     assert_eq!(run.code(), 0, "{}", run.err());
@@ -140,16 +141,19 @@ fn scripts_set_and_expect() {
         folder.read("out.csv"),
         "cycle,I4,O2,I5,W8\n1,1,0,0,1\n2,1,1,1,2\n3,1,1,1,3\n4,1,1,1,4\n5,1,1,1,5\n"
     );
-    folder.write("bad.txt", "2: I4=1, I5=1\n2: expect O2=0\n3: expect W8=7\n");
+    folder.write(
+        "bad.txt",
+        "cycle 2: I4=1, I5=1\ncycle 2: expect O2=0\ncycle 3: expect W8=7\n",
+    );
     let run = folder.bahn("plc run MAIN.PLC --script bad.txt --format json");
     assert_eq!(run.code(), 1);
     let err = run.err();
     assert!(
-        err.starts_with("error: cycle 2: O2 expected 0, found 1\n --> bad.txt:2:11\n"),
+        err.starts_with("error: cycle 2: O2 expected 0, found 1\n --> bad.txt:2:17\n"),
         "{err}"
     );
     assert!(
-        err.contains("3 | 3: expect W8=7\n  |           ^^^^ found 3\n"),
+        err.contains("3 | cycle 3: expect W8=7\n  |                 ^^^^ found 3\n"),
         "{err}"
     );
     let failed = &run.json()["failed_expectations"][1];
@@ -157,22 +161,75 @@ fn scripts_set_and_expect() {
         failed,
         &json!({"cycle": 3, "line": 3, "operand": "W8", "expected": 7, "found": 3})
     );
-    folder.write("late.txt", "2: expect O2=0\n3: expect W8=7\n9: expect O2=1\n");
+    folder.write(
+        "late.txt",
+        "cycle 2: expect O2=0\ncycle 3: expect W8=7\ncycle 9: expect O2=1\n",
+    );
     let run = folder.bahn("plc run MAIN.PLC --script late.txt --cycles 3 --junit out.xml");
     assert_eq!(run.code(), 1);
     let xml = folder.read("out.xml");
     for expected in [
         "<testsuite name=\"MAIN.PLC\" tests=\"3\" failures=\"1\" errors=\"0\" skipped=\"1\">",
-        "<testcase classname=\"late.txt:1\" name=\"cycle 2: O2 = 0\"/>",
-        "<testcase classname=\"late.txt:2\" name=\"cycle 3: W8 = 7\">\n      <failure message=\"found 3\"/>",
-        "<testcase classname=\"late.txt:3\" name=\"cycle 9: O2 = 1\">\n      <skipped",
+        "<testcase classname=\"late.txt:1\" name=\"cycle 2: expect O2=0\"/>",
+        "<testcase classname=\"late.txt:2\" name=\"cycle 3: expect W8=7\">\n      <failure message=\"W8 is 3\"/>",
+        "<testcase classname=\"late.txt:3\" name=\"cycle 9: expect O2=1\">\n      <skipped",
     ] {
         assert!(xml.contains(expected), "{expected} is not in {xml}");
     }
-    folder.write("wrong.txt", "1: I4=1\n2: W7=1\n");
+    folder.write("wrong.txt", "cycle 1: I4=1\ncycle 2: W7=1\n");
     let run = folder.bahn("plc run MAIN.PLC --script wrong.txt");
     assert_eq!(run.code(), 2);
     assert!(run.err().contains("wrong.txt:2:"), "{}", run.err());
+}
+
+/// The language of `bahn run`: seconds, cycles, conditions, and an end.
+#[test]
+fn scripts_have_times_and_conditions() {
+    // O2 follows I4 for as long as W8 counts to 5.
+    let folder = folder("L I4\n= O2\nINC W8\nL W8\n== K+5\n= O3\nEM\n");
+    // A scan of the TNC 415 lasts 20 ms [000:239]: 0.1 s is behind the fifth.
+    folder.write(
+        "s.txt",
+        "0: I4=1\n+1 cycle: expect O2=1, W8=1\n0.1: expect W8=5, O3=1\nwhen O3=1: I4=0\n+1 cycle: expect O2=0\n\
+         +2 cycles: expect W8=8\n+0.04: end\n",
+    );
+    let run = folder.bahn("plc run MAIN.PLC --script s.txt --show W8,O2 --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    // The condition comes true behind cycle 5; 1 + 2 + 2 cycles later the script ends.
+    assert_eq!(run.json()["cycles"], 10);
+    assert_eq!(run.json()["values"], json!({"W8": 10, "O2": 0}));
+
+    folder.write(
+        "never.txt",
+        "cycle 2: I4=1\nwhen O2=1, W8>30000: I4=0\ncycle 3: expect O2>1\n",
+    );
+    let run = folder.bahn("plc run MAIN.PLC --script never.txt --format json --junit n.xml");
+    assert_eq!(run.code(), 1);
+    let report = run.json();
+    // A minute behind the last thing that was done.
+    assert_eq!(report["cycles"], 3002);
+    assert_eq!(
+        report["failed_expectations"],
+        json!([
+            {"cycle": 3, "line": 3, "operand": "O2", "expected": "> 1", "found": 1},
+            {"cycle": 3002, "line": 2, "operand": "W8", "expected": "> 30000", "found": 3002},
+        ])
+    );
+    assert!(
+        folder.read("n.xml").contains("it never came true"),
+        "{}",
+        folder.read("n.xml")
+    );
+
+    // What the bench does not have is said with its place.
+    folder.write("key.txt", "cycle 1: key NC_START tap\n1: expect mode full\n");
+    let run = folder.bahn("plc run MAIN.PLC --script key.txt");
+    assert_eq!(run.code(), 2);
+    let err = run.err();
+    assert!(
+        err.contains("key.txt:1:10") && err.contains("key.txt:2:4"),
+        "{err}"
+    );
 }
 
 #[test]

@@ -25,7 +25,10 @@ fn diagrams_show_levels_and_numbers() {
         "cycles 1 to 8\n      O2 ___\u{2580}\u{2580}\u{2580}__\n      W8 ||||||||| 1..8, last 8\n"
     );
     let folder = folder();
-    folder.write("W.txt", "1: D40=-3, S0=\"OIL\"\n6: D40=1000, S0=\"A\"\n");
+    folder.write(
+        "W.txt",
+        "cycle 1: D40=-3, S0=\"OIL\"\ncycle 6: D40=1000, S0=\"A\"\n",
+    );
     let run = folder.bahn("plc diagram MAIN.PLC --show D40,S0 --cycles 12 --script W.txt");
     assert_eq!(
         run.out(),

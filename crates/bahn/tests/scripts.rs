@@ -129,6 +129,39 @@ fn the_end_with_a_flashing_message_is_a_failure_unless_it_was_expected() {
     assert_eq!(code, 1, "{text}");
 }
 
+/// What is set from outside, changed parameters, a reset and the supply are in the log: a replay is the same run.
+#[test]
+fn what_scripts_do_to_the_control_is_repeated_from_the_log() {
+    let folder = Folder::with_mill(THERE_AND_BACK);
+    folder.write(
+        "s.txt",
+        "start+2: M900=1, W902=$FFF0, S3=\"A, B\"\nwhen X.actual > 230: MP4110.5=200\nwhen X.actual > 250: power off\n\
+         +1: power on\n+20: MP7260=40\n+20: expect M900=0, W902=0\n+0: end\n",
+    );
+    let signals = "X.actual,X.table,X.force,output.1,M900,W902,mode,run,X41/34";
+    let common = format!("run main.H --machine mill --fresh --no-graphics --signals {signals}");
+    let run = folder.bahn(&format!("{common} --script s.txt --log a.log --record a.csv"));
+    assert_eq!(run.code(), 1, "it is incomplete: {}", run.err());
+    assert!(!run.err().contains("not as expected"), "{}", run.err());
+    let log = folder.read("a.log");
+    for what in [
+        "M900=1",
+        "W902=-16",
+        "S3=\"A, B\"",
+        "MP4110.5=200",
+        "power off",
+        "power on",
+        "MP7260=40",
+    ] {
+        assert!(log.contains(what), "{what}: {log}");
+    }
+    folder.bahn(&format!("{common} --replay a.log --record b.csv"));
+    assert!(
+        folder.read("a.csv") == folder.read("b.csv"),
+        "the recordings differ"
+    );
+}
+
 /// The examples of docs/scripts.md do what stands beside them.
 #[test]
 fn documented_scripts_are_played() {
@@ -150,5 +183,26 @@ fn documented_scripts_are_played() {
         assert_eq!(code, expected, "{script}{error}");
         let failed = report["failed_expectations"].as_array().unwrap();
         assert!(failed.is_empty(), "{script}{failed:?}");
+    }
+    let ([bench], [plc]) = (
+        <[String; 1]>::try_from(blocks("bench")).unwrap(),
+        <[String; 1]>::try_from(blocks("plc")).unwrap(),
+    );
+    let folder = Folder::new();
+    folder.write("DOOR.PLC", plc).write("door.txt", bench);
+    let run = folder.bahn("plc run DOOR.PLC --script door.txt");
+    assert_eq!(run.code(), 0, "{}", run.err());
+}
+
+/// The page lists what `bahn machine list` lists.
+#[test]
+fn the_page_on_scripts_is_complete() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scripts.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let listed = Folder::with_mill("").bahn("machine list mill").out();
+    let (_, forms) = listed.split_once("Events:\n").unwrap();
+    assert!(forms.lines().count() > 60);
+    for line in forms.lines() {
+        assert!(page.lines().any(|own| own == line), "{line}");
     }
 }

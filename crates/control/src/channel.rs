@@ -671,6 +671,8 @@ impl Channel {
                 self.test = None;
                 true
             }
+            // They are of the whole control.
+            Command::Set(_) | Command::Power(_) => false,
             Command::OffsetAdjustment(adjust) => {
                 let done = machine.offsets.answer(adjust, &mut machine.axes);
                 machine.unsaved |= done;

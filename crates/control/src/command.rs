@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_path::Axis;
 
 /// The machine operating modes, as W272 codes them [000:4680-4687].
@@ -119,6 +120,13 @@ pub enum Command {
     EndTest,
     /// `offset adjust`, `offset off`: answers to code number 75 368 [000:5014-5020].
     OffsetAdjustment(bool),
+    /// `M100=1`, `W6=$10`, `S0="TEXT"`: an operand in the table of the PLC menu [000:11436-11460]; what the PLC program
+    /// or the control writes later counts. `MP4110.2=4`: a machine parameter, while no program runs unless the list says
+    /// that it may change then; what needs a reset makes the control begin anew, what needs the reference marks lets
+    /// the axes traverse them again [000:10088].
+    Set(Assignment),
+    /// `power off`, `power on`: the supply of the control.
+    Power(bool),
 }
 
 /// Where CUR.TIME of a tool ends, minutes (inferred).
@@ -146,6 +154,9 @@ impl FromStr for Command {
 
     fn from_str(text: &str) -> Result<Command, CommandError> {
         let text = text.trim();
+        if Assignment::is_meant(text) {
+            return assignment(text).map(Command::Set);
+        }
         let (name, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         let nothing = |command: Command| {
@@ -198,9 +209,27 @@ impl FromStr for Command {
                 "off" => Ok(Command::OffsetAdjustment(false)),
                 _ => Err(CommandError("`offset` takes `adjust` or `off`".into())),
             },
+            "power" => match rest {
+                "on" => Ok(Command::Power(true)),
+                "off" => Ok(Command::Power(false)),
+                _ => Err(CommandError("`power` takes `on` or `off`".into())),
+            },
             "select" | "test" | "mdi" => Err(CommandError(format!("`{name}` needs something behind it"))),
             _ => Err(CommandError(format!("`{name}` is no command"))),
         }
+    }
+}
+
+/// An operand that can be set on a machine, or a machine parameter.
+fn assignment(text: &str) -> Result<Assignment, CommandError> {
+    let assignment = Assignment::parse(text).map_err(CommandError)?;
+    match &assignment {
+        Assignment::Operand(operand @ Operand::Bit(bit), value) if bit.area() == BitArea::I => {
+            Err(CommandError(format!(
+                "{operand} is read from the machine before each scan: `fault input {operand} {value}` lets it stick"
+            )))
+        }
+        _ => Ok(assignment),
     }
 }
 
@@ -266,6 +295,8 @@ impl fmt::Display for Command {
             Command::OffsetAdjustment(adjust) => {
                 write!(f, "offset {}", if *adjust { "adjust" } else { "off" })
             }
+            Command::Set(assignment) => assignment.fmt(f),
+            Command::Power(on) => write!(f, "power {}", if *on { "on" } else { "off" }),
         }
     }
 }
@@ -297,6 +328,11 @@ mod tests {
             "test PART 1.H",
             "end-test",
             "offset off",
+            "M100=1",
+            "W6=-16",
+            "S0=\"A=B\"",
+            "MP1010.0=5000",
+            "power off",
         ] {
             let command = text.parse::<Command>();
             assert_eq!(command.map(|command| command.to_string()), Ok(text.to_owned()));
@@ -314,6 +350,9 @@ mod tests {
             ("datum Q 5", "an axis and a value"),
             ("handwheel X 11", "from 0 to 10"),
             ("select", "needs something"),
+            ("I4=1", "`fault input I4 1`"),
+            ("M5=2", "takes 0 or 1"),
+            ("power up", "`on` or `off`"),
         ] {
             let error = text.parse::<Command>().map_err(|error| error.to_string());
             assert!(

@@ -1,35 +1,34 @@
 //! The kernel: machine side and channels under one clock, a count of microseconds. It orders what happens in a
 //! servo step, a contour cycle and a PLC scan, and decides nothing.
 
+use std::sync::Arc;
+
 use bahn_exchange::{Exchange, Image};
-use bahn_interpreter::{Done, Interpreter, Warning, Work};
+use bahn_interpreter::{Done, Work};
 use bahn_parameters::MessageId;
-use bahn_path::PathElement;
-use bahn_plc::mirror_parameters;
-use bahn_servo::{Commands, Measured, Plant, Step, Timing};
+use bahn_plc::{Tracer, mirror_parameters};
+use bahn_servo::{Commands, Plant, Step, Timing};
 
 use crate::axes::{Axes, first_ids, units};
 use crate::axis::AxisUnit;
 use crate::beside::ReadAhead;
 use crate::channel::{Channel, Parts};
-use crate::command::{Command, Mode};
+use crate::command::Command;
 use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::hand_over::{HandOver, Ordered};
-use crate::handshake::Waiting;
 use crate::kinematics::Cartesian;
 use crate::machine::{CircuitOrder, MachineParts, MachineSide, PlcUnit};
 use crate::magazine::Magazine;
 use crate::markers::AXES;
-use crate::message::{Message, Shown};
+use crate::message::Message;
 use crate::per_channel::PerChannel;
 use crate::plc_link::{PalletSelection, PlcLink};
-use crate::progress::RunState;
+use crate::seam::Seam;
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
-use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::source::Reading;
-use crate::spindle::{SpindleState, SpindleUnit, SpindleWiring};
+use crate::spindle::{SpindleUnit, SpindleWiring};
 use crate::tables::LoadedTables;
 use crate::test_run::{TestReport, TestRun};
 use crate::upkeep::by_index;
@@ -45,16 +44,17 @@ const LOG_MAX: usize = 100_000;
 /// as the control would have done.
 #[derive(Clone)]
 pub struct Control {
-    now_us: u64,
-    machine: MachineSide,
-    channels: PerChannel<Channel>,
-    seam: Seam,
+    pub(crate) now_us: u64,
+    pub(crate) machine: MachineSide,
+    pub(crate) channels: PerChannel<Channel>,
+    pub(crate) seam: Seam,
     /// Tool changes and datums must be stored before their strobe is reset.
-    keeps: bool,
+    pub(crate) keeps: bool,
     /// The axes that the PLC may hand over.
-    ordered: Vec<Ordered>,
+    pub(crate) ordered: Vec<Ordered>,
     /// The commands with their channels, when somebody wants them.
-    log: Option<Vec<(u64, usize, Command)>>,
+    pub(crate) log: Option<Vec<(u64, usize, Command)>>,
+    pub(crate) supply: Supply,
 }
 
 fn take_offsets(axes: &mut Axes, channel: usize, remembered: &Remembered) {
@@ -64,11 +64,13 @@ fn take_offsets(axes: &mut Axes, channel: usize, remembered: &Remembered) {
     }
 }
 
-/// What the machine was told last, and what it answered.
-#[derive(Clone, Default)]
-struct Seam {
-    commands: Commands,
-    measured: Measured,
+/// The power supply, and what the control is made of when it comes.
+#[derive(Clone)]
+pub(crate) struct Supply {
+    pub made_of: Arc<(Setup, Vec<ChannelSetup>)>,
+    pub off: bool,
+    /// How often the control has begun.
+    pub starts: u32,
 }
 
 impl Control {
@@ -100,6 +102,7 @@ impl Control {
     }
 
     fn build(setup: Setup, others: Vec<ChannelSetup>, units: Vec<AxisUnit>) -> Control {
+        let made_of = Arc::new((setup.clone(), others.clone()));
         let Setup {
             parameters,
             plc,
@@ -175,6 +178,11 @@ impl Control {
             keeps: false,
             ordered: Vec::new(),
             log: None,
+            supply: Supply {
+                made_of,
+                off: false,
+                starts: 1,
+            },
         }
     }
 
@@ -186,12 +194,12 @@ impl Control {
     /// A channel as of now, by its number from 0.
     pub fn channel(&self, number: usize) -> Option<ChannelView<'_>> {
         let channel = self.channels.get(number)?;
-        Some(ChannelView::new(channel, &self.machine))
+        Some(ChannelView::new(channel, &self.machine, &self.seam))
     }
 
     /// The first channel as of now.
     pub fn first(&self) -> ChannelView<'_> {
-        ChannelView::new(self.channels.first(), &self.machine)
+        ChannelView::new(self.channels.first(), &self.machine, &self.seam)
     }
 
     /// The state of a channel as of now.
@@ -217,24 +225,36 @@ impl Control {
     /// Spends one contour cycle on a machine. It does not allocate unless something out of the ordinary
     /// happens: a message, a fault.
     pub fn cycle(&mut self, plant: &mut dyn Plant) {
+        self.cycle_traced(plant, None);
+    }
+
+    /// Spends a contour cycle and shows a tracer what the PLC executes in it. A traced scan does what any other one
+    /// does, in the reference interpreter.
+    pub fn cycle_traced(&mut self, plant: &mut dyn Plant, mut tracer: Option<&mut (dyn Tracer + '_)>) {
+        if self.supply.off {
+            // The outputs are off.
+            self.seam.commands = Commands::default();
+        }
         // Somebody may have touched the machine meanwhile.
         self.exchange_with(plant, 0);
         for step in 0..self.machine.timing.steps() {
-            self.servo_step(step == 0);
+            if !self.supply.off {
+                self.servo_step(step == 0, reborrow(&mut tracer));
+            }
             self.exchange_with(plant, self.machine.timing.step_us());
         }
     }
 
     /// One servo step: a contour cycle begins with the first of its steps, a PLC scan with the first step
     /// at or after its time.
-    fn servo_step(&mut self, first: bool) {
+    fn servo_step(&mut self, first: bool, tracer: Option<&mut (dyn Tracer + '_)>) {
         let machine = &mut self.machine;
         machine.begin_step(self.now_us, &self.seam.measured, &mut self.seam.commands);
         for channel in self.channels.iter_mut() {
             channel.watch_probe(machine, &self.seam.measured);
         }
         if machine.scan_is_due(self.now_us) {
-            self.scan();
+            self.scan(tracer);
         }
         if first {
             self.contour_cycle();
@@ -260,7 +280,7 @@ impl Control {
     }
 
     /// A PLC scan: inputs in, program, outputs out, then what the PLC asks for.
-    fn scan(&mut self) {
+    fn scan(&mut self, tracer: Option<&mut (dyn Tracer + '_)>) {
         let machine = &mut self.machine;
         machine.read_inputs(&self.seam.measured);
         let operator = self.seam.measured.operator;
@@ -270,7 +290,7 @@ impl Control {
         machine.link.program_running = self.channels.iter().any(|channel| channel.run.is_active());
         self.channels.first().inform(machine);
         let block = self.channels.first().running_block();
-        if !machine.scan(block) {
+        if !machine.scan(block, tracer) {
             return;
         }
         machine.write_outputs(&mut self.seam.commands);
@@ -459,15 +479,34 @@ impl Control {
         if let Some(log) = self.log.as_mut().filter(|log| log.len() < LOG_MAX) {
             log.push((self.now_us, channel, command.clone()));
         }
-        let channel = self.channels.of_mut(channel);
-        let done = channel.execute(command, &mut self.machine);
-        if !done {
-            let refused = Message::Plain(MessageId::KeyNonFunctional);
-            let block = channel.running_block();
-            let messages = self.machine.messages.of_channel(channel.number());
-            messages.show(refused, false, block);
+        self.give(channel, command)
+    }
+
+    fn give(&mut self, channel: usize, command: Command) -> bool {
+        match (command, self.supply.off) {
+            (Command::Power(on), _) => self.switch(on),
+            // Nobody is there to say that it is not possible.
+            (_, true) => false,
+            (Command::Set(assignment), _) => {
+                let done = self.set(channel, &assignment);
+                done || self.refuse(channel)
+            }
+            (command, _) => {
+                let done = self.channels.of_mut(channel).execute(command, &mut self.machine);
+                done || self.refuse(channel)
+            }
         }
-        done
+    }
+
+    /// A command is not possible now.
+    fn refuse(&mut self, channel: usize) -> bool {
+        let block = self.channels.of(channel).running_block();
+        let refused = Message::Plain(MessageId::KeyNonFunctional);
+        self.machine
+            .messages
+            .of_channel(channel)
+            .show(refused, false, block);
+        false
     }
 
     /// Keeps the commands from now on, for [`Control::take_command_log`].
@@ -561,148 +600,13 @@ impl Control {
     pub fn compensation_line(&self) -> Option<usize> {
         self.machine.compensation.line
     }
+}
 
-    /// The state as of now.
-    pub fn snapshot(&self) -> Snapshot {
-        Snapshot::of(self.channels.first(), &self.machine, None)
-    }
-
-    /// The state as of now, in the memory of an earlier one: it does not allocate unless another program or
-    /// message is shown.
-    pub fn snapshot_again(&self, earlier: Snapshot) -> Snapshot {
-        Snapshot::of(self.channels.first(), &self.machine, Some(earlier))
-    }
-
-    /// The messages that came up since the last call, in their order.
-    pub fn take_messages(&mut self) -> Vec<Shown> {
-        self.machine.messages.take_news()
-    }
-
-    /// The text of a message that is or was shown, with the number of its channel where there are several.
-    pub fn shown_text(&self, shown: &Shown) -> String {
-        let text = self.message_text(&shown.message);
-        match shown.channel.filter(|_| self.channels() > 1) {
-            Some(channel) => format!("{}: {text}", channel + 1),
-            None => text,
-        }
-    }
-
-    /// The text of a message as this control shows it.
-    pub fn message_text(&self, message: &Message) -> String {
-        let machine = &self.machine;
-        message.text(machine.model, &machine.letters(), machine.link.messages())
-    }
-
-    /// Keeps the path elements of runs of all channels that begin from now on, for [`Control::take_path`].
-    pub fn keep_path(&mut self, keep: bool) {
-        for channel in self.channels.iter_mut() {
-            channel.run.source.tap = keep;
-        }
-    }
-
-    /// Of what [`Control::take_path`] has handed out so far, the elements from a sequence on are not executed: the tool
-    /// is replaced before them. To be asked for before it.
-    pub fn take_dropped_path(&mut self, channel: usize) -> Option<u64> {
-        let feeder = self.channels.of_mut(channel).run.source.feeder_mut();
-        feeder.and_then(|feeder| feeder.take_dropped())
-    }
-
-    /// The path elements of a channel that were prepared since the last call, in workpiece coordinates.
-    pub fn take_path(&mut self, channel: usize) -> Vec<PathElement> {
-        let feeder = self.channels.of_mut(channel).run.source.feeder_mut();
-        feeder.map(|feeder| feeder.take_tap()).unwrap_or_default()
-    }
-
-    /// The warnings of a channel's interpreter since the last call.
-    pub fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
-        let interpreter = self.channels.of_mut(channel).run.source.interpreter_mut();
-        interpreter.map(Interpreter::take_warnings).unwrap_or_default()
-    }
-
-    /// Operating mode.
-    pub fn mode(&self) -> Mode {
-        self.channels.first().desk().mode()
-    }
-
-    /// State of the run.
-    pub fn run_state(&self) -> RunState {
-        self.channels.first().run.progress().state()
-    }
-
-    /// A fault has interrupted the run: nothing of it is on its way, and NC start tries its block again.
-    pub fn is_broken(&self) -> bool {
-        self.channels.first().run.progress().is_broken()
-    }
-
-    /// The run came to its end since it was started.
-    pub fn has_ended(&self) -> bool {
-        self.channels.first().run.progress().has_ended()
-    }
-
-    /// The element of the path that is executed, or was last.
-    pub fn element(&self) -> Option<&PathElement> {
-        self.channels.first().run.track.path.element()
-    }
-
-    /// Path length to the end of that element, mm.
-    pub fn rest_mm(&self) -> f64 {
-        self.channels.first().run.track.path.rest_mm()
-    }
-
-    /// The interpreter of the program that runs, or ran last; `None` while it is [lent](Control::lend_reading).
-    pub fn interpreter(&self) -> Option<&Interpreter> {
-        self.channels.first().run.source.interpreter()
-    }
-
-    /// Handshake that the run waits for.
-    pub fn waiting(&self) -> Option<Waiting> {
-        let nc = self.machine.memory.first().nc();
-        self.channels.first().handshakes.waiting(nc)
-    }
-
-    /// Messages that are shown, the oldest first.
-    pub fn shown(&self) -> &[Shown] {
-        self.machine.messages.shown()
-    }
-
-    /// Tool in the spindle.
-    pub fn tool(&self) -> u32 {
-        self.channels.first().tools.number
-    }
-
-    /// The loops are closed: the control voltage is there.
-    pub fn loops_closed(&self) -> bool {
-        self.machine.loops_closed
-    }
-
-    /// Feed override in force, %.
-    pub fn feed_override_percent(&self) -> f64 {
-        self.channels.first().desk().feed_percent()
-    }
-
-    /// Spindle.
-    pub fn spindle(&self) -> SpindleState {
-        self.machine.spindles.first().state()
-    }
-
-    /// No axis is commanded to move.
-    pub fn stands(&self) -> bool {
-        self.machine.axes.iter().all(AxisUnit::stands)
-    }
-
-    /// The letters of the axes in the order of their indices.
-    pub fn axis_letters(&self) -> impl Iterator<Item = char> {
-        self.machine.axes.owned(0).map(|unit| unit.axis.letter())
-    }
-
-    /// Nominal processing time of the latest PLC scan, %.
-    pub fn plc_percent(&self) -> f64 {
-        self.machine.plc.machine.time().current_percent()
-    }
-
-    /// The value of a signal now; an axis that the machine does not have reads 0.
-    pub fn observe(&self, signal: &Signal) -> f64 {
-        signal.value(self.channels.first(), &self.machine)
+/// A tracer for one of several scans.
+fn reborrow<'a>(tracer: &'a mut Option<&mut (dyn Tracer + '_)>) -> Option<&'a mut (dyn Tracer + 'a)> {
+    match tracer {
+        Some(tracer) => Some(&mut **tracer),
+        None => None,
     }
 }
 

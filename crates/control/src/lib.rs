@@ -23,6 +23,7 @@
     reason = "citations as [000:7188] look like links"
 )]
 
+mod alteration;
 mod axes;
 mod axis;
 mod beside;
@@ -49,6 +50,7 @@ mod manual;
 mod markers;
 mod message;
 mod now;
+mod observe;
 mod overrides;
 mod panel;
 mod per_channel;
@@ -62,6 +64,7 @@ mod reference;
 mod replacement;
 mod restore;
 mod run;
+mod seam;
 mod setup;
 mod signal;
 mod site;
@@ -95,7 +98,7 @@ pub use plc_link::{NcFiles, WrittenElement, datum_shifts};
 pub use programs::Programs;
 pub use progress::RunState;
 pub use setup::{ChannelError, ChannelSetup, Checking, Position0, Remembered, Setup};
-pub use signal::{AxisSignal, ChannelSignal, Signal, SignalError, split_channel};
+pub use signal::{AxisSignal, Signal, SignalError, split_channel};
 pub use snapshot::{AxisState, Snapshot};
 pub use spindle::{SpindleState, SpindleWiring};
 pub use test_run::{TestReport, TestState};

@@ -4,7 +4,7 @@
 use bahn_exchange::{Bit, BitArea, Exchange, signal};
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PlcParameters, Station};
 use bahn_path::BlockRef;
-use bahn_plc::{Machine, PlcProgram, Start, mirror_parameters};
+use bahn_plc::{Machine, PlcProgram, Start, Tracer, mirror_parameters};
 use bahn_servo::{Commands, Measured, Timing};
 
 use crate::axes::Axes;
@@ -79,7 +79,7 @@ pub(crate) struct PlcUnit {
     due_us: u64,
     period_us: u64,
     /// Scans that were started.
-    scans: u64,
+    pub scans: u64,
 }
 
 /// The inputs and outputs of the PLC with their operands.
@@ -258,13 +258,16 @@ impl MachineSide {
     }
 
     /// Runs the PLC program. `false` when it has stopped.
-    pub fn scan(&mut self, block: Option<BlockRef>) -> bool {
+    pub fn scan(&mut self, block: Option<BlockRef>, tracer: Option<&mut (dyn Tracer + '_)>) -> bool {
         self.plc.scans += 1;
         let (exchange, others) = self.memory.split_mut();
         for (window, own) in self.windows.iter().zip(others.iter_mut()) {
             window.publish(own, exchange);
         }
-        let scanned = self.plc.machine.scan(exchange, &mut self.link);
+        let scanned = match tracer {
+            Some(tracer) => self.plc.machine.scan_traced(exchange, &mut self.link, tracer),
+            None => self.plc.machine.scan(exchange, &mut self.link),
+        };
         for (window, own) in self.windows.iter().zip(others) {
             window.take(own, exchange);
         }

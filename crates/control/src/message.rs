@@ -200,6 +200,19 @@ impl Messages {
         self.now_us = now_us;
     }
 
+    /// What is shown was shown at this time at first, µs.
+    pub fn restart(&mut self, now_us: u64) {
+        self.now_us = now_us;
+        let shown = self.shown.iter_mut().chain(&mut self.news);
+        shown.for_each(|shown| shown.time_us = now_us);
+    }
+
+    /// Shows nothing any more.
+    pub fn forget(&mut self) {
+        self.shown.clear();
+        self.news.clear();
+    }
+
     /// Time since power-on, µs.
     pub fn time_us(&self) -> u64 {
         self.now_us
@@ -244,6 +257,11 @@ impl Messages {
     /// What is shown, the oldest first.
     pub fn shown(&self) -> &[Shown] {
         &self.shown
+    }
+
+    /// Something is new since it was taken.
+    pub fn has_news(&self) -> bool {
+        !self.news.is_empty()
     }
 
     /// A flashing message is shown: the control does nothing more.

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bahn_interpreter::{DatumTable, MachineTexts};
-use bahn_parameters::ParameterList;
+use bahn_parameters::{ParameterId, ParameterList};
 use bahn_path::{Axis, Position};
 use bahn_plc::{
     CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable, NcInterfaces, NcMemory,
@@ -178,6 +178,21 @@ impl PlcLink {
 
     pub fn list(&self) -> &ParameterList {
         &self.parameters
+    }
+
+    /// The list as it is edited.
+    pub fn edited_list(&self) -> &ParameterList {
+        &self.edited
+    }
+
+    /// Takes a value of a list into the edited one and the one in force.
+    pub fn edit(&mut self, list: &ParameterList, id: ParameterId) {
+        let index = id.index.unwrap_or(0);
+        let value = list.get(id.number, index).unwrap_or_default();
+        for own in [&mut self.edited, &mut self.parameters] {
+            // It was checked for the list.
+            let _ = own.set(id.number, index, value);
+        }
     }
 
     /// Sets what a module will read.

@@ -588,6 +588,16 @@ impl ProgramRun {
         self.source.q_values(self.progress.has_ended())
     }
 
+    /// A Q parameter at the block that is executed; without a run as the last one has left it.
+    pub fn q_value(&self, number: u16) -> f64 {
+        let executed = self.track.path.element().filter(|_| self.is_active());
+        self.source.q_value(
+            number,
+            self.progress.has_ended(),
+            executed.map(|element| element.sequence),
+        )
+    }
+
     /// The PLC writes a Q parameter: for a program that runs with the next M, S or T strobe
     /// [000:11657-11663].
     pub fn set_q(&mut self, number: u16, value: f64) {

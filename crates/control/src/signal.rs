@@ -4,10 +4,14 @@ use std::fmt;
 use std::str::FromStr;
 
 use bahn_exchange::{Bit, Number};
+use bahn_servo::NOMINALS;
 
+use crate::axes::path_positions;
 use crate::axis::AxisUnit;
 use crate::channel::Channel;
 use crate::machine::MachineSide;
+use crate::progress::RunState;
+use crate::seam::Seam;
 use crate::setup::ChannelError;
 
 /// What of an axis is recorded.
@@ -25,6 +29,14 @@ pub enum AxisSignal {
     NominalSpeed,
     /// `volts`: nominal value output, V.
     Volts,
+    /// `displayed`: actual position as it is displayed, from the workpiece datum with the tool length in the tool axis,
+    /// mm or degrees.
+    Displayed,
+    /// `ref`: actual position as the display REF shows it, from the machine datum, mm or degrees within the modulo value
+    /// of a rotary axis.
+    Ref,
+    /// `distance`: distance to go in the block, mm or degrees.
+    Distance,
 }
 
 /// A signal: `X.lag`, `path.speed`, `S.rpm`, `S.volts`, `M2045`, `W260`.
@@ -50,55 +62,26 @@ pub enum Signal {
     SpindleVolts,
     /// `S.angle`: angle of the spindle since power-on with all turns, degrees; positive as M03.
     SpindleAngle,
+    /// `path.distance`: way to the end of the element that is executed, mm.
+    PathDistance,
+    /// `mode`: the operating mode as W272 codes it: manual 1, handwheel 2, mdi 3, single 4, full 5, reference 7.
+    Mode,
+    /// `run`: idle 0, running 1, interrupted 2, stopped 3, block-end 4.
+    Run,
+    /// `tool`: number of the tool in the spindle.
+    Tool,
+    /// `Q5`: a Q parameter at the block that is executed, not as far as blocks are read ahead.
+    Q(u16),
+    /// `output.1` to `output.5`, `output.S`, `output.7` ..: the voltage at an analogue output, V.
+    Output(usize),
+    /// `X41/34`: the output "control is ready", 0 or 1.
+    ReadyOutput,
+    /// `X42/4`: its acknowledgement, 0 or 1.
+    ReadyInput,
     /// A marker, input, output, timer or counter as the PLC sees it, 0 or 1.
     Bit(Bit),
     /// A byte, word or doubleword as the PLC sees it.
     Number(Number),
-}
-
-/// A signal of a channel: `X.actual` and `1:X.actual` of the first one, `2:X.actual` of the second.
-///
-/// ```
-/// use bahn_control::ChannelSignal;
-/// let second: ChannelSignal = "2:X.lag".parse()?;
-/// assert_eq!((second.channel, second.to_string().as_str()), (1, "2:X.lag"));
-/// assert_eq!("1:M2045".parse::<ChannelSignal>()?.to_string(), "M2045");
-/// # Ok::<(), bahn_control::SignalError>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ChannelSignal {
-    /// Which channel, from 0.
-    pub channel: usize,
-    /// What of it; operands of the PLC are those of its window.
-    pub signal: Signal,
-}
-
-impl FromStr for ChannelSignal {
-    type Err = SignalError;
-
-    fn from_str(text: &str) -> Result<ChannelSignal, SignalError> {
-        let (channel, signal) = split_channel(text);
-        Ok(ChannelSignal {
-            channel: channel.unwrap_or(0),
-            signal: signal.parse()?,
-        })
-    }
-}
-
-impl fmt::Display for ChannelSignal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.channel > 0 {
-            write!(f, "{}:", self.channel + 1)?;
-        }
-        self.signal.fmt(f)
-    }
-}
-
-impl From<Signal> for ChannelSignal {
-    /// That of the first channel.
-    fn from(signal: Signal) -> ChannelSignal {
-        ChannelSignal { channel: 0, signal }
-    }
 }
 
 /// The channel before the colon, from 0, and what stands behind it: `2:X.actual`, `2: mode full`. Without channel the
@@ -119,19 +102,58 @@ pub fn split_channel(text: &str) -> (Option<usize>, &str) {
 /// A text is no signal.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{0}` is no signal: there are X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts for each axis, \
-     path.speed, path.block, S.rpm, S.volts, S.angle, and operands of the PLC like M2045, I4, O2, W260, D356"
+    "`{0}` is no signal: there are X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, X.displayed, X.ref, \
+     X.distance for each axis, path.speed, path.block, path.distance, S.rpm, S.volts, S.angle, output.1 to output.5, \
+     output.S, mode, run, tool, Q5, X41/34, X42/4, and operands of the PLC like M2045, I4, O2, W260, D356"
 )]
 pub struct SignalError(String);
 
-const AXIS_SIGNALS: [(&str, AxisSignal); 6] = [
+impl SignalError {
+    /// The text is none.
+    pub fn of(text: &str) -> SignalError {
+        SignalError(text.to_owned())
+    }
+}
+
+const AXIS_SIGNALS: [(&str, AxisSignal); 9] = [
     ("actual", AxisSignal::Actual),
     ("nominal", AxisSignal::Nominal),
     ("lag", AxisSignal::Lag),
     ("speed", AxisSignal::Speed),
     ("nominal-speed", AxisSignal::NominalSpeed),
     ("volts", AxisSignal::Volts),
+    ("displayed", AxisSignal::Displayed),
+    ("ref", AxisSignal::Ref),
+    ("distance", AxisSignal::Distance),
 ];
+
+/// Signals with a name of their own.
+const NAMED: [(&str, Signal); 11] = [
+    ("path.speed", Signal::PathSpeed),
+    ("path.block", Signal::Block),
+    ("path.distance", Signal::PathDistance),
+    ("S.rpm", Signal::SpindleRpm),
+    ("S.volts", Signal::SpindleVolts),
+    ("S.angle", Signal::SpindleAngle),
+    ("mode", Signal::Mode),
+    ("run", Signal::Run),
+    ("tool", Signal::Tool),
+    ("X41/34", Signal::ReadyOutput),
+    ("X42/4", Signal::ReadyInput),
+];
+
+/// The output S among the analogue outputs.
+const OUTPUT_S: usize = 5;
+
+/// `1` to `5`, `S`, `7` ..
+fn output(name: &str) -> Option<usize> {
+    let number = match name {
+        "S" => OUTPUT_S,
+        "6" => return None,
+        name => name.parse::<usize>().ok()?.checked_sub(1)?,
+    };
+    (number < NOMINALS).then_some(number)
+}
 
 impl FromStr for Signal {
     type Err = SignalError;
@@ -139,13 +161,14 @@ impl FromStr for Signal {
     fn from_str(text: &str) -> Result<Signal, SignalError> {
         let wrong = || SignalError(text.to_owned());
         let text = text.trim();
-        match text {
-            "path.speed" => return Ok(Signal::PathSpeed),
-            "path.block" => return Ok(Signal::Block),
-            "S.rpm" => return Ok(Signal::SpindleRpm),
-            "S.volts" => return Ok(Signal::SpindleVolts),
-            "S.angle" => return Ok(Signal::SpindleAngle),
-            _ => {}
+        if let Some((_, signal)) = NAMED.iter().find(|(name, _)| *name == text) {
+            return Ok(*signal);
+        }
+        if let Some(name) = text.strip_prefix("output.") {
+            return output(name).map(Signal::Output).ok_or_else(wrong);
+        }
+        if let Some(number) = text.strip_prefix('Q').and_then(|number| number.parse().ok()) {
+            return Ok(Signal::Q(number));
         }
         if let Some((letter, name)) = text.split_once('.') {
             let mut letters = letter.chars();
@@ -179,13 +202,15 @@ impl fmt::Display for Signal {
                     .map_or("", |(name, _)| *name);
                 write!(f, "{letter}.{name}")
             }
-            Signal::PathSpeed => write!(f, "path.speed"),
-            Signal::Block => write!(f, "path.block"),
-            Signal::SpindleRpm => write!(f, "S.rpm"),
-            Signal::SpindleVolts => write!(f, "S.volts"),
-            Signal::SpindleAngle => write!(f, "S.angle"),
+            Signal::Q(number) => write!(f, "Q{number}"),
+            Signal::Output(OUTPUT_S) => write!(f, "output.S"),
+            Signal::Output(number) => write!(f, "output.{}", number + 1),
             Signal::Bit(bit) => bit.fmt(f),
             Signal::Number(number) => number.fmt(f),
+            named => {
+                let name = NAMED.iter().find(|(_, signal)| signal == named);
+                f.write_str(name.map_or("", |(name, _)| name))
+            }
         }
     }
 }
@@ -194,29 +219,31 @@ impl Signal {
     /// Unit of its values; empty for operands.
     pub fn unit(&self) -> &'static str {
         match self {
-            Signal::Axis(_, AxisSignal::Actual | AxisSignal::Nominal | AxisSignal::Lag) => "mm",
             Signal::Axis(_, AxisSignal::Speed | AxisSignal::NominalSpeed) | Signal::PathSpeed => "mm/min",
-            Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts => "V",
+            Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts | Signal::Output(_) => "V",
+            Signal::Axis(..) | Signal::PathDistance => "mm",
             Signal::SpindleRpm => "rpm",
             Signal::SpindleAngle => "degrees",
-            Signal::Block | Signal::Bit(_) | Signal::Number(_) => "",
+            _ => "",
         }
     }
 }
 
 impl Signal {
     /// Its value now; an axis that the channel does not have reads 0.
-    pub(crate) fn value(&self, channel: &Channel, machine: &MachineSide) -> f64 {
-        let track = &channel.run.track;
+    pub(crate) fn value(&self, channel: &Channel, machine: &MachineSide, seam: &Seam) -> f64 {
+        let (run, track) = (&channel.run, &channel.run.track);
         let plc = machine.memory.of(channel.number()).plc();
         let spindle = machine.spindles.of(channel.number());
+        let bit = |bit: bool| f64::from(u8::from(bit));
         match self {
             Signal::Axis(letter, signal) => {
                 let mut axes = machine.axes.owned(channel.number());
                 axes.find(|unit| unit.axis.letter() == *letter)
-                    .map_or(0.0, |unit| signal.value(unit))
+                    .map_or(0.0, |unit| signal.value(unit, channel, machine))
             }
             Signal::PathSpeed => track.speed_mm_s() * 60.0,
+            Signal::PathDistance => track.path.rest_mm(),
             Signal::Block => {
                 let element = track.path.element();
                 element.map_or(0.0, |element| element.block.block.into())
@@ -224,14 +251,30 @@ impl Signal {
             Signal::SpindleRpm => spindle.state().actual_rpm,
             Signal::SpindleVolts => spindle.state().volts,
             Signal::SpindleAngle => spindle.turned_deg(),
-            Signal::Bit(bit) => f64::from(u8::from(plc.bit(*bit))),
+            Signal::Mode => channel.desk().mode().code().into(),
+            Signal::Run => match run.progress().state() {
+                RunState::Idle => 0.0,
+                RunState::Running => 1.0,
+                RunState::Interrupted => 2.0,
+                RunState::Stopped => 3.0,
+                RunState::BlockEnd => 4.0,
+            },
+            Signal::Tool => channel.tools.number.into(),
+            Signal::Q(number) => run.q_value(*number),
+            Signal::Output(number) => {
+                let command = seam.commands.axes.get(*number);
+                command.map_or(0.0, |command| command.volts)
+            }
+            Signal::ReadyOutput => bit(seam.commands.control_ready),
+            Signal::ReadyInput => bit(seam.measured.control_ready),
+            Signal::Bit(operand) => bit(plc.bit(*operand)),
             Signal::Number(number) => plc.number(*number).into(),
         }
     }
 }
 
 impl AxisSignal {
-    fn value(self, unit: &AxisUnit) -> f64 {
+    fn value(self, unit: &AxisUnit, channel: &Channel, machine: &MachineSide) -> f64 {
         match self {
             AxisSignal::Actual => unit.servo.actual_mm(),
             AxisSignal::Nominal => unit.servo.nominal_mm(),
@@ -239,6 +282,58 @@ impl AxisSignal {
             AxisSignal::Speed => unit.servo.actual_velocity_mm_min(),
             AxisSignal::NominalSpeed => unit.speed * 60.0,
             AxisSignal::Volts => unit.servo.volts(),
+            AxisSignal::Displayed => {
+                let [actual, _] = path_positions(machine.axes.owned(channel.number()), channel.chain());
+                unit.shown(actual[unit.axis])
+            }
+            AxisSignal::Ref => unit.shown(unit.servo.actual_mm()),
+            AxisSignal::Distance => channel.run.distance_to_go(unit, channel.chain()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signals_are_read_as_they_are_written() {
+        for text in [
+            "X.actual",
+            "C.ref",
+            "Z.displayed",
+            "Y.distance",
+            "path.distance",
+            "S.angle",
+            "mode",
+            "run",
+            "tool",
+            "Q5",
+            "output.1",
+            "output.S",
+            "output.7",
+            "output.40",
+            "X41/34",
+            "X42/4",
+            "M2045",
+            "W260",
+        ] {
+            assert_eq!(
+                text.parse::<Signal>().map(|signal| signal.to_string()),
+                Ok(text.to_owned())
+            );
+        }
+        for wrong in [
+            "output.0",
+            "output.6",
+            "output.41",
+            "Q",
+            "Q-1",
+            "Q70000",
+            "X41/4",
+            "X.q",
+        ] {
+            assert!(wrong.parse::<Signal>().is_err(), "{wrong}");
         }
     }
 }

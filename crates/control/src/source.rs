@@ -274,6 +274,19 @@ impl Source {
             .collect()
     }
 
+    /// A Q parameter, as it was before the block of a sequence or where the interpreter is.
+    pub fn q_value(&self, number: u16, ended: bool, sequence: Option<u64>) -> f64 {
+        let over = ended && !self.q_due;
+        match (self.interpreter().filter(|_| !over), sequence) {
+            (Some(interpreter), Some(sequence)) => interpreter.q_value_at(number, sequence),
+            (Some(interpreter), None) => interpreter.q_value(number),
+            (None, _) => {
+                let known = self.q.iter().find(|(known, _)| *known == number);
+                known.map_or(0.0, |(_, value)| *value)
+            }
+        }
+    }
+
     /// Keeps the Q parameters of the run for the next one.
     pub fn keep_q_values(&mut self, ended: bool) {
         self.q = self.q_values(ended);

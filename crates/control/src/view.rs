@@ -8,6 +8,7 @@ use crate::command::Mode;
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
 use crate::progress::RunState;
+use crate::seam::Seam;
 use crate::setup::Remembered;
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
@@ -18,11 +19,16 @@ use crate::upkeep::by_index;
 pub struct ChannelView<'a> {
     channel: &'a Channel,
     machine: &'a MachineSide,
+    seam: &'a Seam,
 }
 
 impl<'a> ChannelView<'a> {
-    pub(crate) fn new(channel: &'a Channel, machine: &'a MachineSide) -> ChannelView<'a> {
-        ChannelView { channel, machine }
+    pub(crate) fn new(channel: &'a Channel, machine: &'a MachineSide, seam: &'a Seam) -> ChannelView<'a> {
+        ChannelView {
+            channel,
+            machine,
+            seam,
+        }
     }
 
     /// Its number, from 0.
@@ -91,7 +97,7 @@ impl<'a> ChannelView<'a> {
 
     /// The value of a signal; an axis that the channel does not have reads 0.
     pub fn observe(&self, signal: &Signal) -> f64 {
-        signal.value(self.channel, self.machine)
+        signal.value(self.channel, self.machine, self.seam)
     }
 
     /// Its state.

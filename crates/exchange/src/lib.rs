@@ -3,6 +3,7 @@
 //! The face of this room is small:
 //! - [`Bit`] and [`Number`] are addresses of operands (`M2045`, `W260`), with the ranges that a PLC program
 //!   may name; [`Image`] is the memory behind them;
+//! - [`Operand`], [`Content`] and [`Assignment`] are operands and values as people write them (`M100=1`);
 //! - [`Exchange`] holds the two images, one of the NC and one of the PLC, and swaps what changed at the
 //!   start and at the end of a PLC scan;
 //! - [`signal`] names every fixed marker and word, with who sets and resets it;
@@ -19,12 +20,14 @@
 mod address;
 mod exchanging;
 mod image;
+mod operand;
 mod retention;
 pub mod signal;
 
 pub use address::{Bit, BitArea, BitRange, ByteRange, NoSuchOperand, Number, Size};
 pub use exchanging::Exchange;
 pub use image::{CELLS, Image, STRING_LENGTH, STRINGS};
+pub use operand::{Assignment, Content, Operand, parts};
 pub use retention::{
     Damage, JOURNAL_LENGTH, Loss, MemoryStorage, Retention, RetentionError, RetentionStorage,
 };

@@ -1,10 +1,10 @@
 //! What a script expects of control and machine.
 
 use bahn_control::{ChannelView, Control, Mode, RunState, Signal, TestState, split_channel};
+use bahn_exchange::{Content, Image, Operand, parts};
 use bahn_machine::Machine;
 
-use crate::decimals::decimals;
-use crate::operand::{Content, Operand};
+use crate::observable::Observable;
 
 /// So near counts as equal when a script does not say how near, for values that are no whole numbers: the
 /// last digit of the display.
@@ -13,8 +13,8 @@ const TOLERANCE: f64 = 0.0005;
 /// Something that must be so.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expectation {
-    /// `X.actual=100±0.01`, `M2045=1`, `X.lag<0.01`, `S.rpm>900`.
-    Signal(Signal, Relation, f64),
+    /// `X.actual=100±0.01`, `M2045=1`, `X.lag<0.01`, `S.rpm>900`, `X.table>5`.
+    Value(Observable, Relation, f64),
     /// `S0="TEXT"`: a string of the PLC.
     Text(usize, String),
     /// `message "TEXT"`, `no message "TEXT"`: a message that is shown contains the text; any without text.
@@ -111,20 +111,37 @@ expect no message                   none is shown; with \"TEXT\" none with this 
 expect mode full                    manual, handwheel, mdi, single, full, reference
 expect run stopped                  idle, running, interrupted, stopped, block-end, ended
 expect tool=3                       the tool in the spindle
+expect M2045=1, W260=3              several: all must be so
 expect test finished                the test run beside: running, finished, failed
 expect lamp NC_START=1              a lamp of the panel
 expect 2:X.actual=100               of the second channel; also 2: message, 2: mode, 2: run, 2: tool
 ";
 
-    /// Reads what stands behind `expect`.
+    /// Reads what stands behind `expect`: one, or several with commas between. Without a machine only operands of the
+    /// PLC can be expected.
     ///
     /// # Errors
-    /// In words, when it is none.
-    pub fn parse(text: &str, machine: &Machine) -> Result<Expectation, String> {
+    /// In words, when one of them is none.
+    pub fn parse_all(text: &str, machine: Option<&Machine>) -> Result<Vec<Expectation>, String> {
+        parts(text)
+            .map(|text| Expectation::parse(text.trim(), machine))
+            .collect()
+    }
+
+    fn parse(text: &str, machine: Option<&Machine>) -> Result<Expectation, String> {
+        let Some(machine) = machine else {
+            let expectation = Expectation::of_value(text);
+            return expectation
+                .ok()
+                .filter(Expectation::is_of_the_plc)
+                .ok_or_else(|| {
+                    format!("`{text}` is nothing to expect on the bench of the PLC: it has operands, as O2=1")
+                });
+        };
         if let (Some(channel), of_it) = split_channel(text) {
-            let what = Expectation::parse(of_it, machine)?;
+            let what = Expectation::parse(of_it, Some(machine))?;
             return match what {
-                Expectation::Signal(..)
+                Expectation::Value(Observable::Signal(_), ..)
                 | Expectation::Message(..)
                 | Expectation::Mode(_)
                 | Expectation::Run(_)
@@ -135,6 +152,31 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
         match Expectation::of_state(text, machine)? {
             Some(expectation) => Ok(expectation),
             None => Expectation::of_value(text),
+        }
+    }
+
+    /// It speaks of an operand.
+    fn is_of_the_plc(&self) -> bool {
+        matches!(
+            self,
+            Expectation::Text(..)
+                | Expectation::Value(Observable::Signal(Signal::Bit(_) | Signal::Number(_)), ..)
+        )
+    }
+
+    /// `None` when it is so in the memory of the PLC; otherwise what is. Of anything but operands nothing is known
+    /// there.
+    pub fn check_memory(&self, image: &Image) -> Option<String> {
+        match self {
+            Expectation::Text(string, text) => check_text(*string, text, image),
+            Expectation::Value(signal @ Observable::Signal(Signal::Bit(bit)), relation, value) => {
+                let actual = u8::from(image.bit(*bit));
+                relation.check(signal, actual.into(), *value)
+            }
+            Expectation::Value(signal @ Observable::Signal(Signal::Number(number)), relation, value) => {
+                relation.check(signal, image.number(*number).into(), *value)
+            }
+            _ => Some("there is no control".to_owned()),
         }
     }
 
@@ -191,11 +233,11 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                 Content::Number(number) => Expectation::Text(string, number.to_string()),
             });
         }
-        let signal: Signal = name.trim().parse().map_err(|error| format!("{error}"))?;
+        let signal: Observable = name.trim().parse().map_err(|error| format!("{error}"))?;
         let number = |text: &str| value_of(&signal, text);
         match relation {
-            Some('<') => Ok(Expectation::Signal(signal, Relation::Less, number(value)?)),
-            Some('>') => Ok(Expectation::Signal(signal, Relation::Greater, number(value)?)),
+            Some('<') => Ok(Expectation::Value(signal, Relation::Less, number(value)?)),
+            Some('>') => Ok(Expectation::Value(signal, Relation::Greater, number(value)?)),
             _ => {
                 let parts = ["±", "+-", "+/-"]
                     .into_iter()
@@ -204,7 +246,7 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                     Some((value, tolerance)) => (number(value)?, decimal(tolerance)?.abs()),
                     None => (number(value)?, TOLERANCE),
                 };
-                Ok(Expectation::Signal(signal, Relation::Equal(tolerance), value))
+                Ok(Expectation::Value(signal, Relation::Equal(tolerance), value))
             }
         }
     }
@@ -227,19 +269,10 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
                 Some(channel) => what.check_in(channel, Some(*number), control, machine),
                 None => Some(format!("the machine has no channel {}", number + 1)),
             },
-            Expectation::Signal(signal, relation, value) => {
-                let actual = channel.observe(signal);
-                let holds = match relation {
-                    Relation::Equal(tolerance) => (actual - value).abs() <= *tolerance,
-                    Relation::Less => actual < *value,
-                    Relation::Greater => actual > *value,
-                };
-                (!holds).then(|| format!("{signal} is {}", decimals(signal, actual)))
+            Expectation::Value(signal, relation, value) => {
+                relation.check(signal, signal.value(channel, machine), *value)
             }
-            Expectation::Text(string, text) => {
-                let actual = Operand::Text(*string).read(control.exchange().plc());
-                (actual != Content::Text(text.clone())).then(|| format!("S{string} is {actual}"))
-            }
+            Expectation::Text(string, text) => check_text(*string, text, control.exchange().plc()),
             Expectation::Message(text, wanted) => {
                 let shown: Vec<String> = control
                     .shown()
@@ -283,6 +316,23 @@ expect 2:X.actual=100               of the second channel; also 2: message, 2: m
     }
 }
 
+impl Relation {
+    /// `None` when an actual value is so; otherwise what it is.
+    fn check(self, signal: &Observable, actual: f64, value: f64) -> Option<String> {
+        let holds = match self {
+            Relation::Equal(tolerance) => (actual - value).abs() <= tolerance,
+            Relation::Less => actual < value,
+            Relation::Greater => actual > value,
+        };
+        (!holds).then(|| format!("{signal} is {}", signal.decimals(actual)))
+    }
+}
+
+fn check_text(string: usize, text: &str, image: &Image) -> Option<String> {
+    let actual = Operand::Text(string).read(image);
+    (actual != Content::Text(text.to_owned())).then(|| format!("S{string} is {actual}"))
+}
+
 /// What has this name.
 fn named<T: Copy>(name: &str, what: &str, all: &[(&str, T)]) -> Result<T, String> {
     let found = all.iter().find(|(known, _)| *known == name);
@@ -308,10 +358,10 @@ fn bit(text: &str) -> Result<bool, String> {
 }
 
 /// A value of a signal; an operand takes what fits it, `$` is hexadecimal.
-fn value_of(signal: &Signal, text: &str) -> Result<f64, String> {
+fn value_of(signal: &Observable, text: &str) -> Result<f64, String> {
     let operand = match signal {
-        Signal::Bit(bit) => Operand::Bit(*bit),
-        Signal::Number(number) => Operand::Number(*number),
+        Observable::Signal(Signal::Bit(bit)) => Operand::Bit(*bit),
+        Observable::Signal(Signal::Number(number)) => Operand::Number(*number),
         _ => return decimal(text),
     };
     match operand.content(text)? {
@@ -338,14 +388,14 @@ mod tests {
             "name = 'one'\n[emergency_stop]\nacknowledgement = 'I3'\n\
              [axis.X]\noutput = '1'\nspeed = 15000\nvolts = 9\nencoder = { input = 'X1', period_um = 20 }",
         );
-        Expectation::parse(text, &machine.unwrap())
+        Expectation::parse(text, Some(&machine.unwrap()))
     }
 
     /// Numbers of the PLC are signed and may be hexadecimal; what does not fit is no value.
     #[test]
     fn operands_take_what_fits_them() {
         let value = |text: &str| match read(text) {
-            Ok(Expectation::Signal(_, Relation::Equal(tolerance), value)) => Ok((value, tolerance)),
+            Ok(Expectation::Value(_, Relation::Equal(tolerance), value)) => Ok((value, tolerance)),
             other => Err(other),
         };
         assert_eq!(value("W6=$FFFE"), Ok((-2.0, TOLERANCE)));
@@ -355,7 +405,7 @@ mod tests {
         assert_eq!(value("X.actual=1.5±0.1"), Ok((1.5, 0.1)));
         assert!(matches!(
             read("W6>$10"),
-            Ok(Expectation::Signal(_, Relation::Greater, 16.0))
+            Ok(Expectation::Value(_, Relation::Greater, 16.0))
         ));
         let text = Expectation::Text(0, "A=B".to_owned());
         assert_eq!(

@@ -7,6 +7,7 @@ use bahn_control::{Cartesian, ChannelSetup, Command, Control, Programs, Setup, S
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
 use bahn_path::PathElement;
+use bahn_plc::Tracer;
 
 use crate::background::Background;
 use crate::deed::{Answer, Deed, Operable, Source};
@@ -40,6 +41,8 @@ pub struct Host<P = Machine> {
     pub(crate) restart: Option<String>,
     pub(crate) journal: Journal,
     pub(crate) background: Background,
+    /// Whoever follows looks at what programs have read, in every cycle.
+    watched: bool,
     /// What was is repeated: nobody is told, and nothing is stored but in the end.
     pub(crate) repeats: bool,
     desk: Desk,
@@ -110,6 +113,7 @@ impl<P: Operable> Host<P> {
             restart: None,
             journal: Journal::default(),
             background: Background::default(),
+            watched: false,
             repeats: false,
             desk: Desk::default(),
             state: power_on.state,
@@ -162,10 +166,22 @@ impl<P: Operable> Host<P> {
     /// # Errors
     /// [`HostError::NotStored`].
     pub fn cycle(&mut self) -> Result<(), HostError> {
+        self.cycle_traced(None)
+    }
+
+    /// As [`Host::cycle`], and shows a tracer what the PLC executes.
+    ///
+    /// # Errors
+    /// [`HostError::NotStored`].
+    pub fn cycle_traced(&mut self, tracer: Option<&mut (dyn Tracer + '_)>) -> Result<(), HostError> {
         let beside = self.pace.is_some() && !self.repeats;
         self.background
             .prepare(&mut self.control, beside, &self.break_off);
-        self.control.cycle(&mut self.plant);
+        self.control.cycle_traced(&mut self.plant, tracer);
+        // A message names the program of its block.
+        if self.watched || self.control.has_news() {
+            self.background.settle(&mut self.control);
+        }
         if let Some(list) = self.control.take_restart() {
             self.tell(Notice::Restart(list.clone()));
             self.restart = Some(list);
@@ -238,7 +254,15 @@ impl<P: Operable> Host<P> {
         if channel >= self.control.channels() {
             return Answer::Impossible(format!("the machine has no channel {}", channel + 1));
         }
-        match self.control.command_to(channel, command.clone()) {
+        let before = (self.control.starts(), self.control.is_off());
+        let done = self.control.command_to(channel, command.clone());
+        if before != (self.control.starts(), self.control.is_off()) {
+            // What is computed or read beside belongs to the control that was on before.
+            self.background = Background::default();
+            self.background
+                .read_beside(&mut self.control, self.pace.is_some());
+        }
+        match done {
             true => Answer::Done,
             false => Answer::Refused,
         }
@@ -377,6 +401,12 @@ impl<P: Operable> Host<P> {
         if let Some((_, due_us)) = &mut self.snapshot_us {
             *due_us = self.control.time_us();
         }
+    }
+
+    /// What programs have read is there behind every cycle, also by the clock on the wall: their Q parameters, and
+    /// [`Control::interpreter`]. A cycle then waits for what is read beside.
+    pub fn watch_programs(&mut self) {
+        self.watched = true;
     }
 
     /// How well the pace of the wall was kept; `None` where the machine runs freely.

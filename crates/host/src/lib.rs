@@ -43,8 +43,8 @@
 mod background;
 mod called;
 mod columns;
-mod decimals;
 mod deed;
+mod edges;
 mod error;
 mod expectation;
 mod fault;
@@ -57,7 +57,7 @@ pub mod lists;
 mod log;
 mod machine_folder;
 mod notice;
-mod operand;
+mod observable;
 mod operator;
 mod orders;
 mod pace;
@@ -72,8 +72,8 @@ mod text;
 pub mod tool_table;
 
 pub use columns::TableFault;
-pub use decimals::{Decimals, decimals};
 pub use deed::{Answer, Deed, DeedError, Operable, Source};
+pub use edges::Edges;
 pub use error::HostError;
 pub use expectation::{Expectation, Relation, Run, Tested, run_name};
 pub use fault::{FileFault, Marked, Severity};
@@ -88,10 +88,26 @@ pub fn check_tool_table(text: &str) -> Result<(), Vec<u32>> {
     tool_table::parse(text).map(drop).map_err(faults)
 }
 
+/// Reads a script for the machine of a description and for the bench of the PLC, for fuzzing; errors name their lines.
+#[doc(hidden)]
+pub fn check_script(
+    machine: &bahn_machine::Machine,
+    parameters: &bahn_parameters::ParameterList,
+    bytes: &[u8],
+) -> [Result<(), Vec<u32>>; 2] {
+    [Stage::machine(machine, parameters), Stage::bench(parameters)].map(|stage| {
+        let faults = |faults: Vec<FileFault>| faults.iter().map(|fault| fault.marked.line).collect();
+        Script::of(std::path::Path::new("SCRIPT"), bytes, &stage)
+            .map(drop)
+            .map_err(faults)
+    })
+}
+
+pub use bahn_exchange::{Assignment, Content, Operand};
 #[doc(hidden)]
 pub use machine_folder::{check_nc_tables, check_state};
 pub use notice::{Notice, Stamped, Why};
-pub use operand::{Assignment, Content, Operand};
+pub use observable::{Decimals, Observable, Observed, Truth};
 pub use operator::{Attendance, Job, Operator, Phase};
 pub use orders::{Desk, Order, When};
 pub use pace::{Clock, Late, Lateness};
@@ -100,5 +116,5 @@ pub use plc_source::PlcSource;
 pub use power_on::{ChannelPowerOn, PowerOn};
 pub use retained::Retained;
 pub use saved::{Saved, Timeline};
-pub use script::{Action, Base, Line, Script};
+pub use script::{Action, Base, Line, Script, Stage};
 pub use text::printable;

@@ -89,6 +89,8 @@ struct Station {
     state: (RunState, u64),
     /// Since when a tool change waits, and how many of its keys were pressed.
     change: Option<(u64, usize)>,
+    /// How often the control had begun when he looked last.
+    starts: u32,
 }
 
 impl Operator {
@@ -163,6 +165,7 @@ impl Station {
             started: false,
             state: (RunState::Idle, 0),
             change: None,
+            starts: 1,
         }
     }
 
@@ -191,6 +194,13 @@ impl Station {
 
     /// The phase follows the control, whoever operates it. Programs wait until all channels know where they are.
     fn follow(&mut self, control: &Control, channel: ChannelView) {
+        if control.starts() != self.starts {
+            // He switches on and passes the reference marks again; a program that was broken off he does not start.
+            self.starts = control.starts();
+            self.phase = Phase::PowerUp;
+            self.acted_us = control.time_us();
+            self.started |= self.chosen > 0;
+        }
         let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
         let phase = match self.phase {
             Phase::PowerUp if !control.loops_closed() => Phase::PowerUp,

@@ -2,10 +2,14 @@
 
 use std::collections::{HashMap, HashSet, VecDeque};
 
+use bahn_control::Command;
 use serde::Serialize;
 
+use crate::deed::{Answer, Deed, Source};
+use crate::error::HostError;
 use crate::expectation::Expectation;
 use crate::fault::FileFault;
+use crate::host::Host;
 use crate::script::{Action, Base, Line, Script};
 
 /// An expectation that did not hold.
@@ -70,7 +74,7 @@ fn place(base: Base) -> usize {
 impl Play {
     /// A script from its beginning.
     pub fn new(script: Script) -> Play {
-        let conditions = script.lines.iter().filter(|line| line.condition.is_some());
+        let conditions = script.lines.iter().filter(|line| !line.condition.is_empty());
         let mut waiting = vec![VecDeque::new(); 2 + conditions.count()];
         for line in &script.lines {
             if let Some(lines) = waiting.get_mut(place(line.base)) {
@@ -78,7 +82,9 @@ impl Play {
             }
         }
         for lines in &mut waiting {
-            lines.make_contiguous().sort_by_key(|line| line.offset_us);
+            lines
+                .make_contiguous()
+                .sort_by_key(|line| (line.offset_us, !line.behind));
         }
         let mut bases = vec![None; waiting.len()];
         if let Some(power_on) = bases.first_mut() {
@@ -104,7 +110,7 @@ impl Play {
     /// The next line whose condition `holds` or that is due, in the order of time and of the file.
     pub fn due(&mut self, now_us: u64, holds: impl Fn(&Expectation) -> bool) -> Option<Line> {
         loop {
-            let is_so = |line: &Line| line.condition.as_ref().is_some_and(&holds);
+            let is_so = |line: &Line| line.condition.iter().all(&holds);
             if let Some(at) = self.watching.iter().position(is_so) {
                 let line = self.watching.remove(at);
                 self.came_true(&line, now_us);
@@ -116,19 +122,82 @@ impl Play {
                 let is_due = lines.front()?.offset_us <= passed_us;
                 is_due.then(|| lines.pop_front())?
             })?;
-            if line.condition.is_none() {
+            if line.condition.is_empty() {
                 return Some(line);
             }
             self.watching.push(line);
         }
     }
 
+    /// The next line that is due and only looks, without a condition: what it looks at is the cycle that has ended.
+    pub fn due_to_look(&mut self, now_us: u64) -> Option<Line> {
+        let mut lanes = self.waiting.iter_mut().zip(&self.bases);
+        lanes.find_map(|(lines, base)| {
+            let passed_us = now_us.saturating_sub((*base)?);
+            let line = lines.front()?;
+            let looks = matches!(line.action, Action::Expect(_)) && line.condition.is_empty();
+            (looks && line.offset_us <= passed_us).then(|| lines.pop_front())?
+        })
+    }
+
+    /// Does what a line says on a machine, or looks; tells whether it ends the run.
+    ///
+    /// # Errors
+    /// When the machine has not what it names, or the log cannot be written.
+    pub fn perform(&mut self, line: Line, host: &mut Host) -> Result<bool, HostError> {
+        let deeds = match line.action {
+            Action::End => return Ok(true),
+            Action::Do(deed) => vec![deed],
+            Action::Set(assignments) => {
+                let commands = assignments.into_iter().map(Command::Set);
+                commands.map(Deed::Command).collect()
+            }
+            Action::Expect(expectations) => {
+                let (control, plant) = (host.control(), host.plant());
+                for expectation in &expectations {
+                    match expectation.check(control, plant) {
+                        Some(actual) => self.fail(line.number, actual, control.time_us() as f64 * 1e-6),
+                        None => self.expect(expectation),
+                    }
+                }
+                return Ok(false);
+            }
+        };
+        for deed in deeds {
+            let text = deed.to_string();
+            if let Answer::Impossible(error) = host.act(Source::Script, deed)? {
+                return Err(HostError::new(format!("{text}: {error}")));
+            }
+        }
+        Ok(false)
+    }
+
+    /// Plays everything that is due on a machine, in the order of time and of the file; tells whether it ends the run.
+    ///
+    /// # Errors
+    /// As [`Play::perform`].
+    pub fn follow(&mut self, host: &mut Host) -> Result<bool, HostError> {
+        let now = host.control().time_us();
+        let mut ends = false;
+        loop {
+            let (control, plant) = (host.control(), host.plant());
+            let holds = |condition: &Expectation| condition.check(control, plant).is_none();
+            let Some(line) = self.due(now, holds) else {
+                return Ok(ends);
+            };
+            ends |= self.perform(line, host)?;
+        }
+    }
+
+    /// The script that is played.
+    pub fn script(&self) -> &Script {
+        &self.script
+    }
+
     /// The lines behind a condition count from now on.
     fn came_true(&mut self, line: &Line, now_us: u64) {
-        if let Some(condition) = &line.condition {
-            self.expect(condition);
-        }
-        let conditions = self.script.lines.iter().filter(|line| line.condition.is_some());
+        line.condition.iter().for_each(|condition| self.expect(condition));
+        let conditions = self.script.lines.iter().filter(|line| !line.condition.is_empty());
         let number = conditions.take_while(|other| other.number < line.number).count();
         if let Some(base) = self.bases.get_mut(place(Base::Condition(number))) {
             *base = Some(now_us);
@@ -160,11 +229,15 @@ impl Play {
         self.is_timed_out() && self.watching.is_empty()
     }
 
+    /// The lines whose conditions have not come true.
+    pub fn pending(&self) -> impl Iterator<Item = &Line> {
+        let lines = self.watching.iter().chain(self.waiting.iter().flatten());
+        lines.filter(|line| !line.condition.is_empty())
+    }
+
     /// The run is over: a condition that never came true was expected in vain.
     pub fn finish(&mut self, time_s: f64) {
-        let pending = self.watching.iter().chain(self.waiting.iter().flatten());
-        let pending = pending.filter(|line| line.condition.is_some());
-        let numbers: Vec<u32> = pending.map(|line| line.number).collect();
+        let numbers: Vec<u32> = self.pending().map(|line| line.number).collect();
         for number in numbers {
             self.fail(number, "it never came true".to_owned(), time_s);
         }
@@ -183,8 +256,8 @@ impl Play {
     /// All expectations with what became of them.
     pub fn expectations(&self) -> Vec<Case> {
         let expectations = self.script.lines.iter();
-        let expectations =
-            expectations.filter(|line| line.condition.is_some() || matches!(line.action, Action::Expect(_)));
+        let expectations = expectations
+            .filter(|line| !line.condition.is_empty() || matches!(line.action, Action::Expect(_)));
         let waiting = self.waiting.iter().flatten().chain(&self.watching);
         let waiting: HashSet<u32> = waiting.map(|line| line.number).collect();
         let failed: HashMap<u32, &FailedExpectation> =

@@ -2,8 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_control::split_channel;
+use bahn_control::{Command, split_channel};
+use bahn_exchange::Assignment;
 use bahn_machine::{Event, Machine};
+use bahn_parameters::ParameterList;
+use bahn_servo::Timing;
 
 use crate::deed::{Deed, DeedError};
 use crate::expectation::Expectation;
@@ -13,8 +16,41 @@ use crate::machine_folder::decode;
 /// The last second that a script may speak of: eleven days.
 const SECONDS_MAX: f64 = 1e6;
 
+/// The last cycle that a script may speak of: on the bench more than two days. A slip of the keyboard is not to run for
+/// years.
+const CYCLES_MAX: u64 = 10_000_000;
+
 /// Faulty lines that are named; behind them reading ends.
 const FAULTS_MAX: usize = 1000;
+
+/// What a script is played on.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a> {
+    /// The bench of the PLC has none.
+    machine: Option<&'a Machine>,
+    parameters: &'a ParameterList,
+    cycle_us: u32,
+}
+
+impl<'a> Stage<'a> {
+    /// A control with its machine: cycles are its contour cycles.
+    pub fn machine(machine: &'a Machine, parameters: &'a ParameterList) -> Stage<'a> {
+        Stage {
+            machine: Some(machine),
+            parameters,
+            cycle_us: Timing::of(parameters.model()).contour_us(),
+        }
+    }
+
+    /// A PLC program alone: cycles are its scans.
+    pub fn bench(parameters: &'a ParameterList) -> Stage<'a> {
+        Stage {
+            machine: None,
+            parameters,
+            cycle_us: parameters.model().limits().plc_cycle_us,
+        }
+    }
+}
 
 /// What a time counts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,10 +66,12 @@ pub enum Base {
 /// What happens.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Something is done.
+    /// Something is done to a machine.
     Do(Deed),
-    /// Nothing; something must be so.
-    Expect(Expectation),
+    /// Operands of the PLC and machine parameters get these values.
+    Set(Vec<Assignment>),
+    /// Nothing; all of this must be so.
+    Expect(Vec<Expectation>),
     /// The run ends.
     End,
 }
@@ -47,8 +85,10 @@ pub struct Line {
     pub base: Base,
     /// Its time, µs.
     pub offset_us: u64,
-    /// It waits from then on until this is so.
-    pub condition: Option<Expectation>,
+    /// It comes before everything else of this time: it looks at the cycle that has ended then.
+    pub behind: bool,
+    /// It waits from then on until all of this is so.
+    pub condition: Vec<Expectation>,
     /// What happens.
     pub action: Action,
 }
@@ -70,15 +110,16 @@ struct Wrong {
 }
 
 impl Script {
-    /// Reads a script; what it does to the machine is tried on a copy of it. `cycle_us` is the contour cycle.
+    /// Reads a script; what it does to a machine is tried on a copy of it.
     ///
     /// # Errors
     /// All faults of the script.
-    pub fn of(path: &Path, bytes: &[u8], machine: &Machine, cycle_us: u32) -> Result<Script, Vec<FileFault>> {
-        Script::read(path, &decode(bytes), machine, cycle_us)
+    pub fn of(path: &Path, bytes: &[u8], stage: &Stage) -> Result<Script, Vec<FileFault>> {
+        Script::read(path, &decode(bytes), stage)
     }
 
-    fn read(path: &Path, text: &str, machine: &Machine, cycle_us: u32) -> Result<Script, Vec<FileFault>> {
+    fn read(path: &Path, text: &str, stage: &Stage) -> Result<Script, Vec<FileFault>> {
+        let text = text.trim_start_matches('\u{feff}');
         let mut script = Script {
             path: path.to_owned(),
             text: text.lines().map(str::to_owned).collect(),
@@ -86,8 +127,9 @@ impl Script {
         };
         let mut faults = Vec::new();
         let mut reader = Reader {
-            machine: machine.clone(),
-            cycle_us,
+            machine: stage.machine.cloned(),
+            parameters: stage.parameters.clone(),
+            cycle_us: stage.cycle_us,
             last: (Base::PowerOn, 0),
             conditions: 0,
         };
@@ -147,6 +189,23 @@ impl Script {
         }
     }
 
+    /// As [`Script::failure`], at the place of an operand in the line.
+    pub fn failure_of(&self, number: u32, operand: &str, title: &str, label: String) -> FileFault {
+        let text = self.line_text(number);
+        // The name as it is written, in a script of the same letters mostly.
+        let at = text.to_ascii_uppercase().rfind(operand);
+        let columns = at.map(|at| {
+            let before = text.get(..at).unwrap_or_default().chars().count();
+            let item = text.get(at..).unwrap_or_default();
+            let item = item.split([',', ';', '#']).next().unwrap_or_default().trim_end();
+            let count = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+            (count(before + 1), count(item.chars().count()))
+        });
+        let mut fault = self.failure(number, title, label);
+        fault.marked.columns = columns;
+        fault
+    }
+
     /// Where a line stands, as `mill.txt:3`.
     pub fn place(&self, number: u32) -> String {
         format!("{}:{number}", self.path.display())
@@ -161,8 +220,10 @@ impl Script {
 
 /// Reads line after line.
 struct Reader {
-    /// What the script does to the machine is tried on it.
-    machine: Machine,
+    /// What the script does to the machine is tried on it; the bench has none.
+    machine: Option<Machine>,
+    /// What it does to machine parameters is tried on them.
+    parameters: ParameterList,
     cycle_us: u32,
     /// From what, and how far behind it, the next line counts.
     last: (Base, u64),
@@ -175,20 +236,26 @@ impl Reader {
             return Err(wrong(
                 line,
                 line.trim(),
-                "a line is `TIME: EVENT` or `TIME: expect ..`",
+                "a line is `TIME: WHAT` or `TIME: expect ..`",
             ));
         };
         let (time, rest) = (time.trim(), rest.trim());
-        let condition = self
-            .condition(time)
-            .map_err(|message| wrong(line, time, &message))?;
-        let (base, offset_us) = match condition {
-            Some(_) => self.last,
-            None => self.time(time).map_err(|message| wrong(line, time, &message))?,
+        let wrong = |part: &str, message: String| wrong(line, part, &message);
+        let condition = self.condition(time).map_err(|message| wrong(time, message))?;
+        let cycle = self.cycle(time).map_err(|message| wrong(time, message))?;
+        let (base, mut offset_us) = match (condition.is_empty(), cycle) {
+            (false, _) => self.last,
+            (true, Some(begin_us)) => (Base::PowerOn, begin_us),
+            (true, None) => self.time(time).map_err(|message| wrong(time, message))?,
         };
-        let action = read_action(rest, &mut self.machine).map_err(|message| wrong(line, rest, &message))?;
+        let action = self.action(rest).map_err(|message| wrong(rest, message))?;
+        // What is done in a cycle is done before it; what is looked at is so behind it.
+        let behind = cycle.is_some() && matches!(action, Action::Expect(_) | Action::End);
+        if behind {
+            offset_us += u64::from(self.cycle_us);
+        }
         self.last = (base, offset_us);
-        if condition.is_some() {
+        if !condition.is_empty() {
             self.last = (Base::Condition(self.conditions), 0);
             self.conditions += 1;
         }
@@ -196,36 +263,53 @@ impl Reader {
             number,
             base,
             offset_us,
+            behind,
             condition,
             action,
         })
     }
 
     /// `when X.actual > 50`, `when message "TEXT"`, `after message TEXT`: what `expect` takes.
-    fn condition(&self, text: &str) -> Result<Option<Expectation>, String> {
+    fn condition(&self, text: &str) -> Result<Vec<Expectation>, String> {
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         match word {
-            "when" => Expectation::parse(rest, &self.machine).map(Some),
+            "when" => Expectation::parse_all(rest, self.machine.as_ref()),
+            "after" if self.machine.is_none() => Err(NO_CONTROL.to_owned()),
             "after" => {
                 let text = rest.strip_prefix("message").map(str::trim);
                 let text = text.map(|text| text.trim_matches('"'));
                 let text = text.filter(|text| !text.is_empty());
                 let text = text.ok_or("it is written `after message TEXT`")?;
-                Ok(Some(Expectation::Message(text.to_owned(), true)))
+                Ok(vec![Expectation::Message(text.to_owned(), true)])
             }
-            _ => Ok(None),
+            _ => Ok(Vec::new()),
         }
     }
 
+    /// When the cycle begins that `cycle 5` names, µs since power-on.
+    fn cycle(&self, text: &str) -> Result<Option<u64>, String> {
+        let Some(number) = text.strip_prefix("cycle ") else {
+            return Ok(None);
+        };
+        let number = number.trim().parse().ok();
+        let number = number.filter(|number| (1..=CYCLES_MAX).contains(number));
+        let before = number.map(|number| (number - 1) * u64::from(self.cycle_us));
+        let before = before.ok_or_else(|| format!("`{text}` is no cycle from 1 to {CYCLES_MAX}"));
+        before.map(Some)
+    }
+
     /// `12.5` since power-on, `+2` since the line before, `start` or `start+2` since the program was started; in
-    /// seconds or, as `+20 cycles`, in contour cycles.
+    /// seconds or, as `+20 cycles`, in cycles.
     fn time(&self, text: &str) -> Result<(Base, u64), String> {
         let (base, before_us) = self.last;
         if let Some(rest) = text.strip_prefix('+') {
             return Ok((base, before_us + self.duration(rest)?));
         }
         if let Some(rest) = text.strip_prefix("start") {
+            if self.machine.is_none() {
+                return Err("on the bench of the PLC no program is started".to_owned());
+            }
             let rest = rest.trim();
             if rest.is_empty() {
                 return Ok((Base::Start, 0));
@@ -255,12 +339,64 @@ impl Reader {
         };
         us.filter(|us| *us as f64 <= SECONDS_MAX * 1e6).ok_or_else(|| {
             format!(
-                "`{text}` is no time: 12.5 (s since power-on), +2 (since the line before), start+3, +20 cycles, or a \
-                 condition: when X.actual > 50, after message TEXT"
+                "`{text}` is no time: 12.5 (s since power-on), +2 (since the line before), start+3, +20 cycles, cycle 5, \
+                 or a condition: when X.actual > 50, after message TEXT"
             )
         })
     }
+
+    fn action(&mut self, text: &str) -> Result<Action, String> {
+        let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+        match word {
+            "expect" => {
+                return Expectation::parse_all(rest, self.machine.as_ref()).map(Action::Expect);
+            }
+            "end" if rest.trim().is_empty() => return Ok(Action::End),
+            _ => {}
+        }
+        if Assignment::is_meant(text) {
+            return self.assignments(text).map(Action::Set);
+        }
+        let Some(machine) = &mut self.machine else {
+            return Err(NO_CONTROL.to_owned());
+        };
+        let deed = Deed::parse(text).map_err(|error| match error {
+            DeedError::Unknown(word) => format!(
+                "`{word}` is no event and no command; events are {}, expect, end; commands those of the control",
+                Event::WORDS.join(", ")
+            ),
+            DeedError::Wrong(what) => what,
+        })?;
+        if let Deed::Event(event, _) = &deed {
+            machine.act(event).map_err(|error| error.to_string())?;
+        }
+        Ok(Action::Do(deed))
+    }
+
+    /// `I4=1, W6=100, MP4110.2=4`.
+    fn assignments(&mut self, text: &str) -> Result<Vec<Assignment>, String> {
+        let all = Assignment::parse_all(text)?;
+        for assignment in &all {
+            match assignment {
+                Assignment::Parameter(text) => {
+                    let tried = self.parameters.assign(text);
+                    tried.map_err(|error| error.to_string())?;
+                }
+                Assignment::Operand(..) if self.machine.is_none() => {}
+                // On the machine it is a command of the control, which refuses inputs.
+                Assignment::Operand(..) => {
+                    let command = assignment.to_string().parse::<Command>();
+                    command.map_err(|error| error.to_string())?;
+                }
+            }
+        }
+        Ok(all)
+    }
 }
+
+/// What a script wants that the bench does not have.
+const NO_CONTROL: &str = "on the bench the PLC is alone: operands and machine parameters, as I4=1 or MP4110.2=4, \
+     `expect O2=1`, `end`";
 
 /// What stands before and behind the first colon outside quotes.
 /// A channel behind `when` belongs to the condition: `when 2:X.actual > 50: ce`.
@@ -291,26 +427,6 @@ fn wrong(line: &str, part: &str, message: &str) -> Wrong {
     }
 }
 
-fn read_action(text: &str, machine: &mut Machine) -> Result<Action, String> {
-    let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-    match word {
-        "expect" => return Expectation::parse(rest.trim(), machine).map(Action::Expect),
-        "end" if rest.trim().is_empty() => return Ok(Action::End),
-        _ => {}
-    }
-    let deed = Deed::parse(text).map_err(|error| match error {
-        DeedError::Unknown(word) => format!(
-            "`{word}` is no event and no command; events are {}, expect, end; commands those of the control",
-            Event::WORDS.join(", ")
-        ),
-        DeedError::Wrong(what) => what,
-    })?;
-    if let Deed::Event(event, _) = &deed {
-        machine.act(event).map_err(|error| error.to_string())?;
-    }
-    Ok(Action::Do(deed))
-}
-
 /// A line without what stands behind ; or # outside quotes and words.
 fn without_comment(line: &str) -> &str {
     let (mut quoted, mut before) = (false, ' ');
@@ -324,7 +440,7 @@ fn without_comment(line: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use bahn_control::Command;
+    use bahn_parameters::ControlModel;
     use proptest::prelude::*;
 
     use super::*;
@@ -338,7 +454,14 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<Script, Vec<FileFault>> {
-        Script::read(Path::new("s.txt"), text, &machine(), 3000)
+        // The contour cycle of the TNC 415 is 3 ms, its PLC cycle 20 ms [000:3685] [000:239].
+        let parameters = ParameterList::reference(ControlModel::Tnc415b);
+        Script::read(Path::new("s.txt"), text, &Stage::machine(&machine(), &parameters))
+    }
+
+    fn read_for_bench(text: &str) -> Result<Script, Vec<FileFault>> {
+        let parameters = ParameterList::reference(ControlModel::Tnc415b);
+        Script::read(Path::new("s.txt"), text, &Stage::bench(&parameters))
     }
 
     #[test]
@@ -381,7 +504,7 @@ mod tests {
         let lines: Vec<_> = script
             .lines
             .iter()
-            .map(|line| (line.base, line.offset_us, line.condition.is_some()))
+            .map(|line| (line.base, line.offset_us, !line.condition.is_empty()))
             .collect();
         use Base::*;
         assert_eq!(
@@ -398,7 +521,7 @@ mod tests {
                 (PowerOn, 3_000, false),
             ]
         );
-        let message = |text: &str| Some(Expectation::Message(text.to_owned(), true));
+        let message = |text: &str| vec![Expectation::Message(text.to_owned(), true)];
         assert_eq!(script.lines[3].condition, message("LIMIT SWITCH"));
         assert_eq!(script.lines[5].condition, message("A: B"));
         let faults = read("when X.heat > 5: ce\nafter rain: ce\n+2.5 cycles: ce\n1e7: ce").unwrap_err();
@@ -422,17 +545,71 @@ mod tests {
             })
             .collect();
         assert_eq!(actions[..3], ["2: mode full", "ce", "ce"]);
-        assert!(actions[3].starts_with("Expect(Of(1, Signal("), "{}", actions[3]);
+        assert!(actions[3].starts_with("Expect([Of(1, Value("), "{}", actions[3]);
         let conditions: Vec<bool> = script
             .lines
             .iter()
-            .map(|line| matches!(line.condition, Some(Expectation::Of(1, _))))
+            .map(|line| matches!(line.condition.as_slice(), [Expectation::Of(1, _)]))
             .collect();
         assert_eq!(conditions, [false, true, true, false]);
         let faults = read("1: 2: key NC_START tap\n1: 2: voltage off\n1: 9: ce\n1: expect 2: test finished")
             .unwrap_err();
         let lines: Vec<u32> = faults.iter().map(|fault| fault.marked.line).collect();
         assert_eq!(lines, [1, 2, 3, 4]);
+    }
+
+    /// What is done in a cycle is done before it, what is expected is looked at behind it and before the next.
+    #[test]
+    fn cycles_are_numbered() {
+        let times = |script: Script| -> Vec<_> {
+            let lines = script.lines.iter();
+            lines.map(|line| (line.offset_us, line.behind)).collect()
+        };
+        let text = "cycle 1: M5=1, W6=-3\n+2 cycles: W6=$10\ncycle 5: expect M5=1, W6>3\n0.5: M5=0\n";
+        let bench = times(read_for_bench(text).unwrap());
+        assert_eq!(
+            bench,
+            [(0, false), (40_000, false), (100_000, true), (500_000, false)]
+        );
+        let machine = times(read(text).unwrap());
+        assert_eq!(
+            machine,
+            [(0, false), (6_000, false), (15_000, true), (500_000, false)]
+        );
+        let script = read_for_bench("when O2=1, W6=4: I4=0, S0=\"A,B\", MP4110.2=4\n").unwrap();
+        let Action::Set(all) = &script.lines[0].action else {
+            panic!("{script:?}");
+        };
+        let texts: Vec<String> = all.iter().map(Assignment::to_string).collect();
+        assert_eq!(texts, ["I4=0", "S0=\"A,B\"", "MP4110.2=4"]);
+        assert_eq!(script.lines[0].condition.len(), 2);
+    }
+
+    /// Each fault has its line, on the bench too; an input belongs to the machine.
+    #[test]
+    fn what_a_stage_does_not_have_is_refused() {
+        let text = "cycle 0: M5=1\ncycle 10000001: M5=1\ncycle 1: W7=1\ncycle 1: MP9999=1\ncycle 1: MP4110.2=x\n\
+                    cycle 1: M5=1,\ncycle 1: expect MP10=1\n";
+        let lines =
+            |faults: Vec<FileFault>| -> Vec<u32> { faults.iter().map(|fault| fault.marked.line).collect() };
+        let all: Vec<u32> = (1..=7).collect();
+        assert_eq!(lines(read_for_bench(text).unwrap_err()), all);
+        assert_eq!(lines(read(text).unwrap_err()), all);
+        let text = "1: key NC_START tap\nstart: M5=1\n2: expect X.actual=3\nafter message A: M5=1\n3: ce\n\
+                    when mode full: M5=1\n";
+        let faults = read_for_bench(text).unwrap_err();
+        assert!(
+            faults.iter().all(|fault| fault.label.contains("bench")),
+            "{faults:?}"
+        );
+        assert_eq!(lines(faults), [1, 2, 3, 4, 5, 6]);
+        assert!(read_for_bench("1: I4=1").is_ok());
+        let faults = read("1: M5=1, I4=1").unwrap_err();
+        assert!(
+            faults[0].label.contains("fault input I4 1"),
+            "{}",
+            faults[0].label
+        );
     }
 
     #[test]
@@ -475,11 +652,13 @@ mod tests {
 
         #[test]
         fn any_text_is_a_script_or_faults_with_their_lines(
-            text in prop_oneof![".{0,60}", "([+0-9a-z. ]{0,6}: ?(expect )?[a-zA-Z0-9.=± \"]{0,12}\n){0,6}"],
+            text in prop_oneof![".{0,60}", "((cycle )?[+0-9a-z. ]{0,6}: ?(expect )?[a-zA-Z0-9.=±, \"]{0,12}\n){0,6}"],
         ) {
-            if let Err(faults) = read(&text) {
-                let lines = text.lines().count() as u32;
-                prop_assert!(faults.iter().all(|fault| (1..=lines).contains(&fault.marked.line)));
+            for read in [read(&text), read_for_bench(&text)] {
+                if let Err(faults) = read {
+                    let lines = text.lines().count() as u32;
+                    prop_assert!(faults.iter().all(|fault| (1..=lines).contains(&fault.marked.line)));
+                }
             }
         }
     }

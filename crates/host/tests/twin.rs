@@ -5,10 +5,10 @@ mod support;
 
 use std::sync::{Arc, Mutex};
 
-use bahn_control::{ChannelSignal, ChannelView, RunState, Shown};
+use bahn_control::{ChannelView, RunState, Shown};
 use bahn_host::{
-    Answer, Attendance, Deed, FolderPrograms, Host, HostError, Job, LoadedMachine, Next, Notice, Operator,
-    PowerOn, Script, Sink, Source, Timeline,
+    Answer, Attendance, Deed, FolderPrograms, Host, HostError, Job, LoadedMachine, Next, Notice, Observed,
+    Operator, PowerOn, Script, Sink, Source, Stage, Timeline,
 };
 use support::*;
 
@@ -31,8 +31,8 @@ fn channel(host: &Host, number: usize) -> ChannelView<'_> {
 }
 
 fn see(host: &Host, signal: &str) -> f64 {
-    let signal: ChannelSignal = signal.parse().unwrap();
-    channel(host, signal.channel).observe(&signal.signal)
+    let observed: Observed = signal.parse().unwrap();
+    observed.value(host.control(), host.plant())
 }
 
 fn letters(host: &Host, number: usize) -> String {
@@ -383,8 +383,8 @@ fn a_log_repeats_both_channels() {
         );
     }
     let machine = machine("twin");
-    let cycle_us = host.control().cycle_us();
-    let script = Script::of("log".as_ref(), log.as_bytes(), &machine.plant, cycle_us).unwrap();
+    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    let script = Script::of("log".as_ref(), log.as_bytes(), &stage).unwrap();
     let mut again = switched_on(&machine, PowerOn::fresh(&machine), Attendance::Absent);
     let mut play = bahn_host::Play::new(script);
     for (cycle, expected) in trail.iter().enumerate() {

@@ -33,6 +33,8 @@ pub struct AxisState {
     pub powered: bool,
     /// The clamp of the axis is closed.
     pub clamped: bool,
+    /// Force of the motor in the last step, N or Nm.
+    pub force: f64,
 }
 
 /// A switch that is closed within a range of the travel.
@@ -86,6 +88,8 @@ pub(crate) struct Axis {
     pub powered: bool,
     pub clamped: bool,
     fault: Option<DriveFault>,
+    /// Acceleration by the motor in the last step.
+    driven: f64,
     /// Acceleration by a force from outside.
     push: f64,
     speed: f64,
@@ -218,6 +222,7 @@ impl Axis {
             powered: false,
             clamped: false,
             fault: None,
+            driven: 0.0,
             push: 0.0,
             speed: 0.0,
             integral: 0.0,
@@ -262,8 +267,10 @@ impl Axis {
     pub fn step(&mut self, step_s: f64) {
         let mut acceleration = self.push - self.weight;
         let (mut friction, mut stiction) = (self.friction, self.stiction);
+        self.driven = 0.0;
         if self.powered {
-            acceleration += self.motor_acceleration();
+            self.driven = self.motor_acceleration();
+            acceleration += self.driven;
         } else {
             friction += self.brake;
             stiction += self.brake;
@@ -366,6 +373,7 @@ impl Axis {
             volts: self.volts,
             powered: self.powered,
             clamped: self.clamped,
+            force: self.driven / self.per_force,
         }
     }
 }

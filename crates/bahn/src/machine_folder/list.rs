@@ -32,6 +32,27 @@ test PROGRAM                        TEST RUN beside what the machine does
 end-test                            breaks it off
 offset adjust|off                   answers to code number 75368
 2: COMMAND                          a command to the second channel
+M100=1, W6=$10, S0=\"TEXT\"           operands, as in the table of the PLC menu; inputs are the machine's
+MP4110.2=4                          a machine parameter of the running control, with what its change needs
+power on|off                        the supply of the control
+";
+
+/// What can be recorded, a line each.
+const SIGNALS: &str = "\
+X.actual X.nominal                  position in machine coordinates, mm or degrees
+X.displayed                         as it is displayed: from the workpiece datum, with the tool length
+X.ref                               as REF shows it, rotary axes within their modulo value
+X.table                             where the table stands in truth, from the zero point of the plant
+X.lag X.distance                    servo lag, distance to go in the block
+X.speed X.nominal-speed             mm/min
+X.volts output.1 .. output.S        V: of the axis, at each analogue output
+X.force                             of the motor, N or Nm
+path.speed path.distance path.block speed, way to the end of the element, number of the block
+S.rpm S.volts S.angle               the spindle; angle since power-on with all turns
+mode run tool                       W272; 0 idle 1 running 2 interrupted 3 stopped 4 block-end; in the spindle
+Q5                                  a Q parameter at the block that is executed
+X41/34 X42/4                        control is ready, and its acknowledgement
+M2045 I4 O2 T48 C0 B8 W260 D356     as the PLC sees it; the column event tells of `M100 pulse` inside a scan
 ";
 
 /// Prints the names of a machine.
@@ -72,6 +93,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     text += &row("things", things);
     text += &format!("\nEvents:\n{}", Event::HELP);
     text += &format!("\nCommands:\n{COMMANDS}");
+    text += &format!("\nSignals, for --signals and expectations:\n{SIGNALS}");
     text += &format!("\nExpectations, and the end:\n{}end\n", Expectation::HELP);
     console::print(&text)?;
     Ok(Outcome::Fine)

@@ -5,12 +5,10 @@ use std::io::Write;
 
 use bahn_exchange::Exchange;
 
-use super::bench::Bench;
 use super::drawing::{self, Diagram};
-use super::failure;
 use super::options::DiagramOptions;
 use super::print_json;
-use super::source::Source;
+use super::subject::Subject;
 use crate::files::{self, NewFile};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
@@ -27,21 +25,21 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
         )));
     }
     let trigger = options.trigger.as_deref().map(trigger).transpose()?;
-    let source = Source::compile(&options.program)?;
-    let parameters = source.parameters.clone();
-    let Some(program) = source.program() else {
+    let open = Subject::open(&options.program, &options.bench, &options.machine, || {
+        Ok(Exchange::default())
+    })?;
+    let Some(mut subject) = open else {
         return Ok(Outcome::ProgramError);
     };
-    let mut bench = Bench::new(program, parameters, &options.bench, Exchange::default())?;
     let mut samples = VecDeque::new();
     // The cycle that triggers; without trigger the first.
     let mut triggered = trigger.is_none().then_some(1);
-    let is_met = |bench: &Bench| {
+    let is_met = |subject: &Subject| {
         let wanted = trigger.as_ref();
-        wanted.is_some_and(|(operand, wanted)| bench.read(*operand) == *wanted)
+        wanted.is_some_and(|(operand, wanted)| subject.read(*operand) == *wanted)
     };
     // A trigger is an edge: the operand gets its value [000:11461].
-    let mut was_met = is_met(&bench);
+    let mut was_met = is_met(&subject);
     let before = options.before.min(options.cycles.saturating_sub(1));
     let mut outcome = Outcome::Fine;
     loop {
@@ -52,31 +50,42 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
                 .max(1)
                 .saturating_add(options.cycles - 1)
         });
-        if bench.cycle >= end {
+        if subject.cycle() >= end {
             break;
         }
-        if let Err(error) = bench.scan(None) {
-            failure::print(bench.machine.program(), &error);
-            outcome = Outcome::ProgramError;
+        if let Err(halt) = subject.scan(None) {
+            outcome = subject.say(&halt);
             break;
         }
-        samples.push_back(options.show.iter().map(|operand| bench.read(*operand)).collect());
+        samples.push_back(
+            options
+                .show
+                .iter()
+                .map(|operand| subject.read(*operand))
+                .collect(),
+        );
         if triggered.is_none() {
-            let is_met = is_met(&bench);
+            let is_met = is_met(&subject);
             if !std::mem::replace(&mut was_met, is_met) && is_met {
-                triggered = Some(bench.cycle);
+                triggered = Some(subject.cycle());
             } else if samples.len() as u64 > before {
                 samples.pop_front();
             }
         }
     }
     if triggered.is_none() && outcome == Outcome::Fine {
-        diagnostics::print_line(&format!("the trigger did not come within {} cycles", bench.cycle));
+        diagnostics::print_line(&format!(
+            "the trigger did not come within {} cycles",
+            subject.cycle()
+        ));
         return Ok(Outcome::ProgramError);
+    }
+    if let Outcome::ProgramError = subject.finish() {
+        outcome = Outcome::ProgramError;
     }
     let diagram = Diagram {
         operands: options.show.clone(),
-        first: bench.cycle.saturating_sub(samples.len() as u64) + 1,
+        first: subject.cycle().saturating_sub(samples.len() as u64) + 1,
         trigger: trigger.and(triggered),
         samples: samples.into(),
     };
@@ -93,7 +102,7 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
     Ok(outcome)
 }
 
-fn trigger(text: &str) -> Result<(Operand, Content), UsageError> {
+pub(super) fn trigger(text: &str) -> Result<(Operand, Content), UsageError> {
     match Assignment::parse(text) {
         Ok(Assignment::Operand(operand, content)) => Ok((operand, content)),
         Ok(Assignment::Parameter(_)) => Err(UsageError::new("--trigger takes an operand")),

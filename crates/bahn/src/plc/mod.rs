@@ -2,8 +2,8 @@
 //!
 //! - `options`: options and help texts;
 //! - `source`: the program, compile errors as rustc prints them;
-//! - `script`: stimuli and expectations;
 //! - `bench`: program, memory and stand-in for the control together;
+//! - `live`: the program in the control of a machine; `subject`: one of the two;
 //! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
 
 #[cfg_attr(
@@ -15,13 +15,19 @@ mod check;
 mod diagram;
 mod drawing;
 mod failure;
+mod halt;
 mod list;
+#[cfg_attr(
+    not(feature = "watch"),
+    expect(dead_code, reason = "part of it serves the screen alone")
+)]
+mod live;
 mod options;
 mod record;
 mod run;
-mod script;
 mod signals;
 mod source;
+mod subject;
 mod trace;
 #[cfg(feature = "watch")]
 mod watch;
@@ -49,12 +55,6 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
         PlcCommand::Xref(options) => xref::command(options),
         PlcCommand::Signals(options) => signals::command(options),
     }
-}
-
-/// Reads stimuli and expectations as `bahn plc run --script` does, for fuzzing; the error names file and line.
-#[doc(hidden)]
-pub fn check_script(name: &str, bytes: &[u8]) -> Result<(), String> {
-    script::Script::read(name, bytes).map(|_| ())
 }
 
 /// Opens the journal of the retained memory; says what is damaged in it.

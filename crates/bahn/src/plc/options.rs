@@ -64,12 +64,15 @@ Examples:
   bahn plc run MAIN.PLC --script door.txt --record door.csv --show I4,O2
       Stimuli and expectations from a file; operands after every cycle as a table.
 
-Script (--script): lines that are applied before or checked after a cycle; the first cycle is 1:
-  1: I4=1, W6=100          ; set before cycle 1
-  3: expect O2=1, B8=-3    ; checked after cycle 3
-  4: S0=\"OIL\", MP4110.2=4
-Values are decimal, $2A hexadecimal or \"text\". Text behind ; or # is a comment.
-Without --cycles the run ends with the last cycle of the script.
+Script (--script): what happens at which time, and what is expected, as for `bahn run`; docs/scripts.md tells all
+of it. A cycle is a scan; the first one is 1. A blank stands before the ; or # of a comment:
+  cycle 1: I4=1, W6=100          ; set before the first cycle
+  cycle 3: expect O2=1, B8=-3    ; so behind the third
+  0.5: S0=\"OIL\", MP4110.2=4     ; 0.5 s after power-on, or +0.5, +20 cycles behind the line before
+  when O2=1: I4=0                ; as soon as it is so
+  +2 cycles: end
+Values are decimal, $2A hexadecimal or \"text\". Without --cycles the run ends with the script; a condition that has
+not come true a minute behind the last thing that was done has failed.
 
 JSON: cycles, values, processing_percent (current, maximum), error (number, file, line, or null); with
 --trace also trace (the first 100000 executed lines) and trace_left_off (how many follow), with failed
@@ -80,12 +83,20 @@ Exit codes: 0 fine, 1 compile error, run-time error or failed expectation, 2 wro
 const TRACE_EXAMPLES: &str = "\
 Examples:
   bahn plc trace MAIN.PLC --set I4=1
-  bahn plc trace MAIN.PLC --script door.txt --cycle 3 --hex";
+  bahn plc trace MAIN.PLC --script door.txt --cycle 3 --hex
+  bahn plc trace machines/mill --part CIRCLE.H --trigger M2045=1
+      The scan of the running control in which the first M function reaches the PLC.
+
+With the folder of a machine its PLC program runs in the whole control on the simulated machine, as with
+`bahn run --fresh`: the operator switches on, passes the reference marks and starts --part; a script speaks to control and
+machine. Cycles are the scans since power-on.";
 
 const DIAGRAM_EXAMPLES: &str = "\
 Examples:
   bahn plc diagram MAIN.PLC --script door.txt --show I4,T48,O2 --cycles 60
-  bahn plc diagram MAIN.PLC --show M100,O2 --trigger O2=1 --cycles 40 --before 10 --svg door.svg";
+  bahn plc diagram MAIN.PLC --show M100,O2 --trigger O2=1 --cycles 40 --before 10 --svg door.svg
+  bahn plc diagram machines/mill --part CIRCLE.H --show M2045,W260,M2482,O12 --trigger M2045=1 --before 5 --cycles 60
+      The handshake of the first M function in the running control; `bahn plc trace --help` says more.";
 
 #[cfg(feature = "watch")]
 const WATCH_KEYS: &str = "\
@@ -94,8 +105,12 @@ an operand, enter set it, space turn a bit over, a add operands, d remove one, b
 at a line of the main file, x stop when the chosen operand changes, t show the course of the values instead
 of binary numbers, q end. Numbers are shown decimal, hexadecimal and binary.
 
+With the folder of a machine its PLC program runs in the whole control on the simulated machine. Then there are
+whole scans only: lines, breakpoints at lines and a new start are on the bench.
+
 Examples:
   bahn plc watch MAIN.PLC --show I4,O2,W8
+  bahn plc watch machines/mill --part CIRCLE.H --show M2045,W260,M2482
   bahn plc watch MAIN.PLC --script door.txt --retain door.mem";
 
 const XREF_EXAMPLES: &str = "\
@@ -113,7 +128,7 @@ Examples:
 /// The program.
 #[derive(Args, Debug)]
 pub(crate) struct ProgramOptions {
-    /// The main file; linked files lie beside it.
+    /// The main file; linked files lie beside it. trace, diagram and watch also take the folder of a machine.
     #[arg(value_name = "MAIN.PLC", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     /// Control model.
@@ -134,9 +149,17 @@ pub(crate) struct BenchOptions {
     /// Operands and machine parameters before the first cycle, as I4=1,W6=100,MP4110.2=4 (repeatable).
     #[arg(long, value_name = "OPERAND=V,..")]
     pub set: Vec<String>,
-    /// Stimuli and expectations.
-    #[arg(long, value_name = "STIMULI", value_hint = ValueHint::FilePath)]
+    /// What happens at which time, and what is expected (docs/scripts.md).
+    #[arg(long, value_name = "SCRIPT", value_hint = ValueHint::FilePath)]
     pub script: Option<PathBuf>,
+}
+
+/// What the machine does whose folder is looked at.
+#[derive(Args, Debug)]
+pub(crate) struct MachineOptions {
+    /// Part program that the operator runs on the machine: a path, or a program in its folder of programs.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub part: Option<PathBuf>,
 }
 
 /// Options of `bahn plc check`.
@@ -203,9 +226,17 @@ pub(crate) struct TraceOptions {
     pub program: ProgramOptions,
     #[command(flatten)]
     pub bench: BenchOptions,
+    #[command(flatten)]
+    pub machine: MachineOptions,
     /// The cycle that is shown.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     pub cycle: u64,
+    /// Show the cycle in which an operand gets a value: O2=1 is its positive edge, O2=0 its negative.
+    #[arg(long, value_name = "OPERAND=V", conflicts_with = "cycle")]
+    pub trigger: Option<String>,
+    /// Cycles after which the trigger is given up.
+    #[arg(long, value_name = "N", default_value_t = 100_000, requires = "trigger")]
+    pub limit: u64,
     /// Show numbers hexadecimal.
     #[arg(long, conflicts_with = "format")]
     pub hex: bool,
@@ -221,6 +252,8 @@ pub(crate) struct DiagramOptions {
     pub program: ProgramOptions,
     #[command(flatten)]
     pub bench: BenchOptions,
+    #[command(flatten)]
+    pub machine: MachineOptions,
     /// The operands, up to 16.
     #[arg(long, value_name = "OPERAND,..", value_delimiter = ',', required = true)]
     pub show: Vec<Operand>,
@@ -258,6 +291,8 @@ pub(crate) struct WatchOptions {
     pub program: ProgramOptions,
     #[command(flatten)]
     pub bench: BenchOptions,
+    #[command(flatten)]
+    pub machine: MachineOptions,
     /// File of the non-volatile markers and bytes: read before, kept while the program runs.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub retain: Option<PathBuf>,

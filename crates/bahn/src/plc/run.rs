@@ -1,6 +1,5 @@
 //! `bahn plc run`: cycle by cycle, with stimuli and expectations.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use bahn_exchange::Exchange;
@@ -8,8 +7,9 @@ use bahn_host::Retained;
 use bahn_plc::ProcessingTime;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::bench::{Bench, Failure};
+use super::bench::{self, Bench, Failure};
 use super::failure;
+use super::live;
 use super::options::RunOptions;
 use super::print_json;
 use super::record::Record;
@@ -17,13 +17,17 @@ use super::source::Source;
 use super::trace::{Line, Trace};
 use crate::diagnostics::{self, PRINTED_MAX};
 use crate::interrupt::Interrupt;
-use crate::junit::{self, Case, Verdict};
+use crate::junit;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, files};
 use bahn_host::{Content, Operand};
 
+/// So many cycles a script waits for a condition behind the last thing that it did: a minute of 20 ms.
+const CYCLES_IN_VAIN: u64 = 3000;
+
 /// Runs a program and shows what came out.
 pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
+    refuse_machine(&options.program.file)?;
     files::keep_inputs(&options.inputs(), &options.written())?;
     let source = Source::compile(&options.program)?;
     let first_error = source.compilation.errors.first().map(|fault| Stop {
@@ -49,9 +53,8 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         .map(|path| Record::create(path, recorded(options, &bench)))
         .transpose()?;
 
-    let last = bench.script.last();
-    let cycles = options.cycles.unwrap_or(last.max(1));
-    if cycles < last {
+    let last = bench::last_cycle(bench.play.script(), bench.cycle_time());
+    if let Some(cycles) = options.cycles.filter(|cycles| *cycles < last) {
         diagnostics::print_line(&format!(
             "warning: the script goes on to cycle {last}, the run ends with cycle {cycles}"
         ));
@@ -64,7 +67,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         trace: Trace::default(),
     };
     let interrupt = Interrupt::on_ctrl_c();
-    let mut written = scans.run(options, cycles, &interrupt);
+    let mut written = scans.run(options, &interrupt);
     scans.print_failures();
     let Scans {
         bench,
@@ -73,7 +76,14 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         ..
     } = scans;
     if let Some(path) = &options.junit {
-        written = written.and(write_junit(path, options, &bench, &report));
+        let stopped = report.error.as_ref().map(Stop::to_string);
+        let suite = options.program.file.to_string_lossy();
+        written = written.and(junit::write(
+            path,
+            &suite,
+            &bench.play.expectations(),
+            stopped.as_deref(),
+        ));
     }
     report.values = Values(
         options
@@ -83,7 +93,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
             .collect(),
     );
     report.processing_percent = bench.machine.time().into();
-    let fine = report.error.is_none() && report.failed_expectations.is_empty();
+    let fine = report.error.is_none() && bench.play.failed.is_empty();
     match options.format {
         Format::Json => {
             report.trace_left_off = options.trace.map(|_| trace.left_off);
@@ -99,6 +109,17 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     })
 }
 
+/// The folder of a machine is no program.
+fn refuse_machine(path: &Path) -> Result<(), UsageError> {
+    if !live::is_machine(path) {
+        return Ok(());
+    }
+    Err(UsageError::new(format!(
+        "{} is a folder: `bahn run --machine` runs a machine, `bahn plc trace`, `diagram` and `watch` look at its PLC",
+        path.display()
+    )))
+}
+
 /// The cycles of a run, and what is written meanwhile.
 struct Scans {
     bench: Bench,
@@ -109,13 +130,13 @@ struct Scans {
 }
 
 impl Scans {
-    /// Runs up to a cycle, or to the first error.
+    /// Runs up to the last cycle, or to the first error.
     ///
     /// # Errors
     /// When a file cannot be written. It loses neither the others nor the report.
-    fn run(&mut self, options: &RunOptions, cycles: u64, interrupt: &Interrupt) -> Result<(), UsageError> {
+    fn run(&mut self, options: &RunOptions, interrupt: &Interrupt) -> Result<(), UsageError> {
         let mut written = Ok(());
-        while self.bench.cycle < cycles && !interrupt.is_requested() && written.is_ok() {
+        while !self.is_over(options) && !interrupt.is_requested() && written.is_ok() {
             self.trace.cycle = self.bench.cycle + 1;
             let traced = options
                 .trace
@@ -130,7 +151,6 @@ impl Scans {
                 break;
             }
             self.report.cycles += 1;
-            self.report.failed_expectations.extend(self.bench.failures());
             written = self
                 .record
                 .as_mut()
@@ -140,11 +160,25 @@ impl Scans {
                 written = written.and(kept.map_err(UsageError::from));
             }
         }
+        self.bench.finish();
+        self.report.failed_expectations = self.bench.take_failures();
         if let Some(retained) = &mut self.retained {
             let kept = retained.flush(self.bench.exchange.plc());
             written = written.and(kept.map_err(UsageError::from));
         }
         written.and(self.record.take().map_or(Ok(()), Record::finish))
+    }
+
+    /// The last cycle has run: that of `--cycles`, or the last one of the script.
+    fn is_over(&mut self, options: &RunOptions) -> bool {
+        if options.cycles.is_some_and(|cycles| self.bench.cycle >= cycles) {
+            return true;
+        }
+        self.bench.stimulate();
+        match options.cycles {
+            Some(_) => self.bench.has_ended(),
+            None => self.bench.is_over() || self.bench.waits_in_vain(CYCLES_IN_VAIN),
+        }
     }
 
     /// Prints the expectations that did not hold, with their lines of the script.
@@ -153,43 +187,18 @@ impl Scans {
         for failure in failures.iter().take(PRINTED_MAX) {
             let title = failure.to_string();
             let found = format!("found {}", failure.found);
-            let script = &self.bench.script;
-            let fault = script.failure(failure.line, &failure.operand, &title, found);
+            let script = self.bench.play.script();
+            let fault = script.failure_of(failure.line, &failure.operand, &title, found);
             diagnostics::print_fault(&fault);
         }
         diagnostics::print_rest(failures.len().saturating_sub(PRINTED_MAX));
     }
 }
 
-/// The expectations of the script for a build server.
-fn write_junit(path: &Path, options: &RunOptions, bench: &Bench, report: &Report) -> Result<(), UsageError> {
-    // The first failure counts where a line expects the same operand twice.
-    let failed = report.failed_expectations.iter().rev();
-    let failed: HashMap<_, _> = failed
-        .map(|failure| ((failure.cycle, failure.line, failure.operand.as_str()), failure))
-        .collect();
-    let cases = bench.script.expectations().map(|(cycle, expected)| {
-        let operand = expected.operand.to_string();
-        let failed = failed.get(&(cycle, expected.line, operand.as_str()));
-        Case {
-            place: bench.script.place(expected.line),
-            name: format!("cycle {cycle}: {operand} = {}", expected.content),
-            verdict: match failed {
-                Some(failure) => Verdict::Failed(format!("found {}", failure.found)),
-                None if cycle > report.cycles => Verdict::NotReached,
-                None => Verdict::Held,
-            },
-        }
-    });
-    let stopped = report.error.as_ref().map(Stop::to_string);
-    let suite = options.program.file.to_string_lossy();
-    junit::write(path, &suite, &cases.collect::<Vec<_>>(), stopped.as_deref())
-}
-
 /// The columns of `--record`.
 fn recorded(options: &RunOptions, bench: &Bench) -> Vec<Operand> {
     if options.show.is_empty() {
-        bench.script.operands()
+        bench::operands(bench.play.script())
     } else {
         options.show.clone()
     }

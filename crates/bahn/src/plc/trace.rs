@@ -3,35 +3,43 @@
 use bahn_exchange::Exchange;
 use bahn_plc::{OperandContent, TraceStep, Tracer};
 
-use super::bench::Bench;
-use super::failure;
+use super::diagram;
+use super::halt::Halt;
 use super::options::TraceOptions;
 use super::print_json;
-use super::source::Source;
+use super::subject::Subject;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
+use bahn_host::{Content, Operand};
 
 /// Lines that are shown at most: what is executed from one cycle to the next has no end.
 const LINES_MAX: usize = 100_000;
 
 /// Runs up to a cycle and shows its executed lines.
 pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
-    let source = Source::compile(&options.program)?;
-    let parameters = source.parameters.clone();
-    let Some(program) = source.program() else {
+    let trigger = options.trigger.as_deref().map(diagram::trigger).transpose()?;
+    let open = Subject::open(&options.program, &options.bench, &options.machine, || {
+        Ok(Exchange::default())
+    })?;
+    let Some(mut subject) = open else {
         return Ok(Outcome::ProgramError);
     };
-    let mut bench = Bench::new(program, parameters, &options.bench, Exchange::default())?;
     let mut trace = Trace {
         hex: options.hex,
         ..Trace::default()
     };
-    let mut result = Ok(());
-    while result.is_ok() && bench.cycle < options.cycle {
-        let shown = bench.cycle + 1 == options.cycle;
-        trace.cycle = bench.cycle + 1;
-        result = bench.scan(shown.then_some(&mut trace));
-    }
+    let result = match &trigger {
+        Some((operand, wanted)) => {
+            let came = up_to_trigger(&mut subject, &mut trace, (*operand, wanted), options.limit);
+            if matches!(came, Ok(false)) {
+                let cycles = subject.cycle();
+                diagnostics::print_line(&format!("the trigger did not come within {cycles} cycles"));
+                return Ok(Outcome::ProgramError);
+            }
+            came.map(drop)
+        }
+        None => up_to_cycle(&mut subject, &mut trace, options.cycle),
+    };
     match options.format {
         Format::Text => console::print(&trace.text())?,
         Format::Json => {
@@ -41,13 +49,56 @@ pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
             }
         }
     }
-    match result {
-        Ok(()) => Ok(Outcome::Fine),
-        Err(error) => {
-            failure::print(bench.machine.program(), &error);
-            Ok(Outcome::ProgramError)
+    let outcome = match result {
+        Ok(()) => subject.finish(),
+        Err(halt) => {
+            let outcome = subject.say(&halt);
+            if let (Halt::Ended, None) = (&halt, &trigger) {
+                let (ended, wanted) = (subject.cycle(), options.cycle);
+                diagnostics::print_line(&format!(
+                    "the script has ended the run behind cycle {ended}, before {wanted}"
+                ));
+                return Ok(Outcome::ProgramError);
+            }
+            outcome
         }
+    };
+    Ok(outcome)
+}
+
+/// Runs up to a cycle, and traces it.
+fn up_to_cycle(subject: &mut Subject, trace: &mut Trace, cycle: u64) -> Result<(), Halt> {
+    while subject.cycle() < cycle {
+        trace.cycle = subject.cycle() + 1;
+        let shown = trace.cycle == cycle;
+        subject.scan(shown.then_some(trace as &mut dyn Tracer))?;
     }
+    Ok(())
+}
+
+/// Runs and traces up to the cycle in which an operand gets a value; tells whether it did.
+fn up_to_trigger(
+    subject: &mut Subject,
+    trace: &mut Trace,
+    (operand, wanted): (Operand, &Content),
+    limit: u64,
+) -> Result<bool, Halt> {
+    let mut was = subject.read(operand) == *wanted;
+    while subject.cycle() < limit {
+        trace.lines.clear();
+        trace.left_off = 0;
+        trace.cycle = subject.cycle() + 1;
+        match subject.scan(Some(trace)) {
+            Err(Halt::Ended) => break,
+            other => other?,
+        }
+        let is = subject.read(operand) == *wanted;
+        if is && !std::mem::replace(&mut was, is) {
+            return Ok(true);
+        }
+        was = is;
+    }
+    Ok(false)
 }
 
 /// The executed lines.

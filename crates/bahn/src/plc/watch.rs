@@ -12,13 +12,14 @@ use std::time::{Duration, Instant};
 
 use bahn_exchange::Exchange;
 use bahn_host::Retained;
-use bahn_plc::{RuntimeError, TraceStep, Tracer};
+use bahn_plc::{TraceStep, Tracer};
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use super::bench::{Bench, set_operands};
+use super::bench::{self, set_operands};
+use super::halt::Halt;
 use super::options::WatchOptions;
-use super::source::Source;
+use super::subject::Subject;
 use crate::{Outcome, UsageError};
 use bahn_host::{Assignment, Content, Operand};
 use breakpoint::Breakpoints;
@@ -27,19 +28,25 @@ use trend::Trend;
 
 /// Shows the table until the user ends it.
 pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
-    let source = Source::compile(&options.program)?;
-    let parameters = source.parameters.clone();
-    let Some(program) = source.program() else {
-        return Ok(Outcome::ProgramError);
-    };
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(UsageError::new("bahn plc watch needs a terminal"));
     }
-    let retained = super::retained(options.retain.as_deref())?;
-    let exchange = retained
-        .as_ref()
-        .map_or_else(Exchange::default, Retained::restore);
-    let bench = Bench::new(program, parameters, &options.bench, exchange)?;
+    let mut retained = None;
+    let exchange = || {
+        retained = super::retained(options.retain.as_deref())?;
+        Ok(retained
+            .as_ref()
+            .map_or_else(Exchange::default, Retained::restore))
+    };
+    let open = Subject::open(&options.program, &options.bench, &options.machine, exchange)?;
+    let Some(subject) = open else {
+        return Ok(Outcome::ProgramError);
+    };
+    if options.retain.is_some() && retained.is_none() {
+        return Err(UsageError::new(
+            "--retain is of the bench: the machine of a folder begins without what survived, and keeps nothing",
+        ));
+    }
     let mut operands = options.show.clone();
     if operands.is_empty() {
         let set = set_operands(&options.bench)?;
@@ -47,27 +54,31 @@ pub(super) fn command(options: &WatchOptions) -> Result<Outcome, UsageError> {
             Assignment::Operand(operand, _) => Some(*operand),
             Assignment::Parameter(_) => None,
         }));
-        for operand in bench.script.operands() {
+        for operand in bench::operands(subject.script()) {
             if !operands.contains(&operand) {
                 operands.push(operand);
             }
         }
     }
-    let mut watch = Watch::new(bench, operands, retained);
+    let mut watch = Watch::new(subject, operands, retained);
     let mut terminal =
         ratatui::try_init().map_err(|error| UsageError::new(format!("no full screen: {error}")))?;
     let result = watch.show(&mut terminal);
     ratatui::restore();
     result?;
-    if let Some(retained) = &mut watch.retained {
-        retained.flush(watch.bench.exchange.plc())?;
+    if let (Some(retained), Some(bench)) = (&mut watch.retained, watch.subject.bench()) {
+        retained.flush(bench.exchange.plc())?;
     }
-    Ok(Outcome::Fine)
+    Ok(watch.subject.finish())
 }
+
+/// What is said of keys that a running machine does not have.
+const ON_THE_BENCH: &str =
+    "on a machine there are whole scans: lines and a new start are on the bench (bahn plc watch MAIN.PLC)";
 
 /// The view.
 struct Watch {
-    bench: Bench,
+    subject: Subject,
     operands: Vec<Operand>,
     chosen: usize,
     running: bool,
@@ -92,9 +103,9 @@ impl Tracer for LastInstruction {
 }
 
 impl Watch {
-    fn new(bench: Bench, operands: Vec<Operand>, retained: Option<Retained>) -> Watch {
+    fn new(subject: Subject, operands: Vec<Operand>, retained: Option<Retained>) -> Watch {
         Watch {
-            bench,
+            subject,
             operands,
             chosen: 0,
             running: false,
@@ -114,10 +125,10 @@ impl Watch {
         loop {
             if self.running && Instant::now() >= next {
                 // A late cycle is not made up for.
-                next = (next + self.bench.cycle_time()).max(Instant::now());
+                next = (next + self.subject.cycle_time()).max(Instant::now());
                 self.cycle();
-                if let Some(retained) = &mut self.retained {
-                    retained.tick(self.bench.exchange.plc())?;
+                if let (Some(retained), Some(bench)) = (&mut self.retained, self.subject.bench()) {
+                    retained.tick(bench.exchange.plc())?;
                 }
             }
             terminal.draw(|frame| screen::draw(frame, self)).map_err(wrong)?;
@@ -167,12 +178,7 @@ impl Watch {
                 self.running = false;
                 self.line();
             }
-            KeyCode::Char('n') => {
-                self.bench.restart();
-                self.last = LastInstruction::default();
-                self.trend.clear();
-                self.message = "started anew; operands keep their values".to_owned();
-            }
+            KeyCode::Char('n') => self.restart(),
             KeyCode::Up => self.chosen = self.chosen.saturating_sub(1),
             KeyCode::Down => self.chosen = (self.chosen + 1).min(self.operands.len().saturating_sub(1)),
             KeyCode::Home => self.chosen = 0,
@@ -184,10 +190,13 @@ impl Watch {
                 }
             }
             KeyCode::Char('a') => self.entry = Some(Entry::operands()),
+            KeyCode::Char('b') if self.subject.bench().is_none() => {
+                ON_THE_BENCH.clone_into(&mut self.message)
+            }
             KeyCode::Char('b') => self.entry = Some(Entry::breakpoint()),
             KeyCode::Char('x') => {
                 if let Some(operand) = self.operands.get(self.chosen) {
-                    let content = self.bench.read(*operand);
+                    let content = self.subject.read(*operand);
                     let stops = self.breakpoints.turn_over(*operand, content);
                     let what = if stops { "stops" } else { "does not stop" };
                     self.message = format!("a change of {operand} {what} the program");
@@ -203,14 +212,26 @@ impl Watch {
         true
     }
 
+    /// Starts program and script anew.
+    fn restart(&mut self) {
+        let Some(bench) = self.subject.bench() else {
+            ON_THE_BENCH.clone_into(&mut self.message);
+            return;
+        };
+        bench.restart();
+        self.last = LastInstruction::default();
+        self.trend.clear();
+        self.message = "started anew; operands keep their values".to_owned();
+    }
+
     /// Runs a cycle, or the rest of one that was begun. A breakpoint in a line ends it before that line.
     fn cycle(&mut self) {
-        let result = if self.bench.is_inside() || self.breakpoints.has_lines() {
+        let result = if self.subject.is_inside() || self.breakpoints.has_lines() {
             self.lines()
         } else {
             // While the program runs there is no time to look at lines.
             self.last = LastInstruction::default();
-            self.bench.scan(None).map(|()| true)
+            self.subject.scan(None).map(|()| true)
         };
         match result {
             Ok(false) => {}
@@ -220,17 +241,17 @@ impl Watch {
     }
 
     /// Executes lines to the end of the cycle, or to a breakpoint: tells whether the cycle is over.
-    fn lines(&mut self) -> Result<bool, RuntimeError> {
-        if !self.bench.is_inside() && !self.held && self.breaks_before(0) {
+    fn lines(&mut self) -> Result<bool, Halt> {
+        if !self.subject.is_inside() && !self.held && self.breaks_before(0) {
             self.held = true;
             return Ok(false);
         }
         self.held = false;
         loop {
-            if self.bench.step(&mut self.last)? {
+            if self.step()? {
                 return Ok(true);
             }
-            if self.breaks_before(self.bench.machine.registers().next) {
+            if self.breaks_before(self.subject.plc().registers().next) {
                 return Ok(false);
             }
         }
@@ -238,7 +259,7 @@ impl Watch {
 
     /// Stops before an instruction whose line has a breakpoint.
     fn breaks_before(&mut self, next: usize) -> bool {
-        let next = self.bench.machine.program().code.get(next);
+        let next = self.subject.plc().program().code.get(next);
         let place = next.map(|next| (next.file, next.line));
         let line = place.and_then(|place| self.breakpoints.at(place));
         if let Some(line) = line {
@@ -248,31 +269,46 @@ impl Watch {
         line.is_some()
     }
 
+    /// Executes the next line of a cycle; tells whether it is over.
+    fn step(&mut self) -> Result<bool, Halt> {
+        match self.subject.bench() {
+            Some(bench) => Ok(bench.step(&mut self.last)?),
+            None => Ok(false),
+        }
+    }
+
     /// Executes one line.
     fn line(&mut self) {
-        match self.bench.step(&mut self.last) {
+        if self.subject.bench().is_none() {
+            ON_THE_BENCH.clone_into(&mut self.message);
+            return;
+        }
+        match self.step() {
             Ok(false) => {}
             Ok(true) => self.cycle_ended(Ok(())),
             Err(error) => self.cycle_ended(Err(error)),
         }
     }
 
-    fn cycle_ended(&mut self, result: Result<(), RuntimeError>) {
+    fn cycle_ended(&mut self, result: Result<(), Halt>) {
         match result {
-            Err(error) => {
+            Err(halt) => {
                 self.running = false;
-                self.message = format!("{error}  (n starts anew)");
+                self.message = match self.subject.bench() {
+                    Some(_) => format!("{halt}  (n starts anew)"),
+                    None => halt.to_string(),
+                };
             }
             Ok(()) => {
-                let contents = self.operands.iter().map(|operand| self.bench.read(*operand));
+                let contents = self.operands.iter().map(|operand| self.subject.read(*operand));
                 self.trend.take(&self.operands, contents);
-                let bench = &self.bench;
-                if let Some(change) = self.breakpoints.changed(|operand| bench.read(operand)) {
+                let subject = &self.subject;
+                if let Some(change) = self.breakpoints.changed(|operand| subject.read(operand)) {
                     self.running = false;
                     self.message = change;
                 }
-                if let Some(failure) = self.bench.failures().first() {
-                    self.message = failure.to_string();
+                if let Some(failure) = self.subject.take_failures().first() {
+                    self.message.clone_from(failure);
                 }
             }
         }
@@ -280,19 +316,15 @@ impl Watch {
 
     fn turn_over(&mut self) {
         if let Some(operand @ Operand::Bit(_)) = self.operands.get(self.chosen).copied() {
-            let value = i32::from(self.bench.read(operand) == Content::Number(0));
+            let value = i32::from(self.subject.read(operand) == Content::Number(0));
             self.set(operand, &Content::Number(value));
         }
     }
 
-    /// Sets an operand for the next cycle, and at once so that the table shows it.
+    /// Sets an operand for the next cycle.
     fn set(&mut self, operand: Operand, content: &Content) {
-        operand.write(&mut self.bench.exchange, content);
-        let image = self.bench.exchange.plc_mut();
-        match (operand, content) {
-            (Operand::Bit(bit), Content::Number(value)) => image.set_bit(bit, *value != 0),
-            (Operand::Number(number), Content::Number(value)) => image.set_number(number, *value),
-            _ => {}
+        if let Err(error) = self.subject.set(operand, content) {
+            self.message = error;
         }
     }
 

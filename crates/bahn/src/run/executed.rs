@@ -92,6 +92,11 @@ impl Executed {
         Ok(())
     }
 
+    /// What is written of an element names its program.
+    pub fn needs_programs(&self) -> bool {
+        !self.outputs.is_empty()
+    }
+
     /// Hands on the next element.
     fn take_front(&mut self, control: ChannelView) -> Result<(), UsageError> {
         let Some(element) = self.ahead.pop_front() else {

@@ -26,10 +26,9 @@ use std::sync::Arc;
 
 use bahn_control::{Checking, Control, Mode, Signal};
 use bahn_host::{
-    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Operator, Play, PowerOn,
-    Script, Source, is_whole,
+    Attendance, Clock, Deed, FolderPrograms, Host, Job, LoadedMachine, LogFile, Observable, Observed,
+    Operator, Play, PowerOn, Script, Source, Stage, is_whole,
 };
-use bahn_servo::Timing;
 use bahn_workpiece::Projection;
 
 use crate::cutting::{self, Columns, Cutting, Memory, Written};
@@ -105,6 +104,11 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     };
     if options.run.realtime {
         host.set_clock(Clock::Wall(1.0));
+        let q = |signal: &Observed| matches!(signal.what, Observable::Signal(Signal::Q(_)));
+        let looks = options.recording.signals.iter().any(q) || !script.lines.is_empty();
+        if looks || executed.needs_programs() {
+            host.watch_programs();
+        }
     }
     let mut session = Session::new(host, Play::new(script), executed, recording, patience);
     let blocks = programs.main().map_or(0, |main| main.block_count());
@@ -138,7 +142,6 @@ fn load_script(
         (None, Some(path)) => (path, true),
         (None, None) => return Ok(Ok(Script::default())),
     };
-    let cycle_us = Timing::of(machine.parameters.model()).contour_us();
     let bytes = files::read_table(path)?;
     if is_log && !is_whole(&bytes) {
         diagnostics::print_text(&format!(
@@ -146,7 +149,8 @@ fn load_script(
             path.display()
         ));
     }
-    Ok(Script::of(path, &bytes, &machine.plant, cycle_us))
+    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    Ok(Script::of(path, &bytes, &stage))
 }
 
 /// What the control finds.
@@ -242,8 +246,17 @@ fn recording(
         let guests = machine.hand_overs.iter().filter(|one| one.to == signal.channel);
         let guests = guests.map(|one| one.letter.letter());
         let letters: Vec<char> = channel.axis_letters().chain(guests).collect();
-        if let Signal::Axis(letter, _) = &signal.signal
-            && !letters.contains(letter)
+        if let Observable::Signal(Signal::Q(number)) = signal.what
+            && number > control.model().limits().q_max
+        {
+            return Err(UsageError::new(format!(
+                "--signals {signal}: the {} has Q0 to Q{}",
+                control.model(),
+                control.model().limits().q_max
+            )));
+        }
+        if let Some(letter) = signal.what.axis()
+            && !letters.contains(&letter)
         {
             let known: Vec<String> = letters.iter().map(char::to_string).collect();
             return Err(UsageError::new(format!(

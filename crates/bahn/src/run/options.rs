@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_control::ChannelSignal;
-use bahn_host::Attendance;
+use bahn_host::{Attendance, Observed};
 use clap::{Args, ValueHint};
 
 use crate::options::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
@@ -34,11 +33,12 @@ Without --operator it is full, with --script start, with --replay absent.
 Script (--script): lines `TIME: EVENT`. TIME is s since power-on (12.5), since the line before (+2) or since
 the program was started (start+3), `+20 cycles` of the control, or a condition: `when X.actual > 50`,
 `after message TEXT`; docs/scripts.md tells all of it. Text behind ; or # is a comment. Events are those of the machine
-(machines/mill/README.md), commands of the control, what is expected, and `end`:
+(machines/mill/README.md), commands of the control, operands and machine parameters, power, what is expected, and `end`:
   start+2: key NC_STOP tap
   +3: expect run interrupted
   +0: override feed 50
   +0: key NC_START tap
+  start+10: M900=1, MP4110.5=200
   start+20: expect X.actual=100±0.01
   +0: expect message \"DOOR IS OPEN\"
 A number before a colon is a channel: `+1: 2: mode manual`, `+1: expect 2:X.actual=100`, `when 2: run ended: end`.
@@ -196,12 +196,12 @@ pub(crate) struct RecordingOptions {
     /// Write signals over time as a table.
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub record: Option<PathBuf>,
-    /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, path.speed,
-    /// path.block, S.rpm, S.volts, S.angle, operands of the PLC like M2045, I4, W260, of the second channel as
-    /// 2:X.actual; by default speeds, positions,
-    /// lags, and the handshake of M functions.
+    /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, X.displayed, X.ref, X.distance,
+    /// X.table and X.force (what only the plant knows), path.speed, path.block, path.distance, S.rpm, S.volts, S.angle,
+    /// output.1 to output.5, output.S, mode, run, tool, Q5, X41/34, X42/4, operands of the PLC like M2045, I4, W260, of the second channel as 2:X.actual; by
+    /// default speeds, positions, lags, and the handshake of M functions. `bahn machine list` says what each is.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
-    pub signals: Vec<ChannelSignal>,
+    pub signals: Vec<Observed>,
     /// Time between two rows, ms; every contour cycle without it.
     #[arg(long, value_name = "MS", requires = "record", value_parser = clap::value_parser!(u32).range(1..))]
     pub every: Option<u32>,

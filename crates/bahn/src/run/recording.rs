@@ -4,8 +4,10 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use bahn_control::{AxisSignal, ChannelSignal, ChannelView, Control, RunState, Signal};
-use bahn_host::decimals;
+use bahn_control::{AxisSignal, ChannelView, Control, RunState, Signal};
+use bahn_host::{Edges, Observable, Observed, Operand};
+use bahn_machine::Machine;
+use bahn_plc::Tracer;
 
 use crate::UsageError;
 use crate::files::{self, NewFile};
@@ -14,7 +16,9 @@ use crate::files::{self, NewFile};
 pub(super) struct Recording {
     path: PathBuf,
     file: NewFile,
-    signals: Vec<ChannelSignal>,
+    signals: Vec<Observed>,
+    /// Operands of the PLC among them, inside its scans.
+    edges: Edges,
     every_us: u64,
     due_us: u64,
     row: String,
@@ -28,10 +32,11 @@ pub(super) struct Recording {
 
 impl Recording {
     /// Begins a table; `every_us` of 0 records every contour cycle.
-    pub fn create(path: &Path, signals: Vec<ChannelSignal>, every_us: u64) -> Result<Recording, UsageError> {
+    pub fn create(path: &Path, signals: Vec<Observed>, every_us: u64) -> Result<Recording, UsageError> {
         let mut recording = Recording {
             path: path.to_owned(),
             file: NewFile::create(path)?,
+            edges: Edges::of(signals.iter().filter_map(operand)),
             signals,
             every_us,
             due_us: 0,
@@ -42,7 +47,7 @@ impl Recording {
         };
         recording.row.push_str("time [s]");
         for signal in &recording.signals {
-            match unit(&signal.signal) {
+            match signal.what.unit() {
                 "" => write!(recording.row, ",{signal}"),
                 unit => write!(recording.row, ",{signal} [{unit}]"),
             }
@@ -51,6 +56,14 @@ impl Recording {
         recording.row.push_str(",event");
         recording.write_row()?;
         Ok(recording)
+    }
+
+    /// Who looks into the scans of the PLC.
+    pub fn tracer(&mut self) -> Option<&mut (dyn Tracer + '_)> {
+        match self.edges.is_empty() {
+            true => None,
+            false => Some(&mut self.edges),
+        }
     }
 
     /// A message came up.
@@ -86,8 +99,19 @@ impl Recording {
     }
 
     /// Takes a row when it is time.
-    pub fn cycle(&mut self, control: &Control, started: bool) -> Result<(), UsageError> {
+    pub fn cycle(&mut self, control: &Control, plant: &Machine, started: bool) -> Result<(), UsageError> {
         self.watch(control, started);
+        let mut pulses = String::new();
+        for (operand, count) in self.edges.take_pulses() {
+            let separator = if pulses.is_empty() { "" } else { "; " };
+            let _ = match count {
+                1 => write!(pulses, "{separator}{operand} pulse"),
+                count => write!(pulses, "{separator}{operand} pulse x{count}"),
+            };
+        }
+        if !pulses.is_empty() {
+            self.event(&pulses);
+        }
         let now = control.time_us();
         if now < self.due_us {
             return Ok(());
@@ -98,11 +122,8 @@ impl Recording {
         // Writing to a string cannot fail.
         let _ = write!(self.row, "{:.4}", now as f64 * 1e-6);
         for signal in &self.signals {
-            let _ = write!(
-                self.row,
-                ",{}",
-                decimals(&signal.signal, observe(control, signal))
-            );
+            let value = signal.value(control, plant);
+            let _ = write!(self.row, ",{}", signal.what.decimals(value));
         }
         if self.events.contains([',', '"']) {
             let _ = write!(self.row, ",\"{}\"", self.events.replace('"', "\"\""));
@@ -127,7 +148,7 @@ impl Recording {
 
 /// What is recorded when nothing else is asked for: speed along the path and of the spindle, position and
 /// lag of each axis, the strobe of M functions and its acknowledgement.
-pub(super) fn usual_signals(control: &Control) -> Vec<ChannelSignal> {
+pub(super) fn usual_signals(control: &Control) -> Vec<Observed> {
     let channels = (0..control.channels()).filter_map(|number| control.channel(number));
     let of_channel = |channel: ChannelView| {
         let mut signals = vec![Signal::PathSpeed, Signal::SpindleRpm];
@@ -138,39 +159,23 @@ pub(super) fn usual_signals(control: &Control) -> Vec<ChannelSignal> {
         signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_STROBE));
         signals.push(Signal::Bit(bahn_exchange::signal::M_FUNCTION_ACK));
         let channel = channel.number();
-        signals
-            .into_iter()
-            .map(move |signal| ChannelSignal { channel, signal })
+        signals.into_iter().map(move |signal| Observed {
+            channel,
+            what: Observable::Signal(signal),
+        })
     };
     channels.flat_map(of_channel).collect()
 }
 
-fn observe(control: &Control, signal: &ChannelSignal) -> f64 {
-    let channel = control.channel(signal.channel);
-    channel.map_or(0.0, |channel| channel.observe(&signal.signal))
-}
-
-/// Unit of a signal; rotary axes have degrees.
-pub(super) fn unit(signal: &Signal) -> &'static str {
-    let rotary = matches!(signal, Signal::Axis('A' | 'B' | 'C', _));
-    match signal.unit() {
-        "mm" if rotary => "deg",
-        "mm/min" if rotary => "deg/min",
-        "degrees" => "deg",
-        unit => unit,
+/// The operand of the PLC that a signal is.
+fn operand(signal: &Observed) -> Option<Operand> {
+    if signal.channel > 0 {
+        // The scan knows the memory of the PLC, not what stands where in the window of a channel.
+        return None;
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_have_the_decimals_of_their_signal() {
-        let text = |signal: &str, number: f64| decimals(&signal.parse().unwrap(), number).to_string();
-        assert_eq!(text("X.lag", -0.000001), "0.00000");
-        assert_eq!(text("X.volts", 9.12345), "9.1235");
-        assert_eq!(text("M2045", 1.0), "1");
-        assert_eq!(unit(&"C.speed".parse().unwrap()), "deg/min");
+    match &signal.what {
+        Observable::Signal(Signal::Bit(bit)) => Some(Operand::Bit(*bit)),
+        Observable::Signal(Signal::Number(number)) => Some(Operand::Number(*number)),
+        _ => None,
     }
 }

@@ -2,8 +2,7 @@
 
 use bahn_control::{ChannelView, Command, Message, RunState, Shown};
 use bahn_host::{
-    Action, Answer, Deed, Expectation, Host, HostError, Line, Next, Notice, Phase, Play, Reader, Source,
-    Stamped, run_name,
+    Answer, Deed, Host, HostError, Next, Notice, Phase, Play, Reader, Source, Stamped, run_name,
 };
 use bahn_machine::Event;
 use bahn_path::{BlockRef, PathElement};
@@ -112,7 +111,8 @@ impl Session {
                 self.host.remark(&Source::Script, "end")?;
                 return Ok(ended);
             }
-            let stored = self.host.cycle();
+            let tracer = self.recording.as_mut().and_then(Recording::tracer);
+            let stored = self.host.cycle_traced(tracer);
             self.watch()?;
             if let Some(list) = self.host.restart() {
                 return Ok(Ended::Restart(list.to_owned()));
@@ -149,15 +149,10 @@ impl Session {
 
     /// Everything that is due, in the order of time and of the file.
     fn follow_script(&mut self) -> Result<(), UsageError> {
-        let now = self.host.control().time_us();
-        loop {
-            let (control, plant) = (self.host.control(), self.host.plant());
-            let holds = |condition: &Expectation| condition.check(control, plant).is_none();
-            let Some(line) = self.play.due(now, holds) else {
-                return Ok(());
-            };
-            self.execute(line)?;
+        if self.play.follow(&mut self.host)? {
+            self.ended = Some(self.ended_by_script());
         }
+        Ok(())
     }
 
     /// What `end` of the script makes of the run: a flashing message that it did not expect breaks it off.
@@ -173,29 +168,6 @@ impl Session {
         unexpected.map_or(Ended::Completed, |shown| {
             Ended::Broken(Some(Box::new(shown.clone())))
         })
-    }
-
-    fn execute(&mut self, line: Line) -> Result<(), UsageError> {
-        match line.action {
-            Action::End => self.ended = Some(self.ended_by_script()),
-            Action::Do(deed) => {
-                let text = deed.to_string();
-                if let Answer::Impossible(error) = self.host.act(Source::Script, deed)? {
-                    return Err(UsageError::new(format!("{text}: {error}")));
-                }
-            }
-            Action::Expect(expectation) => {
-                let control = self.host.control();
-                match expectation.check(control, self.host.plant()) {
-                    Some(actual) => {
-                        let time_s = control.time_us() as f64 * 1e-6;
-                        self.play.fail(line.number, actual, time_s);
-                    }
-                    None => self.play.expect(&expectation),
-                }
-            }
-        }
-        Ok(())
     }
 
     /// What the host tells.
@@ -258,7 +230,7 @@ impl Session {
             self.moved_us = control.time_us();
         }
         match &mut self.recording {
-            Some(recording) => recording.cycle(control, self.start_us.is_some()),
+            Some(recording) => recording.cycle(control, self.host.plant(), self.start_us.is_some()),
             None => Ok(()),
         }
     }

@@ -312,6 +312,12 @@ impl Drawing<'_> {
             sheet.lines(self.steps(other, compared, high, low), 1.6, OTHER);
         }
         sheet.lines(self.steps(self.table, trace, high, low), 1.6, LOGIC_COLOUR);
+        // What a scan of the PLC hides.
+        for (time, event) in &self.table.events {
+            if matches!(event, Event::Pulse(name) if *name == trace.name) {
+                sheet.line([self.x(*time), high], [self.x(*time), low], 1.6, LOGIC_COLOUR);
+            }
+        }
     }
 
     fn steps(&self, table: &Table, trace: &Trace, high: f64, low: f64) -> Vec<[f64; 2]> {

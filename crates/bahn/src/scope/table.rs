@@ -32,6 +32,8 @@ pub(super) enum Event {
     Block(u32),
     /// A message came up.
     Message(String),
+    /// An operand had a value within a scan of the PLC that was gone again at its end.
+    Pulse(String),
 }
 
 /// A recording.
@@ -113,7 +115,7 @@ impl Table {
         Ok(())
     }
 
-    /// `start; block 5; message LIMIT SWITCH X+`, in quotes where it holds a comma.
+    /// `start; block 5; M100 pulse; message LIMIT SWITCH X+`, in quotes where it holds a comma.
     fn events(&mut self, time: f64, field: &str) {
         let field = field.trim();
         let field = match field.strip_prefix('"').and_then(|field| field.strip_suffix('"')) {
@@ -128,6 +130,9 @@ impl Table {
                     Err(_) => continue,
                 },
                 Some(("message", text)) => Event::Message(text.to_owned()),
+                Some((operand, rest)) if rest == "pulse" || rest.starts_with("pulse x") => {
+                    Event::Pulse(operand.to_owned())
+                }
                 _ => continue,
             };
             self.events.push((time, event));
@@ -219,11 +224,12 @@ impl Trace {
             None => (head, ""),
         };
         // A channel may stand before it, as in `2:M2045`.
-        let operand = name.split_once(':').map_or(name, |(_, operand)| operand);
-        let digits = operand
-            .strip_prefix(['M', 'I', 'O', 'T', 'C'])
-            .unwrap_or_default();
-        let is_bit = unit.is_empty() && !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
+        let name = name.split_once(':').map_or(name, |(_, of_it)| of_it);
+        let digits = name.strip_prefix(['M', 'I', 'O', 'T', 'C']).unwrap_or_default();
+        // The pins of "control is ready".
+        let is_pin = matches!(name, "X41/34" | "X42/4");
+        let is_bit =
+            is_pin || unit.is_empty() && !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
         Trace {
             name: name.to_owned(),
             unit: unit.to_owned(),
@@ -258,13 +264,14 @@ mod tests {
 
     #[test]
     fn the_last_column_says_what_happened() {
-        let text = "time [s],X.lag [mm],event\n1,0,\n2,0,start; block 1\n3,0,\"message A, \"\"B\"\"\"\n4,0\n";
+        let text = "time [s],X.lag [mm],event\n1,0,\n2,0,start; block 1; M900 pulse x2\n3,0,\"message A, \"\"B\"\"\"\n4,0\n";
         let table = Table::read(text).unwrap();
         assert_eq!(
             table.events,
             [
                 (2.0, Event::Start),
                 (2.0, Event::Block(1)),
+                (2.0, Event::Pulse("M900".into())),
                 (3.0, Event::Message("A, \"B\"".into()))
             ]
         );

@@ -216,6 +216,7 @@ impl Machine {
         tracer: &mut dyn Tracer,
     ) -> Result<ScanReport, RuntimeError> {
         self.begin(exchange, nc)?;
+        tracer.began(exchange.plc());
         let program = Arc::clone(&self.program);
         while !self.cyclic_step(&program, exchange, nc, Some(&mut *tracer))? {}
         self.finish(&program, exchange, nc, Some(tracer))

@@ -9,6 +9,9 @@ use crate::program::{Instruction, Op, PlcProgram};
 
 /// Sees every executed instruction.
 pub trait Tracer {
+    /// A scan has begun: what the NC wrote and the inputs are in the memory.
+    fn began(&mut self, _image: &Image) {}
+
     /// An instruction was executed.
     fn executed(&mut self, step: &TraceStep<'_>);
 }

@@ -14,6 +14,8 @@ use bahn_host::{Content, Operand};
 
 const KEYS: &str = "r run  s stop  c cycle  l line  n anew  enter set  space turn over  a add  d remove  \
      b break at line  x break on change  t trend  q end";
+const MACHINE_KEYS: &str = "r run  s stop  c scan  enter set  space turn over  a add  d remove  x break on change  t trend  \
+     q end     whole scans only: line by line on the bench (bahn plc watch MAIN.PLC)";
 /// Lines of the program that are shown at least, frame included, where there is room.
 const PROGRAM_ROWS: u16 = 9;
 /// Rows of the screen without table and program: head, message, keys.
@@ -35,7 +37,12 @@ pub(super) fn draw(frame: &mut Frame, watch: &Watch) {
     } else {
         0
     };
-    let key_rows = u16::try_from(KEYS.len()).unwrap_or(0) / frame.area().width.max(1) + 1;
+    let machine = watch.subject.state();
+    let (title, own_keys) = match machine.is_empty() {
+        true => ("PLC".to_owned(), KEYS),
+        false => (format!("PLC  {}", printable(&machine)), MACHINE_KEYS),
+    };
+    let key_rows = u16::try_from(own_keys.len()).unwrap_or(0) / frame.area().width.max(1) + 1;
     let parts = Layout::vertical([
         Constraint::Length(3),
         Constraint::Min(3),
@@ -45,12 +52,12 @@ pub(super) fn draw(frame: &mut Frame, watch: &Watch) {
     ]);
     let [head, body, program, message, keys] = parts.areas(frame.area());
     frame.render_widget(
-        Paragraph::new(state(watch)).block(Block::bordered().title("PLC")),
+        Paragraph::new(state(watch)).block(Block::bordered().title(title)),
         head,
     );
 
     let rows = watch.operands.iter().map(|operand| {
-        let content = watch.bench.read(*operand);
+        let content = watch.subject.read(*operand);
         let mut columns = columns(*operand, &content);
         if watch.trend.is_shown() {
             columns[3] = watch.trend.bars(*operand, TREND_WIDTH.into());
@@ -97,21 +104,21 @@ pub(super) fn draw(frame: &mut Frame, watch: &Watch) {
         None => printable(&watch.message),
     };
     frame.render_widget(Paragraph::new(line), message);
-    frame.render_widget(Paragraph::new(KEYS).wrap(Wrap { trim: true }), keys);
+    frame.render_widget(Paragraph::new(own_keys).wrap(Wrap { trim: true }), keys);
 }
 
 fn state(watch: &Watch) -> String {
-    let registers = watch.bench.machine.registers();
-    let how = match (watch.running, watch.bench.is_inside()) {
-        _ if watch.bench.machine.stopped().is_some() => "ERROR",
+    let registers = watch.subject.plc().registers();
+    let how = match (watch.running, watch.subject.is_inside()) {
+        _ if watch.subject.plc().stopped().is_some() => "ERROR",
         (true, _) => "RUN",
         (false, true) => "LINE",
         (false, false) => "STOP",
     };
-    let time = watch.bench.machine.time();
+    let time = watch.subject.plc().time();
     format!(
         "{how:<5}  cycle {}  {:.2} % (max {:.2} %)  LA {}  WA {} = {:X}h  X {}",
-        watch.bench.cycle,
+        watch.subject.cycle(),
         time.current_percent(),
         time.maximum_percent(),
         u8::from(registers.logic),
@@ -124,7 +131,7 @@ fn state(watch: &Watch) -> String {
 /// The lines around the one that was executed last, which is marked with `*` as in TRACE [000:11426]; the
 /// next one of a begun cycle with `>`. Before and between cycles the program is shown from its start.
 fn program_lines(watch: &Watch, rows: usize) -> (String, Vec<Line<'static>>) {
-    let machine = &watch.bench.machine;
+    let machine = watch.subject.plc();
     let program = machine.program();
     let place = |at: usize| program.code.get(at).map(|i| (i.file, i.line as usize));
     let stopped = machine.stopped().and_then(|error| {
@@ -133,7 +140,7 @@ fn program_lines(watch: &Watch, rows: usize) -> (String, Vec<Line<'static>>) {
     });
     let last = stopped.or(watch.last.0.and_then(place));
     let next = watch
-        .bench
+        .subject
         .is_inside()
         .then(|| place(machine.registers().next))
         .flatten();

@@ -6,7 +6,8 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::*;
-use crate::plc::options::BenchOptions;
+use crate::plc::bench::Bench;
+use crate::plc::options::{BenchOptions, MachineOptions, ProgramOptions};
 
 fn watch(program: &str, operands: &str) -> Watch {
     let files = MemoryFiles::from([("MAIN.PLC", program)]);
@@ -28,7 +29,7 @@ fn watch(program: &str, operands: &str) -> Watch {
         .split(',')
         .map(|operand| operand.parse().unwrap())
         .collect();
-    Watch::new(bench, operands, None)
+    Watch::new(Subject::Bench(Box::new(bench)), operands, None)
 }
 
 /// Types characters, with `~` for Enter.
@@ -189,4 +190,44 @@ fn names_trend_and_a_large_program() {
     assert!(lines >= 9, "{lines} lines of the program on 24 rows");
     press(&mut watch, "tccc");
     assert!(shows(&watch, "TREND") && shows(&watch, "\u{2581}\u{2585}\u{2588}"));
+}
+
+/// The table of a machine that runs: scans only, and the control says what it does.
+#[test]
+fn a_running_machine_is_watched() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/mill");
+    let program = ProgramOptions {
+        file: folder,
+        model: ControlModel::default(),
+        parameters: None,
+        strict: false,
+    };
+    let bench = BenchOptions {
+        set: vec!["M900=1".to_owned()],
+        script: None,
+    };
+    let machine = MachineOptions {
+        part: Some("CIRCLE.H".into()),
+    };
+    let subject = Subject::open(&program, &bench, &machine, || Ok(Exchange::default())).unwrap();
+    let operands = ["M900", "I3", "M2451"].map(|name| name.parse().unwrap());
+    let mut watch = Watch::new(subject.unwrap(), operands.to_vec(), None);
+    press(&mut watch, "c");
+    assert!(shows(&watch, "M900     1") && shows(&watch, "STOP   cycle 1 "));
+    assert!(shows(&watch, "PLC  0.5") && shows(&watch, "whole scans only"));
+    // After four seconds, 200 scans of 20 ms, the reference run is on its way.
+    press(&mut watch, "r");
+    for _ in 0..200 {
+        watch.cycle();
+    }
+    assert!(shows(&watch, "RUN    cycle 201 ") && shows(&watch, "reference") && shows(&watch, "I3       1"));
+    // An operand of its own keeps what is set; an input is the machine's.
+    press(&mut watch, "s c");
+    assert!(shows(&watch, "M900     0"));
+    press(&mut watch, "\u{2193} ");
+    assert!(shows(&watch, "is read from the machine") && shows(&watch, "I3       1"));
+    for key in ["l", "b", "n"] {
+        press(&mut watch, key);
+        assert!(shows(&watch, "on a machine there are whole scans"), "{key}");
+    }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use bahn_exchange::{Bit, Exchange, Image, Number, STRINGS, Size};
+use crate::{Bit, Exchange, Image, Number, STRINGS, Size};
 
 /// An operand that can be shown and set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -133,7 +133,32 @@ pub enum Assignment {
     Parameter(String),
 }
 
+impl fmt::Display for Assignment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Assignment::Operand(operand, content) => write!(f, "{operand}={content}"),
+            Assignment::Parameter(text) => write!(f, "MP{text}"),
+        }
+    }
+}
+
 impl Assignment {
+    /// Whether a text is meant as one: `I4=1`, `W6 = 5`, `mp 4110.2=4`.
+    ///
+    /// ```
+    /// use bahn_exchange::Assignment;
+    /// assert!(Assignment::is_meant("W7=1") && Assignment::is_meant("mp 1010 = 5"));
+    /// assert!(!Assignment::is_meant("mdi Q1=5") && !Assignment::is_meant("m 5"));
+    /// ```
+    pub fn is_meant(text: &str) -> bool {
+        let Some((name, _)) = text.split_once('=') else {
+            return false;
+        };
+        let name = name.trim();
+        let is_word = !name.contains(char::is_whitespace);
+        is_word || parameter(name).is_some() || name.parse::<Operand>().is_ok()
+    }
+
     /// Reads one.
     ///
     /// # Errors
@@ -143,14 +168,8 @@ impl Assignment {
             .split_once('=')
             .ok_or_else(|| format!("`{}` is not operand=value", text.trim()))?;
         let name = name.trim();
-        if let Some((prefix, number)) = name.split_at_checked(2)
-            && prefix.eq_ignore_ascii_case("MP")
-        {
-            return Ok(Assignment::Parameter(format!(
-                "{}={}",
-                number.trim(),
-                value.trim()
-            )));
+        if let Some(number) = parameter(name) {
+            return Ok(Assignment::Parameter(format!("{number}={}", value.trim())));
         }
         let operand: Operand = name.parse()?;
         Ok(Assignment::Operand(operand, operand.content(value)?))
@@ -165,8 +184,17 @@ impl Assignment {
     }
 }
 
+/// The number of a machine parameter, behind `MP`.
+fn parameter(name: &str) -> Option<&str> {
+    let (prefix, number) = name.split_at_checked(2)?;
+    let number = number.trim();
+    let is_one =
+        prefix.eq_ignore_ascii_case("MP") && number.starts_with(|first: char| first.is_ascii_digit());
+    is_one.then_some(number)
+}
+
 /// Splits at commas outside texts.
-fn parts(text: &str) -> impl Iterator<Item = &str> {
+pub fn parts(text: &str) -> impl Iterator<Item = &str> {
     let mut quoted = false;
     text.split(move |character| {
         quoted ^= character == '"';

@@ -1,0 +1,209 @@
+//! What can be looked at of a machine that is switched on: signals of the control, and what only the plant knows.
+
+use std::fmt;
+use std::str::FromStr;
+
+use bahn_control::{AxisSignal, ChannelView, Control, Signal, SignalError, split_channel};
+use bahn_machine::Machine;
+
+/// What only the plant knows of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Truth {
+    /// `table`: where its table stands, mm or degrees from the zero point of the plant.
+    Table,
+    /// `force`: force of its motor, N or Nm.
+    Force,
+}
+
+const TRUTHS: [(&str, Truth); 2] = [("table", Truth::Table), ("force", Truth::Force)];
+
+/// Something with a value in every cycle: `X.lag`, `M2045`, `X.table`.
+///
+/// ```
+/// use bahn_host::Observable;
+/// assert_eq!("X.table".parse::<Observable>()?.to_string(), "X.table");
+/// assert_eq!("W260".parse::<Observable>()?.to_string(), "W260");
+/// # Ok::<(), bahn_control::SignalError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Observable {
+    /// What the control knows.
+    Signal(Signal),
+    /// What the plant knows of the axis of a letter.
+    Truth(char, Truth),
+}
+
+impl FromStr for Observable {
+    type Err = SignalError;
+
+    fn from_str(text: &str) -> Result<Observable, SignalError> {
+        let text = text.trim();
+        if let Some((axis, name)) = text.split_once('.')
+            && let Some((_, truth)) = TRUTHS.iter().find(|(known, _)| *known == name)
+            && let Ok(Signal::Axis(letter, _)) = format!("{axis}.actual").parse()
+        {
+            return Ok(Observable::Truth(letter, *truth));
+        }
+        text.parse().map(Observable::Signal)
+    }
+}
+
+impl fmt::Display for Observable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Observable::Signal(signal) => signal.fmt(f),
+            Observable::Truth(letter, truth) => {
+                let name = TRUTHS.iter().find(|(_, of)| of == truth);
+                write!(f, "{letter}.{}", name.map_or("", |(name, _)| name))
+            }
+        }
+    }
+}
+
+impl Observable {
+    /// Its value now, of a channel; an axis that is not there reads 0.
+    pub fn value(&self, channel: ChannelView, plant: &Machine) -> f64 {
+        match self {
+            Observable::Signal(signal) => channel.observe(signal),
+            Observable::Truth(letter, truth) => plant.axis(*letter).map_or(0.0, |axis| match truth {
+                Truth::Table => axis.position,
+                Truth::Force => axis.force,
+            }),
+        }
+    }
+
+    /// The letter of its axis.
+    pub fn axis(&self) -> Option<char> {
+        match self {
+            Observable::Signal(Signal::Axis(letter, _)) | Observable::Truth(letter, _) => Some(*letter),
+            Observable::Signal(_) => None,
+        }
+    }
+
+    /// Unit of its values; empty for numbers without one. Rotary axes have degrees.
+    pub fn unit(&self) -> &'static str {
+        let unit = match self {
+            Observable::Signal(signal) => signal.unit(),
+            Observable::Truth(_, Truth::Table) => "mm",
+            Observable::Truth(_, Truth::Force) => "N",
+        };
+        let rotary = matches!(self.axis(), Some('A' | 'B' | 'C'));
+        match unit {
+            "mm" if rotary => "deg",
+            "mm/min" if rotary => "deg/min",
+            "N" if rotary => "Nm",
+            "degrees" => "deg",
+            unit => unit,
+        }
+    }
+
+    /// A value with as many decimals as it is good for.
+    pub fn decimals(&self, value: f64) -> Decimals {
+        let places = match self {
+            Observable::Truth(_, Truth::Table) => 5,
+            Observable::Truth(_, Truth::Force) => 1,
+            Observable::Signal(signal) => match signal {
+                Signal::Axis(_, AxisSignal::Volts)
+                | Signal::SpindleVolts
+                | Signal::SpindleAngle
+                | Signal::Output(_) => 4,
+                Signal::Axis(_, AxisSignal::Speed | AxisSignal::NominalSpeed)
+                | Signal::PathSpeed
+                | Signal::SpindleRpm => 3,
+                Signal::Axis(..) | Signal::PathDistance => 5,
+                Signal::Q(_) => 6,
+                _ => 0,
+            },
+        };
+        Decimals { value, places }
+    }
+}
+
+/// Something of a channel: `X.actual` and `1:X.actual` of the first one, `2:X.actual` of the second. What only the plant
+/// knows is of no channel.
+///
+/// ```
+/// use bahn_host::Observed;
+/// let second: Observed = "2:X.lag".parse()?;
+/// assert_eq!((second.channel, second.to_string().as_str()), (1, "2:X.lag"));
+/// assert_eq!("1:M2045".parse::<Observed>()?.to_string(), "M2045");
+/// # Ok::<(), bahn_control::SignalError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Observed {
+    /// Which channel, from 0.
+    pub channel: usize,
+    /// What of it; operands of the PLC are those of its window.
+    pub what: Observable,
+}
+
+impl FromStr for Observed {
+    type Err = SignalError;
+
+    fn from_str(text: &str) -> Result<Observed, SignalError> {
+        let (channel, of_it) = split_channel(text);
+        let what = of_it.parse()?;
+        match (channel, what) {
+            // That is no signal of a channel.
+            (Some(_), Observable::Truth(..)) => Err(SignalError::of(text)),
+            (channel, what) => Ok(Observed {
+                channel: channel.unwrap_or(0),
+                what,
+            }),
+        }
+    }
+}
+
+impl fmt::Display for Observed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.channel > 0 {
+            write!(f, "{}:", self.channel + 1)?;
+        }
+        self.what.fmt(f)
+    }
+}
+
+impl Observed {
+    /// Its value now; of a channel or an axis that is not there 0.
+    pub fn value(&self, control: &Control, plant: &Machine) -> f64 {
+        let channel = control.channel(self.channel);
+        channel.map_or(0.0, |channel| self.what.value(channel, plant))
+    }
+}
+
+/// A number with its decimals, never -0.
+#[derive(Clone, Copy, Debug)]
+pub struct Decimals {
+    value: f64,
+    places: usize,
+}
+
+impl fmt::Display for Decimals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let scale = 10f64.powi(i32::try_from(self.places).unwrap_or(0));
+        let rounded = (self.value * scale).round() / scale + 0.0;
+        write!(f, "{rounded:.*}", self.places)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    #[test]
+    fn values_have_the_unit_and_the_decimals_of_what_they_are() {
+        let text = |name: &str, number: f64| {
+            let observable: Observable = name.parse().unwrap();
+            format!("{} {}", observable.decimals(number), observable.unit())
+        };
+        assert_eq!(text("X.lag", -0.000001), "0.00000 mm");
+        assert_eq!(text("X.volts", 9.12345), "9.1235 V");
+        assert_eq!(text("M2045", 1.0), "1 ");
+        assert_eq!(text("C.speed", 5.0), "5.000 deg/min");
+        assert_eq!(text("C.force", 5.0), "5.0 Nm");
+        assert_eq!(text("X.table", 5.0), "5.00000 mm");
+        assert!("Q.table".parse::<Observable>().is_err() && "M.table".parse::<Observable>().is_err());
+        assert!("X.table".parse::<Observed>().is_ok() && "2:X.table".parse::<Observed>().is_err());
+    }
+}
