@@ -7,7 +7,7 @@ use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, BlockRef};
 use bahn_servo::{Measured, OperatorInputs};
 
-use crate::axes::{Axes, path_positions};
+use crate::axes::Axes;
 use crate::axis::AxisUnit;
 use crate::command::{Command, Mode};
 use crate::datums::Datums;
@@ -217,13 +217,7 @@ impl Channel {
     /// Looks at the stylus, and takes the position of the axes when it is deflected; once in each servo step.
     pub fn watch_probe(&mut self, machine: &MachineSide, measured: &Measured) {
         let nc = machine.memory.of(self.number).nc();
-        let guards = nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION)
-            && !self
-                .own_list
-                .as_ref()
-                .unwrap_or(machine.link.list())
-                .probe()
-                .on_standby;
+        let guards = nc.bit(signal::NC_STOP_ON_STYLUS_DEFLECTION) && !self.list(machine).probe().on_standby;
         let axes = || machine.axes.owned(self.number);
         self.desk
             .watch_stylus(measured, guards, &self.run.probe, || axes().all(AxisUnit::stands));
@@ -392,24 +386,10 @@ impl Channel {
 
     /// What modules read of the channel in the next scan.
     pub fn inform(&self, machine: &mut MachineSide) {
-        let (run, chain) = (&self.run, &self.datums.chain);
-        let (axes, link) = (&machine.axes, &mut machine.link);
+        let (axes, link) = (machine.axes.owned(self.number), &mut machine.link);
         let spindle = machine.spindles.of(self.number);
-        let [actual, nominal] = path_positions(axes.owned(self.number), chain);
-        status::coordinates(
-            axes.owned(self.number),
-            |unit| {
-                [
-                    actual[unit.axis],
-                    nominal[unit.axis],
-                    unit.servo.actual_mm(),
-                    unit.servo.lag_mm(),
-                    run.distance_to_go(unit, chain),
-                ]
-            },
-            link,
-        );
-        let executed = run.selection.program.as_deref();
+        status::coordinates(axes, &self.datums.chain, &self.run, link);
+        let executed = self.run.selection.program.as_deref();
         let tested = self.test.as_ref().map(TestRun::program);
         status::items(self.desk.mode(), &self.desk.manual, executed, tested, link);
         link.orienting = spindle.is_orienting();

@@ -129,7 +129,7 @@ fn rests(channel: &Channel) -> bool {
     );
     let stopped = channel.run.progress().state() == RunState::Stopped;
     let at_strobe = channel.handshakes.strobe_is_set() && closed && stands_at_last(channel);
-    !channel.run.is_active() || stopped || at_strobe
+    !channel.run.is_active() || (stopped || at_strobe) && !channel.run.source.is_lent()
 }
 
 /// The path has nothing more to move before what is not read yet.
@@ -138,9 +138,9 @@ fn stands_at_last(channel: &Channel) -> bool {
     path.next_element().is_none() && path.speed_mm_s() == 0.0 && path.rest_mm() == 0.0
 }
 
-/// The channel stands at a strobe, and what follows it is still being read.
+/// What follows is still being read, at the strobe of a function or beside the control.
 fn reads(channels: &PerChannel<Channel>, number: usize) -> bool {
     let channel = channels.of(number);
     let open = channel.run.track.path.stop().is_none();
-    channel.handshakes.strobe_is_set() && open && stands_at_last(channel)
+    channel.run.source.is_lent() || channel.handshakes.strobe_is_set() && open && stands_at_last(channel)
 }

@@ -4,9 +4,10 @@ use bahn_exchange::{Exchange, signal};
 use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Measured;
 
-use crate::axes::OwnAxes;
+use crate::axes::{OwnAxes, path_positions};
 use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
+use crate::kinematics::Chain;
 use crate::manual::Manual;
 use crate::markers::{
     ANALOGUE, AXES, ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING,
@@ -164,13 +165,22 @@ pub(crate) type Coordinates = [f64; 5];
 
 /// The coordinates that modules 9040 and 9041 read in the next scan.
 pub(crate) fn coordinates<'a>(
-    axes: impl Iterator<Item = &'a AxisUnit>,
-    of: impl Fn(&AxisUnit) -> Coordinates,
+    axes: impl Iterator<Item = &'a AxisUnit> + Clone,
+    chain: &Chain,
+    run: &ProgramRun,
     link: &mut PlcLink,
 ) {
+    let [actual, nominal] = path_positions(axes.clone(), chain);
     let mut rows = [[0.0; AXES]; 5];
     for unit in axes {
-        for (row, value) in rows.iter_mut().zip(of(unit)) {
+        let values: Coordinates = [
+            actual[unit.axis],
+            nominal[unit.axis],
+            unit.servo.actual_mm(),
+            unit.servo.lag_mm(),
+            run.distance_to_go(unit, chain),
+        ];
+        for (row, value) in rows.iter_mut().zip(values) {
             if let Some(cell) = row.get_mut(unit.index) {
                 *cell = value;
             }

@@ -390,9 +390,9 @@ impl<P: Operable> Host<P> {
     /// program needs to be read holds no cycle. It is back for every deed, and for what is stored.
     pub fn set_clock(&mut self, clock: Clock) {
         self.clock = clock;
-        self.pace = Pace::of(clock, self.control.time_us());
-        let beside = self.pace.is_some();
+        let beside = matches!(clock, Clock::Wall(_));
         self.background.read_beside(&mut self.control, beside);
+        self.pace = Pace::of(clock, self.control.time_us());
     }
 
     /// The clock begins anew: the machine is at another time.
