@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
+use pulp::Simd;
 use rayon::prelude::*;
 
 use crate::cutters::Mark;
 use crate::grid::Grid;
-use crate::raster::{BAND_ROWS, GROUP};
+use crate::raster::{BAND_ROWS, GROUP, least};
 use crate::track::{Segment, Sink, Start, Track};
 
 /// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
@@ -172,26 +173,22 @@ impl Sink for Cut<'_> {
     }
 
     #[inline(always)]
-    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
+    fn group<S: Simd>(&mut self, simd: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
         let start = (row - self.first_row) * self.width;
         let cells = self
             .cells
             .get_mut(start + columns.start..start + columns.end)
             .unwrap_or_default();
-        // One call for whole groups and the rest, so that it is compiled into the loop.
-        for first in (0..cells.len()).step_by(GROUP) {
-            let heights = heights(first);
-            let cells = cells.get_mut(first..).unwrap_or_default();
-            match cells.first_chunk_mut::<GROUP>() {
-                Some(group) => {
-                    for (cell, height) in group.iter_mut().zip(heights) {
-                        *cell = if height < *cell { height } else { *cell };
-                    }
+        match cells.first_chunk_mut::<GROUP>() {
+            Some(cells) => {
+                let ((cells, _), (heights, _)) = (S::as_mut_simd_f32s(cells), S::as_simd_f32s(&heights));
+                for (cell, height) in cells.iter_mut().zip(heights) {
+                    *cell = simd.min_f32s(*height, *cell);
                 }
-                None => {
-                    for (cell, height) in cells.iter_mut().zip(heights) {
-                        *cell = if height < *cell { height } else { *cell };
-                    }
+            }
+            None => {
+                for (cell, height) in cells.iter_mut().zip(heights) {
+                    *cell = least(height, *cell);
                 }
             }
         }
@@ -232,7 +229,7 @@ impl Sink for Detect<'_> {
         self.each(row, columns, (0..).map(|k| height(k as f32)));
     }
 
-    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
-        self.each(row, columns, (0..).step_by(GROUP).flat_map(heights));
+    fn group<S: Simd>(&mut self, _: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
+        self.each(row, columns, heights.into_iter());
     }
 }
