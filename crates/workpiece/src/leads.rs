@@ -447,12 +447,14 @@ pub(crate) fn half_chord(radius: f32, b: f32) -> f32 {
     positive((radius - b) * (radius + b)).sqrt()
 }
 
-/// Points of the curve of the leads, from the track to its side.
+/// Points of the curve of the leads, from the track to its side. All of them are reckoned side by side.
 struct Curve {
     /// Square of the distance from the track, mm².
     squares: [f32; Curve::POINTS],
     /// Lead as part of the half chord.
     parts: [f32; Curve::POINTS],
+    /// Its change from here to the next point for each mm².
+    rises: [f32; Curve::POINTS],
 }
 
 impl Curve {
@@ -460,12 +462,8 @@ impl Curve {
 
     fn new([flat, corner]: [f32; 2], slope: f32) -> Curve {
         let radius = flat + corner;
-        let mut curve = Curve {
-            squares: [0.0; Curve::POINTS],
-            parts: [0.0; Curve::POINTS],
-        };
-        for (k, (square, part)) in curve.squares.iter_mut().zip(&mut curve.parts).enumerate() {
-            let cos = Curve::cosine(k, slope);
+        let (mut squares, mut parts) = ([0.0; Curve::POINTS], [0.0; Curve::POINTS]);
+        for ((cos, square), part) in Curve::cosines(slope).iter().zip(&mut squares).zip(&mut parts) {
             let tilt = (slope * slope + cos * cos).sqrt();
             let r = flat + corner * slope / tilt;
             *square = r * r * (1.0 - cos) * (1.0 + cos);
@@ -474,45 +472,62 @@ impl Curve {
             let rest = corner * (radius + r) / (tilt * (tilt + slope));
             *part = r / (r * r + rest).sqrt();
         }
-        curve
-    }
-
-    /// Cosine of the angle from the track at the point number `k`, falling from 1 to 0.
-    ///
-    /// On a faint slope the tangent `slope / cos` rises in the last cosines alone. So half of the points go in equal
-    /// steps of the cosine, and the others, from the square root of the slope on, as that of the cotangent falls.
-    fn cosine(k: usize, slope: f32) -> f32 {
-        const HALF: usize = Curve::POINTS / 2;
-        let border = least(slope.sqrt(), 1.0);
-        let share = |k: usize| k as i32 as f32 / HALF as f32;
-        match k.checked_sub(HALF) {
-            None => 1.0 - share(k) * (1.0 - border),
-            Some(k) => border * border * (1.0 - share(k)) / (border + share(k)),
+        let mut rises = [0.0; Curve::POINTS];
+        for k in 1..Curve::POINTS {
+            let run = squares[k] - squares[k - 1];
+            let rise = (parts[k] - parts[k - 1]) / run;
+            rises[k - 1] = if run > 0.0 { rise } else { 0.0 };
+        }
+        Curve {
+            squares,
+            parts,
+            rises,
         }
     }
 
+    /// Cosines of the angles from the track, falling from 1 to 0.
+    ///
+    /// On a faint slope the tangent `slope / cos` rises in the last cosines alone. So half of the points go in equal
+    /// steps of the cosine, and the others, from the square root of the slope on, as that of the cotangent falls.
+    fn cosines(slope: f32) -> [f32; Curve::POINTS] {
+        const HALF: usize = Curve::POINTS / 2;
+        let border = least(slope.sqrt(), 1.0);
+        let mut cosines = [0.0; Curve::POINTS];
+        for k in 0..=HALF {
+            let share = k as i32 as f32 / HALF as f32;
+            cosines[HALF + k] = border * border * (1.0 - share) / (border + share);
+        }
+        for (k, cosine) in cosines.iter_mut().enumerate().take(HALF) {
+            *cosine = 1.0 - k as i32 as f32 / HALF as f32 * (1.0 - border);
+        }
+        cosines
+    }
+
     fn bounds(&self) -> [f32; 2] {
-        let bound = |of: fn(f32, f32) -> f32| self.parts.into_iter().reduce(of).unwrap_or_default();
-        [bound(f32::min), bound(f32::max)]
+        let (mut low, mut high) = ([f32::INFINITY; GROUP], [0.0; GROUP]);
+        for parts in self.parts.chunks(GROUP) {
+            for ((part, low), high) in parts.iter().zip(&mut low).zip(&mut high) {
+                *low = least(*part, *low);
+                *high = if *part > *high { *part } else { *high };
+            }
+        }
+        [
+            low.into_iter().fold(f32::INFINITY, least),
+            high.into_iter().fold(0.0, f32::max),
+        ]
     }
 
     /// The parts at places from the track on.
     fn fill(&self, step: f32, parts: &mut [f32]) {
-        let (mut next, mut rise) = (0, 0.0);
+        let mut next = 0;
         for (k, part) in parts.iter_mut().enumerate() {
             let b = k as i32 as f32 * step;
             let square = b * b;
             while self.squares.get(next).is_some_and(|end| *end <= square) {
                 next += 1;
-                rise = match (self.squares.get(next - 1..), self.parts.get(next - 1..)) {
-                    (Some([from, to, ..]), Some([first, last, ..])) if to > from => {
-                        (last - first) / (to - from)
-                    }
-                    _ => 0.0,
-                };
             }
             let last = next.saturating_sub(1);
-            *part = self.parts[last] + rise * (square - self.squares[last]);
+            *part = self.parts[last] + self.rises[last] * (square - self.squares[last]);
         }
     }
 }

@@ -38,11 +38,21 @@ struct Torus<'a> {
 
 /// Groups on the way to their heights, in steps: a step at a time for many of them keeps more of them going than all steps
 /// at a time, since the processor looks only so many instructions ahead.
-struct List {
+pub(crate) struct List {
     /// Row, and first column from the base.
     places: [(u32, i32); LISTED],
     lifts: [[f32; GROUP]; LISTED],
     squares: [[f32; GROUP]; LISTED],
+}
+
+impl Default for List {
+    fn default() -> List {
+        List {
+            places: [(0, 0); LISTED],
+            lifts: [[0.0; GROUP]; LISTED],
+            squares: [[0.0; GROUP]; LISTED],
+        }
+    }
 }
 
 impl Track {
@@ -76,18 +86,14 @@ impl Track {
         before: Option<&Track>,
         grid: &Grid,
         rows: Range<usize>,
+        list: &mut List,
         sink: &mut impl Sink,
     ) {
         let (wanted, all) = self.wanted(before, grid, &rows);
         let torus = Torus::new(self, &all, grid, rows.start);
-        let mut list = List {
-            places: [(0, 0); LISTED],
-            lifts: [[0.0; GROUP]; LISTED],
-            squares: [[0.0; GROUP]; LISTED],
-        };
         let Some(middle) = torus.middle(&all, rows.len()) else {
             for part in &wanted {
-                torus.sweep_ends(simd, part, &rows, &mut list, sink);
+                torus.sweep_ends(simd, part, &rows, list, sink);
             }
             return;
         };
@@ -97,7 +103,7 @@ impl Track {
             middle.cut_to_groups();
             torus.sweep_middle(simd, &middle, &rows, sink);
             for ends in part.without(&middle, &all) {
-                torus.sweep_ends(simd, &ends, &rows, &mut list, sink);
+                torus.sweep_ends(simd, &ends, &rows, list, sink);
             }
         }
     }
@@ -197,23 +203,27 @@ impl Torus<'_> {
                     k += 1;
                 }
             }
-            for n in 0..listed {
-                let (k, start) = list.places[n];
-                let k = k as usize & (BAND_ROWS - 1);
+            let listed = list.places.get(..listed).unwrap_or_default();
+            for ((place, lifts), squares) in listed.iter().zip(&mut list.lifts).zip(&mut list.squares) {
+                let (k, start) = (place.0 as usize & (BAND_ROWS - 1), place.1);
                 let place = [
                     self.along[k] + start as f32 * self.da,
                     self.across[k] + start as f32 * self.db,
                 ];
                 let near = leads.near(k, start, place[1]);
-                self.nearest(simd, place, &near, &mut list.lifts[n], &mut list.squares[n]);
+                self.nearest(simd, place, &near, lifts, squares);
             }
-            for n in 0..listed {
-                let (k, start) = list.places[n];
-                let k = k as usize & (BAND_ROWS - 1);
+            let profile = [self.flat, self.corner];
+            for ((place, lifts), squares) in listed.iter().zip(&list.lifts).zip(&list.squares) {
+                let (k, start) = (place.0 as usize & (BAND_ROWS - 1), place.1);
                 let first = (part.base + i64::from(start)) as usize;
                 let columns = first..first + (part.end[k] - start).min(GROUP as i32) as usize;
-                let heights = self.heights(simd, &list.lifts[n], &list.squares[n]);
-                sink.group(simd, rows.start + k, columns, heights);
+                sink.group(
+                    simd,
+                    rows.start + k,
+                    columns,
+                    heights(simd, profile, lifts, squares),
+                );
             }
         }
     }
@@ -247,27 +257,6 @@ impl Torus<'_> {
             *lift = simd.add_f32s(low, simd.mul_f32s(slope, s));
             *square = simd.add_f32s(b_square, simd.mul_f32s(e, e));
         }
-    }
-
-    /// The heights there.
-    #[inline(always)]
-    fn heights<S: Simd>(&self, simd: S, lifts: &[f32; GROUP], squares: &[f32; GROUP]) -> [f32; GROUP] {
-        let (zero, flat, corner) = (
-            simd.splat_f32s(0.0),
-            simd.splat_f32s(self.flat),
-            simd.splat_f32s(self.corner),
-        );
-        let corner_square = simd.splat_f32s(self.corner * self.corner);
-        let mut heights = [0.0; GROUP];
-        let ((lifts, _), (squares, _)) = (S::as_simd_f32s(lifts), S::as_simd_f32s(squares));
-        let (found, _) = S::as_mut_simd_f32s(&mut heights);
-        for ((lift, square), height) in lifts.iter().zip(squares).zip(found) {
-            let rise = simd.max_f32s(simd.sub_f32s(simd.sqrt_f32s(*square), flat), zero);
-            let rest = simd.max_f32s(simd.sub_f32s(corner_square, simd.mul_f32s(rise, rise)), zero);
-            let up = simd.sub_f32s(corner, simd.sqrt_f32s(rest));
-            *height = simd.max_f32s(simd.add_f32s(*lift, up), zero);
-        }
-        heights
     }
 
     /// The columns that are touched surely between the ends of the track: there the height is that of
@@ -331,4 +320,30 @@ impl Torus<'_> {
             }
         }
     }
+}
+
+/// The heights of columns that are touched by a profile, flat and then round, at some distances from its axis.
+#[inline(always)]
+fn heights<S: Simd>(
+    simd: S,
+    [flat, corner]: [f32; 2],
+    lifts: &[f32; GROUP],
+    squares: &[f32; GROUP],
+) -> [f32; GROUP] {
+    let corner_square = simd.splat_f32s(corner * corner);
+    let (zero, flat, corner) = (
+        simd.splat_f32s(0.0),
+        simd.splat_f32s(flat),
+        simd.splat_f32s(corner),
+    );
+    let mut heights = [0.0; GROUP];
+    let ((lifts, _), (squares, _)) = (S::as_simd_f32s(lifts), S::as_simd_f32s(squares));
+    let (found, _) = S::as_mut_simd_f32s(&mut heights);
+    for ((lift, square), height) in lifts.iter().zip(squares).zip(found) {
+        let rise = simd.max_f32s(simd.sub_f32s(simd.sqrt_f32s(*square), flat), zero);
+        let rest = simd.max_f32s(simd.sub_f32s(corner_square, simd.mul_f32s(rise, rise)), zero);
+        let up = simd.sub_f32s(corner, simd.sqrt_f32s(rest));
+        *height = simd.max_f32s(simd.add_f32s(*lift, up), zero);
+    }
+    heights
 }

@@ -9,6 +9,7 @@ use pulp::{Arch, Scalar256b, Simd, WithSimd};
 
 use crate::grid::Grid;
 use crate::raster::{Row, least, positive};
+use crate::round::List;
 use crate::tool::Bottom;
 use crate::track::{End, Sink, Track};
 
@@ -22,6 +23,7 @@ struct Round<'a, S> {
     before: Option<&'a Track>,
     grid: &'a Grid,
     rows: Range<usize>,
+    list: &'a mut List,
     sink: &'a mut S,
 }
 
@@ -36,7 +38,7 @@ impl<S: Sink> WithSimd for Round<'_, S> {
                 .sweep_ball(self.before, self.grid, self.rows, self.sink),
             _ => self
                 .track
-                .sweep_torus(simd, self.before, self.grid, self.rows, self.sink),
+                .sweep_torus(simd, self.before, self.grid, self.rows, self.list, self.sink),
         }
     }
 }
@@ -44,7 +46,14 @@ impl<S: Sink> WithSimd for Round<'_, S> {
 impl Track {
     /// Presents all columns under the tool in the given rows, at most [`BAND_ROWS`](crate::raster::BAND_ROWS) of them. Where the track
     /// shares an end with the one before it, that is wanted too.
-    pub fn sweep(&self, before: Option<&Track>, grid: &Grid, rows: Range<usize>, sink: &mut impl Sink) {
+    pub fn sweep(
+        &self,
+        before: Option<&Track>,
+        grid: &Grid,
+        rows: Range<usize>,
+        list: &mut List,
+        sink: &mut impl Sink,
+    ) {
         if rows.is_empty() {
             return;
         }
@@ -56,6 +65,7 @@ impl Track {
                     before,
                     grid,
                     rows,
+                    list,
                     sink,
                 };
                 match Arch::new() {
@@ -194,12 +204,13 @@ mod tests {
                     };
                     let track = Track::new(&segment, &GRID);
                     let [mut here, mut plain] = [0, 1].map(|_| Lowest(vec![20.0; GRID.nx * GRID.ny]));
-                    track.sweep(None, &GRID, 0..GRID.ny, &mut here);
+                    track.sweep(None, &GRID, 0..GRID.ny, &mut List::default(), &mut here);
                     let round = Round {
                         track: &track,
                         before: None,
                         grid: &GRID,
                         rows: 0..GRID.ny,
+                        list: &mut List::default(),
                         sink: &mut plain,
                     };
                     round.with_simd(pulp::Scalar);
