@@ -17,10 +17,6 @@ const TURN: usize = 4;
 
 /// A tool with a corner radius on a track, in the precision of the map, as the inner loops need it.
 struct Torus<'a> {
-    /// Centre of the first column of the base, and of the first row, from the lower end.
-    first: [f32; 2],
-    step: [f32; 2],
-    u: [f32; 2],
     length: f32,
     slope: f32,
     low: f32,
@@ -31,7 +27,7 @@ struct Torus<'a> {
     /// From column to column, along and across the track.
     da: f32,
     db: f32,
-    /// Places of the first columns of the rows.
+    /// Places of the first column of the base in each row.
     along: [f32; BAND_ROWS],
     across: [f32; BAND_ROWS],
 }
@@ -113,12 +109,6 @@ impl Torus<'_> {
     #[inline(always)]
     fn new<'a>(track: &'a Track, all: &Borders, grid: &Grid, first_row: usize) -> Torus<'a> {
         let mut torus = Torus {
-            first: [
-                ((all.base as f64 + 0.5) * grid.dx - track.low[0]) as f32,
-                ((first_row as f64 + 0.5) * grid.dy - track.low[1]) as f32,
-            ],
-            step: [grid.dx as f32, grid.dy as f32],
-            u: track.u.map(|u| u as f32),
             length: track.length as f32,
             slope: track.slope as f32,
             low: track.low[2] as f32,
@@ -131,8 +121,13 @@ impl Torus<'_> {
             along: [0.0; BAND_ROWS],
             across: [0.0; BAND_ROWS],
         };
-        for k in 0..BAND_ROWS {
-            [torus.along[k], torus.across[k]] = torus.place(k, 0);
+        let [ux, uy] = track.u;
+        let x = (all.base as f64 + 0.5) * grid.dx - track.low[0];
+        let first_y = (first_row as f64 + 0.5) * grid.dy - track.low[1];
+        for (k, (along, across)) in torus.along.iter_mut().zip(&mut torus.across).enumerate() {
+            let y = first_y + k as i32 as f64 * grid.dy;
+            *along = (x * ux + y * uy) as f32;
+            *across = (x * uy - y * ux) as f32;
         }
         torus
     }
@@ -140,9 +135,11 @@ impl Torus<'_> {
     /// Place along and across the track of a column of the row number `k`.
     #[inline(always)]
     fn place(&self, k: usize, column: i32) -> [f32; 2] {
-        let x = self.first[0] + column as f32 * self.step[0];
-        let y = self.first[1] + k as i32 as f32 * self.step[1];
-        [x * self.u[0] + y * self.u[1], x * self.u[1] - y * self.u[0]]
+        let k = k & (BAND_ROWS - 1);
+        [
+            self.along[k] + column as f32 * self.da,
+            self.across[k] + column as f32 * self.db,
+        ]
     }
 
     /// Columns that may be touched anywhere on the track.
@@ -206,10 +203,7 @@ impl Torus<'_> {
             let listed = list.places.get(..listed).unwrap_or_default();
             for ((place, lifts), squares) in listed.iter().zip(&mut list.lifts).zip(&mut list.squares) {
                 let (k, start) = (place.0 as usize & (BAND_ROWS - 1), place.1);
-                let place = [
-                    self.along[k] + start as f32 * self.da,
-                    self.across[k] + start as f32 * self.db,
-                ];
+                let place = self.place(k, start);
                 let near = leads.near(k, start, place[1]);
                 self.nearest(simd, place, &near, lifts, squares);
             }
@@ -264,18 +258,17 @@ impl Torus<'_> {
     #[inline(always)]
     fn middle(&self, all: &Borders, rows: usize) -> Option<Borders> {
         let leads = self.leads.filter(|leads| leads.is_long)?;
-        let beside = if self.u[1] == 0.0 {
+        let beside = if self.db == 0.0 {
             self.flat + self.corner
         } else {
             leads.beside()?
         };
-        let [da, db] = self.u.map(|u| u * self.step[0]);
         let mut middle = all.nothing();
         for k in 0..rows.min(BAND_ROWS) {
             let (start, end) = (all.start[k], all.end[k]);
             let [a, b] = self.place(k, start);
-            let along = between(a, da, leads.longest()..self.length);
-            let across = between(b, db, -beside..beside);
+            let along = between(a, self.da, leads.longest()..self.length);
+            let across = between(b, self.db, -beside..beside);
             let columns = (end - start).max(0) as f32;
             let first = along[0].max(across[0]).clamp(0.0, columns);
             middle.start[k] = start + first as i32;
@@ -287,7 +280,6 @@ impl Torus<'_> {
     #[inline(always)]
     fn sweep_middle<S: Simd>(&self, simd: S, middle: &Borders, rows: &Range<usize>, sink: &mut impl Sink) {
         let Some(leads) = self.leads else { return };
-        let da = self.u[0] * self.step[0];
         for (k, row) in rows.clone().enumerate() {
             let (start, end) = (middle.start[k], middle.end[k]);
             if start >= end {
@@ -298,20 +290,20 @@ impl Torus<'_> {
             let group = |n: usize, shares: [f32; GROUP]| {
                 let mut heights = [0.0; GROUP];
                 for (m, height) in heights.iter_mut().enumerate() {
-                    let a = a + (n + m) as i32 as f32 * da;
+                    let a = a + (n + m) as i32 as f32 * self.da;
                     *height = positive(self.low + self.slope * a + shares[m]);
                 }
                 let first = columns.start + n;
                 (first..first + GROUP, heights)
             };
-            if self.u[1] == 0.0 {
+            if self.db == 0.0 {
                 let share = leads.height_at(b);
                 for n in (0..columns.len()).step_by(GROUP) {
                     let (columns, heights) = group(n, [share; GROUP]);
                     sink.group(simd, row, columns, heights);
                 }
             } else {
-                let near = leads.heights_of(b, self.u[1]);
+                let near = leads.heights_of(b, self.db);
                 let weights = near.weights();
                 for n in (0..columns.len()).step_by(GROUP) {
                     let (columns, heights) = group(n, near.curved(n, &weights));
