@@ -32,7 +32,7 @@ fn main() {
     } else {
         (1, 0.01)
     };
-    print!("{:24}{:>12}", "CPU time against", "flat end");
+    print!("{:28}{:>12}", "CPU time against", "flat end");
     for corner in &CORNERS[1..] {
         print!(
             "{:>10}",
@@ -60,7 +60,7 @@ fn main() {
             }
         }
         let [flat, rest @ ..] = fastest.map(|time| time.as_secs_f64());
-        print!("{name:24}{:>9.1} ms", 1e3 * flat);
+        print!("{name:28}{:>9.1} ms", 1e3 * flat);
         for time in rest {
             print!("{:>10.2}", time / flat);
         }
@@ -101,11 +101,22 @@ fn paths() -> Vec<(&'static str, Vec<PathElement>)> {
         ("waves, oblique, 5 mm", lines(5.0, 60.0, wave)),
         ("ramps, 100 mm", lines(100.0, 0.0, ramp)),
         ("ramps, oblique, 100 mm", lines(100.0, 30.0, ramp)),
+        ("to 76 degrees, 1 mm", lines(1.0, 0.0, steep)),
+        ("to 76 deg., oblique, 1 mm", lines(1.0, 30.0, steep)),
+        ("70 deg., oblique, 10 mm", lines(10.0, 30.0, teeth)),
+        ("to 0.7 degrees, 1 mm", lines(1.0, 0.0, |u, v| 0.04 * wave(u, v))),
         (
-            "steep, oblique, 1 mm",
-            lines(1.0, 30.0, |u, v| 10.0 * wave(u, v) / 4.0 - 12.0),
+            "to 0.7 deg., oblique, 1 mm",
+            lines(1.0, 30.0, |u, v| 0.04 * wave(u, v)),
         ),
-        ("faint, oblique, 1 mm", lines(1.0, 30.0, |u, v| 0.02 * wave(u, v))),
+        (
+            "0.1 deg., oblique, 5 mm",
+            lines(5.0, 60.0, |u, _| -3.0 - 0.0017 * u),
+        ),
+        (
+            "1 deg., oblique, 100 mm",
+            lines(100.0, 30.0, |u, _| -3.0 - 0.0175 * u),
+        ),
         ("helices", helices()),
         ("random walk, 1 mm", random_walk()),
     ]
@@ -117,6 +128,17 @@ fn wave(u: f64, v: f64) -> f64 {
 
 fn ramp(u: f64, v: f64) -> f64 {
     -12.0 - 0.2 * u - 0.05 * v
+}
+
+/// Slopes up to 4, 76 degrees.
+fn steep(u: f64, v: f64) -> f64 {
+    -25.0 - 10.0 * (0.4 * u).sin() - (0.2 * v).cos()
+}
+
+/// Up and down in moves of 10 mm, at 70 degrees.
+fn teeth(u: f64, _: f64) -> f64 {
+    let is_up = (u / 10.0).rem_euclid(2.0) < 1.0;
+    -2.5 - if is_up { 0.0 } else { 27.5 }
 }
 
 fn at([x, y, z]: [f64; 3]) -> Position {

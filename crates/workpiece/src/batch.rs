@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use pulp::Simd;
 use rayon::prelude::*;
 
 use crate::cutters::Mark;
 use crate::grid::Grid;
-use crate::raster::{BAND_ROWS, GROUP};
+use crate::raster::{BAND_ROWS, GROUP, least};
+use crate::round::List;
 use crate::track::{Segment, Sink, Start, Track};
 
 /// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
@@ -78,7 +80,7 @@ impl Batch {
             .flat_map_iter(|(band, ((cells, todo), mut marked))| {
                 let first = band * BAND_ROWS;
                 let rows = first..(first + BAND_ROWS).min(grid.ny);
-                let mut hits = Vec::new();
+                let (mut hits, mut list) = (Vec::new(), List::default());
                 for index in todo.drain(..) {
                     let at = index as usize;
                     let (Some(segment), Some(rapid), Some(track)) =
@@ -101,14 +103,14 @@ impl Batch {
                             first_row: first,
                             mark: *mark,
                         };
-                        track.sweep(before, grid, rows.clone(), &mut sink);
+                        track.sweep(before, grid, rows.clone(), &mut list, &mut sink);
                     }
                     let mut cut = Cut {
                         cells: &mut *cells,
                         width: grid.nx,
                         first_row: first,
                     };
-                    track.sweep(before, grid, rows, &mut cut);
+                    track.sweep(before, grid, rows, &mut list, &mut cut);
                 }
                 hits
             })
@@ -134,7 +136,7 @@ fn is_rapid_cut(segment: &Segment, grid: &Grid, rows: Range<usize>, cells: &[f32
         ..*segment
     };
     let rows = thinner.rows_in(grid, &rows);
-    Track::new(&thinner, grid).sweep(None, grid, rows, &mut detect);
+    Track::new(&thinner, grid).sweep(None, grid, rows, &mut List::default(), &mut detect);
     detect.found
 }
 
@@ -172,26 +174,19 @@ impl Sink for Cut<'_> {
     }
 
     #[inline(always)]
-    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
-        let start = (row - self.first_row) * self.width;
-        let cells = self
-            .cells
-            .get_mut(start + columns.start..start + columns.end)
-            .unwrap_or_default();
-        // One call for whole groups and the rest, so that it is compiled into the loop.
-        for first in (0..cells.len()).step_by(GROUP) {
-            let heights = heights(first);
-            let cells = cells.get_mut(first..).unwrap_or_default();
-            match cells.first_chunk_mut::<GROUP>() {
-                Some(group) => {
-                    for (cell, height) in group.iter_mut().zip(heights) {
-                        *cell = if height < *cell { height } else { *cell };
-                    }
+    fn group<S: Simd>(&mut self, simd: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
+        let start = (row - self.first_row) * self.width + columns.start;
+        let cells = self.cells.get_mut(start..).unwrap_or_default();
+        match cells.first_chunk_mut::<GROUP>() {
+            Some(cells) if columns.len() == GROUP => {
+                let ((cells, _), (heights, _)) = (S::as_mut_simd_f32s(cells), S::as_simd_f32s(&heights));
+                for (cell, height) in cells.iter_mut().zip(heights) {
+                    *cell = simd.min_f32s(*height, *cell);
                 }
-                None => {
-                    for (cell, height) in cells.iter_mut().zip(heights) {
-                        *cell = if height < *cell { height } else { *cell };
-                    }
+            }
+            _ => {
+                for (cell, height) in cells.iter_mut().zip(heights).take(columns.len()) {
+                    *cell = least(height, *cell);
                 }
             }
         }
@@ -232,7 +227,7 @@ impl Sink for Detect<'_> {
         self.each(row, columns, (0..).map(|k| height(k as f32)));
     }
 
-    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
-        self.each(row, columns, (0..).step_by(GROUP).flat_map(heights));
+    fn group<S: Simd>(&mut self, _: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
+        self.each(row, columns, heights.into_iter());
     }
 }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use pulp::Simd;
+
 use crate::raster::GROUP;
 use crate::track::Sink;
 
@@ -130,8 +132,8 @@ impl Sink for Mark<'_> {
         self.each(row, columns, (0..).map(|k| height(k as f32)));
     }
 
-    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]) {
-        self.each(row, columns, (0..).step_by(GROUP).flat_map(heights));
+    fn group<S: Simd>(&mut self, _: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
+        self.each(row, columns, heights.into_iter());
     }
 }
 

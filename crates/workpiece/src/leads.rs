@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use crate::raster::{GROUP, Row, least, positive};
+use pulp::Simd;
+
+use crate::raster::{BAND_ROWS, GROUP, least, nearest, positive};
 
 /// Curves flatter than this part of the radius are taken for this flat: the tool is lower by less than the
 /// precision of the map.
@@ -45,8 +47,8 @@ pub(crate) struct Leads {
 /// How far apart the columns of a row lie across the track.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Spacing {
-    /// So little that parts lie on a straight line over so many columns.
-    Fine(usize),
+    /// So little that parts lie on a straight line over a group of columns.
+    Fine,
     /// As the places.
     Equal,
     /// So many places.
@@ -60,14 +62,10 @@ impl Spacing {
     /// Steps at which a straight line is no worse than the places are.
     const STRAIGHT: f32 = 1.0 / 64.0;
 
-    /// More groups of columns than a row has.
-    const MOST_GROUPS: usize = 1 << 24;
-
     /// By the step from column to column as part of the radius.
     fn of(step: f32) -> Spacing {
         if step < Spacing::EQUAL.start {
-            let groups = (Spacing::STRAIGHT / (step * GROUP as f32)) as usize;
-            Spacing::Fine(GROUP * groups.clamp(1, Spacing::MOST_GROUPS))
+            Spacing::Fine
         } else if step < Spacing::EQUAL.end {
             Spacing::Equal
         } else {
@@ -76,39 +74,181 @@ impl Spacing {
     }
 }
 
+/// How far ahead of its axis the tool touches the columns of a group.
+pub(crate) trait Ahead {
+    type Near: Near;
+    /// For the group in the row number `k` that begins with a column, at `b` across the track.
+    fn near(&self, k: usize, column: i32, b: f32) -> Self::Near;
+}
+
+/// The leads of one group.
+pub(crate) trait Near {
+    /// Of the columns in the register number `n`, from their places across the track beyond the first column and the
+    /// squares of their half chords.
+    fn lead<S: Simd>(&self, simd: S, n: usize, across: S::f32s, square: S::f32s) -> S::f32s;
+}
+
+#[inline(always)]
+fn lead_of_parts<S: Simd>(simd: S, parts: S::f32s, square: S::f32s) -> S::f32s {
+    let half_chord = simd.sqrt_f32s(simd.max_f32s(square, simd.splat_f32s(0.0)));
+    simd.mul_f32s(parts, half_chord)
+}
+
+/// The values of the register number `n` from `first` on.
+#[inline(always)]
+fn register<S: Simd>(simd: S, values: &[f32], first: usize, n: usize) -> S::f32s {
+    let (registers, _) = S::as_simd_f32s(values.get(first..).unwrap_or_default());
+    registers.get(n).copied().unwrap_or_else(|| simd.splat_f32s(0.0))
+}
+
+/// A level track has none.
+pub(crate) struct Level;
+
+impl Ahead for Level {
+    type Near = Level;
+    #[inline(always)]
+    fn near(&self, _: usize, _: i32, _: f32) -> Level {
+        Level
+    }
+}
+
+impl Near for Level {
+    #[inline(always)]
+    fn lead<S: Simd>(&self, simd: S, _: usize, _: S::f32s, _: S::f32s) -> S::f32s {
+        simd.splat_f32s(0.0)
+    }
+}
+
+/// See [`Spacing::Fine`].
+pub(crate) struct Fine<'a> {
+    leads: &'a Leads,
+    /// From the first column of a group to that of the next one, and its share of a millimetre; 0 for none.
+    span: f32,
+    per_span: f32,
+}
+
+/// A part and its change for each millimetre.
+pub(crate) struct Line {
+    part: f32,
+    change: f32,
+}
+
+impl Ahead for Fine<'_> {
+    type Near = Line;
+    #[inline(always)]
+    fn near(&self, _: usize, _: i32, b: f32) -> Line {
+        let part = self.leads.part(b);
+        let change = (self.leads.part(b + self.span) - part) * self.per_span;
+        Line { part, change }
+    }
+}
+
+impl Near for Line {
+    #[inline(always)]
+    fn lead<S: Simd>(&self, simd: S, _: usize, across: S::f32s, square: S::f32s) -> S::f32s {
+        let change = simd.mul_f32s(simd.splat_f32s(self.change), across);
+        let parts = simd.add_f32s(simd.splat_f32s(self.part), change);
+        lead_of_parts(simd, parts, square)
+    }
+}
+
+/// Columns of a row all at one place across the track.
+pub(crate) struct Constant {
+    parts: [f32; BAND_ROWS],
+}
+
+impl Ahead for Constant {
+    type Near = f32;
+    #[inline(always)]
+    fn near(&self, k: usize, _: i32, _: f32) -> f32 {
+        self.parts[k & (BAND_ROWS - 1)]
+    }
+}
+
+impl Near for f32 {
+    #[inline(always)]
+    fn lead<S: Simd>(&self, simd: S, _: usize, _: S::f32s, square: S::f32s) -> S::f32s {
+        lead_of_parts(simd, simd.splat_f32s(*self), square)
+    }
+}
+
+/// See [`Spacing::Equal`].
+pub(crate) struct Equal<'a> {
+    parts: &'a [f32],
+    /// The place before the first column of each row, and how far behind a place the columns lie.
+    firsts: [i32; BAND_ROWS],
+    shares: [f32; BAND_ROWS],
+}
+
+/// The places about the columns of a group, and how far behind a place each column lies.
+pub(crate) struct Between<'a> {
+    values: &'a [f32; GROUP + 1],
+    share: f32,
+}
+
+impl<'a> Ahead for Equal<'a> {
+    type Near = Between<'a>;
+    #[inline(always)]
+    fn near(&self, k: usize, column: i32, _: f32) -> Between<'a> {
+        let k = k & (BAND_ROWS - 1);
+        let first = (self.firsts[k] + column) as usize;
+        let values = self.parts.get(first..).and_then(<[f32]>::first_chunk);
+        Between {
+            values: values.unwrap_or(&[0.0; GROUP + 1]),
+            share: self.shares[k],
+        }
+    }
+}
+
+impl Near for Between<'_> {
+    #[inline(always)]
+    fn lead<S: Simd>(&self, simd: S, n: usize, _: S::f32s, square: S::f32s) -> S::f32s {
+        let (near, next) = (
+            register(simd, self.values, 0, n),
+            register(simd, self.values, 1, n),
+        );
+        let change = simd.mul_f32s(simd.sub_f32s(next, near), simd.splat_f32s(self.share));
+        lead_of_parts(simd, simd.add_f32s(near, change), square)
+    }
+}
+
+/// See [`Spacing::Coarse`].
+pub(crate) struct Coarse<'a> {
+    leads: &'a Leads,
+    step: f32,
+    places: usize,
+}
+
+impl Ahead for Coarse<'_> {
+    type Near = [f32; GROUP];
+    #[inline(always)]
+    fn near(&self, _: usize, _: i32, b: f32) -> [f32; GROUP] {
+        let (first, share) = self.leads.start(b, self.step);
+        let mut parts = [0.0; GROUP];
+        for (n, part) in parts.iter_mut().enumerate() {
+            if let Some([near, next, ..]) = self.leads.parts.get(first + n * self.places..) {
+                *part = near + (next - near) * share;
+            }
+        }
+        parts
+    }
+}
+
+impl Near for [f32; GROUP] {
+    #[inline(always)]
+    fn lead<S: Simd>(&self, simd: S, n: usize, _: S::f32s, square: S::f32s) -> S::f32s {
+        lead_of_parts(simd, register(simd, self, 0, n), square)
+    }
+}
+
 /// Values at places for the columns of a row, each between two or four of them.
-pub(crate) struct Near<'a> {
+pub(crate) struct Heights<'a> {
     values: &'a [f32],
     /// How far behind a place each column lies.
     share: f32,
 }
 
-impl Near<'_> {
-    /// Of columns from the number `k` on that lie as far apart as the places.
-    #[inline(always)]
-    pub fn equal(&self, k: usize) -> [f32; GROUP] {
-        let Some(near) = self.values.get(k..k + GROUP + 1) else {
-            return [0.0; GROUP];
-        };
-        let mut found = [0.0; GROUP];
-        for n in 0..GROUP {
-            found[n] = near[n] + (near[n + 1] - near[n]) * self.share;
-        }
-        found
-    }
-
-    /// The same, so many places apart.
-    #[inline(always)]
-    pub fn coarse(&self, k: usize, places: usize) -> [f32; GROUP] {
-        let mut found = [0.0; GROUP];
-        for (n, found) in found.iter_mut().enumerate() {
-            if let Some([near, next, ..]) = self.values.get((k + n) * places..) {
-                *found = near + (next - near) * self.share;
-            }
-        }
-        found
-    }
-
+impl Heights<'_> {
     /// What each of four places counts for a column between the middle ones (Lagrange): in a row all have the same.
     #[inline(always)]
     pub fn weights(&self) -> [f32; 4] {
@@ -154,14 +294,16 @@ pub(crate) fn between(start: f32, step: f32, range: Range<f32>) -> [f32; 2] {
 impl Leads {
     /// Columns beyond either side of the track.
     const BEYOND: usize = 16;
+    /// So many columns between the ends of a track make it worth while to look for them.
+    const LONG: f32 = 64.0;
     /// Columns at either side whose heights between places are not sure: they change too fast there.
     const SIDE: f32 = 6.0;
 
-    pub fn new(bottom: [f32; 2], slope: f32, length: f32, step: f32) -> Leads {
+    pub fn new(bottom: [f32; 2], slope: f32, length: f32, [step, column]: [f32; 2]) -> Leads {
         let radius = bottom[0] + bottom[1];
         let spacing = Spacing::of(step.abs() / radius);
         let (step, places) = match spacing {
-            Spacing::Fine(_) => (Spacing::STRAIGHT * radius, 1),
+            Spacing::Fine => (Spacing::STRAIGHT * radius, 1),
             Spacing::Equal => (step.abs(), 1),
             Spacing::Coarse(places) => (step.abs() / places as f32, places),
         };
@@ -184,7 +326,7 @@ impl Leads {
             most,
             bottom,
             slope,
-            is_long: length > 2.0 * most.max(FLATTEST) * radius,
+            is_long: length - most.max(FLATTEST) * radius > Leads::LONG * column,
         };
         if leads.is_long && spacing == Spacing::Equal {
             let heights = (0..leads.parts.len()).zip(&leads.parts);
@@ -212,40 +354,70 @@ impl Leads {
     /// The place before one across the track, and how far behind it that is.
     #[inline(always)]
     fn place(&self, b: f32) -> (usize, f32) {
-        let place = positive((b - self.first) * self.per_mm);
-        // A cast that needs no care for what does not fit.
-        let first = place as i32;
-        (first as usize, place - first as f32)
+        let place = positive((b - self.first) * self.per_mm - 0.5);
+        let first = nearest(place);
+        (first as usize, place + 0.5 - first as f32)
     }
 
-    /// The place of the first column of a row, seen from the side from which the columns come.
     #[inline(always)]
-    fn start(&self, row: &Row) -> (usize, f32) {
-        let [_, b] = row.place(0.0);
-        self.place(if row.uy < 0.0 { -b } else { b })
+    pub fn fine(&self, step: f32) -> Fine<'_> {
+        let span = step * GROUP as f32;
+        let per_span = if span == 0.0 { 0.0 } else { 1.0 / span };
+        Fine {
+            leads: self,
+            span,
+            per_span,
+        }
     }
 
-    /// The parts near the columns of a row.
+    /// For rows that begin at some places across the track.
     #[inline(always)]
-    pub fn parts_of(&self, row: &Row) -> Near<'_> {
-        let (first, share) = self.start(row);
-        let values = self.parts.get(first..).unwrap_or_default();
-        Near { values, share }
+    pub fn constant(&self, across: &[f32; BAND_ROWS]) -> Constant {
+        let mut parts = [0.0; BAND_ROWS];
+        for (part, b) in parts.iter_mut().zip(across) {
+            *part = self.part(*b);
+        }
+        Constant { parts }
+    }
+
+    #[inline(always)]
+    pub fn equal(&self, across: &[f32; BAND_ROWS], step: f32) -> Equal<'_> {
+        let (mut firsts, mut shares) = ([0; BAND_ROWS], [0.0; BAND_ROWS]);
+        let side = if step < 0.0 { -self.per_mm } else { self.per_mm };
+        let beyond = self.first * self.per_mm + 0.5;
+        for k in 0..BAND_ROWS {
+            let place = across[k] * side - beyond;
+            firsts[k] = nearest(place);
+            shares[k] = place + 0.5 - firsts[k] as f32;
+        }
+        Equal {
+            parts: &self.parts,
+            firsts,
+            shares,
+        }
+    }
+
+    #[inline(always)]
+    pub fn coarse(&self, step: f32, places: usize) -> Coarse<'_> {
+        Coarse {
+            leads: self,
+            step,
+            places,
+        }
+    }
+
+    /// The place of a column, seen from the side from which the columns come.
+    #[inline(always)]
+    fn start(&self, b: f32, step: f32) -> (usize, f32) {
+        self.place(if step < 0.0 { -b } else { b })
     }
 
     /// The heights near the columns of a row: from the place before the first one on.
     #[inline(always)]
-    pub fn heights_of(&self, row: &Row) -> Near<'_> {
-        let (first, share) = self.start(row);
+    pub fn heights_of(&self, b: f32, step: f32) -> Heights<'_> {
+        let (first, share) = self.start(b, step);
         let values = self.heights.get(first.saturating_sub(1)..).unwrap_or_default();
-        Near { values, share }
-    }
-
-    /// The part at the first of some columns of a row, and its change from column to column.
-    #[inline(always)]
-    pub fn line(&self, row: &Row, columns: usize) -> [f32; 2] {
-        let [part, end] = [0.0, columns as i32 as f32].map(|k| self.part(row.place(k)[1]));
-        [part, (end - part) / columns as i32 as f32]
+        Heights { values, share }
     }
 
     #[inline(always)]
@@ -275,12 +447,14 @@ pub(crate) fn half_chord(radius: f32, b: f32) -> f32 {
     positive((radius - b) * (radius + b)).sqrt()
 }
 
-/// Points of the curve of the leads, from the track to its side.
+/// Points of the curve of the leads, from the track to its side. All of them are reckoned side by side.
 struct Curve {
     /// Square of the distance from the track, mm².
     squares: [f32; Curve::POINTS],
     /// Lead as part of the half chord.
     parts: [f32; Curve::POINTS],
+    /// Its change from here to the next point for each mm².
+    rises: [f32; Curve::POINTS],
 }
 
 impl Curve {
@@ -288,12 +462,8 @@ impl Curve {
 
     fn new([flat, corner]: [f32; 2], slope: f32) -> Curve {
         let radius = flat + corner;
-        let mut curve = Curve {
-            squares: [0.0; Curve::POINTS],
-            parts: [0.0; Curve::POINTS],
-        };
-        for (k, (square, part)) in curve.squares.iter_mut().zip(&mut curve.parts).enumerate() {
-            let cos = Curve::cosine(k, slope);
+        let (mut squares, mut parts) = ([0.0; Curve::POINTS], [0.0; Curve::POINTS]);
+        for ((cos, square), part) in Curve::cosines(slope).iter().zip(&mut squares).zip(&mut parts) {
             let tilt = (slope * slope + cos * cos).sqrt();
             let r = flat + corner * slope / tilt;
             *square = r * r * (1.0 - cos) * (1.0 + cos);
@@ -302,45 +472,62 @@ impl Curve {
             let rest = corner * (radius + r) / (tilt * (tilt + slope));
             *part = r / (r * r + rest).sqrt();
         }
-        curve
-    }
-
-    /// Cosine of the angle from the track at the point number `k`, falling from 1 to 0.
-    ///
-    /// On a faint slope the tangent `slope / cos` rises in the last cosines alone. So half of the points go in equal
-    /// steps of the cosine, and the others, from the square root of the slope on, as that of the cotangent falls.
-    fn cosine(k: usize, slope: f32) -> f32 {
-        const HALF: usize = Curve::POINTS / 2;
-        let border = least(slope.sqrt(), 1.0);
-        let share = |k: usize| k as i32 as f32 / HALF as f32;
-        match k.checked_sub(HALF) {
-            None => 1.0 - share(k) * (1.0 - border),
-            Some(k) => border * border * (1.0 - share(k)) / (border + share(k)),
+        let mut rises = [0.0; Curve::POINTS];
+        for k in 1..Curve::POINTS {
+            let run = squares[k] - squares[k - 1];
+            let rise = (parts[k] - parts[k - 1]) / run;
+            rises[k - 1] = if run > 0.0 { rise } else { 0.0 };
+        }
+        Curve {
+            squares,
+            parts,
+            rises,
         }
     }
 
+    /// Cosines of the angles from the track, falling from 1 to 0.
+    ///
+    /// On a faint slope the tangent `slope / cos` rises in the last cosines alone. So half of the points go in equal
+    /// steps of the cosine, and the others, from the square root of the slope on, as that of the cotangent falls.
+    fn cosines(slope: f32) -> [f32; Curve::POINTS] {
+        const HALF: usize = Curve::POINTS / 2;
+        let border = least(slope.sqrt(), 1.0);
+        let mut cosines = [0.0; Curve::POINTS];
+        for k in 0..=HALF {
+            let share = k as i32 as f32 / HALF as f32;
+            cosines[HALF + k] = border * border * (1.0 - share) / (border + share);
+        }
+        for (k, cosine) in cosines.iter_mut().enumerate().take(HALF) {
+            *cosine = 1.0 - k as i32 as f32 / HALF as f32 * (1.0 - border);
+        }
+        cosines
+    }
+
     fn bounds(&self) -> [f32; 2] {
-        let bound = |of: fn(f32, f32) -> f32| self.parts.into_iter().reduce(of).unwrap_or_default();
-        [bound(f32::min), bound(f32::max)]
+        let (mut low, mut high) = ([f32::INFINITY; GROUP], [0.0; GROUP]);
+        for parts in self.parts.chunks(GROUP) {
+            for ((part, low), high) in parts.iter().zip(&mut low).zip(&mut high) {
+                *low = least(*part, *low);
+                *high = if *part > *high { *part } else { *high };
+            }
+        }
+        [
+            low.into_iter().fold(f32::INFINITY, least),
+            high.into_iter().fold(0.0, f32::max),
+        ]
     }
 
     /// The parts at places from the track on.
     fn fill(&self, step: f32, parts: &mut [f32]) {
-        let (mut next, mut rise) = (0, 0.0);
+        let mut next = 0;
         for (k, part) in parts.iter_mut().enumerate() {
             let b = k as i32 as f32 * step;
             let square = b * b;
             while self.squares.get(next).is_some_and(|end| *end <= square) {
                 next += 1;
-                rise = match (self.squares.get(next - 1..), self.parts.get(next - 1..)) {
-                    (Some([from, to, ..]), Some([first, last, ..])) if to > from => {
-                        (last - first) / (to - from)
-                    }
-                    _ => 0.0,
-                };
             }
             let last = next.saturating_sub(1);
-            *part = self.parts[last] + rise * (square - self.squares[last]);
+            *part = self.parts[last] + self.rises[last] * (square - self.squares[last]);
         }
     }
 }

@@ -36,6 +36,7 @@ mod raster;
 mod round;
 mod setup;
 mod stl;
+mod strip;
 mod sweep;
 mod tool;
 mod touch;

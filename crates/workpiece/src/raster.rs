@@ -76,7 +76,7 @@ impl Raster {
 pub(crate) struct Borders {
     pub base: i64,
     /// Columns of the map.
-    pub columns: i64,
+    pub count: i64,
     pub start: [i32; BAND_ROWS],
     pub end: [i32; BAND_ROWS],
 }
@@ -86,7 +86,7 @@ impl Borders {
     pub fn new(base: i64, grid: &Grid) -> Borders {
         Borders {
             base,
-            columns: grid.nx as i64,
+            count: grid.nx as i64,
             start: [0; BAND_ROWS],
             end: [0; BAND_ROWS],
         }
@@ -95,10 +95,16 @@ impl Borders {
     /// The columns in the row number `k`.
     #[inline(always)]
     pub fn row(&self, k: usize) -> Range<usize> {
-        let (Some(start), Some(end)) = (self.start.get(k), self.end.get(k)) else {
-            return 0..0;
-        };
-        let bound = |border: &i32| (self.base + i64::from(*border)).clamp(0, self.columns) as usize;
+        match (self.start.get(k), self.end.get(k)) {
+            (Some(start), Some(end)) => self.columns(*start, *end),
+            _ => 0..0,
+        }
+    }
+
+    /// The columns between two borders.
+    #[inline(always)]
+    pub fn columns(&self, start: i32, end: i32) -> Range<usize> {
+        let bound = |border: i32| (self.base + i64::from(border)).clamp(0, self.count) as usize;
         let start = bound(start);
         start..bound(end).max(start)
     }
@@ -115,11 +121,20 @@ impl Borders {
         }
     }
 
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        let mut is_empty = true;
+        for k in 0..BAND_ROWS {
+            is_empty &= self.start[k] >= self.end[k];
+        }
+        is_empty
+    }
+
     /// Only the columns of the map.
     #[inline(always)]
     pub fn clip_to_map(&mut self) {
         let border = |of: i64| (of - self.base).clamp(-FAR, FAR) as i32;
-        let (first, last) = (border(0), border(self.columns));
+        let (first, last) = (border(0), border(self.count));
         for (start, end) in self.start.iter_mut().zip(&mut self.end) {
             *start = (*start).max(first).min(last);
             *end = (*end).max(*start).min(last);
@@ -132,6 +147,15 @@ impl Borders {
         for k in 0..BAND_ROWS {
             self.start[k] = self.start[k].max(other.start[k] + margin);
             self.end[k] = self.end[k].min(other.end[k] - margin);
+        }
+    }
+
+    /// Only whole groups of columns.
+    #[inline(always)]
+    pub fn cut_to_groups(&mut self) {
+        for k in 0..BAND_ROWS {
+            let length = (self.end[k] - self.start[k]).max(0);
+            self.end[k] = self.start[k] + (length & !(GROUP as i32 - 1));
         }
     }
 

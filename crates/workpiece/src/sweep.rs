@@ -5,10 +5,11 @@
 
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Scalar256b, Simd, WithSimd};
 
 use crate::grid::Grid;
 use crate::raster::{Row, least, positive};
+use crate::round::List;
 use crate::tool::Bottom;
 use crate::track::{End, Sink, Track};
 
@@ -22,6 +23,7 @@ struct Round<'a, S> {
     before: Option<&'a Track>,
     grid: &'a Grid,
     rows: Range<usize>,
+    list: &'a mut List,
     sink: &'a mut S,
 }
 
@@ -29,14 +31,14 @@ impl<S: Sink> WithSimd for Round<'_, S> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<Registers: Simd>(self, _: Registers) {
+    fn with_simd<Registers: Simd>(self, simd: Registers) {
         match self.track.tool.bottom() {
             Bottom::Ball => self
                 .track
                 .sweep_ball(self.before, self.grid, self.rows, self.sink),
             _ => self
                 .track
-                .sweep_torus(self.before, self.grid, self.rows, self.sink),
+                .sweep_torus(simd, self.before, self.grid, self.rows, self.list, self.sink),
         }
     }
 }
@@ -44,19 +46,34 @@ impl<S: Sink> WithSimd for Round<'_, S> {
 impl Track {
     /// Presents all columns under the tool in the given rows, at most [`BAND_ROWS`](crate::raster::BAND_ROWS) of them. Where the track
     /// shares an end with the one before it, that is wanted too.
-    pub fn sweep(&self, before: Option<&Track>, grid: &Grid, rows: Range<usize>, sink: &mut impl Sink) {
+    pub fn sweep(
+        &self,
+        before: Option<&Track>,
+        grid: &Grid,
+        rows: Range<usize>,
+        list: &mut List,
+        sink: &mut impl Sink,
+    ) {
         if rows.is_empty() {
             return;
         }
         match self.tool.bottom() {
             Bottom::Flat => self.sweep_flat(grid, rows, sink),
-            Bottom::Ball | Bottom::Torus => Arch::new().dispatch(Round {
-                track: self,
-                before,
-                grid,
-                rows,
-                sink,
-            }),
+            Bottom::Ball | Bottom::Torus => {
+                let round = Round {
+                    track: self,
+                    before,
+                    grid,
+                    rows,
+                    list,
+                    sink,
+                };
+                match Arch::new() {
+                    // Groups as the other processors have them, which the compiler then parts.
+                    Arch::Scalar => round.with_simd(Scalar256b),
+                    registers => registers.dispatch(round),
+                }
+            }
             Bottom::Cone => self.sweep_cone(grid, rows, sink, self.tool.cone as f32),
         }
     }
@@ -123,5 +140,90 @@ impl Track {
                 positive(row.low + row.slope * s + rise * (b * b + e * e).sqrt())
             }
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tool::Tool;
+    use crate::track::{Segment, Start};
+
+    const GRID: Grid = Grid {
+        nx: 200,
+        ny: 32,
+        dx: 0.1,
+        dy: 0.1,
+    };
+
+    /// The lowest height of every column.
+    struct Lowest(Vec<f32>);
+
+    impl Lowest {
+        fn each(&mut self, row: usize, columns: Range<usize>, heights: impl Iterator<Item = f32>) {
+            let cells = &mut self.0[row * GRID.nx..][columns];
+            for (cell, height) in cells.iter_mut().zip(heights) {
+                *cell = least(height, *cell);
+            }
+        }
+    }
+
+    impl Sink for Lowest {
+        fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
+            self.each(row, columns, std::iter::repeat(height));
+        }
+
+        fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
+            self.each(row, columns, (0..).map(|k| height(k as f32)));
+        }
+
+        fn group<S: Simd>(&mut self, _: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
+            self.each(row, columns, heights.into_iter());
+        }
+    }
+
+    /// Tools with a corner radius, level and on slopes, along the rows and across them, short and long.
+    #[test]
+    fn the_registers_change_no_bit() {
+        let mut cut = 0;
+        for corner in [0.3, 2.0, 4.0] {
+            for degrees in [0.0, 3.0, 40.0, 90.0, 200.0, 357.0] {
+                for (length, slope) in [(0.3, 0.0), (0.3, 0.5), (3.0, 0.01), (12.0, 0.4), (12.0, 3.0)] {
+                    let (sin, cos) = f64::to_radians(degrees).sin_cos();
+                    let end = |s: f64| [10.0 + s * cos, 1.6 + s * sin, 5.0 + s * slope];
+                    let segment = Segment {
+                        from: end(0.0),
+                        to: end(length),
+                        tool: Tool {
+                            radius: 4.0,
+                            corner,
+                            cone: 0.0,
+                        },
+                        start: Start::Uncut,
+                        followed: false,
+                    };
+                    let track = Track::new(&segment, &GRID);
+                    let [mut here, mut plain] = [0, 1].map(|_| Lowest(vec![20.0; GRID.nx * GRID.ny]));
+                    track.sweep(None, &GRID, 0..GRID.ny, &mut List::default(), &mut here);
+                    let round = Round {
+                        track: &track,
+                        before: None,
+                        grid: &GRID,
+                        rows: 0..GRID.ny,
+                        list: &mut List::default(),
+                        sink: &mut plain,
+                    };
+                    round.with_simd(pulp::Scalar);
+                    let bits = |lowest: Lowest| lowest.0.into_iter().map(f32::to_bits).collect::<Vec<_>>();
+                    cut += here.0.iter().filter(|height| **height < 20.0).count();
+                    assert_eq!(
+                        bits(here),
+                        bits(plain),
+                        "corner {corner}, {degrees} degrees, {length} mm, slope {slope}"
+                    );
+                }
+            }
+        }
+        assert!(cut > 100_000, "{cut}");
     }
 }

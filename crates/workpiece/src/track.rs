@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use pulp::Simd;
+
 use crate::grid::Grid;
 use crate::leads::Leads;
 use crate::raster::{BAND_ROWS, Borders, GROUP, Raster, Row, least, positive};
@@ -40,8 +42,8 @@ pub(crate) trait Sink {
     fn level(&mut self, row: usize, columns: Range<usize>, height: f32);
     /// As [`Sink::level`] with a height for each column, by its distance from `columns.start`.
     fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32);
-    /// As [`Sink::shaped`] for [`GROUP`] columns at once from a distance on; what is beyond the last column is not used.
-    fn grouped(&mut self, row: usize, columns: Range<usize>, heights: impl Fn(usize) -> [f32; GROUP]);
+    /// As [`Sink::shaped`] for at most [`GROUP`] columns; what is beyond the last column is not used.
+    fn group<S: Simd>(&mut self, simd: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]);
 }
 
 impl Segment {
@@ -104,6 +106,9 @@ pub(crate) struct Track {
     pub(crate) high_end: End,
     /// Where a corner radius touches the slope.
     pub(crate) leads: Option<Box<Leads>>,
+    /// How far the columns of a group lie along and across the track from the first one. Kept here, so that the inner
+    /// loops load them: values known there are folded column by column, which spoils the groups.
+    pub(crate) lanes: [[f32; GROUP]; 2],
 }
 
 /// Who cuts what is under the tool at an end of a track and nowhere lower on the track.
@@ -149,8 +154,8 @@ impl Track {
         let (low_end, high_end) = if rises { (start, end) } else { (end, start) };
         let leads = (tool.bottom() == Bottom::Torus && slope > 0.0).then(|| {
             let bottom = [tool.flat(), tool.corner].map(|value| value as f32);
-            let step = u[1] * grid.dx;
-            Box::new(Leads::new(bottom, slope as f32, length as f32, step as f32))
+            let columns = [u[1] * grid.dx, grid.dx].map(|value| value as f32);
+            Box::new(Leads::new(bottom, slope as f32, length as f32, columns))
         });
         Track {
             low,
@@ -161,6 +166,7 @@ impl Track {
             low_end,
             high_end,
             leads,
+            lanes: u.map(|u| std::array::from_fn(|n| n as i32 as f32 * (u * grid.dx) as f32)),
         }
     }
 

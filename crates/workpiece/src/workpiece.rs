@@ -32,8 +32,9 @@ pub enum WorkpieceError {
     },
 }
 
-/// Segments that are cut at once: enough work for all cores, little memory.
-const BATCH_SEGMENTS: usize = 4096;
+/// Segments that are cut at once: enough work for all cores, and so few that their tracks stay in the caches while one
+/// band after the other is cut.
+const BATCH_SEGMENTS: usize = 1024;
 
 /// How far chords may deviate from an arc, as part of the resolution.
 const CHORD_TOLERANCE: f64 = 0.05;

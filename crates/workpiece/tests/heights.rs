@@ -53,10 +53,15 @@ fn lowest(a: Point, b: Point, point: [f64; 2], tool: &ToolShape) -> Option<Optio
 
 /// The greatest deviation of a column from what a chain of movements leaves there, and where.
 fn deviation(chain: &[Point], tool: &ToolShape, mm: f64) -> (f64, [f64; 2]) {
+    deviation_in([40.0, 40.0], chain, tool, mm)
+}
+
+/// The same in a blank of other sides.
+fn deviation_in([x, y]: [f64; 2], chain: &[Point], tool: &ToolShape, mm: f64) -> (f64, [f64; 2]) {
     let blank = Blank {
         plane: Plane::XY,
         min: [0.0, 0.0, BOTTOM],
-        max: [40.0, 40.0, 0.0],
+        max: [x, y, 0.0],
     };
     let mut workpiece = Workpiece::new(&blank, Resolution::Millimetres(mm)).unwrap();
     for pair in chain.windows(2) {
@@ -114,6 +119,22 @@ fn long_tracks_of_a_corner_radius_are_exact() {
                 );
             }
         }
+    }
+}
+
+/// Places far from the lower end of a track lose no digits that count: 2 m along the rows, across them and oblique.
+#[test]
+fn tracks_through_a_great_blank_are_exact() {
+    const ERROR_MM: f64 = 1e-3;
+    let ramp = |to: [f64; 2]| [[10.0, 10.0, -19.0], [to[0], to[1], -1.0]];
+    for (sides, chain) in [
+        ([2000.0, 20.0], ramp([1990.0, 10.0])),
+        ([2000.0, 100.0], ramp([1990.0, 90.0])),
+        ([20.0, 2000.0], ramp([10.0, 1990.0])),
+        ([1000.0, 1000.0], ramp([990.0, 700.0])),
+    ] {
+        let (error, point) = deviation_in(sides, &chain, &torus(4.0, 1.0), 0.5);
+        assert!(error <= ERROR_MM, "{error} mm at {point:?} in {sides:?}");
     }
 }
 
