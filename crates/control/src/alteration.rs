@@ -75,13 +75,14 @@ impl Control {
     /// Sets an operand, or a machine parameter of a channel. `false` when it is not possible now.
     pub(crate) fn set(&mut self, channel: usize, assignment: &Assignment) -> bool {
         match assignment {
+            // There is one memory; the lists of the channels beside the first one are the machine builder's.
+            _ if channel > 0 => false,
             Assignment::Operand(Operand::Bit(bit), _) if bit.area() == BitArea::I => false,
             Assignment::Operand(operand, content) => {
                 operand.write(self.machine.memory.first_mut(), content);
                 true
             }
-            // The lists of the channels beside the first one are the machine builder's.
-            Assignment::Parameter(text) => channel == 0 && self.alter(text),
+            Assignment::Parameter(text) => self.alter(text),
         }
     }
 
