@@ -165,3 +165,18 @@ fn scripts_are_played_on_the_machine() {
         run.err()
     );
 }
+
+/// Both channels of a machine run the programs of its machine.toml: M60 is their wait mark, answered in both at once.
+#[test]
+fn all_channels_of_a_machine_run() {
+    let twin = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/twin");
+    let run = Folder::new().bahn(&format!(
+        "plc diagram {twin} --show M2482,M334,W260,W128 --trigger M334=1 --before 2 --cycles 4 --format json"
+    ));
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let report = run.json();
+    let course = |index: usize| lines(&report["operands"][index]["values"]);
+    // M334 is the acknowledgement in the window of the second channel, W128 its M function.
+    assert_eq!(course(1)[..3], [0, 0, 1]);
+    assert!(course(3)[2] > 0, "{report}");
+}

@@ -17,22 +17,16 @@ pub(crate) enum Altered {
     Reset(Box<ParameterList>),
 }
 
-impl From<bool> for Altered {
-    fn from(done: bool) -> Altered {
-        if done { Altered::Done } else { Altered::Refused }
-    }
-}
-
 /// Sets an operand, or a machine parameter of a channel.
 pub(crate) fn set(kernel: &mut Kernel, channel: usize, assignment: &Assignment) -> Altered {
     match assignment {
+        // There is one memory; the lists of the channels beside the first one are the machine builder's.
+        _ if channel > 0 => Altered::Refused,
         Assignment::Operand(Operand::Bit(bit), _) if bit.area() == BitArea::I => Altered::Refused,
         Assignment::Operand(operand, content) => {
             operand.write(kernel.machine.memory.first_mut(), content);
             Altered::Done
         }
-        // The lists of the channels beside the first one are the machine builder's.
-        Assignment::Parameter(_) if channel > 0 => Altered::Refused,
         Assignment::Parameter(text) => alter(kernel, text),
     }
 }

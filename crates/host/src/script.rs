@@ -354,7 +354,7 @@ impl Reader {
             "end" if rest.trim().is_empty() => return Ok(Action::End),
             _ => {}
         }
-        if Assignment::is_meant(text) {
+        if split_channel(text).0.is_none() && Assignment::is_meant(text) {
             return self.assignments(text).map(Action::Set);
         }
         let Some(machine) = &mut self.machine else {

@@ -1,13 +1,13 @@
 //! A PLC program in the control of a machine, scan by scan.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use bahn_control::{Command, RunState};
 use bahn_host::{
-    Attendance, Content, Deed, FolderPrograms, Host, HostError, Job, Operand, Operator, Phase, Play, PowerOn,
-    Script, Source, Stage, run_name,
+    Attendance, Content, Deed, FolderPrograms, Host, HostError, Job, LoadedMachine, Operand, Operator, Phase,
+    Play, PowerOn, Script, Source, Stage, run_name,
 };
 use bahn_parameters::ControlModel;
 use bahn_plc::{Machine, Tracer};
@@ -64,29 +64,27 @@ impl Live {
                 program.model
             )));
         }
-        let script = match &bench.script {
-            None => Script::default(),
-            Some(path) => {
-                let bytes = files::read_table(path)?;
-                let stage = Stage::machine(&machine.plant, &machine.parameters);
-                match Script::of(path, &bytes, &stage) {
-                    Ok(script) => script,
-                    Err(faults) => {
-                        diagnostics::print_faults(&faults);
-                        return Ok(None);
-                    }
-                }
-            }
+        let Some(script) = load_script(bench, &machine)? else {
+            return Ok(None);
         };
-        let place = machine.root.join(&machine.folder.programs);
-        let programs = Arc::new(FolderPrograms::new(&place, options.part.as_deref())?);
+        let mut programs = load_programs(options, &machine)?;
         let attendance = match bench.script {
             Some(_) => Attendance::Start,
             None => Attendance::Full,
         };
-        let job = programs.main_name().map(Job::whole);
-        let operator = Operator::new(attendance, machine.folder.operator.clone(), job);
-        let host = Host::new(&machine, PowerOn::fresh(&machine), programs, operator);
+        let job = |channel: usize| programs.get(channel)?.main_name().map(Job::whole);
+        let mut operator = Operator::new(attendance, machine.folder.operator.clone(), job(0));
+        for (number, channel) in (1..).zip(&machine.channels) {
+            operator = operator.with_channel(channel.folder.operator.clone(), job(number));
+        }
+        let mut power_on = PowerOn::fresh(&machine);
+        for (channel, programs) in power_on.channels.iter_mut().zip(programs.split_off(1)) {
+            channel.programs = programs;
+        }
+        let Some(first) = programs.pop() else {
+            return Ok(None);
+        };
+        let host = Host::new(&machine, power_on, first, operator);
         let mut live = Live {
             host,
             play: Play::new(script),
@@ -194,7 +192,7 @@ impl Live {
     fn shown(&self) -> String {
         let control = self.host.control();
         let shown = control.shown().iter();
-        let texts: Vec<String> = shown.map(|shown| control.message_text(&shown.message)).collect();
+        let texts: Vec<String> = shown.map(|shown| control.shown_text(shown)).collect();
         texts.join(", ")
     }
 
@@ -217,6 +215,43 @@ impl Live {
             false => Outcome::ProgramError,
         }
     }
+}
+
+/// The script, for a machine; `None` when it is faulty: that was said.
+fn load_script(options: &BenchOptions, machine: &LoadedMachine) -> Result<Option<Script>, UsageError> {
+    let Some(path) = &options.script else {
+        return Ok(Some(Script::default()));
+    };
+    let bytes = files::read_table(path)?;
+    let stage = Stage::machine(&machine.plant, &machine.parameters);
+    match Script::of(path, &bytes, &stage) {
+        Ok(script) => Ok(Some(script)),
+        Err(faults) => {
+            diagnostics::print_faults(&faults);
+            Ok(None)
+        }
+    }
+}
+
+/// The programs of each channel, with the one that the operator starts; the first channel comes first.
+fn load_programs(
+    options: &MachineOptions,
+    machine: &LoadedMachine,
+) -> Result<Vec<Arc<FolderPrograms>>, UsageError> {
+    let channels = 1 + machine.channels.len();
+    if options.part.len() > channels {
+        return Err(UsageError::new(format!(
+            "--part: the machine has channels for {channels}"
+        )));
+    }
+    let programs = (0..channels).map(|channel| {
+        let main = match options.part.is_empty() {
+            true => machine.usual_program(channel).map(Path::new),
+            false => options.part.get(channel).map(PathBuf::as_path),
+        };
+        Ok(Arc::new(FolderPrograms::new(&machine.programs(channel), main)?))
+    });
+    programs.collect()
 }
 
 /// Whether a path is the folder of a machine.

@@ -157,9 +157,10 @@ pub(crate) struct BenchOptions {
 /// What the machine does whose folder is looked at.
 #[derive(Args, Debug)]
 pub(crate) struct MachineOptions {
-    /// Part program that the operator runs on the machine: a path, or a program in its folder of programs.
+    /// Part program that the operator runs on the machine: a path, or a program in its folder of programs; one for each
+    /// channel, in their order. Without it those of machine.toml.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub part: Option<PathBuf>,
+    pub part: Vec<PathBuf>,
 }
 
 /// Options of `bahn plc check`.

@@ -35,7 +35,7 @@ impl Subject {
             let live = Live::new(program, bench, machine)?;
             return Ok(live.map(|live| Subject::Machine(Box::new(live))));
         }
-        if machine.part.is_some() {
+        if !machine.part.is_empty() {
             return Err(UsageError::new(
                 "--part needs the folder of a machine: on the bench no part program runs",
             ));

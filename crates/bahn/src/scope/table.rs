@@ -224,10 +224,12 @@ impl Trace {
             None => (head, ""),
         };
         // A channel may stand before it, as in `2:M2045`.
-        let name = name.split_once(':').map_or(name, |(_, of_it)| of_it);
-        let digits = name.strip_prefix(['M', 'I', 'O', 'T', 'C']).unwrap_or_default();
+        let operand = name.split_once(':').map_or(name, |(_, operand)| operand);
+        let digits = operand
+            .strip_prefix(['M', 'I', 'O', 'T', 'C'])
+            .unwrap_or_default();
         // The pins of "control is ready".
-        let is_pin = matches!(name, "X41/34" | "X42/4");
+        let is_pin = matches!(operand, "X41/34" | "X42/4");
         let is_bit =
             is_pin || unit.is_empty() && !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
         Trace {

@@ -207,7 +207,7 @@ fn a_running_machine_is_watched() {
         script: None,
     };
     let machine = MachineOptions {
-        part: Some("CIRCLE.H".into()),
+        part: vec!["CIRCLE.H".into()],
     };
     let subject = Subject::open(&program, &bench, &machine, || Ok(Exchange::default())).unwrap();
     let operands = ["M900", "I3", "M2451"].map(|name| name.parse().unwrap());
