@@ -32,8 +32,8 @@ impl Run {
                 a,
                 b,
             } => {
-                let value = self.q.calculate(*function, *a, *b)?;
-                self.q.set(*target, value)?;
+                let value = self.numbers.q.calculate(*function, *a, *b)?;
+                self.numbers.q.set(*target, value)?;
                 Ok(Flow::Next)
             }
             Operation::Jump {
@@ -41,7 +41,7 @@ impl Run {
                 a,
                 b,
                 label,
-            } => Ok(if self.q.holds(*condition, *a, *b)? {
+            } => Ok(if self.numbers.q.holds(*condition, *a, *b)? {
                 Flow::Jump(*label)
             } else {
                 Flow::Next
@@ -66,8 +66,8 @@ impl Run {
                         "this control has no formulas",
                     ));
                 }
-                let value = self.q.evaluate(expression)?;
-                self.q.set(*target, value)?;
+                let value = self.numbers.q.evaluate(expression)?;
+                self.numbers.q.set(*target, value)?;
             }
             Operation::CallLabel { label, repeats } => return self.call_label(*label, *repeats, settings),
             Operation::CallProgram(name) => return Ok(Flow::CallProgram(name.clone())),
@@ -92,12 +92,12 @@ impl Run {
                 let mut functions = self.take_m_functions(m, settings)?;
                 functions.stop = true;
                 functions.cycle_call = false;
-                return self.hold(functions);
+                return self.pen.hold(&self.modal, functions);
             }
             Operation::Miscellaneous(m) => {
                 let functions = self.take_m_functions(m, settings)?;
                 let call = m.contains(99);
-                let flow = self.hold(functions)?;
+                let flow = self.pen.hold(&self.modal, functions)?;
                 return if call { self.call_cycle(settings) } else { Ok(flow) };
             }
             Operation::ErrorNumber(number) => return Err(self.numbered_error(*number, settings)),
@@ -109,7 +109,7 @@ impl Run {
                 self.modal.cycle_after_each_block = false;
                 let mut functions = self.take_m_functions(m, settings)?;
                 functions.cycle_call = true;
-                self.hold(functions)?;
+                self.pen.hold(&self.modal, functions)?;
                 return self.call_cycle(settings);
             }
             Operation::Probe(block) => self.probe(block, settings)?,
@@ -139,7 +139,7 @@ impl Run {
         let Some(repeats) = repeats else {
             return Ok(Flow::Call(label));
         };
-        let count = self.q.value(repeats)?;
+        let count = self.numbers.q.value(repeats)?;
         let max = f64::from(settings.model.limits().repeat_max);
         if !(0.0..=max).contains(&count) {
             return Err(Fault::new(
@@ -151,7 +151,7 @@ impl Run {
     }
 
     fn rounding(&mut self, radius: Value, feed: Option<Value>, settings: &Settings) -> Result<(), Fault> {
-        let radius = self.length(radius)? * self.plane_scale();
+        let radius = self.numbers.length(radius)? * self.modal.plane_scale();
         if radius < 0.0 {
             return Err(Fault::new(
                 MessageId::EntryValueIncorrect,
@@ -165,7 +165,7 @@ impl Run {
     }
 
     fn chamfer(&mut self, length: Value, feed: Option<Value>, settings: &Settings) -> Result<(), Fault> {
-        let length = self.length(length)? * self.plane_scale();
+        let length = self.numbers.length(length)? * self.modal.plane_scale();
         if length <= 0.0 {
             let detail = "the length of a chamfer must be positive";
             return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
@@ -174,18 +174,18 @@ impl Run {
     }
 
     fn join(&mut self, kind: JoinKind, feed: Option<Value>, settings: &Settings) -> Result<(), Fault> {
-        let feed_mm_min = feed.map(|feed| self.feed(feed, settings)).transpose()?;
-        self.contour.join(Join {
+        let feed_mm_min = feed.map(|feed| self.numbers.feed(feed, settings)).transpose()?;
+        self.pen.contour.join(Join {
             kind,
             feed_mm_min,
-            block: self.block,
-            sequence: self.sequence,
+            block: self.pen.block,
+            sequence: self.pen.sequence,
         })
     }
 
     /// FN14: the run ends with the text of the number [003:4352-4367].
     fn numbered_error(&mut self, number: Value, settings: &Settings) -> Fault {
-        let number = match self.q.value(number) {
+        let number = match self.numbers.q.value(number) {
             Ok(number) => number,
             Err(fault) => return fault,
         };
@@ -231,10 +231,11 @@ impl Run {
                         "PRINT takes texts 0 to 200",
                     ));
                 }
-                Value::Q { .. } => format!("{:+}", self.q.value(*item)?),
+                Value::Q { .. } => format!("{:+}", self.numbers.q.value(*item)?),
             });
         }
-        self.output_function(
+        self.pen.output_function(
+            &self.modal,
             Function::Print(line.join(" ")),
             technology::Block::Print,
             settings,
@@ -248,9 +249,14 @@ impl Run {
         };
         // TNC 360: the programmed number already counts in micrometres [003:4391-4395].
         let scale = if per_mm < 1e4 { 1.0 } else { per_mm };
-        let a = self.q.value(a)? * scale;
-        let b = b.map(|b| self.q.value(b)).transpose()?.map(|b| b * scale);
-        self.output_function(Function::Plc([Some(a), b]), technology::Block::Plc, settings)
+        let a = self.numbers.q.value(a)? * scale;
+        let b = b.map(|b| self.numbers.q.value(b)).transpose()?.map(|b| b * scale);
+        self.pen.output_function(
+            &self.modal,
+            Function::Plc([Some(a), b]),
+            technology::Block::Plc,
+            settings,
+        )
     }
 
     /// A block that could not be read. With [`Settings::skip_unknown`] a word that nothing knows is left

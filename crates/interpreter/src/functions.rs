@@ -86,9 +86,15 @@ impl Run {
                     self.warn(WarningKind::EndInCalledProgram);
                 }
             }
-            Deed::Spindle(SpindleOrder::Clockwise) => self.set_spindle(Spindle::Clockwise),
-            Deed::Spindle(SpindleOrder::CounterClockwise) => self.set_spindle(Spindle::CounterClockwise),
-            Deed::Spindle(SpindleOrder::Stop | SpindleOrder::StopWithRun) => self.stop_spindle(),
+            Deed::Spindle(SpindleOrder::Clockwise) => {
+                self.modal.set_spindle(Spindle::Clockwise, &mut self.numbers.q)
+            }
+            Deed::Spindle(SpindleOrder::CounterClockwise) => self
+                .modal
+                .set_spindle(Spindle::CounterClockwise, &mut self.numbers.q),
+            Deed::Spindle(SpindleOrder::Stop | SpindleOrder::StopWithRun) => {
+                self.modal.stop_spindle(&mut self.numbers.q)
+            }
             Deed::Coolant(on) => self.set_coolant(on),
             _ => {}
         }
@@ -118,7 +124,7 @@ impl Run {
             Deed::PlungingFeed if settings.rules.m_functions.m103_enabled => {
                 let percent = m
                     .argument(103, 'F')
-                    .map(|value| self.q.value(value))
+                    .map(|value| self.numbers.q.value(value))
                     .transpose()?;
                 self.modal.plunge_factor = percent.map(|percent| percent / 100.0);
             }
@@ -136,14 +142,14 @@ impl Run {
     fn begin_corner_arcs(&mut self, m: &MFunctions, settings: &Settings) -> Result<(), Fault> {
         let value = |letter| -> Result<Option<f64>, Fault> {
             m.argument(112, letter)
-                .map(|value| self.q.value(value))
+                .map(|value| self.numbers.q.value(value))
                 .transpose()
         };
         let (tolerance, angle) = (value('T')?, value('A')?);
         let rules = &settings.rules;
         let plane = self.modal.plane;
         self.modal.corner_arcs = Some(CornerArcs {
-            tolerance_mm: tolerance.map_or(f64::INFINITY, |value| value * self.unit_mm),
+            tolerance_mm: tolerance.map_or(f64::INFINITY, |value| value * self.numbers.unit_mm),
             angle_deg: angle.unwrap_or(0.0),
             acceleration_m_s2: [plane.first, plane.second]
                 .into_iter()
@@ -154,7 +160,9 @@ impl Run {
     }
 
     fn set_coolant(&mut self, on: bool) {
-        self.q.preassign(preassigned::COOLANT, if on { 1.0 } else { 0.0 });
+        self.numbers
+            .q
+            .preassign(preassigned::COOLANT, if on { 1.0 } else { 0.0 });
     }
 
     /// M94: the position of rotary axes is reduced below 360 degrees without a movement [003:7482].

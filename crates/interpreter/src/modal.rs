@@ -3,8 +3,9 @@
 use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position};
 use bahn_program::Compensation;
 
-use crate::contour::{CornerArcs, FeedLaw};
+use crate::contour::{CornerArcs, FeedLaw, Side};
 use crate::definition::CycleData;
+use crate::q_parameters::{QTable, preassigned};
 use crate::status::{Spindle, Status, Tool};
 
 /// The modal data of a run [003:2164-2188] [003:6199-6205].
@@ -14,6 +15,9 @@ pub(crate) struct Modal {
     pub nominal: Position,
     /// Where the uncompensated path ended; differs from `nominal` after R+ and R-.
     pub actual: Position,
+    /// After an interruption within a block: where the block began. Its incremental coordinates count from
+    /// there, so that it ends where it was programmed to (inferred).
+    pub increments_from: Option<Position>,
     /// Coordinate transformations.
     pub frame: Frame,
     /// Working plane of the tool axis.
@@ -86,6 +90,7 @@ impl Modal {
         Modal {
             nominal: start,
             actual: start,
+            increments_from: None,
             frame: Frame::identity(Plane::XY),
             plane: Plane::XY,
             contour_plane: Plane::XY,
@@ -131,5 +136,35 @@ impl Modal {
     /// Radius of the tool in use, mm; 0 without a tool.
     pub fn tool_radius(&self) -> f64 {
         self.tool.map_or(0.0, |tool| tool.radius.max(0.0))
+    }
+
+    /// Side of the tool in workpiece coordinates: a mirrored contour has it on the other side.
+    pub fn side(&self) -> Side {
+        let side = match self.compensation {
+            Compensation::Left => Side::Left,
+            Compensation::Right => Side::Right,
+            _ => return Side::Off,
+        };
+        if self.frame.reverses(self.contour_plane) {
+            side.mirrored()
+        } else {
+            side
+        }
+    }
+
+    /// Scaling factor in the working plane.
+    pub fn plane_scale(&self) -> f64 {
+        self.frame.factor[self.plane.first].abs()
+    }
+
+    /// The spindle turns, or stands, as Q110 says.
+    pub fn set_spindle(&mut self, spindle: Spindle, q: &mut QTable) {
+        self.spindle = spindle;
+        q.preassign(preassigned::SPINDLE, spindle.q110());
+    }
+
+    /// The spindle stops.
+    pub fn stop_spindle(&mut self, q: &mut QTable) {
+        self.set_spindle(self.spindle.stopped(), q);
     }
 }

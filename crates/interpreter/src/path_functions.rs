@@ -6,7 +6,8 @@ use bahn_program::{Coordinates, Direction, Motion, Value, Word};
 
 use crate::arc;
 use crate::error::{Cause, Fault};
-use crate::positioning::{Programmed, known};
+use crate::numbers::known;
+use crate::positioning::Programmed;
 use crate::q_parameters::{cos_deg, sin_deg};
 use crate::run::Run;
 use crate::settings::Settings;
@@ -98,7 +99,7 @@ impl Run {
             let detail = "the arc has no radius R";
             return Err(Fault::new(MessageId::AngleReferenceMissing, detail).because(Cause::NoRadius));
         };
-        let radius = self.length(radius)?;
+        let radius = self.numbers.length(radius)?;
         if radius.abs() > settings.model.limits().circle_radius_max_mm {
             return Err(Fault::new(
                 MessageId::EntryValueIncorrect,
@@ -142,11 +143,11 @@ impl Run {
             Some(Word {
                 value,
                 incremental: false,
-            }) => self.length(value)?,
+            }) => self.numbers.length(value)?,
             Some(Word {
                 value,
                 incremental: true,
-            }) => dx.hypot(dy) + self.length(value)?,
+            }) => dx.hypot(dy) + self.numbers.length(value)?,
             None => self.modal.polar_radius.unwrap_or(dx.hypot(dy)),
         };
         if motion.polar_radius.is_some() {
@@ -155,7 +156,7 @@ impl Run {
         let Some(word) = motion.polar_angle else {
             return Err(no_angle());
         };
-        let angle = self.q.value(word.value)?;
+        let angle = self.numbers.q.value(word.value)?;
         // The limit is one of typed numbers [003:3089]: hole circles by Q parameters count on beyond a turn.
         let typed = matches!(word.value, Value::Number(_));
         if typed && angle.abs() > settings.model.limits().polar_angle_max_deg {
@@ -208,7 +209,7 @@ impl Run {
         let Some(word) = motion.polar_angle else {
             return Err(no_angle());
         };
-        let angle = self.q.value(word.value)?;
+        let angle = self.numbers.q.value(word.value)?;
         if angle.abs() > settings.model.limits().circle_angle_max_deg {
             return Err(Fault::new(
                 MessageId::EntryValueIncorrect,

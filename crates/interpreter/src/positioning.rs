@@ -8,6 +8,7 @@ use crate::block_functions::{BlockFunctions, Reference};
 use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
 use crate::modal::LastMove;
+use crate::numbers::known;
 use crate::q_parameters::preassigned;
 use crate::run::Run;
 use crate::settings::Settings;
@@ -41,7 +42,7 @@ impl Run {
             return Err(Fault::new(MessageId::BlockNotKnown, detail));
         }
         self.take_compensation(motion)?;
-        if self.recording.is_some() {
+        if self.pen.recording.is_some() {
             return Ok((self.record(motion, settings)?, false));
         }
         let functions = if motion.m.is_empty() && !self.modal.cycle_after_each_block {
@@ -61,7 +62,7 @@ impl Run {
     fn is_short_way(&self, motion: &Motion) -> bool {
         let coordinates = &motion.coordinates;
         motion.kind == MotionKind::Line
-            && self.line_follows
+            && self.pen.line_follows
             && self.modal.corner_arcs.is_none()
             && motion.m.is_empty()
             && matches!(motion.compensation, None | Some(Compensation::Off))
@@ -72,9 +73,9 @@ impl Run {
             && !coordinates.is_empty()
             && !self.modal.cycle_after_each_block
             && self.modal.plunge_factor.is_none()
-            && self.recording.is_none()
+            && self.pen.recording.is_none()
             && self.modal.frame.is_identity()
-            && self.contour.is_idle()
+            && self.pen.contour.is_idle()
     }
 
     /// The short way of [`Run::is_short_way`]: same result as the long one.
@@ -87,7 +88,7 @@ impl Run {
         let numbers = motion.coordinates.numbers();
         let axes = motion.coordinates.axes();
         for axis in axes.iter() {
-            let value = numbers[axis.index()] * self.axis_unit(axis);
+            let value = numbers[axis.index()] * self.numbers.axis_unit(axis);
             self.modal.nominal[axis] = value;
             self.modal.actual[axis] = value;
         }
@@ -97,12 +98,12 @@ impl Run {
             self.modal.take_contour_axes(axes);
         }
         self.modal.last_move = None;
-        self.increments_from = None;
-        self.contour.release(&mut self.out);
+        self.modal.increments_from = None;
+        self.pen.contour.release(&mut self.pen.out);
         let end = self.modal.actual;
-        self.note_motion(Curve::Line, &start, &end);
-        let element = self.element(Curve::Line, start, self.modal.actual, feed);
-        self.out.push(element, None);
+        self.pen.note_motion(Curve::Line, &start, &end);
+        let element = self.pen.element(Curve::Line, start, self.modal.actual, feed);
+        self.pen.out.push(element, None);
         Ok(Flow::Next)
     }
 
@@ -110,7 +111,7 @@ impl Run {
     fn record(&mut self, motion: &Motion, settings: &Settings) -> Result<Flow, Fault> {
         /// Stands for the feed that is ignored.
         const ANY_FEED: FeedRate = FeedRate::Programmed(1.0);
-        if let Some(axes) = &mut self.recording
+        if let Some(axes) = &mut self.pen.recording
             && axes.is_empty()
         {
             *axes = motion.coordinates.axes();
@@ -137,9 +138,9 @@ impl Run {
             self.programmed(motion, settings)?
         };
         if programmed.axes.is_empty() {
-            return self.hold(functions);
+            return self.pen.hold(&self.modal, functions);
         }
-        self.increments_from = None;
+        self.modal.increments_from = None;
         let Some(feed) = feed else {
             return Err(MessageId::FeedRateIsMissing.into());
         };
@@ -171,9 +172,9 @@ impl Run {
         let axes = coordinates.axes();
         let numbers = coordinates.numbers();
         for axis in axes.iter() {
-            let value = numbers[axis.index()] * self.axis_unit(axis);
+            let value = numbers[axis.index()] * self.numbers.axis_unit(axis);
             to[axis] = if coordinates.incremental().contains(axis) {
-                known(self.increments_from.unwrap_or(from)[axis]) + value
+                known(self.modal.increments_from.unwrap_or(from)[axis]) + value
             } else {
                 value
             };
@@ -215,12 +216,12 @@ impl Run {
 
     /// Cartesian words into the end point.
     pub(crate) fn coordinates(&self, coordinates: &Coordinates, p: &mut Programmed) -> Result<(), Fault> {
-        let from = match &self.increments_from {
+        let from = match &self.modal.increments_from {
             Some(nominal) => self.modal.frame.to_programmed(nominal),
             None => p.from,
         };
         for (axis, word) in coordinates.iter() {
-            let value = self.q.value(word.value)? * self.axis_unit(axis);
+            let value = self.numbers.q.value(word.value)? * self.numbers.axis_unit(axis);
             p.to[axis] = if word.incremental {
                 known(from[axis]) + value
             } else {
@@ -248,7 +249,7 @@ impl Run {
         }
         let mut nominal = self.modal.nominal;
         for (axis, word) in motion.coordinates.iter() {
-            let value = self.q.value(word.value)? * self.axis_unit(axis);
+            let value = self.numbers.q.value(word.value)? * self.numbers.axis_unit(axis);
             // Machine coordinates are those of the spindle nose, not of the tool's tip (inferred: a position
             // for tool changes must not depend on the tool).
             let length = match self.modal.tool {
@@ -272,7 +273,7 @@ impl Run {
         }
         let axes = motion.coordinates.axes();
         if axes.is_empty() {
-            return self.hold(functions);
+            return self.pen.hold(&self.modal, functions);
         }
         let Some(feed) = feed else {
             return Err(MessageId::FeedRateIsMissing.into());
@@ -299,15 +300,15 @@ impl Run {
         if !std::mem::replace(&mut self.told.machine_zero, true) {
             self.warn(WarningKind::MachineZeroUnknown);
         }
-        self.finish_contour()?;
-        let start = self.tool_centre();
+        self.pen.finish_contour()?;
+        let start = self.pen.tool_centre(&self.modal);
         let mut end = start;
         for axis in axes.iter() {
             end[axis] = nominal[axis];
         }
         (self.modal.nominal, self.modal.actual) = (nominal, end);
-        let element = self.element(Curve::Line, start, end, feed);
-        self.push(element, functions, false)
+        let element = self.pen.element(Curve::Line, start, end, feed);
+        self.pen.push(&self.modal, element, functions, false)
     }
 
     /// Transforms a movement into workpiece coordinates. Axes that are neither programmed nor turned by
@@ -383,8 +384,8 @@ impl Run {
         let feed = self.plunge_feed(feed, &curve, &start, &end);
         self.modal.nominal = nominal;
         self.modal.actual = end;
-        let element = self.element(curve, start, end, feed);
-        self.push(element, functions, in_plane)
+        let element = self.pen.element(curve, start, end, feed);
+        self.pen.push(&self.modal, element, functions, in_plane)
     }
 
     /// R+ lengthens and R- shortens a paraxial path in the working plane by the tool radius
@@ -456,7 +457,7 @@ impl Run {
             Compensation::Lengthen => 3.0,
             Compensation::Shorten => 4.0,
         };
-        self.q.preassign(preassigned::COMPENSATION, q123);
+        self.numbers.q.preassign(preassigned::COMPENSATION, q123);
         Ok(())
     }
 
@@ -465,7 +466,7 @@ impl Run {
         match feed {
             Some(Feed::Max) => return Ok(Some(FeedRate::Rapid)),
             Some(Feed::Value(value)) => {
-                let feed = self.feed(value, settings)?;
+                let feed = self.numbers.feed(value, settings)?;
                 self.modal.feed_mm_min = Some(feed);
             }
             None => {}
@@ -515,8 +516,3 @@ impl Run {
 
 /// Axes that may stand for their main axis in the working plane [003:5397-5432].
 const PARALLEL_AXES: AxisSet = AxisSet::EMPTY.with(Axis::U).with(Axis::V).with(Axis::W);
-
-/// The number, zero for an axis without a position: increments then count from zero (inferred).
-pub(crate) fn known(value: f64) -> f64 {
-    if value.is_nan() { 0.0 } else { value }
-}

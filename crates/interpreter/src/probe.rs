@@ -43,7 +43,7 @@ impl Run {
             let detail = "TCH PROBE 0.0 needs a Q parameter and an axis with direction";
             return Err(Fault::new(MessageId::CyclIncomplete, detail));
         };
-        self.q.get(target)?;
+        self.numbers.q.get(target)?;
         self.modal.probe = Some(ReferencePlane {
             target,
             axis,
@@ -59,7 +59,7 @@ impl Run {
             return Err(Fault::new(MessageId::CyclIncomplete, "TCH PROBE 0.0 is missing"));
         };
         let rules = &settings.rules.probe;
-        self.finish_contour()?;
+        self.pen.finish_contour()?;
         if !settings.rules.probe_keeps_tool {
             self.take_probe_as_tool(rules);
         }
@@ -72,9 +72,9 @@ impl Run {
                 incremental,
             } = word
             {
-                let value = value * self.axis_unit(*axis);
+                let value = value * self.numbers.axis_unit(*axis);
                 nominal[*axis] = if *incremental {
-                    crate::positioning::known(nominal[*axis]) + value
+                    crate::numbers::known(nominal[*axis]) + value
                 } else {
                     value
                 };
@@ -101,8 +101,8 @@ impl Run {
             radius: rules.radius_mm,
             before,
         });
-        self.out.barrier(Barrier::Probe {
-            block: self.block,
+        self.pen.out.barrier(Barrier::Probe {
+            block: self.pen.block,
             from: before,
             to: farthest,
             feed_mm_min: rules.feed_mm_min,
@@ -118,10 +118,14 @@ impl Run {
             tool.shape.radius = rules.radius_mm;
             tool.shape.length = rules.length_mm;
         }
-        self.q
-            .preassign(preassigned::TOOL_RADIUS, rules.radius_mm / self.main_unit_mm());
-        self.q
-            .preassign(preassigned::TOOL_LENGTH, rules.length_mm / self.main_unit_mm());
+        self.numbers.q.preassign(
+            preassigned::TOOL_RADIUS,
+            rules.radius_mm / self.numbers.main_unit_mm(),
+        );
+        self.numbers.q.preassign(
+            preassigned::TOOL_LENGTH,
+            rules.length_mm / self.numbers.main_unit_mm(),
+        );
     }
 
     /// In the working plane first when the tool axis goes down, the tool axis first when it goes up, so
@@ -140,11 +144,11 @@ impl Run {
         let feed = FeedRate::Programmed(settings.rules.probe.rapid_mm_min);
         for (start, end) in [(from, corner), (corner, *before)] {
             if start != end {
-                let element = self.element(Curve::Line, start, end, feed);
-                self.out.push(element, None);
+                let element = self.pen.element(Curve::Line, start, end, feed);
+                self.pen.out.push(element, None);
             }
         }
-        self.since_motion = 0;
+        self.pen.since_motion = 0;
     }
 
     /// Takes the touch: the measured coordinate goes to the Q parameter, the position to Q115-Q118.
@@ -158,7 +162,7 @@ impl Run {
         if touch.position == probing.before {
             return Err(MessageId::StylusAlreadyInContact.into());
         }
-        let unit = self.unit_mm;
+        let unit = self.numbers.unit_mm;
         let position = self.modal.frame.to_programmed(&touch.position);
         let along_tool_axis = probing.axis == self.modal.plane.normal;
         // In the tool axis the tip itself touches, in the plane the ball touches beside its centre.
@@ -167,11 +171,14 @@ impl Run {
         } else {
             probing.direction * probing.radius
         };
-        self.q
+        self.numbers
+            .q
             .set(probing.target, (position[probing.axis] + surface) / unit)?;
         for (number, axis) in (preassigned::TOUCH..).zip([Axis::X, Axis::Y, Axis::Z, Axis::C]) {
             if let Some(value) = position.get(axis) {
-                self.q.preassign(number, value / self.axis_unit(axis));
+                self.numbers
+                    .q
+                    .preassign(number, value / self.numbers.axis_unit(axis));
             }
         }
         // To the surface and back to the pre-position.
@@ -183,8 +190,8 @@ impl Run {
         ];
         // On a machine the axes stand at the touch already.
         for (start, end, feed) in ways.into_iter().skip(usize::from(settings.machine)) {
-            let element = self.element(Curve::Line, start, end, feed);
-            self.out.push(element, None);
+            let element = self.pen.element(Curve::Line, start, end, feed);
+            self.pen.out.push(element, None);
         }
         Ok(())
     }

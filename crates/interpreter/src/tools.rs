@@ -6,7 +6,7 @@ use bahn_program::{Coordinates, Value};
 
 use crate::availability::{Feature, words};
 use crate::error::{Cause, Fault, WarningKind};
-use crate::positioning::known;
+use crate::numbers::known;
 use crate::run::Run;
 use crate::settings::{Settings, ToolState, ToolTable, tool_key};
 use crate::status::Tool;
@@ -28,14 +28,19 @@ impl Run {
         if length.is_none() && radius.is_none() {
             // What TOOL CALL will call is made ready (inferred).
             let next = usable(number, 0, settings).map_or(number, |(next, _)| next);
-            return self.output_function(Function::NextTool(next), technology::Block::ToolDef, settings);
+            return self.pen.output_function(
+                &self.modal,
+                Function::NextTool(next),
+                technology::Block::ToolDef,
+                settings,
+            );
         }
         let length = length
-            .map(|length| self.length(length))
+            .map(|length| self.numbers.length(length))
             .transpose()?
             .unwrap_or(0.0);
         let radius = radius
-            .map(|radius| self.length(radius))
+            .map(|radius| self.numbers.length(radius))
             .transpose()?
             .unwrap_or(0.0);
         let max = settings.model.limits().coordinate_max;
@@ -83,13 +88,15 @@ impl Run {
         }
         let Some(tool) = tool else {
             if let Some(axis) = axis {
-                self.finish_contour()?;
+                self.pen.finish_contour()?;
                 self.set_tool_axis(axis)?;
             }
             let speed = Function::SpindleSpeed(self.modal.speed_rpm);
-            return self.output_function(speed, technology::Block::SpindleSpeed, settings);
+            return self
+                .pen
+                .output_function(&self.modal, speed, technology::Block::SpindleSpeed, settings);
         };
-        self.finish_contour()?;
+        self.pen.finish_contour()?;
         let (number, index) = self.indexed_tool_number(tool, settings)?;
         let (number, index) = usable(number, index, settings)?;
         let (shape, defined) = self.tool_shape(number, index, settings)?;
@@ -98,7 +105,7 @@ impl Run {
         let mut delta = [0.0; 2];
         for (delta, value) in delta.iter_mut().zip(oversize) {
             if let Some(value) = value.filter(|_| executed) {
-                *delta = self.length(value)?;
+                *delta = self.numbers.length(value)?;
             }
         }
         let axis = axis.or(self.modal.tool.map(|tool| tool.axis)).unwrap_or(Axis::Z);
@@ -125,7 +132,7 @@ impl Run {
         self.modal.tool = Some(tool);
         // The graphics take no notice of a radius that must not be used.
         shape.radius = shape.radius.max(0.0);
-        self.preassign_tool(shape.length, radius);
+        self.numbers.preassign_tool(shape.length, radius);
         let call = ToolCall {
             tool: number,
             axis,
@@ -133,7 +140,12 @@ impl Run {
             shape,
             at_end_of_life,
         };
-        self.output_function(Function::Tool(call), technology::Block::ToolCall, settings)
+        self.pen.output_function(
+            &self.modal,
+            Function::Tool(call),
+            technology::Block::ToolCall,
+            settings,
+        )
     }
 
     /// The replacement tool takes the place of the one in the spindle, whose axis and oversizes count for it, too.
@@ -157,8 +169,10 @@ impl Run {
         let mut beside = actual;
         beside[tool.axis] = f64::NAN;
         for end in [beside, actual] {
-            let element = self.element(Curve::Line, Position::UNKNOWN, end, FeedRate::Rapid);
-            self.out.push(element, None);
+            let element = self
+                .pen
+                .element(Curve::Line, Position::UNKNOWN, end, FeedRate::Rapid);
+            self.pen.out.push(element, None);
         }
     }
 
@@ -198,7 +212,7 @@ impl Run {
     }
 
     fn tool_number(&self, tool: Value, settings: &Settings) -> Result<u32, Fault> {
-        let number = self.q.value(tool)?;
+        let number = self.numbers.q.value(tool)?;
         let max = settings.model.limits().tool_max;
         if !(0.0..=f64::from(max)).contains(&number) || number.fract() != 0.0 {
             return Err(Fault::new(
@@ -212,7 +226,7 @@ impl Run {
     /// Number and index of a tool: 253.1 is the first other cutting edge of tool 253 in the tables of later
     /// controls.
     fn indexed_tool_number(&self, tool: Value, settings: &Settings) -> Result<(u32, u8), Fault> {
-        let number = self.q.value(tool)?;
+        let number = self.numbers.q.value(tool)?;
         let index = (number.fract() * 10.0).round();
         let in_table = |table: &ToolTable| table.contains_key(&tool_key(number as u32, index as u8));
         // Tenths only, and only a tool that a table has: no control here knows them otherwise.
@@ -279,7 +293,7 @@ impl Run {
     /// A speed within the entry range. What the spindle has is judged by the spindle itself where there is
     /// one: it tells the PLC with M2092 [000:5653].
     fn speed(&self, speed: Value, settings: &Settings) -> Result<f64, Fault> {
-        let speed = self.q.value(speed)?;
+        let speed = self.numbers.q.value(speed)?;
         let entry = settings.model.limits().spindle_speed_max_rpm;
         let max = if settings.machine {
             entry
@@ -305,7 +319,7 @@ impl Run {
             return Err(Fault::new(MessageId::PlaneWronglyDefined, "a rotation is active"));
         }
         self.modal.take_plane(plane);
-        self.preassign_tool_axis(axis);
+        self.numbers.preassign_tool_axis(axis);
         Ok(())
     }
 
@@ -367,7 +381,12 @@ impl Run {
         }
         let blank = Blank { plane, min, max };
         self.blank.get_or_insert(blank);
-        self.output_function(Function::Blank(blank), technology::Block::Blank, settings)
+        self.pen.output_function(
+            &self.modal,
+            Function::Blank(blank),
+            technology::Block::Blank,
+            settings,
+        )
     }
 
     fn corner(&self, coordinates: &Coordinates, base: [f64; 3]) -> Result<[f64; 3], Fault> {
@@ -379,7 +398,7 @@ impl Run {
                     format!("{axis} is missing"),
                 ));
             };
-            let value = known(self.length(word.value)?);
+            let value = known(self.numbers.length(word.value)?);
             *slot = if word.incremental { *slot + value } else { value };
         }
         Ok(corner)

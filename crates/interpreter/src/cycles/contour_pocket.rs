@@ -166,14 +166,14 @@ impl Run {
         let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
             return Err(MessageId::CyclIncomplete.into());
         };
-        let queued = self.out.queue.len();
+        let queued = self.pen.out.queue.len();
         let result = match definition.number {
             6 => self.rough_out(job, &definition, settings, watch),
             15 => self.pilot_drilling(job, &definition, settings, watch),
             _ => self.contour_milling(job, &definition, settings, watch),
         };
         if let Err(Halt::Interrupted) = result {
-            self.out.queue.truncate(queued);
+            self.pen.out.queue.truncate(queued);
         }
         result
     }

@@ -122,7 +122,7 @@ impl Run {
         }
         let turns = matches!(self.modal.spindle, Spindle::Clockwise | Spindle::CounterClockwise);
         if turns {
-            self.stop_spindle();
+            self.modal.stop_spindle(&mut self.numbers.q);
         }
         let thread = |clockwise, orientation_deg| {
             OverrideLaw::Spindle(Thread {

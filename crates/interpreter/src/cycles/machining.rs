@@ -56,11 +56,11 @@ impl Run {
             }
             if self.modal.cycle.machining.report_sign() {
                 let cycle = definition.number;
-                self.warn_at(definition.at, WarningKind::CycleSign { cycle });
+                self.told.warn(definition.at, WarningKind::CycleSign { cycle });
             }
         }
         let scale = self.modal.frame.factor[self.modal.plane.normal].abs();
-        let clearance = crate::positioning::known(self.tool_centre()[self.modal.plane.normal]);
+        let clearance = crate::numbers::known(self.pen.tool_centre(&self.modal)[self.modal.plane.normal]);
         let direction = depth.signum();
         Ok(Heights {
             clearance,
@@ -90,14 +90,14 @@ impl Run {
 
     /// Begins to trace the movements of a cycle from where the tool stands.
     pub(super) fn tracer(&mut self) -> Tracer<'_> {
-        let at = self.tool_centre();
+        let at = self.pen.tool_centre(&self.modal);
         let mut origin = at;
         let plane = self.modal.plane;
-        let point = plane.point(&at).map(crate::positioning::known);
+        let point = plane.point(&at).map(crate::numbers::known);
         plane.set(&mut origin, point);
         let axes = [self.plane_direction([1.0, 0.0]), self.plane_direction([0.0, 1.0])];
         let reversed = self.modal.frame.reverses(plane);
-        let room = if self.rehearsal { 0 } else { MOVEMENTS_MAX };
+        let room = if self.pen.rehearsal { 0 } else { MOVEMENTS_MAX };
         Tracer {
             run: self,
             at: origin,
@@ -166,7 +166,7 @@ impl Tracer<'_> {
     /// Moves in another plane of the same tool axis: one with parallel axes [003:5397-5432].
     pub fn set_plane(&mut self, plane: Plane) {
         self.plane = plane;
-        self.origin = plane.point(&self.at).map(crate::positioning::known);
+        self.origin = plane.point(&self.at).map(crate::numbers::known);
     }
 
     /// Along the tool axis at rapid traverse.
@@ -221,14 +221,14 @@ impl Tracer<'_> {
         let first_position = !end.known().iter().all(|axis| self.at.get(axis).is_some());
         if (length > NO_MOVE_MM || first_position) && self.room > 0 {
             self.room -= 1;
-            let mut element = self.run.element(curve, self.at, end, feed);
+            let mut element = self.run.pen.element(curve, self.at, end, feed);
             element.override_law = self.override_law;
             element.functions = self
                 .on_the_way
                 .take()
                 .map(|function| Box::new([function]) as Box<[_]>);
-            self.run.since_motion = 0;
-            self.run.out.push(element, None);
+            self.run.pen.since_motion = 0;
+            self.run.pen.out.push(element, None);
         }
         self.at = end;
     }
@@ -236,20 +236,26 @@ impl Tracer<'_> {
     /// Time at the place where the tool stands.
     pub fn dwell(&mut self, seconds: f64) {
         if seconds > 0.0 {
-            let mut element = self.run.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
+            let mut element = self
+                .run
+                .pen
+                .element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
             element.dwell_s = seconds;
             element.override_law = self.override_law;
-            self.run.out.push(element, None);
+            self.run.pen.out.push(element, None);
         }
     }
 
     /// An order to the spindle where the tool stands.
     pub fn order(&mut self, order: SpindleOrder) {
-        let mut element = self.run.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
+        let mut element = self
+            .run
+            .pen
+            .element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
         element.override_law = self.override_law;
         let order = spindle_function(order, At::Start, Synchronisation::MvsSvs);
         element.functions = Some(Box::new([order]));
-        self.run.out.push(element, None);
+        self.run.pen.out.push(element, None);
     }
 
     /// An order to the spindle so long before the end of the next movement, s, for which the path does not wait.
@@ -265,7 +271,7 @@ impl Tracer<'_> {
 
     /// Ends the cycle: the run goes on from where the tool stands.
     pub fn finish(self) -> Result<(), Fault> {
-        if self.run.rehearsal {
+        if self.run.pen.rehearsal {
             // Cycles end where they began, more or less.
             return Ok(());
         }
@@ -273,7 +279,7 @@ impl Tracer<'_> {
             let detail = format!("the cycle needs more than {MOVEMENTS_MAX} movements");
             return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
         }
-        if self.run.tool_centre() != self.at {
+        if self.run.pen.tool_centre(&self.run.modal) != self.at {
             self.run.modal.actual = self.at;
             self.run.modal.nominal = self.at;
         }

@@ -45,10 +45,13 @@ impl Run {
         if block.sub == 0 {
             self.modal.cycle_after_each_block = false;
         }
-        self.modal
-            .cycle
-            .machining
-            .take(block.number, block.sub, words, self.unit_mm, self.block);
+        self.modal.cycle.machining.take(
+            block.number,
+            block.sub,
+            words,
+            self.numbers.unit_mm,
+            self.pen.block,
+        );
         Ok(())
     }
 
@@ -58,10 +61,13 @@ impl Run {
         words: Vec<Resolved>,
         settings: &Settings,
     ) -> Result<(), Fault> {
-        self.modal
-            .cycle
-            .effective
-            .take(block.number, block.sub, words, self.unit_mm, self.block);
+        self.modal.cycle.effective.take(
+            block.number,
+            block.sub,
+            words,
+            self.numbers.unit_mm,
+            self.pen.block,
+        );
         if block.sub == 0 {
             return Ok(());
         }
@@ -85,7 +91,7 @@ impl Run {
 
     /// Gives every word of a cycle block its value.
     pub(crate) fn resolve(&self, block: &CycleBlock, settings: &Settings) -> Result<Vec<Resolved>, Fault> {
-        let value = |value: Value| self.q.value(value);
+        let value = |value: Value| self.numbers.q.value(value);
         let mut words = Vec::with_capacity(block.words.len());
         for word in &block.words {
             words.push(match word {
@@ -99,7 +105,9 @@ impl Run {
                 CycleWord::Axis(axis) => Resolved::Axis(*axis),
                 CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
                 CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
-                CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(self.feed(*feed, settings)?)),
+                CycleWord::Feed(Feed::Value(feed)) => {
+                    Resolved::Feed(Some(self.numbers.feed(*feed, settings)?))
+                }
                 CycleWord::Direction(direction) => Resolved::Direction(*direction),
                 CycleWord::Labels(labels) => Resolved::Labels(labels.clone()),
                 CycleWord::Target(number) => Resolved::Target(*number),
@@ -125,7 +133,7 @@ impl Run {
         if definition.number == 12 {
             return self.called_program(&definition);
         }
-        self.finish_contour()?;
+        self.pen.finish_contour()?;
         match definition.number {
             1 => self.pecking(&definition, settings)?,
             2 => self.tapping(&definition, settings)?,

@@ -35,7 +35,7 @@ impl Run {
             ));
         }
         let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
-        let scale = self.plane_scale();
+        let scale = self.modal.plane_scale();
         let radius = self.used_radius()?;
         let travel = length.abs() * scale - 2.0 * radius;
         let allowance = 0.5 * width.abs() * scale - radius;
@@ -89,12 +89,12 @@ impl Run {
         let (first_axis, first) = definition.coordinate(4)?;
         let (second_axis, second) = definition.coordinate(5)?;
         let feed = definition.feed(6, 0)?;
-        let corner = definition.optional_length(6, 0).unwrap_or(0.0).abs() * self.plane_scale();
+        let corner = definition.optional_length(6, 0).unwrap_or(0.0).abs() * self.modal.plane_scale();
         let mut sides = [0.0; 2];
         for (axis, side) in [(first_axis, first), (second_axis, second)] {
             let index = self.plane_axis(axis)?;
             if let Some(slot) = sides.get_mut(index) {
-                *slot = side.abs() * self.plane_scale();
+                *slot = side.abs() * self.modal.plane_scale();
             }
         }
         let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
@@ -131,7 +131,7 @@ impl Run {
         let depth = definition.length(2, 0)?;
         let pecking = definition.length(3, 0)?;
         let plunge_feed = definition.feed(3, 0)?;
-        let pocket_radius = definition.length(4, 0)?.abs() * self.plane_scale();
+        let pocket_radius = definition.length(4, 0)?.abs() * self.modal.plane_scale();
         let feed = definition.feed(5, 0)?;
         let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
         let radius = pocket_radius - self.modal.tool_radius();

@@ -25,7 +25,7 @@ impl Run {
             else {
                 continue;
             };
-            let value = value * self.axis_unit(*axis);
+            let value = value * self.numbers.axis_unit(*axis);
             let shift = if *incremental {
                 self.modal.frame.shift[*axis] + value
             } else {
@@ -188,14 +188,14 @@ impl Run {
             return Err(Fault::new(MessageId::CyclIncomplete, "the dwell time is missing"));
         };
         let seconds = dwell_time(seconds, settings)?;
-        self.finish_contour()?;
-        let centre = self.tool_centre();
-        let mut element = self.element(Curve::Hold, centre, centre, FeedRate::Rapid);
+        self.pen.finish_contour()?;
+        let centre = self.pen.tool_centre(&self.modal);
+        let mut element = self.pen.element(Curve::Hold, centre, centre, FeedRate::Rapid);
         element.dwell_s = seconds;
-        if self.machine && seconds > 0.0 {
-            self.note_time();
+        if self.pen.machine && seconds > 0.0 {
+            self.pen.note_time();
         }
-        self.out.push(element, None);
+        self.pen.out.push(element, None);
         Ok(())
     }
 
@@ -216,7 +216,8 @@ impl Run {
             ));
         }
         self.modal.orientation_deg = Some(angle);
-        self.output_function(
+        self.pen.output_function(
+            &self.modal,
             Function::OrientationAngle(angle),
             technology::Block::OrientationAngle,
             settings,
