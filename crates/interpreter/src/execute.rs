@@ -8,6 +8,9 @@ use crate::availability::{Feature, words};
 use crate::contour::rounding::{Join, JoinKind};
 use crate::error::{Cause, Fault, Message, WarningKind};
 use crate::flow::Flow;
+use crate::functions::take_m_functions;
+use crate::path_functions::circle_centre;
+use crate::positioning::positioning;
 use crate::run::Run;
 use crate::settings::Settings;
 
@@ -22,7 +25,7 @@ impl Run {
     #[inline]
     pub fn execute_operation(&mut self, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
         match operation {
-            Operation::Motion(motion) => match self.positioning(motion, settings)? {
+            Operation::Motion(motion) => match positioning(self.context(settings), motion)? {
                 (Flow::Next, true) => self.call_cycle(settings),
                 (flow, _) => Ok(flow),
             },
@@ -71,7 +74,9 @@ impl Run {
             }
             Operation::CallLabel { label, repeats } => return self.call_label(*label, *repeats, settings),
             Operation::CallProgram(name) => return Ok(Flow::CallProgram(name.clone())),
-            Operation::CircleCentre(coordinates) => self.circle_centre(coordinates)?,
+            Operation::CircleCentre(coordinates) => {
+                circle_centre(&mut self.modal, &self.numbers, coordinates)?
+            }
             Operation::Rounding { radius, feed } => self.rounding(*radius, *feed, settings)?,
             Operation::Chamfer { length, feed } => self.chamfer(*length, *feed, settings)?,
             Operation::BlankMin(coordinates, axis) => self.blank_min(coordinates, *axis)?,
@@ -89,13 +94,13 @@ impl Run {
                 self.tool_call(*tool, *axis, *speed, [*delta_length, *delta_radius], settings)?;
             }
             Operation::Stop(m) => {
-                let mut functions = self.take_m_functions(m, settings)?;
+                let mut functions = take_m_functions(&mut self.context(settings), m)?;
                 functions.stop = true;
                 functions.cycle_call = false;
                 return self.pen.hold(&self.modal, functions);
             }
             Operation::Miscellaneous(m) => {
-                let functions = self.take_m_functions(m, settings)?;
+                let functions = take_m_functions(&mut self.context(settings), m)?;
                 let call = m.contains(99);
                 let flow = self.pen.hold(&self.modal, functions)?;
                 return if call { self.call_cycle(settings) } else { Ok(flow) };
@@ -107,7 +112,7 @@ impl Run {
             Operation::CycleCall(m) => {
                 // CYCL CALL ends M89 [003:4875-4881].
                 self.modal.cycle_after_each_block = false;
-                let mut functions = self.take_m_functions(m, settings)?;
+                let mut functions = take_m_functions(&mut self.context(settings), m)?;
                 functions.cycle_call = true;
                 self.pen.hold(&self.modal, functions)?;
                 return self.call_cycle(settings);

@@ -1,10 +1,12 @@
 //! Modal data: what stays in force from block to block.
 
+use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position};
 use bahn_program::Compensation;
 
 use crate::contour::{CornerArcs, FeedLaw, Side};
 use crate::definition::CycleData;
+use crate::error::{Cause, Fault};
 use crate::q_parameters::{QTable, preassigned};
 use crate::status::{Spindle, Status, Tool};
 
@@ -166,5 +168,31 @@ impl Modal {
     /// The spindle stops.
     pub fn stop_spindle(&mut self, q: &mut QTable) {
         self.set_spindle(self.spindle.stopped(), q);
+    }
+
+    /// Radius of the tool in use for compensation and pockets, mm.
+    ///
+    /// # Errors
+    /// With R + DR below zero.
+    pub fn used_radius(&self) -> Result<f64, Fault> {
+        match self.tool {
+            Some(tool) if tool.radius < 0.0 => {
+                let detail = format!("R + DR of tool {} is {:.4} mm", tool.number, tool.radius);
+                Err(Fault::new(MessageId::EntryValueIncorrect, detail))
+            }
+            tool => Ok(tool.map_or(0.0, |tool| tool.radius)),
+        }
+    }
+
+    /// Why the tool in use has no radius.
+    pub fn no_radius(&self, what: &str) -> Fault {
+        let why = match self.tool {
+            Some(tool) if !tool.defined => {
+                format!("tool {} is not defined, so its radius is 0", tool.number)
+            }
+            Some(tool) => format!("the radius of tool {} is 0", tool.number),
+            None => "no tool is called, so the radius is 0".to_owned(),
+        };
+        Fault::new(MessageId::ToolRadiusTooLarge, format!("{what}: {why}")).because(Cause::NoToolRadius)
     }
 }

@@ -264,32 +264,6 @@ impl Run {
         Ok((ToolShape::default(), false))
     }
 
-    /// Radius of the tool in use for compensation and pockets, mm.
-    ///
-    /// # Errors
-    /// With R + DR below zero.
-    pub(crate) fn used_radius(&self) -> Result<f64, Fault> {
-        match self.modal.tool {
-            Some(tool) if tool.radius < 0.0 => {
-                let detail = format!("R + DR of tool {} is {:.4} mm", tool.number, tool.radius);
-                Err(Fault::new(MessageId::EntryValueIncorrect, detail))
-            }
-            tool => Ok(tool.map_or(0.0, |tool| tool.radius)),
-        }
-    }
-
-    /// Why the tool in use has no radius.
-    pub(crate) fn no_radius(&self, what: &str) -> Fault {
-        let why = match self.modal.tool {
-            Some(tool) if !tool.defined => {
-                format!("tool {} is not defined, so its radius is 0", tool.number)
-            }
-            Some(tool) => format!("the radius of tool {} is 0", tool.number),
-            None => "no tool is called, so the radius is 0".to_owned(),
-        };
-        Fault::new(MessageId::ToolRadiusTooLarge, format!("{what}: {why}")).because(Cause::NoToolRadius)
-    }
-
     /// A speed within the entry range. What the spindle has is judged by the spindle itself where there is
     /// one: it tells the PLC with M2092 [000:5653].
     fn speed(&self, speed: Value, settings: &Settings) -> Result<f64, Fault> {

@@ -304,9 +304,9 @@ impl Run {
         settings: &Settings,
         watch: &Watch<'_>,
     ) -> Result<Vec<PocketArea>, Halt> {
-        let radius = self.used_radius()?;
+        let radius = self.modal.used_radius()?;
         if radius <= 0.0 {
-            return Err(self.no_radius("a contour pocket cannot be milled").into());
+            return Err(self.modal.no_radius("a contour pocket cannot be milled").into());
         }
         let rules = settings.rules.contour_pocket;
         let merge = if rules.merge_programmed {

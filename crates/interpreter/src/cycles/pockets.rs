@@ -36,7 +36,7 @@ impl Run {
         }
         let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
         let scale = self.modal.plane_scale();
-        let radius = self.used_radius()?;
+        let radius = self.modal.used_radius()?;
         let travel = length.abs() * scale - 2.0 * radius;
         let allowance = 0.5 * width.abs() * scale - radius;
         // Cutter diameter between half the slot width and the slot width [003:5130-5132].
@@ -187,9 +187,9 @@ impl Run {
 
     /// Stepover k = K · R with the overlap factor MP7430 [003:5270-5278].
     fn stepover(&self, settings: &Settings) -> Result<f64, Fault> {
-        let step = settings.rules.overlap * self.used_radius()?;
+        let step = settings.rules.overlap * self.modal.used_radius()?;
         if step <= 0.0 {
-            return Err(self.no_radius("a pocket cannot be cleared"));
+            return Err(self.modal.no_radius("a pocket cannot be cleared"));
         }
         Ok(step)
     }
