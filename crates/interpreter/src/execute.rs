@@ -6,6 +6,7 @@ use bahn_program::{Block, InvalidBlock, Operation, Value};
 
 use crate::availability::{Feature, words};
 use crate::contour::rounding::{Join, JoinKind};
+use crate::cycles::{call_cycle, define_cycle};
 use crate::error::{Cause, Fault, Message, WarningKind};
 use crate::flow::Flow;
 use crate::functions::take_m_functions;
@@ -26,7 +27,7 @@ impl Run {
     pub fn execute_operation(&mut self, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
         match operation {
             Operation::Motion(motion) => match positioning(self.context(settings), motion)? {
-                (Flow::Next, true) => self.call_cycle(settings),
+                (Flow::Next, true) => call_cycle(&mut self.context(settings)),
                 (flow, _) => Ok(flow),
             },
             Operation::Calculate {
@@ -103,19 +104,23 @@ impl Run {
                 let functions = take_m_functions(&mut self.context(settings), m)?;
                 let call = m.contains(99);
                 let flow = self.pen.hold(&self.modal, functions)?;
-                return if call { self.call_cycle(settings) } else { Ok(flow) };
+                return if call {
+                    call_cycle(&mut self.context(settings))
+                } else {
+                    Ok(flow)
+                };
             }
             Operation::ErrorNumber(number) => return Err(self.numbered_error(*number, settings)),
             Operation::Print(items) => self.print(items, settings)?,
             Operation::Plc { a, b } => self.plc(*a, *b, settings)?,
-            Operation::Cycle(block) => self.define_cycle(block, settings)?,
+            Operation::Cycle(block) => define_cycle(&mut self.context(settings), block)?,
             Operation::CycleCall(m) => {
                 // CYCL CALL ends M89 [003:4875-4881].
                 self.modal.cycle_after_each_block = false;
                 let mut functions = take_m_functions(&mut self.context(settings), m)?;
                 functions.cycle_call = true;
                 self.pen.hold(&self.modal, functions)?;
-                return self.call_cycle(settings);
+                return call_cycle(&mut self.context(settings));
             }
             Operation::Probe(block) => self.probe(block, settings)?,
             Operation::Dialog(dialog) => {

@@ -195,4 +195,9 @@ impl Modal {
         };
         Fault::new(MessageId::ToolRadiusTooLarge, format!("{what}: {why}")).because(Cause::NoToolRadius)
     }
+
+    /// The frame has changed: the tangent of the last movement is no longer known in it.
+    pub fn forget_tangent(&mut self) {
+        self.last_move = None;
+    }
 }

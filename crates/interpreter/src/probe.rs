@@ -5,7 +5,7 @@ use bahn_path::{Axis, Barrier, Curve, FeedRate, LiveData, Position};
 use bahn_program::{CycleBlock, Direction};
 
 use crate::availability::Feature;
-use crate::definition::Resolved;
+use crate::definition::{Resolved, resolve};
 use crate::error::Fault;
 use crate::modal::ReferencePlane;
 use crate::q_parameters::preassigned;
@@ -18,7 +18,7 @@ impl Run {
         if !self.executes(Feature::Probe(block.number), settings)? {
             return Ok(());
         }
-        let words = self.resolve(block, settings)?;
+        let words = resolve(block, &self.numbers, settings)?;
         match block.sub {
             0 => self.reference_plane(&words),
             1 => self.start_probing(&words, settings),

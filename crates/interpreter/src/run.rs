@@ -8,6 +8,7 @@ use bahn_program::{Compensation, InputSteps, Unit};
 
 use crate::availability::Feature;
 use crate::context::Context;
+use crate::cycles::{self, ContourJob, Halt, Watch};
 use crate::error::{Fault, WarningKind};
 use crate::flow;
 use crate::modal::Modal;
@@ -75,6 +76,16 @@ impl Run {
             at: &self.at,
             settings,
         }
+    }
+
+    /// Runs cycle 6, 15 or 16 on the contours of cycle 14.
+    pub fn contour_cycle(
+        &mut self,
+        job: &ContourJob,
+        settings: &Settings,
+        watch: &Watch<'_>,
+    ) -> Result<(), Halt> {
+        cycles::contour_cycle(&mut self.context(settings), job, watch)
     }
 
     pub fn warn(&mut self, kind: WarningKind) {
