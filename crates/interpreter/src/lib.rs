@@ -16,6 +16,7 @@
 
 mod arc;
 mod availability;
+mod blank;
 mod block_functions;
 mod checkpoints;
 mod code;
@@ -69,6 +70,7 @@ use crate::code::{Code, Fetched};
 use crate::contour::Contour;
 use crate::cycles::{ContourJob, Halt, contour_plane};
 use crate::error::Fault;
+use crate::execute::execute;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
 use crate::run::Run;
@@ -336,7 +338,7 @@ impl Interpreter {
     /// Executes the next block.
     #[inline]
     fn step(&mut self) -> Result<(), Fault> {
-        if self.run.comes_back.is_some() {
+        if self.run.tools.comes_back.is_some() {
             self.come_back();
             return Ok(());
         }
@@ -388,7 +390,7 @@ impl Interpreter {
         } else {
             0
         };
-        let flow = self.run.execute(block, &self.settings)?;
+        let flow = execute(&mut self.run, block, &self.settings)?;
         if label != 0 {
             self.check_label(label, at)?;
         }

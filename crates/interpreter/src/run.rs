@@ -1,12 +1,9 @@
 //! The state of a run: its parts.
 
-use std::collections::BTreeMap;
-
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Blank, Position, ToolShape};
-use bahn_program::{Compensation, InputSteps, Unit};
+use bahn_path::{Axis, Blank, LiveData};
+use bahn_program::{Compensation, InputSteps, Unit, Value};
 
-use crate::availability::Feature;
 use crate::context::Context;
 use crate::cycles::{self, ContourJob, Halt, Watch};
 use crate::error::{Fault, WarningKind};
@@ -14,21 +11,11 @@ use crate::flow;
 use crate::modal::Modal;
 use crate::numbers::Numbers;
 use crate::pen::Pen;
+use crate::probe::{self, Probing};
 use crate::settings::Settings;
 use crate::status::Status;
 use crate::told::Told;
-
-/// A probing that waits for its touch.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Probing {
-    pub axis: Axis,
-    pub target: u16,
-    /// +1 in positive, -1 in negative axis direction.
-    pub direction: f64,
-    pub radius: f64,
-    /// Pre-position to which the probe returns.
-    pub before: Position,
-}
+use crate::tools::Tools;
 
 /// Everything that changes while a program runs. A copy of it is a checkpoint.
 #[derive(Clone, Debug)]
@@ -38,12 +25,9 @@ pub(crate) struct Run {
     pub numbers: Numbers,
     pub pen: Pen,
     pub told: Told,
-    /// Tools defined by TOOL DEF.
-    pub tools: BTreeMap<u32, ToolShape>,
+    pub tools: Tools,
     /// The first BLK FORM of the main program.
     pub blank: Option<Blank>,
-    /// The tool was replaced, and the path is still to come back to where it was, programmed and moved.
-    pub comes_back: Option<(Position, Position)>,
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
 }
@@ -56,9 +40,8 @@ impl Run {
             numbers: Numbers::new(settings, unit),
             pen: Pen::new(settings.machine),
             told: Told::default(),
-            tools: BTreeMap::new(),
+            tools: Tools::default(),
             blank: None,
-            comes_back: None,
             probing: None,
         };
         run.take_status(&settings.status);
@@ -68,14 +51,24 @@ impl Run {
     /// What a block may touch.
     #[inline]
     pub fn context<'a>(&'a mut self, settings: &'a Settings) -> Context<'a> {
-        Context {
+        self.parts(settings).0
+    }
+
+    /// What a block may touch; beside it tools and blank.
+    #[inline]
+    pub fn parts<'a>(
+        &'a mut self,
+        settings: &'a Settings,
+    ) -> (Context<'a>, &'a mut Tools, &'a mut Option<Blank>) {
+        let context = Context {
             modal: &mut self.modal,
             numbers: &mut self.numbers,
             pen: &mut self.pen,
             told: &mut self.told,
             at: &self.at,
             settings,
-        }
+        };
+        (context, &mut self.tools, &mut self.blank)
     }
 
     /// Runs cycle 6, 15 or 16 on the contours of cycle 14.
@@ -86,14 +79,6 @@ impl Run {
         watch: &Watch<'_>,
     ) -> Result<(), Halt> {
         cycles::contour_cycle(&mut self.context(settings), job, watch)
-    }
-
-    pub fn warn(&mut self, kind: WarningKind) {
-        self.told.warn(self.pen.block, kind);
-    }
-
-    pub fn executes(&mut self, feature: Feature, settings: &Settings) -> Result<bool, Fault> {
-        self.told.executes(self.pen.block, feature, settings)
     }
 
     /// Begins with what the run before has left in force.
@@ -123,7 +108,7 @@ impl Run {
             && self.pen.contour.is_between_contours()
             && (modal.corner_arcs.is_none() || self.pen.contour.is_empty())
             && self.pen.out.queue.is_empty()
-            && self.comes_back.is_none()
+            && self.tools.comes_back.is_none()
             && self.probing.is_none()
             && self.pen.recording.is_none()
     }
@@ -147,8 +132,40 @@ impl Run {
             return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
         }
         if first {
-            self.warn(WarningKind::Rounded { step });
+            self.told.warn(self.pen.block, WarningKind::Rounded { step });
         }
         Ok(())
+    }
+
+    /// TOOL CALL, see [`Tools::call`].
+    pub fn tool_call(
+        &mut self,
+        tool: Option<Value>,
+        axis: Option<Axis>,
+        speed: Option<Value>,
+        oversize: [Option<Value>; 2],
+        settings: &Settings,
+    ) -> Result<(), Fault> {
+        let (mut c, tools, blank) = self.parts(settings);
+        tools.call(&mut c, blank.as_ref(), tool, axis, speed, oversize)
+    }
+
+    /// See [`Tools::replace`].
+    pub fn replace_tool(&mut self, number: u32, settings: &Settings) -> Result<(), Fault> {
+        let (mut c, tools, blank) = self.parts(settings);
+        tools.replace(&mut c, blank.as_ref(), number)
+    }
+
+    /// See [`Tools::come_back`].
+    pub fn come_back(&mut self) {
+        self.tools.come_back(&mut self.modal, &mut self.pen);
+    }
+
+    /// See [`probe::finish_probing`].
+    pub fn finish_probing(&mut self, live: &LiveData, settings: &Settings) -> Result<(), Fault> {
+        let Some(probing) = self.probing.take() else {
+            return Ok(());
+        };
+        probe::finish_probing(&mut self.context(settings), &probing, live)
     }
 }
