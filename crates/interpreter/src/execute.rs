@@ -2,7 +2,7 @@
 
 use bahn_parameters::{MessageId, technology};
 use bahn_path::Function;
-use bahn_program::{Block, InvalidBlock, Operation, Value};
+use bahn_program::{InvalidBlock, Operation, Value};
 
 use crate::availability::{Feature, words};
 use crate::blank::{blank_max, blank_min};
@@ -19,15 +19,9 @@ use crate::q_parameters::QTable;
 use crate::run::Run;
 use crate::settings::Settings;
 
-/// Executes a block. The caller has already passed over skipped blocks.
+/// Executes what a block says. The caller has already passed over skipped blocks.
 #[inline]
-pub(crate) fn execute(run: &mut Run, block: &Block, settings: &Settings) -> Result<Flow, Fault> {
-    execute_operation(run, &block.operation, settings)
-}
-
-/// Executes what a block says.
-#[inline]
-fn execute_operation(run: &mut Run, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
+pub(crate) fn execute(run: &mut Run, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
     match operation {
         Operation::Motion(motion) => match positioning(run.context(settings), motion)? {
             (Flow::Next, true) => call_cycle(&mut run.context(settings)),
@@ -64,6 +58,8 @@ fn execute_operation(run: &mut Run, operation: &Operation, settings: &Settings) 
 }
 
 fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Result<Flow, Fault> {
+    let (mut c, tools, blank) = run.parts(settings);
+    let c = &mut c;
     match operation {
         Operation::End(_) => return Ok(Flow::EndOfProgram),
         Operation::Formula { target, expression } => {
@@ -73,26 +69,20 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
                     "this control has no formulas",
                 ));
             }
-            let value = run.numbers.q.evaluate(expression)?;
-            run.numbers.q.set(*target, value)?;
+            let value = c.numbers.q.evaluate(expression)?;
+            c.numbers.q.set(*target, value)?;
         }
         Operation::CallLabel { label, repeats } => {
-            return call_label(&run.numbers.q, *label, *repeats, settings);
+            return call_label(&c.numbers.q, *label, *repeats, settings);
         }
         Operation::CallProgram(name) => return Ok(Flow::CallProgram(name.clone())),
-        Operation::CircleCentre(coordinates) => circle_centre(&mut run.modal, &run.numbers, coordinates)?,
-        Operation::Rounding { radius, feed } => rounding(&mut run.context(settings), *radius, *feed)?,
-        Operation::Chamfer { length, feed } => chamfer(&mut run.context(settings), *length, *feed)?,
-        Operation::BlankMin(coordinates, axis) => {
-            blank_min(&mut run.modal, &run.numbers, coordinates, *axis)?
-        }
-        Operation::BlankMax(coordinates) => {
-            let (mut c, _, blank) = run.parts(settings);
-            blank_max(&mut c, blank, coordinates)?;
-        }
+        Operation::CircleCentre(coordinates) => circle_centre(c.modal, c.numbers, coordinates)?,
+        Operation::Rounding { radius, feed } => rounding(c, *radius, *feed)?,
+        Operation::Chamfer { length, feed } => chamfer(c, *length, *feed)?,
+        Operation::BlankMin(coordinates, axis) => blank_min(c.modal, c.numbers, coordinates, *axis)?,
+        Operation::BlankMax(coordinates) => blank_max(c, blank, coordinates)?,
         Operation::ToolDefinition { tool, length, radius } => {
-            let (mut c, tools, _) = run.parts(settings);
-            tools.define(&mut c, *tool, *length, *radius)?;
+            tools.define(c, *tool, *length, *radius)?;
         }
         Operation::ToolCall {
             tool,
@@ -101,38 +91,35 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
             delta_length,
             delta_radius,
         } => {
-            run.tool_call(*tool, *axis, *speed, [*delta_length, *delta_radius], settings)?;
+            let oversize = [*delta_length, *delta_radius];
+            tools.call(c, blank.as_ref(), *tool, *axis, *speed, oversize)?;
         }
         Operation::Stop(m) => {
-            let mut functions = take_m_functions(&mut run.context(settings), m)?;
+            let mut functions = take_m_functions(c, m)?;
             functions.stop = true;
             functions.cycle_call = false;
-            return run.pen.hold(&run.modal, functions);
+            return c.pen.hold(c.modal, functions);
         }
         Operation::Miscellaneous(m) => {
-            let functions = take_m_functions(&mut run.context(settings), m)?;
+            let functions = take_m_functions(c, m)?;
             let call = m.contains(99);
-            let flow = run.pen.hold(&run.modal, functions)?;
-            return if call {
-                call_cycle(&mut run.context(settings))
-            } else {
-                Ok(flow)
-            };
+            let flow = c.pen.hold(c.modal, functions)?;
+            return if call { call_cycle(c) } else { Ok(flow) };
         }
-        Operation::ErrorNumber(number) => return Err(numbered_error(&run.numbers.q, *number, settings)),
-        Operation::Print(items) => print(&mut run.context(settings), items)?,
-        Operation::Plc { a, b } => plc(&mut run.context(settings), *a, *b)?,
-        Operation::Cycle(block) => define_cycle(&mut run.context(settings), block)?,
+        Operation::ErrorNumber(number) => return Err(numbered_error(&c.numbers.q, *number, settings)),
+        Operation::Print(items) => print(c, items)?,
+        Operation::Plc { a, b } => plc(c, *a, *b)?,
+        Operation::Cycle(block) => define_cycle(c, block)?,
         Operation::CycleCall(m) => {
             // CYCL CALL ends M89 [003:4875-4881].
-            run.modal.cycle_after_each_block = false;
-            let mut functions = take_m_functions(&mut run.context(settings), m)?;
+            c.modal.cycle_after_each_block = false;
+            let mut functions = take_m_functions(c, m)?;
             functions.cycle_call = true;
-            run.pen.hold(&run.modal, functions)?;
-            return call_cycle(&mut run.context(settings));
+            c.pen.hold(c.modal, functions)?;
+            return call_cycle(c);
         }
         Operation::Probe(block) => {
-            if let Some(probing) = probe(&mut run.context(settings), block)? {
+            if let Some(probing) = probe(c, block)? {
                 run.probing = Some(probing);
             }
         }
@@ -142,7 +129,7 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
             } else {
                 words::DIALOG_DEFINITION
             };
-            run.context(settings).executes(Feature::Word(name))?;
+            c.executes(Feature::Word(name))?;
         }
         Operation::Invalid(invalid) => return unreadable(run, invalid, settings),
         Operation::Motion(_)
@@ -286,7 +273,7 @@ fn unreadable(run: &mut Run, block: &InvalidBlock, settings: &Settings) -> Resul
     run.context(settings)
         .warn(WarningKind::PassedOver { what: words });
     match operation {
-        Some(operation) => execute_operation(run, &operation, settings),
+        Some(operation) => execute(run, &operation, settings),
         None => Ok(Flow::Next),
     }
 }

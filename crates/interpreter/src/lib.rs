@@ -390,7 +390,7 @@ impl Interpreter {
         } else {
             0
         };
-        let flow = execute(&mut self.run, block, &self.settings)?;
+        let flow = execute(&mut self.run, &block.operation, &self.settings)?;
         if label != 0 {
             self.check_label(label, at)?;
         }
