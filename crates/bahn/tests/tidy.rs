@@ -73,6 +73,17 @@ const LINES_MAX: usize = 700;
 /// Files that use each other in a circle. None should; a circle that is opened leaves the list.
 const CIRCLES: &[(&str, &[&str])] = &[];
 
+/// What holds the parts of a room together, with its file. It only orders: what its parts do stands with them, and
+/// they get what they may touch.
+const WHOLES: &[(&str, &str, &str)] = &[
+    ("interpreter", "Run", "run.rs"),
+    ("control", "Control", "control.rs"),
+    ("control", "Kernel", "kernel.rs"),
+    ("control", "Channel", "channel.rs"),
+    ("control", "MachineSide", "machine.rs"),
+    ("control", "ProgramRun", "run.rs"),
+];
+
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];
 
 fn root() -> PathBuf {
@@ -221,6 +232,49 @@ fn files_use_each_other_in_no_circle() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// The methods of a whole stand in its own file: a file that gets parts of it has functions, or parts, of its own.
+#[test]
+fn a_whole_has_its_methods_in_its_own_file() {
+    for (room, whole, file) in WHOLES {
+        let folder = root().join("crates").join(room).join("src");
+        let found: Vec<PathBuf> = source_files(&folder)
+            .into_iter()
+            .filter(|file| has_methods_of(&code_of(file), whole))
+            .collect();
+        assert_eq!(found, [folder.join(file)], "files with `impl {whole}`");
+    }
+}
+
+/// Whether the code has methods of a type that are those of no trait.
+fn has_methods_of(code: &str, of: &str) -> bool {
+    let heads = code.match_indices("impl").filter_map(|(at, mark)| {
+        let is_word = code[..at].chars().next_back().is_none_or(char::is_whitespace);
+        let head = code[at + mark.len()..].split('{').next()?;
+        is_word.then_some(head)
+    });
+    heads.into_iter().any(|head| {
+        // Behind the generic parameters of `impl<'a> Type<'a>`.
+        let name = match head.strip_prefix('<') {
+            Some(generic) => generic.split_once("> ").map_or("", |(_, name)| name),
+            None => head.trim_start(),
+        };
+        let name = name.split(['<', ' ', '\n']).next().unwrap_or_default();
+        name.rsplit("::").next() == Some(of) && !head.contains(" for ")
+    })
+}
+
+#[test]
+fn methods_are_told_from_those_of_traits() {
+    assert!(has_methods_of("struct Run;\nimpl Run {", "Run"));
+    assert!(has_methods_of("impl<'a> crate::run::Run<'a> {", "Run"));
+    assert!(!has_methods_of(
+        "impl Runner {\n fn run(&self) -> impl Iterator<Item = Run> {",
+        "Run"
+    ));
+    assert!(!has_methods_of("impl Drop for Run {", "Run"));
+    assert!(!has_methods_of("impl Run for Machine {", "Run"));
 }
 
 /// Which file of a room uses which.

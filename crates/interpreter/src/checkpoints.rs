@@ -20,7 +20,7 @@ pub struct Checkpoint {
 impl Checkpoint {
     /// Count of executed blocks up to and with the block that is executed next: the sequence of its elements.
     pub fn sequence(&self) -> u64 {
-        self.run.sequence + 1
+        self.run.pen.sequence + 1
     }
 
     /// The block that is executed next.
@@ -44,7 +44,7 @@ impl Kept {
         // Nobody goes back to a block of which nothing is on its way.
         if let Some(last) = self.states.back().map(Checkpoint::sequence)
             && last > self.handed
-            && !run.contour.holds_from(last)
+            && !run.pen.contour.holds_from(last)
         {
             self.states.pop_back();
         }

@@ -2,9 +2,12 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, BlockRef};
-use bahn_program::{CycleFunction, Direction, Quantity, cycle_parameters};
+use bahn_program::{
+    CycleBlock, CycleFunction, CycleWord, Direction, Feed, Quantity, Value, cycle_parameters,
+};
 
 use crate::error::Fault;
+use crate::numbers::Numbers;
 use crate::settings::Settings;
 
 /// The definitions in force: the machining cycle for the call, and the one that acts at definition.
@@ -194,6 +197,37 @@ impl Definition {
             .block(sub)
             .contains(&Resolved::Direction(Direction::Clockwise))
     }
+}
+
+/// Gives every word of a cycle block its value.
+pub(crate) fn resolve(
+    block: &CycleBlock,
+    numbers: &Numbers,
+    settings: &Settings,
+) -> Result<Vec<Resolved>, Fault> {
+    let value = |value: Value| numbers.q.value(value);
+    let mut words = Vec::with_capacity(block.words.len());
+    for word in &block.words {
+        words.push(match word {
+            CycleWord::Text(text) => Resolved::Text(text.clone()),
+            CycleWord::Number(number) => Resolved::Number(value(*number)?),
+            CycleWord::Coordinate(axis, word) => Resolved::Coordinate {
+                axis: *axis,
+                value: value(word.value)?,
+                incremental: word.incremental,
+            },
+            CycleWord::Axis(axis) => Resolved::Axis(*axis),
+            CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
+            CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
+            CycleWord::Feed(Feed::Value(feed)) => Resolved::Feed(Some(numbers.feed(*feed, settings)?)),
+            CycleWord::Direction(direction) => Resolved::Direction(*direction),
+            CycleWord::Labels(labels) => Resolved::Labels(labels.clone()),
+            CycleWord::Target(number) => Resolved::Target(*number),
+            CycleWord::Assignment(number, assigned) => Resolved::Assignment(*number, value(*assigned)?),
+            CycleWord::M(_) => continue,
+        });
+    }
+    Ok(words)
 }
 
 /// Refuses dwell times, s, that the model does not take.

@@ -16,7 +16,7 @@ impl Interpreter {
     /// [`Step::Starved`]: bahn_path::Step::Starved
     pub fn grow(&mut self, program: Arc<Program>) {
         let had_begun = self.code.program(0).is_some_and(|main| main.begin().is_some());
-        if !had_begun && self.run.sequence == 0 {
+        if !had_begun && self.run.pen.sequence == 0 {
             // Only now it is known what it is measured in.
             self.run = Run::new(&self.settings, program.unit());
         }

@@ -16,9 +16,11 @@
 
 mod arc;
 mod availability;
+mod blank;
 mod block_functions;
 mod checkpoints;
 mod code;
+mod context;
 mod contour;
 mod cycles;
 mod definition;
@@ -28,9 +30,11 @@ mod flow;
 mod functions;
 mod growing;
 mod modal;
+mod numbers;
 mod output;
 mod outside;
 mod path_functions;
+mod pen;
 mod positioning;
 mod probe;
 mod q_parameters;
@@ -66,6 +70,7 @@ use crate::code::{Code, Fetched};
 use crate::contour::Contour;
 use crate::cycles::{ContourJob, Halt, contour_plane};
 use crate::error::Fault;
+use crate::execute::execute;
 use crate::flow::Flow;
 use crate::output::{Item, Output};
 use crate::run::Run;
@@ -174,7 +179,7 @@ impl Interpreter {
 
     /// Executed blocks; BEGIN, END, comments and skipped blocks do not count.
     pub fn blocks_executed(&self) -> u64 {
-        self.run.sequence
+        self.run.pen.sequence
     }
 
     /// What is in force behind the last block that was read.
@@ -184,7 +189,7 @@ impl Interpreter {
 
     /// The Q parameters by number. Numbers are those of the control model.
     pub fn q_values(&self) -> &[f64] {
-        self.run.q.values()
+        self.run.numbers.q.values()
     }
 
     /// Position of the tool centre at the end of the last element handed out, workpiece coordinates, mm and
@@ -237,7 +242,7 @@ impl Interpreter {
         self.waiting = checkpoint.waiting;
         self.position = checkpoint.position;
         if let Some(kept) = &mut self.kept {
-            kept.handed(self.run.sequence);
+            kept.handed(self.run.pen.sequence);
         }
     }
 
@@ -245,9 +250,9 @@ impl Interpreter {
     /// were moved. What was on its way is dropped; radius compensation begins anew with the next block, whose
     /// incremental coordinates count from where it would have begun.
     pub fn relocate(&mut self, position: &Position) {
-        self.run.contour = Contour::default();
-        self.run.out = Output::default();
-        self.run.increments_from = Some(self.run.modal.nominal);
+        self.run.pen.contour = Contour::default();
+        self.run.pen.out = Output::default();
+        self.run.modal.increments_from = Some(self.run.modal.nominal);
         self.run.modal.nominal = *position;
         self.run.modal.actual = *position;
         self.run.modal.last_move = None;
@@ -259,7 +264,7 @@ impl Interpreter {
     /// block starts where they stand now, workpiece coordinates. Without effect while a contour is on its
     /// way; axes whose place is unknown stay.
     pub fn stand_at(&mut self, position: &Position) {
-        if !self.run.contour.is_empty() || !self.run.out.queue.is_empty() {
+        if !self.run.pen.contour.is_empty() || !self.run.pen.out.queue.is_empty() {
             return;
         }
         for axis in Axis::ALL.into_iter().filter(|axis| !position[*axis].is_nan()) {
@@ -293,7 +298,7 @@ impl Interpreter {
         if self.pending.is_lost() {
             self.give_up_work();
         }
-        while self.run.out.queue.is_empty() && self.ended.is_none() && self.pending.is_none() {
+        while self.run.pen.out.queue.is_empty() && self.ended.is_none() && self.pending.is_none() {
             if !self.spend(1) {
                 return;
             }
@@ -306,7 +311,8 @@ impl Interpreter {
             }
             // A contour that was broken off leaves its block where it is.
             let stays = self.run.at.block_ref() == at;
-            if (stays || self.run.since_motion.is_multiple_of(INTERRUPT_PERIOD)) && self.is_interrupted() {
+            if (stays || self.run.pen.since_motion.is_multiple_of(INTERRUPT_PERIOD)) && self.is_interrupted()
+            {
                 return;
             }
         }
@@ -332,7 +338,7 @@ impl Interpreter {
     /// Executes the next block.
     #[inline]
     fn step(&mut self) -> Result<(), Fault> {
-        if self.run.comes_back.is_some() {
+        if self.run.tools.comes_back.is_some() {
             self.come_back();
             return Ok(());
         }
@@ -343,25 +349,25 @@ impl Interpreter {
         let Some(Fetched { block, next, rounded }) = self.code.block(at.program, at.block) else {
             return self.end_of_program();
         };
-        self.run.line_follows = next.is_some_and(is_line);
+        self.run.pen.line_follows = next.is_some_and(is_line);
         if block.skip && self.settings.skip_blocks {
             self.run.at.block += 1;
             return Ok(());
         }
-        self.run.join_follows = next.is_some_and(|next| {
+        self.run.pen.join_follows = next.is_some_and(|next| {
             matches!(
                 next.operation,
                 Operation::Rounding { .. } | Operation::Chamfer { .. }
             )
         });
         if let Some(kept) = &mut self.kept
-            && self.run.recording.is_none()
+            && self.run.pen.recording.is_none()
             && acts(&block.operation)
         {
             kept.keep(&mut self.run, self.position);
             self.work = self.work.map(|work| work.saturating_sub(STATE_COST - 1));
         }
-        self.run.block = at;
+        self.run.pen.block = at;
         if rounded {
             self.run.tell_rounded(&self.settings)?;
         }
@@ -369,9 +375,9 @@ impl Interpreter {
             block.operation,
             Operation::Begin(_) | Operation::End(_) | Operation::Comment(_)
         ) {
-            self.run.sequence += 1;
-            self.run.since_motion += 1;
-            if self.run.since_motion > self.settings.max_blocks_without_motion {
+            self.run.pen.sequence += 1;
+            self.run.pen.since_motion += 1;
+            if self.run.pen.since_motion > self.settings.max_blocks_without_motion {
                 let blocks = self.settings.max_blocks_without_motion;
                 return Err(Fault::new(
                     MessageId::EndlessLoop,
@@ -384,7 +390,7 @@ impl Interpreter {
         } else {
             0
         };
-        let flow = self.run.execute(block, &self.settings)?;
+        let flow = execute(&mut self.run, &block.operation, &self.settings)?;
         if label != 0 {
             self.check_label(label, at)?;
         }
@@ -412,7 +418,7 @@ impl Interpreter {
             Flow::CallProgram(name) => self.call_program(&name)?,
             Flow::EndOfProgram => return self.end_of_program(),
             Flow::EndOfRun => return self.end_of_run(),
-            Flow::ContourCycle if self.run.rehearsal => self.rehearse_contours()?,
+            Flow::ContourCycle if self.run.pen.rehearsal => self.rehearse_contours()?,
             Flow::ContourCycle => match self.contour_cycle() {
                 Err(Halt::Fault(fault)) => return Err(fault),
                 // Its block is executed anew when the run goes on.
@@ -485,8 +491,7 @@ impl Interpreter {
     /// Each program has its own unit; Q113 keeps that of the main program (inferred).
     fn enter_unit(&mut self) {
         if let Some(program) = self.code.program(self.run.at.program) {
-            self.run.unit = program.unit();
-            self.run.unit_mm = program.unit().mm();
+            self.run.numbers.enter(program.unit());
         }
     }
 
@@ -500,9 +505,11 @@ impl Interpreter {
 
     fn end_of_run(&mut self) -> Result<(), Fault> {
         if self.run.modal.blank_min.is_some() {
-            self.run.warn(WarningKind::BlankIncomplete);
+            self.run
+                .told
+                .warn(self.run.pen.block, WarningKind::BlankIncomplete);
         }
-        self.run.finish_contour()?;
+        self.run.pen.finish_contour()?;
         self.ended = Some(Ended::Finished);
         Ok(())
     }
@@ -511,10 +518,10 @@ impl Interpreter {
         let block = fault.block.unwrap_or(at);
         if fault.ahead && block != at {
             // Found by looking ahead: the path ends before the element that causes it.
-            self.run.contour = Contour::default();
+            self.run.pen.contour = Contour::default();
         } else {
             // What was complete before the block still counts; a second fault on the way changes nothing.
-            let _ = self.run.finish_contour();
+            let _ = self.run.pen.finish_contour();
         }
         let program = self
             .code
@@ -538,8 +545,8 @@ impl Interpreter {
             return Err(no_contours().into());
         }
         let mut recorder = self.run.clone();
-        recorder.contour = Contour::recorder();
-        recorder.out = Output::default();
+        recorder.pen.contour = Contour::recorder();
+        recorder.pen.out = Output::default();
         recorder.modal.compensation = bahn_program::Compensation::Off;
         std::mem::swap(&mut self.run, &mut recorder);
         let job = self.record_labels(&labels);
@@ -566,7 +573,7 @@ impl Interpreter {
         let mut job = None;
         for &label in labels {
             self.run.at = home.clone();
-            self.run.recording = Some(AxisSet::EMPTY);
+            self.run.pen.recording = Some(AxisSet::EMPTY);
             let target = self.label(label)?;
             self.run.at.call(label, target, self.settings.model.limits())?;
             while self.run.at.depth() > home.depth() {
@@ -582,8 +589,8 @@ impl Interpreter {
                         .into());
                 }
             }
-            let moves = self.run.contour.take_recorded(&mut self.run.out)?;
-            let axes = self.run.recording.unwrap_or(AxisSet::EMPTY);
+            let moves = self.run.pen.contour.take_recorded(&mut self.run.pen.out)?;
+            let axes = self.run.pen.recording.unwrap_or(AxisSet::EMPTY);
             let job = job.get_or_insert_with(|| ContourJob::new(contour_plane(self.run.modal.plane, axes)));
             job.add(&moves).map_err(|fault| {
                 fault.at(BlockRef {
@@ -619,12 +626,12 @@ impl ElementSource for Interpreter {
         if let Some(barrier) = self.waiting {
             return Step::Barrier(barrier);
         }
-        if self.run.out.queue.is_empty() {
+        if self.run.pen.out.queue.is_empty() {
             self.advance();
         } else if !self.spend(1) {
             return Step::Starved;
         }
-        match self.run.out.queue.pop_front() {
+        match self.run.pen.out.queue.pop_front() {
             Some(Item::Element(element)) => {
                 self.position = element.end;
                 if let Some(kept) = &mut self.kept {
@@ -649,7 +656,7 @@ impl ElementSource for Interpreter {
             return;
         };
         for &(number, value) in &live.q_values {
-            self.run.q.preassign(number, value);
+            self.run.numbers.q.preassign(number, value);
         }
         if let Barrier::Probe { block, .. } = barrier
             && let Err(fault) = self.run.finish_probing(&live, &self.settings)

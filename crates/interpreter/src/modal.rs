@@ -1,10 +1,13 @@
 //! Modal data: what stays in force from block to block.
 
+use bahn_parameters::MessageId;
 use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position};
 use bahn_program::Compensation;
 
-use crate::contour::{CornerArcs, FeedLaw};
+use crate::contour::{CornerArcs, FeedLaw, Side};
 use crate::definition::CycleData;
+use crate::error::{Cause, Fault};
+use crate::q_parameters::{QTable, preassigned};
 use crate::status::{Spindle, Status, Tool};
 
 /// The modal data of a run [003:2164-2188] [003:6199-6205].
@@ -14,6 +17,9 @@ pub(crate) struct Modal {
     pub nominal: Position,
     /// Where the uncompensated path ended; differs from `nominal` after R+ and R-.
     pub actual: Position,
+    /// After an interruption within a block: where the block began. Its incremental coordinates count from
+    /// there, so that it ends where it was programmed to (inferred).
+    pub increments_from: Option<Position>,
     /// Coordinate transformations.
     pub frame: Frame,
     /// Working plane of the tool axis.
@@ -86,6 +92,7 @@ impl Modal {
         Modal {
             nominal: start,
             actual: start,
+            increments_from: None,
             frame: Frame::identity(Plane::XY),
             plane: Plane::XY,
             contour_plane: Plane::XY,
@@ -131,5 +138,66 @@ impl Modal {
     /// Radius of the tool in use, mm; 0 without a tool.
     pub fn tool_radius(&self) -> f64 {
         self.tool.map_or(0.0, |tool| tool.radius.max(0.0))
+    }
+
+    /// Side of the tool in workpiece coordinates: a mirrored contour has it on the other side.
+    pub fn side(&self) -> Side {
+        let side = match self.compensation {
+            Compensation::Left => Side::Left,
+            Compensation::Right => Side::Right,
+            _ => return Side::Off,
+        };
+        if self.frame.reverses(self.contour_plane) {
+            side.mirrored()
+        } else {
+            side
+        }
+    }
+
+    /// Scaling factor in the working plane.
+    pub fn plane_scale(&self) -> f64 {
+        self.frame.factor[self.plane.first].abs()
+    }
+
+    /// The spindle turns, or stands, as Q110 says.
+    pub fn set_spindle(&mut self, spindle: Spindle, q: &mut QTable) {
+        self.spindle = spindle;
+        q.preassign(preassigned::SPINDLE, spindle.q110());
+    }
+
+    /// The spindle stops.
+    pub fn stop_spindle(&mut self, q: &mut QTable) {
+        self.set_spindle(self.spindle.stopped(), q);
+    }
+
+    /// Radius of the tool in use for compensation and pockets, mm.
+    ///
+    /// # Errors
+    /// With R + DR below zero.
+    pub fn used_radius(&self) -> Result<f64, Fault> {
+        match self.tool {
+            Some(tool) if tool.radius < 0.0 => {
+                let detail = format!("R + DR of tool {} is {:.4} mm", tool.number, tool.radius);
+                Err(Fault::new(MessageId::EntryValueIncorrect, detail))
+            }
+            tool => Ok(tool.map_or(0.0, |tool| tool.radius)),
+        }
+    }
+
+    /// Why the tool in use has no radius.
+    pub fn no_radius(&self, what: &str) -> Fault {
+        let why = match self.tool {
+            Some(tool) if !tool.defined => {
+                format!("tool {} is not defined, so its radius is 0", tool.number)
+            }
+            Some(tool) => format!("the radius of tool {} is 0", tool.number),
+            None => "no tool is called, so the radius is 0".to_owned(),
+        };
+        Fault::new(MessageId::ToolRadiusTooLarge, format!("{what}: {why}")).because(Cause::NoToolRadius)
+    }
+
+    /// The frame has changed: the tangent of the last movement is no longer known in it.
+    pub fn forget_tangent(&mut self) {
+        self.last_move = None;
     }
 }

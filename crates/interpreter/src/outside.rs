@@ -40,7 +40,7 @@ impl Interpreter {
 
     /// Sets a Q parameter from outside: the PLC, or the operator.
     pub fn set_q(&mut self, number: u16, value: f64) {
-        self.run.q.preassign(number, value);
+        self.run.numbers.q.preassign(number, value);
     }
 
     /// Executes a TOOL CALL that is in no program before the next block: tool number, tool axis, spindle speed
@@ -54,7 +54,7 @@ impl Interpreter {
     ) {
         let at = self.run.at.block_ref();
         let current = self.run.modal.tool.map(|tool| f64::from(tool.number));
-        let unit = self.run.unit_mm;
+        let unit = self.run.numbers.unit_mm;
         let result = self.run.tool_call(
             tool.or(current).map(Value::Number),
             axis,
@@ -77,7 +77,7 @@ impl Interpreter {
         self.waiting.is_none()
             && self.pending.is_none()
             && run.is_between_contours(tool)
-            && run.contour.is_empty()
+            && run.pen.contour.is_empty()
     }
 
     /// The first block behind a sequence that is read already and [may](Interpreter::may_replace_tool) have the tool
@@ -99,7 +99,7 @@ impl Interpreter {
         let at = self.run.at.block_ref();
         self.begin_unwritten_block();
         // What is held back is executed already.
-        self.run.contour = Contour::default();
+        self.run.pen.contour = Contour::default();
         if let Err(fault) = self.run.replace_tool(number, &self.settings) {
             self.fail(fault, at);
         }
@@ -115,7 +115,7 @@ impl Interpreter {
         if let Some(kept) = &mut self.kept {
             kept.keep(&mut self.run, self.position);
         }
-        self.run.sequence += 1;
+        self.run.pen.sequence += 1;
     }
 }
 

@@ -1,259 +1,315 @@
 //! Poles, arcs and polar coordinates: the end point and the curve of a path function.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Arc, Axis, AxisSet, Curve, Plane, Point2};
-use bahn_program::{Coordinates, Direction, Motion, Value, Word};
+use bahn_path::{Arc, Axis, AxisSet, Curve, Plane, Point2, Position};
+use bahn_program::{Coordinates, Direction, Motion, MotionKind, Value, Word};
 
 use crate::arc;
 use crate::error::{Cause, Fault};
-use crate::positioning::{Programmed, known};
+use crate::modal::Modal;
+use crate::numbers::{Numbers, known};
 use crate::q_parameters::{cos_deg, sin_deg};
-use crate::run::Run;
 use crate::settings::Settings;
 
-impl Run {
-    /// CC: pole and circle centre; without coordinates the last programmed position [003:2748-2775].
-    pub(crate) fn circle_centre(&mut self, coordinates: &Coordinates) -> Result<(), Fault> {
-        let here = self.modal.frame.to_programmed(&self.modal.nominal);
-        let axes: Vec<Axis> = coordinates.axes().iter().collect();
-        let plane = match axes[..] {
-            [] => self.modal.plane,
-            [a, b] => Plane::of_axes(a, b).ok_or(Fault::from(MessageId::PlaneWronglyDefined))?,
-            _ => {
-                return Err(Fault::new(
-                    MessageId::PlaneWronglyDefined,
-                    "CC needs both axes of a plane",
-                ));
-            }
-        };
-        let mut p = Programmed {
-            from: here,
-            to: here,
-            axes: AxisSet::EMPTY,
-            curve: Curve::Hold,
-        };
-        self.coordinates(coordinates, &mut p)?;
-        let point = plane.point(&p.to).map(known);
-        self.modal.pole = Some((plane, point));
-        Ok(())
-    }
+/// A movement in programmed coordinates.
+pub(crate) struct Programmed {
+    pub from: Position,
+    pub to: Position,
+    /// Axes that the block moves.
+    pub axes: AxisSet,
+    pub curve: Curve,
+}
 
-    pub(crate) fn pole(&self) -> Result<(Plane, Point2), Fault> {
-        self.modal.pole.ok_or_else(|| {
-            Fault::new(MessageId::PlaneWronglyDefined, "no CC is programmed before").because(Cause::NoPole)
-        })
-    }
-
-    /// The plane of an arc from its words: two axes name it, otherwise the working plane.
-    pub(crate) fn plane_of(&self, coordinates: &Coordinates) -> Result<Plane, Fault> {
-        let axes: Vec<Axis> = coordinates.axes().iter().collect();
-        match axes[..] {
-            [a, b] => Plane::of_axes(a, b).ok_or(Fault::from(MessageId::PlaneWronglyDefined)),
-            [a] if self.modal.plane.contains(a) => Ok(self.modal.plane),
-            [] => Ok(self.modal.plane),
-            _ => Err(Fault::new(
-                MessageId::PlaneWronglyDefined,
-                "the end point of an arc lies in a plane",
-            )),
+pub(crate) fn programmed(
+    modal: &mut Modal,
+    numbers: &Numbers,
+    settings: &Settings,
+    motion: &Motion,
+) -> Result<Programmed, Fault> {
+    let from = modal.frame.to_programmed(&modal.nominal);
+    let mut p = Programmed {
+        from,
+        to: from,
+        axes: AxisSet::EMPTY,
+        curve: Curve::Line,
+    };
+    take_coordinates(modal, numbers, &motion.coordinates, &mut p)?;
+    match motion.kind {
+        MotionKind::Line | MotionKind::Paraxial => {}
+        MotionKind::LinePolar => {
+            polar_point(modal, numbers, settings, motion, &mut p)?;
+        }
+        MotionKind::Circle => circle(modal, settings, motion, &mut p)?,
+        MotionKind::CircleRadius => circle_radius(modal, numbers, settings, motion, &mut p)?,
+        MotionKind::CircleTangential => {
+            let plane = plane_of(modal, &motion.coordinates)?;
+            p.curve = tangential(modal, plane, &p)?;
+        }
+        MotionKind::CirclePolar => circle_polar(modal, numbers, settings, motion, &mut p)?,
+        MotionKind::CircleTangentialPolar => {
+            let plane = polar_point(modal, numbers, settings, motion, &mut p)?;
+            p.curve = tangential(modal, plane, &p)?;
         }
     }
+    Ok(p)
+}
 
-    /// C: arc about CC [003:2801-2824].
-    pub(crate) fn circle(
-        &self,
-        motion: &Motion,
-        p: &mut Programmed,
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        let (plane, centre) = self.pole()?;
-        if p.axes.iter().any(|axis| !plane.contains(axis)) {
-            return Err(Fault::new(
-                MessageId::PlaneWronglyDefined,
-                "the end point lies outside the plane of CC",
-            ));
-        }
-        let counter_clockwise = direction(motion)?;
-        p.axes = p.axes.with(plane.first).with(plane.second);
-        let (start, end) = (plane.point(&p.from), plane.point(&p.to));
-        arc::check_radii(centre, start, end, settings.rules.arc_tolerance_mm)?;
-        let sweep_deg = bahn_path::sweep_deg(centre, start, end, counter_clockwise);
-        p.curve = Curve::Arc(Arc {
-            plane,
-            centre,
-            sweep_deg,
-        });
-        Ok(())
-    }
-
-    /// CR: arc with radius [003:2853-2879].
-    pub(crate) fn circle_radius(
-        &self,
-        motion: &Motion,
-        p: &mut Programmed,
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        let plane = self.plane_of(&motion.coordinates)?;
-        let counter_clockwise = direction(motion)?;
-        let Some(radius) = motion.radius else {
-            let detail = "the arc has no radius R";
-            return Err(Fault::new(MessageId::AngleReferenceMissing, detail).because(Cause::NoRadius));
-        };
-        let radius = self.length(radius)?;
-        if radius.abs() > settings.model.limits().circle_radius_max_mm {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                "the radius is beyond the input range",
-            ));
-        }
-        p.axes = p.axes.with(plane.first).with(plane.second);
-        let (start, end) = (plane.point(&p.from), plane.point(&p.to));
-        p.curve = Curve::Arc(arc::with_radius(plane, start, end, radius, counter_clockwise)?);
-        Ok(())
-    }
-
-    /// CT, CTP: arc that starts in the direction of the movement before [003:2957-2995].
-    pub(crate) fn tangential(&self, plane: Plane, p: &Programmed) -> Result<Curve, Fault> {
-        let no_tangent = || {
-            Fault::new(
-                MessageId::RoundingOffNotDefined,
-                "no movement before gives a tangent",
-            )
-        };
-        let last = self.modal.last_move.as_ref().ok_or_else(no_tangent)?;
-        let direction = last.curve.tangent(&last.start, &last.end, 1.0);
-        let tangent = [direction[plane.first.index()], direction[plane.second.index()]];
-        if tangent == [0.0, 0.0] {
-            return Err(no_tangent());
-        }
-        arc::tangential(plane, plane.point(&p.from), tangent, plane.point(&p.to))
-    }
-
-    /// End point from PR and PA [003:3090-3092].
-    pub(crate) fn polar_point(
-        &mut self,
-        motion: &Motion,
-        p: &mut Programmed,
-        settings: &Settings,
-    ) -> Result<Plane, Fault> {
-        let (plane, pole) = self.pole()?;
-        let from = plane.point(&p.from);
-        let (dx, dy) = (from[0] - pole[0], from[1] - pole[1]);
-        let radius = match motion.polar_radius {
-            Some(Word {
-                value,
-                incremental: false,
-            }) => self.length(value)?,
-            Some(Word {
-                value,
-                incremental: true,
-            }) => dx.hypot(dy) + self.length(value)?,
-            None => self.modal.polar_radius.unwrap_or(dx.hypot(dy)),
-        };
-        if motion.polar_radius.is_some() {
-            self.modal.polar_radius = Some(radius);
-        }
-        let Some(word) = motion.polar_angle else {
-            return Err(no_angle());
-        };
-        let angle = self.q.value(word.value)?;
-        // The limit is one of typed numbers [003:3089]: hole circles by Q parameters count on beyond a turn.
-        let typed = matches!(word.value, Value::Number(_));
-        if typed && angle.abs() > settings.model.limits().polar_angle_max_deg {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                "PA is beyond the input range",
-            ));
-        }
-        let angle = if word.incremental {
-            bahn_path::angle_deg([dx, dy]) + angle
+/// Cartesian words into the end point.
+fn take_coordinates(
+    modal: &Modal,
+    numbers: &Numbers,
+    coordinates: &Coordinates,
+    p: &mut Programmed,
+) -> Result<(), Fault> {
+    let from = match &modal.increments_from {
+        Some(nominal) => modal.frame.to_programmed(nominal),
+        None => p.from,
+    };
+    for (axis, word) in coordinates.iter() {
+        let value = numbers.q.value(word.value)? * numbers.axis_unit(axis);
+        p.to[axis] = if word.incremental {
+            known(from[axis]) + value
         } else {
-            angle
+            value
         };
-        plane.set(
-            &mut p.to,
-            [
-                pole[0] + radius * cos_deg(angle),
-                pole[1] + radius * sin_deg(angle),
-            ],
-        );
-        p.axes = p.axes.with(plane.first).with(plane.second);
-        Ok(plane)
+        p.axes.insert(axis);
     }
+    Ok(())
+}
 
-    pub(crate) fn line_polar(
-        &mut self,
-        motion: &Motion,
-        p: &mut Programmed,
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        self.polar_point(motion, p, settings)?;
-        Ok(())
-    }
-
-    /// CP, with a tool-axis word a helix [003:3173-3183] [003:3243-3324].
-    pub(crate) fn circle_polar(
-        &self,
-        motion: &Motion,
-        p: &mut Programmed,
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        let (plane, pole) = self.pole()?;
-        if p.axes.iter().any(|axis| plane.contains(axis)) {
+/// CC: pole and circle centre; without coordinates the last programmed position [003:2748-2775].
+pub(crate) fn circle_centre(
+    modal: &mut Modal,
+    numbers: &Numbers,
+    coordinates: &Coordinates,
+) -> Result<(), Fault> {
+    let here = modal.frame.to_programmed(&modal.nominal);
+    let axes: Vec<Axis> = coordinates.axes().iter().collect();
+    let plane = match axes[..] {
+        [] => modal.plane,
+        [a, b] => Plane::of_axes(a, b).ok_or(Fault::from(MessageId::PlaneWronglyDefined))?,
+        _ => {
             return Err(Fault::new(
                 MessageId::PlaneWronglyDefined,
-                "CP takes its end point from PA",
+                "CC needs both axes of a plane",
             ));
         }
-        let counter_clockwise = direction(motion)?;
-        let Some(word) = motion.polar_angle else {
-            return Err(no_angle());
-        };
-        let angle = self.q.value(word.value)?;
-        if angle.abs() > settings.model.limits().circle_angle_max_deg {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                "PA is beyond the input range",
-            ));
-        }
-        let start = plane.point(&p.from);
-        let offset = [start[0] - pole[0], start[1] - pole[1]];
-        let radius = offset[0].hypot(offset[1]);
-        if radius.is_nan() {
-            return Err(MessageId::CircleEndPosIncorrect.into());
-        }
-        let start_angle = bahn_path::angle_deg(offset);
-        let sweep_deg = if word.incremental {
-            if angle != 0.0 && (angle > 0.0) != counter_clockwise {
-                // Incremental PA and DR must have the same sign [003:3173-3183].
-                return Err(Fault::new(
-                    MessageId::AngleReferenceMissing,
-                    "IPA and DR have different signs",
-                ));
-            }
-            angle
-        } else {
-            arc::sweep_to_angle(start_angle, angle, counter_clockwise)
-        };
-        let end_angle = if word.incremental {
-            start_angle + sweep_deg
-        } else {
-            angle
-        };
-        plane.set(
-            &mut p.to,
-            [
-                pole[0] + radius * cos_deg(end_angle),
-                pole[1] + radius * sin_deg(end_angle),
-            ],
-        );
-        p.axes = p.axes.with(plane.first).with(plane.second);
-        p.curve = Curve::Arc(Arc {
-            plane,
-            centre: pole,
-            sweep_deg,
-        });
-        Ok(())
+    };
+    let mut p = Programmed {
+        from: here,
+        to: here,
+        axes: AxisSet::EMPTY,
+        curve: Curve::Hold,
+    };
+    take_coordinates(modal, numbers, coordinates, &mut p)?;
+    let point = plane.point(&p.to).map(known);
+    modal.pole = Some((plane, point));
+    Ok(())
+}
+
+fn pole(modal: &Modal) -> Result<(Plane, Point2), Fault> {
+    modal.pole.ok_or_else(|| {
+        Fault::new(MessageId::PlaneWronglyDefined, "no CC is programmed before").because(Cause::NoPole)
+    })
+}
+
+/// The plane of an arc from its words: two axes name it, otherwise the working plane.
+fn plane_of(modal: &Modal, coordinates: &Coordinates) -> Result<Plane, Fault> {
+    let axes: Vec<Axis> = coordinates.axes().iter().collect();
+    match axes[..] {
+        [a, b] => Plane::of_axes(a, b).ok_or(Fault::from(MessageId::PlaneWronglyDefined)),
+        [a] if modal.plane.contains(a) => Ok(modal.plane),
+        [] => Ok(modal.plane),
+        _ => Err(Fault::new(
+            MessageId::PlaneWronglyDefined,
+            "the end point of an arc lies in a plane",
+        )),
     }
+}
+
+/// C: arc about CC [003:2801-2824].
+fn circle(modal: &Modal, settings: &Settings, motion: &Motion, p: &mut Programmed) -> Result<(), Fault> {
+    let (plane, centre) = pole(modal)?;
+    if p.axes.iter().any(|axis| !plane.contains(axis)) {
+        return Err(Fault::new(
+            MessageId::PlaneWronglyDefined,
+            "the end point lies outside the plane of CC",
+        ));
+    }
+    let counter_clockwise = direction(motion)?;
+    p.axes = p.axes.with(plane.first).with(plane.second);
+    let (start, end) = (plane.point(&p.from), plane.point(&p.to));
+    arc::check_radii(centre, start, end, settings.rules.arc_tolerance_mm)?;
+    let sweep_deg = bahn_path::sweep_deg(centre, start, end, counter_clockwise);
+    p.curve = Curve::Arc(Arc {
+        plane,
+        centre,
+        sweep_deg,
+    });
+    Ok(())
+}
+
+/// CR: arc with radius [003:2853-2879].
+fn circle_radius(
+    modal: &Modal,
+    numbers: &Numbers,
+    settings: &Settings,
+    motion: &Motion,
+    p: &mut Programmed,
+) -> Result<(), Fault> {
+    let plane = plane_of(modal, &motion.coordinates)?;
+    let counter_clockwise = direction(motion)?;
+    let Some(radius) = motion.radius else {
+        let detail = "the arc has no radius R";
+        return Err(Fault::new(MessageId::AngleReferenceMissing, detail).because(Cause::NoRadius));
+    };
+    let radius = numbers.length(radius)?;
+    if radius.abs() > settings.model.limits().circle_radius_max_mm {
+        return Err(Fault::new(
+            MessageId::EntryValueIncorrect,
+            "the radius is beyond the input range",
+        ));
+    }
+    p.axes = p.axes.with(plane.first).with(plane.second);
+    let (start, end) = (plane.point(&p.from), plane.point(&p.to));
+    p.curve = Curve::Arc(arc::with_radius(plane, start, end, radius, counter_clockwise)?);
+    Ok(())
+}
+
+/// CT, CTP: arc that starts in the direction of the movement before [003:2957-2995].
+fn tangential(modal: &Modal, plane: Plane, p: &Programmed) -> Result<Curve, Fault> {
+    let no_tangent = || {
+        Fault::new(
+            MessageId::RoundingOffNotDefined,
+            "no movement before gives a tangent",
+        )
+    };
+    let last = modal.last_move.as_ref().ok_or_else(no_tangent)?;
+    let direction = last.curve.tangent(&last.start, &last.end, 1.0);
+    let tangent = [direction[plane.first.index()], direction[plane.second.index()]];
+    if tangent == [0.0, 0.0] {
+        return Err(no_tangent());
+    }
+    arc::tangential(plane, plane.point(&p.from), tangent, plane.point(&p.to))
+}
+
+/// End point from PR and PA [003:3090-3092].
+fn polar_point(
+    modal: &mut Modal,
+    numbers: &Numbers,
+    settings: &Settings,
+    motion: &Motion,
+    p: &mut Programmed,
+) -> Result<Plane, Fault> {
+    let (plane, pole) = pole(modal)?;
+    let from = plane.point(&p.from);
+    let (dx, dy) = (from[0] - pole[0], from[1] - pole[1]);
+    let radius = match motion.polar_radius {
+        Some(Word {
+            value,
+            incremental: false,
+        }) => numbers.length(value)?,
+        Some(Word {
+            value,
+            incremental: true,
+        }) => dx.hypot(dy) + numbers.length(value)?,
+        None => modal.polar_radius.unwrap_or(dx.hypot(dy)),
+    };
+    if motion.polar_radius.is_some() {
+        modal.polar_radius = Some(radius);
+    }
+    let Some(word) = motion.polar_angle else {
+        return Err(no_angle());
+    };
+    let angle = numbers.q.value(word.value)?;
+    // The limit is one of typed numbers [003:3089]: hole circles by Q parameters count on beyond a turn.
+    let typed = matches!(word.value, Value::Number(_));
+    if typed && angle.abs() > settings.model.limits().polar_angle_max_deg {
+        return Err(Fault::new(
+            MessageId::EntryValueIncorrect,
+            "PA is beyond the input range",
+        ));
+    }
+    let angle = if word.incremental {
+        bahn_path::angle_deg([dx, dy]) + angle
+    } else {
+        angle
+    };
+    plane.set(
+        &mut p.to,
+        [
+            pole[0] + radius * cos_deg(angle),
+            pole[1] + radius * sin_deg(angle),
+        ],
+    );
+    p.axes = p.axes.with(plane.first).with(plane.second);
+    Ok(plane)
+}
+
+/// CP, with a tool-axis word a helix [003:3173-3183] [003:3243-3324].
+fn circle_polar(
+    modal: &Modal,
+    numbers: &Numbers,
+    settings: &Settings,
+    motion: &Motion,
+    p: &mut Programmed,
+) -> Result<(), Fault> {
+    let (plane, pole) = pole(modal)?;
+    if p.axes.iter().any(|axis| plane.contains(axis)) {
+        return Err(Fault::new(
+            MessageId::PlaneWronglyDefined,
+            "CP takes its end point from PA",
+        ));
+    }
+    let counter_clockwise = direction(motion)?;
+    let Some(word) = motion.polar_angle else {
+        return Err(no_angle());
+    };
+    let angle = numbers.q.value(word.value)?;
+    if angle.abs() > settings.model.limits().circle_angle_max_deg {
+        return Err(Fault::new(
+            MessageId::EntryValueIncorrect,
+            "PA is beyond the input range",
+        ));
+    }
+    let start = plane.point(&p.from);
+    let offset = [start[0] - pole[0], start[1] - pole[1]];
+    let radius = offset[0].hypot(offset[1]);
+    if radius.is_nan() {
+        return Err(MessageId::CircleEndPosIncorrect.into());
+    }
+    let start_angle = bahn_path::angle_deg(offset);
+    let sweep_deg = if word.incremental {
+        if angle != 0.0 && (angle > 0.0) != counter_clockwise {
+            // Incremental PA and DR must have the same sign [003:3173-3183].
+            return Err(Fault::new(
+                MessageId::AngleReferenceMissing,
+                "IPA and DR have different signs",
+            ));
+        }
+        angle
+    } else {
+        arc::sweep_to_angle(start_angle, angle, counter_clockwise)
+    };
+    let end_angle = if word.incremental {
+        start_angle + sweep_deg
+    } else {
+        angle
+    };
+    plane.set(
+        &mut p.to,
+        [
+            pole[0] + radius * cos_deg(end_angle),
+            pole[1] + radius * sin_deg(end_angle),
+        ],
+    );
+    p.axes = p.axes.with(plane.first).with(plane.second);
+    p.curve = Curve::Arc(Arc {
+        plane,
+        centre: pole,
+        sweep_deg,
+    });
+    Ok(())
 }
 
 fn direction(motion: &Motion) -> Result<bool, Fault> {

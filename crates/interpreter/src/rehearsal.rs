@@ -143,11 +143,11 @@ struct Rehearser {
 
 impl Rehearser {
     fn new(mut run: Interpreter) -> Rehearser {
-        run.run.rehearsal = true;
+        run.run.pen.rehearsal = true;
         // Those of the control are known, but not what PLC [003:7587] and probe leave.
         let known = |number: usize| number >= usize::from(preassigned::TOOL_RADIUS);
         let touched = |number: usize| number >= usize::from(preassigned::TOUCH) && number < 123;
-        let mut unknown_q: Vec<bool> = (0..run.run.q.values().len())
+        let mut unknown_q: Vec<bool> = (0..run.run.numbers.q.values().len())
             .map(|number| !known(number) || touched(number))
             .collect();
         for &(number, _) in &run.settings.q_values {
@@ -177,7 +177,7 @@ impl Rehearser {
             .map(|fetched| fetched.block.operation.clone());
         let effect = operation.as_ref().map(|operation| self.effect(operation));
         let result = self.run.step().and_then(|()| self.touch());
-        self.run.run.out = Output::default();
+        self.run.run.pen.out = Output::default();
         let Some((operation, effect)) = operation.zip(effect) else {
             if result.is_err() {
                 // Behind the last block: an open subprogram.
@@ -199,7 +199,7 @@ impl Rehearser {
 
     /// A probe touches where the block says it will.
     fn touch(&mut self) -> Result<(), Fault> {
-        let to = self.run.run.out.queue.iter().find_map(|item| match item {
+        let to = self.run.run.pen.out.queue.iter().find_map(|item| match item {
             Item::Barrier(bahn_path::Barrier::Probe { to, .. }) => Some(*to),
             _ => None,
         });
@@ -279,8 +279,8 @@ impl Rehearser {
     /// Goes on behind a block that failed, as if it had done what can be done of it.
     fn recover(&mut self, at: BlockRef, operation: &Operation) {
         let run = &mut self.run.run;
-        run.contour = Contour::default();
-        run.recording = None;
+        run.pen.contour = Contour::default();
+        run.pen.recording = None;
         run.probing = None;
         if run.at.block_ref() == at {
             run.at.block += 1;
@@ -302,7 +302,7 @@ impl Rehearser {
             if let Value::Number(number) = word.value
                 && !word.incremental
             {
-                let value = number * run.axis_unit(axis);
+                let value = number * run.numbers.axis_unit(axis);
                 run.modal.nominal[axis] = value;
                 run.modal.actual[axis] = value;
             }

@@ -2,8 +2,9 @@
 
 use bahn_path::BlockRef;
 
-use crate::availability::Said;
-use crate::error::{Warning, WarningKind};
+use crate::availability::{Feature, Said};
+use crate::error::{Fault, Warning, WarningKind};
+use crate::settings::Settings;
 
 /// Warnings since somebody took them, and what is said once.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +29,28 @@ impl Told {
                 count: 1,
             }),
         }
+    }
+
+    /// Whether a function of a block is to be executed. Where it is met first, the user is told when it is not,
+    /// or not wholly.
+    ///
+    /// # Errors
+    /// FUNCTION NOT AVAILABLE ON THIS CONTROL for what must not be passed over.
+    pub fn executes(
+        &mut self,
+        block: BlockRef,
+        feature: Feature,
+        settings: &Settings,
+    ) -> Result<bool, Fault> {
+        if let Some(executes) = self.said.executes(feature) {
+            return Ok(executes);
+        }
+        let (executes, remark) = feature.judge(settings)?;
+        if let Some(kind) = remark {
+            self.warn(block, kind);
+        }
+        self.said.note(feature, executes);
+        Ok(executes)
     }
 
     /// Takes the warnings.

@@ -160,7 +160,7 @@ impl Interpreter {
     pub fn finish_work(&mut self, done: Done) {
         match self.pending.finish(done, &mut self.run) {
             Some(Ok(())) => self.run.at.block += 1,
-            Some(Err(Halt::Fault(fault))) => self.fail(fault, self.run.block),
+            Some(Err(Halt::Fault(fault))) => self.fail(fault, self.run.pen.block),
             // Its block is executed anew when the run goes on.
             Some(Err(Halt::Interrupted)) | None => {}
         }

@@ -10,12 +10,14 @@ use bahn_path::region::{
 };
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2};
 
-use super::machining::{Heights, Tracer, infeeds};
+use super::machining::{Heights, Machining, Tracer, infeeds, plane_direction};
+use crate::context::Context;
 use crate::contour::flat::Flat;
 use crate::contour::{ContourMove, Side};
 use crate::definition::Definition;
 use crate::error::Fault;
-use crate::run::Run;
+use crate::modal::Modal;
+use crate::q_parameters::{cos_deg, sin_deg};
 use crate::settings::Settings;
 use crate::status::Spindle;
 
@@ -155,185 +157,169 @@ pub(crate) fn contour_plane(working: Plane, first_axes: AxisSet) -> Plane {
     }
 }
 
-impl Run {
-    /// Runs cycle 6, 15 or 16 on the contours of cycle 14.
-    pub(crate) fn contour_cycle(
-        &mut self,
-        job: &ContourJob,
-        settings: &Settings,
-        watch: &Watch<'_>,
-    ) -> Result<(), Halt> {
-        let Some(definition) = self.modal.cycle.machining.ready().cloned() else {
-            return Err(MessageId::CyclIncomplete.into());
-        };
-        let queued = self.out.queue.len();
-        let result = match definition.number {
-            6 => self.rough_out(job, &definition, settings, watch),
-            15 => self.pilot_drilling(job, &definition, settings, watch),
-            _ => self.contour_milling(job, &definition, settings, watch),
-        };
-        if let Err(Halt::Interrupted) = result {
-            self.out.queue.truncate(queued);
-        }
-        result
+/// Runs cycle 6, 15 or 16 on the contours of cycle 14.
+pub(crate) fn contour_cycle(c: &mut Context<'_>, job: &ContourJob, watch: &Watch<'_>) -> Result<(), Halt> {
+    let Some(definition) = c.modal.cycle.machining.ready().cloned() else {
+        return Err(MessageId::CyclIncomplete.into());
+    };
+    let mut m = Machining::new(c);
+    let queued = m.pen.out.queue.len();
+    let result = match definition.number {
+        6 => rough_out(&mut m, job, &definition, watch),
+        15 => pilot_drilling(&mut m, job, &definition, watch),
+        _ => contour_milling(&mut m, job, &definition, watch),
+    };
+    if let Err(Halt::Interrupted) = result {
+        m.pen.out.queue.truncate(queued);
     }
+    result
+}
 
-    /// Cycle 6 ROUGH-OUT [003:5477-5521].
-    fn rough_out(
-        &mut self,
-        job: &ContourJob,
-        d: &Definition,
-        settings: &Settings,
-        watch: &Watch<'_>,
-    ) -> Result<(), Halt> {
-        let pecking = d.length(2, 0)?;
-        let plunge_feed = d.feed(2, 0)?;
-        let allowance = d.length(2, 1)?;
-        let angle = d.number(3, 0)?;
-        let feed = d.feed(3, 0)?;
-        let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
-        let areas = self.areas(job, allowance, settings, watch)?;
-        let rules = settings.rules.contour_pocket;
-        let mill = Milling {
-            heights,
-            plunge_feed,
-            feed,
-            reversed: rules.channel_clockwise,
-        };
-        let direction = self.plane_direction_of(angle);
-        let stepover = self.modal.tool_radius();
-        let mut clearing = Vec::with_capacity(areas.len());
-        for area in &areas {
-            check_passes(area, stepover)?;
-            let region = &area.region;
-            clearing.push(region.hatch_within(direction, stepover, HatchPattern::Zigzag, watch)?);
-        }
-        let mut trace = self.tracer();
-        trace.set_plane(job.plane);
-        // The depths of one operation: all of them, or one after the other in turn with the other operation.
-        let rounds: Vec<&[f64]> = if rules.per_infeed {
-            pecks.chunks(1).collect()
-        } else {
-            vec![&pecks]
-        };
-        for (area, passes) in areas.iter().zip(&clearing) {
-            for depths in &rounds {
-                if rules.clear_first {
-                    mill.clear(&mut trace, passes, depths, watch)?;
-                    mill.outlines(&mut trace, &area.outlines, depths, watch)?;
-                } else {
-                    mill.outlines(&mut trace, &area.outlines, depths, watch)?;
-                    mill.clear(&mut trace, passes, depths, watch)?;
-                }
+/// Cycle 6 ROUGH-OUT [003:5477-5521].
+fn rough_out(m: &mut Machining<'_>, job: &ContourJob, d: &Definition, watch: &Watch<'_>) -> Result<(), Halt> {
+    let pecking = d.length(2, 0)?;
+    let plunge_feed = d.feed(2, 0)?;
+    let allowance = d.length(2, 1)?;
+    let angle = d.number(3, 0)?;
+    let feed = d.feed(3, 0)?;
+    let (heights, pecks) = contour_heights(m, d, pecking)?;
+    let areas = areas(m.modal, job, allowance, m.settings, watch)?;
+    let rules = m.settings.rules.contour_pocket;
+    let mill = Milling {
+        heights,
+        plunge_feed,
+        feed,
+        reversed: rules.channel_clockwise,
+    };
+    let direction = plane_direction_of(m.modal, angle);
+    let stepover = m.modal.tool_radius();
+    let mut clearing = Vec::with_capacity(areas.len());
+    for area in &areas {
+        check_passes(area, stepover)?;
+        let region = &area.region;
+        clearing.push(region.hatch_within(direction, stepover, HatchPattern::Zigzag, watch)?);
+    }
+    let stays = m.settings.rules.contour_pocket.stay_at_clearance;
+    let mut trace = m.tracer();
+    trace.set_plane(job.plane);
+    // The depths of one operation: all of them, or one after the other in turn with the other operation.
+    let rounds: Vec<&[f64]> = if rules.per_infeed {
+        pecks.chunks(1).collect()
+    } else {
+        vec![&pecks]
+    };
+    for (area, passes) in areas.iter().zip(&clearing) {
+        for depths in &rounds {
+            if rules.clear_first {
+                mill.clear(&mut trace, passes, depths, watch)?;
+                mill.outlines(&mut trace, &area.outlines, depths, watch)?;
+            } else {
+                mill.outlines(&mut trace, &area.outlines, depths, watch)?;
+                mill.clear(&mut trace, passes, depths, watch)?;
             }
         }
-        Ok(finish(trace, settings)?)
     }
+    Ok(finish(trace, stays)?)
+}
 
-    /// Cycle 15 PILOT DRILLING: pecks as cycle 1 at each infeed point [003:5993-6014].
-    fn pilot_drilling(
-        &mut self,
-        job: &ContourJob,
-        d: &Definition,
-        settings: &Settings,
-        watch: &Watch<'_>,
-    ) -> Result<(), Halt> {
-        let pecking = d.length(2, 0)?;
-        let feed = d.feed(2, 0)?;
-        let allowance = d.length(2, 1)?;
-        let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
-        let areas = self.areas(job, allowance, settings, watch)?;
-        let mut trace = self.tracer();
-        trace.set_plane(job.plane);
-        for outline in areas.iter().flat_map(|area| &area.outlines) {
-            watch.spend(pecks.len())?;
-            trace.rapid_to(outline.infeed());
-            super::drilling::peck(&mut trace, &heights, &pecks, feed, 0.0);
-        }
-        Ok(finish(trace, settings)?)
+/// Cycle 15 PILOT DRILLING: pecks as cycle 1 at each infeed point [003:5993-6014].
+fn pilot_drilling(
+    m: &mut Machining<'_>,
+    job: &ContourJob,
+    d: &Definition,
+    watch: &Watch<'_>,
+) -> Result<(), Halt> {
+    let pecking = d.length(2, 0)?;
+    let feed = d.feed(2, 0)?;
+    let allowance = d.length(2, 1)?;
+    let (heights, pecks) = contour_heights(m, d, pecking)?;
+    let areas = areas(m.modal, job, allowance, m.settings, watch)?;
+    let stays = m.settings.rules.contour_pocket.stay_at_clearance;
+    let mut trace = m.tracer();
+    trace.set_plane(job.plane);
+    for outline in areas.iter().flat_map(|area| &area.outlines) {
+        watch.spend(pecks.len())?;
+        trace.rapid_to(outline.infeed());
+        super::drilling::peck(&mut trace, &heights, &pecks, feed, 0.0);
     }
+    Ok(finish(trace, stays)?)
+}
 
-    /// Cycle 16 CONTOUR MILLING: DR+ climb, DR- up-cut with M3 [003:6028-6066].
-    fn contour_milling(
-        &mut self,
-        job: &ContourJob,
-        d: &Definition,
-        settings: &Settings,
-        watch: &Watch<'_>,
-    ) -> Result<(), Halt> {
-        let pecking = d.length(2, 0)?;
-        let plunge_feed = d.feed(2, 0)?;
-        let feed = d.feed(2, 1)?;
-        let climb = d.counter_clockwise(2) != (self.modal.spindle == Spindle::CounterClockwise);
-        let (heights, pecks) = self.contour_heights(d, pecking, settings)?;
-        let areas = self.areas(job, 0.0, settings, watch)?;
-        let mill = Milling {
-            heights,
-            plunge_feed,
-            feed,
-            reversed: !climb,
-        };
-        let mut trace = self.tracer();
-        trace.set_plane(job.plane);
-        for area in &areas {
-            mill.outlines(&mut trace, &area.outlines, &pecks, watch)?;
-        }
-        Ok(finish(trace, settings)?)
+/// Cycle 16 CONTOUR MILLING: DR+ climb, DR- up-cut with M3 [003:6028-6066].
+fn contour_milling(
+    m: &mut Machining<'_>,
+    job: &ContourJob,
+    d: &Definition,
+    watch: &Watch<'_>,
+) -> Result<(), Halt> {
+    let pecking = d.length(2, 0)?;
+    let plunge_feed = d.feed(2, 0)?;
+    let feed = d.feed(2, 1)?;
+    let climb = d.counter_clockwise(2) != (m.modal.spindle == Spindle::CounterClockwise);
+    let (heights, pecks) = contour_heights(m, d, pecking)?;
+    let areas = areas(m.modal, job, 0.0, m.settings, watch)?;
+    let mill = Milling {
+        heights,
+        plunge_feed,
+        feed,
+        reversed: !climb,
+    };
+    let stays = m.settings.rules.contour_pocket.stay_at_clearance;
+    let mut trace = m.tracer();
+    trace.set_plane(job.plane);
+    for area in &areas {
+        mill.outlines(&mut trace, &area.outlines, &pecks, watch)?;
     }
+    Ok(finish(trace, stays)?)
+}
 
-    fn contour_heights(
-        &mut self,
-        d: &Definition,
-        pecking: f64,
-        settings: &Settings,
-    ) -> Result<(Heights, Vec<f64>), Fault> {
-        let setup = d.length(1, 0)?;
-        let depth = d.length(1, 1)?;
-        let heights = self.heights(d, [setup, depth], Some(pecking), settings)?;
-        Ok((
-            heights,
-            infeeds(heights.depth, pecking * heights.depth / depth.abs()),
-        ))
-    }
+fn contour_heights(
+    m: &mut Machining<'_>,
+    d: &Definition,
+    pecking: f64,
+) -> Result<(Heights, Vec<f64>), Fault> {
+    let setup = d.length(1, 0)?;
+    let depth = d.length(1, 1)?;
+    let heights = m.heights(d, [setup, depth], Some(pecking))?;
+    Ok((
+        heights,
+        infeeds(heights.depth, pecking * heights.depth / depth.abs()),
+    ))
+}
 
-    /// The areas of the tool centre at a finishing allowance.
-    fn areas(
-        &self,
-        job: &ContourJob,
-        allowance: f64,
-        settings: &Settings,
-        watch: &Watch<'_>,
-    ) -> Result<Vec<PocketArea>, Halt> {
-        let radius = self.used_radius()?;
-        if radius <= 0.0 {
-            return Err(self.no_radius("a contour pocket cannot be milled").into());
-        }
-        let rules = settings.rules.contour_pocket;
-        let merge = if rules.merge_programmed {
-            Merge::ProgrammedContours
-        } else {
-            Merge::CentrePaths
-        };
-        // The finishing allowance is a positive number [003:5508].
-        let distance = radius + allowance.abs();
-        let Superposition { areas, too_narrow } =
-            Superposition::new(&job.subcontours, distance, merge, watch)?;
-        // Compensated one by one, a pocket narrower than the tool would silently stay unmachined.
-        if areas.is_empty() || (merge == Merge::CentrePaths && !too_narrow.is_empty()) {
-            let detail = "the tool does not fit into a pocket";
-            return Err(Fault::new(MessageId::ToolRadiusTooLarge, detail).into());
-        }
-        Ok(areas)
+/// The areas of the tool centre at a finishing allowance.
+fn areas(
+    modal: &Modal,
+    job: &ContourJob,
+    allowance: f64,
+    settings: &Settings,
+    watch: &Watch<'_>,
+) -> Result<Vec<PocketArea>, Halt> {
+    let radius = modal.used_radius()?;
+    if radius <= 0.0 {
+        return Err(modal.no_radius("a contour pocket cannot be milled").into());
     }
+    let rules = settings.rules.contour_pocket;
+    let merge = if rules.merge_programmed {
+        Merge::ProgrammedContours
+    } else {
+        Merge::CentrePaths
+    };
+    // The finishing allowance is a positive number [003:5508].
+    let distance = radius + allowance.abs();
+    let Superposition { areas, too_narrow } = Superposition::new(&job.subcontours, distance, merge, watch)?;
+    // Compensated one by one, a pocket narrower than the tool would silently stay unmachined.
+    if areas.is_empty() || (merge == Merge::CentrePaths && !too_narrow.is_empty()) {
+        let detail = "the tool does not fit into a pocket";
+        return Err(Fault::new(MessageId::ToolRadiusTooLarge, detail).into());
+    }
+    Ok(areas)
+}
 
-    /// Angle in workpiece coordinates of an angle in the programmed plane, degrees.
-    fn plane_direction_of(&self, angle_deg: f64) -> f64 {
-        let (sin, cos) = (
-            crate::q_parameters::sin_deg(angle_deg),
-            crate::q_parameters::cos_deg(angle_deg),
-        );
-        bahn_path::angle_deg(self.plane_direction([cos, sin]))
-    }
+/// Angle in workpiece coordinates of an angle in the programmed plane, degrees.
+fn plane_direction_of(modal: &Modal, angle_deg: f64) -> f64 {
+    let (sin, cos) = (sin_deg(angle_deg), cos_deg(angle_deg));
+    bahn_path::angle_deg(plane_direction(modal, [cos, sin]))
 }
 
 /// How outlines and passes are milled.
@@ -443,8 +429,8 @@ fn check_passes(area: &PocketArea, stepover: f64) -> Result<(), Fault> {
 
 /// Bit 4 of MP7420: back to the position before the call, or stay at the clearance height
 /// [000:6739-6753].
-fn finish(mut trace: Tracer<'_>, settings: &Settings) -> Result<(), Fault> {
-    if !settings.rules.contour_pocket.stay_at_clearance {
+fn finish(mut trace: Tracer<'_>, stays: bool) -> Result<(), Fault> {
+    if !stays {
         trace.rapid([0.0, 0.0]);
     }
     trace.finish()

@@ -3,11 +3,9 @@
 use bahn_parameters::MessageId;
 use bahn_path::{OverrideLaw, SpindleOrder, Thread};
 
-use super::machining::{Heights, Tracer, infeeds};
+use super::machining::{Heights, Machining, Tracer, infeeds};
 use crate::definition::Definition;
 use crate::error::Fault;
-use crate::run::Run;
-use crate::settings::Settings;
 use crate::status::Spindle;
 
 /// Advanced stop distance of pecking, mm: 0.6 up to a depth of 30 mm, then depth/50, at most 7
@@ -42,104 +40,99 @@ pub(super) fn peck(trace: &mut Tracer<'_>, heights: &Heights, depths: &[f64], fe
     trace.rapid_height(heights.clearance);
 }
 
-impl Run {
-    /// Cycle 1 PECKING: feed to the first infeed, rapid back to the start, rapid down to the advanced stop
-    /// distance, feed to the next infeed ..., dwell at the bottom, rapid back [003:4918-4948].
-    pub(super) fn pecking(&mut self, definition: &Definition, settings: &Settings) -> Result<(), Fault> {
-        let setup = definition.length(1, 0)?;
-        let depth = definition.length(2, 0)?;
-        let pecking = definition.length(3, 0)?;
-        let dwell = definition.dwell(4, settings)?;
-        let feed = definition.feed(5, 0)?;
-        let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
-        let scale = heights.depth / depth.abs();
-        let mut trace = self.tracer();
-        peck(
-            &mut trace,
-            &heights,
-            &infeeds(heights.depth, pecking * scale),
-            feed,
-            dwell,
-        );
-        trace.finish()
-    }
+/// Cycle 1 PECKING: feed to the first infeed, rapid back to the start, rapid down to the advanced stop
+/// distance, feed to the next infeed ..., dwell at the bottom, rapid back [003:4918-4948].
+pub(super) fn pecking(m: &mut Machining<'_>, definition: &Definition) -> Result<(), Fault> {
+    let setup = definition.length(1, 0)?;
+    let depth = definition.length(2, 0)?;
+    let pecking = definition.length(3, 0)?;
+    let dwell = definition.dwell(4, m.settings)?;
+    let feed = definition.feed(5, 0)?;
+    let heights = m.heights(definition, [setup, depth], Some(pecking))?;
+    let scale = heights.depth / depth.abs();
+    let mut trace = m.tracer();
+    peck(
+        &mut trace,
+        &heights,
+        &infeeds(heights.depth, pecking * scale),
+        feed,
+        dwell,
+    );
+    trace.finish()
+}
 
-    /// Cycle 2 TAPPING with floating holder: down in one pass; M05 so early that the spindle stands at the
-    /// bottom, dwell (MP7120.0), M04, the programmed dwell, back with the same feed (inferred); above M05 and M03
-    /// again. With M04 the other way round [003:4994-5062] [000:6060-6116].
-    pub(super) fn tapping(&mut self, definition: &Definition, settings: &Settings) -> Result<(), Fault> {
-        let setup = definition.length(1, 0)?;
-        let depth = definition.length(2, 0)?;
-        let dwell = definition.dwell(3, settings)?;
-        let feed = definition.feed(4, 0)?;
-        let heights = self.heights(definition, [setup, depth], None, settings)?;
-        let clockwise = !matches!(self.modal.spindle, Spindle::CounterClockwise);
-        let mut orders = [SpindleOrder::Clockwise, SpindleOrder::CounterClockwise];
-        if !clockwise {
-            orders.reverse();
-        }
-        let [forward, back] = orders;
-        let rules = &settings.rules.tapping;
-        let lead_s = rules
-            .spindle
-            .map_or(0.0, |spindle| spindle.tapping_lead_s(self.modal.speed_rpm));
-        let [from_percent, to_percent] = rules.override_percent;
-        let mut trace = self.tracer();
-        trace.set_override_law(OverrideLaw::Tapping {
-            from_percent,
-            to_percent,
-        });
-        trace.order_before_end(SpindleOrder::Stop, lead_s);
-        trace.feed_height(heights.at_depth(heights.depth), feed);
-        trace.dwell(rules.reversal_dwell_s);
-        trace.order(back);
-        trace.dwell(dwell);
-        trace.feed_height(heights.clearance, feed);
-        trace.set_override_law(OverrideLaw::Free);
+/// Cycle 2 TAPPING with floating holder: down in one pass; M05 so early that the spindle stands at the
+/// bottom, dwell (MP7120.0), M04, the programmed dwell, back with the same feed (inferred); above M05 and M03
+/// again. With M04 the other way round [003:4994-5062] [000:6060-6116].
+pub(super) fn tapping(m: &mut Machining<'_>, definition: &Definition) -> Result<(), Fault> {
+    let setup = definition.length(1, 0)?;
+    let depth = definition.length(2, 0)?;
+    let dwell = definition.dwell(3, m.settings)?;
+    let feed = definition.feed(4, 0)?;
+    let heights = m.heights(definition, [setup, depth], None)?;
+    let clockwise = !matches!(m.modal.spindle, Spindle::CounterClockwise);
+    let mut orders = [SpindleOrder::Clockwise, SpindleOrder::CounterClockwise];
+    if !clockwise {
+        orders.reverse();
+    }
+    let [forward, back] = orders;
+    let rules = &m.settings.rules.tapping;
+    let lead_s = rules
+        .spindle
+        .map_or(0.0, |spindle| spindle.tapping_lead_s(m.modal.speed_rpm));
+    let [from_percent, to_percent] = rules.override_percent;
+    let mut trace = m.tracer();
+    trace.set_override_law(OverrideLaw::Tapping {
+        from_percent,
+        to_percent,
+    });
+    trace.order_before_end(SpindleOrder::Stop, lead_s);
+    trace.feed_height(heights.at_depth(heights.depth), feed);
+    trace.dwell(rules.reversal_dwell_s);
+    trace.order(back);
+    trace.dwell(dwell);
+    trace.feed_height(heights.clearance, feed);
+    trace.set_override_law(OverrideLaw::Free);
+    trace.order(SpindleOrder::Stop);
+    trace.order(forward);
+    trace.finish()
+}
+
+/// Cycle 17 RIGID TAPPING: the tool axis follows the spindle down and up, F = S · pitch. The spindle stops
+/// (M05, inferred: it turns by the cycle alone) and is oriented first, so that a thread can be cut again
+/// (MP7160). It stands after the cycle, until M03 or M04 (inferred) [003:5071-5106] [000:6118-6141].
+pub(super) fn rigid_tapping(m: &mut Machining<'_>, definition: &Definition) -> Result<(), Fault> {
+    let setup = definition.length(1, 0)?;
+    let depth = definition.length(2, 0)?;
+    let pitch = definition.length(3, 0)?;
+    let heights = m.heights(definition, [setup, depth], None)?;
+    let feed = m.modal.speed_rpm * pitch.abs();
+    if feed <= 0.0 {
+        return Err(Fault::new(
+            MessageId::WrongRpm,
+            "rigid tapping needs a spindle speed and a pitch",
+        ));
+    }
+    let turns = matches!(m.modal.spindle, Spindle::Clockwise | Spindle::CounterClockwise);
+    if turns {
+        m.modal.stop_spindle(m.q);
+    }
+    let thread = |clockwise, orientation_deg| {
+        OverrideLaw::Spindle(Thread {
+            pitch_mm: pitch.abs(),
+            clockwise,
+            orientation_deg,
+        })
+    };
+    let right_hand = pitch > 0.0;
+    let orients = m.settings.rules.tapping.orients;
+    let mut trace = m.tracer();
+    if turns {
         trace.order(SpindleOrder::Stop);
-        trace.order(forward);
-        trace.finish()
     }
-
-    /// Cycle 17 RIGID TAPPING: the tool axis follows the spindle down and up, F = S · pitch. The spindle stops
-    /// (M05, inferred: it turns by the cycle alone) and is oriented first, so that a thread can be cut again
-    /// (MP7160). It stands after the cycle, until M03 or M04 (inferred) [003:5071-5106] [000:6118-6141].
-    pub(super) fn rigid_tapping(
-        &mut self,
-        definition: &Definition,
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        let setup = definition.length(1, 0)?;
-        let depth = definition.length(2, 0)?;
-        let pitch = definition.length(3, 0)?;
-        let heights = self.heights(definition, [setup, depth], None, settings)?;
-        let feed = self.modal.speed_rpm * pitch.abs();
-        if feed <= 0.0 {
-            return Err(Fault::new(
-                MessageId::WrongRpm,
-                "rigid tapping needs a spindle speed and a pitch",
-            ));
-        }
-        let turns = matches!(self.modal.spindle, Spindle::Clockwise | Spindle::CounterClockwise);
-        if turns {
-            self.stop_spindle();
-        }
-        let thread = |clockwise, orientation_deg| {
-            OverrideLaw::Spindle(Thread {
-                pitch_mm: pitch.abs(),
-                clockwise,
-                orientation_deg,
-            })
-        };
-        let right_hand = pitch > 0.0;
-        let mut trace = self.tracer();
-        if turns {
-            trace.order(SpindleOrder::Stop);
-        }
-        trace.set_override_law(thread(right_hand, settings.rules.tapping.orients.then_some(0.0)));
-        trace.feed_height(heights.at_depth(heights.depth), feed);
-        trace.set_override_law(thread(!right_hand, None));
-        trace.feed_height(heights.clearance, feed);
-        trace.finish()
-    }
+    trace.set_override_law(thread(right_hand, orients.then_some(0.0)));
+    trace.feed_height(heights.at_depth(heights.depth), feed);
+    trace.set_override_law(thread(!right_hand, None));
+    trace.feed_height(heights.clearance, feed);
+    trace.finish()
 }

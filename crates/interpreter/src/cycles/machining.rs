@@ -6,10 +6,15 @@ use bahn_path::{
     TechnologyFunction,
 };
 
+use crate::context::Context;
 use crate::definition::Definition;
 use crate::error::{Fault, WarningKind};
-use crate::run::Run;
+use crate::modal::Modal;
+use crate::numbers::known;
+use crate::pen::Pen;
+use crate::q_parameters::{QTable, cos_deg, sin_deg};
 use crate::settings::Settings;
+use crate::told::Told;
 
 /// Heights of a cycle along the tool axis, absolute workpiece coordinates, mm. The tool stands at the
 /// setup clearance when the cycle is called [003:4898-4910].
@@ -32,15 +37,34 @@ impl Heights {
     }
 }
 
-impl Run {
+/// What the machining cycles work with.
+pub(super) struct Machining<'a> {
+    pub modal: &'a mut Modal,
+    pub pen: &'a mut Pen,
+    /// Q110 follows the spindle.
+    pub q: &'a mut QTable,
+    pub told: &'a mut Told,
+    pub settings: &'a Settings,
+}
+
+impl<'a> Machining<'a> {
+    pub fn new(c: &'a mut Context<'_>) -> Machining<'a> {
+        Machining {
+            modal: c.modal,
+            pen: c.pen,
+            q: &mut c.numbers.q,
+            told: c.told,
+            settings: c.settings,
+        }
+    }
+
     /// Heights from SETUP and DEPTH. The sign of DEPTH is the working direction; another sign of SETUP or
     /// PECKG is accepted with a warning, in strict checking it is WRONG SIGN PROGRAMMED [003:4902].
-    pub(super) fn heights(
+    pub fn heights(
         &mut self,
         definition: &Definition,
         [setup, depth]: [f64; 2],
         pecking: Option<f64>,
-        settings: &Settings,
     ) -> Result<Heights, Fault> {
         if depth == 0.0 {
             return Err(Fault::new(MessageId::CyclIncomplete, "the depth is 0"));
@@ -50,17 +74,17 @@ impl Run {
         }
         let other_sign = |value: f64| value != 0.0 && value.signum() != depth.signum();
         if other_sign(setup) || pecking.is_some_and(other_sign) {
-            if settings.strict {
+            if self.settings.strict {
                 let detail = "setup clearance, depth and pecking depth must have the same sign";
                 return Err(Fault::new(MessageId::WrongSignProgrammed, detail));
             }
             if self.modal.cycle.machining.report_sign() {
                 let cycle = definition.number;
-                self.warn_at(definition.at, WarningKind::CycleSign { cycle });
+                self.told.warn(definition.at, WarningKind::CycleSign { cycle });
             }
         }
         let scale = self.modal.frame.factor[self.modal.plane.normal].abs();
-        let clearance = crate::positioning::known(self.tool_centre()[self.modal.plane.normal]);
+        let clearance = known(self.pen.tool_centre(self.modal)[self.modal.plane.normal]);
         let direction = depth.signum();
         Ok(Heights {
             clearance,
@@ -70,36 +94,19 @@ impl Run {
         })
     }
 
-    /// A direction of the programmed plane in workpiece coordinates: mirrored and rotated, not scaled.
-    pub(super) fn plane_direction(&self, v: Point2) -> Point2 {
-        let frame = &self.modal.frame;
-        let plane = self.modal.plane;
-        let mirrored = [
-            v[0] * frame.factor[plane.first].signum(),
-            v[1] * frame.factor[plane.second].signum(),
-        ];
-        let (sin, cos) = (
-            crate::q_parameters::sin_deg(frame.rotation_deg),
-            crate::q_parameters::cos_deg(frame.rotation_deg),
-        );
-        [
-            mirrored[0] * cos - mirrored[1] * sin,
-            mirrored[0] * sin + mirrored[1] * cos,
-        ]
-    }
-
     /// Begins to trace the movements of a cycle from where the tool stands.
-    pub(super) fn tracer(&mut self) -> Tracer<'_> {
-        let at = self.tool_centre();
+    pub fn tracer(&mut self) -> Tracer<'_> {
+        let at = self.pen.tool_centre(self.modal);
         let mut origin = at;
         let plane = self.modal.plane;
-        let point = plane.point(&at).map(crate::positioning::known);
+        let point = plane.point(&at).map(known);
         plane.set(&mut origin, point);
-        let axes = [self.plane_direction([1.0, 0.0]), self.plane_direction([0.0, 1.0])];
+        let axes = [[1.0, 0.0], [0.0, 1.0]].map(|v| plane_direction(self.modal, v));
         let reversed = self.modal.frame.reverses(plane);
-        let room = if self.rehearsal { 0 } else { MOVEMENTS_MAX };
+        let room = if self.pen.rehearsal { 0 } else { MOVEMENTS_MAX };
         Tracer {
-            run: self,
+            modal: self.modal,
+            pen: self.pen,
             at: origin,
             origin: point,
             axes,
@@ -110,6 +117,21 @@ impl Run {
             room,
         }
     }
+}
+
+/// A direction of the programmed plane in workpiece coordinates: mirrored and rotated, not scaled.
+pub(super) fn plane_direction(modal: &Modal, v: Point2) -> Point2 {
+    let frame = &modal.frame;
+    let plane = modal.plane;
+    let mirrored = [
+        v[0] * frame.factor[plane.first].signum(),
+        v[1] * frame.factor[plane.second].signum(),
+    ];
+    let (sin, cos) = (sin_deg(frame.rotation_deg), cos_deg(frame.rotation_deg));
+    [
+        mirrored[0] * cos - mirrored[1] * sin,
+        mirrored[0] * sin + mirrored[1] * cos,
+    ]
 }
 
 /// The depths of the infeeds below the surface: multiples of the pecking depth, the total depth last
@@ -130,7 +152,8 @@ pub(super) fn infeeds(depth: f64, pecking: f64) -> Vec<f64> {
 /// Traces the movements of a cycle. Points are given in a system at the start position with the axes of
 /// the programmed plane, so that mirroring and rotation act on the pattern [003:6276-6284].
 pub(super) struct Tracer<'a> {
-    run: &'a mut Run,
+    modal: &'a mut Modal,
+    pen: &'a mut Pen,
     at: Position,
     origin: Point2,
     axes: [Point2; 2],
@@ -166,7 +189,7 @@ impl Tracer<'_> {
     /// Moves in another plane of the same tool axis: one with parallel axes [003:5397-5432].
     pub fn set_plane(&mut self, plane: Plane) {
         self.plane = plane;
-        self.origin = plane.point(&self.at).map(crate::positioning::known);
+        self.origin = plane.point(&self.at).map(known);
     }
 
     /// Along the tool axis at rapid traverse.
@@ -221,14 +244,14 @@ impl Tracer<'_> {
         let first_position = !end.known().iter().all(|axis| self.at.get(axis).is_some());
         if (length > NO_MOVE_MM || first_position) && self.room > 0 {
             self.room -= 1;
-            let mut element = self.run.element(curve, self.at, end, feed);
+            let mut element = self.pen.element(curve, self.at, end, feed);
             element.override_law = self.override_law;
             element.functions = self
                 .on_the_way
                 .take()
                 .map(|function| Box::new([function]) as Box<[_]>);
-            self.run.since_motion = 0;
-            self.run.out.push(element, None);
+            self.pen.since_motion = 0;
+            self.pen.out.push(element, None);
         }
         self.at = end;
     }
@@ -236,20 +259,20 @@ impl Tracer<'_> {
     /// Time at the place where the tool stands.
     pub fn dwell(&mut self, seconds: f64) {
         if seconds > 0.0 {
-            let mut element = self.run.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
+            let mut element = self.pen.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
             element.dwell_s = seconds;
             element.override_law = self.override_law;
-            self.run.out.push(element, None);
+            self.pen.out.push(element, None);
         }
     }
 
     /// An order to the spindle where the tool stands.
     pub fn order(&mut self, order: SpindleOrder) {
-        let mut element = self.run.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
+        let mut element = self.pen.element(Curve::Hold, self.at, self.at, FeedRate::Rapid);
         element.override_law = self.override_law;
         let order = spindle_function(order, At::Start, Synchronisation::MvsSvs);
         element.functions = Some(Box::new([order]));
-        self.run.out.push(element, None);
+        self.pen.out.push(element, None);
     }
 
     /// An order to the spindle so long before the end of the next movement, s, for which the path does not wait.
@@ -265,7 +288,7 @@ impl Tracer<'_> {
 
     /// Ends the cycle: the run goes on from where the tool stands.
     pub fn finish(self) -> Result<(), Fault> {
-        if self.run.rehearsal {
+        if self.pen.rehearsal {
             // Cycles end where they began, more or less.
             return Ok(());
         }
@@ -273,9 +296,9 @@ impl Tracer<'_> {
             let detail = format!("the cycle needs more than {MOVEMENTS_MAX} movements");
             return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
         }
-        if self.run.tool_centre() != self.at {
-            self.run.modal.actual = self.at;
-            self.run.modal.nominal = self.at;
+        if self.pen.tool_centre(self.modal) != self.at {
+            self.modal.actual = self.at;
+            self.modal.nominal = self.at;
         }
         Ok(())
     }

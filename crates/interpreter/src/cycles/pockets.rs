@@ -6,207 +6,194 @@
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, Plane, Point2};
 
-use super::machining::{Heights, Tracer, infeeds};
+use super::machining::{Heights, Machining, Tracer, infeeds};
 use crate::definition::Definition;
 use crate::error::Fault;
-use crate::run::Run;
+use crate::modal::Modal;
 use crate::settings::Settings;
 use crate::status::Spindle;
 
 const SAME_MM: f64 = 1e-9;
 
-impl Run {
-    /// Cycle 3 SLOT MILLING: the tool stands one radius inside the slot's end on its centre line; roughing
-    /// to and fro with an infeed at each end, then finishing by a quarter circle and climb milling the
-    /// contour [003:5110-5146] (geometry inferred from the example).
-    pub(super) fn slot_milling(&mut self, definition: &Definition, settings: &Settings) -> Result<(), Fault> {
-        let setup = definition.length(1, 0)?;
-        let depth = definition.length(2, 0)?;
-        let pecking = definition.length(3, 0)?;
-        let plunge_feed = definition.feed(3, 0)?;
-        let (length_axis, length) = definition.coordinate(4)?;
-        let (width_axis, width) = definition.coordinate(5)?;
-        let feed = definition.feed(6, 0)?;
-        let along = self.plane_axis(length_axis)?;
-        if self.plane_axis(width_axis)? == along {
-            return Err(Fault::new(
-                MessageId::WrongAxisProgrammed,
-                "length and width lie on the same axis",
-            ));
-        }
-        let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
-        let scale = self.plane_scale();
-        let radius = self.used_radius()?;
-        let travel = length.abs() * scale - 2.0 * radius;
-        let allowance = 0.5 * width.abs() * scale - radius;
-        // Cutter diameter between half the slot width and the slot width [003:5130-5132].
-        let too_small = allowance > radius + SAME_MM;
-        if allowance < -SAME_MM || travel < -SAME_MM || too_small {
-            let detail = "the cutter diameter must lie between half the slot width and the slot width";
-            return Err(Fault::new(MessageId::ToolRadiusTooLarge, detail));
-        }
-        let unit: Point2 = if along == 0 {
-            [length.signum(), 0.0]
-        } else {
-            [0.0, length.signum()]
-        };
-        // Climb milling inside is counter-clockwise with the spindle clockwise.
-        let climb = if self.modal.spindle == Spindle::CounterClockwise {
-            -1.0
-        } else {
-            1.0
-        };
-        let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
-        let plane = self.plane_with([length_axis, width_axis]);
-        let mut trace = self.tracer();
-        trace.set_plane(plane);
-        let mut far = false;
-        for depth in &pecks {
-            trace.feed_height(heights.at_depth(*depth), plunge_feed);
-            far = !far;
-            trace.line(if far { scaled(unit, travel) } else { [0.0, 0.0] }, feed);
-        }
-        if allowance > SAME_MM {
-            finish_slot(&mut trace, unit, travel.max(0.0), allowance, far, climb, feed);
-        }
-        trace.rapid_height(heights.clearance);
-        trace.rapid([0.0, 0.0]);
-        trace.finish()
+/// Cycle 3 SLOT MILLING: the tool stands one radius inside the slot's end on its centre line; roughing
+/// to and fro with an infeed at each end, then finishing by a quarter circle and climb milling the
+/// contour [003:5110-5146] (geometry inferred from the example).
+pub(super) fn slot_milling(m: &mut Machining<'_>, definition: &Definition) -> Result<(), Fault> {
+    let setup = definition.length(1, 0)?;
+    let depth = definition.length(2, 0)?;
+    let pecking = definition.length(3, 0)?;
+    let plunge_feed = definition.feed(3, 0)?;
+    let (length_axis, length) = definition.coordinate(4)?;
+    let (width_axis, width) = definition.coordinate(5)?;
+    let feed = definition.feed(6, 0)?;
+    let along = plane_axis(m.modal.plane, length_axis)?;
+    if plane_axis(m.modal.plane, width_axis)? == along {
+        return Err(Fault::new(
+            MessageId::WrongAxisProgrammed,
+            "length and width lie on the same axis",
+        ));
     }
-
-    /// Cycle 4 POCKET MILLING: rectangles that grow from the centre by the stepover K·R; the first leg runs
-    /// in the positive direction of the longer side, along the second axis for a square
-    /// [003:5223-5278].
-    pub(super) fn pocket_milling(
-        &mut self,
-        definition: &Definition,
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        let setup = definition.length(1, 0)?;
-        let depth = definition.length(2, 0)?;
-        let pecking = definition.length(3, 0)?;
-        let plunge_feed = definition.feed(3, 0)?;
-        let (first_axis, first) = definition.coordinate(4)?;
-        let (second_axis, second) = definition.coordinate(5)?;
-        let feed = definition.feed(6, 0)?;
-        let corner = definition.optional_length(6, 0).unwrap_or(0.0).abs() * self.plane_scale();
-        let mut sides = [0.0; 2];
-        for (axis, side) in [(first_axis, first), (second_axis, second)] {
-            let index = self.plane_axis(axis)?;
-            if let Some(slot) = sides.get_mut(index) {
-                *slot = side.abs() * self.plane_scale();
-            }
-        }
-        let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
-        let radius = self.modal.tool_radius();
-        let half = [0.5 * sides[0] - radius, 0.5 * sides[1] - radius];
-        if half[0] < -SAME_MM || half[1] < -SAME_MM {
-            return Err(Fault::new(
-                MessageId::ToolRadiusTooLarge,
-                "the tool does not fit into the pocket",
-            ));
-        }
-        let counter_clockwise =
-            definition.counter_clockwise(6) != (self.modal.spindle == Spindle::CounterClockwise);
-        let rings = Rectangles {
-            half: [half[0].max(0.0), half[1].max(0.0)],
-            step: self.stepover(settings)?,
-            tool_radius: radius,
-            corner: (corner - radius).max(0.0),
-            counter_clockwise,
-        };
-        let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
-        let plane = self.plane_with([first_axis, second_axis]);
-        let feeds = [plunge_feed, feed];
-        self.mill_layers(plane, &heights, &pecks, feeds, |trace| rings.mill(trace, feed))
+    let heights = m.heights(definition, [setup, depth], Some(pecking))?;
+    let scale = m.modal.plane_scale();
+    let radius = m.modal.used_radius()?;
+    let travel = length.abs() * scale - 2.0 * radius;
+    let allowance = 0.5 * width.abs() * scale - radius;
+    // Cutter diameter between half the slot width and the slot width [003:5130-5132].
+    let too_small = allowance > radius + SAME_MM;
+    if allowance < -SAME_MM || travel < -SAME_MM || too_small {
+        let detail = "the cutter diameter must lie between half the slot width and the slot width";
+        return Err(Fault::new(MessageId::ToolRadiusTooLarge, detail));
     }
-
-    /// Cycle 5 CIRCULAR POCKET: a spiral from the centre, then the full circle [003:5313-5336].
-    pub(super) fn circular_pocket(
-        &mut self,
-        definition: &Definition,
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        let setup = definition.length(1, 0)?;
-        let depth = definition.length(2, 0)?;
-        let pecking = definition.length(3, 0)?;
-        let plunge_feed = definition.feed(3, 0)?;
-        let pocket_radius = definition.length(4, 0)?.abs() * self.plane_scale();
-        let feed = definition.feed(5, 0)?;
-        let heights = self.heights(definition, [setup, depth], Some(pecking), settings)?;
-        let radius = pocket_radius - self.modal.tool_radius();
-        if radius < -SAME_MM {
-            return Err(Fault::new(
-                MessageId::ToolRadiusTooLarge,
-                "the tool does not fit into the pocket",
-            ));
-        }
-        let step = self.stepover(settings)?;
-        let counter_clockwise =
-            definition.counter_clockwise(5) != (self.modal.spindle == Spindle::CounterClockwise);
-        let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
-        let feeds = [plunge_feed, feed];
-        self.mill_layers(self.modal.contour_plane, &heights, &pecks, feeds, |trace| {
-            spiral(trace, radius.max(0.0), step, counter_clockwise, feed);
-        })
+    let unit: Point2 = if along == 0 {
+        [length.signum(), 0.0]
+    } else {
+        [0.0, length.signum()]
+    };
+    // Climb milling inside is counter-clockwise with the spindle clockwise.
+    let climb = if m.modal.spindle == Spindle::CounterClockwise {
+        -1.0
+    } else {
+        1.0
+    };
+    let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
+    let plane = plane_with(m.modal.plane, [length_axis, width_axis]);
+    let mut trace = m.tracer();
+    trace.set_plane(plane);
+    let mut far = false;
+    for depth in &pecks {
+        trace.feed_height(heights.at_depth(*depth), plunge_feed);
+        far = !far;
+        trace.line(if far { scaled(unit, travel) } else { [0.0, 0.0] }, feed);
     }
+    if allowance > SAME_MM {
+        finish_slot(&mut trace, unit, travel.max(0.0), allowance, far, climb, feed);
+    }
+    trace.rapid_height(heights.clearance);
+    trace.rapid([0.0, 0.0]);
+    trace.finish()
+}
 
-    /// The working plane with parallel axes in place of their main axes where a cycle names them.
-    fn plane_with(&self, axes: [Axis; 2]) -> Plane {
-        let named = |axis: Axis| axes.into_iter().find(|a| a.main() == axis.main()).unwrap_or(axis);
-        let plane = self.modal.plane;
-        Plane {
-            first: named(plane.first),
-            second: named(plane.second),
-            normal: plane.normal,
+/// Cycle 4 POCKET MILLING: rectangles that grow from the centre by the stepover K·R; the first leg runs
+/// in the positive direction of the longer side, along the second axis for a square
+/// [003:5223-5278].
+pub(super) fn pocket_milling(m: &mut Machining<'_>, definition: &Definition) -> Result<(), Fault> {
+    let setup = definition.length(1, 0)?;
+    let depth = definition.length(2, 0)?;
+    let pecking = definition.length(3, 0)?;
+    let plunge_feed = definition.feed(3, 0)?;
+    let (first_axis, first) = definition.coordinate(4)?;
+    let (second_axis, second) = definition.coordinate(5)?;
+    let feed = definition.feed(6, 0)?;
+    let corner = definition.optional_length(6, 0).unwrap_or(0.0).abs() * m.modal.plane_scale();
+    let mut sides = [0.0; 2];
+    for (axis, side) in [(first_axis, first), (second_axis, second)] {
+        let index = plane_axis(m.modal.plane, axis)?;
+        if let Some(slot) = sides.get_mut(index) {
+            *slot = side.abs() * m.modal.plane_scale();
         }
     }
-
-    /// Mills the same pattern at each infeed from the centre and ends at the start position.
-    fn mill_layers(
-        &mut self,
-        plane: Plane,
-        heights: &Heights,
-        pecks: &[f64],
-        [plunge_feed, feed]: [f64; 2],
-        mut layer: impl FnMut(&mut Tracer<'_>),
-    ) -> Result<(), Fault> {
-        let mut trace = self.tracer();
-        trace.set_plane(plane);
-        for depth in pecks {
-            if trace.is_full() {
-                break;
-            }
-            trace.feed_height(heights.at_depth(*depth), plunge_feed);
-            layer(&mut trace);
-            trace.line([0.0, 0.0], feed);
-        }
-        trace.rapid_height(heights.clearance);
-        trace.finish()
+    let heights = m.heights(definition, [setup, depth], Some(pecking))?;
+    let radius = m.modal.tool_radius();
+    let half = [0.5 * sides[0] - radius, 0.5 * sides[1] - radius];
+    if half[0] < -SAME_MM || half[1] < -SAME_MM {
+        return Err(Fault::new(
+            MessageId::ToolRadiusTooLarge,
+            "the tool does not fit into the pocket",
+        ));
     }
+    let counter_clockwise = definition.counter_clockwise(6) != (m.modal.spindle == Spindle::CounterClockwise);
+    let rings = Rectangles {
+        half: [half[0].max(0.0), half[1].max(0.0)],
+        step: stepover(m.modal, m.settings)?,
+        tool_radius: radius,
+        corner: (corner - radius).max(0.0),
+        counter_clockwise,
+    };
+    let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
+    let plane = plane_with(m.modal.plane, [first_axis, second_axis]);
+    let feeds = [plunge_feed, feed];
+    mill_layers(m, plane, &heights, &pecks, feeds, |trace| rings.mill(trace, feed))
+}
 
-    /// Stepover k = K · R with the overlap factor MP7430 [003:5270-5278].
-    fn stepover(&self, settings: &Settings) -> Result<f64, Fault> {
-        let step = settings.rules.overlap * self.used_radius()?;
-        if step <= 0.0 {
-            return Err(self.no_radius("a pocket cannot be cleared"));
-        }
-        Ok(step)
+/// Cycle 5 CIRCULAR POCKET: a spiral from the centre, then the full circle [003:5313-5336].
+pub(super) fn circular_pocket(m: &mut Machining<'_>, definition: &Definition) -> Result<(), Fault> {
+    let setup = definition.length(1, 0)?;
+    let depth = definition.length(2, 0)?;
+    let pecking = definition.length(3, 0)?;
+    let plunge_feed = definition.feed(3, 0)?;
+    let pocket_radius = definition.length(4, 0)?.abs() * m.modal.plane_scale();
+    let feed = definition.feed(5, 0)?;
+    let heights = m.heights(definition, [setup, depth], Some(pecking))?;
+    let radius = pocket_radius - m.modal.tool_radius();
+    if radius < -SAME_MM {
+        return Err(Fault::new(
+            MessageId::ToolRadiusTooLarge,
+            "the tool does not fit into the pocket",
+        ));
     }
+    let step = stepover(m.modal, m.settings)?;
+    let counter_clockwise = definition.counter_clockwise(5) != (m.modal.spindle == Spindle::CounterClockwise);
+    let pecks = infeeds(heights.depth, pecking * heights.depth / depth.abs());
+    let feeds = [plunge_feed, feed];
+    let plane = m.modal.contour_plane;
+    mill_layers(m, plane, &heights, &pecks, feeds, |trace| {
+        spiral(trace, radius.max(0.0), step, counter_clockwise, feed);
+    })
+}
 
-    /// Index of an axis in the working plane; other axes are WRONG AXIS PROGRAMMED [003:8022-8025].
-    fn plane_axis(&self, axis: Axis) -> Result<usize, Fault> {
-        let plane = self.modal.plane;
-        if axis.main() == plane.first.main() {
-            Ok(0)
-        } else if axis.main() == plane.second.main() {
-            Ok(1)
-        } else {
-            Err(Fault::new(
-                MessageId::WrongAxisProgrammed,
-                format!("{axis} is not in the working plane"),
-            ))
+/// The working plane with parallel axes in place of their main axes where a cycle names them.
+fn plane_with(plane: Plane, axes: [Axis; 2]) -> Plane {
+    let named = |axis: Axis| axes.into_iter().find(|a| a.main() == axis.main()).unwrap_or(axis);
+    Plane {
+        first: named(plane.first),
+        second: named(plane.second),
+        normal: plane.normal,
+    }
+}
+
+/// Mills the same pattern at each infeed from the centre and ends at the start position.
+fn mill_layers(
+    m: &mut Machining<'_>,
+    plane: Plane,
+    heights: &Heights,
+    pecks: &[f64],
+    [plunge_feed, feed]: [f64; 2],
+    mut layer: impl FnMut(&mut Tracer<'_>),
+) -> Result<(), Fault> {
+    let mut trace = m.tracer();
+    trace.set_plane(plane);
+    for depth in pecks {
+        if trace.is_full() {
+            break;
         }
+        trace.feed_height(heights.at_depth(*depth), plunge_feed);
+        layer(&mut trace);
+        trace.line([0.0, 0.0], feed);
+    }
+    trace.rapid_height(heights.clearance);
+    trace.finish()
+}
+
+/// Stepover k = K · R with the overlap factor MP7430 [003:5270-5278].
+fn stepover(modal: &Modal, settings: &Settings) -> Result<f64, Fault> {
+    let step = settings.rules.overlap * modal.used_radius()?;
+    if step <= 0.0 {
+        return Err(modal.no_radius("a pocket cannot be cleared"));
+    }
+    Ok(step)
+}
+
+/// Index of an axis in the working plane; other axes are WRONG AXIS PROGRAMMED [003:8022-8025].
+fn plane_axis(plane: Plane, axis: Axis) -> Result<usize, Fault> {
+    if axis.main() == plane.first.main() {
+        Ok(0)
+    } else if axis.main() == plane.second.main() {
+        Ok(1)
+    } else {
+        Err(Fault::new(
+            MessageId::WrongAxisProgrammed,
+            format!("{axis} is not in the working plane"),
+        ))
     }
 }
 

@@ -3,248 +3,245 @@
 use bahn_parameters::{MessageId, technology};
 use bahn_path::{Axis, Curve, FeedRate, Function};
 
+use crate::context::Context;
 use crate::definition::{Resolved, dwell_time};
 use crate::error::{Fault, WarningKind};
-use crate::run::Run;
+use crate::modal::Modal;
+use crate::pen::Pen;
 use crate::settings::Settings;
 
-impl Run {
-    /// Cycle 7 DATUM SHIFT: absolute to the set datum, incremental to the last valid one [003:6222].
-    pub(super) fn datum_shift(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
-        let max = settings.model.limits().coordinate_max;
-        let is_mark = |word: &Resolved| matches!(word, Resolved::Text(text) if text.starts_with('#'));
-        if words.iter().any(is_mark) {
-            return self.datum_from_table(words, settings);
-        }
-        for word in words {
-            let Resolved::Coordinate {
-                axis,
-                value,
-                incremental,
-            } = word
-            else {
-                continue;
-            };
-            let value = value * self.axis_unit(*axis);
-            let shift = if *incremental {
-                self.modal.frame.shift[*axis] + value
-            } else {
-                value
-            };
-            if shift.abs() > max {
-                return Err(Fault::new(
-                    MessageId::EntryValueIncorrect,
-                    format!("{axis} is beyond {max}"),
-                ));
-            }
-            self.modal.frame.shift[*axis] = shift;
-        }
-        self.transformed();
-        Ok(())
+/// Cycle 7 DATUM SHIFT: absolute to the set datum, incremental to the last valid one [003:6222].
+pub(super) fn datum_shift(c: &mut Context<'_>, words: &[Resolved]) -> Result<(), Fault> {
+    let max = c.settings.model.limits().coordinate_max;
+    let is_mark = |word: &Resolved| matches!(word, Resolved::Text(text) if text.starts_with('#'));
+    if words.iter().any(is_mark) {
+        return datum_from_table(c, words);
     }
-
-    /// `CYCL DEF 7.1 #n`: a line of the selected datum table shifts all axes of the table. Its values count from
-    /// the workpiece datum, or with MP7475 = 1 from the machine datum [000:6898-6904]. No manual prints a message
-    /// for what is missing: it is that of a wrong entry (inferred).
-    fn datum_from_table(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
-        let wrong = |detail: String| Fault::new(MessageId::EntryValueIncorrect, detail);
-        let Some(table) = &settings.datum_table else {
-            let detail = "no datum table is selected (`datum_table` in machine.toml, or module 9090)";
-            return match settings.skip_unknown {
-                true => {
-                    self.warn(WarningKind::PassedOver { what: detail.into() });
-                    Ok(())
-                }
-                false => Err(wrong(detail.into())),
-            };
+    for word in words {
+        let Resolved::Coordinate {
+            axis,
+            value,
+            incremental,
+        } = word
+        else {
+            continue;
         };
-        let number = match words {
-            [Resolved::Text(mark), Resolved::Number(number)] if &**mark == "#" => *number,
-            _ => {
-                return Err(wrong(
-                    "# takes the number of a line of the datum table, and nothing else".into(),
-                ));
-            }
-        };
-        let datum = match number.fract() == 0.0 {
-            true => table.get(&(number as i32)),
-            false => None,
-        };
-        let datum = *datum.ok_or_else(|| wrong(format!("the datum table has no line {number}")))?;
-        let mut shift = self.modal.frame.shift;
-        for axis in datum.known().iter() {
-            shift[axis] = match settings.rules.datums_from_machine {
-                true => datum[axis] + settings.rules.machine_zero[axis],
-                false => datum[axis],
-            };
-            if shift[axis].is_nan() {
-                let what = format!("MP7475 counts from the machine datum, which is not known for {axis}");
-                return Err(wrong(what));
-            }
-        }
-        self.modal.frame.shift = shift;
-        self.transformed();
-        Ok(())
-    }
-
-    /// Cycle 8 MIRROR IMAGE: the named axes; none cancels. Neither the tool axis nor a rotary axis can be
-    /// mirrored [003:6290-6307].
-    pub(super) fn mirror_image(&mut self, words: &[Resolved]) -> Result<(), Fault> {
-        let mut mirrored = Vec::new();
-        for word in words {
-            match word {
-                Resolved::Axis(axis)
-                | Resolved::Coordinate { axis, .. }
-                | Resolved::AxisDirection(axis, _) => {
-                    mirrored.push(*axis);
-                }
-                _ => {}
-            }
-        }
-        for axis in &mirrored {
-            if axis.is_rotary() || *axis == self.modal.plane.normal {
-                let detail = format!("{axis} cannot be mirrored");
-                return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
-            }
-        }
-        for axis in Axis::ALL {
-            let size = self.modal.frame.factor[axis].abs();
-            self.modal.frame.factor[axis] = if mirrored.contains(&axis) { -size } else { size };
-        }
-        self.transformed();
-        Ok(())
-    }
-
-    /// Cycle 10 ROTATION about the active datum in the working plane [003:6313-6333]. The input limit of 360
-    /// degrees is one of typed numbers: a calculated angle may go on counting, as the hemisphere of the manual
-    /// does in its last pass [003:4785-4789].
-    pub(super) fn rotation(
-        &mut self,
-        words: &[Resolved],
-        calculated: bool,
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        // `IROT`: the word before the number says that it is incremental (spelling inferred).
-        let incremental = words.iter().any(|word| {
-            matches!(word, Resolved::Text(text) if text.len() > 1 && text.to_ascii_uppercase().starts_with('I'))
-        });
-        let Some(angle) = first_number(words) else {
-            return Err(Fault::new(
-                MessageId::CyclIncomplete,
-                "the angle of rotation is missing",
-            ));
-        };
-        let max = settings.model.limits().rotation_max_deg;
-        if angle.abs() > max && !calculated {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                format!("ROT takes -{max} to +{max} degrees"),
-            ));
-        }
-        let frame = &mut self.modal.frame;
-        frame.rotation_deg = if incremental {
-            frame.rotation_deg + angle
+        let value = value * c.numbers.axis_unit(*axis);
+        let shift = if *incremental {
+            c.modal.frame.shift[*axis] + value
         } else {
-            angle
-        } % 360.0;
-        frame.plane = self.modal.plane;
-        self.transformed();
-        Ok(())
-    }
-
-    /// Cycle 11 SCALING FACTOR, in the working plane or on all axes by MP7410 [003:6385-6412].
-    pub(super) fn scaling(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
-        let Some(factor) = first_number(words) else {
-            return Err(Fault::new(
-                MessageId::CyclIncomplete,
-                "the scaling factor is missing",
-            ));
+            value
         };
-        let [min, max] = settings.model.limits().scaling_range;
-        if !(min..=max).contains(&factor) {
+        if shift.abs() > max {
             return Err(Fault::new(
                 MessageId::EntryValueIncorrect,
-                format!("SCL takes {min} to {max}"),
+                format!("{axis} is beyond {max}"),
             ));
         }
-        for axis in Axis::ALL.into_iter().filter(|axis| !axis.is_rotary()) {
-            let in_plane = axis.main() != self.modal.plane.normal.main();
-            let scaled = in_plane || !settings.rules.scaling_in_plane_only;
-            let sign = self.modal.frame.factor[axis].signum();
-            self.modal.frame.factor[axis] = if scaled { sign * factor } else { sign };
-        }
-        self.transformed();
-        Ok(())
+        c.modal.frame.shift[*axis] = shift;
     }
+    c.modal.forget_tangent();
+    Ok(())
+}
 
-    /// The frame has changed: the tangent of the last movement is no longer known in it.
-    fn transformed(&mut self) {
-        self.modal.last_move = None;
-    }
-
-    /// Cycle 9 DWELL TIME in seconds [003:6462-6474].
-    pub(super) fn dwell(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
-        let Some(seconds) = first_number(words) else {
-            return Err(Fault::new(MessageId::CyclIncomplete, "the dwell time is missing"));
-        };
-        let seconds = dwell_time(seconds, settings)?;
-        self.finish_contour()?;
-        let centre = self.tool_centre();
-        let mut element = self.element(Curve::Hold, centre, centre, FeedRate::Rapid);
-        element.dwell_s = seconds;
-        if self.machine && seconds > 0.0 {
-            self.note_time();
-        }
-        self.out.push(element, None);
-        Ok(())
-    }
-
-    /// Cycle 13: angle of the oriented spindle stop, for M19 or another M function [003:6500-6528]; the PLC
-    /// is told of it when the cycle is executed [000:5853-5865].
-    pub(super) fn spindle_orientation(
-        &mut self,
-        words: &[Resolved],
-        settings: &Settings,
-    ) -> Result<(), Fault> {
-        let Some(angle) = first_number(words) else {
-            return Err(Fault::new(MessageId::CyclIncomplete, "the angle is missing"));
-        };
-        if !(0.0..=360.0).contains(&angle) {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                "the angle is 0 to 360 degrees",
-            ));
-        }
-        self.modal.orientation_deg = Some(angle);
-        self.output_function(
-            Function::OrientationAngle(angle),
-            technology::Block::OrientationAngle,
-            settings,
-        )
-    }
-
-    /// Cycle 14 CONTOUR GEOMETRY: the labels of the subcontours [003:5460-5470].
-    pub(super) fn contour_geometry(&mut self, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
-        let mut labels = Vec::new();
-        for word in words {
-            match word {
-                Resolved::Labels(list) => labels.extend_from_slice(list),
-                Resolved::Number(number) if *number >= 1.0 && *number <= f64::from(u16::MAX) => {
-                    labels.push(*number as u16);
-                }
-                _ => {}
+/// `CYCL DEF 7.1 #n`: a line of the selected datum table shifts all axes of the table. Its values count from
+/// the workpiece datum, or with MP7475 = 1 from the machine datum [000:6898-6904]. No manual prints a message
+/// for what is missing: it is that of a wrong entry (inferred).
+fn datum_from_table(c: &mut Context<'_>, words: &[Resolved]) -> Result<(), Fault> {
+    let wrong = |detail: String| Fault::new(MessageId::EntryValueIncorrect, detail);
+    let Some(table) = &c.settings.datum_table else {
+        let detail = "no datum table is selected (`datum_table` in machine.toml, or module 9090)";
+        return match c.settings.skip_unknown {
+            true => {
+                c.warn(WarningKind::PassedOver { what: detail.into() });
+                Ok(())
             }
-        }
-        let max = settings.model.limits().contour_labels_max;
-        if labels.is_empty() || labels.len() > usize::from(max) {
-            return Err(Fault::new(
-                MessageId::EntryValueIncorrect,
-                format!("cycle 14 takes 1 to {max} labels"),
+            false => Err(wrong(detail.into())),
+        };
+    };
+    let number = match words {
+        [Resolved::Text(mark), Resolved::Number(number)] if &**mark == "#" => *number,
+        _ => {
+            return Err(wrong(
+                "# takes the number of a line of the datum table, and nothing else".into(),
             ));
         }
-        self.modal.contour_labels = labels;
-        Ok(())
+    };
+    let datum = match number.fract() == 0.0 {
+        true => table.get(&(number as i32)),
+        false => None,
+    };
+    let datum = *datum.ok_or_else(|| wrong(format!("the datum table has no line {number}")))?;
+    let mut shift = c.modal.frame.shift;
+    for axis in datum.known().iter() {
+        shift[axis] = match c.settings.rules.datums_from_machine {
+            true => datum[axis] + c.settings.rules.machine_zero[axis],
+            false => datum[axis],
+        };
+        if shift[axis].is_nan() {
+            let what = format!("MP7475 counts from the machine datum, which is not known for {axis}");
+            return Err(wrong(what));
+        }
     }
+    c.modal.frame.shift = shift;
+    c.modal.forget_tangent();
+    Ok(())
+}
+
+/// Cycle 8 MIRROR IMAGE: the named axes; none cancels. Neither the tool axis nor a rotary axis can be
+/// mirrored [003:6290-6307].
+pub(super) fn mirror_image(modal: &mut Modal, words: &[Resolved]) -> Result<(), Fault> {
+    let mut mirrored = Vec::new();
+    for word in words {
+        match word {
+            Resolved::Axis(axis) | Resolved::Coordinate { axis, .. } | Resolved::AxisDirection(axis, _) => {
+                mirrored.push(*axis);
+            }
+            _ => {}
+        }
+    }
+    for axis in &mirrored {
+        if axis.is_rotary() || *axis == modal.plane.normal {
+            let detail = format!("{axis} cannot be mirrored");
+            return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
+        }
+    }
+    for axis in Axis::ALL {
+        let size = modal.frame.factor[axis].abs();
+        modal.frame.factor[axis] = if mirrored.contains(&axis) { -size } else { size };
+    }
+    modal.forget_tangent();
+    Ok(())
+}
+
+/// Cycle 10 ROTATION about the active datum in the working plane [003:6313-6333]. The input limit of 360
+/// degrees is one of typed numbers: a calculated angle may go on counting, as the hemisphere of the manual
+/// does in its last pass [003:4785-4789].
+pub(super) fn rotation(
+    modal: &mut Modal,
+    words: &[Resolved],
+    calculated: bool,
+    settings: &Settings,
+) -> Result<(), Fault> {
+    // `IROT`: the word before the number says that it is incremental (spelling inferred).
+    let incremental = words.iter().any(|word| {
+        matches!(word, Resolved::Text(text) if text.len() > 1 && text.to_ascii_uppercase().starts_with('I'))
+    });
+    let Some(angle) = first_number(words) else {
+        return Err(Fault::new(
+            MessageId::CyclIncomplete,
+            "the angle of rotation is missing",
+        ));
+    };
+    let max = settings.model.limits().rotation_max_deg;
+    if angle.abs() > max && !calculated {
+        return Err(Fault::new(
+            MessageId::EntryValueIncorrect,
+            format!("ROT takes -{max} to +{max} degrees"),
+        ));
+    }
+    let frame = &mut modal.frame;
+    frame.rotation_deg = if incremental {
+        frame.rotation_deg + angle
+    } else {
+        angle
+    } % 360.0;
+    frame.plane = modal.plane;
+    modal.forget_tangent();
+    Ok(())
+}
+
+/// Cycle 11 SCALING FACTOR, in the working plane or on all axes by MP7410 [003:6385-6412].
+pub(super) fn scaling(modal: &mut Modal, words: &[Resolved], settings: &Settings) -> Result<(), Fault> {
+    let Some(factor) = first_number(words) else {
+        return Err(Fault::new(
+            MessageId::CyclIncomplete,
+            "the scaling factor is missing",
+        ));
+    };
+    let [min, max] = settings.model.limits().scaling_range;
+    if !(min..=max).contains(&factor) {
+        return Err(Fault::new(
+            MessageId::EntryValueIncorrect,
+            format!("SCL takes {min} to {max}"),
+        ));
+    }
+    for axis in Axis::ALL.into_iter().filter(|axis| !axis.is_rotary()) {
+        let in_plane = axis.main() != modal.plane.normal.main();
+        let scaled = in_plane || !settings.rules.scaling_in_plane_only;
+        let sign = modal.frame.factor[axis].signum();
+        modal.frame.factor[axis] = if scaled { sign * factor } else { sign };
+    }
+    modal.forget_tangent();
+    Ok(())
+}
+
+/// Cycle 9 DWELL TIME in seconds [003:6462-6474].
+pub(super) fn dwell(
+    modal: &Modal,
+    pen: &mut Pen,
+    words: &[Resolved],
+    settings: &Settings,
+) -> Result<(), Fault> {
+    let Some(seconds) = first_number(words) else {
+        return Err(Fault::new(MessageId::CyclIncomplete, "the dwell time is missing"));
+    };
+    let seconds = dwell_time(seconds, settings)?;
+    pen.finish_contour()?;
+    let centre = pen.tool_centre(modal);
+    let mut element = pen.element(Curve::Hold, centre, centre, FeedRate::Rapid);
+    element.dwell_s = seconds;
+    if pen.machine && seconds > 0.0 {
+        pen.note_time();
+    }
+    pen.out.push(element, None);
+    Ok(())
+}
+
+/// Cycle 13: angle of the oriented spindle stop, for M19 or another M function [003:6500-6528]; the PLC
+/// is told of it when the cycle is executed [000:5853-5865].
+pub(super) fn spindle_orientation(c: &mut Context<'_>, words: &[Resolved]) -> Result<(), Fault> {
+    let Some(angle) = first_number(words) else {
+        return Err(Fault::new(MessageId::CyclIncomplete, "the angle is missing"));
+    };
+    if !(0.0..=360.0).contains(&angle) {
+        return Err(Fault::new(
+            MessageId::EntryValueIncorrect,
+            "the angle is 0 to 360 degrees",
+        ));
+    }
+    c.modal.orientation_deg = Some(angle);
+    c.output_function(
+        Function::OrientationAngle(angle),
+        technology::Block::OrientationAngle,
+    )
+}
+
+/// Cycle 14 CONTOUR GEOMETRY: the labels of the subcontours [003:5460-5470].
+pub(super) fn contour_geometry(
+    modal: &mut Modal,
+    words: &[Resolved],
+    settings: &Settings,
+) -> Result<(), Fault> {
+    let mut labels = Vec::new();
+    for word in words {
+        match word {
+            Resolved::Labels(list) => labels.extend_from_slice(list),
+            Resolved::Number(number) if *number >= 1.0 && *number <= f64::from(u16::MAX) => {
+                labels.push(*number as u16);
+            }
+            _ => {}
+        }
+    }
+    let max = settings.model.limits().contour_labels_max;
+    if labels.is_empty() || labels.len() > usize::from(max) {
+        return Err(Fault::new(
+            MessageId::EntryValueIncorrect,
+            format!("cycle 14 takes 1 to {max} labels"),
+        ));
+    }
+    modal.contour_labels = labels;
+    Ok(())
 }
 
 fn first_number(words: &[Resolved]) -> Option<f64> {

@@ -1,0 +1,42 @@
+//! What a block may touch while it is executed.
+
+use bahn_parameters::technology;
+use bahn_path::Function;
+
+use crate::availability::Feature;
+use crate::error::{Fault, WarningKind};
+use crate::flow;
+use crate::modal::Modal;
+use crate::numbers::Numbers;
+use crate::pen::Pen;
+use crate::settings::Settings;
+use crate::told::Told;
+
+/// The parts of a run that a block works on. It leads nowhere by itself: where the run goes on is left to whoever
+/// executes it.
+pub(crate) struct Context<'a> {
+    pub modal: &'a mut Modal,
+    pub numbers: &'a mut Numbers,
+    pub pen: &'a mut Pen,
+    pub told: &'a mut Told,
+    pub at: &'a flow::Position,
+    pub settings: &'a Settings,
+}
+
+impl Context<'_> {
+    /// See [`Told::executes`].
+    pub fn executes(&mut self, feature: Feature) -> Result<bool, Fault> {
+        self.told.executes(self.pen.block, feature, self.settings)
+    }
+
+    /// Warns of the block.
+    pub fn warn(&mut self, kind: WarningKind) {
+        self.told.warn(self.pen.block, kind);
+    }
+
+    /// See [`Pen::output_function`].
+    pub fn output_function(&mut self, function: Function, block: technology::Block) -> Result<(), Fault> {
+        self.pen
+            .output_function(self.modal, function, block, self.settings)
+    }
+}
