@@ -111,14 +111,14 @@ impl Interpreter {
 
     /// A Q parameter behind the last block that was read; 0 for one that the model does not have.
     pub fn q_value(&self, number: u16) -> f64 {
-        self.run.q.get(number).unwrap_or(0.0)
+        self.run.numbers.q.get(number).unwrap_or(0.0)
     }
 
     /// A Q parameter before the block of a sequence, as far as states are kept; 0 for one that the model does not have.
     pub fn q_value_at(&self, number: u16, sequence: u64) -> f64 {
         let kept = self.kept.as_ref();
         let before = kept.and_then(|kept| kept.states.iter().rfind(|state| state.sequence() <= sequence));
-        let before = before.map(|state| state.run.q.get(number).unwrap_or(0.0));
+        let before = before.map(|state| state.run.numbers.q.get(number).unwrap_or(0.0));
         before.unwrap_or_else(|| self.q_value(number))
     }
 

@@ -102,9 +102,8 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
         }
         Operation::Miscellaneous(m) => {
             let functions = take_m_functions(c, m)?;
-            let call = m.contains(99);
             let flow = c.pen.hold(c.modal, functions)?;
-            return if call { call_cycle(c) } else { Ok(flow) };
+            return if m.contains(99) { call_cycle(c) } else { Ok(flow) };
         }
         Operation::ErrorNumber(number) => return Err(numbered_error(&c.numbers.q, *number, settings)),
         Operation::Print(items) => print(c, items)?,
