@@ -1,7 +1,7 @@
 //! One axis of the machine as the kernel sees it: its loop, its nominal position, what moves it.
 
 use bahn_motion::{Aim, PointToPoint};
-use bahn_parameters::AxisParameters;
+use bahn_parameters::axis::AxisParameters;
 use bahn_path::Axis;
 use bahn_servo::{Axis as Servo, Gantry, Method, Timing};
 

@@ -1,7 +1,7 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
 use bahn_exchange::{Exchange, Image, signal};
-use bahn_parameters::OperationParameters;
+use bahn_parameters::operation::OperationParameters;
 use bahn_path::BlockRef;
 use bahn_servo::{Measured, OperatorInputs};
 

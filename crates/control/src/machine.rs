@@ -2,7 +2,9 @@
 //! survives power-off.
 
 use bahn_exchange::{Bit, BitArea, Exchange, signal};
-use bahn_parameters::{ControlModel, MessageId, ParameterList, PlcParameters, Station};
+use bahn_parameters::operation::Station;
+use bahn_parameters::plc::PlcParameters;
+use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::BlockRef;
 use bahn_plc::{Machine, PlcProgram, Start, Tracer, mirror_parameters};
 use bahn_servo::{Commands, Measured, Timing};

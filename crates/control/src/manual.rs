@@ -2,8 +2,9 @@
 
 use bahn_exchange::{Image, signal};
 use bahn_motion::Aim;
+use bahn_parameters::ControlModel;
+use bahn_parameters::operation::{Handwheel, OperationParameters};
 use bahn_parameters::technology::Technology;
-use bahn_parameters::{ControlModel, Handwheel, OperationParameters};
 use bahn_path::BlockRef;
 use bahn_plc::JogLimit;
 

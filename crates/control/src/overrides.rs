@@ -1,7 +1,7 @@
 //! Feed and spindle override: potentiometer, steps, and the factor that the PLC writes.
 
 use bahn_exchange::{Exchange, Number, signal};
-use bahn_parameters::OverrideSteps;
+use bahn_parameters::operation::OverrideSteps;
 
 /// One override: the potentiometer in W494 or W492, the value that is used in W766 or W764. When the PLC
 /// writes another value there, that one is used; otherwise the potentiometer works [000:5577-5594]

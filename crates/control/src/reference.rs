@@ -6,7 +6,7 @@
 
 use bahn_exchange::Image;
 use bahn_motion::Aim;
-use bahn_parameters::ReferenceType;
+use bahn_parameters::axis::ReferenceType;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};

@@ -8,7 +8,8 @@ use std::collections::VecDeque;
 
 use bahn_exchange::{Exchange, signal};
 use bahn_motion::Aim;
-use bahn_parameters::{MessageId, RestartParameters};
+use bahn_parameters::MessageId;
+use bahn_parameters::operation::RestartParameters;
 use bahn_path::{Barrier, ElementSource, Function, PathElement, Position, Step, TechnologyFunction};
 
 use crate::axes::OwnAxes;

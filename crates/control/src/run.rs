@@ -3,7 +3,8 @@
 use bahn_exchange::{Image, signal};
 use bahn_interpreter::{Interpreter, Status};
 use bahn_motion::{Drive, State, Stop};
-use bahn_parameters::{MessageId, RestartParameters};
+use bahn_parameters::MessageId;
+use bahn_parameters::operation::RestartParameters;
 use bahn_path::{Barrier, BlockRef, LiveData, PathElement};
 use bahn_servo::Measured;
 

@@ -2,7 +2,7 @@
 //! [000:5438-5945].
 
 use bahn_exchange::{Bit, Exchange, signal};
-use bahn_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
+use bahn_parameters::spindle::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
 use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
 use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 

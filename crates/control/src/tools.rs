@@ -1,7 +1,7 @@
 //! Tools: what TOOL CALL and TOOL DEF hand to the PLC (MP7480).
 
 use bahn_exchange::{Exchange, signal};
-use bahn_parameters::{ToolOutput, ToolOutputKind, ToolParameters};
+use bahn_parameters::operation::{ToolOutput, ToolOutputKind, ToolParameters};
 use bahn_path::{Axis, ToolCall};
 use bahn_plc::ToolCallBlock;
 

@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use bahn_parameters::machining::ScaledAxes;
+use bahn_parameters::spindle::SpindleParameters;
 use bahn_parameters::technology::{AxisHalts, Technology};
-use bahn_parameters::{ControlModel, InchFeed, ParameterList, ScaledAxes, SpindleParameters};
+use bahn_parameters::{ControlModel, InchFeed, ParameterList};
 use bahn_path::{Axis, Function, Position, TechnologyFunction, ToolShape};
 
 use crate::status::Status;

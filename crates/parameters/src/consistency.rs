@@ -2,9 +2,8 @@
 //!
 //! The control's editor does not look for them; each rule is a sentence of the manual.
 
-use crate::{
-    AxisParameters, ControlModel, ParameterId, ParameterList, SpindleOutput, SpindleParameters, Station,
-};
+use crate::settings::{AxisParameters, SpindleOutput, SpindleParameters, Station};
+use crate::{ControlModel, ParameterId, ParameterList};
 
 /// Values that do not go together.
 #[derive(Clone, Debug, PartialEq)]

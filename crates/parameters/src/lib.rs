@@ -7,9 +7,9 @@
 //! - [`Definition`]: what the manual's list says of each machine parameter; [`Advice`]: what it does;
 //! - [`chapters`]: the chapters of the manuals that a citation means;
 //! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
-//!   model: [`ParameterList::axis_parameters`], [`ParameterList::spindle_parameters`] and so on;
-//! - [`ParameterSpace`]: what machine parameters have in common with other kinds, as the system and channel parameters
-//!   of a System 900, [`QParameters`];
+//!   model, grouped by who reads them: [`axis`], [`spindle`], [`operation`], [`machining`], [`plc`];
+//! - [`space`]: what machine parameters have in common with other kinds, as the system and channel parameters of a
+//!   System 900;
 //! - [`ListText`]: the text of a list, whose values change in their places;
 //! - [`conformance`]: what each function of a control does here, and what it does not;
 //! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them.
@@ -37,7 +37,7 @@ mod meaning;
 mod message;
 mod model;
 mod settings;
-mod space;
+pub mod space;
 pub mod technology;
 mod text;
 
@@ -51,17 +51,41 @@ pub use limits::{EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering};
 pub use list::ParameterList;
 pub use message::{MessageCode, MessageId};
 pub use model::{ControlModel, UnknownModel};
-pub use settings::{
-    AxisParameters, CompensationParameters, ContourPocket, DatumParameters, Decimal, DigitalSpeedParameters,
-    EncoderParameters, FreeOutput, Gear, GearSignal, GraphicsSettings, Handwheel, HandwheelParameters,
-    LagParameters, MFunctions, MonitoringInput, MonitoringParameters, MotionParameters, OperationParameters,
-    OrientationParameters, OutputParameters, OverrideParameters, OverrideSteps, PlcParameters,
-    PrecontrolParameters, ProbeSettings, ProgramEndClearing, ReferenceParameters, ReferenceType,
-    RestartParameters, ScaledAxes, SpeedCodes, SpindleOutput, SpindleParameters, SpindlePolarity,
-    SpindleRamps, Station, StrobeTimes, Synchronization, Tapping, TappingParameters, ToolOutput,
-    ToolOutputKind, ToolParameters, TravelParameters, UserParameter,
-};
-pub use space::{
-    Content, PARAMETERS_MIN, ParameterSpace, QError, QName, QParameters, QStatus, Receivers, differences,
-};
 pub use text::{Entry, ListText};
+
+/// Of an axis: [`ParameterList::axis_parameters`](crate::ParameterList::axis_parameters).
+pub mod axis {
+    pub use crate::settings::{
+        AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
+        MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
+        ReferenceType, Synchronization, TravelParameters,
+    };
+}
+
+/// Of part programs: cycles, M functions, probing, graphics.
+pub mod machining {
+    pub use crate::settings::{
+        ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
+    };
+}
+
+/// Of operating: [`ParameterList::operation_parameters`](crate::ParameterList::operation_parameters).
+pub mod operation {
+    pub use crate::settings::{
+        DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters,
+        OverrideSteps, RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
+    };
+}
+
+/// Of the PLC: [`ParameterList::plc_parameters`](crate::ParameterList::plc_parameters).
+pub mod plc {
+    pub use crate::settings::{MonitoringInput, PlcParameters, StrobeTimes};
+}
+
+/// Of the spindle: [`ParameterList::spindle_parameters`](crate::ParameterList::spindle_parameters).
+pub mod spindle {
+    pub use crate::settings::{
+        FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,
+        SpindlePolarity, SpindleRamps, Tapping, TappingParameters,
+    };
+}

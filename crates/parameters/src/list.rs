@@ -3,10 +3,9 @@
 use std::fmt;
 
 use crate::definition::parse_id;
+use crate::space::{Content, ParameterSpace};
 use crate::text::read_assignment;
-use crate::{
-    Content, ControlModel, Definition, ListError, ListText, ParameterError, ParameterId, ParameterSpace,
-};
+use crate::{ControlModel, Definition, ListError, ListText, ParameterError, ParameterId};
 
 /// The machine parameters of one machine: a value within its range for every parameter of the model.
 ///

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
 
-use bahn_parameters::{ControlModel, GearSignal, ParameterList, ReferenceType, SpindleOutput};
+use bahn_parameters::axis::ReferenceType;
+use bahn_parameters::spindle::{GearSignal, SpindleOutput};
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::Axis;
 
 /// The reference list of a model with other values.

@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a list that cannot be read fails its test")]
 
-use bahn_parameters::{
-    ControlModel, Handwheel, MonitoringInput, OverrideSteps, ParameterList, Station, ToolOutput,
-    ToolOutputKind,
-};
+use bahn_parameters::operation::{Handwheel, OverrideSteps, Station, ToolOutput, ToolOutputKind};
+use bahn_parameters::plc::MonitoringInput;
+use bahn_parameters::{ControlModel, ParameterList};
 
 /// The reference list of a model with other values.
 fn with(model: ControlModel, assignments: &[&str]) -> ParameterList {

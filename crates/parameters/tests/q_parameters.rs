@@ -1,7 +1,7 @@
 //! System and channel parameters of a System 900.
 #![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
-use bahn_parameters::{
+use bahn_parameters::space::{
     Content, PARAMETERS_MIN, ParameterSpace, QError, QName, QParameters, QStatus, differences,
 };
 

@@ -2,7 +2,8 @@
 
 use std::collections::HashSet;
 
-use bahn_parameters::{ControlModel, Decimal, Definition, ParameterList, ScaledAxes};
+use bahn_parameters::machining::{Decimal, ScaledAxes};
+use bahn_parameters::{ControlModel, Definition, ParameterList};
 use bahn_path::{Axis, AxisSet};
 
 #[test]

@@ -1,6 +1,6 @@
 //! The position loop of an axis.
 
-use bahn_parameters::AxisParameters;
+use bahn_parameters::axis::AxisParameters;
 
 use crate::characteristic::Characteristic;
 use crate::fault::{Fault, GrossFault};

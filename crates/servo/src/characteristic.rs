@@ -1,6 +1,6 @@
 //! The velocity that a lag asks for.
 
-use bahn_parameters::LagParameters;
+use bahn_parameters::axis::LagParameters;
 
 /// kv 1 (m/min)/mm as velocity in mm/min for a lag of 1 mm.
 pub(crate) const KV_PER_MIN: f64 = 1000.0;

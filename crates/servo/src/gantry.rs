@@ -1,6 +1,6 @@
 //! Synchronized axes: a slave that follows its master [000:4451-4539].
 
-use bahn_parameters::AxisParameters;
+use bahn_parameters::axis::AxisParameters;
 
 use crate::axis::Axis;
 use crate::fault::{Fault, GrossFault};

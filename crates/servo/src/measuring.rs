@@ -1,6 +1,6 @@
 //! From the count of an encoder to the position of the axis.
 
-use bahn_parameters::{AxisParameters, ReferenceType};
+use bahn_parameters::axis::{AxisParameters, ReferenceType};
 
 use crate::fault::EncoderFault;
 use crate::marks::DistanceCode;

@@ -1,6 +1,6 @@
 //! Monitoring of lag, voltage, movement and standstill [000:5160-5300].
 
-use bahn_parameters::AxisParameters;
+use bahn_parameters::axis::AxisParameters;
 
 use crate::fault::{Fault, GrossFault};
 use crate::method::Method;

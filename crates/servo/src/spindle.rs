@@ -6,7 +6,7 @@ mod orientation;
 mod speed;
 mod speed_code;
 
-use bahn_parameters::{Gear, SpindleParameters};
+use bahn_parameters::spindle::{Gear, SpindleParameters};
 
 use crate::characteristic::KV_PER_MIN;
 use crate::fault::Fault;

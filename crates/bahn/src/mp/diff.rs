@@ -1,6 +1,7 @@
 //! `bahn mp diff`: in which parameters two lists differ.
 
-use bahn_parameters::{Definition, ParameterList, differences};
+use bahn_parameters::space::differences;
+use bahn_parameters::{Definition, ParameterList};
 use serde::Serialize;
 
 use super::list::Row;

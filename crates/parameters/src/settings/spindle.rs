@@ -1,6 +1,7 @@
 //! Settings of the spindle and of tapping.
 
-use crate::{ParameterList, SpindleOutput};
+use crate::ParameterList;
+use crate::settings::SpindleOutput;
 
 /// Gear ranges of the spindle.
 const GEARS: u8 = 8;

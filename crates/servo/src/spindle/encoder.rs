@@ -1,6 +1,6 @@
 //! The angle of the spindle.
 
-use bahn_parameters::SpindleParameters;
+use bahn_parameters::spindle::SpindleParameters;
 
 use crate::fault::EncoderFault;
 use crate::plant::Encoder;

@@ -1,6 +1,6 @@
 //! The spindle led to an angle in every contour cycle: rigid tapping.
 
-use bahn_parameters::SpindleParameters;
+use bahn_parameters::spindle::SpindleParameters;
 
 use crate::interpolation::{FineInterpolation, Transient};
 use crate::timing::Timing;

@@ -1,6 +1,6 @@
 //! From the programmed speed to the voltage [000:5520-5610].
 
-use bahn_parameters::{Gear, SpindleParameters, SpindlePolarity};
+use bahn_parameters::spindle::{Gear, SpindleParameters, SpindlePolarity};
 
 use super::Rotation;
 

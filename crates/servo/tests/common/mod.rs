@@ -2,7 +2,8 @@
 #![allow(dead_code, reason = "not every test uses every helper")]
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-use bahn_parameters::{AxisParameters, ControlModel, ParameterList};
+use bahn_parameters::axis::AxisParameters;
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_servo::{Axis, Encoder, Method, Timing};
 
 /// Mechanics without errors, and a drive without offset.
