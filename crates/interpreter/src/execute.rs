@@ -1,8 +1,8 @@
-//! The execution of one block.
+//! The execution of one block: which part of the run does what it says.
 
 use bahn_parameters::{MessageId, technology};
 use bahn_path::Function;
-use bahn_program::{InvalidBlock, Operation, Value};
+use bahn_program::{Expression, InvalidBlock, Operation, Value};
 
 use crate::availability::{Feature, words};
 use crate::blank::{blank_max, blank_min};
@@ -63,14 +63,7 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
     match operation {
         Operation::End(_) => return Ok(Flow::EndOfProgram),
         Operation::Formula { target, expression } => {
-            if !settings.model.limits().formulas {
-                return Err(Fault::new(
-                    MessageId::BlockNotKnown,
-                    "this control has no formulas",
-                ));
-            }
-            let value = c.numbers.q.evaluate(expression)?;
-            c.numbers.q.set(*target, value)?;
+            formula(&mut c.numbers.q, *target, expression, settings)?;
         }
         Operation::CallLabel { label, repeats } => {
             return call_label(&c.numbers.q, *label, *repeats, settings);
@@ -139,6 +132,17 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
         | Operation::Begin(_) => {}
     }
     Ok(Flow::Next)
+}
+
+fn formula(q: &mut QTable, target: u16, expression: &Expression, settings: &Settings) -> Result<(), Fault> {
+    if !settings.model.limits().formulas {
+        return Err(Fault::new(
+            MessageId::BlockNotKnown,
+            "this control has no formulas",
+        ));
+    }
+    let value = q.evaluate(expression)?;
+    q.set(target, value)
 }
 
 fn call_label(q: &QTable, label: u16, repeats: Option<Value>, settings: &Settings) -> Result<Flow, Fault> {

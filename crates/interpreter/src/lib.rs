@@ -12,6 +12,9 @@
 //! A block is executed by `execute`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
 //! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished
 //! steps.
+//! All state that changes is in `run`, in parts: `modal` data, `numbers` (Q parameters and units), the `pen` with
+//! contour stages and queue, `tools`, `flow`, what is `told`. A block gets those it may touch as a `context`; only
+//! `execute` sees the whole.
 //! Nothing here knows of time or of the machine's axes.
 
 mod arc;
