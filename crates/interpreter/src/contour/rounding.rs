@@ -57,13 +57,15 @@ impl RoundingStage {
         if item.corner_arcs.is_some() {
             return self.push_with_arc(item, next, out);
         }
-        if let Some(held) = self.held.replace(item) {
-            if held.in_plane {
-                self.side_before = held.side;
-            }
-            next.push(held, out)?;
+        let Some(held) = &mut self.held else {
+            self.held = Some(item);
+            return Ok(());
+        };
+        let before = std::mem::replace(held, item);
+        if before.in_plane {
+            self.side_before = before.side;
         }
-        Ok(())
+        next.push(before, out)
     }
 
     /// M112: an arc at the corner to the held movement, where there is one.
