@@ -3,6 +3,11 @@
 //! The face of this room is [`run`]: it takes the arguments of the command `bahn` and returns its exit
 //! code. `bahn --help` shows the subcommands, `bahn help test` the options of the test run with examples.
 //!
+//! ```
+//! let code = bahn::run(["bahn", "mp", "explain", "1060"].map(Into::into));
+//! assert_eq!(code, std::process::ExitCode::SUCCESS);
+//! ```
+//!
 //! Where things are:
 //! - `cli`: options and help texts; `settings` turns them into the settings of the other rooms;
 //! - `test_run`: the driver that pulls the planned path; `report` collects what is reported,

@@ -234,6 +234,17 @@ fn files_use_each_other_in_no_circle() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// Whoever opens the documentation of a room sees its use.
+#[test]
+fn front_pages_have_an_example() {
+    let crates = std::fs::read_dir(root().join("crates")).unwrap();
+    let without: Vec<PathBuf> = crates
+        .map(|room| room.unwrap().path().join("src/lib.rs"))
+        .filter(|file| !std::fs::read_to_string(file).unwrap().contains("\n//! ```"))
+        .collect();
+    assert!(without.is_empty(), "{without:?}");
+}
+
 /// The methods of a whole stand in its own file: a file that gets parts of it has functions, or parts, of its own.
 #[test]
 fn a_whole_has_its_methods_in_its_own_file() {

@@ -9,6 +9,20 @@
 //! - [`signal`] names every fixed marker and word, with who sets and resets it;
 //! - [`Retention`] keeps the markers and bytes that survive power-off in a journal.
 //!
+//! ```
+//! use bahn_exchange::{Exchange, Operand, signal};
+//! let mut exchange = Exchange::default();
+//! // The NC sets a strobe; the PLC sees it with its next scan, and acknowledges.
+//! exchange.nc_set(signal::M_FUNCTION_STROBE, true);
+//! exchange.begin_scan();
+//! let strobe: Operand = "M2045".parse()?;
+//! assert_eq!(strobe.read(exchange.plc()).to_string(), "1");
+//! exchange.plc_mut().set_bit(signal::M_FUNCTION_ACK, true);
+//! exchange.end_scan();
+//! assert!(exchange.nc().bit(signal::M_FUNCTION_ACK));
+//! # Ok::<(), String>(())
+//! ```
+//!
 //! Nothing here knows who writes the operands, or why. Citations like `[000:11556]` name the manual and
 //! the line of its text: `000` is the technical manual of the TNC 407/415/425.
 

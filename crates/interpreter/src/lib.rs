@@ -8,6 +8,21 @@
 //! - [`rehearse`]: all faults of a program, found without moving anything;
 //! - [`Checkpoint`]: the whole state of a run, to go back to.
 //!
+//! ```
+//! use std::sync::Arc;
+//! use bahn_interpreter::{Interpreter, NoLibrary, Settings};
+//! use bahn_path::{Axis, ElementSource, Step};
+//! use bahn_program::Program;
+//! let text = "BEGIN PGM 1 MM\nLBL 1\nL IX+10 R0 F500\nCALL LBL 1 REP 2\nEND PGM 1 MM\n";
+//! let program = Arc::new(Program::from_bytes("1.H", text.into()));
+//! let mut run = Interpreter::new(program, Settings::default(), Box::new(NoLibrary));
+//! let mut ends = Vec::new();
+//! while let Step::Element(element) = run.next() {
+//!     ends.push(element.end[Axis::X]);
+//! }
+//! assert_eq!(ends, [10.0, 20.0, 30.0]);
+//! ```
+//!
 //! What is executed here, and what the user is told, `availability` asks of the registry of the control models.
 //! A block is executed by `execute`, positioning blocks by `positioning` and `path_functions`, cycles in `cycles`.
 //! Movements then pass the stages of `contour` (rounding, radius compensation) into the queue of finished

@@ -6,6 +6,30 @@
 //!
 //! [`MachineFolder`] says which file of a machine's folder is what.
 //!
+//! ```
+//! use bahn_machine::Machine;
+//! let text = r#"
+//!     name = "one axis"
+//!     [emergency_stop]
+//!     acknowledgement = "I3"
+//!     [axis.X]
+//!     output = "1"
+//!     speed = 15000
+//!     volts = 9
+//!     encoder = { input = "X1", period_um = 20 }
+//!     [keys]
+//!     NC_START = "I10"
+//! "#;
+//! let mut machine = Machine::from_toml(text).map_err(|faults| faults[0].clone())?;
+//! machine.apply("key NC_START press")?;
+//! machine.advance(10_000);
+//! let mut inputs = [false; bahn_servo::INPUTS];
+//! machine.inputs(&mut inputs);
+//! assert!(inputs[10]);
+//! assert!(machine.apply("key NO_SUCH_KEY press").is_err());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! The control sees nothing but the trait. The true state ([`Machine::axis`], [`Machine::spindle`],
 //! [`Machine::device`]) is for tests and recordings.
 //!

@@ -14,6 +14,16 @@
 //! - [`conformance`]: what each function of a control does here, and what it does not;
 //! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them.
 //!
+//! ```
+//! use bahn_parameters::{ControlModel, MessageId, ParameterList};
+//! let mut list = ParameterList::reference(ControlModel::Tnc415b);
+//! list.assign("1060.0=2.5")?;
+//! assert_eq!(list.axis_parameters(0).motion.acceleration_m_s2, 2.5);
+//! assert!(list.assign("1060.0=far").is_err());
+//! assert_eq!(MessageId::WrongRpm.text(ControlModel::Tnc415b), "WRONG SPINDLE SPEED");
+//! # Ok::<(), bahn_parameters::ParameterError>(())
+//! ```
+//!
 //! Tables are data: they stand in `data/*.tsv`, `data/reference/*.mp`, `limits.rs` and
 //! `message/table.rs`, beside their citations. A citation gives manual and line: `000` is the technical
 //! manual of the TNC 407/415/425, `001` the interface manual of the TNC 151/155, `002` the parameter manual of the System 900, `003` the user's manual

@@ -19,7 +19,8 @@ pub enum Content {
 /// parameters of a System 900 ([`QParameters`]). Lists, editors and comparisons need no more of them.
 ///
 /// ```
-/// use bahn_parameters::{Content, ControlModel, ParameterList, ParameterSpace, QParameters, differences};
+/// use bahn_parameters::space::{Content, ParameterSpace, QParameters, differences};
+/// use bahn_parameters::{ControlModel, ParameterList};
 ///
 /// let mut list = ParameterList::reference(ControlModel::Tnc415b);
 /// let before = list.clone();

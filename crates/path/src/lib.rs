@@ -9,6 +9,15 @@
 //! - [`PathElement`]: one movement with its feed, block and technology functions;
 //! - [`ElementSource`] and [`Step`]: how every stage pulls elements from the stage before it.
 //!
+//! ```
+//! use bahn_path::{Axis, Position};
+//! let mut here = Position::UNKNOWN;
+//! here[Axis::X] = 10.0;
+//! assert_eq!((here.get(Axis::X), here.get(Axis::Y)), (Some(10.0), None));
+//! assert_eq!(Axis::from_letter(b'C'), Some(Axis::C));
+//! assert!(Axis::C.is_rotary());
+//! ```
+//!
 //! Lengths are millimetres, angles degrees, feed rates mm/min, times seconds at every public face.
 //! Nothing here knows of program text, time or hardware.
 

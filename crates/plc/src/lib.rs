@@ -10,6 +10,22 @@
 //! - [`mirror_parameters`] puts the machine parameters of the PLC into its words and markers;
 //! - [`Instruction`] and [`Op`] are the compiled form, for tools that list, cross-reference or translate it.
 //!
+//! ```
+//! use bahn_exchange::Exchange;
+//! use bahn_parameters::{ControlModel, ParameterList};
+//! use bahn_plc::{Compilation, Machine, MemoryFiles, Options, Start, TestNc};
+//! // O2 follows I4 while I5 is off.
+//! let files = MemoryFiles::from([("MAIN.PLC", "L I4\nAN I5\n= O2\nEM\n")]);
+//! let program = Compilation::compile(&files, "MAIN.PLC", Options::default()).program.unwrap();
+//! let mut machine = Machine::new(program.into(), Start::PowerOn);
+//! let mut nc = TestNc::new(ParameterList::reference(ControlModel::Tnc415b));
+//! let mut exchange = Exchange::default();
+//! exchange.nc_set("I4".parse()?, true);
+//! machine.scan(&mut exchange, &mut nc)?;
+//! assert!(exchange.nc().bit("O2".parse()?));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Nothing here knows motion or part programs. Citations like `[000:12070]` name the manual and the line of
 //! its text: `000` is the technical manual of the TNC 407/415/425.
 
