@@ -20,6 +20,18 @@ pub(crate) struct Programmed {
     pub curve: Curve,
 }
 
+impl Programmed {
+    /// The end lies at an angle around a pole of a plane.
+    fn end_at(&mut self, plane: Plane, pole: Point2, radius: f64, angle_deg: f64) {
+        let end = [
+            pole[0] + radius * cos_deg(angle_deg),
+            pole[1] + radius * sin_deg(angle_deg),
+        ];
+        plane.set(&mut self.to, end);
+        self.axes = self.axes.with(plane.first).with(plane.second);
+    }
+}
+
 pub(crate) fn programmed(
     modal: &mut Modal,
     numbers: &Numbers,
@@ -235,14 +247,7 @@ fn polar_point(
     } else {
         angle
     };
-    plane.set(
-        &mut p.to,
-        [
-            pole[0] + radius * cos_deg(angle),
-            pole[1] + radius * sin_deg(angle),
-        ],
-    );
-    p.axes = p.axes.with(plane.first).with(plane.second);
+    p.end_at(plane, pole, radius, angle);
     Ok(plane)
 }
 
@@ -296,14 +301,7 @@ fn circle_polar(
     } else {
         angle
     };
-    plane.set(
-        &mut p.to,
-        [
-            pole[0] + radius * cos_deg(end_angle),
-            pole[1] + radius * sin_deg(end_angle),
-        ],
-    );
-    p.axes = p.axes.with(plane.first).with(plane.second);
+    p.end_at(plane, pole, radius, end_angle);
     p.curve = Curve::Arc(Arc {
         plane,
         centre: pole,

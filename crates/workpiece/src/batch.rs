@@ -9,7 +9,7 @@ use crate::cutters::Mark;
 use crate::grid::Grid;
 use crate::raster::{BAND_ROWS, GROUP, least};
 use crate::round::List;
-use crate::track::{Segment, Sink, Start, Track};
+use crate::track::{ColumnByColumn, Segment, Sink, Start, Track};
 
 /// A rapid traverse is reported when it is deeper in the material than this (inferred), mm.
 const RAPID_CUT_MM: f32 = 0.002;
@@ -201,7 +201,7 @@ struct Detect<'a> {
     found: bool,
 }
 
-impl Detect<'_> {
+impl ColumnByColumn for Detect<'_> {
     fn each(&mut self, row: usize, columns: Range<usize>, heights: impl Iterator<Item = f32>) {
         if self.found {
             return;
@@ -215,19 +215,5 @@ impl Detect<'_> {
             .iter()
             .zip(heights)
             .any(|(cell, height)| *cell > height + RAPID_CUT_MM);
-    }
-}
-
-impl Sink for Detect<'_> {
-    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
-        self.each(row, columns, std::iter::repeat(height));
-    }
-
-    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
-        self.each(row, columns, (0..).map(|k| height(k as f32)));
-    }
-
-    fn group<S: Simd>(&mut self, _: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
-        self.each(row, columns, heights.into_iter());
     }
 }

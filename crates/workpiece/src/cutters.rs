@@ -2,10 +2,7 @@
 
 use std::ops::Range;
 
-use pulp::Simd;
-
-use crate::raster::GROUP;
-use crate::track::Sink;
+use crate::track::ColumnByColumn;
 
 /// Kept only for pictures that ask for it: one byte for each column.
 #[derive(Clone, Debug)]
@@ -109,7 +106,7 @@ pub(crate) struct Mark<'a> {
     pub mark: u8,
 }
 
-impl Mark<'_> {
+impl ColumnByColumn for Mark<'_> {
     fn each(&mut self, row: usize, columns: Range<usize>, heights: impl Iterator<Item = f32>) {
         let start = (row - self.first_row) * self.width;
         let columns = start + columns.start..start + columns.end;
@@ -120,20 +117,6 @@ impl Mark<'_> {
                 *mark = self.mark;
             }
         }
-    }
-}
-
-impl Sink for Mark<'_> {
-    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
-        self.each(row, columns, std::iter::repeat(height));
-    }
-
-    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
-        self.each(row, columns, (0..).map(|k| height(k as f32)));
-    }
-
-    fn group<S: Simd>(&mut self, _: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
-        self.each(row, columns, heights.into_iter());
     }
 }
 

@@ -147,7 +147,7 @@ impl Track {
 mod tests {
     use super::*;
     use crate::tool::Tool;
-    use crate::track::{Segment, Start};
+    use crate::track::{ColumnByColumn, Segment, Start};
 
     const GRID: Grid = Grid {
         nx: 200,
@@ -159,26 +159,12 @@ mod tests {
     /// The lowest height of every column.
     struct Lowest(Vec<f32>);
 
-    impl Lowest {
+    impl ColumnByColumn for Lowest {
         fn each(&mut self, row: usize, columns: Range<usize>, heights: impl Iterator<Item = f32>) {
             let cells = &mut self.0[row * GRID.nx..][columns];
             for (cell, height) in cells.iter_mut().zip(heights) {
                 *cell = least(height, *cell);
             }
-        }
-    }
-
-    impl Sink for Lowest {
-        fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
-            self.each(row, columns, std::iter::repeat(height));
-        }
-
-        fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
-            self.each(row, columns, (0..).map(|k| height(k as f32)));
-        }
-
-        fn group<S: Simd>(&mut self, _: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
-            self.each(row, columns, heights.into_iter());
         }
     }
 

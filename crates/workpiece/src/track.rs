@@ -46,6 +46,26 @@ pub(crate) trait Sink {
     fn group<S: Simd>(&mut self, simd: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]);
 }
 
+/// A sink that looks at one column after the other, however their heights come.
+pub(crate) trait ColumnByColumn {
+    /// The columns `columns` of row `row` with their heights, which may be more than there are columns.
+    fn each(&mut self, row: usize, columns: Range<usize>, heights: impl Iterator<Item = f32>);
+}
+
+impl<T: ColumnByColumn> Sink for T {
+    fn level(&mut self, row: usize, columns: Range<usize>, height: f32) {
+        self.each(row, columns, std::iter::repeat(height));
+    }
+
+    fn shaped(&mut self, row: usize, columns: Range<usize>, height: impl Fn(f32) -> f32) {
+        self.each(row, columns, (0..).map(|k| height(k as f32)));
+    }
+
+    fn group<S: Simd>(&mut self, _: S, row: usize, columns: Range<usize>, heights: [f32; GROUP]) {
+        self.each(row, columns, heights.into_iter());
+    }
+}
+
 impl Segment {
     /// Rows of the map that the tool covers.
     pub fn rows(&self, grid: &Grid) -> Range<usize> {
