@@ -136,8 +136,14 @@ const COORDINATE_MAX: f64 = 999_999_999.0 / 10_000.0;
 
 /// A text is no command.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct CommandError(String);
+pub enum CommandError {
+    /// There is none of this name.
+    #[error("`{0}` is no command")]
+    Unknown(String),
+    /// What stands behind its name is wrong.
+    #[error("{0}")]
+    Wrong(String),
+}
 
 impl Command {
     /// It acts on the program that runs, or puts another one in its place.
@@ -163,7 +169,7 @@ impl FromStr for Command {
             if rest.is_empty() {
                 Ok(command)
             } else {
-                Err(CommandError(format!("`{name}` takes nothing behind it")))
+                Err(CommandError::Wrong(format!("`{name}` takes nothing behind it")))
             }
         };
         match name {
@@ -173,7 +179,7 @@ impl FromStr for Command {
                 .map(Command::Mode)
                 .ok_or_else(|| {
                     let names = Mode::ALL.map(Mode::name).join(", ");
-                    CommandError(format!("there is no mode `{rest}`; modes are {names}"))
+                    CommandError::Wrong(format!("there is no mode `{rest}`; modes are {names}"))
                 }),
             "ce" => nothing(Command::Ce),
             "stop" => nothing(Command::InternalStop),
@@ -207,25 +213,27 @@ impl FromStr for Command {
             "offset" => match rest {
                 "adjust" => Ok(Command::OffsetAdjustment(true)),
                 "off" => Ok(Command::OffsetAdjustment(false)),
-                _ => Err(CommandError("`offset` takes `adjust` or `off`".into())),
+                _ => Err(CommandError::Wrong("`offset` takes `adjust` or `off`".into())),
             },
             "power" => match rest {
                 "on" => Ok(Command::Power(true)),
                 "off" => Ok(Command::Power(false)),
-                _ => Err(CommandError("`power` takes `on` or `off`".into())),
+                _ => Err(CommandError::Wrong("`power` takes `on` or `off`".into())),
             },
-            "select" | "test" | "mdi" => Err(CommandError(format!("`{name}` needs something behind it"))),
-            _ => Err(CommandError(format!("`{name}` is no command"))),
+            "select" | "test" | "mdi" => {
+                Err(CommandError::Wrong(format!("`{name}` needs something behind it")))
+            }
+            _ => Err(CommandError::Unknown(name.to_owned())),
         }
     }
 }
 
 /// An operand that can be set on a machine, or a machine parameter.
 fn assignment(text: &str) -> Result<Assignment, CommandError> {
-    let assignment = Assignment::parse(text).map_err(CommandError)?;
+    let assignment = Assignment::parse(text).map_err(CommandError::Wrong)?;
     match &assignment {
         Assignment::Operand(operand @ Operand::Bit(bit), value) if bit.area() == BitArea::I => {
-            Err(CommandError(format!(
+            Err(CommandError::Wrong(format!(
                 "{operand} is read from the machine before each scan: `fault input {operand} {value}` lets it stick"
             )))
         }
@@ -241,7 +249,7 @@ fn axis<'a>(name: &str, text: &'a str) -> Result<(Axis, &'a str), CommandError> 
         .and_then(|letter| Axis::from_letter(letter.to_ascii_uppercase() as u8));
     match axis {
         Some(axis) => Ok((axis, characters.as_str().trim())),
-        None => Err(CommandError(format!(
+        None => Err(CommandError::Wrong(format!(
             "`{name}` takes an axis and a value, as `{name} X 5`"
         ))),
     }
@@ -253,7 +261,7 @@ fn number<T: TryFrom<u32>>(name: &str, text: &str, min: u32, max: u32) -> Result
         .filter(|number| (min..=max).contains(number))
         .and_then(|number| T::try_from(number).ok())
         .ok_or_else(|| {
-            CommandError(format!(
+            CommandError::Wrong(format!(
                 "`{name}` takes a number from {min} to {max}, not `{text}`"
             ))
         })
@@ -264,7 +272,7 @@ fn value(name: &str, text: &str, min: f64, max: f64) -> Result<f64, CommandError
         .ok()
         .filter(|value| (min..=max).contains(value))
         .ok_or_else(|| {
-            CommandError(format!(
+            CommandError::Wrong(format!(
                 "`{name}` takes a value from {min} to {max}, not `{text}`"
             ))
         })

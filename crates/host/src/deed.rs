@@ -26,19 +26,17 @@ impl Operable for Machine {
 ///
 /// ```
 /// use bahn_host::Deed;
-/// assert!(matches!(Deed::parse("mode full"), Ok(Deed::Command(_))));
+/// assert!(matches!(Deed::parse("mode full"), Ok(Deed::Command(0, _))));
 /// assert_eq!(Deed::parse("key NC_START tap"), Ok(Deed::tap("NC_START")));
 /// let second = Deed::parse("2: mode full")?;
-/// assert!(matches!(second, Deed::CommandTo(1, _)));
+/// assert!(matches!(second, Deed::Command(1, _)));
 /// assert_eq!(second.to_string(), "2: mode full");
 /// # Ok::<(), bahn_host::DeedError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Deed {
-    /// To the control, or the first of its channels.
-    Command(Command),
-    /// To a channel beside the first one, 1 being the second.
-    CommandTo(usize, Command),
+    /// To a channel of the control, from 0.
+    Command(usize, Command),
     /// To the machine, with its text.
     Event(Event, String),
 }
@@ -80,21 +78,11 @@ impl Deed {
             let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
             return Ok(Deed::Event(event, text));
         }
-        text.parse().map(Deed::Command).map_err(|error: CommandError| {
-            let error = error.to_string();
-            match error.ends_with("is no command") {
-                true => DeedError::Unknown(word.to_owned()),
-                false => DeedError::Wrong(error),
-            }
-        })
-    }
-
-    /// A command to a channel, from 0.
-    pub fn to_channel(channel: usize, command: Command) -> Deed {
-        match channel {
-            0 => Deed::Command(command),
-            further => Deed::CommandTo(further, command),
-        }
+        let command = text.parse().map_err(|error| match error {
+            CommandError::Unknown(word) => DeedError::Unknown(word),
+            CommandError::Wrong(what) => DeedError::Wrong(what),
+        })?;
+        Ok(Deed::Command(0, command))
     }
 
     /// Events happen to the machine as a whole: only commands go to a channel.
@@ -103,7 +91,7 @@ impl Deed {
             let what = format!("{error}; a channel takes commands, events happen to the machine");
             DeedError::Wrong(what)
         });
-        command.map(|command| Deed::to_channel(channel, command))
+        command.map(|command| Deed::Command(channel, command))
     }
 
     /// A key of the panel is tapped.
@@ -116,8 +104,8 @@ impl Deed {
 impl fmt::Display for Deed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Deed::Command(command) => command.fmt(f),
-            Deed::CommandTo(channel, command) => write!(f, "{}: {command}", channel + 1),
+            Deed::Command(0, command) => command.fmt(f),
+            Deed::Command(channel, command) => write!(f, "{}: {command}", channel + 1),
             Deed::Event(_, text) => f.write_str(text),
         }
     }

@@ -235,12 +235,11 @@ impl<P: Operable> Host<P> {
         if let Some(sink) = &mut self.sink {
             sink.note(self.control.time_us(), &source, &deed.to_string())?;
         }
-        if matches!(deed, Deed::Command(_) | Deed::CommandTo(..)) {
+        if matches!(deed, Deed::Command(..)) {
             self.background.settle(&mut self.control);
         }
         let answer = match &deed {
-            Deed::Command(command) => self.command(0, command),
-            Deed::CommandTo(channel, command) => self.command(*channel, command),
+            Deed::Command(channel, command) => self.command(*channel, command),
             Deed::Event(event, _) => match self.plant.operate(event) {
                 Ok(()) => Answer::Done,
                 Err(what) => Answer::Impossible(what),
@@ -259,8 +258,8 @@ impl<P: Operable> Host<P> {
         if before != (self.control.starts(), self.control.is_off()) {
             // What is computed or read beside belongs to the control that was on before.
             self.background = Background::default();
-            self.background
-                .read_beside(&mut self.control, self.pace.is_some());
+            let beside = self.pace.is_some() && !self.repeats;
+            self.background.read_beside(&mut self.control, beside);
         }
         match done {
             true => Answer::Done,
@@ -320,7 +319,7 @@ impl<P: Operable> Host<P> {
 
     pub(crate) fn tell(&self, notice: Notice) {
         let channel = match &notice {
-            Notice::Given(_, Deed::CommandTo(channel, _), _) => *channel,
+            Notice::Given(_, Deed::Command(channel, _), _) => *channel,
             _ => 0,
         };
         self.tell_in(channel, notice);
@@ -390,8 +389,7 @@ impl<P: Operable> Host<P> {
     /// program needs to be read holds no cycle. It is back for every deed, and for what is stored.
     pub fn set_clock(&mut self, clock: Clock) {
         self.clock = clock;
-        let beside = matches!(clock, Clock::Wall(_));
-        self.background.read_beside(&mut self.control, beside);
+        self.background.read_beside(&mut self.control, clock.is_paced());
         self.pace = Pace::of(clock, self.control.time_us());
     }
 

@@ -236,7 +236,7 @@ impl Station {
             control.shown().iter().any(|shown| shown.message == message)
         };
         if shows(MessageId::PowerInterrupted) {
-            return Some((Deed::Command(Command::Ce), Why::Routine));
+            return Some((Deed::Command(0, Command::Ce), Why::Routine));
         }
         let voltage = self.keys.control_voltage.clone();
         voltage
@@ -261,7 +261,7 @@ impl Station {
                     return Some((Deed::tap(&self.keys.start), Why::Routine));
                 }
             };
-            return Some((Deed::to_channel(self.channel, command), Why::Routine));
+            return Some((Deed::Command(self.channel, command), Why::Routine));
         }
     }
 

@@ -64,6 +64,13 @@ impl Lateness {
     }
 }
 
+impl Clock {
+    /// It is the one on the wall, at a factor by which time passes.
+    pub(crate) fn is_paced(self) -> bool {
+        matches!(self, Clock::Wall(factor) if factor.is_finite() && factor > 0.0)
+    }
+}
+
 pub(crate) struct Pace {
     started: Instant,
     /// Time of the machine then, µs.
@@ -84,7 +91,7 @@ impl Pace {
     /// The pace of a clock from now on; none where the machine runs freely.
     pub fn of(clock: Clock, time_us: u64) -> Option<Pace> {
         match clock {
-            Clock::Wall(factor) if factor.is_finite() && factor > 0.0 => Some(Pace {
+            Clock::Wall(factor) if clock.is_paced() => Some(Pace {
                 started: Instant::now(),
                 origin_us: time_us,
                 factor,

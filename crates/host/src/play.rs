@@ -150,7 +150,7 @@ impl Play {
             Action::Do(deed) => vec![deed],
             Action::Set(assignments) => {
                 let commands = assignments.into_iter().map(Command::Set);
-                commands.map(Deed::Command).collect()
+                commands.map(|command| Deed::Command(0, command)).collect()
             }
             Action::Expect(expectations) => {
                 let (control, plant) = (host.control(), host.plant());

@@ -490,7 +490,7 @@ mod tests {
         );
         assert_eq!(
             script.lines[3].action,
-            Action::Do(Deed::Command(Command::Key(107)))
+            Action::Do(Deed::Command(0, Command::Key(107)))
         );
     }
 
@@ -620,9 +620,9 @@ mod tests {
         assert_eq!(
             actions,
             [
-                Action::Do(Deed::Command(Command::Handwheel(bahn_path::Axis::X, 3))),
+                Action::Do(Deed::Command(0, Command::Handwheel(bahn_path::Axis::X, 3))),
                 Action::Do(Deed::Event(Event::Handwheel(-500), turn)),
-                Action::Do(Deed::Command(Command::Test("OTHER.H".into())))
+                Action::Do(Deed::Command(0, Command::Test("OTHER.H".into())))
             ]
         );
         let faults = read("1: handwheel X 11").unwrap_err();

@@ -165,7 +165,7 @@ fn what_is_kept_goes_back_too() {
     let before = std::fs::read_to_string(&file).unwrap();
     let saved = host.save();
     let datum = Command::Datum(bahn_path::Axis::X, 12.5);
-    let answer = host.act(Source::Operator, Deed::Command(datum)).unwrap();
+    let answer = host.act(Source::Operator, Deed::Command(0, datum)).unwrap();
     assert_eq!(answer, Answer::Done);
     seconds(&mut host, 0.1);
     let after = std::fs::read_to_string(&file).unwrap();

@@ -186,7 +186,7 @@ fn every_command_is_played() {
     let given: Vec<String> = told
         .iter()
         .filter_map(|notice| match notice {
-            Notice::Given(bahn_host::Source::Script, bahn_host::Deed::Command(command), _) => {
+            Notice::Given(bahn_host::Source::Script, bahn_host::Deed::Command(_, command), _) => {
                 Some(words(command))
             }
             _ => None,

@@ -146,7 +146,7 @@ impl Live {
         let command: Command = text.parse().map_err(|error| format!("{error}"))?;
         let source = Source::Client("bahn plc".to_owned());
         self.host
-            .act(source, Deed::Command(command))
+            .act(source, Deed::Command(0, command))
             .map(drop)
             .map_err(|error| error.to_string())
     }

@@ -192,9 +192,7 @@ impl Session {
     /// Without what the operator wants to do the run does not go on.
     fn follow_operator(&mut self, deed: Deed, answer: Answer) -> Result<(), UsageError> {
         match (deed, answer) {
-            (Deed::Command(command) | Deed::CommandTo(_, command), Answer::Refused)
-                if command != Command::Ce =>
-            {
+            (Deed::Command(_, command), Answer::Refused) if command != Command::Ce => {
                 let refusal = format!("the control refuses `{command}`");
                 self.ended = Some(Ended::Hangs(refusal, None));
             }
