@@ -7,6 +7,7 @@ use bahn_control::{Tool, datum_shifts};
 use bahn_host::tool_table;
 use bahn_interpreter::{MachineTexts, Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
+use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, ParameterList, conformance};
 use bahn_path::{Axis, Position};
 use bahn_plc::MemoryTable;
@@ -21,6 +22,8 @@ pub(crate) struct Equipment {
     /// `None` when tools are those that the program defines.
     pub tools: Option<BTreeMap<u32, Tool>>,
     pub texts: MachineTexts,
+    /// The M functions that are synchronised otherwise than the control model does.
+    pub functions: OwnFunctions,
     /// The datum table of the machine with M status.
     pub datum_table: Option<MemoryTable>,
     /// Where the workpiece lies unless the options say it.
@@ -36,6 +39,7 @@ impl Equipment {
                 list: ParameterList::reference(model),
                 tools: None,
                 texts: MachineTexts::default(),
+                functions: OwnFunctions::default(),
                 datum_table: None,
                 datum: Position::UNKNOWN,
             },
@@ -66,6 +70,7 @@ impl Equipment {
                 dialogues: machine.plc_dialogues.as_slice().into(),
             },
             datum: machine.datum(),
+            functions: machine.functions.clone(),
             datum_table: machine.datum_table().cloned(),
             list: machine.parameters,
             tools: machine.tools,
@@ -150,6 +155,7 @@ pub(crate) fn interpreter(
     Ok(bahn_interpreter::Settings {
         model,
         rules,
+        functions: equipment.functions.clone(),
         datum_table: equipment
             .datum_table
             .as_ref()

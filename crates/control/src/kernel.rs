@@ -80,6 +80,7 @@ impl Kernel {
             tools,
             checking,
             inch_feed,
+            functions,
             programs,
             files,
             remembered,
@@ -119,6 +120,7 @@ impl Kernel {
             model,
             checking,
             inch_feed,
+            functions,
             programs,
         };
         let parts = Parts {

@@ -34,6 +34,7 @@
 //!     # tools: None,
 //!     # checking: Default::default(),
 //!     # inch_feed: None,
+//!     # functions: Default::default(),
 //!     # files: NcFiles::default(),
 //!     # remembered: Remembered::default(),
 //!     # exchange: Default::default(),

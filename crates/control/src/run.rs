@@ -462,6 +462,7 @@ impl ProgramRun {
             hold: stopped || site.handshakes.is_crowded() || coupled && !site.spindle.is_enabled(),
             single_block: now.mode == Mode::SingleBlock || on || worn || site.handshakes.inhibit_read_in(),
             stop_before: self.replacement.place(),
+            acknowledged: self.track.has_output_all() && site.handshakes.is_idle(),
             in_position: settled,
             clamped: track::clamped_axes(&site.axes),
             clamping: track::clamping_axes(&site.axes, site.exchange.nc()),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_exchange::Exchange;
+use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{InchFeed, ParameterList};
 use bahn_path::{Axis, Position};
 use bahn_plc::PlcProgram;
@@ -42,6 +43,8 @@ pub struct Setup {
     pub checking: Checking,
     /// What F counts in a program in inches; `None` for what it counts on the model.
     pub inch_feed: Option<InchFeed>,
+    /// The M functions that are synchronised otherwise than the control model does.
+    pub functions: OwnFunctions,
     /// Where programs come from.
     pub programs: Arc<dyn Programs>,
     /// Files and tables that PLC modules read.

@@ -61,7 +61,11 @@ impl Site<'_> {
             }),
             // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
             // printing and the blank concern nothing that moves.
-            Function::Stop | Function::SpindleOrientation(_) | Function::Print(_) | Function::Blank(_) => {}
+            Function::Stop
+            | Function::SpindleOrientation(_)
+            | Function::Print(_)
+            | Function::Synchronise
+            | Function::Blank(_) => {}
         }
     }
 

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
+use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
 use bahn_path::{Axis, Position};
 use bahn_program::Program;
@@ -35,6 +36,7 @@ pub(crate) struct Reading {
     pub checking: Checking,
     /// What F counts in a program in inches, when that is not what it counts on the model.
     pub inch_feed: Option<InchFeed>,
+    pub functions: OwnFunctions,
     pub programs: Arc<dyn Programs>,
 }
 
@@ -349,6 +351,7 @@ impl Source {
             machine: true,
             max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
             inch_feed: self.reading.inch_feed,
+            functions: self.reading.functions.clone(),
             ..Settings::default()
         };
         let programs = Arc::clone(&self.reading.programs);

@@ -87,6 +87,7 @@ impl<P: Operable> Host<P> {
             tools: machine.tools.clone(),
             checking: power_on.checking,
             inch_feed: power_on.inch_feed,
+            functions: machine.functions.clone(),
             programs,
             files: machine.files.clone(),
             remembered: power_on.remembered,

@@ -1,7 +1,10 @@
 //! Miscellaneous functions: when they act and what they do in the control.
 
+use bahn_parameters::own_functions::OwnFunction;
 use bahn_parameters::technology::{Deed, Output, Technology};
-use bahn_path::{Axis, ControlFunction, Function, Plane, SpindleOrder, TechnologyFunction};
+use bahn_path::{
+    At, Axis, ControlFunction, Function, Plane, SpindleOrder, Synchronisation, TechnologyFunction,
+};
 use bahn_program::MFunctions;
 
 use crate::availability::Feature;
@@ -62,10 +65,17 @@ fn take_m_function(
         block.output.push(rules.output(function, technology));
     }
     if technology.output == Output::Plc {
-        let function = rules.output(Function::M(code), technology);
-        block.output.push(TechnologyFunction {
-            spindle: technology.spindle(),
-            ..function
+        block.output.push(match c.settings.functions.get(code) {
+            Some(OwnFunction::Out { at, synchronisation }) => {
+                TechnologyFunction::new(Function::M(code), at, synchronisation)
+            }
+            Some(OwnFunction::Point) => {
+                TechnologyFunction::new(Function::Synchronise, At::Start, Synchronisation::Mos)
+            }
+            None => TechnologyFunction {
+                spindle: technology.spindle(),
+                ..rules.output(Function::M(code), technology)
+            },
         });
     }
     Ok(())

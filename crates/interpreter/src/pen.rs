@@ -157,8 +157,13 @@ impl Pen {
     /// from its rounding or its cycle.
     fn may_wait_for_plc(&self, element: &PathElement, functions: &[TechnologyFunction]) -> bool {
         let stands = |function: &TechnologyFunction| {
-            function.synchronisation != Synchronisation::Mos
-                && (function.at == At::End || element.curve == Curve::Hold)
+            let waits = matches!(
+                function.synchronisation,
+                Synchronisation::MvsSvs | Synchronisation::MnsSns
+            );
+            // What goes out ahead is to be acknowledged when the path comes there: it reads on.
+            let ahead = matches!(function.at, At::Ahead(_));
+            waits && !ahead && (function.at == At::End || element.curve == Curve::Hold)
         };
         functions.iter().any(stands) && !self.join_follows && !self.contour.has_join()
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bahn_parameters::machining::ScaledAxes;
+use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::spindle::SpindleParameters;
 use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
@@ -26,6 +27,8 @@ pub struct Settings {
     pub barred_tools: BTreeMap<u32, ToolState>,
     /// The datum table of `CYCL DEF 7.1 #n`; `None` when none is selected.
     pub datum_table: Option<Arc<DatumTable>>,
+    /// The M functions that the machine builder synchronises otherwise than the model.
+    pub functions: OwnFunctions,
     /// Texts of the machine for FN14 and FN15.
     pub texts: MachineTexts,
     /// Q parameters set before the start: number, value.
@@ -66,6 +69,7 @@ impl Default for Settings {
             point_angles_deg: BTreeMap::new(),
             barred_tools: BTreeMap::new(),
             datum_table: None,
+            functions: OwnFunctions::default(),
             texts: MachineTexts::default(),
             q_values: Vec::new(),
             start: Position::UNKNOWN,

@@ -52,6 +52,8 @@ pub struct MachineFolder {
     pub channels: Vec<ChannelFolder>,
     /// The axes that go from one channel to another while programs run.
     pub hand_overs: Vec<HandOverFolder>,
+    /// The M functions that are synchronised otherwise than the control model does.
+    pub functions: Vec<FunctionFolder>,
 }
 
 /// A channel beside the first one: `[[channel]]`.
@@ -92,6 +94,21 @@ pub struct HandOverFolder {
     pub order: String,
     /// The marker by which the control says that it is done, while the order stands.
     pub done: String,
+    /// Its line in the file, from 1, and those of its keys.
+    pub lines: (usize, BTreeMap<String, usize>),
+}
+
+/// M functions that are synchronised otherwise than the control model does: `[[function]]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FunctionFolder {
+    /// Their codes.
+    pub m: Vec<u8>,
+    /// The type of their synchronisation, as `MVS_SNS`.
+    pub synchronisation: String,
+    /// How far ahead they go out, mm.
+    pub lead_mm: Option<f64>,
+    /// How far ahead they go out, ms.
+    pub lead_ms: Option<f64>,
     /// Its line in the file, from 1, and those of its keys.
     pub lines: (usize, BTreeMap<String, usize>),
 }
@@ -168,6 +185,7 @@ impl MachineFolder {
             program: optional("program"),
             channels: root.list("channel").into_iter().map(read_channel).collect(),
             hand_overs: root.list("hand_over").into_iter().map(read_hand_over).collect(),
+            functions: root.list("function").into_iter().map(read_function).collect(),
         };
         root.finish();
         (folder, reader.faults())
@@ -233,6 +251,21 @@ fn read_hand_over(section: Section) -> HandOverFolder {
     };
     section.finish();
     hand_over
+}
+
+fn read_function(section: Section) -> FunctionFolder {
+    if !section.has("m") {
+        section.fault("[[function]] needs m, a list of codes".to_owned());
+    }
+    let function = FunctionFolder {
+        m: section.whole_numbers("m", 0..=99),
+        synchronisation: needed_text(&section, "synchronisation"),
+        lead_mm: section.number("lead", 0.0..=100_000.0),
+        lead_ms: section.number("lead_ms", 0.0..=100_000.0),
+        lines: section.lines(),
+    };
+    section.finish();
+    function
 }
 
 fn read_datum(section: Section) -> Vec<(char, f64)> {

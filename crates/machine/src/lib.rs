@@ -55,7 +55,7 @@ pub use chain::RelayFault;
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
 pub use event::{Event, EventError, Fault, KeyAction};
-pub use folder::{ChannelFolder, HandOverFolder, MachineFolder, OperatorKeys};
+pub use folder::{ChannelFolder, FunctionFolder, HandOverFolder, MachineFolder, OperatorKeys};
 pub use machine::Machine;
 pub use reader::{PlantError, Wire};
 pub use spindle::SpindleState;

@@ -25,6 +25,9 @@ pub struct Drive {
     pub single_block: bool,
     /// The path stops as in single block behind the last block before the one with this sequence, if it still can.
     pub stop_before: Option<u64>,
+    /// All functions that went out are acknowledged: what is not stops the path where it is
+    /// [late](bahn_path::Synchronisation::MvsSns).
+    pub acknowledged: bool,
     /// The axes are in position (MP1030): where the path stops, the next element waits for it
     /// [000:5302-5318].
     pub in_position: bool,
@@ -47,6 +50,7 @@ impl Default for Drive {
             hold: false,
             single_block: false,
             stop_before: None,
+            acknowledged: true,
             in_position: true,
             clamped: AxisSet::EMPTY,
             clamping: AxisSet::EMPTY,
@@ -102,6 +106,8 @@ pub enum State {
     BlockEnd,
     /// It stands at the end of an element until the axes are in position.
     Settling,
+    /// It stands before an element that waits for functions until they are [acknowledged](Drive::acknowledged).
+    Awaiting,
     /// It stands before an element that moves one of [`Drive::clamped`].
     Clamped,
     /// It stands before an element that follows the spindle until that is [ready](Master::ready).

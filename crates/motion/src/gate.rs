@@ -1,6 +1,6 @@
 //! Where functions and dwell make the path stop.
 
-use bahn_path::{At, Curve, PathElement, Synchronisation, TechnologyFunction};
+use bahn_path::{At, Curve, FeedRate, PathElement, Synchronisation, TechnologyFunction};
 
 /// The ends of an element at which the path must stand still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ impl Gates {
     pub(crate) fn of(element: &PathElement) -> Gates {
         let passes = || {
             let functions = element.functions();
-            !functions.is_empty() && functions.iter().all(|function| wait(function).is_none())
+            !functions.is_empty() && functions.iter().all(|function| wait(function, element).is_none())
         };
         let hold = matches!(element.curve, Curve::Hold) && !passes();
         let thread = element.thread().is_some();
@@ -35,7 +35,7 @@ impl Gates {
             end: hold || thread || element.dwell_s > 0.0,
         };
         for function in element.functions() {
-            match wait(function) {
+            match wait(function, element) {
                 Some(Gate::Start) => gates.start = true,
                 Some(Gate::End) => gates.end = true,
                 None => {}
@@ -45,22 +45,34 @@ impl Gates {
     }
 }
 
-/// Where the axes wait for a function, `None` when they do not (MP7440 bit 2) [004:54].
-pub(crate) fn wait(function: &TechnologyFunction) -> Option<Gate> {
+/// At which end of its element the axes wait for a function in any case, `None` when they do not (MP7440 bit 2), or only
+/// as long as it is not acknowledged ([`late`](crate::late)) [004:54].
+pub(crate) fn wait(function: &TechnologyFunction, element: &PathElement) -> Option<Gate> {
     match function.synchronisation {
-        Synchronisation::Mos => None,
+        // In the movement that would wait for it, it is a function at its start [004:72].
+        Synchronisation::MvsSlm if is_feed(element) => Some(Gate::Start),
+        Synchronisation::Mos
+        | Synchronisation::MvsSns
+        | Synchronisation::MvsSlm
+        | Synchronisation::MvsSlp => None,
         Synchronisation::MvsSvs | Synchronisation::MnsSns => place(function),
     }
+}
+
+/// A movement with a feed: G01, G02, G03 [004:72].
+pub(crate) fn is_feed(element: &PathElement) -> bool {
+    matches!(element.feed, FeedRate::Programmed(_)) && element.curve != Curve::Hold
 }
 
 /// The end of the element at which a function is output, `None` in the midst of the movement. Nothing
 /// can wait there: the type decides at which end a function that waits is output instead.
 pub(crate) fn place(function: &TechnologyFunction) -> Option<Gate> {
     match (function.at, function.synchronisation) {
+        (At::Ahead(_), _) => None,
         (At::Start, _) => Some(Gate::Start),
         (At::End, _) => Some(Gate::End),
-        (At::Length(_) | At::BeforeEnd(_), Synchronisation::MvsSvs) => Some(Gate::Start),
-        (At::Length(_) | At::BeforeEnd(_), Synchronisation::MnsSns) => Some(Gate::End),
         (At::Length(_) | At::BeforeEnd(_), Synchronisation::Mos) => None,
+        (At::Length(_) | At::BeforeEnd(_), Synchronisation::MnsSns) => Some(Gate::End),
+        (At::Length(_) | At::BeforeEnd(_), _) => Some(Gate::Start),
     }
 }

@@ -1,5 +1,6 @@
 //! The path in contour cycles, with overrides and stops that come at any moment.
 
+mod ahead;
 mod master;
 mod outputs;
 mod phase;
@@ -14,11 +15,12 @@ use crate::item::{Item, Output};
 use crate::limits::{Dynamics, Limits};
 use crate::ramp::{Driven, Ramp};
 use crate::ring::Ring;
+use ahead::Ahead;
 use master::Coupling;
 use outputs::Outputs;
 use phase::Phase;
 use recall::Executed;
-use stops::Stops;
+use stops::{Acknowledged, Stops};
 
 /// Drives along the path of an [`ElementSource`], contour cycle by contour cycle.
 ///
@@ -45,6 +47,7 @@ pub struct Interpolator<E> {
     /// The gate ahead is passed without waiting.
     released: bool,
     outputs: Outputs,
+    ahead: Ahead,
     /// The current element follows the spindle.
     coupling: Option<Coupling>,
     /// It is run back.
@@ -80,6 +83,7 @@ impl<E> Interpolator<E> {
             stops: Stops::default(),
             released: false,
             outputs: Outputs::default(),
+            ahead: Ahead::default(),
             coupling: None,
             backward: false,
             recalled: None,
@@ -137,6 +141,9 @@ impl<E> Interpolator<E> {
     fn push(&mut self, element: PathElement) {
         let first = self.ring.current().is_none();
         self.ring.push(element);
+        if let Some((number, item)) = self.ring.last().zip(self.ring.back()) {
+            self.ahead.push(&item.element, number);
+        }
         self.stops.seek();
         if first {
             self.enter();
@@ -159,6 +166,7 @@ impl<E> Interpolator<E> {
                 self.position = position(item, self.rest);
             }
         }
+        self.put_ahead();
         Cycle {
             position: self.position,
             speed_mm_s: self.speed,
@@ -185,6 +193,17 @@ impl<E> Interpolator<E> {
             self.rapid_limit_mm_min = drive.rapid_limit_mm_min;
             self.ring.set_rapid_limit(drive.rapid_limit_mm_min);
         }
+        if drive.acknowledged && self.ring.awaits() {
+            let begun = !matches!(self.phase, Phase::Begin);
+            self.stops.acknowledge(Acknowledged {
+                starts: self.ring.number() + u64::from(begun),
+                ahead: self
+                    .ahead
+                    .first()
+                    .or(self.ring.last().map(|last| last + 1))
+                    .unwrap_or(0),
+            });
+        }
         if self.stops.take(drive) {
             self.seek_stop();
         }
@@ -194,6 +213,14 @@ impl<E> Interpolator<E> {
     fn seek_stop(&mut self) {
         let stop = self.stops.next(&self.ring, self.speed, self.rest);
         self.ring.set_stop(stop);
+    }
+
+    /// Outputs the functions whose elements come near.
+    fn put_ahead(&mut self) {
+        if !self.ahead.is_empty() {
+            self.ahead
+                .put(&self.ring, self.speed, self.rest, &mut self.outputs);
+        }
     }
 
     /// Goes along the path until the time of the cycle is spent or the path waits.
@@ -234,17 +261,19 @@ impl<E> Interpolator<E> {
 
     /// Outputs the functions before the current element, once it may begin. What it waits for.
     fn begin(&mut self, drive: &Drive) -> Option<State> {
+        self.put_ahead();
         if self.speed <= 0.0 {
             // Nothing new begins while the path is held.
             if drive.hold {
                 return Some(State::Held);
             }
-            if self
-                .ring
-                .current()
-                .is_some_and(|item| self.stops.is_clamped(item))
-            {
+            let number = self.ring.number();
+            let item = self.ring.current()?;
+            if self.stops.is_clamped(item) {
                 return Some(State::Clamped);
+            }
+            if self.stops.is_awaited(item, number) {
+                return Some(State::Awaiting);
             }
         }
         if !self.couple(drive) {
@@ -509,6 +538,7 @@ impl<E> Interpolator<E> {
         self.released = false;
         self.stops.forget();
         self.outputs.clear();
+        self.ahead.clear();
         self.coupling = None;
         self.backward = false;
         self.recalled = None;
@@ -520,6 +550,8 @@ impl<E> Interpolator<E> {
     /// of the element that was cut comes without the functions that are output already. The path must stand.
     pub fn recall(&mut self, position: Position) {
         let executed = Executed {
+            number: self.ring.number(),
+            late: self.ring.is_late(),
             phase: self.phase,
             length: self.ring.current().map_or(0.0, |item| item.length),
             rest: self.rest,
@@ -530,15 +562,24 @@ impl<E> Interpolator<E> {
             self.ring.set_aside();
         }
         self.position = position;
+        let ahead = std::mem::take(&mut self.ahead);
         self.clear();
-        self.recalled = recalled;
+        (self.recalled, self.ahead) = (recalled, ahead);
+        if recalled.is_some_and(|executed| executed.late) {
+            self.ring.await_all();
+        }
     }
 
     /// What was recalled since it was asked for last, for the source to give it again before all else; there may be
     /// nothing left. It may allocate.
     pub fn take_recalled(&mut self) -> Option<Vec<PathElement>> {
         let executed = self.recalled.take()?;
-        let mut elements = self.ring.take_aside();
+        let ahead = std::mem::take(&mut self.ahead);
+        let elements = self.ring.take_aside();
+        let mut elements = elements.zip(executed.number..).map(|(mut element, number)| {
+            ahead.remainder(&mut element, number);
+            element
+        });
         let first = elements.next().and_then(|first| executed.remainder(first));
         Some(first.into_iter().chain(elements).collect())
     }

@@ -1,8 +1,9 @@
 //! An element with what driving it needs.
 
-use bahn_path::{FeedRate, OverrideLaw, PathElement};
+use bahn_path::{At, FeedRate, OverrideLaw, PathElement};
 
 use crate::gate::{Gate, place, wait};
+use crate::late::Awaits;
 use crate::limits::{Dynamics, Slowest};
 use crate::motion::Motion;
 
@@ -20,6 +21,10 @@ pub(crate) struct Item {
     pub(crate) along: bool,
     /// The last element of its block, as far as is known.
     pub(crate) block_end: bool,
+    /// The way along the path to its start since the path began, mm.
+    pub(crate) from: f64,
+    /// What must be acknowledged before it begins.
+    pub(crate) awaits: Awaits,
     /// How fast its axes let it be.
     pub(crate) slowest: Slowest,
     /// Path speed that the radial acceleration allows, mm/s; infinite on lines.
@@ -44,12 +49,14 @@ impl Item {
             along: element
                 .functions()
                 .iter()
-                .any(|function| place(function).is_none()),
+                .any(|function| place(function).is_none() && !matches!(function.at, At::Ahead(_))),
             length: motion.map_or(0.0, |motion| motion.length),
             acceleration: motion.map_or(1.0, |motion| motion.acceleration),
             slowest: motion.map_or(Slowest::default(), |motion| motion.slowest),
             radial_speed: motion.map_or(f64::INFINITY, |motion| motion.radial_speed),
             block_end: false,
+            from: 0.0,
+            awaits: Awaits::default(),
             element,
         }
     }
@@ -100,7 +107,7 @@ impl Output {
         let mut output = Output::Nothing;
         for function in element.functions() {
             if place(function) == Some(end) {
-                let waits = wait(function).is_some();
+                let waits = wait(function, element).is_some();
                 output = match output {
                     Output::Waiting => output,
                     _ if waits => Output::Waiting,

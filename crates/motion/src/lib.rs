@@ -75,6 +75,7 @@ mod gate;
 mod interpolator;
 mod item;
 mod joints;
+mod late;
 mod limits;
 mod motion;
 mod planner;

@@ -9,6 +9,7 @@ use crate::envelope::Envelope;
 use crate::gate::Gates;
 use crate::item::Item;
 use crate::joints::Joints;
+use crate::late::Late;
 use crate::limits::{Dynamics, Limits};
 use crate::motion::Motion;
 use crate::stretch::Wish;
@@ -33,6 +34,9 @@ pub(crate) struct Ring {
     current: usize,
     /// Functions of all items.
     outputs: usize,
+    late: Late,
+    /// Items that wait for functions to be acknowledged.
+    awaiting: usize,
     /// Where the path ends.
     end: Position,
 }
@@ -52,6 +56,8 @@ impl Ring {
             first: 0,
             current: 0,
             outputs: 0,
+            late: Late::default(),
+            awaiting: 0,
             end: Position::UNKNOWN,
         }
     }
@@ -80,6 +86,11 @@ impl Ring {
             .get(usize::try_from(number.checked_sub(self.first)?).ok()?)
     }
 
+    /// The last item.
+    pub(crate) fn back(&self) -> Option<&Item> {
+        self.items.back()
+    }
+
     /// Number of the last item.
     pub(crate) fn last(&self) -> Option<u64> {
         Some(self.first + self.items.len().checked_sub(1)? as u64)
@@ -88,6 +99,21 @@ impl Ring {
     /// Functions of the items that are kept.
     pub(crate) fn outputs(&self) -> usize {
         self.outputs
+    }
+
+    /// Whether an item that is kept waits for functions to be acknowledged.
+    pub(crate) fn awaits(&self) -> bool {
+        self.awaiting > 0
+    }
+
+    /// Whether what is known, or comes behind it, waits for functions to be acknowledged.
+    pub(crate) fn is_late(&self) -> bool {
+        self.awaits() || self.late.is_any()
+    }
+
+    /// What comes next waits for all functions that went out.
+    pub(crate) fn await_all(&mut self) {
+        self.late.begin(self.first);
     }
 
     /// Goes on to the next item.
@@ -124,8 +150,10 @@ impl Ring {
     pub(crate) fn discard(&mut self) {
         self.aside.clear();
         self.first += self.current as u64;
-        let executed = self.items.drain(..self.current);
-        self.outputs -= executed.map(|item| item.outputs()).sum::<usize>();
+        for item in self.items.drain(..self.current) {
+            self.outputs -= item.outputs();
+            self.awaiting -= usize::from(!item.awaits.nothing());
+        }
         self.current = 0;
         self.envelope.discard();
     }
@@ -139,7 +167,8 @@ impl Ring {
     pub(crate) fn clear(&mut self, position: Position) {
         self.first += self.items.len() as u64;
         self.items.clear();
-        self.outputs = 0;
+        (self.outputs, self.awaiting) = (0, 0);
+        self.late = Late::default();
         self.envelope.clear(self.first);
         self.current = 0;
         self.end = position;
@@ -168,11 +197,14 @@ impl Ring {
             dynamics,
             envelope,
             joints,
+            late,
             ..
         } = self;
         let gates = Gates::of(&element);
         let mut motion = Motion::of(&element, dynamics);
-        let item = Item::new(element, motion.as_ref());
+        let mut item = Item::new(element, motion.as_ref());
+        item.awaits = late.follow(&item.element, self.first + self.items.len() as u64);
+        self.awaiting += usize::from(!item.awaits.nothing());
         let greatest = item.greatest(dynamics);
         // Joints are found for the greatest speeds that the machine has; the feed is beside them.
         if let Some(motion) = &mut motion {
@@ -180,6 +212,7 @@ impl Ring {
         }
         if let Some(last) = self.items.back_mut() {
             last.block_end = last.element.sequence != item.element.sequence;
+            item.from = last.from + last.length;
         }
         joints.join(envelope, motion.as_ref(), gates, dynamics);
         let wish = motion.as_ref().map(|_| Wish::of(&item.element, item.slowest));

@@ -89,7 +89,7 @@ impl Stopwatch {
         for function in element.functions() {
             let (ordered, time) = (self.spindle_time(function.spindle), self.time(&function.function));
             let time = if tapping { time } else { ordered + time }.max(0.0);
-            match wait(function) {
+            match wait(function, element) {
                 Some(Gate::Start) => waiting.before += time,
                 Some(Gate::End) => waiting.after += time,
                 None => {}
@@ -117,6 +117,7 @@ impl Stopwatch {
             | Function::OrientationAngle(_)
             | Function::Stop
             | Function::Print(_)
+            | Function::Synchronise
             | Function::Plc(_)
             | Function::Blank(_) => 0.0,
         }

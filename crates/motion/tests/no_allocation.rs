@@ -7,8 +7,8 @@ use std::collections::VecDeque;
 
 use bahn_motion::{Drive, Interpolator, Master, State};
 use bahn_path::{
-    At, Axis, AxisSet, ElementSource, FeedRate, Function, LiveData, OverrideLaw, PathElement, Position, Step,
-    Synchronisation, TechnologyFunction, Thread,
+    Ahead, At, Axis, AxisSet, ElementSource, FeedRate, Function, LiveData, OverrideLaw, PathElement,
+    Position, Step, Synchronisation, TechnologyFunction, Thread,
 };
 use common::{Path, limits, list};
 
@@ -27,6 +27,8 @@ fn path() -> Path {
             path.last().functions = Some(Box::new([
                 function(At::Start, Synchronisation::Mos),
                 function(At::Length(0.05), Synchronisation::Mos),
+                function(At::Ahead(Ahead::Way(0.3)), Synchronisation::MvsSvs),
+                function(At::Start, Synchronisation::MvsSns),
                 function(At::End, Synchronisation::MnsSns),
             ]));
         }
@@ -74,8 +76,8 @@ fn no_cycle_allocates() {
         executed = executed.max(path.element().map_or(0, |element| element.sequence));
         if state == State::Stopped {
             assert_eq!(executed, count as u64);
-            // 29 elements with functions at three places.
-            assert_eq!(outputs, 3 * 29);
+            // 29 elements with functions at three places and one ahead.
+            assert_eq!(outputs, 4 * 29);
             return;
         }
     }

@@ -12,7 +12,8 @@
 //!   System 900;
 //! - [`ListText`]: the text of a list, whose values change in their places;
 //! - [`conformance`]: what each function of a control does here, and what it does not;
-//! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them.
+//! - [`technology`]: when M, S and T functions go out, to whom, and where the path waits for them;
+//!   [`own_functions`]: those that a machine builder synchronises otherwise.
 //!
 //! ```
 //! use bahn_parameters::{ControlModel, MessageId, ParameterList};
@@ -46,6 +47,7 @@ mod list;
 mod meaning;
 mod message;
 mod model;
+pub mod own_functions;
 mod settings;
 pub mod space;
 pub mod technology;

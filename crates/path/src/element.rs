@@ -174,6 +174,17 @@ pub enum At {
     Length(f64),
     /// So long before the end of the movement, s.
     BeforeEnd(f64),
+    /// Ahead of the start of the movement, while the path before it is executed [004:81-90].
+    Ahead(Ahead),
+}
+
+/// How far ahead of its place a function goes out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ahead {
+    /// By a way along the path, mm.
+    Way(f64),
+    /// By a time, s.
+    Time(f64),
 }
 
 /// Synchronisation of a function with the path, in the terms of TF5200 [004:54].
@@ -185,6 +196,14 @@ pub enum Synchronisation {
     MvsSvs,
     /// Output after the movement; the next block waits for the acknowledgement (end of block).
     MnsSns,
+    /// Output before the movement; the next block waits for the acknowledgement, without a stop where that is in time
+    /// [004:63].
+    MvsSns,
+    /// Output before the movement; the next movement with a feed waits for the acknowledgement [004:72].
+    MvsSlm,
+    /// Output before the movement; the path waits for the acknowledgement where the program wants it
+    /// ([`Function::Synchronise`]) [004:75].
+    MvsSlp,
 }
 
 /// The functions that a program can output.
@@ -211,6 +230,8 @@ pub enum Function {
     Print(String),
     /// FN19: PLC, one or two values already in the unit of the control model [003:4387-4395].
     Plc([Option<f64>; 2]),
+    /// What waits for a place of the program ([`Synchronisation::MvsSlp`]) is to be acknowledged here [004:75].
+    Synchronise,
     /// The blank of the graphics (BLK FORM).
     Blank(Blank),
 }

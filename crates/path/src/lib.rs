@@ -32,7 +32,7 @@ mod source;
 pub use axis::{Axis, AxisSet, Position};
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use element::{
-    At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
+    Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
     Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape,
 };
 pub use frame::Frame;

@@ -143,6 +143,7 @@ fn how(machine: &LoadedMachine, list: &ParameterList, format: Format) -> Check {
             model: list.model(),
             rules: Rules::of(list),
             barred_tools: tool_table::barred(tools.into_iter().flatten()),
+            functions: machine.functions.clone(),
             datum_table: machine
                 .datum_table()
                 .map(|table| datum_shifts(table, list).into()),

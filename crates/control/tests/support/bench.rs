@@ -244,6 +244,7 @@ pub fn bench(instructions: &str) -> Build {
         tools: Some(BTreeMap::new()),
         remembered: Remembered::default(),
         files: bahn_control::NcFiles::default(),
+        functions: Default::default(),
     }
 }
 

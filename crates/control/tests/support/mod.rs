@@ -16,6 +16,7 @@ use std::sync::Arc;
 use bahn_control::{Command, Control, Mode, NcFiles, Programs, Remembered, RunState, Setup, Tool};
 use bahn_exchange::{Bit, Exchange, Number};
 use bahn_machine::Machine;
+use bahn_parameters::own_functions::{Lead, OwnFunction, OwnFunctions};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::ToolShape;
 use bahn_plc::{Compilation, MemoryFiles, Options};
@@ -51,6 +52,7 @@ pub struct Build {
     pub tools: Option<BTreeMap<u32, Tool>>,
     pub remembered: Remembered,
     pub files: NcFiles,
+    pub functions: OwnFunctions,
 }
 
 pub fn folder(name: &str) -> PathBuf {
@@ -86,7 +88,17 @@ impl Build {
             tools: Some([(1, tool(70.0, 31.5)), (2, tool(95.0, 10.0)), (3, tool(85.0, 5.0))].into()),
             remembered: Remembered::default(),
             files: NcFiles::default(),
+            functions: OwnFunctions::default(),
         }
+    }
+
+    /// An M function is synchronised otherwise than the model does, so far ahead in mm.
+    pub fn function(mut self, code: u16, synchronisation: &str, way_mm: Option<f64>) -> Build {
+        let lead = Lead { way_mm, time_s: None };
+        let function = OwnFunction::of(synchronisation, lead);
+        let added = function.and_then(|function| self.functions.add(self.model, code, function));
+        added.unwrap_or_else(|error| panic!("M{code}: {error}"));
+        self
     }
 
     /// Changes a machine parameter.
@@ -135,6 +147,7 @@ impl Build {
             tools: self.tools,
             checking: Default::default(),
             inch_feed: None,
+            functions: self.functions,
             programs: Arc::new(self.programs),
             files: self.files,
             remembered: self.remembered,

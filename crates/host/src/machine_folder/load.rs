@@ -7,6 +7,7 @@ use std::sync::Arc;
 use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Tool};
 use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
+use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, ListText, ParameterList};
 use bahn_path::Position;
 use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
@@ -46,6 +47,8 @@ pub struct LoadedMachine {
     pub channels: Vec<LoadedChannel>,
     /// The axes that go from one channel to another.
     pub hand_overs: Vec<HandOver>,
+    /// The M functions that are synchronised otherwise than the control model does.
+    pub functions: OwnFunctions,
     /// What is accepted, but looks wrong.
     pub warnings: Vec<FileFault>,
 }
@@ -163,6 +166,7 @@ impl Loader<'_> {
         let tables = self.nc_memory(&folder, &parameters, &mut files);
         self.further_lists(&mut files, model?);
         self.agree(&folder, &plant);
+        let functions = self.functions(&folder, model?);
         let channels = self.channels(&folder, model?, &parameters, &plant);
         let Channels { channels, hand_overs } = channels?;
         Some(LoadedMachine {
@@ -177,6 +181,7 @@ impl Loader<'_> {
             tables,
             channels,
             hand_overs,
+            functions,
             warnings: Vec::new(),
             folder,
         })

@@ -5,6 +5,7 @@
 
 mod channel;
 mod channels;
+mod functions;
 mod load;
 mod nc_memory;
 mod programs;

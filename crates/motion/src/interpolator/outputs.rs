@@ -63,7 +63,7 @@ impl Outputs {
                 At::Length(length) if length > 0.0 => length.min(f64::MAX),
                 At::Length(_) => 0.0,
                 At::BeforeEnd(lead_s) => place_before_end(item, feed, lead_s),
-                At::Start | At::End => continue,
+                At::Start | At::End | At::Ahead(_) => continue,
             };
             if passed.contains(&length) {
                 self.put(item, number, Place::Along(index), false);

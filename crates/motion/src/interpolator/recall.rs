@@ -8,6 +8,10 @@ use crate::gate::{Gate, place};
 /// How far the element was executed that is taken back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Executed {
+    /// Its number.
+    pub(super) number: u64,
+    /// Functions have still to be acknowledged behind it.
+    pub(super) late: bool,
     pub(super) phase: Phase,
     /// Its length and the way that is left, mm.
     pub(super) length: f64,
@@ -58,6 +62,7 @@ impl Executed {
         let mut functions = functions?.into_vec();
         functions.retain(|function| match (place(function), function.at) {
             (Some(end), _) => end == Gate::End,
+            (None, At::Ahead(_)) => false,
             (None, At::Length(length)) => length >= self.output_to,
             (None, _) => self.rest > 0.0,
         });

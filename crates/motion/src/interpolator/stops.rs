@@ -1,4 +1,4 @@
-//! Where single block, axes that are clamped and a block to stop before stop the path.
+//! Where single block, axes that are clamped, a block to stop before and late acknowledgements stop the path.
 
 use bahn_path::AxisSet;
 
@@ -12,10 +12,20 @@ pub(super) struct Stops {
     before: Option<u64>,
     clamped: AxisSet,
     clamping: AxisSet,
+    acknowledged: Acknowledged,
     /// The next stop is to be looked for.
     wanted: bool,
     /// The path stops behind no element before this number.
     sought: u64,
+}
+
+/// How far the functions of the path are acknowledged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Acknowledged {
+    /// Those at the starts of elements before this number.
+    pub(super) starts: u64,
+    /// Those that go out ahead of elements before this number.
+    pub(super) ahead: u64,
 }
 
 impl Default for Stops {
@@ -25,6 +35,7 @@ impl Default for Stops {
             before: None,
             clamped: AxisSet::EMPTY,
             clamping: AxisSet::EMPTY,
+            acknowledged: Acknowledged::default(),
             wanted: false,
             sought: 0,
         }
@@ -47,6 +58,14 @@ impl Stops {
         std::mem::take(&mut self.wanted)
     }
 
+    /// So much is acknowledged now.
+    pub(super) fn acknowledge(&mut self, now: Acknowledged) {
+        if now != self.acknowledged {
+            self.acknowledged = now;
+            (self.wanted, self.sought) = (true, 0);
+        }
+    }
+
     /// There are more elements, or it is known that no more come.
     pub(super) fn seek(&mut self) {
         self.wanted = true;
@@ -55,13 +74,14 @@ impl Stops {
     /// The elements are others.
     pub(super) fn forget(&mut self) {
         self.sought = 0;
+        self.acknowledged = Acknowledged::default();
     }
 
     /// Number of the next element at whose end the path stops, where it can still come to a standstill at a speed,
     /// mm/s, with so much of the current one to go, mm.
     pub(super) fn next(&mut self, ring: &Ring, speed: f64, rest: f64) -> Option<u64> {
         let by_block = self.single_block || self.before.is_some();
-        if !by_block && self.clamped.union(self.clamping).is_empty() {
+        if !by_block && !ring.awaits() && self.clamped.union(self.clamping).is_empty() {
             return None;
         }
         let last = ring.last()?;
@@ -91,7 +111,8 @@ impl Stops {
     fn stops_behind(&self, ring: &Ring, number: u64) -> bool {
         let next = ring.get(number + 1);
         let ends = |item: &Item| self.is_block_end(item, next) || self.is_to_be_clamped(item);
-        ring.get(number).is_some_and(ends) || next.is_some_and(|next| self.is_clamped(next))
+        ring.get(number).is_some_and(ends)
+            || next.is_some_and(|next| self.is_clamped(next) || self.is_awaited(next, number + 1))
     }
 
     /// The path stops behind it in single block, or before the block that is next.
@@ -105,6 +126,12 @@ impl Stops {
     /// An axis that it moves is clamped.
     pub(super) fn is_clamped(&self, item: &Item) -> bool {
         moves(item, self.clamped)
+    }
+
+    /// A function is not acknowledged that the element with this number waits for.
+    pub(super) fn is_awaited(&self, item: &Item, number: u64) -> bool {
+        item.awaits.before > self.acknowledged.starts
+            || item.awaits.ahead && number >= self.acknowledged.ahead
     }
 
     /// An axis that its block moved is to be clamped behind it.

@@ -1,0 +1,159 @@
+//! M functions that a machine builder synchronises otherwise than the table of the model: the types of the TF5200
+//! [004:54-90].
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use bahn_path::{Ahead, At, Synchronisation};
+
+use crate::ControlModel;
+use crate::technology::{Output, Technology};
+
+/// When a function goes out and where the path waits for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OwnFunction {
+    /// It goes to the PLC.
+    Out {
+        /// Where.
+        at: At,
+        /// Where the path waits for its acknowledgement.
+        synchronisation: Synchronisation,
+    },
+    /// It goes to nobody: here the functions of type `MVS_SLP` must be acknowledged [004:75].
+    Point,
+}
+
+/// How far ahead a function goes out, as it is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lead {
+    /// Way along the path, mm.
+    pub way_mm: Option<f64>,
+    /// Time, s.
+    pub time_s: Option<f64>,
+}
+
+/// The functions of a machine builder by their codes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OwnFunctions(Arc<BTreeMap<u16, OwnFunction>>);
+
+/// Why a function cannot be synchronised so.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum OwnFunctionError {
+    /// There is no such type.
+    UnknownType,
+    /// The type needs a way: `MEP_MOS`, `MEP_SVS`.
+    NeedsWay,
+    /// The type needs a time: `MET_MOS`, `MET_SVS`.
+    NeedsTime,
+    /// The type goes out where its block begins or ends, and has no lead.
+    HasNoLead,
+    /// It is not handed to the PLC, or the control itself does something with it.
+    NotFree(u16),
+    /// It stands there twice.
+    Twice(u16),
+}
+
+impl std::fmt::Display for OwnFunctionError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            OwnFunctionError::UnknownType => {
+                let names = OwnFunction::NAMES.map(|(name, _)| name).join(", ");
+                write!(f, "there is no such synchronisation; there are {names}")
+            }
+            OwnFunctionError::NeedsWay => write!(f, "the type needs `lead`, mm"),
+            OwnFunctionError::NeedsTime => write!(f, "the type needs `lead_ms`"),
+            OwnFunctionError::HasNoLead => write!(f, "the type has no lead"),
+            OwnFunctionError::NotFree(code) => write!(f, "M{code} is no free function of this control"),
+            OwnFunctionError::Twice(code) => write!(f, "M{code} stands there twice"),
+        }
+    }
+}
+
+impl std::error::Error for OwnFunctionError {}
+
+/// What a type is, but for the lead.
+#[derive(Clone, Copy)]
+enum Kind {
+    Start(Synchronisation),
+    End(Synchronisation),
+    Way(Synchronisation),
+    Time(Synchronisation),
+    Point,
+}
+
+impl OwnFunction {
+    /// The types by their names [004:54-57]; `EXPL_SYN` is the place of a program that TF5200 writes `#EXPL SYN`.
+    const NAMES: [(&'static str, Kind); 11] = [
+        ("MOS", Kind::Start(Synchronisation::Mos)),
+        ("MVS_SVS", Kind::Start(Synchronisation::MvsSvs)),
+        ("MVS_SNS", Kind::Start(Synchronisation::MvsSns)),
+        ("MNS_SNS", Kind::End(Synchronisation::MnsSns)),
+        ("MVS_SLM", Kind::Start(Synchronisation::MvsSlm)),
+        ("MVS_SLP", Kind::Start(Synchronisation::MvsSlp)),
+        ("MEP_MOS", Kind::Way(Synchronisation::Mos)),
+        ("MEP_SVS", Kind::Way(Synchronisation::MvsSvs)),
+        ("MET_MOS", Kind::Time(Synchronisation::Mos)),
+        ("MET_SVS", Kind::Time(Synchronisation::MvsSvs)),
+        ("EXPL_SYN", Kind::Point),
+    ];
+
+    /// The function of a type.
+    ///
+    /// ```
+    /// use bahn_parameters::own_functions::{Lead, OwnFunction};
+    /// use bahn_path::{Ahead, At, Synchronisation};
+    ///
+    /// let lead = Lead { way_mm: Some(25.0), time_s: None };
+    /// let (at, synchronisation) = (At::Ahead(Ahead::Way(25.0)), Synchronisation::MvsSvs);
+    /// assert_eq!(OwnFunction::of("MEP_SVS", lead), Ok(OwnFunction::Out { at, synchronisation }));
+    /// ```
+    ///
+    /// # Errors
+    /// When there is no such type, or the lead does not fit it.
+    pub fn of(name: &str, lead: Lead) -> Result<OwnFunction, OwnFunctionError> {
+        let known = OwnFunction::NAMES.iter().find(|(known, _)| *known == name);
+        let kind = known.ok_or(OwnFunctionError::UnknownType)?.1;
+        let out = |at, synchronisation| Ok(OwnFunction::Out { at, synchronisation });
+        match (kind, lead.way_mm, lead.time_s) {
+            (Kind::Start(kind), None, None) => out(At::Start, kind),
+            (Kind::End(kind), None, None) => out(At::End, kind),
+            (Kind::Way(kind), Some(way), None) => out(At::Ahead(Ahead::Way(way)), kind),
+            (Kind::Time(kind), None, Some(time)) => out(At::Ahead(Ahead::Time(time)), kind),
+            (Kind::Point, None, None) => Ok(OwnFunction::Point),
+            (Kind::Way(_), ..) => Err(OwnFunctionError::NeedsWay),
+            (Kind::Time(_), ..) => Err(OwnFunctionError::NeedsTime),
+            (Kind::Start(_) | Kind::End(_) | Kind::Point, ..) => Err(OwnFunctionError::HasNoLead),
+        }
+    }
+}
+
+impl OwnFunctions {
+    /// Adds an M function of a model.
+    ///
+    /// # Errors
+    /// When it is none that the control hands to the PLC without doing something itself, or is there already.
+    pub fn add(
+        &mut self,
+        model: ControlModel,
+        code: u16,
+        function: OwnFunction,
+    ) -> Result<(), OwnFunctionError> {
+        let technology = Technology::of_m(model, code);
+        let free = |technology: &&Technology| {
+            technology.output == Output::Plc && technology.deeds().next().is_none()
+        };
+        if technology.filter(free).is_none() {
+            return Err(OwnFunctionError::NotFree(code));
+        }
+        match Arc::make_mut(&mut self.0).insert(code, function) {
+            None => Ok(()),
+            Some(_) => Err(OwnFunctionError::Twice(code)),
+        }
+    }
+
+    /// What the machine builder says of an M function.
+    pub fn get(&self, code: u16) -> Option<OwnFunction> {
+        self.0.get(&code).copied()
+    }
+}
