@@ -358,7 +358,7 @@ impl Channel {
     fn follow_spindle(&mut self, machine: &mut MachineSide) {
         let exchange = machine.memory.of_mut(self.number);
         let spindle = machine.spindles.of_mut(self.number);
-        spindle.set_feed(self.run.track.speed_mm_s() * 60.0);
+        spindle.follow(self.run.track.along());
         // In cycle 2 the override of the spindle is off [003:5032].
         let percent = if self.run.taps_floating() {
             100.0

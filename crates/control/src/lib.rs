@@ -120,6 +120,7 @@ mod tools;
 mod track;
 mod upkeep;
 mod view;
+mod voltage;
 mod window;
 
 pub use axis::AxisId;

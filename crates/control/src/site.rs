@@ -60,11 +60,13 @@ impl Site<'_> {
                 inch,
             }),
             // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
-            // printing and the blank concern nothing that moves.
+            // printing and the blank concern nothing that moves;
+            // a voltage belongs to the path.
             Function::Stop
             | Function::SpindleOrientation(_)
             | Function::Print(_)
             | Function::Synchronise
+            | Function::Voltage(_)
             | Function::Blank(_) => {}
         }
     }

@@ -3,11 +3,13 @@
 
 use bahn_exchange::{Bit, Exchange, signal};
 use bahn_parameters::spindle::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
+use bahn_path::Voltage;
 use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
 use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 
 use crate::handshake::Transfer;
 use crate::panel::PlcFaultCode;
+use crate::voltage::{Along, VoltageOutput};
 
 /// Range of the analogue outputs, V.
 const OUTPUT_VOLTS: f64 = 10.0;
@@ -79,6 +81,9 @@ pub(crate) struct SpindleUnit {
     led: bool,
     plc_volts: f64,
     feed_volts: f64,
+    by_program: VoltageOutput,
+    /// Contour cycle, s.
+    cycle_s: f64,
 }
 
 impl SpindleUnit {
@@ -101,6 +106,8 @@ impl SpindleUnit {
             led: false,
             plc_volts: 0.0,
             feed_volts: 0.0,
+            by_program: VoltageOutput::default(),
+            cycle_s: f64::from(timing.contour_us()) * 1e-6,
         }
     }
 
@@ -133,7 +140,8 @@ impl SpindleUnit {
             match self.parameters.free_output {
                 FreeOutput::Plc => (false, self.plc_volts, 0.0),
                 FreeOutput::Feed { .. } => (false, self.feed_volts, 0.0),
-                FreeOutput::None | FreeOutput::MFunctions => return,
+                FreeOutput::MFunctions => (false, self.by_program.volts(), 0.0),
+                FreeOutput::None => return,
             }
         };
         if let Some(output) = commands.axes.get_mut(self.wiring.output) {
@@ -146,16 +154,26 @@ impl SpindleUnit {
         }
     }
 
-    /// MP3011 = 1: a voltage in proportion to the contour feed, 10 V at MP3012 [000:9835-9839].
-    pub fn set_feed(&mut self, mm_min: f64) {
-        if let FreeOutput::Feed { full_mm_min } = self.parameters.free_output {
-            let volts = mm_min / full_mm_min * OUTPUT_VOLTS;
-            self.feed_volts = if volts.is_finite() {
-                volts.clamp(0.0, OUTPUT_VOLTS)
-            } else {
-                0.0
-            };
+    /// Where output S follows the path: in proportion to its feed, 10 V at MP3012 [000:9835-9839], or as M200 to
+    /// M204 say.
+    pub fn follow(&mut self, along: Along) {
+        match self.parameters.free_output {
+            FreeOutput::Feed { full_mm_min } => {
+                let volts = along.mm_min / full_mm_min * OUTPUT_VOLTS;
+                self.feed_volts = if volts.is_finite() {
+                    volts.clamp(0.0, OUTPUT_VOLTS)
+                } else {
+                    0.0
+                };
+            }
+            FreeOutput::MFunctions => self.by_program.cycle(along, self.cycle_s),
+            FreeOutput::None | FreeOutput::Plc => {}
         }
+    }
+
+    /// M200 to M204 of the block with a sequence.
+    pub fn set_voltage(&mut self, order: Voltage, sequence: u64) {
+        self.by_program.order(order, sequence);
     }
 
     /// Module 9130: a voltage at output S, where the spindle does not use it.
@@ -272,6 +290,7 @@ impl SpindleUnit {
         self.led = false;
         self.servo.rotate(Rotation::M5);
         self.servo.set_enabled(false);
+        self.by_program.switch_off();
     }
 
     /// A fault of its encoder.

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use bahn_exchange::Image;
 use bahn_motion::{FunctionOutput, Interpolator, Limits};
 use bahn_parameters::ParameterList;
-use bahn_path::{Axis, AxisSet, Curve, FeedRate, PathElement, Position};
+use bahn_path::{Axis, AxisSet, Curve, FeedRate, Function, PathElement, Position};
 use bahn_servo::Timing;
 
 use crate::axes::OwnAxes;
@@ -18,6 +18,7 @@ use crate::message::Message;
 use crate::panel::Direction;
 use crate::q_transfer::QTransfer;
 use crate::site::Site;
+use crate::voltage::Along;
 
 /// So near is no other place, mm or degrees.
 const SAME_MM: f64 = 1e-6;
@@ -76,6 +77,15 @@ impl Track {
     /// The path speed, mm/s.
     pub fn speed_mm_s(&self) -> f64 {
         self.speed
+    }
+
+    /// How far the path has come, for what follows it.
+    pub fn along(&self) -> Along {
+        Along {
+            sequence: self.path.element().map_or(0, |element| element.sequence),
+            part: self.path.part(),
+            mm_min: self.speed * 60.0,
+        }
     }
 
     /// The path stands at once: nothing moves the axes any more.
@@ -212,7 +222,10 @@ impl Track {
             self.waiting.pop_front();
             q_transfer.strobe();
             for function in self.path.functions(&output) {
-                site.output(&function.function, inch);
+                match function.function {
+                    Function::Voltage(order) => site.spindle.set_voltage(order, output.sequence),
+                    _ => site.output(&function.function, inch),
+                }
             }
         }
     }

@@ -62,6 +62,9 @@ impl Feature {
         let Some(entry) = self.entry(settings.model) else {
             return passed_over(format!("this control has no {self}"));
         };
+        if self.is_voltage() && settings.rules.voltages.is_none() {
+            return passed_over(format!("{self} is for output S with MP3011 = 3"));
+        }
         let Some(remark) = entry.remark() else {
             return Ok((true, None));
         };
@@ -73,6 +76,13 @@ impl Feature {
             Effect::None => Ok((false, Some(WarningKind::Function { text }))),
             Effect::Partly | Effect::Acts => Ok((true, Some(WarningKind::Function { text }))),
         }
+    }
+}
+
+impl Feature {
+    /// M200 to M204, which a machine has by MP3011 [000:9841-9848].
+    fn is_voltage(self) -> bool {
+        matches!(self, Feature::M(200..=204))
     }
 }
 

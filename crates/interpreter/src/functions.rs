@@ -17,6 +17,7 @@ use crate::numbers::Numbers;
 use crate::q_parameters::preassigned;
 use crate::settings::Settings;
 use crate::status::Spindle;
+use crate::voltage;
 
 /// Takes the M functions of a block.
 pub(crate) fn take_m_functions(c: &mut Context<'_>, m: &MFunctions) -> Result<BlockFunctions, Fault> {
@@ -55,6 +56,7 @@ fn take_m_function(
         let function = match deed {
             Deed::Control(ControlFunction::SecondServoSet(_)) if !rules.m105_enabled => continue,
             Deed::Control(control) => Function::Control(control),
+            Deed::Voltage => Function::Voltage(voltage::of(code, m, c.numbers, c.settings)?),
             Deed::SpindleOrientation => Function::SpindleOrientation(
                 c.modal
                     .orientation_deg

@@ -62,6 +62,7 @@ mod settings;
 mod status;
 mod told;
 mod tools;
+mod voltage;
 mod work;
 
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use bahn_parameters::machining::ScaledAxes;
 use bahn_parameters::own_functions::OwnFunctions;
-use bahn_parameters::spindle::SpindleParameters;
+use bahn_parameters::spindle::{Characteristics, FreeOutput, SpindleParameters};
 use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
 use bahn_path::{Axis, Function, Position, TechnologyFunction, ToolShape};
@@ -178,6 +178,8 @@ pub struct Rules {
     pub speed_max_rpm: f64,
     /// MP7245: bit n inhibits cycle n [000:6655-6698].
     pub inhibited_cycles: u32,
+    /// MP3011 = 3: M200 to M204 set output S, M202 by these characteristics [000:9841-9898].
+    pub voltages: Option<Characteristics>,
     /// MP7246: paraxial positioning blocks are disabled [000:7022-7029].
     pub paraxial_inhibited: bool,
 }
@@ -190,6 +192,7 @@ impl Rules {
         let m = list.m_functions();
         let tapping = list.tapping();
         let probe = list.probe();
+        let spindle = list.spindle_parameters();
         Rules {
             arc_tolerance_mm: list.arc_tolerance_mm(),
             scaling_in_plane_only: list.scaled_axes() == ScaledAxes::WorkingPlane,
@@ -213,7 +216,7 @@ impl Rules {
             tapping: TappingRules {
                 override_percent: tapping.override_percent,
                 reversal_dwell_s: tapping.reversal_dwell_s,
-                spindle: Some(list.spindle_parameters()),
+                spindle: Some(spindle),
                 orients: tapping.orientation,
             },
             datums_from_machine: list.operation_parameters().datums.table_from_machine,
@@ -231,6 +234,10 @@ impl Rules {
             inhibited_cycles: (1..=31)
                 .filter(|cycle| list.cycle_inhibited(*cycle))
                 .fold(0, |bits, cycle| bits | 1 << cycle),
+            voltages: match spindle.free_output {
+                FreeOutput::MFunctions => Some(list.characteristics()),
+                _ => None,
+            },
             paraxial_inhibited: list.paraxial_inhibited(),
             ..Rules::default()
         }
@@ -256,6 +263,7 @@ impl Default for Rules {
             probe: ProbeRules::default(),
             speed_max_rpm: 99_999.0,
             inhibited_cycles: 0,
+            voltages: None,
             paraxial_inhibited: false,
         }
     }

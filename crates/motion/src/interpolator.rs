@@ -627,6 +627,14 @@ impl<E> Interpolator<E> {
         self.rest
     }
 
+    /// How much of that element is covered, 0 to 1.
+    pub fn part(&self) -> f64 {
+        match self.ring.current() {
+            Some(item) if item.length > 0.0 => 1.0 - self.rest / item.length,
+            _ => 1.0,
+        }
+    }
+
     /// Elements that are prepared and not yet executed, the current one included.
     pub fn ahead(&self) -> usize {
         self.ring.ahead().len()

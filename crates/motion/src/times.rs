@@ -118,6 +118,7 @@ impl Stopwatch {
             | Function::Stop
             | Function::Print(_)
             | Function::Synchronise
+            | Function::Voltage(_)
             | Function::Plc(_)
             | Function::Blank(_) => 0.0,
         }

@@ -97,7 +97,7 @@ pub mod plc {
 /// Of the spindle: [`ParameterList::spindle_parameters`](crate::ParameterList::spindle_parameters).
 pub mod spindle {
     pub use crate::settings::{
-        FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,
-        SpindlePolarity, SpindleRamps, Tapping, TappingParameters,
+        Characteristics, FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput,
+        SpindleParameters, SpindlePolarity, SpindleRamps, Tapping, TappingParameters,
     };
 }

@@ -8,6 +8,7 @@
 mod axes;
 mod axis_parameters;
 mod axis_reader;
+mod characteristics;
 mod machining;
 mod operation;
 mod plc_parameters;
@@ -19,6 +20,7 @@ pub use axis_parameters::{
     MonitoringParameters, MotionParameters, OutputParameters, PrecontrolParameters, ReferenceParameters,
     ReferenceType, Synchronization, TravelParameters,
 };
+pub use characteristics::Characteristics;
 pub use machining::{
     ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
 };

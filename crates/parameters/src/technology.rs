@@ -107,13 +107,15 @@ pub enum Deed {
     CornerArcs,
     /// M113.
     SharpCorners,
+    /// M200 to M204: output S gives a voltage.
+    Voltage,
     /// It acts in the kernel.
     Control(ControlFunction),
 }
 
 impl Deed {
     /// All deeds with their names in the table.
-    const NAMES: [(&'static str, Deed); 31] = [
+    const NAMES: [(&'static str, Deed); 32] = [
         ("program-stop", Deed::ProgramStop),
         ("program-end", Deed::ProgramEnd),
         ("tool-change", Deed::ToolChange),
@@ -142,6 +144,7 @@ impl Deed {
         ("feed-at-centre", Deed::FeedAtCentre),
         ("corner-arcs", Deed::CornerArcs),
         ("sharp-corners", Deed::SharpCorners),
+        ("voltage", Deed::Voltage),
         (
             "replace-worn-tools",
             Deed::Control(ControlFunction::ReplaceWornTools(true)),

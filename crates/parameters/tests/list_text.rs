@@ -252,7 +252,7 @@ proptest! {
         prop_assert!(spindle.gears.iter().all(|gear| gear.max_rpm.is_finite()));
         list.plc_parameters();
         list.operation_parameters();
-        list.laser_characteristics();
+        list.characteristics();
         list.user_parameters();
         list.inconsistencies();
         prop_assert!(list.spindle_run_up_s(1000.0).is_finite());

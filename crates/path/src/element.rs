@@ -1,6 +1,6 @@
 //! Path elements: what the interpreter hands to motion.
 
-use crate::{Axis, Curve, Plane, Position};
+use crate::{Axis, Characteristic, Curve, Plane, Position};
 
 /// Where in the programs a movement comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -228,12 +228,39 @@ pub enum Function {
     Stop,
     /// FN15: PRINT, the finished output line [003:4371-4385].
     Print(String),
+    /// M200 to M204: what output S gives from here on [000:9841-9909].
+    Voltage(Voltage),
     /// FN19: PLC, one or two values already in the unit of the control model [003:4387-4395].
     Plc([Option<f64>; 2]),
     /// What waits for a place of the program ([`Synchronisation::MvsSlp`]) is to be acknowledged here [004:75].
     Synchronise,
     /// The blank of the graphics (BLK FORM).
     Blank(Blank),
+}
+
+/// What output S gives for a laser or a water jet until the next one, 0 to 9.999 V [000:9841-9909].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Voltage {
+    /// M200: a voltage, V.
+    Fixed(f64),
+    /// M201: from the voltage before to this one, V, along the movement of the block.
+    Along(f64),
+    /// M202: by the velocity.
+    ByVelocity(Characteristic),
+    /// M203: from the voltage before to this one, V, in a time.
+    Ramp {
+        /// At its end, V.
+        volts: f64,
+        /// How long it takes, s.
+        time_s: f64,
+    },
+    /// M204: a voltage for a time, then 0 V.
+    Pulse {
+        /// As long as it lasts, V.
+        volts: f64,
+        /// How long, s.
+        time_s: f64,
+    },
 }
 
 /// A tool call as it reaches motion, workpiece and PLC.

@@ -22,6 +22,7 @@
 //! Nothing here knows of program text, time or hardware.
 
 mod axis;
+mod characteristic;
 mod curve;
 mod element;
 mod frame;
@@ -30,10 +31,11 @@ pub mod region;
 mod source;
 
 pub use axis::{Axis, AxisSet, Position};
+pub use characteristic::Characteristic;
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use element::{
     Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
-    Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape,
+    Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
 };
 pub use frame::Frame;
 pub use plane::{Plane, Point2};

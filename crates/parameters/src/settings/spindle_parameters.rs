@@ -285,21 +285,6 @@ impl ParameterList {
         }
     }
 
-    /// The characteristics of M202, velocity in mm/min to volts: MP3013 and MP3014. A velocity of 0 starts
-    /// the next one; at most 3 with up to 4 points [000:9862-9941].
-    pub fn laser_characteristics(&self) -> Vec<Vec<[f64; 2]>> {
-        let mut curves: Vec<Vec<[f64; 2]>> = Vec::new();
-        let points = (0u8..).map_while(|at| Some([self.get_new(3013, at)?, self.get_new(3014, at)?]));
-        for point in points {
-            match curves.last_mut() {
-                Some(curve) if point[0] > 0.0 => curve.push(point),
-                _ => curves.push(vec![point]),
-            }
-        }
-        curves.retain(|curve| curve.len() > 1);
-        curves
-    }
-
     fn gears(&self) -> ([Gear; GEARS as usize], Option<[f64; OLD_GEARS]>) {
         let mut gears = [Gear::default(); GEARS as usize];
         for (index, gear) in (0u8..).zip(&mut gears) {
@@ -519,24 +504,5 @@ mod tests {
         assert_eq!(spindle.comparator_rpm, Some([450.0, 900.0, 1800.0, 3600.0]));
         // 9 V at the rated speed, 9.999 V at most: 4000 / 9 * 9.999 = 4444 rpm.
         assert!((spindle.gears[3].max_rpm - 4444.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_velocity_of_zero_starts_the_next_characteristic() {
-        let mut list = ParameterList::reference(ControlModel::Tnc415b);
-        let points = [
-            [0.0, 1.0],
-            [1000.0, 2.0],
-            [5000.0, 9.0],
-            [0.0, 0.5],
-            [2000.0, 3.0],
-        ];
-        for (index, [velocity, volts]) in (0u8..).zip(points) {
-            list.set(3013, index, velocity).unwrap();
-            list.set(3014, index, volts).unwrap();
-        }
-        let curves = list.laser_characteristics();
-        assert_eq!(curves[0], points[..3]);
-        assert_eq!(curves[1], points[3..]);
     }
 }

@@ -22,7 +22,7 @@ const ARGUMENTS: &[(u16, &[u8])] = &[
     (201, b"V"),
     (202, b"F"),
     (203, b"VT"),
-    (204, b"T"),
+    (204, b"VT"),
 ];
 
 /// Words that are written with more than their letter: look-ahead LA, characteristic FNR, ramp TIME.
