@@ -84,6 +84,9 @@ impl Datums {
         };
         let correction = self.correction.get(unit.index).copied().unwrap_or(0.0);
         let datum = unit.servo.actual_mm() - length - value + correction;
+        // An axis with a Hirth coupling stands on its grid only: so does its datum [000:8564].
+        let grid = unit.parameters.travel.hirth_deg;
+        let datum = grid.map_or(datum, |grid| (datum / grid).round() * grid);
         let place = self.place();
         if let Some(points) = self.points.get_mut(place) {
             points[axis] = datum;

@@ -252,6 +252,25 @@ fn datum_for_each_range() {
     }
 }
 
+/// An axis with a Hirth coupling (MP420, MP430): its datum is rounded to the grid from machine zero [000:8564]. C
+/// stands at 31.2 degrees on a grid of 2.5: datum 0 there is at 30 or 32.5, and C shows what is left.
+#[test]
+fn the_datum_of_a_hirth_coupling() {
+    for (stands, value, shown) in [(31.2, 0.0, 1.2), (31.3, 0.0, -1.2), (31.2, 90.0, 91.2)] {
+        let axis =
+            "10=15 50=15 810.3=0 1010.3=3600 1020.3=1200 1330.3=1800 1340.3=4 1510.3=2 910.3=500 920.3=-500";
+        let build = bench("").with(TABLE).mps(axis).mps("420.3=1 430.3=2.5");
+        let mut rig = build
+            .program("1.H", &format!("L C{stands:+} R0 F3000 M91"))
+            .ready();
+        rig.run("1.H", 20.0);
+        rig.command("mode manual");
+        close(rig.machine_position('C'), stands, 0.001);
+        rig.command(&format!("datum C {value}"));
+        close(rig.axis('C').actual, shown, 0.001);
+    }
+}
+
 /// MP7295: no datum may be set in this axis [000:6270-6275]; nor in an automatic mode.
 #[test]
 fn datum_setting_can_be_inhibited() {
