@@ -95,6 +95,9 @@ pub(crate) enum Resolved {
         value: f64,
         incremental: bool,
     },
+    AxisFactor(Axis, f64),
+    /// Program units.
+    Centre(Axis, f64),
     Axis(Axis),
     AxisDirection(Axis, Direction),
     /// mm/min; `None` for FMAX.
@@ -216,6 +219,8 @@ pub(crate) fn resolve(
                 value: value(word.value)?,
                 incremental: word.incremental,
             },
+            CycleWord::AxisFactor(axis, factor) => Resolved::AxisFactor(*axis, value(*factor)?),
+            CycleWord::Centre(axis, at) => Resolved::Centre(*axis, value(*at)?),
             CycleWord::Axis(axis) => Resolved::Axis(*axis),
             CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
             CycleWord::Feed(Feed::Max) => Resolved::Feed(None),

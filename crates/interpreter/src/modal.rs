@@ -155,8 +155,16 @@ impl Modal {
     }
 
     /// Scaling factor in the working plane.
-    pub fn plane_scale(&self) -> f64 {
-        self.frame.factor[self.plane.first].abs()
+    ///
+    /// # Errors
+    /// PLANE WRONGLY DEFINED where its axes have different ones: a radius would become an ellipse.
+    pub fn plane_scale(&self) -> Result<f64, Fault> {
+        let [first, second] = [self.plane.first, self.plane.second].map(|axis| self.frame.scale(axis));
+        if first != second {
+            let detail = "the axes of the plane have different scaling factors";
+            return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
+        }
+        Ok(first)
     }
 
     /// The spindle turns, or stands, as Q110 says.

@@ -285,7 +285,7 @@ fn arc_to_workpiece(frame: &Frame, arc: &Arc) -> Result<Arc, Fault> {
         let detail = "an arc outside the working plane cannot be rotated";
         return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
     }
-    if frame.factor[plane.first].abs() != frame.factor[plane.second].abs() {
+    if frame.scale(plane.first) != frame.scale(plane.second) {
         return Err(Fault::new(
             MessageId::PlaneWronglyDefined,
             "scaling would make an ellipse of the arc",

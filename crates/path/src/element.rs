@@ -51,6 +51,8 @@ pub struct Thread {
     /// The spindle is oriented to this angle, degrees, before the path begins; otherwise it goes on from
     /// where it is: from the thread before, if there is one.
     pub orientation_deg: Option<f64>,
+    /// The tool comes back out of the thread the way it went in: rigid tapping, not thread cutting.
+    pub retracts: bool,
 }
 
 /// One movement: geometry, feed and the functions that go out with it. Immutable once made.

@@ -35,6 +35,6 @@ pub use element::{
     At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
     Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape,
 };
-pub use frame::Frame;
+pub use frame::{AxisScaling, Frame};
 pub use plane::{Plane, Point2};
 pub use source::{Barrier, ElementSource, LiveData, Step, Touch};

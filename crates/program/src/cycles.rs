@@ -43,6 +43,8 @@ pub enum Quantity {
     Orientation,
     /// A factor.
     Factor,
+    /// Factors of single axes, and a centre behind `CC`, program units.
+    AxisFactors,
     /// Feed, mm/min or what F counts in inches.
     Feed,
     /// Sense of rotation.
@@ -239,10 +241,12 @@ pub const CYCLES: &[Cycle] = &[
     called(16, "CONTOUR MILLING", &[&[SET_UP, DEPTH], &[PECKG, FEED, TURN, FEED]]),
     // [003:5094-5099]
     called(17, "RIGID TAPPING", &[&[SET_UP], &[DEPTH], &[parameter("PITCH", Quantity::Length, Signed)]]),
+    // [000:6143-6145]; words of later controls
+    called(18, "THREAD CUTTING", &[&[DEPTH], &[parameter("PITCH", Quantity::Length, Signed)]]),
     // [000:147]
     defined(19, "WORKING PLANE", &[]),
     // [000:6655-6699]
-    defined(26, "AXIS-SPEC. SCALING", &[]),
+    defined(26, "AXIS-SPEC. SCALING", &[&[parameter("", Quantity::AxisFactors, Unsigned)]]),
     // [003:4414-4428]
     probe(0, "REF. PLANE", &[&[POINT]]),
     // [003:6617-6625]

@@ -610,6 +610,10 @@ pub enum CycleWord {
     Number(Value),
     /// An axis word `X+40`, `IX+40`.
     Coordinate(Axis, Word),
+    /// The factor of an axis, `X1.4` (cycle 26).
+    AxisFactor(Axis, Value),
+    /// Coordinate of a centre, `CCX+15` (cycle 26).
+    Centre(Axis, Value),
     /// An axis letter alone (mirror image, probe axis).
     Axis(Axis),
     /// An axis letter with a direction `X-` (probing); `+` is [`Direction::CounterClockwise`], `-` is

@@ -83,7 +83,7 @@ impl<'a> Machining<'a> {
                 self.told.warn(definition.at, WarningKind::CycleSign { cycle });
             }
         }
-        let scale = self.modal.frame.factor[self.modal.plane.normal].abs();
+        let scale = self.modal.frame.scale(self.modal.plane.normal);
         let clearance = known(self.pen.tool_centre(self.modal)[self.modal.plane.normal]);
         let direction = depth.signum();
         Ok(Heights {

@@ -13,11 +13,11 @@ use bahn_parameters::MessageId;
 use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
 pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_cycle, contour_plane};
-use self::drilling::{pecking, rigid_tapping, tapping};
+use self::drilling::{pecking, rigid_tapping, tapping, thread_cutting};
 use self::machining::Machining;
 use self::pockets::{circular_pocket, pocket_milling, slot_milling};
 use self::transformation::{
-    contour_geometry, datum_shift, dwell, mirror_image, rotation, scaling, spindle_orientation,
+    axis_scaling, contour_geometry, datum_shift, dwell, mirror_image, rotation, scaling, spindle_orientation,
 };
 use crate::availability::{Feature, names_datum_table, words};
 use crate::context::Context;
@@ -79,6 +79,7 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
         10 => rotation(c.modal, &words, has_q_parameter(block), c.settings),
         11 => scaling(c.modal, &words, c.settings),
         13 => spindle_orientation(c, &words),
+        26 => axis_scaling(c, &words),
         _ => contour_geometry(c.modal, &words, c.settings),
     }
 }
@@ -108,6 +109,7 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
         5 => circular_pocket(&mut m, &definition)?,
         number if is_contour_cycle(number) => return Ok(Flow::ContourCycle),
         17 => rigid_tapping(&mut m, &definition)?,
+        18 => thread_cutting(&mut m, &definition)?,
         number => {
             let detail = format!("cycle {number} is read but not executed by this control");
             return Err(Fault::new(MessageId::BlockNotKnown, detail));

@@ -264,6 +264,10 @@ fn cycle() -> impl Strategy<Value = CycleBlock> {
             block(number, sub, words)
         }),
         name.prop_map(move |words| block(12, 1, words)),
+        (axis(), value(), axis(), value()).prop_map(move |(factor, a, centre, b)| {
+            let words = vec![CycleWord::AxisFactor(factor, a), CycleWord::Centre(centre, b)];
+            block(26, 1, words)
+        }),
         labels.prop_map(move |words| block(14, 1, words)),
         (200..300_u16, cycle_words(false)).prop_map(move |(number, words)| block(number, 0, words)),
     ]
