@@ -148,6 +148,12 @@ impl Tools {
         }
     }
 
+    /// Radius of a tool that is not in use, mm.
+    pub fn radius_of(&self, c: &mut Context<'_>, tool: f64) -> Result<f64, Fault> {
+        let number = tool_number(c.numbers, Value::Number(tool), c.settings)?;
+        Ok(self.shape(c, number, 0)?.0.radius)
+    }
+
     /// Tool data: from the program, from the table, zero for tool 0. With a table a missing tool is an
     /// error; without one old programs rely on a table that is not at hand, so zero is taken with a
     /// warning, unless checking is strict.

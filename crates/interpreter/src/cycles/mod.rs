@@ -3,7 +3,10 @@
 //! Definitions are collected block by block. Cycles 7-11, 13, 14, 19 and 26 act when they are defined, the
 //! others when they are called [003:4849-4857].
 
+mod contour_data;
+mod contour_finish;
 mod contour_pocket;
+mod contour_train;
 mod drilling;
 mod machining;
 mod pockets;
@@ -43,6 +46,17 @@ pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<()
         return Ok(());
     }
     let words = resolve(block, c.numbers, c.settings)?;
+    if contour_data::is_assigned(block.number) {
+        contour_data::assign(c.numbers, &words)?;
+    }
+    if block.number == contour_data::CONTOUR_DATA {
+        let unit_mm = c.numbers.unit_mm;
+        c.modal
+            .cycle
+            .contour_data
+            .take(block.number, block.sub, words, unit_mm, c.pen.block);
+        return Ok(());
+    }
     if acts_here {
         return define_effective(c, block, words);
     }
@@ -107,7 +121,10 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
         3 => slot_milling(&mut m, &definition)?,
         4 => pocket_milling(&mut m, &definition)?,
         5 => circular_pocket(&mut m, &definition)?,
-        number if is_contour_cycle(number) => return Ok(Flow::ContourCycle),
+        number if is_contour_cycle(number) => {
+            contour_data::check(c.modal, &definition)?;
+            return Ok(Flow::ContourCycle);
+        }
         17 => rigid_tapping(&mut m, &definition)?,
         18 => thread_cutting(&mut m, &definition)?,
         number => {
@@ -116,6 +133,18 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
         }
     }
     Ok(Flow::Next)
+}
+
+/// Number of another tool whose radius a contour cycle needs.
+pub(crate) fn other_tool(c: &Context<'_>) -> Result<Option<f64>, Fault> {
+    let values = contour_data::Values {
+        numbers: c.numbers,
+        settings: c.settings,
+    };
+    match c.modal.cycle.machining.ready() {
+        Some(definition) => values.other_tool(definition),
+        None => Ok(None),
+    }
 }
 
 /// Cycle 12: the called program is what the cycle call runs [003:6476-6490].

@@ -8,7 +8,7 @@ use super::cursor::{Cursor, Parsed, WRITE_A_NUMBER, with_help};
 use super::m_function::m_functions;
 use super::path::{direction, feed_word};
 use crate::check::ANY_LABEL_MAX;
-use crate::cycles::{FIRST_PARAMETER_CYCLE, cycle_parameters};
+use crate::cycles::{cycle_parameters, takes_assignments};
 use crate::text::{is_blank, to_words};
 use crate::{CycleBlock, CycleFunction, CycleWord, Dialog, Direction, Operation, Quantity, Word};
 
@@ -40,7 +40,7 @@ fn definition(c: &mut Cursor) -> Parsed<CycleBlock> {
     let (number, sub) = numbers(c)?;
     let words = match holds(CycleFunction::Definition, number, sub) {
         // The name of a cycle is decoration, whatever it looks like.
-        _ if sub == 0 && number < FIRST_PARAMETER_CYCLE => text_word(c.name()),
+        _ if sub == 0 && !takes_assignments(number) => text_word(c.name()),
         Some(Quantity::Program) => program_name(c),
         Some(Quantity::Labels) => label_list(c)?,
         quantity => words(c, Scope::Cycle(quantity))?,
