@@ -48,6 +48,7 @@ mod flow;
 mod functions;
 mod growing;
 mod modal;
+mod normals;
 mod numbers;
 mod output;
 mod outside;

@@ -47,6 +47,8 @@ pub(crate) struct Modal {
     pub feed_law: FeedLaw,
     /// M112: arcs at corners of uncompensated lines.
     pub corner_arcs: Option<CornerArcs>,
+    /// M107: LN blocks take tools that are larger than the one that was computed with.
+    pub takes_larger_tools: bool,
     /// M103: factor of the feed into the material.
     pub plunge_factor: Option<f64>,
     /// Last movement in programmed coordinates, for tangential arcs.
@@ -107,6 +109,7 @@ impl Modal {
             spindle: Spindle::Undefined,
             feed_law: FeedLaw::Centre,
             corner_arcs: None,
+            takes_larger_tools: false,
             plunge_factor: None,
             last_move: None,
             cycle: CycleData::default(),

@@ -47,7 +47,7 @@ pub(crate) fn programmed(
     };
     take_coordinates(modal, numbers, &motion.coordinates, &mut p)?;
     match motion.kind {
-        MotionKind::Line | MotionKind::Paraxial => {}
+        MotionKind::Line | MotionKind::LineNormal | MotionKind::Paraxial => {}
         MotionKind::LinePolar => {
             polar_point(modal, numbers, settings, motion, &mut p)?;
         }

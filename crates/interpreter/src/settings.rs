@@ -176,6 +176,8 @@ pub struct Rules {
     pub inhibited_cycles: u32,
     /// MP7246: paraxial positioning blocks are disabled [000:7022-7029].
     pub paraxial_inhibited: bool,
+    /// MP7680 bit 6: in LN blocks the length contains DR2 [000:9179-9192].
+    pub normal_length_with_dr2: bool,
 }
 
 impl Rules {
@@ -228,6 +230,7 @@ impl Rules {
                 .filter(|cycle| list.cycle_inhibited(*cycle))
                 .fold(0, |bits, cycle| bits | 1 << cycle),
             paraxial_inhibited: list.paraxial_inhibited(),
+            normal_length_with_dr2: list.operation_parameters().normal_length_with_dr2,
             ..Rules::default()
         }
     }
@@ -253,6 +256,7 @@ impl Default for Rules {
             speed_max_rpm: 99_999.0,
             inhibited_cycles: 0,
             paraxial_inhibited: false,
+            normal_length_with_dr2: false,
         }
     }
 }

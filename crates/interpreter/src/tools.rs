@@ -77,6 +77,7 @@ impl Tools {
                     .get(&number)
                     .copied()
                     .unwrap_or_default(),
+                ..ToolShape::default()
             },
         );
         Ok(())

@@ -243,6 +243,8 @@ pub struct ToolShape {
     pub corner_radius: f64,
     /// Angle of the point of a drill, degrees: 0 none. The length is that to the tip of the point.
     pub point_angle_deg: f64,
+    /// DR and DR2 of the tool table, which the radii contain, mm.
+    pub oversize: [f64; 2],
 }
 
 impl ToolShape {

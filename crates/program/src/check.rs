@@ -359,6 +359,7 @@ pub fn each_parameter(operation: &Operation, found: &mut impl FnMut(u16)) {
                 .into_iter()
                 .chain([motion.radius, feed])
                 .flatten()
+                .chain(motion.normal.iter().flat_map(|normal| normal.iter().copied()))
                 .for_each(value);
         }
         Operation::Rounding { radius: a, feed: b } | Operation::Chamfer { length: a, feed: b } => {

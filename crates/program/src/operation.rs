@@ -368,6 +368,8 @@ pub struct Motion {
     pub compensation: Option<Compensation>,
     /// Feed word.
     pub feed: Option<Feed>,
+    /// `NX NY NZ` of LN: components of the normal of the surface.
+    pub normal: Option<Box<[Value; 3]>>,
     /// M functions.
     pub m: MFunctions,
 }
@@ -389,6 +391,8 @@ pub enum MotionKind {
     CirclePolar,
     /// `CTP`.
     CircleTangentialPolar,
+    /// `LN`: a line with the normal of the surface [000:175].
+    LineNormal,
     /// Opened with an axis key, no `L` [003:2046-2057].
     Paraxial,
 }

@@ -100,8 +100,10 @@ fn motion() -> impl Strategy<Value = Motion> {
         LinePolar,
         CirclePolar,
         CircleTangentialPolar,
+        LineNormal,
         Paraxial,
     ];
+    let normal = prop::array::uniform3(value());
     (
         select(kinds),
         coordinates(4),
@@ -112,10 +114,10 @@ fn motion() -> impl Strategy<Value = Motion> {
         prop::option::of(any::<bool>()),
         prop::option::of(0..3_usize),
         prop::option::of(feed()),
-        m_functions(),
+        (m_functions(), normal),
     )
         .prop_map(
-            |(kind, several, (axis, word), pr, pa, radius, direction, compensation, feed, m)| {
+            |(kind, several, (axis, word), pr, pa, radius, direction, compensation, feed, (m, normal))| {
                 let polar = matches!(kind, LinePolar | CirclePolar | CircleTangentialPolar);
                 let arc = matches!(kind, Circle | CircleRadius | CirclePolar);
                 let mut one = Coordinates::default();
@@ -139,6 +141,7 @@ fn motion() -> impl Strategy<Value = Motion> {
                     }),
                     compensation: compensation.map(|i| compensations[i]),
                     feed,
+                    normal: (kind == LineNormal).then(|| Box::new(normal)),
                     m,
                 }
             },
