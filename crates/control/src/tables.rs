@@ -154,11 +154,14 @@ fn take_tables(tools: &mut Magazine, files: &NcFiles) {
         let line = i32::try_from(number).ok()?;
         let value = |element| table.value(line, element);
         let replacement = value(RT)?;
+        // Those of the file are in its radii.
+        let [loaded_dr, loaded_dr2] = loaded.shape.oversize;
         Some(Tool {
             shape: ToolShape {
                 length: value(L)? + value(DL)?,
                 radius: value(R)? + value(DR)?,
                 corner_radius: value(R2)? + value(DR2)?,
+                oversize: [loaded_dr + value(DR)?, loaded_dr2 + value(DR2)?],
                 ..loaded.shape
             },
             locked: value(TL)? != 0.0,

@@ -1,5 +1,5 @@
-//! Tapping: cycle 2 with a floating holder, and cycle 17, in which the tool axis follows the spindle
-//! [000:6047-6141].
+//! Tapping: cycle 2 with a floating holder, and cycles 17 and 18, in which the tool axis follows the spindle
+//! [000:6047-6145].
 //!
 //! In a thread the path leads the spindle, and the tool axis goes where the angle of the spindle says
 //! ([`Interpolator`](bahn_motion::Interpolator)). NC stop brakes both together; NC start goes on. What brings
@@ -165,7 +165,10 @@ impl Tapping {
     pub fn follow(&mut self, track: &Track, active: bool, site: &mut Site) {
         let tapped = track.path.element().filter(|_| active);
         let (rigid, floating) = (is_rigid(tapped), is_floating(tapped));
-        site.exchange.nc_put(signal::TAPPING_CALLED, rigid || floating);
+        let taps = tapped
+            .and_then(PathElement::thread)
+            .is_some_and(|thread| thread.retracts);
+        site.exchange.nc_put(signal::TAPPING_CALLED, taps || floating);
         site.exchange.nc_put(signal::RIGID_TAPPING_ACTIVE, rigid);
         if !rigid {
             *self = Tapping {

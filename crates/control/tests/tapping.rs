@@ -1,4 +1,4 @@
-//! Tapping on the mill: cycle 17, in which Z follows the spindle, and cycle 2 [000:6047-6141].
+//! Tapping on the mill: cycles 17 and 18, in which Z follows the spindle, and cycle 2 [000:6047-6145].
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
 mod support;
@@ -155,6 +155,42 @@ fn the_tool_axis_follows_the_spindle() {
         rig.bit("M2487") && !rig.bit("M2485"),
         "the spindle stands after the cycle"
     );
+}
+
+/// Cycle 18 cuts from where the tool stands to the depth and stays there, with M2095 and without M2048. The next cut
+/// begins with the spindle at the same angle, so it is in the same groove [000:6143-6145].
+#[test]
+fn cycle_18_cuts_the_same_groove_again() {
+    let program = format!(
+        "TOOL CALL 3 Z S{RPM}
+CYCL DEF 18.0 THREAD CUTTING
+CYCL DEF 18.1 DEPTH -{DEPTH}
+CYCL DEF 18.2 PITCH +{PITCH}
+L X+20 Y+20 R0 FMAX
+L Z+3 FMAX
+CYCL CALL
+L X+25 FMAX
+L Z+3 FMAX
+L X+20 FMAX
+CYCL CALL
+L X+25 FMAX"
+    );
+    let mut rig = ready(Build::mill().program("1.H", &program));
+    rig.start();
+    let cuts = [(); 2].map(|()| {
+        let seen = record(&mut rig, 30.0, |rig, _| assert!(!rig.bit("M2048")));
+        assert_on_the_thread(&seen);
+        let depth = seen[0].z - seen.iter().map(|s| s.z).fold(f64::MAX, f64::min);
+        assert!((depth - DEPTH).abs() < 0.1, "{depth}");
+        assert!(observe(&rig, "S.rpm").abs() < 3.0, "the spindle stands");
+        seen
+    });
+    // Where Z is when the spindle is at 0 degrees: the same groove, or one that is whole pitches away.
+    let groove = |seen: &[Seen]| seen[seen.len() / 2].z + seen[seen.len() / 2].angle / 360.0 * PITCH;
+    let apart = (groove(&cuts[1]) - groove(&cuts[0])) / PITCH;
+    assert!((apart - apart.round()).abs() * PITCH < TOLERANCE, "{apart}");
+    rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
+    assert_eq!(rig.messages(), [""; 0]);
 }
 
 /// The override of the spindle takes the feed along, that of the feed does nothing [003:5106].

@@ -66,6 +66,7 @@ fn tool(row: &Row<'_>) -> Result<(u32, Tool), String> {
         radius: length("R")? + length("DR")?,
         corner_radius: length("R2")? + length("DR2")?,
         point_angle_deg: point_angle_deg(row)?,
+        oversize: [length("DR")?, length("DR2")?],
     };
     if shape.corner_radius < 0.0 || length("R")? < 0.0 {
         return Err("a radius is negative".into());
@@ -158,7 +159,7 @@ mod tests {
                 length,
                 radius,
                 corner_radius,
-                point_angle_deg: 0.0,
+                ..ToolShape::default()
             },
             ..Tool::default()
         }
@@ -172,10 +173,15 @@ mod tests {
             "T\tL\tR\tR2\tNAME\n1\t80.5\t10\t\tEND MILL\n2\t62\t4\t4\tBALL\n",
             "\u{feff}t,name,l,r,r2\r\n1,END MILL,80.5,10,\r\n2,BALL,62,4,4\r\n",
             "T;L;R;R2\n1;80,5;10;0\n2;62;4;4\n",
-            "T L R R2 DL DR\n1 80 9.5 0 +0.5 0.5\n2 62 4 4",
         ] {
             assert_eq!(parse(text).as_ref(), Ok(&expected), "{text}");
         }
+        let mut oversize = expected;
+        if let Some(tool) = oversize.get_mut(&1) {
+            tool.shape.oversize = [0.5, 0.0];
+        }
+        let text = "T L R R2 DL DR\n1 80 9.5 0 +0.5 0.5\n2 62 4 4";
+        assert_eq!(parse(text).as_ref(), Ok(&oversize));
     }
 
     #[test]

@@ -34,6 +34,8 @@ pub(crate) mod words {
     pub const DIALOG_DEFINITION: &str = "DLG-DEF";
     /// The dialogue block of an OEM cycle that acts at its call [000:17738-17740].
     pub const DIALOG_CALL: &str = "DLG-CALL";
+    /// Lines with the normal of the surface [000:175].
+    pub const NORMALS: &str = "LN (surface normals)";
     /// Oversizes of a tool call.
     pub const OVERSIZE: &str = "TOOL CALL DL DR";
 }

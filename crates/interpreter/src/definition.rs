@@ -15,6 +15,8 @@ use crate::settings::Settings;
 pub(crate) struct CycleData {
     pub machining: Collector,
     pub effective: Collector,
+    /// Cycle 20.
+    pub contour_data: Collector,
 }
 
 impl CycleData {
@@ -22,6 +24,14 @@ impl CycleData {
     pub fn is_contour_cycle(&self) -> bool {
         let definition = self.machining.definition.as_ref();
         definition.is_some_and(|definition| is_contour_cycle(definition.number))
+    }
+
+    /// Whether that is a contour train.
+    pub fn is_contour_train(&self) -> bool {
+        self.machining
+            .definition
+            .as_ref()
+            .is_some_and(|definition| definition.number == 25)
     }
 }
 
@@ -95,6 +105,9 @@ pub(crate) enum Resolved {
         value: f64,
         incremental: bool,
     },
+    AxisFactor(Axis, f64),
+    /// Program units.
+    Centre(Axis, f64),
     Axis(Axis),
     AxisDirection(Axis, Direction),
     /// mm/min; `None` for FMAX.
@@ -117,6 +130,14 @@ impl Resolved {
 }
 
 impl Definition {
+    /// What the definition assigns to a Q parameter.
+    pub fn assigned(&self, q: u16) -> Option<f64> {
+        self.blocks.iter().flatten().rev().find_map(|word| match word {
+            Resolved::Assignment(number, value) if *number == q => Some(*value),
+            _ => None,
+        })
+    }
+
     /// The words of a block.
     pub fn block(&self, sub: u16) -> &[Resolved] {
         self.blocks.get(usize::from(sub)).map_or(&[], Vec::as_slice)
@@ -216,6 +237,8 @@ pub(crate) fn resolve(
                 value: value(word.value)?,
                 incremental: word.incremental,
             },
+            CycleWord::AxisFactor(axis, factor) => Resolved::AxisFactor(*axis, value(*factor)?),
+            CycleWord::Centre(axis, at) => Resolved::Centre(*axis, value(*at)?),
             CycleWord::Axis(axis) => Resolved::Axis(*axis),
             CycleWord::AxisDirection(axis, direction) => Resolved::AxisDirection(*axis, *direction),
             CycleWord::Feed(Feed::Max) => Resolved::Feed(None),
@@ -255,5 +278,5 @@ fn in_range(length_mm: f64) -> Result<f64, Fault> {
 
 /// Cycles that machine the contours of cycle 14.
 pub(crate) fn is_contour_cycle(number: u16) -> bool {
-    matches!(number, 6 | 15 | 16)
+    matches!(number, 6 | 15 | 16 | 21..=25)
 }

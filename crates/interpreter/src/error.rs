@@ -134,6 +134,11 @@ impl Fault {
     }
 
     /// Says what the fault is about.
+    /// Whether it is this message of the control.
+    pub fn is(&self, message: MessageId) -> bool {
+        matches!(self.message, Message::Control(id) if id == message)
+    }
+
     pub fn because(self, cause: Cause) -> Fault {
         Fault { cause, ..self }
     }

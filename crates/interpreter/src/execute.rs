@@ -164,7 +164,7 @@ fn call_label(q: &QTable, label: u16, repeats: Option<Value>, settings: &Setting
 }
 
 fn rounding(c: &mut Context<'_>, radius: Value, feed: Option<Value>) -> Result<(), Fault> {
-    let radius = c.numbers.length(radius)? * c.modal.plane_scale();
+    let radius = c.numbers.length(radius)? * c.modal.plane_scale()?;
     if radius < 0.0 {
         return Err(Fault::new(
             MessageId::EntryValueIncorrect,
@@ -178,7 +178,7 @@ fn rounding(c: &mut Context<'_>, radius: Value, feed: Option<Value>) -> Result<(
 }
 
 fn chamfer(c: &mut Context<'_>, length: Value, feed: Option<Value>) -> Result<(), Fault> {
-    let length = c.numbers.length(length)? * c.modal.plane_scale();
+    let length = c.numbers.length(length)? * c.modal.plane_scale()?;
     if length <= 0.0 {
         let detail = "the length of a chamfer must be positive";
         return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));

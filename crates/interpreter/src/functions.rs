@@ -113,6 +113,7 @@ fn act_on_block(modal: &mut Modal, deed: Deed, block: &mut BlockFunctions) {
         Deed::ReduceRotaryAxes => reduce_rotary_axes(modal),
         Deed::Intersection => block.corner = Corner::Intersection,
         Deed::OpenContour => block.corner = Corner::Open,
+        Deed::Control(ControlFunction::TakeLargerTools(takes)) => modal.takes_larger_tools = takes,
         Deed::CycleCall => {
             modal.cycle_after_each_block = false;
             block.cycle_call = true;

@@ -48,6 +48,7 @@ mod flow;
 mod functions;
 mod growing;
 mod modal;
+mod normals;
 mod numbers;
 mod output;
 mod outside;
@@ -56,6 +57,7 @@ mod pen;
 mod positioning;
 mod probe;
 mod q_parameters;
+mod recording;
 mod rehearsal;
 mod run;
 mod settings;
@@ -69,7 +71,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, AxisSet, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
+use bahn_path::{Axis, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
 use bahn_program::{Block, MotionKind, Operation, Program};
 
 pub use checkpoints::Checkpoint;
@@ -87,7 +89,7 @@ pub use work::{Done, Work};
 use crate::checkpoints::{Kept, acts};
 use crate::code::{Code, Fetched};
 use crate::contour::Contour;
-use crate::cycles::{ContourJob, Halt, contour_plane};
+use crate::cycles::Halt;
 use crate::error::Fault;
 use crate::execute::execute;
 use crate::flow::Flow;
@@ -463,7 +465,7 @@ impl Interpreter {
     }
 
     /// The block of a label in the running program.
-    fn label(&self, label: u16) -> Result<u32, Fault> {
+    pub(crate) fn label(&self, label: u16) -> Result<u32, Fault> {
         if label == 0 {
             return Err(MessageId::JumpToLabelZeroNotPermitted.into());
         }
@@ -555,78 +557,6 @@ impl Interpreter {
             cause: fault.cause,
         })));
     }
-
-    /// Executes the contour subprograms of cycle 14 aside and records their geometry; nothing else of them
-    /// has an effect [003:5389-5454].
-    fn record_contours(&mut self) -> Result<ContourJob, Halt> {
-        let labels = self.run.modal.contour_labels.clone();
-        if labels.is_empty() {
-            return Err(no_contours().into());
-        }
-        let mut recorder = self.run.clone();
-        recorder.pen.contour = Contour::recorder();
-        recorder.pen.out = Output::default();
-        recorder.modal.compensation = bahn_program::Compensation::Off;
-        std::mem::swap(&mut self.run, &mut recorder);
-        let job = self.record_labels(&labels);
-        std::mem::swap(&mut self.run, &mut recorder);
-        job
-    }
-
-    /// Looks whether the contours of cycle 14 are there.
-    fn rehearse_contours(&mut self) -> Result<(), Fault> {
-        let labels = std::mem::take(&mut self.run.modal.contour_labels);
-        let found = labels.iter().try_for_each(|&label| self.label(label).map(drop));
-        let defined = !labels.is_empty();
-        self.run.modal.contour_labels = labels;
-        found?;
-        if !defined {
-            return Err(no_contours());
-        }
-        self.run.at.block += 1;
-        Ok(())
-    }
-
-    fn record_labels(&mut self, labels: &[u16]) -> Result<ContourJob, Halt> {
-        let home = self.run.at.clone();
-        let mut job = None;
-        for &label in labels {
-            self.run.at = home.clone();
-            self.run.pen.recording = Some(AxisSet::EMPTY);
-            let target = self.label(label)?;
-            self.run.at.call(label, target, self.settings.model.limits())?;
-            while self.run.at.depth() > home.depth() {
-                if self.is_interrupted() {
-                    return Err(Halt::Interrupted);
-                }
-                let at = self.run.at.block_ref();
-                self.step().map_err(|fault| fault.at(at))?;
-                if self.ended.take().is_some() {
-                    let detail = format!("the contour subprogram LBL {label} does not end with LBL 0");
-                    return Err(Fault::new(MessageId::ExcessiveSubprogramming, detail)
-                        .at(at)
-                        .into());
-                }
-            }
-            let moves = self.run.pen.contour.take_recorded(&mut self.run.pen.out)?;
-            let axes = self.run.pen.recording.unwrap_or(AxisSet::EMPTY);
-            let job = job.get_or_insert_with(|| ContourJob::new(contour_plane(self.run.modal.plane, axes)));
-            job.add(&moves).map_err(|fault| {
-                fault.at(BlockRef {
-                    program: home.program,
-                    block: target,
-                })
-            })?;
-        }
-        job.ok_or_else(|| MessageId::CyclIncomplete.into())
-    }
-}
-
-fn no_contours() -> Fault {
-    Fault::new(
-        MessageId::CyclIncomplete,
-        "cycle 14 CONTOUR GEOMETRY is not defined",
-    )
 }
 
 /// Whether a block certainly moves on a straight line.

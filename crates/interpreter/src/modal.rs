@@ -47,6 +47,8 @@ pub(crate) struct Modal {
     pub feed_law: FeedLaw,
     /// M112: arcs at corners of uncompensated lines.
     pub corner_arcs: Option<CornerArcs>,
+    /// M107: LN blocks take tools that are larger than the one that was computed with.
+    pub takes_larger_tools: bool,
     /// M103: factor of the feed into the material.
     pub plunge_factor: Option<f64>,
     /// Last movement in programmed coordinates, for tangential arcs.
@@ -107,6 +109,7 @@ impl Modal {
             spindle: Spindle::Undefined,
             feed_law: FeedLaw::Centre,
             corner_arcs: None,
+            takes_larger_tools: false,
             plunge_factor: None,
             last_move: None,
             cycle: CycleData::default(),
@@ -155,8 +158,16 @@ impl Modal {
     }
 
     /// Scaling factor in the working plane.
-    pub fn plane_scale(&self) -> f64 {
-        self.frame.factor[self.plane.first].abs()
+    ///
+    /// # Errors
+    /// PLANE WRONGLY DEFINED where its axes have different ones: a radius would become an ellipse.
+    pub fn plane_scale(&self) -> Result<f64, Fault> {
+        let [first, second] = [self.plane.first, self.plane.second].map(|axis| self.frame.scale(axis));
+        if first != second {
+            let detail = "the axes of the plane have different scaling factors";
+            return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
+        }
+        Ok(first)
     }
 
     /// The spindle turns, or stands, as Q110 says.

@@ -47,7 +47,7 @@ pub(crate) fn programmed(
     };
     take_coordinates(modal, numbers, &motion.coordinates, &mut p)?;
     match motion.kind {
-        MotionKind::Line | MotionKind::Paraxial => {}
+        MotionKind::Line | MotionKind::LineNormal | MotionKind::Paraxial => {}
         MotionKind::LinePolar => {
             polar_point(modal, numbers, settings, motion, &mut p)?;
         }
@@ -55,11 +55,14 @@ pub(crate) fn programmed(
         MotionKind::CircleRadius => circle_radius(modal, numbers, settings, motion, &mut p)?,
         MotionKind::CircleTangential => {
             let plane = plane_of(modal, &motion.coordinates)?;
+            check_beside(plane, p.axes, settings)?;
             p.curve = tangential(modal, plane, &p)?;
         }
         MotionKind::CirclePolar => circle_polar(modal, numbers, settings, motion, &mut p)?,
         MotionKind::CircleTangentialPolar => {
+            let beside = p.axes;
             let plane = polar_point(modal, numbers, settings, motion, &mut p)?;
+            check_helix(plane, beside, settings)?;
             p.curve = tangential(modal, plane, &p)?;
         }
     }
@@ -125,9 +128,15 @@ fn pole(modal: &Modal) -> Result<(Plane, Point2), Fault> {
     })
 }
 
-/// The plane of an arc from its words: two axes name it, otherwise the working plane.
+/// The plane of an arc from its words: two linear axes name it, otherwise the working plane. A third one is the tool
+/// axis, which moves along (inferred).
 fn plane_of(modal: &Modal, coordinates: &Coordinates) -> Result<Plane, Fault> {
-    let axes: Vec<Axis> = coordinates.axes().iter().collect();
+    let linear = |axis: &Axis| !axis.is_rotary();
+    let in_plane = |axis: &Axis| axis.main() != modal.plane.normal.main();
+    let mut axes: Vec<Axis> = coordinates.axes().iter().filter(linear).collect();
+    if axes.len() > 2 {
+        axes.retain(in_plane);
+    }
     match axes[..] {
         [a, b] => Plane::of_axes(a, b).ok_or(Fault::from(MessageId::PlaneWronglyDefined)),
         [a] if modal.plane.contains(a) => Ok(modal.plane),
@@ -139,15 +148,44 @@ fn plane_of(modal: &Modal, coordinates: &Coordinates) -> Result<Plane, Fault> {
     }
 }
 
+/// Refuses axes beside an arc that the control does not move together with it: the TNC 415/425 have one, linear or
+/// rotary [000:140]. One that is parallel to the plane would make another curve of it (inferred).
+fn check_beside(plane: Plane, axes: AxisSet, settings: &Settings) -> Result<(), Fault> {
+    let max = settings.model.limits().circle_axes_max;
+    let beside: AxisSet = axes.iter().filter(|axis| !plane.contains(*axis)).collect();
+    let mains = [plane.first, plane.second].map(Axis::main);
+    let is_parallel = |axis: Axis| !axis.is_rotary() && mains.contains(&axis.main());
+    if beside.iter().any(is_parallel) || 2 + beside.len() > usize::from(max) {
+        let detail = match max {
+            2 => "the end point of an arc lies in its plane".to_owned(),
+            _ => format!("this control moves {max} axes on an arc, two of them in its plane"),
+        };
+        return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
+    }
+    Ok(())
+}
+
+/// Refuses axes beside a helix, an arc with one more axis [000:141]: a linear one, on the TNC 415/425 also a rotary
+/// one.
+fn check_helix(plane: Plane, beside: AxisSet, settings: &Settings) -> Result<(), Fault> {
+    let limits = settings.model.limits();
+    let linear = beside.iter().all(|axis| !axis.is_rotary());
+    if linear && beside.len() <= usize::from(limits.helix_axes_max - 2) {
+        return Ok(());
+    }
+    check_beside(plane, beside, settings)
+}
+
 /// C: arc about CC [003:2801-2824].
 fn circle(modal: &Modal, settings: &Settings, motion: &Motion, p: &mut Programmed) -> Result<(), Fault> {
     let (plane, centre) = pole(modal)?;
-    if p.axes.iter().any(|axis| !plane.contains(axis)) {
-        return Err(Fault::new(
-            MessageId::PlaneWronglyDefined,
-            "the end point lies outside the plane of CC",
-        ));
+    let names_plane = p.axes.contains(plane.first) && p.axes.contains(plane.second);
+    let is_beside = |axis: Axis| !axis.is_rotary() && !plane.contains(axis);
+    if !names_plane && p.axes.iter().any(is_beside) {
+        let detail = "the end point lies outside the plane of CC";
+        return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
     }
+    check_beside(plane, p.axes, settings)?;
     let counter_clockwise = direction(motion)?;
     p.axes = p.axes.with(plane.first).with(plane.second);
     let (start, end) = (plane.point(&p.from), plane.point(&p.to));
@@ -170,6 +208,7 @@ fn circle_radius(
     p: &mut Programmed,
 ) -> Result<(), Fault> {
     let plane = plane_of(modal, &motion.coordinates)?;
+    check_beside(plane, p.axes, settings)?;
     let counter_clockwise = direction(motion)?;
     let Some(radius) = motion.radius else {
         let detail = "the arc has no radius R";
@@ -266,6 +305,7 @@ fn circle_polar(
             "CP takes its end point from PA",
         ));
     }
+    check_helix(plane, p.axes, settings)?;
     let counter_clockwise = direction(motion)?;
     let Some(word) = motion.polar_angle else {
         return Err(no_angle());

@@ -4,12 +4,14 @@ use bahn_parameters::MessageId;
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Frame, Position};
 use bahn_program::{Compensation, Coordinates, Feed, Motion, MotionKind};
 
+use crate::availability::{Feature, words};
 use crate::block_functions::{BlockFunctions, Reference};
 use crate::context::Context;
 use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
 use crate::functions::take_m_functions;
 use crate::modal::{LastMove, Modal};
+use crate::normals::displacement;
 use crate::numbers::{Numbers, known};
 use crate::path_functions::{Programmed, programmed};
 use crate::pen::Pen;
@@ -29,6 +31,9 @@ fn any_positioning(mut c: Context<'_>, motion: &Motion) -> Result<(Flow, bool), 
     if motion.kind == MotionKind::Paraxial && c.settings.rules.paraxial_inhibited {
         let detail = "MP7246 disables paraxial positioning blocks";
         return Err(Fault::new(MessageId::BlockNotKnown, detail));
+    }
+    if motion.kind == MotionKind::LineNormal && !c.executes(Feature::Word(words::NORMALS))? {
+        return Ok((Flow::Next, false));
     }
     take_compensation(c.modal, &mut c.numbers.q, motion)?;
     if c.pen.recording.is_some() {
@@ -144,12 +149,12 @@ fn movement(
     } else {
         to_workpiece(c.modal, &programmed)?
     };
-    let paraxial = if motion.kind == MotionKind::Paraxial {
-        c.modal.paraxial
-    } else {
-        Compensation::Off
+    let beside = match &motion.normal {
+        Some(normal) => Beside::Surface(displacement(c, normal)?),
+        None if motion.kind == MotionKind::Paraxial => Beside::Paraxial(c.modal.paraxial),
+        None => Beside::Nothing,
     };
-    emit_movement(c, curve, nominal, axes, paraxial, feed, functions)
+    emit_movement(c, curve, nominal, axes, beside, feed, functions)
 }
 
 /// The fast way of most blocks: a straight line in plain numbers without transformations.
@@ -227,7 +232,7 @@ fn referenced_line(
     if placed != axes {
         return leave_workpiece(c, nominal, axes, feed, functions);
     }
-    emit_movement(c, Curve::Line, nominal, axes, Compensation::Off, feed, functions)
+    emit_movement(c, Curve::Line, nominal, axes, Beside::Nothing, feed, functions)
 }
 
 /// A movement to a place of the machine when nobody has said where the workpiece lies in it: the axes have
@@ -285,7 +290,7 @@ fn arc_to_workpiece(frame: &Frame, arc: &Arc) -> Result<Arc, Fault> {
         let detail = "an arc outside the working plane cannot be rotated";
         return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
     }
-    if frame.factor[plane.first].abs() != frame.factor[plane.second].abs() {
+    if frame.scale(plane.first) != frame.scale(plane.second) {
         return Err(Fault::new(
             MessageId::PlaneWronglyDefined,
             "scaling would make an ellipse of the arc",
@@ -301,13 +306,23 @@ fn arc_to_workpiece(frame: &Frame, arc: &Arc) -> Result<Arc, Fault> {
     })
 }
 
-/// Makes the element, with R+ and R- applied, and hands it on.
+/// What a block goes beside, other than a contour.
+#[derive(Clone, Copy)]
+enum Beside {
+    Nothing,
+    /// R+ and R-.
+    Paraxial(Compensation),
+    /// LN: how far the axes of the plane and the tool axis are displaced, mm.
+    Surface([f64; 3]),
+}
+
+/// Makes the element, with R+ and R- or the displacement of LN applied, and hands it on.
 fn emit_movement(
     c: &mut Context<'_>,
     curve: Curve,
     nominal: Position,
     axes: AxisSet,
-    paraxial: Compensation,
+    beside: Beside,
     feed: FeedRate,
     functions: BlockFunctions,
 ) -> Result<Flow, Fault> {
@@ -316,8 +331,15 @@ fn emit_movement(
     for axis in axes.iter() {
         end[axis] = nominal[axis];
     }
-    if paraxial != Compensation::Off {
-        lengthen(c.modal, paraxial, axes, &start, &mut end);
+    match beside {
+        Beside::Nothing | Beside::Paraxial(Compensation::Off) => {}
+        Beside::Paraxial(compensation) => lengthen(c.modal, compensation, axes, &start, &mut end),
+        Beside::Surface(way) => {
+            let plane = c.modal.plane;
+            for (axis, way) in [plane.first, plane.second, plane.normal].into_iter().zip(way) {
+                end[axis] = nominal[axis] + way;
+            }
+        }
     }
     c.modal.take_contour_axes(axes);
     let plane = c.modal.contour_plane;

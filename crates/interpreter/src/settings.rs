@@ -182,6 +182,8 @@ pub struct Rules {
     pub voltages: Option<Characteristics>,
     /// MP7246: paraxial positioning blocks are disabled [000:7022-7029].
     pub paraxial_inhibited: bool,
+    /// MP7680 bit 6: in LN blocks the length contains DR2 [000:9179-9192].
+    pub normal_length_with_dr2: bool,
 }
 
 impl Rules {
@@ -239,6 +241,7 @@ impl Rules {
                 _ => None,
             },
             paraxial_inhibited: list.paraxial_inhibited(),
+            normal_length_with_dr2: list.operation_parameters().normal_length_with_dr2,
             ..Rules::default()
         }
     }
@@ -265,6 +268,7 @@ impl Default for Rules {
             inhibited_cycles: 0,
             voltages: None,
             paraxial_inhibited: false,
+            normal_length_with_dr2: false,
         }
     }
 }

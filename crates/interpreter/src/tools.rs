@@ -77,6 +77,7 @@ impl Tools {
                     .get(&number)
                     .copied()
                     .unwrap_or_default(),
+                ..ToolShape::default()
             },
         );
         Ok(())
@@ -146,6 +147,12 @@ impl Tools {
             let element = pen.element(Curve::Line, Position::UNKNOWN, end, FeedRate::Rapid);
             pen.out.push(element, None);
         }
+    }
+
+    /// Radius of a tool that is not in use, mm.
+    pub fn radius_of(&self, c: &mut Context<'_>, tool: f64) -> Result<f64, Fault> {
+        let number = tool_number(c.numbers, Value::Number(tool), c.settings)?;
+        Ok(self.shape(c, number, 0)?.0.radius)
     }
 
     /// Tool data: from the program, from the table, zero for tool 0. With a table a missing tool is an

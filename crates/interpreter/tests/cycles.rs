@@ -166,6 +166,7 @@ fn rigid_tapping() {
                 pitch_mm: f64::abs(pitch),
                 clockwise,
                 orientation_deg,
+                retracts: true,
             })
         };
         let laws: Vec<_> = moves.iter().map(|e| e.override_law).collect();
@@ -174,6 +175,39 @@ fn rigid_tapping() {
         // The spindle stands from then on.
         assert_eq!(heights(&run.of_block(9)), [(feed(f), -30.0), (feed(f), 2.0)]);
     }
+}
+
+/// Cycle 18: Z follows the spindle from where it stands to DEPTH from there, and stays [000:6143-6145]. A right-hand
+/// thread turns clockwise downwards, the other way upwards.
+#[test]
+fn thread_cutting() {
+    for (depth, pitch, clockwise) in [(-20.0, 1.5, true), (-20.0, -1.5, false), (20.0, 1.5, false)] {
+        let run = run(&format!(
+            "TOOL CALL 1 Z S400
+             CYCL DEF 18.0 THREAD CUTTING
+             CYCL DEF 18.1 DEPTH {depth:+}
+             CYCL DEF 18.2 PITCH {pitch:+}
+             L X+0 Y+0 Z+2 FMAX M3
+             CYCL CALL
+             L X+4 FMAX"
+        ));
+        run.assert_completed();
+        let moves = run.of_block(6);
+        assert_eq!(heights(&moves), [(feed(600.0), 2.0 + depth)]);
+        let law = OverrideLaw::Spindle(Thread {
+            pitch_mm: 1.5,
+            clockwise,
+            orientation_deg: Some(0.0),
+            retracts: false,
+        });
+        assert_eq!(moves[0].override_law, law);
+        assert!(run.functions().contains(&(6, &Function::M(5))));
+        assert_eq!((run.position[Axis::X], run.position[Axis::Z]), (4.0, 2.0 + depth));
+    }
+    let none = Job::new(program(
+        "TOOL CALL 1 Z S0\nCYCL DEF 18.0 THREAD CUTTING\nCYCL DEF 18.1 DEPTH -20\nCYCL DEF 18.2 PITCH +1\nL Z+2 FMAX\nCYCL CALL",
+    )).run();
+    assert_eq!(none.message(), Some((MessageId::WrongRpm, 6)));
 }
 
 /// P25: two slots [003:5190-5215].

@@ -5,6 +5,7 @@ mod support;
 
 use std::f64::consts::{PI, SQRT_2};
 
+use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::{Axis, Curve, FeedRate, Function};
 use support::*;
 
@@ -443,5 +444,109 @@ fn m112_rounds_corners_of_uncompensated_lines() {
     let moves: Vec<_> = run.moves().collect();
     for pair in moves.windows(2) {
         assert!(close(xyz(&pair[0].end), xyz(&pair[1].start)));
+    }
+}
+
+/// TNC 415/425: an arc with one more axis, which moves linearly with the angle: a quarter circle while C turns by 90
+/// degrees, a Cartesian helix, a full circle beside which only C is named [000:140].
+#[test]
+fn arcs_in_three_axes() {
+    let start = "CC X+0 Y+0\nL X+10 Y+0 Z+0 C+0 R0 F100";
+    let third = |axis: Axis, block: &str| {
+        let run = run(&format!("{start}\n{block}"));
+        let e = run.moves().last().unwrap().clone();
+        let Curve::Arc(arc) = e.curve else {
+            panic!("{block}: {e:?}")
+        };
+        let at = |t| e.curve.position(&e.start, &e.end, t);
+        let (middle, end) = (at(0.5), at(1.0));
+        close_points(&[arc.centre], &[[0.0, 0.0]], 1e-9);
+        let way = [middle[axis], end[axis]];
+        (arc.sweep_deg, [middle[Axis::X], middle[Axis::Y]], way)
+    };
+    let diagonal = 10.0 * 45f64.to_radians().cos();
+    for (axis, block, end) in [
+        (Axis::C, "C X+0 Y+10 C+90 DR+", 90.0),
+        (Axis::C, "C X+0 Y+10 IC-30 DR+ R0", -30.0),
+        (Axis::C, "CR X+0 Y+10 C+90 R+10 DR+", 90.0),
+        (Axis::C, "CP PA+90 C+45 DR+", 45.0),
+        (Axis::Z, "C X+0 Y+10 Z-5 DR+", -5.0),
+        (Axis::Z, "CR X+0 Y+10 Z-5 R+10 DR+", -5.0),
+    ] {
+        let (sweep, middle, way) = third(axis, block);
+        assert!((sweep - 90.0).abs() < 1e-9, "{block}");
+        close_points(&[middle, way], &[[diagonal; 2], [0.5 * end, end]], 1e-9);
+    }
+    let (sweep, middle, way) = third(Axis::C, "C C+360 DR-");
+    close_points(
+        &[[sweep, 0.0], middle, way],
+        &[[-360.0, 0.0], [-10.0, 0.0], [180.0, 360.0]],
+        1e-9,
+    );
+    // Tangential to X: a half circle about (0,5), C going on.
+    let run = run("L X-10 Y+0 C+0 R0 F100\nL X+0\nCT X+0 Y+10 C+90");
+    let e = run.moves().last().unwrap();
+    let middle = e.curve.position(&e.start, &e.end, 0.5);
+    close_points(
+        &[[middle[Axis::X], middle[Axis::Y]], [middle[Axis::C], 0.0]],
+        &[[5.0, 5.0], [45.0, 0.0]],
+        1e-9,
+    );
+}
+
+/// With RL the arc has another radius and C the same way: the tool of R2 runs inside the circle of 10 mm.
+#[test]
+fn arcs_in_three_axes_are_compensated() {
+    let run = run(
+        "TOOL DEF 1 L+0 R+2\nTOOL CALL 1 Z S100\nCC X+0 Y+0\nL X+0 Y-10 C+0 R0 FMAX\nL X+10 Y+0 RL F100\n\
+         C X+0 Y+10 C+90 DR+\nC X-10 Y+0 C+180 DR+\nL X-20 R0",
+    );
+    let arcs: Vec<_> = run
+        .moves()
+        .filter(|e| matches!(e.curve, Curve::Arc(_)))
+        .map(|e| {
+            (
+                [e.end[Axis::X], e.end[Axis::Y]],
+                [e.start[Axis::C], e.end[Axis::C]],
+            )
+        })
+        .collect();
+    assert_eq!(arcs.len(), 2);
+    close_points(&[arcs[0].0, arcs[1].0], &[[0.0, 8.0], [-8.0, 0.0]], 1e-9);
+    assert_eq!([arcs[0].1, arcs[1].1], [[0.0, 90.0], [90.0, 180.0]]);
+}
+
+/// What is no arc in three axes: more axes, one parallel to the plane, and any third one on other controls.
+#[test]
+fn planes_that_are_wrongly_defined() {
+    let start = "CC X+0 Y+0\nL X+10 Y+0 Z+0 R0 F100\nL A+0 C+0 U+0";
+    for block in [
+        "C X+0 Y+10 Z+5 C+90 DR+",
+        "C X+0 Y+10 A+5 C+90 DR+",
+        "C X+0 Y+10 U+5 DR+",
+        "CR X+0 Y+10 U+5 R+10 DR+",
+        "CR Z+5 C+90 R+10 DR+",
+        "CP PA+90 Z-5 C+45 DR+",
+    ] {
+        let run = Job::new(program(&format!("{start}\n{block}"))).run();
+        assert_eq!(
+            run.message(),
+            Some((MessageId::PlaneWronglyDefined, 4)),
+            "{block}"
+        );
+    }
+    for block in [
+        "C X+0 Y+10 C+90 DR+",
+        "C X+0 Y+10 Z+5 DR+",
+        "CR X+0 Y+10 C+9 R+10 DR+",
+        "CP PA+90 C+45 DR+",
+    ] {
+        let job = Job::new(program(&format!("{start}\n{block}")));
+        let run = job.with(|settings| settings.model = ControlModel::Tnc407).run();
+        assert_eq!(
+            run.message(),
+            Some((MessageId::PlaneWronglyDefined, 4)),
+            "{block}"
+        );
     }
 }

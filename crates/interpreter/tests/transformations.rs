@@ -2,6 +2,7 @@
 
 mod support;
 
+use bahn_parameters::MessageId;
 use bahn_path::{Axis, Curve, Position};
 use support::*;
 
@@ -324,4 +325,99 @@ fn a_datum_that_is_missing_is_an_error() {
     });
     passed.assert_completed();
     assert_eq!((passed.warnings.len(), passed.position[Axis::X]), (1, 2.0));
+}
+
+/// Cycle 26: each axis has its factor about its centre, before rotation and shift; cycle 11 multiplies it; factor 1
+/// ends it. The tool keeps its radius.
+#[test]
+fn cycle_26_scales_each_axis_about_its_centre() {
+    let own = "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X1.4 Y0.6 CCX+15 CCY+20";
+    let ends_of = |text: &str| {
+        let run = run(text);
+        run.assert_completed();
+        ends(&run.moves().collect::<Vec<_>>())
+    };
+    // X: 15 + 1.4 (25 - 15) = 29; Y: 20 + 0.6 (0 - 20) = 8.
+    let point = "L X+25 Y+0 R0 FMAX";
+    close_points(&ends_of(&format!("{own}\n{point}")), &[[29.0, 8.0]], 1e-12);
+    // (29,8) turned by 90 degrees is (-8,29), shifted by (10,0) (2,29).
+    let turned = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nCYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT +90";
+    close_points(
+        &ends_of(&format!("{turned}\n{own}\n{point}")),
+        &[[2.0, 29.0]],
+        1e-12,
+    );
+    // Mirrored in X and twice as large: (-58,16).
+    let larger = "CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X\nCYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 2";
+    close_points(
+        &ends_of(&format!("{own}\n{larger}\n{point}")),
+        &[[-58.0, 16.0]],
+        1e-12,
+    );
+    // X keeps its factor; that of Y counts from the datum where no centre is given, and 1 ends it.
+    let y = |factor: &str| format!("CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 {factor}");
+    let text = format!(
+        "{own}\n{}\nL X+25 Y+10 R0 FMAX\n{}\nL Y+11 FMAX",
+        y("Y0.5"),
+        y("Y1")
+    );
+    close_points(&ends_of(&text), &[[29.0, 5.0], [29.0, 11.0]], 1e-12);
+    // RL with R5 along X at Y 8: the tool is 5 mm beside the scaled contour.
+    let text = format!(
+        "TOOL DEF 1 L+0 R+5\nTOOL CALL 1 Z S100\nL X+0 Y-50 R0 FMAX\n{own}\nL X+25 Y+0 RL F100\nL X+35\nL X+45 R0"
+    );
+    let run = run(&text);
+    run.assert_completed();
+    let last = run.moves().last().unwrap();
+    close_points(
+        &[[last.start[Axis::X], last.start[Axis::Y]]],
+        &[[43.0, 13.0]],
+        1e-9,
+    );
+}
+
+/// Axes of an arc need the same factor (later controls): with 0.6 for both it is an arc of 0.6 times the radius.
+#[test]
+fn arcs_take_one_factor_for_both_axes() {
+    let cut = |factors: &str, block: &str| {
+        format!(
+            "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 {factors}\nCC X+0 Y+0\nL X+10 Y+0 R0 F100\n{block}\nL X+50 Y+50"
+        )
+    };
+    let run_of = |text: &str| Job::new(program(&format!("TOOL CALL 0 Z S100\n{text}"))).run();
+    let quarter = run_of(&cut("X0.6 Y0.6 Z2", "C X+0 Y+10 DR+"));
+    quarter.assert_completed();
+    let arc = quarter.moves().find_map(|e| match e.curve {
+        Curve::Arc(arc) => Some((arc, e.start[Axis::X], e.end[Axis::Y])),
+        _ => None,
+    });
+    let (arc, from, to) = arc.unwrap();
+    close_points(&[arc.centre, [from, to]], &[[0.0, 0.0], [6.0, 6.0]], 1e-12);
+    for block in ["C X+0 Y+10 DR+", "CR X+0 Y+10 R10 DR+", "RND R2", "CHF 1"] {
+        let run = run_of(&cut("X0.6 Y0.7", block));
+        assert_eq!(
+            run.message(),
+            Some((MessageId::PlaneWronglyDefined, 6)),
+            "{block}"
+        );
+    }
+}
+
+/// What cycle 26 does not take.
+#[test]
+fn factors_out_of_range() {
+    use MessageId::{EntryValueIncorrect, WrongAxisProgrammed};
+    for (words, message) in [
+        ("X0", EntryValueIncorrect),
+        ("X-1", EntryValueIncorrect),
+        ("X100", EntryValueIncorrect),
+        ("C2", WrongAxisProgrammed),
+        ("X2 CCA+5", WrongAxisProgrammed),
+    ] {
+        let run = Job::new(program(&format!(
+            "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 {words}"
+        )))
+        .run();
+        assert_eq!(run.message(), Some((message, 2)), "{words}");
+    }
 }

@@ -112,6 +112,7 @@ fn many_feeds() -> VecDeque<PathElement> {
                 pitch_mm: 1.0,
                 clockwise: true,
                 orientation_deg: None,
+                retracts: true,
             });
         }
     }

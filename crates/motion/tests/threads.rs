@@ -33,6 +33,7 @@ fn law(clockwise: bool, orientation_deg: Option<f64>) -> OverrideLaw {
         pitch_mm: PITCH,
         clockwise,
         orientation_deg,
+        retracts: true,
     })
 }
 

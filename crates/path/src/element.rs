@@ -51,6 +51,8 @@ pub struct Thread {
     /// The spindle is oriented to this angle, degrees, before the path begins; otherwise it goes on from
     /// where it is: from the thread before, if there is one.
     pub orientation_deg: Option<f64>,
+    /// The tool comes back out of the thread the way it went in: rigid tapping, not thread cutting.
+    pub retracts: bool,
 }
 
 /// One movement: geometry, feed and the functions that go out with it. Immutable once made.
@@ -289,6 +291,8 @@ pub struct ToolShape {
     pub corner_radius: f64,
     /// Angle of the point of a drill, degrees: 0 none. The length is that to the tip of the point.
     pub point_angle_deg: f64,
+    /// DR and DR2 of the tool table, which the radii contain, mm.
+    pub oversize: [f64; 2],
 }
 
 impl ToolShape {

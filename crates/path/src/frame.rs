@@ -5,7 +5,7 @@ use crate::{Axis, Plane, Position};
 /// Datum shift, mirror image, rotation and scaling combined in the recommended order
 /// (inferred) [003:6240] [003:6315]:
 ///
-/// `point_machine = shift + R(rotation) · M(mirror) · S(scale) · p`
+/// `point_machine = shift + R(rotation) · M(mirror) · S(scale) · (c + F(factors of single axes) · (p - c))`
 ///
 /// Rotation turns in the working plane about the active datum; mirroring and scaling act on each axis.
 ///
@@ -30,6 +30,27 @@ pub struct Frame {
     pub rotation_deg: f64,
     /// Factor of each axis: the scaling factor, negative where the axis is mirrored.
     pub factor: Position,
+    /// Factors of single axes, which act on what is programmed before everything else.
+    pub axis_scaling: Option<AxisScaling>,
+}
+
+/// Scaling of single axes (cycle 26): `centre + factor · (p - centre)` in programmed coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisScaling {
+    /// Factor of each axis, positive.
+    pub factor: Position,
+    /// What stays where it is, mm.
+    pub centre: Position,
+}
+
+impl AxisScaling {
+    /// Factors that change nothing.
+    pub fn none() -> AxisScaling {
+        AxisScaling {
+            factor: Position::from([1.0; Axis::COUNT]),
+            centre: Position::ZERO,
+        }
+    }
 }
 
 impl Frame {
@@ -40,6 +61,7 @@ impl Frame {
             shift: Position::ZERO,
             rotation_deg: 0.0,
             factor: Position::from([1.0; Axis::COUNT]),
+            axis_scaling: None,
         }
     }
 
@@ -52,6 +74,11 @@ impl Frame {
     /// none; with a rotation both axes of the plane must have one, else neither has one afterwards.
     pub fn to_outer(&self, programmed: &Position) -> Position {
         let mut result = *programmed;
+        if let Some(own) = &self.axis_scaling {
+            for axis in Axis::ALL {
+                result[axis] = own.centre[axis] + own.factor[axis] * (result[axis] - own.centre[axis]);
+            }
+        }
         for axis in Axis::ALL {
             result[axis] *= self.factor[axis];
         }
@@ -72,7 +99,18 @@ impl Frame {
         for axis in Axis::ALL {
             result[axis] /= self.factor[axis];
         }
+        if let Some(own) = &self.axis_scaling {
+            for axis in Axis::ALL {
+                result[axis] = own.centre[axis] + (result[axis] - own.centre[axis]) / own.factor[axis];
+            }
+        }
         result
+    }
+
+    /// How many times as long as programmed a length along an axis is; positive.
+    pub fn scale(&self, axis: Axis) -> f64 {
+        let own = self.axis_scaling.map_or(1.0, |own| own.factor[axis]);
+        (self.factor[axis] * own).abs()
     }
 
     /// Whether the frame turns the sense of rotation around in a plane (an odd number of its axes is

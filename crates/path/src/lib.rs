@@ -37,6 +37,6 @@ pub use element::{
     Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
     Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
 };
-pub use frame::Frame;
+pub use frame::{AxisScaling, Frame};
 pub use plane::{Plane, Point2};
 pub use source::{Barrier, ElementSource, LiveData, Step, Touch};

@@ -158,6 +158,14 @@ impl Check<'_> {
                 let scale = if axis.is_rotary() { 1.0 } else { self.mm() };
                 self.within(&axis.to_string(), word.value, -max, max, scale)
             }
+            CycleWord::Centre(axis, value) => {
+                let max = self.limits.coordinate_max;
+                self.within(&axis.to_string(), *value, -max, max, self.mm())
+            }
+            CycleWord::AxisFactor(axis, value) => {
+                let [min, max] = self.limits.scaling_range;
+                self.within(&axis.to_string(), *value, min, max, 1.0)
+            }
             CycleWord::Labels(labels) => self.contour_labels(labels),
             CycleWord::Number(value) => {
                 let [min, max] = match quantity? {
@@ -351,6 +359,7 @@ pub fn each_parameter(operation: &Operation, found: &mut impl FnMut(u16)) {
                 .into_iter()
                 .chain([motion.radius, feed])
                 .flatten()
+                .chain(motion.normal.iter().flat_map(|normal| normal.iter().copied()))
                 .for_each(value);
         }
         Operation::Rounding { radius: a, feed: b } | Operation::Chamfer { length: a, feed: b } => {
@@ -395,7 +404,10 @@ fn in_expression(expression: &Expression, value: &mut impl FnMut(Value)) {
 fn in_cycle(block: &CycleBlock, found: &mut impl FnMut(u16)) {
     for word in &block.words {
         let value = match word {
-            CycleWord::Number(value) | CycleWord::Feed(Feed::Value(value)) => *value,
+            CycleWord::Number(value)
+            | CycleWord::AxisFactor(_, value)
+            | CycleWord::Centre(_, value)
+            | CycleWord::Feed(Feed::Value(value)) => *value,
             CycleWord::Coordinate(_, word) => word.value,
             CycleWord::Assignment(target, value) => {
                 found(*target);

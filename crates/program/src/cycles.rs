@@ -7,6 +7,14 @@ use Sign::{Signed, Unsigned, Working};
 /// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
 pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
 
+/// The SL cycles with contour data have them, too, in as many blocks as are written.
+const CONTOUR_DATA_CYCLES: std::ops::RangeInclusive<u16> = 20..=25;
+
+/// Whether `Qn=value` words may stand in block n.0, behind the name.
+pub(crate) fn takes_assignments(number: u16) -> bool {
+    number >= FIRST_PARAMETER_CYCLE || CONTOUR_DATA_CYCLES.contains(&number)
+}
+
 /// Which blocks a cycle is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleFunction {
@@ -43,6 +51,8 @@ pub enum Quantity {
     Orientation,
     /// A factor.
     Factor,
+    /// Factors of single axes, and a centre behind `CC`, program units.
+    AxisFactors,
     /// Feed, mm/min or what F counts in inches.
     Feed,
     /// Sense of rotation.
@@ -239,10 +249,19 @@ pub const CYCLES: &[Cycle] = &[
     called(16, "CONTOUR MILLING", &[&[SET_UP, DEPTH], &[PECKG, FEED, TURN, FEED]]),
     // [003:5094-5099]
     called(17, "RIGID TAPPING", &[&[SET_UP], &[DEPTH], &[parameter("PITCH", Quantity::Length, Signed)]]),
+    // [000:6143-6145]; words of later controls
+    called(18, "THREAD CUTTING", &[&[DEPTH], &[parameter("PITCH", Quantity::Length, Signed)]]),
     // [000:147]
     defined(19, "WORKING PLANE", &[]),
+    // [000:847] [000:652]; words of later controls
+    defined(20, "CONTOUR DATA", &[]),
+    called(21, "PILOT DRILLING", &[]),
+    called(22, "ROUGH-OUT", &[]),
+    called(23, "FLOOR FINISHING", &[]),
+    called(24, "SIDE FINISHING", &[]),
+    called(25, "CONTOUR TRAIN", &[]),
     // [000:6655-6699]
-    defined(26, "AXIS-SPEC. SCALING", &[]),
+    defined(26, "AXIS-SPEC. SCALING", &[&[parameter("", Quantity::AxisFactors, Unsigned)]]),
     // [003:4414-4428]
     probe(0, "REF. PLANE", &[&[POINT]]),
     // [003:6617-6625]

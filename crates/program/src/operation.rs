@@ -368,6 +368,8 @@ pub struct Motion {
     pub compensation: Option<Compensation>,
     /// Feed word.
     pub feed: Option<Feed>,
+    /// `NX NY NZ` of LN: components of the normal of the surface.
+    pub normal: Option<Box<[Value; 3]>>,
     /// M functions.
     pub m: MFunctions,
 }
@@ -389,6 +391,8 @@ pub enum MotionKind {
     CirclePolar,
     /// `CTP`.
     CircleTangentialPolar,
+    /// `LN`: a line with the normal of the surface [000:175].
+    LineNormal,
     /// Opened with an axis key, no `L` [003:2046-2057].
     Paraxial,
 }
@@ -610,6 +614,10 @@ pub enum CycleWord {
     Number(Value),
     /// An axis word `X+40`, `IX+40`.
     Coordinate(Axis, Word),
+    /// The factor of an axis, `X1.4` (cycle 26).
+    AxisFactor(Axis, Value),
+    /// Coordinate of a centre, `CCX+15` (cycle 26).
+    Centre(Axis, Value),
     /// An axis letter alone (mirror image, probe axis).
     Axis(Axis),
     /// An axis letter with a direction `X-` (probing); `+` is [`Direction::CounterClockwise`], `-` is

@@ -148,6 +148,7 @@ impl InputSteps {
                     steps.is_some_and(|steps| round(value, steps))
                 }
                 CycleWord::Coordinate(axis, word) => round(&mut word.value, self.of_axis(*axis)),
+                CycleWord::Centre(axis, value) => round(value, self.of_axis(*axis)),
                 CycleWord::Feed(Feed::Value(value)) => round(value, self.length),
                 _ => false,
             };
@@ -266,7 +267,11 @@ mod tests {
             ("MM", "CYCL DEF 13.1 ANGLE 30.04", "CYCL DEF 13.1 ANGLE 30"),
             // Factors.
             ("MM", "CYCL DEF 11.1 SCL 0.999996", "CYCL DEF 11.1 SCL 0.999996"),
-            ("MM", "CYCL DEF 26.1 X+0.999996", "CYCL DEF 26.1 X+0.999996"),
+            (
+                "MM",
+                "CYCL DEF 26.1 X0.999996 CCX+0.0004",
+                "CYCL DEF 26.1 X0.999996 CCX+0",
+            ),
         ] {
             let operation = |block| {
                 let text = format!("BEGIN PGM 1 {unit}\n{block}\n");

@@ -10,6 +10,8 @@ use bahn_path::region::{
 };
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2};
 
+use super::contour_finish::contour_data_cycle;
+use super::contour_train::{contour_train, train};
 use super::machining::{Heights, Machining, Tracer, infeeds, plane_direction};
 use crate::context::Context;
 use crate::contour::flat::Flat;
@@ -18,14 +20,17 @@ use crate::definition::Definition;
 use crate::error::Fault;
 use crate::modal::Modal;
 use crate::q_parameters::{cos_deg, sin_deg};
-use crate::settings::Settings;
 use crate::status::Spindle;
 
 /// What an SL cycle is asked to do: the subcontours that its labels describe.
 #[derive(Clone, Debug)]
 pub(crate) struct ContourJob {
     pub subcontours: Vec<SubContour>,
+    /// The contour of cycle 25.
+    pub train: Vec<ContourMove>,
     pub plane: Plane,
+    /// Radius of the tool that machines before this one, or behind it, mm.
+    pub other_radius: Option<f64>,
 }
 
 /// Why a cycle did not come to its end.
@@ -84,7 +89,27 @@ impl ContourJob {
     pub fn new(plane: Plane) -> ContourJob {
         ContourJob {
             subcontours: Vec::new(),
+            train: Vec::new(),
             plane,
+            other_radius: None,
+        }
+    }
+
+    /// Takes what the contour subprogram of cycle 25 recorded.
+    pub fn add_train(&mut self, moves: &[ContourMove]) -> Result<(), Fault> {
+        self.train = train(moves);
+        if self.train.len() < 2 {
+            let detail = "the subprogram describes no contour";
+            return Err(Fault::new(MessageId::CyclIncomplete, detail));
+        }
+        let flat = |item: &&ContourMove| Flat::of(&item.element, self.plane).is_none();
+        let mut arcs = self
+            .train
+            .iter()
+            .filter(|item| matches!(item.element.curve, Curve::Arc(_)));
+        match arcs.find(flat) {
+            Some(item) => Err(Fault::from(MessageId::PlaneWronglyDefined).at(item.element.block)),
+            None => Ok(()),
         }
     }
 
@@ -157,20 +182,21 @@ pub(crate) fn contour_plane(working: Plane, first_axes: AxisSet) -> Plane {
     }
 }
 
-/// Runs cycle 6, 15 or 16 on the contours of cycle 14.
+/// Runs cycle 6, 15, 16 or 21 to 25 on the contours of cycle 14.
 pub(crate) fn contour_cycle(c: &mut Context<'_>, job: &ContourJob, watch: &Watch<'_>) -> Result<(), Halt> {
     let Some(definition) = c.modal.cycle.machining.ready().cloned() else {
         return Err(MessageId::CyclIncomplete.into());
     };
-    let mut m = Machining::new(c);
-    let queued = m.pen.out.queue.len();
+    let queued = c.pen.out.queue.len();
     let result = match definition.number {
-        6 => rough_out(&mut m, job, &definition, watch),
-        15 => pilot_drilling(&mut m, job, &definition, watch),
-        _ => contour_milling(&mut m, job, &definition, watch),
+        6 => rough_out(&mut Machining::new(c), job, &definition, watch),
+        15 => pilot_drilling(&mut Machining::new(c), job, &definition, watch),
+        16 => contour_milling(&mut Machining::new(c), job, &definition, watch),
+        25 => contour_train(c, job, watch),
+        _ => contour_data_cycle(c, job, &definition, watch),
     };
     if let Err(Halt::Interrupted) = result {
-        m.pen.out.queue.truncate(queued);
+        c.pen.out.queue.truncate(queued);
     }
     result
 }
@@ -183,7 +209,7 @@ fn rough_out(m: &mut Machining<'_>, job: &ContourJob, d: &Definition, watch: &Wa
     let angle = d.number(3, 0)?;
     let feed = d.feed(3, 0)?;
     let (heights, pecks) = contour_heights(m, d, pecking)?;
-    let areas = areas(m.modal, job, allowance, m.settings, watch)?;
+    let areas = own_areas(m, job, allowance, watch)?;
     let rules = m.settings.rules.contour_pocket;
     let mill = Milling {
         heights,
@@ -191,22 +217,35 @@ fn rough_out(m: &mut Machining<'_>, job: &ContourJob, d: &Definition, watch: &Wa
         feed,
         reversed: rules.channel_clockwise,
     };
-    let direction = plane_direction_of(m.modal, angle);
-    let stepover = m.modal.tool_radius();
+    let passes = (plane_direction_of(m.modal, angle), m.modal.tool_radius());
+    clear_areas(m, job.plane, (&areas, &mill), passes, &pecks, watch)
+}
+
+/// Clears areas by channels and parallel passes in a direction, degrees, and a stepover apart, mm; in the order of
+/// MP7420.
+pub(super) fn clear_areas(
+    m: &mut Machining<'_>,
+    plane: Plane,
+    (areas, mill): (&[PocketArea], &Milling),
+    (direction_deg, stepover): (f64, f64),
+    pecks: &[f64],
+    watch: &Watch<'_>,
+) -> Result<(), Halt> {
     let mut clearing = Vec::with_capacity(areas.len());
-    for area in &areas {
+    for area in areas {
         check_passes(area, stepover)?;
         let region = &area.region;
-        clearing.push(region.hatch_within(direction, stepover, HatchPattern::Zigzag, watch)?);
+        clearing.push(region.hatch_within(direction_deg, stepover, HatchPattern::Zigzag, watch)?);
     }
-    let stays = m.settings.rules.contour_pocket.stay_at_clearance;
+    let rules = m.settings.rules.contour_pocket;
     let mut trace = m.tracer();
-    trace.set_plane(job.plane);
+    trace.set_plane(plane);
+    trace.lift(&mill.heights);
     // The depths of one operation: all of them, or one after the other in turn with the other operation.
     let rounds: Vec<&[f64]> = if rules.per_infeed {
         pecks.chunks(1).collect()
     } else {
-        vec![&pecks]
+        vec![pecks]
     };
     for (area, passes) in areas.iter().zip(&clearing) {
         for depths in &rounds {
@@ -219,7 +258,7 @@ fn rough_out(m: &mut Machining<'_>, job: &ContourJob, d: &Definition, watch: &Wa
             }
         }
     }
-    Ok(finish(trace, stays)?)
+    Ok(finish(trace, rules.stay_at_clearance)?)
 }
 
 /// Cycle 15 PILOT DRILLING: pecks as cycle 1 at each infeed point [003:5993-6014].
@@ -233,7 +272,7 @@ fn pilot_drilling(
     let feed = d.feed(2, 0)?;
     let allowance = d.length(2, 1)?;
     let (heights, pecks) = contour_heights(m, d, pecking)?;
-    let areas = areas(m.modal, job, allowance, m.settings, watch)?;
+    let areas = own_areas(m, job, allowance, watch)?;
     let stays = m.settings.rules.contour_pocket.stay_at_clearance;
     let mut trace = m.tracer();
     trace.set_plane(job.plane);
@@ -257,7 +296,7 @@ fn contour_milling(
     let feed = d.feed(2, 1)?;
     let climb = d.counter_clockwise(2) != (m.modal.spindle == Spindle::CounterClockwise);
     let (heights, pecks) = contour_heights(m, d, pecking)?;
-    let areas = areas(m.modal, job, 0.0, m.settings, watch)?;
+    let areas = own_areas(m, job, 0.0, watch)?;
     let mill = Milling {
         heights,
         plunge_feed,
@@ -287,18 +326,29 @@ fn contour_heights(
     ))
 }
 
-/// The areas of the tool centre at a finishing allowance.
-fn areas(
-    modal: &Modal,
+/// The areas of the centre of the tool in use at a finishing allowance.
+fn own_areas(
+    m: &Machining<'_>,
     job: &ContourJob,
     allowance: f64,
-    settings: &Settings,
     watch: &Watch<'_>,
 ) -> Result<Vec<PocketArea>, Halt> {
-    let radius = modal.used_radius()?;
+    let radius = m.modal.used_radius()?;
+    areas(job, radius, allowance, m, watch)
+}
+
+/// The areas of the centre of a tool of a radius at a finishing allowance, mm.
+pub(super) fn areas(
+    job: &ContourJob,
+    radius: f64,
+    allowance: f64,
+    m: &Machining<'_>,
+    watch: &Watch<'_>,
+) -> Result<Vec<PocketArea>, Halt> {
     if radius <= 0.0 {
-        return Err(modal.no_radius("a contour pocket cannot be milled").into());
+        return Err(m.modal.no_radius("a contour pocket cannot be milled").into());
     }
+    let settings = m.settings;
     let rules = settings.rules.contour_pocket;
     let merge = if rules.merge_programmed {
         Merge::ProgrammedContours
@@ -317,18 +367,18 @@ fn areas(
 }
 
 /// Angle in workpiece coordinates of an angle in the programmed plane, degrees.
-fn plane_direction_of(modal: &Modal, angle_deg: f64) -> f64 {
+pub(super) fn plane_direction_of(modal: &Modal, angle_deg: f64) -> f64 {
     let (sin, cos) = (sin_deg(angle_deg), cos_deg(angle_deg));
     bahn_path::angle_deg(plane_direction(modal, [cos, sin]))
 }
 
 /// How outlines and passes are milled.
-struct Milling {
-    heights: Heights,
-    plunge_feed: f64,
-    feed: f64,
+pub(super) struct Milling {
+    pub heights: Heights,
+    pub plunge_feed: f64,
+    pub feed: f64,
     /// Against the sense of the outlines (area on the left).
-    reversed: bool,
+    pub reversed: bool,
 }
 
 impl Milling {
@@ -346,16 +396,14 @@ impl Milling {
             } else {
                 outline.contour.clone()
             };
-            trace.rapid_to(contour.start());
+            trace.enter(&self.heights, contour.start());
             for depth in depths {
                 if trace.is_full() {
                     return Ok(());
                 }
                 watch.spend(contour.segments().len())?;
                 trace.feed_height(self.heights.at_depth(*depth), self.plunge_feed);
-                for segment in contour.segments() {
-                    self.segment(trace, segment);
-                }
+                self.along(trace, &contour);
             }
             trace.rapid_height(self.heights.clearance);
         }
@@ -392,11 +440,18 @@ impl Milling {
             }
             None => {
                 trace.rapid_height(self.heights.clearance);
-                trace.rapid_to(pass.from);
+                trace.enter(&self.heights, pass.from);
                 trace.feed_height(self.heights.at_depth(depth), self.plunge_feed);
             }
         }
         trace.line_to(pass.to, self.feed);
+    }
+
+    /// Along a contour at the milling feed.
+    pub fn along(&self, trace: &mut Tracer<'_>, contour: &PlaneContour) {
+        for segment in contour.segments() {
+            self.segment(trace, segment);
+        }
     }
 
     fn segment(&self, trace: &mut Tracer<'_>, segment: &Segment) {
@@ -429,7 +484,7 @@ fn check_passes(area: &PocketArea, stepover: f64) -> Result<(), Fault> {
 
 /// Bit 4 of MP7420: back to the position before the call, or stay at the clearance height
 /// [000:6739-6753].
-fn finish(mut trace: Tracer<'_>, stays: bool) -> Result<(), Fault> {
+pub(super) fn finish(mut trace: Tracer<'_>, stays: bool) -> Result<(), Fault> {
     if !stays {
         trace.rapid([0.0, 0.0]);
     }
@@ -437,15 +492,23 @@ fn finish(mut trace: Tracer<'_>, stays: bool) -> Result<(), Fault> {
 }
 
 impl Tracer<'_> {
-    fn rapid_to(&mut self, point: Point2) {
+    /// Above a point where the tool goes down.
+    pub fn enter(&mut self, heights: &Heights, point: Point2) {
+        self.rapid_to(point);
+        if let Some(approach) = heights.approach {
+            self.rapid_height(approach);
+        }
+    }
+
+    pub fn rapid_to(&mut self, point: Point2) {
         self.to(Curve::Line, point, FeedRate::Rapid);
     }
 
-    fn line_to(&mut self, point: Point2, feed_mm_min: f64) {
+    pub fn line_to(&mut self, point: Point2, feed_mm_min: f64) {
         self.to(Curve::Line, point, FeedRate::Programmed(feed_mm_min));
     }
 
-    fn arc_to(&mut self, centre: Point2, point: Point2, sweep_deg: f64, feed_mm_min: f64) {
+    pub fn arc_to(&mut self, centre: Point2, point: Point2, sweep_deg: f64, feed_mm_min: f64) {
         let curve = Curve::Arc(Arc {
             plane: self.plane(),
             centre,

@@ -1,4 +1,4 @@
-//! Cycles 1, 2 and 17: pecking, tapping, rigid tapping.
+//! Cycles 1, 2, 17 and 18: pecking, tapping, rigid tapping, thread cutting.
 
 use bahn_parameters::MessageId;
 use bahn_path::{OverrideLaw, SpindleOrder, Thread};
@@ -6,6 +6,7 @@ use bahn_path::{OverrideLaw, SpindleOrder, Thread};
 use super::machining::{Heights, Machining, Tracer, infeeds};
 use crate::definition::Definition;
 use crate::error::Fault;
+use crate::settings::Settings;
 use crate::status::Spindle;
 
 /// Advanced stop distance of pecking, mm: 0.6 up to a depth of 30 mm, then depth/50, at most 7
@@ -106,33 +107,71 @@ pub(super) fn rigid_tapping(m: &mut Machining<'_>, definition: &Definition) -> R
     let depth = definition.length(2, 0)?;
     let pitch = definition.length(3, 0)?;
     let heights = m.heights(definition, [setup, depth], None)?;
+    let feed = thread_feed(m, pitch)?;
+    let right_hand = pitch > 0.0;
+    let thread = Thread {
+        pitch_mm: pitch.abs(),
+        clockwise: right_hand,
+        orientation_deg: orientation_deg(m.settings),
+        retracts: true,
+    };
+    let mut trace = begin_thread(m);
+    trace.set_override_law(OverrideLaw::Spindle(thread));
+    trace.feed_height(heights.at_depth(heights.depth), feed);
+    trace.set_override_law(OverrideLaw::Spindle(Thread {
+        clockwise: !right_hand,
+        orientation_deg: None,
+        ..thread
+    }));
+    trace.feed_height(heights.clearance, feed);
+    trace.finish()
+}
+
+/// Cycle 18 THREAD CUTTING: from where the tool stands to DEPTH from there the tool axis follows the spindle, which
+/// then stands. Tool and spindle stay there: the way to the next cut is programmed [000:6143-6145]. Spindle and angle
+/// before it are those of cycle 17 (inferred), so that one cut follows the other in the same groove.
+pub(super) fn thread_cutting(m: &mut Machining<'_>, definition: &Definition) -> Result<(), Fault> {
+    let depth = definition.length(1, 0)?;
+    let pitch = definition.length(2, 0)?;
+    let heights = m.heights(definition, [0.0, depth], None)?;
+    let feed = thread_feed(m, pitch)?;
+    let thread = Thread {
+        pitch_mm: pitch.abs(),
+        // M03 into the workpiece cuts a right-hand thread, and M04 away from it (later controls).
+        clockwise: (pitch > 0.0) == (heights.direction < 0.0),
+        orientation_deg: orientation_deg(m.settings),
+        retracts: false,
+    };
+    let mut trace = begin_thread(m);
+    trace.set_override_law(OverrideLaw::Spindle(thread));
+    trace.feed_height(heights.at_depth(heights.depth), feed);
+    trace.finish()
+}
+
+/// F = S · pitch.
+fn thread_feed(m: &Machining<'_>, pitch: f64) -> Result<f64, Fault> {
     let feed = m.modal.speed_rpm * pitch.abs();
     if feed <= 0.0 {
-        return Err(Fault::new(
-            MessageId::WrongRpm,
-            "rigid tapping needs a spindle speed and a pitch",
-        ));
+        let detail = "a thread needs a spindle speed and a pitch";
+        return Err(Fault::new(MessageId::WrongRpm, detail));
     }
+    Ok(feed)
+}
+
+/// MP7160: the spindle is oriented before the thread.
+fn orientation_deg(settings: &Settings) -> Option<f64> {
+    settings.rules.tapping.orients.then_some(0.0)
+}
+
+/// A spindle that turns is stopped before the thread.
+fn begin_thread<'a>(m: &'a mut Machining<'_>) -> Tracer<'a> {
     let turns = matches!(m.modal.spindle, Spindle::Clockwise | Spindle::CounterClockwise);
     if turns {
         m.modal.stop_spindle(m.q);
     }
-    let thread = |clockwise, orientation_deg| {
-        OverrideLaw::Spindle(Thread {
-            pitch_mm: pitch.abs(),
-            clockwise,
-            orientation_deg,
-        })
-    };
-    let right_hand = pitch > 0.0;
-    let orients = m.settings.rules.tapping.orients;
     let mut trace = m.tracer();
     if turns {
         trace.order(SpindleOrder::Stop);
     }
-    trace.set_override_law(thread(right_hand, orients.then_some(0.0)));
-    trace.feed_height(heights.at_depth(heights.depth), feed);
-    trace.set_override_law(thread(!right_hand, None));
-    trace.feed_height(heights.clearance, feed);
-    trace.finish()
+    trace
 }

@@ -28,6 +28,8 @@ pub(super) struct Heights {
     pub surface: f64,
     /// Total depth, positive.
     pub depth: f64,
+    /// Where cycles with a clearance height of their own go down to in rapid traverse.
+    pub approach: Option<f64>,
 }
 
 impl Heights {
@@ -83,7 +85,7 @@ impl<'a> Machining<'a> {
                 self.told.warn(definition.at, WarningKind::CycleSign { cycle });
             }
         }
-        let scale = self.modal.frame.factor[self.modal.plane.normal].abs();
+        let scale = self.modal.frame.scale(self.modal.plane.normal);
         let clearance = known(self.pen.tool_centre(self.modal)[self.modal.plane.normal]);
         let direction = depth.signum();
         Ok(Heights {
@@ -91,6 +93,7 @@ impl<'a> Machining<'a> {
             direction,
             surface: clearance + direction * setup.abs() * scale,
             depth: depth.abs() * scale,
+            approach: None,
         })
     }
 
@@ -190,6 +193,13 @@ impl Tracer<'_> {
     pub fn set_plane(&mut self, plane: Plane) {
         self.plane = plane;
         self.origin = plane.point(&self.at).map(known);
+    }
+
+    /// Where the cycle has a clearance height of its own, the tool goes there first.
+    pub fn lift(&mut self, heights: &Heights) {
+        if heights.approach.is_some() {
+            self.rapid_height(heights.clearance);
+        }
     }
 
     /// Along the tool axis at rapid traverse.

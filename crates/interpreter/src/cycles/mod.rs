@@ -3,7 +3,10 @@
 //! Definitions are collected block by block. Cycles 7-11, 13, 14, 19 and 26 act when they are defined, the
 //! others when they are called [003:4849-4857].
 
+mod contour_data;
+mod contour_finish;
 mod contour_pocket;
+mod contour_train;
 mod drilling;
 mod machining;
 mod pockets;
@@ -13,11 +16,11 @@ use bahn_parameters::MessageId;
 use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
 pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_cycle, contour_plane};
-use self::drilling::{pecking, rigid_tapping, tapping};
+use self::drilling::{pecking, rigid_tapping, tapping, thread_cutting};
 use self::machining::Machining;
 use self::pockets::{circular_pocket, pocket_milling, slot_milling};
 use self::transformation::{
-    contour_geometry, datum_shift, dwell, mirror_image, rotation, scaling, spindle_orientation,
+    axis_scaling, contour_geometry, datum_shift, dwell, mirror_image, rotation, scaling, spindle_orientation,
 };
 use crate::availability::{Feature, names_datum_table, words};
 use crate::context::Context;
@@ -43,6 +46,17 @@ pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<()
         return Ok(());
     }
     let words = resolve(block, c.numbers, c.settings)?;
+    if contour_data::is_assigned(block.number) {
+        contour_data::assign(c.numbers, &words)?;
+    }
+    if block.number == contour_data::CONTOUR_DATA {
+        let unit_mm = c.numbers.unit_mm;
+        c.modal
+            .cycle
+            .contour_data
+            .take(block.number, block.sub, words, unit_mm, c.pen.block);
+        return Ok(());
+    }
     if acts_here {
         return define_effective(c, block, words);
     }
@@ -79,6 +93,7 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
         10 => rotation(c.modal, &words, has_q_parameter(block), c.settings),
         11 => scaling(c.modal, &words, c.settings),
         13 => spindle_orientation(c, &words),
+        26 => axis_scaling(c, &words),
         _ => contour_geometry(c.modal, &words, c.settings),
     }
 }
@@ -106,14 +121,30 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
         3 => slot_milling(&mut m, &definition)?,
         4 => pocket_milling(&mut m, &definition)?,
         5 => circular_pocket(&mut m, &definition)?,
-        number if is_contour_cycle(number) => return Ok(Flow::ContourCycle),
+        number if is_contour_cycle(number) => {
+            contour_data::check(c.modal, &definition)?;
+            return Ok(Flow::ContourCycle);
+        }
         17 => rigid_tapping(&mut m, &definition)?,
+        18 => thread_cutting(&mut m, &definition)?,
         number => {
             let detail = format!("cycle {number} is read but not executed by this control");
             return Err(Fault::new(MessageId::BlockNotKnown, detail));
         }
     }
     Ok(Flow::Next)
+}
+
+/// Number of another tool whose radius a contour cycle needs.
+pub(crate) fn other_tool(c: &Context<'_>) -> Result<Option<f64>, Fault> {
+    let values = contour_data::Values {
+        numbers: c.numbers,
+        settings: c.settings,
+    };
+    match c.modal.cycle.machining.ready() {
+        Some(definition) => values.other_tool(definition),
+        None => Ok(None),
+    }
 }
 
 /// Cycle 12: the called program is what the cycle call runs [003:6476-6490].

@@ -34,7 +34,7 @@ pub(super) fn slot_milling(m: &mut Machining<'_>, definition: &Definition) -> Re
         ));
     }
     let heights = m.heights(definition, [setup, depth], Some(pecking))?;
-    let scale = m.modal.plane_scale();
+    let scale = m.modal.plane_scale()?;
     let radius = m.modal.used_radius()?;
     let travel = length.abs() * scale - 2.0 * radius;
     let allowance = 0.5 * width.abs() * scale - radius;
@@ -84,12 +84,12 @@ pub(super) fn pocket_milling(m: &mut Machining<'_>, definition: &Definition) -> 
     let (first_axis, first) = definition.coordinate(4)?;
     let (second_axis, second) = definition.coordinate(5)?;
     let feed = definition.feed(6, 0)?;
-    let corner = definition.optional_length(6, 0).unwrap_or(0.0).abs() * m.modal.plane_scale();
+    let corner = definition.optional_length(6, 0).unwrap_or(0.0).abs() * m.modal.plane_scale()?;
     let mut sides = [0.0; 2];
     for (axis, side) in [(first_axis, first), (second_axis, second)] {
         let index = plane_axis(m.modal.plane, axis)?;
         if let Some(slot) = sides.get_mut(index) {
-            *slot = side.abs() * m.modal.plane_scale();
+            *slot = side.abs() * m.modal.plane_scale()?;
         }
     }
     let heights = m.heights(definition, [setup, depth], Some(pecking))?;
@@ -121,7 +121,7 @@ pub(super) fn circular_pocket(m: &mut Machining<'_>, definition: &Definition) ->
     let depth = definition.length(2, 0)?;
     let pecking = definition.length(3, 0)?;
     let plunge_feed = definition.feed(3, 0)?;
-    let pocket_radius = definition.length(4, 0)?.abs() * m.modal.plane_scale();
+    let pocket_radius = definition.length(4, 0)?.abs() * m.modal.plane_scale()?;
     let feed = definition.feed(5, 0)?;
     let heights = m.heights(definition, [setup, depth], Some(pecking))?;
     let radius = pocket_radius - m.modal.tool_radius();

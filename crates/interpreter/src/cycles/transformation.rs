@@ -1,7 +1,7 @@
 //! Cycles that act when they are defined: transformations, dwell, spindle orientation, contour labels.
 
 use bahn_parameters::{MessageId, technology};
-use bahn_path::{Axis, Curve, FeedRate, Function};
+use bahn_path::{Axis, AxisScaling, Curve, FeedRate, Function};
 
 use crate::context::Context;
 use crate::definition::{Resolved, dwell_time};
@@ -173,6 +173,40 @@ pub(super) fn scaling(modal: &mut Modal, words: &[Resolved], settings: &Settings
         modal.frame.factor[axis] = if scaled { sign * factor } else { sign };
     }
     modal.forget_tangent();
+    Ok(())
+}
+
+/// Cycle 26 AXIS-SPECIFIC SCALING: a factor for each named axis about a centre, or the active datum where none is
+/// given (later controls). An axis keeps its factor until it is named again; cycle 11 multiplies it (inferred).
+pub(super) fn axis_scaling(c: &mut Context<'_>, words: &[Resolved]) -> Result<(), Fault> {
+    let [min, max] = c.settings.model.limits().scaling_range;
+    let mut scaling = c.modal.frame.axis_scaling.unwrap_or(AxisScaling::none());
+    for word in words {
+        let (Resolved::AxisFactor(axis, _) | Resolved::Centre(axis, _)) = word else {
+            continue;
+        };
+        if axis.is_rotary() {
+            let detail = format!("{axis} cannot be scaled");
+            return Err(Fault::new(MessageId::WrongAxisProgrammed, detail));
+        }
+        let Resolved::AxisFactor(axis, factor) = *word else {
+            continue;
+        };
+        if !(min..=max).contains(&factor) {
+            let detail = format!("the factor of {axis} takes {min} to {max}");
+            return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
+        }
+        scaling.factor[axis] = factor;
+        scaling.centre[axis] = 0.0;
+    }
+    for word in words {
+        if let Resolved::Centre(axis, at) = *word {
+            scaling.centre[axis] = at * c.numbers.axis_unit(axis);
+        }
+    }
+    let acts = scaling.factor != AxisScaling::none().factor;
+    c.modal.frame.axis_scaling = acts.then_some(scaling);
+    c.modal.forget_tangent();
     Ok(())
 }
 

@@ -75,6 +75,14 @@ impl Output {
                     self.text.push(axis.letter());
                     self.signed(word.value);
                 }
+                CycleWord::AxisFactor(axis, value) => {
+                    self.unsigned_word(axis.letter().encode_utf8(&mut [0; 4]), Some(*value));
+                }
+                CycleWord::Centre(axis, value) => {
+                    self.word("CC");
+                    self.text.push(axis.letter());
+                    self.signed(*value);
+                }
                 CycleWord::Axis(axis) => {
                     self.word("");
                     self.text.push(axis.letter());

@@ -14,11 +14,17 @@ impl Output {
             MotionKind::LinePolar => "LP",
             MotionKind::CirclePolar => "CP",
             MotionKind::CircleTangentialPolar => "CTP",
+            MotionKind::LineNormal => "LN",
             MotionKind::Paraxial => "",
         });
         self.polar_word("PR", motion.polar_radius);
         self.polar_word("PA", motion.polar_angle);
         self.coordinates(&motion.coordinates);
+        if let Some(normal) = motion.normal.as_deref() {
+            for (address, value) in ["NX", "NY", "NZ"].into_iter().zip(normal) {
+                self.signed_word(address, Some(*value));
+            }
+        }
         self.signed_word("R", motion.radius);
         if let Some(direction) = motion.direction {
             self.word(direction_text(direction));

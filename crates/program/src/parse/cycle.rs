@@ -8,7 +8,7 @@ use super::cursor::{Cursor, Parsed, WRITE_A_NUMBER, with_help};
 use super::m_function::m_functions;
 use super::path::{direction, feed_word};
 use crate::check::ANY_LABEL_MAX;
-use crate::cycles::{FIRST_PARAMETER_CYCLE, cycle_parameters};
+use crate::cycles::{cycle_parameters, takes_assignments};
 use crate::text::{is_blank, to_words};
 use crate::{CycleBlock, CycleFunction, CycleWord, Dialog, Direction, Operation, Quantity, Word};
 
@@ -40,7 +40,7 @@ fn definition(c: &mut Cursor) -> Parsed<CycleBlock> {
     let (number, sub) = numbers(c)?;
     let words = match holds(CycleFunction::Definition, number, sub) {
         // The name of a cycle is decoration, whatever it looks like.
-        _ if sub == 0 && number < FIRST_PARAMETER_CYCLE => text_word(c.name()),
+        _ if sub == 0 && !takes_assignments(number) => text_word(c.name()),
         Some(Quantity::Program) => program_name(c),
         Some(Quantity::Labels) => label_list(c)?,
         quantity => words(c, Scope::Cycle(quantity))?,
@@ -132,7 +132,7 @@ pub(super) enum Scope {
 pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
     let mut words = Vec::new();
     let mut text: Vec<u8> = Vec::new();
-    let mut axes = AxisSet::EMPTY;
+    let (mut axes, mut centres) = (AxisSet::EMPTY, AxisSet::EMPTY);
     while !c.at_end() {
         if is_separator(c.peek()) {
             c.advance(1);
@@ -145,7 +145,8 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
         }
         let start = c.position();
         let Some(word) = address(c, scope)? else {
-            if scope == Scope::Cycle(Some(Quantity::Shift)) || is_broken_number(c) {
+            let axes_only = matches!(scope, Scope::Cycle(Some(Quantity::Shift | Quantity::AxisFactors)));
+            if axes_only || is_broken_number(c) {
                 let fault = c.fault_at_word(EntryValueIncorrect, "this is no number");
                 return with_help(fault, WRITE_A_NUMBER);
             }
@@ -153,15 +154,20 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
             continue;
         };
         let Some(word) = word else { continue };
-        if let CycleWord::Coordinate(axis, _) = word {
-            if axes.contains(axis) {
+        let once = match word {
+            CycleWord::Coordinate(axis, _) | CycleWord::AxisFactor(axis, _) => Some((axis, &mut axes)),
+            CycleWord::Centre(axis, _) => Some((axis, &mut centres)),
+            _ => None,
+        };
+        if let Some((axis, programmed)) = once {
+            if programmed.contains(axis) {
                 return c.fault_from(
                     start,
                     AxisDoubleProgrammed,
                     "the axis has two values in this block",
                 );
             }
-            axes.insert(axis);
+            programmed.insert(axis);
         }
         words.extend(text_word(to_words(&text)));
         text.clear();
@@ -174,6 +180,9 @@ pub(super) fn words(c: &mut Cursor, scope: Scope) -> Parsed<Vec<CycleWord>> {
 /// Reads a word with an address, or a number; `Some(None)` for an empty placeholder; `None` for
 /// decoration, of which nothing is read.
 fn address(c: &mut Cursor, scope: Scope) -> Parsed<Option<Option<CycleWord>>> {
+    if scope == Scope::Cycle(Some(Quantity::AxisFactors)) {
+        return Ok(scaling_word(c)?.map(Some));
+    }
     let start = c.position();
     let letter = c.peek_upper();
     let second = c.peek_at(1).to_ascii_uppercase();
@@ -227,6 +236,24 @@ fn address(c: &mut Cursor, scope: Scope) -> Parsed<Option<Option<CycleWord>>> {
         },
     };
     Ok(Some(found))
+}
+
+/// `X1.4`, the factor of an axis, and `CCX+15`, the centre of it; nothing else stands in cycle 26.
+fn scaling_word(c: &mut Cursor) -> Parsed<Option<CycleWord>> {
+    let start = c.position();
+    let mut behind = c.clone();
+    let is_centre = behind.keyword("CC");
+    behind.skip_blanks();
+    let Some(axis) = Axis::from_letter(behind.peek_upper()).filter(|_| begins_value(&behind, 1)) else {
+        return Ok(None);
+    };
+    *c = behind;
+    c.advance(1);
+    let value = c.required_value(start)?;
+    Ok(Some(match is_centre {
+        true => CycleWord::Centre(axis, value),
+        false => CycleWord::AxisFactor(axis, value),
+    }))
 }
 
 /// `X+40`, `X-` or `X`; cycle 8 also takes letters without blanks, `XY`.
@@ -587,6 +614,34 @@ mod tests {
         }
         assert_eq!(words_of("CYCL DEF 10.1 IROT+35"), [text("IROT"), Number(N(35.0))]);
         assert_eq!(words_of("CYCL DEF 11.1 SCL 0.8"), [text("SCL"), Number(N(0.8))]);
+    }
+
+    #[test]
+    fn scaling_of_single_axes() {
+        use CycleWord::{AxisFactor, Centre};
+        let all = [
+            AxisFactor(Axis::X, N(1.4)),
+            AxisFactor(Axis::Y, q(1)),
+            Centre(Axis::X, N(15.0)),
+            Centre(Axis::Y, q(-2)),
+        ];
+        for block in [
+            "X1.4 YQ1 CCX+15 CCY-Q2",
+            "X+1,4 Y+Q1 CC X15 CCY -Q2",
+            "x1.4YQ1ccx15CCY-Q2",
+        ] {
+            assert_eq!(words_of(&format!("CYCL DEF 26.1 {block}")), all, "{block}");
+        }
+        for (block, message, column) in [
+            ("X1.4 X2", AxisDoubleProgrammed, 20),
+            ("X1.4 CCX+1 CCX+2", AxisDoubleProgrammed, 26),
+            ("X1.4 CCXO", EntryValueIncorrect, 20),
+            ("X1.4 0.6", EntryValueIncorrect, 20),
+            ("SCL 0.8", EntryValueIncorrect, 15),
+        ] {
+            let (found, at, _) = fault(&format!("CYCL DEF 26.1 {block}"));
+            assert_eq!((found, at), (message, column), "{block}");
+        }
     }
 
     #[test]

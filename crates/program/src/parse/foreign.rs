@@ -16,8 +16,7 @@ const FREE_CONTOUR: &str = "free contour programming (FK)";
 const APPROACH: &str = "approach and departure (APPR, DEP)";
 const DIN_ISO: &str = "DIN/ISO programming";
 
-/// The table. FK and APPR/DEP are keys of the TE 400 [000:1079]; LN is the block of surface normals
-/// (3D compensation) of the TNC 415/425; DIN/ISO [000:17976-17984].
+/// The table. FK and APPR/DEP are keys of the TE 400 [000:1079]; DIN/ISO [000:17976-17984].
 const TABLE: &[Foreign] = &[
     foreign("FL", FREE_CONTOUR),
     foreign("FLT", FREE_CONTOUR),
@@ -27,7 +26,6 @@ const TABLE: &[Foreign] = &[
     foreign("FSELECT", FREE_CONTOUR),
     foreign("APPR", APPROACH),
     foreign("DEP", APPROACH),
-    foreign("LN", "3D tool compensation (LN)"),
     foreign("WINDOW", "the magnified detail of the graphics (WINDOW BLK FORM)"),
     numbered("G", DIN_ISO),
     numbered("D", DIN_ISO),
@@ -116,14 +114,12 @@ mod tests {
             "FSELECT 2",
             "APPR LT X+5 Y+5 LEN 5 RL",
             "DEP LCT X+5 R5",
-            "LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1",
             "WINDOW BLK FORM 0.1 Z X+0",
         ] {
             assert_eq!(fault(text).0, BlockNotSupported, "{text}");
         }
         for text in [
             "FLOWER",
-            "LNX",
             "GO HOME",
             "DEPTH 5",
             "TRAVEL",

@@ -19,6 +19,7 @@ pub(super) fn motion_kind(c: &mut Cursor) -> Option<MotionKind> {
     let third = c.peek_at(2).to_ascii_uppercase();
     let (length, kind) = match (first, second, third) {
         (b'L', b'P', _) => (2, MotionKind::LinePolar),
+        (b'L', b'N', _) => (2, MotionKind::LineNormal),
         (b'L', b'B', b'L') => return None,
         // A bare number makes it a chamfer.
         (b'L', ..) if !value_follows(c) => (1, MotionKind::Line),
@@ -33,9 +34,13 @@ pub(super) fn motion_kind(c: &mut Cursor) -> Option<MotionKind> {
         _ => return None,
     };
     c.advance(length);
-    // A letter that begins no word of a path block makes it the word of a later control (LN, LT, CTL ...).
+    // A letter that begins no word of a path block makes it the word of a later control (LT, CTL ...).
     let touching = c.peek_upper();
-    if length > 0 && touching.is_ascii_alphabetic() && !b"XYZABCUVWIPRFMDQ".contains(&touching) {
+    if length > 0
+        && touching.is_ascii_alphabetic()
+        && !b"XYZABCUVWIPRFMDQ".contains(&touching)
+        && !(kind == MotionKind::LineNormal && touching == b'N')
+    {
         c.go_to(start);
         return None;
     }
@@ -171,6 +176,7 @@ pub(super) fn empty_motion(kind: MotionKind) -> Motion {
         direction: None,
         compensation: None,
         feed: None,
+        normal: None,
         m: MFunctions::default(),
     }
 }
@@ -178,6 +184,7 @@ pub(super) fn empty_motion(kind: MotionKind) -> Motion {
 /// Reads the words of a positioning block up to the end of the block.
 #[inline]
 pub(super) fn motion_words(c: &mut Cursor, motion: &mut Motion) -> Parsed<()> {
+    let mut normal = None;
     while !c.at_end() {
         let start = c.position();
         let letter = c.peek_upper();
@@ -202,9 +209,54 @@ pub(super) fn motion_words(c: &mut Cursor, motion: &mut Motion) -> Parsed<()> {
             }
             b'P' => polar_word(c, start, false, motion)?,
             b'D' => direction_word(c, start, motion)?,
+            b'N' if motion.kind == MotionKind::LineNormal => normal = Some(normal_words(c, start, normal)?),
             _ => return c.unexpected(),
         }
     }
+    if motion.kind == MotionKind::LineNormal {
+        take_normal(c, normal, motion)?;
+    }
+    Ok(())
+}
+
+/// One of `NX`, `NY` and `NZ`.
+fn normal_words(
+    c: &mut Cursor,
+    start: usize,
+    normal: Option<[Option<Value>; 3]>,
+) -> Parsed<[Option<Value>; 3]> {
+    let mut normal = normal.unwrap_or_default();
+    c.advance(1);
+    let slot = match c.peek_upper() {
+        b'X' => normal.first_mut(),
+        b'Y' => normal.get_mut(1),
+        b'Z' => normal.get_mut(2),
+        _ => None,
+    };
+    let Some(slot) = slot else {
+        c.go_to(start);
+        return c.unexpected();
+    };
+    c.advance(1);
+    let value = c.required_value(start)?;
+    set_once(c, start, Some(value), slot)?;
+    Ok(normal)
+}
+
+fn take_normal(c: &Cursor, normal: Option<[Option<Value>; 3]>, motion: &mut Motion) -> Parsed<()> {
+    let normal = normal.unwrap_or_default();
+    let [Some(x), Some(y), Some(z)] = normal else {
+        let missing = ["NX", "NY", "NZ"]
+            .into_iter()
+            .zip(normal)
+            .find(|(_, value)| value.is_none());
+        let detail = format!(
+            "{} of the surface normal is missing",
+            missing.map_or("NX", |(name, _)| name)
+        );
+        return c.fault_from(c.position(), EntryValueIncorrect, detail);
+    };
+    motion.normal = Some(Box::new([x, y, z]));
     Ok(())
 }
 
@@ -582,6 +634,32 @@ mod tests {
         assert_eq!(fault("L X+5 FZ0.1"), (BlockNotKnown, 7, 5));
         assert_eq!(fault("L X+5 RX"), (UnexpectedText, 7, 2));
         assert_eq!(fault("Höhe"), (BlockNotKnown, 1, 4));
+    }
+
+    #[test]
+    fn lines_with_surface_normals() {
+        let line = motion("LN X+31.7 Y+21.95 Z+33.16 NX+0.2637581 NY+0.0078922 NZ-0.8764339 R0 F1000 M107");
+        assert_eq!(line.kind, MotionKind::LineNormal);
+        let normal = line.normal.as_deref();
+        assert_eq!(
+            normal,
+            Some(&[0.263_758_1, 0.007_892_2, -0.876_433_9].map(Value::Number))
+        );
+        assert_eq!(line.coordinates.axes().len(), 3);
+        assert!(line.m.contains(107));
+        assert_eq!(motion("LNX+1NXQ1NY0NZ1").coordinates, motion("L X+1").coordinates);
+        for (text, message, column) in [
+            ("LN X+1 NX+0 NY+0", EntryValueIncorrect, 17),
+            ("LN X+1", EntryValueIncorrect, 7),
+            ("LN X+1 NX+0 NX+1 NY+0 NZ+1", UnexpectedText, 13),
+            ("LN X", EntryValueIncorrect, 4),
+        ] {
+            let (found, at, _) = fault(text);
+            assert_eq!((found, at), (message, column), "{text}");
+        }
+        for text in ["LN X+1 NW+5", "L X+1 NX+0"] {
+            fault(text);
+        }
     }
 
     #[test]

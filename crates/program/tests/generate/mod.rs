@@ -100,8 +100,10 @@ fn motion() -> impl Strategy<Value = Motion> {
         LinePolar,
         CirclePolar,
         CircleTangentialPolar,
+        LineNormal,
         Paraxial,
     ];
+    let normal = prop::array::uniform3(value());
     (
         select(kinds),
         coordinates(4),
@@ -112,10 +114,10 @@ fn motion() -> impl Strategy<Value = Motion> {
         prop::option::of(any::<bool>()),
         prop::option::of(0..3_usize),
         prop::option::of(feed()),
-        m_functions(),
+        (m_functions(), normal),
     )
         .prop_map(
-            |(kind, several, (axis, word), pr, pa, radius, direction, compensation, feed, m)| {
+            |(kind, several, (axis, word), pr, pa, radius, direction, compensation, feed, (m, normal))| {
                 let polar = matches!(kind, LinePolar | CirclePolar | CircleTangentialPolar);
                 let arc = matches!(kind, Circle | CircleRadius | CirclePolar);
                 let mut one = Coordinates::default();
@@ -139,6 +141,7 @@ fn motion() -> impl Strategy<Value = Motion> {
                     }),
                     compensation: compensation.map(|i| compensations[i]),
                     feed,
+                    normal: (kind == LineNormal).then(|| Box::new(normal)),
                     m,
                 }
             },
@@ -264,6 +267,10 @@ fn cycle() -> impl Strategy<Value = CycleBlock> {
             block(number, sub, words)
         }),
         name.prop_map(move |words| block(12, 1, words)),
+        (axis(), value(), axis(), value()).prop_map(move |(factor, a, centre, b)| {
+            let words = vec![CycleWord::AxisFactor(factor, a), CycleWord::Centre(centre, b)];
+            block(26, 1, words)
+        }),
         labels.prop_map(move |words| block(14, 1, words)),
         (200..300_u16, cycle_words(false)).prop_map(move |(number, words)| block(number, 0, words)),
     ]

@@ -1,0 +1,195 @@
+//! Cycles with contour data: 20 names what 21 to 24 have in common, 25 brings its own. Their parameters are the Q
+//! parameters Q1 to Q18 themselves, which the definition assigns and the call reads (later controls; the manuals here
+//! name the cycles only [000:847] [000:652]).
+
+use bahn_parameters::MessageId;
+use bahn_path::Position;
+
+use super::machining::Heights;
+use crate::definition::{Definition, Resolved};
+use crate::error::Fault;
+use crate::modal::Modal;
+use crate::numbers::Numbers;
+use crate::settings::Settings;
+
+/// The cycle whose data 21 to 24 share.
+pub(super) const CONTOUR_DATA: u16 = 20;
+
+/// What each cycle must be given: number of the Q parameter and its name in the dialogue.
+const PARAMETERS: &[(u16, &[(u16, &str)])] = &[
+    (
+        CONTOUR_DATA,
+        &[
+            (1, "MILLING DEPTH"),
+            (2, "TOOL PATH OVERLAP"),
+            (3, "ALLOWANCE FOR SIDE"),
+            (4, "ALLOWANCE FOR FLOOR"),
+            (5, "SURFACE COORDINATE"),
+            (6, "SET-UP CLEARANCE"),
+            (7, "CLEARANCE HEIGHT"),
+            (8, "ROUNDING RADIUS"),
+            (9, "DIRECTION OF ROTATION"),
+        ],
+    ),
+    (
+        21,
+        &[
+            (10, "PLUNGING DEPTH"),
+            (11, "FEED RATE FOR PLUNGING"),
+            (13, "ROUGH-OUT TOOL"),
+        ],
+    ),
+    (
+        22,
+        &[
+            (10, "PLUNGING DEPTH"),
+            (11, "FEED RATE FOR PLUNGING"),
+            (12, "FEED RATE FOR ROUGHING"),
+        ],
+    ),
+    (
+        23,
+        &[(11, "FEED RATE FOR PLUNGING"), (12, "FEED RATE FOR ROUGHING")],
+    ),
+    (
+        24,
+        &[
+            (9, "DIRECTION OF ROTATION"),
+            (10, "PLUNGING DEPTH"),
+            (11, "FEED RATE FOR PLUNGING"),
+            (12, "FEED RATE FOR MILLING"),
+            (14, "ALLOWANCE FOR SIDE"),
+        ],
+    ),
+    (
+        25,
+        &[
+            (1, "MILLING DEPTH"),
+            (3, "ALLOWANCE FOR SIDE"),
+            (5, "SURFACE COORDINATE"),
+            (7, "CLEARANCE HEIGHT"),
+            (10, "PLUNGING DEPTH"),
+            (11, "FEED RATE FOR PLUNGING"),
+            (12, "FEED RATE FOR MILLING"),
+            (15, "CLIMB OR UP-CUT"),
+        ],
+    ),
+];
+
+/// Whether the cycle takes its parameters from assignments to Q parameters.
+pub(super) fn is_assigned(number: u16) -> bool {
+    PARAMETERS.iter().any(|(cycle, _)| *cycle == number)
+}
+
+/// Refuses a cycle without one of its parameters, and 21 to 24 without cycle 20.
+pub(super) fn check(modal: &Modal, definition: &Definition) -> Result<(), Fault> {
+    if !is_assigned(definition.number) {
+        return Ok(());
+    }
+    if definition.number != 25 {
+        let data = modal.cycle.contour_data.ready();
+        let data = data.ok_or_else(|| {
+            let detail = "cycle 20 CONTOUR DATA is not defined, or not completely";
+            Fault::new(MessageId::CyclIncomplete, detail)
+        })?;
+        is_complete(data)?;
+    }
+    is_complete(definition)
+}
+
+fn is_complete(definition: &Definition) -> Result<(), Fault> {
+    let row = PARAMETERS.iter().find(|(cycle, _)| *cycle == definition.number);
+    let mut wanted = row.map_or(&[][..], |(_, parameters)| parameters).iter();
+    match wanted.find(|(number, _)| definition.assigned(*number).is_none()) {
+        Some((number, name)) => {
+            let detail = format!("CYCL DEF {}: Q{number} {name} is missing", definition.number);
+            Err(Fault::new(MessageId::CyclIncomplete, detail))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The definition sets the Q parameters.
+pub(crate) fn assign(numbers: &mut Numbers, words: &[Resolved]) -> Result<(), Fault> {
+    for word in words {
+        if let Resolved::Assignment(number, value) = word {
+            numbers.q.set(*number, *value)?;
+        }
+    }
+    Ok(())
+}
+
+/// The parameters of a cycle at its call.
+pub(super) struct Values<'a> {
+    pub numbers: &'a Numbers,
+    pub settings: &'a Settings,
+}
+
+impl Values<'_> {
+    pub fn number(&self, q: u16) -> Result<f64, Fault> {
+        self.numbers.q.get(q)
+    }
+
+    /// A length, mm.
+    pub fn length(&self, q: u16) -> Result<f64, Fault> {
+        Ok(self.number(q)? * self.numbers.unit_mm)
+    }
+
+    /// A feed, mm/min.
+    pub fn feed(&self, q: u16) -> Result<f64, Fault> {
+        let value = bahn_program::Value::Q {
+            number: q,
+            negative: false,
+        };
+        let feed = self.numbers.feed(value, self.settings)?;
+        if feed <= 0.0 {
+            let detail = format!("the feed Q{q} is 0");
+            return Err(Fault::new(MessageId::FeedRateIsMissing, detail));
+        }
+        Ok(feed)
+    }
+
+    /// The tool that came, or comes, before this one: that of the roughing in cycle 21, the coarse one in cycle 22
+    /// (0: none).
+    pub fn other_tool(&self, definition: &Definition) -> Result<Option<f64>, Fault> {
+        match definition.number {
+            21 => self.number(13).map(Some),
+            22 if definition.assigned(18).is_some() => Ok(Some(self.number(18)?).filter(|tool| *tool != 0.0)),
+            _ => Ok(None),
+        }
+    }
+
+    /// Q1, Q5 and Q7, with the set-up clearance above the surface, mm.
+    pub fn heights(&self, modal: &Modal, setup: f64) -> Result<Heights, Fault> {
+        let normal = modal.plane.normal;
+        let depth = self.length(1)?;
+        if depth == 0.0 || self.number(10)? == 0.0 {
+            let what = if depth == 0.0 {
+                "Q1"
+            } else {
+                "the plunging depth Q10"
+            };
+            return Err(Fault::new(MessageId::CyclIncomplete, format!("{what} is 0")));
+        }
+        let height = |coordinate: f64| {
+            let mut at = Position::ZERO;
+            at[normal] = coordinate;
+            modal.frame.to_outer(&at)[normal]
+        };
+        let (surface, clearance) = (height(self.length(5)?), height(self.length(7)?));
+        let direction = depth.signum();
+        let scale = modal.frame.scale(normal);
+        let approach = surface - direction * setup.abs() * scale;
+        if (clearance - approach) * direction > 0.0 {
+            let detail = "the clearance height Q7 lies below the set-up clearance";
+            return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
+        }
+        Ok(Heights {
+            clearance,
+            direction,
+            surface,
+            depth: depth.abs() * scale,
+            approach: Some(approach),
+        })
+    }
+}
