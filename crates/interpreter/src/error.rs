@@ -133,12 +133,12 @@ impl Fault {
         }
     }
 
-    /// Says what the fault is about.
     /// Whether it is this message of the control.
     pub fn is(&self, message: MessageId) -> bool {
         matches!(self.message, Message::Control(id) if id == message)
     }
 
+    /// Says what the fault is about.
     pub fn because(self, cause: Cause) -> Fault {
         Fault { cause, ..self }
     }
