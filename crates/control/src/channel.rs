@@ -5,7 +5,7 @@ use bahn_exchange::signal;
 use bahn_interpreter::Rules;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, BlockRef};
-use bahn_servo::{Measured, OperatorInputs};
+use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::Axes;
 use crate::axis::AxisUnit;
@@ -228,17 +228,17 @@ impl Channel {
     /// operating mode waits for axes to come to a standstill.
     pub fn move_axes(&mut self, machine: &mut MachineSide, measured: &Measured) {
         let now = self.now(machine);
-        let handwheel = measured.operator.handwheel_count;
+        let handwheel = measured.operator.handwheel;
         let mut axes = machine.axes.of(self.number);
         reference::count_display_axes(&mut axes);
-        self.desk.count_handwheel(handwheel);
+        self.desk.count_handwheel(&handwheel);
         let automatic = now.mode.is_automatic();
         let rigid = self.run.taps_rigidly();
         let ready = axes.choose_methods(automatic && !self.desk.runs_reference(), rigid);
         // What the mode before moved comes to a standstill first.
         let waits = automatic && !ready && !self.run.is_active();
         if !waits {
-            self.move_by_mode(handwheel, &now, machine, measured);
+            self.move_by_mode(&handwheel, &now, machine, measured);
         }
         self.move_for_plc(&now, machine);
         machine.axes.of(self.number).slow_down(now.time_s);
@@ -247,7 +247,13 @@ impl Channel {
         }
     }
 
-    fn move_by_mode(&mut self, handwheel: i64, now: &Now, machine: &mut MachineSide, measured: &Measured) {
+    fn move_by_mode(
+        &mut self,
+        handwheel: &HandwheelInputs,
+        now: &Now,
+        machine: &mut MachineSide,
+        measured: &Measured,
+    ) {
         match now.mode {
             Mode::Manual | Mode::Handwheel => {
                 if now.start && !now.stop {
@@ -288,7 +294,7 @@ impl Channel {
         self.desk.manual = manual;
     }
 
-    fn move_manually(&mut self, handwheel: i64, now: &Now, machine: &mut MachineSide) {
+    fn move_manually(&mut self, handwheel: &HandwheelInputs, now: &Now, machine: &mut MachineSide) {
         let mut axes = machine.axes.of(self.number);
         let nc = machine.memory.of(self.number).nc();
         let block = self.run.running_block();
@@ -613,10 +619,7 @@ impl Channel {
             Command::Handwheel(axis, factor) => {
                 let axes = machine.axes.of(self.number);
                 let index = axes.at(axis).map(|unit| unit.index);
-                index.is_some_and(|index| {
-                    self.desk.manual.choose_handwheel(index, factor);
-                    true
-                })
+                index.is_some_and(|index| self.desk.choose_handwheel(index, factor))
             }
             Command::ManualOperation => {
                 let (run, mut site, _) = self.parts(machine);

@@ -3,18 +3,19 @@
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_parameters::operation::OperationParameters;
 use bahn_path::BlockRef;
-use bahn_servo::{Measured, OperatorInputs};
+use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
 use crate::command::Mode;
-use crate::manual::{Manual, Reach};
+use crate::manual::Manual;
 use crate::message::Messages;
 use crate::now::{Facts, Now};
 use crate::overrides::Override;
 use crate::panel::{Panel, PlcFaultCode};
 use crate::probing::{Guarded, Probe, Stylus};
 use crate::progress::{Progress, RunState};
+use crate::reach::Reach;
 use crate::reference::ReferenceRun;
 use crate::status;
 
@@ -237,17 +238,22 @@ impl Desk {
         });
     }
 
+    /// The handwheel moves the axis with an index, with an interpolation factor.
+    pub fn choose_handwheel(&mut self, index: usize, factor: u8) -> bool {
+        self.manual.handwheel.choose(index, factor, &self.rules.handwheel)
+    }
+
     /// What is turned at the handwheel in another mode moves nothing later.
-    pub fn count_handwheel(&mut self, count: i64) {
+    pub fn count_handwheel(&mut self, inputs: &HandwheelInputs) {
         if self.mode != Mode::Handwheel {
-            self.manual.forget_turns(count);
+            self.manual.handwheel.forget_turns(inputs);
         }
     }
 
     /// Moves the axes by hand for a cycle.
     pub fn move_by_hand(
         &mut self,
-        handwheel: i64,
+        handwheel: &HandwheelInputs,
         axes: &mut OwnAxes,
         nc: &Image,
         messages: &mut Messages,

@@ -2,7 +2,7 @@
 //! survives power-off.
 
 use bahn_exchange::{Bit, BitArea, Exchange, signal};
-use bahn_parameters::operation::Station;
+use bahn_parameters::operation::{HandwheelParameters, Station};
 use bahn_parameters::plc::PlcParameters;
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::BlockRef;
@@ -14,6 +14,7 @@ use crate::axis::AxisId;
 use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::emergency::{Circuit, EmergencyStop};
+use crate::handwheel;
 use crate::magazine::Magazine;
 use crate::message::{Message, Messages};
 use crate::now::Facts;
@@ -35,6 +36,7 @@ pub(crate) struct MachineSide {
     pub timing: Timing,
     station: Station,
     pub plc_parameters: PlcParameters,
+    handwheel: HandwheelParameters,
     /// The memory of the PLC as each channel sees it; the first channel's is the memory itself.
     pub memory: PerChannel<Exchange>,
     /// Those of the channels beside the first one.
@@ -88,6 +90,8 @@ pub(crate) struct PlcUnit {
 #[derive(Clone)]
 struct Wiring {
     input_bits: Vec<(usize, Bit)>,
+    /// I160 to I175, where a handwheel has its keys.
+    handwheel_bits: Vec<(usize, Bit)>,
     output_bits: Vec<(usize, Bit)>,
 }
 
@@ -126,6 +130,7 @@ impl Wiring {
         };
         Wiring {
             input_bits: bits(BitArea::I, model.limits().inputs),
+            handwheel_bits: bits(BitArea::I, &[(160, 175)]),
             output_bits: bits(BitArea::O, model.limits().outputs),
         }
     }
@@ -159,6 +164,7 @@ impl MachineSide {
             timing: Timing::of(model),
             station: operation.station,
             plc_parameters: parameters.plc_parameters(),
+            handwheel: operation.handwheel,
             compensation: Compensation::of(&link.files, line),
             memory,
             windows,
@@ -252,6 +258,11 @@ impl MachineSide {
         let exchange = self.memory.first_mut();
         for (number, bit) in &self.wiring.input_bits {
             exchange.nc_put(*bit, measured.inputs.get(*number).copied().unwrap_or(false));
+        }
+        let keys = handwheel::plc_inputs(&self.handwheel, &measured.operator.handwheel);
+        for ((number, bit), key) in self.wiring.handwheel_bits.iter().zip(keys) {
+            let contact = measured.inputs.get(*number).copied().unwrap_or(false);
+            exchange.nc_put(*bit, contact || key);
         }
         status::analogue(self.plc_parameters.analogue_inputs, measured, exchange);
         for (marker, value) in self.messages.markers() {
@@ -418,5 +429,6 @@ impl MachineSide {
         let list = self.link.list();
         mirror_parameters(list, self.memory.first_mut());
         self.plc_parameters = list.plc_parameters();
+        self.handwheel = list.operation_parameters().handwheel;
     }
 }

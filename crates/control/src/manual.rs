@@ -1,29 +1,22 @@
 //! Manual operation: axis direction keys, jog increment, electronic handwheel.
 
-use bahn_exchange::{Image, signal};
+use bahn_exchange::signal;
 use bahn_motion::Aim;
 use bahn_parameters::ControlModel;
-use bahn_parameters::operation::{Handwheel, OperationParameters};
 use bahn_parameters::technology::Technology;
-use bahn_path::BlockRef;
 use bahn_plc::JogLimit;
+use bahn_servo::HandwheelInputs;
 
-use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
+use crate::handwheel::Handwheel;
 use crate::markers::AXES;
-use crate::message::{Message, Messages};
+use crate::message::Message;
 use crate::now::Now;
-use crate::panel::{Direction, Panel};
+use crate::panel::Direction;
 use crate::plc_link::StatusChanges;
+use crate::reach::{Reach, within};
 use crate::site::Site;
-
-/// Counting steps of a turn of the handwheel (inferred).
-pub const HANDWHEEL_STEPS: f64 = 1000.0;
-/// Travel of a turn with interpolation factor 0, mm [000:8071-8094].
-const TRAVEL_MM: f64 = 20.0;
-/// Highest interpolation factor.
-const FACTOR_MAX: u8 = 10;
 
 /// What manual operation remembers.
 #[derive(Clone, Copy, Debug)]
@@ -38,14 +31,8 @@ pub(crate) struct Manual {
     jogging: [Option<f64>; AXES],
     /// Handwheel or jog increment would lead beyond a limit.
     pushed: [Option<Direction>; AXES],
-    /// Axis index of the handwheel.
-    handwheel_axis: usize,
-    /// Interpolation factors.
-    factors: [u8; AXES],
-    /// Handwheel count up to which it was followed.
-    count: Option<i64>,
-    /// Axis index that the handwheel leads, and where to.
-    wheel: Option<(usize, f64)>,
+    /// The electronic handwheel.
+    pub handwheel: Handwheel,
     /// Axis key pressed last.
     last_key: usize,
     /// M function that was entered and waits for NC start.
@@ -62,10 +49,7 @@ impl Default for Manual {
             increment_limit: None,
             jogging: [None; AXES],
             pushed: [None; AXES],
-            handwheel_axis: 0,
-            factors: [5; AXES],
-            count: None,
-            wheel: None,
+            handwheel: Handwheel::default(),
             last_key: 0,
             m: None,
             s: None,
@@ -74,40 +58,17 @@ impl Default for Manual {
 }
 
 impl Manual {
-    /// Counts the handwheel without following it.
-    pub fn forget_turns(&mut self, count: i64) {
-        self.count = Some(count);
-    }
-
     /// Lets go of everything.
     pub fn stop(&mut self) {
         self.latched = [None; AXES];
         self.jogging = [None; AXES];
         self.pushed = [None; AXES];
-        self.wheel = None;
-    }
-
-    /// Axis index of the handwheel.
-    pub fn handwheel_axis(&self) -> usize {
-        self.handwheel_axis
-    }
-
-    /// Interpolation factors of the handwheel, by axis index.
-    pub fn factors(&self) -> [u8; AXES] {
-        self.factors
+        self.handwheel.stop();
     }
 
     /// Index of the axis key that was pressed last.
     pub fn last_key(&self) -> usize {
         self.last_key
-    }
-
-    /// The handwheel moves an axis with an interpolation factor.
-    pub fn choose_handwheel(&mut self, index: usize, factor: u8) {
-        self.handwheel_axis = index;
-        if let Some(slot) = self.factors.get_mut(index) {
-            *slot = factor;
-        }
     }
 
     /// M and S in Manual and Handwheel: entered here, output with NC start [003:1103-1111].
@@ -133,12 +94,7 @@ impl Manual {
 
     /// Module 9036.
     pub fn take_status(&mut self, changes: StatusChanges) {
-        for (factor, changed) in self.factors.iter_mut().zip(changes.factors) {
-            *factor = changed.unwrap_or(*factor);
-        }
-        if let Some(axis) = changes.handwheel_axis {
-            self.handwheel_axis = axis;
-        }
+        self.handwheel.take(changes.factors, changes.handwheel_axis);
         match changes.jog_limit {
             None => {}
             Some(JogLimit::At(limit)) => self.increment_limit = Some(limit),
@@ -152,36 +108,15 @@ impl Manual {
     }
 }
 
-/// Least interpolation factor that the rapid traverse of the slowest axis allows [000:8075-8092].
-pub(crate) fn factor_min(rapid_mm_min: f64) -> u8 {
-    // Rapid traverse from which on factors 0 to 4 are possible.
-    const FROM: [f64; 5] = [12_000.0, 6_000.0, 3_000.0, 1_500.0, 750.0];
-    let factor = FROM
-        .iter()
-        .position(|from| rapid_mm_min >= *from)
-        .unwrap_or(FROM.len());
-    u8::try_from(factor).unwrap_or(FACTOR_MAX)
-}
-
-/// What the operator's hands reach.
-pub(crate) struct Reach<'a, 'b> {
-    pub axes: &'a mut OwnAxes<'b>,
-    pub panel: &'a mut Panel,
-    pub rules: &'a OperationParameters,
-    pub nc: &'a Image,
-    pub messages: &'a mut Messages,
-    /// The block whose run is interrupted.
-    pub block: Option<BlockRef>,
-}
-
 impl Manual {
     /// Moves the axes in Manual and Handwheel, and while a run is interrupted with MANUAL OPERATION.
-    pub fn moves(&mut self, handwheel_count: i64, reach: &mut Reach, now: &Now) {
+    pub fn moves(&mut self, handwheel: &HandwheelInputs, reach: &mut Reach, now: &Now) {
         if now.stop {
             self.stop();
         }
+        self.handwheel.look(handwheel, reach);
         let keys = self.keys(reach, now);
-        self.turn_handwheel(handwheel_count, reach, now);
+        self.handwheel.turn(handwheel, reach, now, &mut self.pushed);
         for place in reach.axes.places() {
             let Some(index) = reach.axes.get(place).map(|unit| unit.index) else {
                 continue;
@@ -204,6 +139,13 @@ impl Manual {
         } else {
             reach.panel.axis_keys
         };
+        let by_wheel = self.handwheel.direction(&reach.rules.handwheel);
+        let by_wheel = by_wheel.filter(|_| now.mode == Mode::Handwheel && !now.stop);
+        if let Some((index, direction)) = by_wheel
+            && let Some(key) = keys.get_mut(index)
+        {
+            *key = key.or(Some(direction));
+        }
         for (index, (key, latched)) in keys.iter_mut().zip(&mut self.latched).enumerate() {
             if key.is_some() {
                 self.last_key = index;
@@ -231,10 +173,16 @@ impl Manual {
         } else {
             100.0
         };
-        let rapid = reach.panel.rapid;
+        let in_wheel_mode = now.mode == Mode::Handwheel;
+        let rules = &reach.rules.handwheel;
+        let rapid = reach.panel.rapid || in_wheel_mode && self.handwheel.rapid(rules);
+        let share = if in_wheel_mode {
+            self.handwheel.share(rules)
+        } else {
+            1.0
+        };
         let jog = self.jog_target(place, index, reach, now);
-        let wheel = self.wheel.filter(|(axis, _)| *axis == index);
-        let wheel = wheel.map(|(_, target)| target);
+        let wheel = self.handwheel.target(index);
         let Some(unit) = reach.axes.get_mut(place) else {
             return;
         };
@@ -257,7 +205,7 @@ impl Manual {
                 let feed = if rapid {
                     motion.rapid_mm_min * rapid_percent / 100.0
                 } else {
-                    motion.manual_mm_min * feed_percent / 100.0
+                    motion.manual_mm_min * share * feed_percent / 100.0
                 };
                 (along(unit, direction, feed), feed)
             }
@@ -347,56 +295,6 @@ impl Manual {
         }
         *target
     }
-
-    /// Follows the handwheel: its steps move the target of its axis.
-    fn turn_handwheel(&mut self, count: i64, reach: &Reach, now: &Now) {
-        let before = self.count.replace(count).unwrap_or(count);
-        let index = self.handwheel_axis;
-        if self.wheel.is_some_and(|(axis, _)| axis != index) {
-            self.wheel = None;
-        }
-        let slowest = reach
-            .axes
-            .iter()
-            .map(|unit| unit.parameters.motion.rapid_mm_min)
-            .fold(f64::INFINITY, f64::min);
-        let unit = reach.axes.with_index(index);
-        let there = now.mode == Mode::Handwheel && reach.rules.handwheel.kind != Handwheel::None;
-        // What is turned while the feed is not enabled moves nothing later.
-        let Some(unit) = unit.filter(|unit| there && unit.enabled) else {
-            self.wheel = None;
-            return;
-        };
-        let steps = count.wrapping_sub(before);
-        let few = steps.unsigned_abs() < u64::from(reach.rules.handwheel.threshold);
-        if few || reach.nc.bit(signal::SUPPRESS_HANDWHEEL) {
-            if steps != 0 && few {
-                // A vibration: its steps are counted together with those that follow.
-                self.count = Some(before);
-            }
-        } else if steps != 0 {
-            let least = factor_min(slowest);
-            let factor = self
-                .factors
-                .get(index)
-                .copied()
-                .unwrap_or(FACTOR_MAX)
-                .max(least)
-                .max(reach.rules.handwheel.factor_min.first().copied().unwrap_or(0));
-            let travel = TRAVEL_MM / f64::from(1u32 << factor.min(FACTOR_MAX));
-            let sign = if reach.rules.handwheel.positive { 1.0 } else { -1.0 };
-            let from = self.wheel.map_or(unit.nominal, |(_, target)| target);
-            let target = from + sign * steps as f64 / HANDWHEEL_STEPS * travel;
-            let (target, pushed) = within(unit, target);
-            self.wheel = Some((index, target));
-            if let Some(slot) = self.pushed.get_mut(index) {
-                *slot = pushed;
-            }
-        }
-        if self.wheel == Some((index, unit.nominal)) && unit.stands() {
-            self.wheel = None;
-        }
-    }
 }
 
 /// On in a direction, up to the software limit.
@@ -412,43 +310,5 @@ fn along(unit: &AxisUnit, direction: Direction, feed: f64) -> Aim {
         Aim::Feed(0.0)
     } else {
         Aim::Position(limit)
-    }
-}
-
-/// A target inside the software limits, from outside only towards them; and the limit beyond which it was.
-fn within(unit: &AxisUnit, target: f64) -> (f64, Option<Direction>) {
-    let Some([least, greatest]) = unit.limited() else {
-        return (target, None);
-    };
-    let (least, greatest) = (least.min(unit.nominal), greatest.max(unit.nominal));
-    if target > greatest {
-        (greatest, Some(Direction::Plus))
-    } else if target < least {
-        (least, Some(Direction::Minus))
-    } else {
-        (target, None)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The table of the manual: rapid traverse 12 000 allows factor 0, 80 mm/min only 5 to 10
-    /// [000:8075-8092].
-    #[test]
-    fn least_factor_by_rapid_traverse() {
-        for (rapid, factor) in [
-            (15_000.0, 0),
-            (12_000.0, 0),
-            (11_999.0, 1),
-            (6_000.0, 1),
-            (3_000.0, 2),
-            (1_500.0, 3),
-            (750.0, 4),
-            (80.0, 5),
-        ] {
-            assert_eq!(factor_min(rapid), factor, "{rapid}");
-        }
     }
 }

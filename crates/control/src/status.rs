@@ -201,7 +201,7 @@ pub(crate) fn items(
     tested: Option<&str>,
     link: &mut PlcLink,
 ) {
-    let handwheel = i32::try_from(manual.handwheel_axis()).unwrap_or(-1);
+    let handwheel = i32::try_from(manual.handwheel.axis()).unwrap_or(-1);
     let last_key = i32::try_from(manual.last_key()).unwrap_or(0);
     let items = [
         (StatusItem::MachineMode, mode.code()),
@@ -224,7 +224,7 @@ pub(crate) fn items(
         StatusItem::Subdivision4,
         StatusItem::Subdivision5,
     ];
-    for (item, factor) in subdivisions.into_iter().zip(manual.factors()) {
+    for (item, factor) in subdivisions.into_iter().zip(manual.handwheel.factors()) {
         link.set_status(item, factor.into());
     }
 }

@@ -1,5 +1,7 @@
 //! ELECTRONIC HANDWHEEL: interpolation factors, threshold, jog increment [000:8060-8170] [000:8494-8556].
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 mod support;
 
 use bahn_control::HANDWHEEL_STEPS;
@@ -119,6 +121,165 @@ fn the_wheel_without_feed_enable() {
     rig.event("key NO_FEED release");
     rig.seconds(1.0);
     close(turn(&mut rig, 'X', 0.0), 0.0, 0.001);
+}
+
+/// The inputs I160 to I175 that are set, by their numbers.
+fn inputs(rig: &mut Rig) -> Vec<u16> {
+    rig.seconds(0.1);
+    (160..176)
+        .filter(|number| rig.bit(&format!("I{number}")))
+        .collect()
+}
+
+/// The bench with another handwheel.
+fn kind(parameters: &str) -> Rig {
+    let mut rig = bench("")
+        .plant("speed = 6000", "speed = 12000")
+        .mps("1710.0=8 1720.0=10 7650=1 7660=0 7670.0=0 1010.0=12000 1010.1=12000 1010.2=12000")
+        .mps(parameters)
+        .ready();
+    rig.command("mode handwheel");
+    rig.scan();
+    rig
+}
+
+/// MP7640 and MP7645.0 say which keys are inputs of the PLC [000:8153-8186] [000:8257-8302].
+#[test]
+fn keys_go_where_mp7640_says() {
+    let keys = |parameters: &str, pressed: &[&str]| {
+        let mut rig = kind(parameters);
+        for key in pressed {
+            rig.event(&format!("handwheel key {key} press"));
+        }
+        inputs(&mut rig)
+    };
+    assert_eq!(keys("7640=1", &["+", "-", "RAPID", "X"]), [160, 161, 162]);
+    assert_eq!(keys("7640=3", &["RAPID"]), [162]);
+    assert_eq!(
+        keys("7640=4 7645.0=0", &["X", "1", "5", "-", "+"]),
+        [164, 168, 169, 170]
+    );
+    assert_eq!(keys("7640=4 7645.0=1", &["X", "IV", "+"]), [160, 163, 170]);
+    assert_eq!(
+        keys("7640=6 7645.0=0", &["X", "+", "A", "B", "C"]),
+        [173, 174, 175]
+    );
+    let all = [
+        "X", "IV", "Y", "V", "Z", "CAPTURE", "SLOW", "MEDIUM", "FAST", "-", "+", "A",
+    ];
+    let expected = [160, 161, 162, 163, 164, 167, 168, 169, 170, 171, 172, 173];
+    assert_eq!(keys("7640=6 7645.0=1", &all), expected);
+    assert_eq!(keys("7640=0", &["X", "+", "A"]), [0; 0]);
+}
+
+/// The axis keys of an HR 330 choose the axis of the wheel; + and - move it with the manual feed, with the
+/// rapid traverse key at rapid traverse. With MP7640 = 3 they are the PLC's [000:8124-8151].
+#[test]
+fn an_hr_330() {
+    let mut rig = kind("7640=1");
+    rig.command("handwheel X 1");
+    rig.command("handwheel Y 1");
+    rig.event("handwheel key X tap");
+    rig.seconds(0.3);
+    close(turn(&mut rig, 'X', HANDWHEEL_STEPS), 10.0, 0.005);
+    rig.event("handwheel key - press");
+    rig.seconds(0.5);
+    close(rig.speed('X'), -1200.0, 5.0);
+    rig.event("handwheel key RAPID press");
+    rig.seconds(0.3);
+    assert!(rig.speed('X') < -3000.0, "{}", rig.speed('X'));
+    rig.event("handwheel key - release");
+    rig.settle();
+    // In another mode they move nothing.
+    rig.command("mode manual");
+    rig.event("handwheel key + press");
+    rig.seconds(0.3);
+    close(rig.speed('X'), 0.0, 1.0);
+
+    let mut rig = kind("7640=3");
+    rig.event("handwheel key + press");
+    rig.seconds(0.3);
+    close(rig.speed('X'), 0.0, 1.0);
+}
+
+/// SLOW, MEDIUM and FAST of an HR 410: the factors of MP7670 and, in percent of MP1020 = 1200, the feeds of MP7671
+/// [000:8292-8304].
+#[test]
+fn speeds_of_the_hr_410() {
+    let mut rig = kind("7640=6 7645.0=0 7670.0=4 7670.1=2 7670.2=1 7671.0=10 7671.1=50 7671.2=200");
+    rig.event("handwheel key Y tap");
+    for (key, travel, feed) in [
+        ("SLOW", 1.25, 120.0),
+        ("MEDIUM", 5.0, 600.0),
+        ("FAST", 10.0, 2400.0),
+    ] {
+        rig.event(&format!("handwheel key {key} tap"));
+        rig.seconds(0.3);
+        close(turn(&mut rig, 'Y', HANDWHEEL_STEPS), travel, 0.005);
+        rig.event("handwheel key - press");
+        rig.seconds(0.4);
+        close(rig.speed('Y'), -feed, 5.0);
+        rig.event("handwheel key - release");
+        rig.settle();
+    }
+}
+
+/// Three HR 150 at an HRA 110: the first is X, the second Y, the third what S2 or MP7645.1 says; all at once. S1 and
+/// S2 work with 0 V logic [000:8310-8385].
+#[test]
+fn three_wheels() {
+    let mut rig = kind("7640=5 7645.0=1 7645.1=4 7645.2=0");
+    for axis in ['X', 'Y', 'Z'] {
+        rig.command(&format!("handwheel {axis} 3"));
+    }
+    rig.event("handwheel S1 3");
+    rig.event("handwheel S2 3");
+    let expected: Vec<u16> = (160..176).filter(|input| ![162, 170].contains(input)).collect();
+    assert_eq!(inputs(&mut rig), expected);
+    let from = ['X', 'Y', 'Z'].map(|axis| rig.table(axis));
+    rig.event("handwheel 1 1000");
+    rig.event("handwheel 2 -1000");
+    rig.event("handwheel 3 2000");
+    rig.seconds(2.0);
+    for ((axis, from), way) in ['X', 'Y', 'Z'].into_iter().zip(from).zip([2.5, -2.5, 5.0]) {
+        close(rig.table(axis) - from, way, 0.005);
+    }
+    // Position 1 of S2 is X: the third wheel leads it, too; Z is let go.
+    rig.event("handwheel S2 1");
+    rig.seconds(0.1);
+    let from = rig.table('X');
+    rig.event("handwheel 3 1000");
+    rig.seconds(2.0);
+    close(rig.table('X') - from, 2.5, 0.005);
+}
+
+/// HANDWHEEL? when MP7640 names one and none is plugged in [000:8069]; what is turned then moves nothing.
+#[test]
+fn a_handwheel_that_is_not_there() {
+    let mut rig = kind("7640=2");
+    rig.command("handwheel X 1");
+    assert_eq!(rig.messages(), [""; 0]);
+    rig.event("handwheel unplug");
+    close(turn(&mut rig, 'X', HANDWHEEL_STEPS), 0.0, 0.001);
+    assert_eq!(rig.messages(), ["HANDWHEEL?"]);
+    rig.event("handwheel plug");
+    rig.seconds(0.1);
+    assert_eq!(rig.messages(), [""; 0]);
+    close(turn(&mut rig, 'X', HANDWHEEL_STEPS), 10.0, 0.005);
+    let mut rig = kind("7640=0");
+    rig.event("handwheel unplug");
+    rig.seconds(0.1);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// MP7641 = 1: the factor is the PLC's; the axis may be chosen with the factor that it has [000:8108-8111].
+#[test]
+fn the_factor_is_the_plcs() {
+    let mut rig = kind("7640=2 7641=1");
+    assert!(!rig.control.command("handwheel Y 2".parse().unwrap()));
+    rig.command("ce");
+    rig.command("handwheel Y 5");
+    close(turn(&mut rig, 'Y', HANDWHEEL_STEPS), 0.625, 0.005);
 }
 
 /// The jog increment of the manual: enabled in the mode Handwheel, started by the markers of keys that have

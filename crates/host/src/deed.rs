@@ -70,7 +70,11 @@ impl Deed {
         let rest = rest.trim();
         let is_command = match word {
             "key" => rest.parse::<u8>().is_ok(),
-            "handwheel" => rest.starts_with(|first: char| first.is_ascii_alphabetic()),
+            // An axis is a letter alone; `handwheel key X` and `handwheel S1 3` are done at the handwheel.
+            "handwheel" => {
+                let first = rest.split_whitespace().next().unwrap_or_default();
+                first.len() == 1 && first.starts_with(|first: char| first.is_ascii_alphabetic())
+            }
             _ => false,
         };
         if Event::WORDS.contains(&word) && !is_command {

@@ -621,7 +621,7 @@ mod tests {
             actions,
             [
                 Action::Do(Deed::Command(0, Command::Handwheel(bahn_path::Axis::X, 3))),
-                Action::Do(Deed::Event(Event::Handwheel(-500), turn)),
+                Action::Do(Deed::Event(Event::Handwheel(0, -500), turn)),
                 Action::Do(Deed::Command(0, Command::Test("OTHER.H".into())))
             ]
         );

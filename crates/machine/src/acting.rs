@@ -27,10 +27,16 @@ impl Machine {
             Event::Key(name, action) => self.key(name, *action)?,
             Event::FeedOverride(percent) => self.panel.operator.feed_override_percent = *percent,
             Event::SpindleOverride(percent) => self.panel.operator.spindle_override_percent = *percent,
-            Event::Handwheel(steps) => {
-                let count = &mut self.panel.operator.handwheel_count;
-                *count = count.wrapping_add(*steps);
+            Event::Handwheel(wheel, steps) => {
+                if let Some(count) = self.panel.operator.handwheel.counts.get_mut(*wheel) {
+                    *count = count.wrapping_add(*steps);
+                }
             }
+            Event::HandwheelKey(key, action) => self.panel.wheel_key(*key, *action),
+            Event::HandwheelSwitch(switch, position) => {
+                set(&mut self.panel.operator.handwheel.switches, *switch, *position);
+            }
+            Event::HandwheelPlug(plugged) => self.panel.operator.handwheel.connected = *plugged,
             Event::Switch(name, state) => self.switch(name, state)?,
             Event::EmergencyStop(pressed) => self.chain.button = *pressed,
             Event::Voltage(on) => self.chain.supply = *on,

@@ -1,7 +1,7 @@
 //! What an operator, a script or a test does to the machine, as text.
 
 use bahn_servo::ANALOGUE_INPUTS;
-use bahn_servo::INPUTS;
+use bahn_servo::{HandwheelKey, INPUTS, WHEELS};
 
 use crate::axis::DriveFault;
 use crate::chain::RelayFault;
@@ -17,8 +17,14 @@ pub enum Event {
     FeedOverride(f64),
     /// The spindle override potentiometer, %.
     SpindleOverride(f64),
-    /// The handwheel is turned by so many counting steps.
-    Handwheel(i64),
+    /// A wheel of the handwheel, from 1, is turned by so many counting steps.
+    Handwheel(usize, i64),
+    /// A key of the handwheel.
+    HandwheelKey(HandwheelKey, KeyAction),
+    /// A step switch at the handwheel adapter, 1 or 2, is turned to a position, from 1.
+    HandwheelSwitch(usize, u8),
+    /// The handwheel is plugged in, or out.
+    HandwheelPlug(bool),
     /// A thing is moved by hand to one of its states.
     Switch(String, String),
     /// The EMERGENCY STOP button is pressed or released.
@@ -124,7 +130,10 @@ impl Event {
     pub const HELP: &str = "\
 key NAME press|release|tap          a key of the panel; tap presses it for 200 ms
 override feed|spindle PERCENT       a potentiometer, 0 to 150
-handwheel STEPS                     turns the handwheel, + or -
+handwheel [1|2|3] STEPS             turns the handwheel, + or -; 2 and 3 stand at an HRA 110
+handwheel key NAME press|release|tap    X Y Z IV V + - RAPID SLOW MEDIUM FAST A B C, 1 to 5
+handwheel S1|S2 POSITION            a step switch at an HRA 110, from 1
+handwheel plug|unplug
 switch THING STATE                  moves a thing by hand, as a door
 emergency press|release             the EMERGENCY STOP button
 voltage on|off                      the supply of the control voltage
@@ -168,10 +177,7 @@ repair AXIS|S|THING|gear|I12|relay|probe|all
                 ["spindle", percent] => Ok(Event::SpindleOverride(number(percent, 0, 150)?)),
                 _ => Err(EventError::Form("override feed|spindle PERCENT")),
             },
-            "handwheel" => match rest {
-                [steps] => Ok(Event::Handwheel(number(steps, -1_000_000, 1_000_000)? as i64)),
-                _ => Err(EventError::Form("handwheel STEPS")),
-            },
+            "handwheel" => handwheel(rest),
             "switch" => match rest {
                 [name, state] => Ok(Event::Switch((*name).to_owned(), (*state).to_owned())),
                 _ => Err(EventError::Form("switch THING STATE")),
@@ -210,13 +216,49 @@ repair AXIS|S|THING|gear|I12|relay|probe|all
 }
 
 fn key(rest: &[&str]) -> Result<Event, EventError> {
-    let (name, action) = match rest {
-        [name] | [name, "tap"] => (name, KeyAction::Tap),
-        [name, "press"] => (name, KeyAction::Press),
-        [name, "release"] => (name, KeyAction::Release),
-        _ => return Err(EventError::Form("key NAME press|release|tap")),
-    };
-    Ok(Event::Key((*name).to_owned(), action))
+    const FORM: &str = "key NAME press|release|tap";
+    match rest {
+        [name] => Ok(Event::Key((*name).to_owned(), KeyAction::Tap)),
+        [name, action] => Ok(Event::Key((*name).to_owned(), key_action(action, FORM)?)),
+        _ => Err(EventError::Form(FORM)),
+    }
+}
+
+fn key_action(action: &str, form: &'static str) -> Result<KeyAction, EventError> {
+    match action {
+        "tap" => Ok(KeyAction::Tap),
+        "press" => Ok(KeyAction::Press),
+        "release" => Ok(KeyAction::Release),
+        _ => Err(EventError::Form(form)),
+    }
+}
+
+fn handwheel(rest: &[&str]) -> Result<Event, EventError> {
+    const FORM: &str = "handwheel [1|2|3] STEPS | key NAME press|release|tap | S1|S2 POSITION | plug|unplug";
+    let steps = |text| Ok(number(text, -1_000_000, 1_000_000)? as i64);
+    match rest {
+        ["plug"] => Ok(Event::HandwheelPlug(true)),
+        ["unplug"] => Ok(Event::HandwheelPlug(false)),
+        [one] => Ok(Event::Handwheel(0, steps(one)?)),
+        ["S1", position] => Ok(Event::HandwheelSwitch(0, number(position, 1, 8)? as u8)),
+        ["S2", position] => Ok(Event::HandwheelSwitch(1, number(position, 1, 8)? as u8)),
+        ["key", name, action @ ..] if action.len() < 2 => {
+            let key = HandwheelKey::named(name).ok_or_else(|| EventError::Name {
+                what: "handwheel key",
+                name: (*name).to_owned(),
+                known: HandwheelKey::NAMES.map(|(name, _)| name).join(", "),
+            })?;
+            let action = action
+                .first()
+                .map_or(Ok(KeyAction::Tap), |action| key_action(action, FORM))?;
+            Ok(Event::HandwheelKey(key, action))
+        }
+        [wheel, turned] => {
+            let wheel = number(wheel, 1, WHEELS as i64)? as usize;
+            Ok(Event::Handwheel(wheel - 1, steps(turned)?))
+        }
+        _ => Err(EventError::Form(FORM)),
+    }
 }
 
 fn fault(rest: &[&str]) -> Result<Fault, EventError> {

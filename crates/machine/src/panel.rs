@@ -1,6 +1,6 @@
 //! The machine operating panel: keys, lamps, potentiometers [000:2622-2683].
 
-use bahn_servo::{INPUTS, OUTPUTS, OperatorInputs};
+use bahn_servo::{HandwheelKey, INPUTS, OUTPUTS, OperatorInputs};
 
 use crate::event::KeyAction;
 use crate::reader::{Coil, Contact, Section};
@@ -21,6 +21,9 @@ pub(crate) struct Panel {
     pub keys: Vec<Key>,
     pub lamps: Vec<(String, Coil)>,
     pub operator: OperatorInputs,
+    /// Milliseconds until the tapped keys of the handwheel are released.
+    wheel_taps_ms: [u32; HandwheelKey::NAMES.len()],
+    wheel_is_tapped: bool,
 }
 
 impl Panel {
@@ -38,8 +41,10 @@ impl Panel {
             operator: OperatorInputs {
                 feed_override_percent: 100.0,
                 spindle_override_percent: 100.0,
-                handwheel_count: 0,
+                ..OperatorInputs::default()
             },
+            wheel_taps_ms: [0; HandwheelKey::NAMES.len()],
+            wheel_is_tapped: false,
         }
     }
 
@@ -57,6 +62,20 @@ impl Panel {
         true
     }
 
+    /// Presses, releases or taps a key of the handwheel.
+    pub fn wheel_key(&mut self, key: HandwheelKey, action: KeyAction) {
+        let keys = &mut self.operator.handwheel.keys;
+        keys.set(key, action != KeyAction::Release);
+        if let Some(tapped) = self.wheel_taps_ms.get_mut(key as usize) {
+            *tapped = if action == KeyAction::Tap {
+                KeyAction::TAP_MS
+            } else {
+                0
+            };
+            self.wheel_is_tapped |= *tapped > 0;
+        }
+    }
+
     pub fn pressed(&self, name: &str) -> bool {
         self.keys.iter().any(|key| key.pressed && key.name == name)
     }
@@ -66,6 +85,16 @@ impl Panel {
         for key in self.keys.iter_mut().filter(|key| key.tapped_ms > 0) {
             key.tapped_ms -= 1;
             key.pressed = key.tapped_ms > 0;
+        }
+        if self.wheel_is_tapped {
+            self.wheel_is_tapped = false;
+            for (tapped, (_, key)) in self.wheel_taps_ms.iter_mut().zip(HandwheelKey::NAMES) {
+                if *tapped > 0 {
+                    *tapped -= 1;
+                    self.operator.handwheel.keys.set(key, *tapped > 0);
+                    self.wheel_is_tapped |= *tapped > 0;
+                }
+            }
         }
     }
 

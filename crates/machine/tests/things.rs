@@ -221,7 +221,7 @@ fn potentiometers_handwheel_and_analogue_inputs() {
     let operator = measured.operator;
     assert_eq!(operator.feed_override_percent, 80.0);
     assert_eq!(operator.spindle_override_percent, 120.5);
-    assert_eq!(operator.handwheel_count, 200);
+    assert_eq!(operator.handwheel.counts[0], 200);
     assert_eq!(measured.volts[1], 5.0);
     assert_eq!(measured.temperatures[6], 23.4);
 }

@@ -35,7 +35,7 @@ impl Default for IdealAxes {
             operator: OperatorInputs {
                 feed_override_percent: 100.0,
                 spindle_override_percent: 100.0,
-                handwheel_count: 0,
+                ..OperatorInputs::default()
             },
             counts: [0; ENCODERS],
             ready: false,

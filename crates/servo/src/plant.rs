@@ -1,5 +1,7 @@
 //! The seam between control and machine.
 
+use crate::handwheel::HandwheelInputs;
+
 /// PLC inputs that a plant may have: I0 to I383.
 pub const INPUTS: usize = 384;
 /// PLC outputs that a plant may have: O0 to O191.
@@ -176,6 +178,6 @@ pub struct OperatorInputs {
     pub feed_override_percent: f64,
     /// Spindle-speed override potentiometer, 0 to 150 %.
     pub spindle_override_percent: f64,
-    /// Counting steps of the handwheel since power-on.
-    pub handwheel_count: i64,
+    /// The handwheel.
+    pub handwheel: HandwheelInputs,
 }

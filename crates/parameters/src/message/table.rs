@@ -181,6 +181,11 @@ messages! {
         remedy "Give setup clearance, depth and pecking depth the sign of the working direction.";
         source "[003:8031-8033]";
 
+    HandwheelMissing: "HANDWHEEL?";
+        cause "MP7640 names a handwheel, and none is connected.";
+        remedy "Plug it in, or enter MP7640 = 0.";
+        source "[000:8069]";
+
     // Messages of digitizing [003:8037-8098].
 
     ExchangeTouchProbeBattery: "EXCHANGE TOUCH PROBE BATTERY";
