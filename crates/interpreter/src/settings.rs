@@ -7,7 +7,7 @@ use bahn_parameters::machining::ScaledAxes;
 use bahn_parameters::spindle::SpindleParameters;
 use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
-use bahn_path::{Axis, Function, Position, TechnologyFunction, ToolShape};
+use bahn_path::{Axis, Function, Position, Swivels, TechnologyFunction, ToolShape};
 
 use crate::status::Status;
 
@@ -176,6 +176,12 @@ pub struct Rules {
     pub inhibited_cycles: u32,
     /// MP7246: paraxial positioning blocks are disabled [000:7022-7029].
     pub paraxial_inhibited: bool,
+    /// MP7510 to MP7592: the swivel axes; `None` when there are none [000:4258-4301].
+    pub swivels: Option<Arc<Swivels>>,
+    /// MP7500: the working plane can be tilted [000:4273-4276].
+    pub tilting: bool,
+    /// MP810: the modulo values of rotary axes, degrees [000:6468-6484].
+    pub modulo_deg: [Option<f64>; Axis::COUNT],
 }
 
 impl Rules {
@@ -228,6 +234,12 @@ impl Rules {
                 .filter(|cycle| list.cycle_inhibited(*cycle))
                 .fold(0, |bits, cycle| bits | 1 << cycle),
             paraxial_inhibited: list.paraxial_inhibited(),
+            swivels: list.swivels().map(Arc::new),
+            tilting: list.operation_parameters().tilting,
+            modulo_deg: Axis::ALL.map(|axis| {
+                let index = list.axis_index(axis)?;
+                list.axis_parameters(index).travel.modulo_deg
+            }),
             ..Rules::default()
         }
     }
@@ -253,6 +265,9 @@ impl Default for Rules {
             speed_max_rpm: 99_999.0,
             inhibited_cycles: 0,
             paraxial_inhibited: false,
+            swivels: None,
+            tilting: false,
+            modulo_deg: [None; Axis::COUNT],
         }
     }
 }

@@ -239,8 +239,8 @@ pub const CYCLES: &[Cycle] = &[
     called(16, "CONTOUR MILLING", &[&[SET_UP, DEPTH], &[PECKG, FEED, TURN, FEED]]),
     // [003:5094-5099]
     called(17, "RIGID TAPPING", &[&[SET_UP], &[DEPTH], &[parameter("PITCH", Quantity::Length, Signed)]]),
-    // [000:147]
-    defined(19, "WORKING PLANE", &[]),
+    // The positions of the swivel axes; without an axis it ends the tilting [000:4250-4254].
+    defined(19, "WORKING PLANE", &[&[optional(POINT)]]),
     // [000:6655-6699]
     defined(26, "AXIS-SPEC. SCALING", &[]),
     // [003:4414-4428]
