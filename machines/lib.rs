@@ -49,8 +49,15 @@ pub const TWIN: ShippedMachine = machine!("twin" for "tnc415b":
     "plc/together.txt", "programs/LEFT.H", "programs/RIGHT.H", "scripts/emergency.txt", "scripts/stop.txt",
 );
 
+/// A portal mill with synchronized axes and a spindle that swivels; its control is a TNC 415 B. It is a start where it is
+/// asked for by its name.
+pub const GANTRY: ShippedMachine = machine!("gantry" for "tnc415b":
+    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
+    "programs/ROOF.H", "programs/NOSE.H",
+);
+
 /// All of them; the first one that has a model is the start for it.
-pub const ALL: [ShippedMachine; 3] = [MILL, MILL_TNC360, TWIN];
+pub const ALL: [ShippedMachine; 4] = [MILL, MILL_TNC360, TWIN, GANTRY];
 
 impl ShippedMachine {
     /// The text of a file.

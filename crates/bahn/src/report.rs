@@ -266,6 +266,12 @@ impl Notice {
                     MessageId::PgmSectionCannotBeShown.text(model)
                 )
             }
+            Notice::Cut(EventKind::TiltedNotShown) => {
+                format!(
+                    "{}: the tool leans",
+                    MessageId::PgmSectionCannotBeShown.text(model)
+                )
+            }
             Notice::BlankRedefined => "another BLK FORM after the first movement: the first one stays".into(),
             Notice::NothingToProbe => {
                 "there is no part to touch: the program needs a BLK FORM, and graphics".into()

@@ -299,7 +299,8 @@ impl Feeder {
         self.chain.clone_from(chain);
         self.limits = limits;
         self.interpreter.retry();
-        self.interpreter.relocate(&chain.to_path(machine));
+        self.chain.place(self.interpreter.placement());
+        self.interpreter.relocate(&self.chain.to_path(machine));
     }
 
     /// The next step of the program.
@@ -343,7 +344,7 @@ impl Feeder {
         // The resolution of positions is no violation.
         const ROUNDING: f64 = 1e-6;
         let mut axes = Axis::ALL.into_iter();
-        if let Some(axis) = axes.find(|axis| !self.axes.contains(*axis) && element.moves(*axis)) {
+        if let Some(axis) = axes.find(|axis| !self.axes.contains(*axis) && element.moves_axis(*axis)) {
             let (block, sequence) = (element.block, element.sequence);
             return Some(RunFault::Absent {
                 axis,
@@ -351,10 +352,12 @@ impl Feeder {
                 sequence,
             });
         }
-        let [min, max] = self.chain.bounds(&element.curve, &element.start, &element.end);
+        let [min, max] = self.chain.bounds(element);
         let [least, greatest] = &self.limits;
         for axis in Axis::ALL {
-            if element.start[axis] == element.end[axis] && element.curve == Curve::Line {
+            let upright = element.placement.is_none() && element.curve == Curve::Line;
+            let placed = element.placement.is_some() && !element.moves_axis(axis);
+            if placed || upright && element.start[axis] == element.end[axis] {
                 continue;
             }
             let direction = if max[axis] > greatest[axis] + ROUNDING {

@@ -1,6 +1,8 @@
 //! Between the path and the axes: the kinematics of a channel, and what is superimposed on it.
 
-use bahn_path::{Axis, Curve, Function, Position};
+use std::sync::Arc;
+
+use bahn_path::{Axis, Curve, Function, PathElement, Placement, Position};
 
 /// The least and greatest machine position of each axis; infinite where there is no limit.
 pub(crate) type Box2 = [Position; 2];
@@ -74,13 +76,39 @@ impl Kinematics for Cartesian {
 /// The kinematics of a channel with what is superimposed on it now.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
-    kinematics: std::sync::Arc<dyn Kinematics>,
+    kinematics: Arc<dyn Kinematics>,
     pub offsets: Offsets,
+    /// How the path stands that is executed, when not upright.
+    placement: Option<Arc<Placement>>,
 }
 
 impl Chain {
-    pub fn new(kinematics: std::sync::Arc<dyn Kinematics>, offsets: Offsets) -> Chain {
-        Chain { kinematics, offsets }
+    pub fn new(kinematics: Arc<dyn Kinematics>, offsets: Offsets) -> Chain {
+        Chain {
+            kinematics,
+            offsets,
+            placement: None,
+        }
+    }
+
+    /// The path stands in this placement from now on.
+    pub fn place(&mut self, placement: Option<&Arc<Placement>>) {
+        if !Placement::is_same(self.placement.as_ref(), placement) {
+            self.placement = placement.cloned();
+        }
+    }
+
+    /// How the path stands, when not upright.
+    pub fn placement(&self) -> Option<&Arc<Placement>> {
+        self.placement.as_ref()
+    }
+
+    /// What is added behind a placement, which has the tool in it.
+    fn behind(&self) -> Offsets {
+        Offsets {
+            tool_length: 0.0,
+            ..self.offsets
+        }
     }
 
     /// The same kinematics with other offsets.
@@ -93,16 +121,32 @@ impl Chain {
 
     /// The axis positions of a path position.
     pub fn to_axes(&self, path: &Position) -> Position {
-        self.kinematics.to_axes(path, &self.offsets)
+        match &self.placement {
+            None => self.kinematics.to_axes(path, &self.offsets),
+            Some(placement) => self.kinematics.to_axes(&placement.to_nose(path), &self.behind()),
+        }
     }
 
     /// The path position of axis positions.
     pub fn to_path(&self, axes: &Position) -> Position {
-        self.kinematics.to_path(axes, &self.offsets)
+        match &self.placement {
+            None => self.kinematics.to_path(axes, &self.offsets),
+            Some(placement) => placement.from_nose(&self.kinematics.to_path(axes, &self.behind())),
+        }
     }
 
-    /// The least and greatest axis positions on a curve.
-    pub fn bounds(&self, curve: &Curve, start: &Position, end: &Position) -> Box2 {
-        self.kinematics.bounds(curve, start, end, &self.offsets)
+    /// The least and greatest axis positions on an element, in the placement that it has.
+    pub fn bounds(&self, element: &PathElement) -> Box2 {
+        let PathElement {
+            curve, start, end, ..
+        } = element;
+        match &element.placement {
+            None => self.kinematics.bounds(curve, start, end, &self.offsets),
+            Some(placement) => {
+                let [least, greatest] = placement.bounds(curve, start, end);
+                self.kinematics
+                    .bounds(&Curve::Line, &least, &greatest, &self.behind())
+            }
+        }
     }
 }

@@ -275,7 +275,7 @@ impl Probe {
 }
 
 /// The way of a probing as far as the traverse range reaches, and the limit that ends it. On kinematics that are
-/// not Cartesian the way is that of the axes (inferred).
+/// not Cartesian the way is that of the axes (inferred); in a tilted plane they move in straight lines, too.
 fn within_range(
     from: &Position,
     to: Position,
@@ -283,17 +283,24 @@ fn within_range(
     chain: &Chain,
 ) -> (Position, Option<(Axis, Direction)>) {
     let [least, greatest] = axes.traverse_box();
+    let placed = chain
+        .placement()
+        .map(|_| [from, &to].map(|position| chain.to_axes(position)));
     let mut part = 1.0;
     let mut limit = None;
     for unit in axes.iter() {
         let axis = unit.axis;
         let (offset, way) = (chain.offsets.of(axis), to[axis] - from[axis]);
+        let (offset, from, way) = match &placed {
+            Some([from, to]) => (0.0, from[axis], to[axis] - from[axis]),
+            None => (offset, from[axis], way),
+        };
         let (end, direction) = if way > 0.0 {
             (greatest[axis], Direction::Plus)
         } else {
             (least[axis], Direction::Minus)
         };
-        let reach = (end - offset - from[axis]) / way;
+        let reach = (end - offset - from) / way;
         if way != 0.0 && reach < part {
             (part, limit) = (reach.max(0.0), Some((axis, direction)));
         }

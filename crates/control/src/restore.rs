@@ -161,16 +161,17 @@ impl Restoration {
         feeder: &mut Feeder,
         rules: &RestartParameters,
         track: &mut Track,
-        site: &Site,
+        site: &mut Site,
     ) {
         if element.block.program == 0 && element.block.block >= block {
+            site.chain.place(element.placement.as_ref());
             let mut target = site.chain.to_axes(&element.start);
             for unit in site.axes.iter() {
                 if target[unit.axis].is_nan() {
                     target[unit.axis] = unit.nominal;
                 }
             }
-            track.path.set_position(element.start);
+            track.begin_at(element.start, site.chain);
             feeder.put_back(std::iter::once(element));
             self.0 = Some(Restore::Ready { target });
             return;

@@ -243,6 +243,11 @@ impl ProgramRun {
             track.path.clear();
             q_transfer.take_all()
         });
+        if closed && site.chain.placement().is_some() {
+            // By hand nothing is tilted: 3D ROT is off there (inferred).
+            site.chain.place(None);
+            self.track.begin_at(site.here(), site.chain);
+        }
         if closed && basis.list.program_end_clearing().at_program_end && !self.source.was_mdi() {
             self.source.cancel_status(basis.list, site);
         }
@@ -318,6 +323,7 @@ impl ProgramRun {
                     site.tools.replaces_worn &= mdi;
                     site.tools.takes_larger &= mdi;
                     let block = if mdi { 0 } else { self.selection.start_block };
+                    site.chain.place(None);
                     let feeder = self.source.feeder_for_run(program, block, site, basis);
                     self.source.put(feeder);
                 }
@@ -327,7 +333,7 @@ impl ProgramRun {
                 }
             }
         }
-        self.track.path.set_position(site.here());
+        self.track.begin_at(site.here(), site.chain);
         self.progress.enter(RunState::Running);
     }
 
@@ -355,6 +361,7 @@ impl ProgramRun {
             self.selection.start_block = 0;
         }
         let start = if mdi { 0 } else { self.selection.start_block };
+        site.chain.place(None);
         let feeder = self.source.feeder_for_run(program, start, site, basis);
         self.source.put(feeder);
         self.progress.scan();

@@ -191,6 +191,9 @@ pub(crate) fn coordinates<'a>(
     }
     let [actual, ..] = rows;
     link.set_coordinates(CoordinateKind::ShiftedDatum, actual);
+    // Bit 0: tilted; bit 2: by the program that runs.
+    let tilted = chain.placement().is_some_and(|placement| placement.is_tilted());
+    link.set_status(StatusItem::WorkingPlane, if tilted { 0b101 } else { 0 });
 }
 
 /// What module 9035 reads.

@@ -82,7 +82,7 @@ impl Tapping {
         let moved = site
             .axes
             .iter()
-            .find(|unit| element.is_some_and(|element| element.moves(unit.axis)));
+            .find(|unit| element.is_some_and(|element| element.moves_axis(unit.axis)));
         let delay = moved.map_or(0.0, |unit| unit.servo.delay_s());
         let [nominal_deg, actual_deg] = site.spindle.angles_deg(site.now.time_s + delay);
         Master {
@@ -148,13 +148,13 @@ impl Tapping {
         let Some(element) = track.path.element() else {
             return;
         };
-        for unit in site.axes.iter_mut().filter(|unit| element.moves(unit.axis)) {
+        for unit in site.axes.iter_mut().filter(|unit| element.moves_axis(unit.axis)) {
             unit.left_at = None;
             unit.stand(unit.servo.actual_mm());
         }
         let mut at = track.path.position();
         let here = site.here();
-        for unit in site.axes.iter().filter(|unit| element.moves(unit.axis)) {
+        for unit in site.axes.iter().filter(|unit| element.moves_axis(unit.axis)) {
             at[unit.axis] = here[unit.axis];
         }
         let [_, now] = site.spindle.angles_deg(0.0);
@@ -180,7 +180,7 @@ impl Tapping {
         let window = rigid.then(|| window_mm(site));
         let element = track.path.element();
         for unit in site.axes.iter_mut() {
-            let moves = element.is_some_and(|element| element.moves(unit.axis));
+            let moves = element.is_some_and(|element| element.moves_axis(unit.axis));
             unit.servo.set_window(window.filter(|_| moves));
         }
         let braking = floating.then(|| {

@@ -67,6 +67,12 @@ impl Track {
         }
     }
 
+    /// The path begins where the axes stand, outside the cycle.
+    pub fn begin_at(&mut self, here: Position, chain: &Chain) {
+        self.path.set_placement(chain.placement().cloned());
+        self.path.set_position(here);
+    }
+
     /// Makes room for the functions that wait, outside the cycle.
     pub fn reserve(&mut self) {
         if self.waiting.capacity() == 0 {
@@ -132,7 +138,7 @@ impl Track {
         };
         let stands = self.path.speed_mm_s() == 0.0;
         axes.iter()
-            .filter(|unit| element.moves(unit.axis))
+            .filter(|unit| element.moves_axis(unit.axis))
             .all(|unit| unit.enabled && (unit.servo.closed() || stands))
     }
 
@@ -142,7 +148,7 @@ impl Track {
             return;
         };
         for unit in axes.iter_mut() {
-            if clamped.contains(unit.axis) && element.moves(unit.axis) {
+            if clamped.contains(unit.axis) && element.moves_axis(unit.axis) {
                 unit.in_position = false;
             }
         }
@@ -156,10 +162,13 @@ impl Track {
     }
 
     /// The nominal positions of the axes from that of the path.
-    pub fn follow(&mut self, position: &Position, axes: &mut OwnAxes, chain: &Chain, time_s: f64) {
+    pub fn follow(&mut self, position: &Position, axes: &mut OwnAxes, chain: &mut Chain, time_s: f64) {
         let moved = self.last != Some(*position);
         self.last = Some(*position);
         let element = self.path.element();
+        if let Some(element) = element {
+            chain.place(element.placement.as_ref());
+        }
         let nominal = chain.to_axes(position);
         for unit in axes.iter_mut() {
             let value = nominal[unit.axis];
@@ -275,6 +284,7 @@ pub(crate) fn limit_message(axes: &mut OwnAxes, axis: Axis, direction: Direction
 /// Whether an axis moves on the circle of an element, where reversal peaks are compensated.
 fn is_circular(element: &PathElement, axis: Axis) -> bool {
     match &element.curve {
+        Curve::Arc(_) if element.placement.is_some() => !axis.is_rotary(),
         Curve::Arc(arc) => axis == arc.plane.first || axis == arc.plane.second,
         Curve::Line | Curve::Hold => false,
     }

@@ -17,6 +17,7 @@ use crate::numbers::Numbers;
 use crate::q_parameters::preassigned;
 use crate::settings::Settings;
 use crate::status::Spindle;
+use crate::tilting;
 use crate::voltage;
 
 /// Takes the M functions of a block.
@@ -51,6 +52,7 @@ fn take_m_function(
     }
     for deed in technology.deeds() {
         act(c, deed, block);
+        tilting::act(c, deed)?;
         act_on_block(c.modal, deed, block);
         act_on_feed(c.modal, c.numbers, c.settings, deed, m)?;
         let function = match deed {

@@ -62,6 +62,8 @@ mod rehearsal;
 mod run;
 mod settings;
 mod status;
+mod surface_feed;
+mod tilting;
 mod told;
 mod tools;
 mod voltage;

@@ -8,7 +8,7 @@ use crate::contour::{CornerArcs, FeedLaw, Side};
 use crate::definition::CycleData;
 use crate::error::{Cause, Fault};
 use crate::q_parameters::{QTable, preassigned};
-use crate::status::{Spindle, Status, Tool};
+use crate::status::{Spindle, Status, Tilting, Tool};
 
 /// The modal data of a run [003:2164-2188] [003:6199-6205].
 #[derive(Clone, Debug)]
@@ -63,6 +63,8 @@ pub(crate) struct Modal {
     pub contour_labels: Vec<u16>,
     /// Least corner of BLK FORM 0.1 waiting for 0.2.
     pub blank_min: Option<(Plane, [f64; 3])>,
+    /// Swivel axes: cycle 19, M114, M116, M126.
+    pub tilting: Tilting,
     /// Probe block 0.0 waiting for 0.1.
     pub probe: Option<ReferencePlane>,
 }
@@ -87,7 +89,7 @@ pub(crate) struct LastMove {
 impl Modal {
     /// What stays in force behind the end.
     pub fn status(&self) -> Status {
-        Status::left((self.frame, self.feed_mm_min), self.tool)
+        Status::left((self.frame, self.feed_mm_min), self.tilting.plane, self.tool)
     }
 
     pub fn new(start: Position, length_mm: Option<f64>) -> Modal {
@@ -117,6 +119,7 @@ impl Modal {
             orientation_deg: None,
             contour_labels: Vec::new(),
             blank_min: None,
+            tilting: Tilting::default(),
             probe: None,
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bahn_path::{Axis, BlockRef, Position};
+use bahn_path::{Axis, BlockRef, Placement, Position};
 use bahn_program::{MotionKind, Operation, Value};
 
 use crate::Interpreter;
@@ -13,6 +13,11 @@ use crate::contour::Contour;
 use crate::settings::{DatumTable, Rules, ToolState};
 
 impl Interpreter {
+    /// How the coordinates of the path stand in the machine at the block that comes next, when not upright.
+    pub fn placement(&self) -> Option<&Arc<Placement>> {
+        self.run.pen.placement.as_ref()
+    }
+
     /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
     pub fn set_machine_zero(&mut self, zero: Position) {
         self.settings.rules.machine_zero = zero;

@@ -1,9 +1,11 @@
 //! The pen: what the block being executed draws, on its way through the contour stages into the queue.
 
+use std::sync::Arc;
+
 use bahn_parameters::technology::{self, Technology};
 use bahn_path::{
-    At, Axis, AxisSet, Barrier, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Position,
-    Synchronisation, TechnologyFunction,
+    At, Axis, AxisSet, Barrier, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, Placement,
+    Position, Synchronisation, TechnologyFunction,
 };
 
 use crate::block_functions::BlockFunctions;
@@ -33,6 +35,8 @@ pub(crate) struct Pen {
     /// A contour subprogram is being recorded for an SL cycle: M functions, feeds and cycle calls in it
     /// are ignored [003:5389-5454]. Holds the axes of the first coordinate block.
     pub recording: Option<AxisSet>,
+    /// How the coordinates of what is drawn stand in the machine, when not upright.
+    pub placement: Option<Arc<Placement>>,
     /// See [`Settings::machine`].
     pub machine: bool,
     /// Nothing is moved: cycles are looked at but make no path, and the tool has no radius.
@@ -50,6 +54,7 @@ impl Pen {
             line_follows: false,
             join_follows: false,
             recording: None,
+            placement: None,
             machine,
             rehearsal: false,
         }
@@ -182,6 +187,7 @@ impl Pen {
             constant_speed: false,
             tangential_end: false,
             dwell_s: 0.0,
+            placement: self.placement.clone(),
             functions: None,
         }
     }

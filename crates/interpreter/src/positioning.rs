@@ -17,6 +17,9 @@ use crate::path_functions::{Programmed, programmed};
 use crate::pen::Pen;
 use crate::q_parameters::{QTable, preassigned};
 use crate::settings::Settings;
+use crate::status::Way;
+use crate::surface_feed::surface_feed;
+use crate::tilting::take_way;
 
 /// L, C, CR, CT, LP, CP, CTP and paraxial blocks; with it whether the block calls the cycle behind its movement.
 #[inline]
@@ -69,6 +72,8 @@ fn is_short_way(modal: &Modal, pen: &Pen, motion: &Motion) -> bool {
         && modal.plunge_factor.is_none()
         && pen.recording.is_none()
         && modal.frame.is_identity()
+        && modal.tilting.way == Way::Programmed
+        && !modal.tilting.surface_feed
         && pen.contour.is_idle()
 }
 
@@ -123,7 +128,7 @@ fn movement(
         && functions.reference == Reference::Datum
         && motion.coordinates.parameters().is_empty()
         && c.modal.frame.is_identity();
-    let programmed = if plain {
+    let mut programmed = if plain {
         plain_line(c.modal, c.numbers, &motion.coordinates)
     } else if functions.reference != Reference::Datum {
         return referenced_line(c, motion, functions, feed);
@@ -133,6 +138,8 @@ fn movement(
     if programmed.axes.is_empty() {
         return c.pen.hold(c.modal, functions);
     }
+    let Programmed { from, to, .. } = &mut programmed;
+    take_way(c.modal, c.settings, &motion.coordinates, from, to);
     c.modal.increments_from = None;
     let Some(feed) = feed else {
         return Err(MessageId::FeedRateIsMissing.into());
@@ -193,6 +200,11 @@ fn referenced_line(
             MessageId::EntryValueIncorrect,
             "M91 to M93 act on straight lines",
         ));
+    }
+    if functions.reference != Reference::Position && c.pen.placement.is_some() {
+        // [000:4268]; while swivel axes are compensated (inferred).
+        let detail = "M91 and M92 do not act under cycle 19 and M114";
+        return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
     }
     let mut nominal = c.modal.nominal;
     for (axis, word) in motion.coordinates.iter() {
@@ -345,6 +357,7 @@ fn emit_movement(
     let plane = c.modal.contour_plane;
     let in_plane = axes.contains(plane.first) || axes.contains(plane.second);
     let feed = plunge_feed(c.modal, feed, &curve, &start, &end);
+    let feed = surface_feed(c, feed, &curve, [&start, &end]);
     c.modal.nominal = nominal;
     c.modal.actual = end;
     let element = c.pen.element(curve, start, end, feed);

@@ -14,6 +14,7 @@ use crate::pen::Pen;
 use crate::probe::{self, Probing};
 use crate::settings::Settings;
 use crate::status::Status;
+use crate::tilting;
 use crate::told::Told;
 use crate::tools::Tools;
 
@@ -44,7 +45,7 @@ impl Run {
             blank: None,
             probing: None,
         };
-        run.take_status(&settings.status);
+        run.take_status(&settings.status, settings);
         run
     }
 
@@ -82,12 +83,13 @@ impl Run {
     }
 
     /// Begins with what the run before has left in force.
-    fn take_status(&mut self, status: &Status) {
+    fn take_status(&mut self, status: &Status, settings: &Settings) {
         if let Some((frame, feed)) = status.programmed() {
             self.modal.frame = frame;
             self.modal.feed_mm_min = feed;
             self.modal.take_plane(frame.plane);
         }
+        self.modal.tilting.plane = status.plane();
         if let Some((spindle, speed_rpm)) = status.spindle() {
             self.modal.speed_rpm = speed_rpm;
             self.modal.set_spindle(spindle, &mut self.numbers.q);
@@ -97,6 +99,7 @@ impl Run {
             self.numbers.preassign_tool(tool.shape.length, tool.radius);
             self.numbers.preassign_tool_axis(tool.axis);
         }
+        tilting::place(&mut self.context(settings));
     }
 
     /// Whether a tool is in the spindle and works on no contour with radius compensation.

@@ -8,7 +8,7 @@ use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::spindle::{Characteristics, FreeOutput, SpindleParameters};
 use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
-use bahn_path::{Axis, Function, Position, TechnologyFunction, ToolShape};
+use bahn_path::{Axis, Function, Position, Swivels, TechnologyFunction, ToolShape};
 
 use crate::status::Status;
 
@@ -184,6 +184,12 @@ pub struct Rules {
     pub paraxial_inhibited: bool,
     /// MP7680 bit 6: in LN blocks the length contains DR2 [000:9179-9192].
     pub normal_length_with_dr2: bool,
+    /// MP7510 to MP7592: the swivel axes; `None` when there are none [000:4258-4301].
+    pub swivels: Option<Arc<Swivels>>,
+    /// MP7500: the working plane can be tilted [000:4273-4276].
+    pub tilting: bool,
+    /// MP810: the modulo values of rotary axes, degrees [000:6468-6484].
+    pub modulo_deg: [Option<f64>; Axis::COUNT],
 }
 
 impl Rules {
@@ -242,6 +248,12 @@ impl Rules {
             },
             paraxial_inhibited: list.paraxial_inhibited(),
             normal_length_with_dr2: list.operation_parameters().normal_length_with_dr2,
+            swivels: list.swivels().map(Arc::new),
+            tilting: list.operation_parameters().tilting,
+            modulo_deg: Axis::ALL.map(|axis| {
+                let index = list.axis_index(axis)?;
+                list.axis_parameters(index).travel.modulo_deg
+            }),
             ..Rules::default()
         }
     }
@@ -269,6 +281,9 @@ impl Default for Rules {
             voltages: None,
             paraxial_inhibited: false,
             normal_length_with_dr2: false,
+            swivels: None,
+            tilting: false,
+            modulo_deg: [None; Axis::COUNT],
         }
     }
 }

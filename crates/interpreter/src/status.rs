@@ -1,6 +1,6 @@
 //! Tool and spindle, and what of a run stays in force behind its end.
 
-use bahn_path::{Axis, Frame, ToolShape};
+use bahn_path::{Axis, Frame, Position, ToolShape};
 
 /// A tool in the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,12 +63,48 @@ impl Spindle {
     }
 }
 
+/// A working plane that cycle 19 has tilted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WorkingPlane {
+    /// Machine positions of the swivel axes in it, degrees.
+    pub angles: Position,
+    /// The transformations before it.
+    pub outer: Frame,
+}
+
+/// What is in force for swivel axes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tilting {
+    /// Cycle 19.
+    pub plane: Option<WorkingPlane>,
+    /// M114.
+    pub compensates: bool,
+    /// M116.
+    pub surface_feed: bool,
+    /// M126.
+    pub way: Way,
+}
+
+/// Which way a rotary axis with a modulo value takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// As far as is programmed.
+    #[default]
+    Programmed,
+    /// M126: to the next place that has the programmed angle.
+    Shortest,
+    /// M127 behind M126: to that within the turn in which the axis stands, not over 0.
+    WithinTurn,
+}
+
 /// What of a run stays in force behind its end until a machine cancels it: coordinate transformations, feed and
 /// the data of the tool [003:6199-6205] [000:6589-6601].
 #[derive(Clone, Debug, Default)]
 pub struct Status {
     /// Transformations with their plane, and the feed.
     programmed: Option<(Frame, Option<f64>)>,
+    /// The working plane behind which the transformations stand.
+    plane: Option<WorkingPlane>,
     tool: Option<Tool>,
     /// How the spindle of the machine turns, and its programmed speed, rpm.
     spindle: Option<(Spindle, f64)>,
@@ -76,9 +112,14 @@ pub struct Status {
 
 impl Status {
     /// What a run leaves: transformations and feed, and the data of its tool.
-    pub(crate) fn left(programmed: (Frame, Option<f64>), tool: Option<Tool>) -> Status {
+    pub(crate) fn left(
+        programmed: (Frame, Option<f64>),
+        plane: Option<WorkingPlane>,
+        tool: Option<Tool>,
+    ) -> Status {
         Status {
             programmed: Some(programmed),
+            plane,
             tool,
             spindle: None,
         }
@@ -102,6 +143,7 @@ impl Status {
     /// Cancels transformations and feed.
     pub fn cancel_programmed(&mut self) {
         self.programmed = None;
+        self.plane = None;
     }
 
     /// Cancels the data of the tool.
@@ -112,6 +154,11 @@ impl Status {
     /// Transformations and feed.
     pub(crate) fn programmed(&self) -> Option<(Frame, Option<f64>)> {
         self.programmed
+    }
+
+    /// The tilted working plane.
+    pub(crate) fn plane(&self) -> Option<WorkingPlane> {
+        self.plane
     }
 
     pub(crate) fn tool_data(&self) -> Option<Tool> {

@@ -14,6 +14,7 @@ use crate::numbers::Numbers;
 use crate::pen::Pen;
 use crate::settings::{Settings, ToolState, ToolTable, tool_key};
 use crate::status::Tool;
+use crate::tilting;
 
 /// A tool number is meant to have an index when it is as near as this to a tenth.
 const INDEX_TOLERANCE: f64 = 1e-9;
@@ -190,12 +191,13 @@ fn insert_tool(
         ..
     } = tool;
     if c.settings.machine || c.modal.tool.is_some_and(|tool| tool.number == number) {
-        change_length(c.modal, axis, shape.length);
+        tilting::change_tool(c, axis, shape.length, change_length);
     } else {
         c.modal.length_mm = Some(shape.length);
         lift_out(c.modal, blank, axis, &c.settings.tool_change);
     }
     c.modal.tool = Some(tool);
+    tilting::take_tool(c);
     // The graphics take no notice of a radius that must not be used.
     shape.radius = shape.radius.max(0.0);
     c.numbers.preassign_tool(shape.length, radius);

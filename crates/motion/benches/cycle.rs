@@ -45,6 +45,7 @@ impl ElementSource for Lines {
             constant_speed: false,
             tangential_end: false,
             dwell_s: 0.0,
+            placement: None,
             functions: None,
         })
     }

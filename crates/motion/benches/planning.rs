@@ -49,6 +49,7 @@ impl<F: FnMut(usize, Position) -> (Curve, Position)> ElementSource for Synthetic
             constant_speed: false,
             tangential_end: false,
             dwell_s: 0.0,
+            placement: None,
             functions: None,
         })
     }

@@ -1,14 +1,30 @@
 //! How the path goes on from where it is.
 
-use bahn_path::{Curve, Function, PathElement, Position};
+use std::sync::Arc;
+
+use bahn_path::{Curve, Function, PathElement, Placement, Position};
 
 /// An element whose arc starts farther than this from where the path is gets a line to its start, mm.
 const GAP: f64 = 1e-6;
 
 /// Lets an element start where the path is, axis by axis where that is known. An arc must start where
 /// it was programmed; when that is elsewhere the answer is a line to there.
-pub(crate) fn connect(at: &Position, element: &mut PathElement) -> Option<PathElement> {
+///
+/// Where the element stands in another placement than the path `at` its end, that place has another name there.
+pub(crate) fn connect(
+    at: &Position,
+    placement: Option<&Arc<Placement>>,
+    element: &mut PathElement,
+) -> Option<PathElement> {
     let from_source = element.start;
+    let changed;
+    let at = if Placement::is_same(placement, element.placement.as_ref()) {
+        at
+    } else {
+        let [from, to] = [placement, element.placement.as_ref()].map(|placement| placement.map(Arc::as_ref));
+        changed = Placement::change(from, to, at);
+        &changed
+    };
     // The tip of another tool stands elsewhere in the tool axis, without a movement.
     let tool_axis = element
         .functions()
@@ -60,6 +76,7 @@ pub(crate) fn connect(at: &Position, element: &mut PathElement) -> Option<PathEl
         constant_speed: false,
         tangential_end: false,
         dwell_s: 0.0,
+        placement: element.placement.clone(),
         functions: None,
     })
 }

@@ -23,8 +23,8 @@ use std::ops::Range;
 
 use bahn_path::Axis;
 
-use crate::limits::Dynamics;
-use crate::motion::{MAIN, Motion, PerAxis, product};
+use crate::limits::{Dynamics, MAIN, PerAxis};
+use crate::motion::{Motion, product};
 
 /// The time over which the servo spreads a step of velocity, s *(inferred)*: 2.5 time constants of a loop
 /// with kv = 1 (m/min)/mm, from which machines are commissioned [000:9674-9682]. It decides how great a
@@ -104,6 +104,11 @@ impl Joint {
 fn cosine(last: &Motion, next: &Motion) -> f64 {
     let (a, b) = (last.end(), next.start());
     let dot = product(a, b, last.rotary);
+    if last.swings || next.swings {
+        // The axes may change how far they go for the path as suddenly as where they go: both count as one change.
+        let squares = [a, b].map(|direction| product(direction, direction, last.rotary));
+        return (dot - 0.5 * (squares[0] + squares[1])) / (squares[0] * squares[1]).sqrt() + 1.0;
+    }
     if last.is_curved() || next.is_curved() {
         // Where the radius of an arc changes the direction is not quite of length 1.
         dot / (product(a, a, last.rotary) * product(b, b, last.rotary)).sqrt()

@@ -210,6 +210,7 @@ mod tests {
                 constant_speed: false,
                 tangential_end: false,
                 dwell_s: 0.0,
+                placement: None,
                 functions: None,
             };
             Some(Wish::of(&element, slowest))

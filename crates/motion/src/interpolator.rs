@@ -7,7 +7,9 @@ mod phase;
 mod recall;
 mod stops;
 
-use bahn_path::{ElementSource, LiveData, PathElement, Position, Step, TechnologyFunction};
+use std::sync::Arc;
+
+use bahn_path::{ElementSource, LiveData, PathElement, Placement, Position, Step, TechnologyFunction};
 
 use crate::drive::{Cut, Cycle, Drive, FunctionOutput, Lead, Place, Prepared, State, Stop};
 use crate::gate::Gate;
@@ -43,6 +45,8 @@ pub struct Interpolator<E> {
     /// Way to the end of the current element, mm.
     rest: f64,
     position: Position,
+    /// The placement in which that is: that of the element that was begun last.
+    placement: Option<Arc<Placement>>,
     stops: Stops,
     /// The gate ahead is passed without waiting.
     released: bool,
@@ -80,6 +84,7 @@ impl<E> Interpolator<E> {
             speed: 0.0,
             rest: 0.0,
             position: Position::UNKNOWN,
+            placement: None,
             stops: Stops::default(),
             released: false,
             outputs: Outputs::default(),
@@ -93,6 +98,12 @@ impl<E> Interpolator<E> {
     /// Where the path starts; drops what was prepared.
     pub fn set_position(&mut self, position: Position) {
         self.position = position;
+        self.clear();
+    }
+
+    /// The path so far, and with it the [position](Interpolator::set_position), stands in this placement.
+    pub fn set_placement(&mut self, placement: Option<Arc<Placement>>) {
+        self.placement = placement;
         self.clear();
     }
 
@@ -416,6 +427,15 @@ impl<E> Interpolator<E> {
     fn enter(&mut self) {
         self.phase = Phase::Begin;
         self.rest = self.ring.current().map_or(0.0, |item| item.length);
+        if let Some(item) = self.ring.current()
+            && !Placement::is_same(self.placement.as_ref(), item.element.placement.as_ref())
+        {
+            // Nothing moves: the same place has another name.
+            self.placement.clone_from(&item.element.placement);
+            for axis in item.element.start.known().iter() {
+                self.position[axis] = item.element.start[axis];
+            }
+        }
         self.outputs.begin();
     }
 
@@ -531,7 +551,7 @@ impl<E> Interpolator<E> {
                 }
             })
         });
-        self.ring.clear(self.position);
+        self.ring.clear(self.position, self.placement.clone());
         self.after = After::Open;
         self.phase = Phase::Done;
         (self.speed, self.rest) = (0.0, 0.0);

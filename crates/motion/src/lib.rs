@@ -41,7 +41,7 @@
 //! # let program = Program(Some(PathElement {
 //! #     block: BlockRef::default(), sequence: 1, curve: Curve::Line, start: Position::ZERO, end,
 //! #     feed: FeedRate::Programmed(6000.0), override_law: OverrideLaw::Free, constant_speed: false,
-//! #     tangential_end: false, dwell_s: 0.0, functions: None,
+//! #     tangential_end: false, dwell_s: 0.0, placement: None, functions: None,
 //! # }));
 //! let limits = Limits {
 //!     max_feed_mm_min: [15_000.0; 9],
@@ -78,6 +78,7 @@ mod joints;
 mod late;
 mod limits;
 mod motion;
+mod placed;
 mod planner;
 mod point_to_point;
 mod profile;

@@ -1,5 +1,7 @@
 //! What the machine can do.
 
+use std::ops::Range;
+
 use bahn_path::{Axis, FeedRate, OverrideLaw, PathElement, Thread};
 
 /// The limits that planning obeys, in the units of the machine parameters. Values that no machine can
@@ -73,6 +75,12 @@ const LEAST_RAMP_MM_S2: f64 = 1e-3;
 const NO_FEED_MM_MIN: f64 = 1e-30;
 /// Greatest feed limit that counts, mm/min: far above MP1010's 300 000, without infinities.
 const FASTEST_MM_MIN: f64 = 1e9;
+
+/// One value per axis in the order of [`Axis::ALL`].
+pub(crate) type PerAxis = [f64; Axis::COUNT];
+
+/// Indices of the main axes X, Y, Z.
+pub(crate) const MAIN: Range<usize> = Axis::X as usize..Axis::Z as usize + 1;
 
 /// What of a movement decides how fast its axes let it be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,15 +2,11 @@
 
 use std::ops::Range;
 
-use bahn_path::{Arc, Axis, Curve, PathElement, Point2, Position};
+use bahn_path::{Arc, Axis, Curve, PathElement, Placement, Point2, Position};
 
-use crate::limits::{Dynamics, Slowest};
+use crate::limits::{Dynamics, MAIN, PerAxis, Slowest};
+use crate::placed::Placed;
 
-/// One value per axis in the order of [`Axis::ALL`].
-pub(crate) type PerAxis = [f64; Axis::COUNT];
-
-/// Indices of the main axes X, Y, Z.
-pub(crate) const MAIN: Range<usize> = Axis::X as usize..Axis::Z as usize + 1;
 /// Indices of the rotary axes A, B, C.
 const ROTARY: Range<usize> = Axis::A as usize..Axis::C as usize + 1;
 /// Indices of the parallel axes U, V, W.
@@ -42,6 +38,8 @@ pub(crate) struct Motion {
     pub(crate) rotary: bool,
     /// A line of X, Y and Z alone, which most are: formulas may leave out the other axes.
     pub(crate) main_axes: bool,
+    /// Swivel axes are compensated: the main axes go farther, or less far, than the path.
+    pub(crate) swings: bool,
     /// Derivative of the axes by the path length at the start; of a line everywhere.
     direction: PerAxis,
     /// That at the end of an arc.
@@ -69,7 +67,7 @@ impl Motion {
         let main_axes = delta[MAIN.len()..].iter().all(|d| *d == 0.0);
         let share = if main_axes { &share[MAIN] } else { &share[..] };
         let slowest = slowest(share, dynamics);
-        Some(Motion {
+        let motion = Motion {
             length: length.min(LONGEST),
             speed: dynamics.speed(element.feed, element.override_law, slowest),
             slowest,
@@ -77,9 +75,43 @@ impl Motion {
             acceleration: acceleration(share, dynamics).min(dynamics.spindle_acceleration(element)),
             rotary,
             main_axes,
+            swings: false,
             direction,
             end_direction: None,
-        })
+        };
+        Some(motion.placed(element, dynamics))
+    }
+
+    /// The motion of the axes where the path does not stand upright in the machine.
+    #[inline]
+    fn placed(self, element: &PathElement, dynamics: &Dynamics) -> Motion {
+        match &element.placement {
+            None => self,
+            Some(placement) => self.behind(placement, element, dynamics),
+        }
+    }
+
+    fn behind(self, placement: &Placement, element: &PathElement, dynamics: &Dynamics) -> Motion {
+        let per_square = dynamics.radial / (self.radial_speed * self.radial_speed);
+        let ends = [*self.start(), *self.end()];
+        let placed = Placed::new(placement, element, ends, per_square, dynamics);
+        let [direction, end_direction] = placed.directions;
+        let slowest = slowest(&placed.share, dynamics);
+        let radial_speed = self.radial_speed.min(placed.speed);
+        Motion {
+            speed: dynamics
+                .speed(element.feed, element.override_law, slowest)
+                .min(radial_speed),
+            slowest,
+            radial_speed,
+            acceleration: acceleration(&placed.share, dynamics).min(dynamics.spindle_acceleration(element)),
+            direction,
+            swings: placement.rotation().is_none(),
+            // Straight lines behind swivel axes that turn are none; a direction is then not of length 1.
+            end_direction: (self.end_direction.is_some() || placement.rotation().is_none())
+                .then_some(end_direction),
+            ..self
+        }
     }
 
     fn arc(element: &PathElement, arc: &Arc, dynamics: &Dynamics) -> Option<Motion> {
@@ -128,7 +160,7 @@ impl Motion {
         };
         let slowest = slowest(&share, dynamics);
         let speed = dynamics.speed(element.feed, element.override_law, slowest);
-        Some(Motion {
+        let motion = Motion {
             length: length.min(LONGEST),
             speed: speed.min(radial_speed),
             slowest,
@@ -136,9 +168,11 @@ impl Motion {
             acceleration: acceleration(&share, dynamics),
             rotary,
             main_axes: false,
+            swings: false,
             direction,
             end_direction: Some(in_plane(&direction, plane, end_direction)),
-        })
+        };
+        Some(motion.placed(element, dynamics))
     }
 
     /// Derivative of the axes by the path length at the start.

@@ -1,8 +1,9 @@
 //! The elements to come, in a ring of fixed capacity, and how fast they may be driven.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
-use bahn_path::{PathElement, Position};
+use bahn_path::{PathElement, Placement, Position};
 
 use crate::connect::connect;
 use crate::envelope::Envelope;
@@ -39,6 +40,8 @@ pub(crate) struct Ring {
     awaiting: usize,
     /// Where the path ends.
     end: Position,
+    /// The placement in which that is.
+    placement: Option<Arc<Placement>>,
 }
 
 impl Ring {
@@ -59,6 +62,7 @@ impl Ring {
             late: Late::default(),
             awaiting: 0,
             end: Position::UNKNOWN,
+            placement: None,
         }
     }
 
@@ -163,8 +167,9 @@ impl Ring {
         self.items.len() + 2 <= self.capacity
     }
 
-    /// Drops everything; the path starts at a position.
-    pub(crate) fn clear(&mut self, position: Position) {
+    /// Drops everything; the path starts at a position, in a placement.
+    pub(crate) fn clear(&mut self, position: Position, placement: Option<Arc<Placement>>) {
+        self.placement = placement;
         self.first += self.items.len() as u64;
         self.items.clear();
         (self.outputs, self.awaiting) = (0, 0);
@@ -186,7 +191,7 @@ impl Ring {
     /// Puts an element at the end of the path. It starts where the path is: axes without a position at
     /// its start move from where they are.
     pub(crate) fn push(&mut self, mut element: PathElement) {
-        if let Some(approach) = connect(&self.end, &mut element) {
+        if let Some(approach) = connect(&self.end, self.placement.as_ref(), &mut element) {
             self.append(approach);
         }
         self.append(element);
@@ -223,6 +228,9 @@ impl Ring {
             joints.settle(envelope);
         }
         self.end = item.element.end;
+        if !Placement::is_same(self.placement.as_ref(), item.element.placement.as_ref()) {
+            self.placement.clone_from(&item.element.placement);
+        }
         self.outputs += item.outputs();
         self.items.push_back(item);
     }

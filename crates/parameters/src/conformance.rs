@@ -10,7 +10,7 @@
 //! use bahn_parameters::conformance::{Effect, Kind, find};
 //!
 //! let tilting = find(Tnc415b, Kind::Cycle, "CYCL DEF 19").unwrap();
-//! assert_eq!((tilting.effect, tilting.moves), (Effect::None, true));
+//! assert_eq!((tilting.effect, tilting.moves), (Effect::Acts, false));
 //! assert!(find(Tnc360, Kind::Cycle, "CYCL DEF 19").is_none());
 //! ```
 

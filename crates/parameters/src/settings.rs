@@ -14,6 +14,7 @@ mod operation;
 mod plc_parameters;
 mod spindle;
 mod spindle_parameters;
+mod swivels;
 
 pub use axis_parameters::{
     AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,

@@ -109,13 +109,19 @@ pub enum Deed {
     SharpCorners,
     /// M200 to M204: output S gives a voltage.
     Voltage,
+    /// M114, M115: the offsets of swivel axes are compensated, or no more.
+    CompensateSwivels(bool),
+    /// M116, M117: feeds of rotary axes are those of the tool, or of the axes.
+    SurfaceFeed(bool),
+    /// M126, M127: rotary axes take the shortest way, or the one that does not cross 0.
+    ShortestWay(bool),
     /// It acts in the kernel.
     Control(ControlFunction),
 }
 
 impl Deed {
     /// All deeds with their names in the table.
-    const NAMES: [(&'static str, Deed); 32] = [
+    const NAMES: [(&'static str, Deed); 38] = [
         ("program-stop", Deed::ProgramStop),
         ("program-end", Deed::ProgramEnd),
         ("tool-change", Deed::ToolChange),
@@ -142,6 +148,12 @@ impl Deed {
         ("feed-at-edge", Deed::FeedAtEdge),
         ("feed-at-edge-reduced", Deed::FeedAtEdgeReduced),
         ("feed-at-centre", Deed::FeedAtCentre),
+        ("compensate-swivels", Deed::CompensateSwivels(true)),
+        ("leave-swivels", Deed::CompensateSwivels(false)),
+        ("surface-feed", Deed::SurfaceFeed(true)),
+        ("axis-feed", Deed::SurfaceFeed(false)),
+        ("shortest-way", Deed::ShortestWay(true)),
+        ("way-beside-0", Deed::ShortestWay(false)),
         ("corner-arcs", Deed::CornerArcs),
         ("sharp-corners", Deed::SharpCorners),
         ("voltage", Deed::Voltage),

@@ -1,6 +1,8 @@
 //! Path elements: what the interpreter hands to motion.
 
-use crate::{Axis, Characteristic, Curve, Plane, Position};
+use std::sync::Arc;
+
+use crate::{Axis, Characteristic, Curve, Placement, Plane, Position};
 
 /// Where in the programs a movement comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -80,6 +82,8 @@ pub struct PathElement {
     pub tangential_end: bool,
     /// Time the element takes in addition to its movement (dwell), s.
     pub dwell_s: f64,
+    /// How its coordinates stand in the machine, when not upright: cycle 19, M114.
+    pub placement: Option<Arc<Placement>>,
     /// Functions that go out with the element, in the order of output.
     pub functions: Option<Box<[TechnologyFunction]>>,
 }
@@ -99,6 +103,14 @@ impl PathElement {
             Curve::Arc(arc) => {
                 to.is_finite() && (from != to || axis == arc.plane.first || axis == arc.plane.second)
             }
+        }
+    }
+
+    /// Whether an axis of the machine moves: behind a placement those are others than on the path.
+    pub fn moves_axis(&self, axis: Axis) -> bool {
+        match &self.placement {
+            None => self.moves(axis),
+            Some(placement) => placement.moves(axis, |own| self.moves(own)),
         }
     }
 

@@ -5,6 +5,7 @@
 //! - [`Plane`]: a working plane, which is two axes and the tool axis that stands on it;
 //! - [`Curve`], [`Arc`]: line, circular arc and helix with length, tangent and splitting;
 //! - [`Frame`]: datum shift, mirror image, rotation and scaling as one transformation;
+//! - [`Swivels`], [`Placement`]: the swivel axes of a machine, and how a tilted or compensated path stands in it;
 //! - [`region`]: areas of a plane with holes and true arcs, for the SL cycles;
 //! - [`PathElement`]: one movement with its feed, block and technology functions;
 //! - [`ElementSource`] and [`Step`]: how every stage pulls elements from the stage before it.
@@ -26,9 +27,11 @@ mod characteristic;
 mod curve;
 mod element;
 mod frame;
+mod placement;
 mod plane;
 pub mod region;
 mod source;
+mod swivel;
 
 pub use axis::{Axis, AxisSet, Position};
 pub use characteristic::Characteristic;
@@ -38,5 +41,7 @@ pub use element::{
     Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
 };
 pub use frame::{AxisScaling, Frame};
+pub use placement::Placement;
 pub use plane::{Plane, Point2};
 pub use source::{Barrier, ElementSource, LiveData, Step, Touch};
+pub use swivel::{Link, Swivels};

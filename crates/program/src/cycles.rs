@@ -251,8 +251,8 @@ pub const CYCLES: &[Cycle] = &[
     called(17, "RIGID TAPPING", &[&[SET_UP], &[DEPTH], &[parameter("PITCH", Quantity::Length, Signed)]]),
     // [000:6143-6145]; words of later controls
     called(18, "THREAD CUTTING", &[&[DEPTH], &[parameter("PITCH", Quantity::Length, Signed)]]),
-    // [000:147]
-    defined(19, "WORKING PLANE", &[]),
+    // The positions of the swivel axes; without an axis it ends the tilting [000:4250-4254].
+    defined(19, "WORKING PLANE", &[&[optional(POINT)]]),
     // [000:847] [000:652]; words of later controls
     defined(20, "CONTOUR DATA", &[]),
     called(21, "PILOT DRILLING", &[]),

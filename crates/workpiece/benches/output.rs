@@ -40,6 +40,7 @@ fn part() -> Part {
         constant_speed: false,
         tangential_end: false,
         dwell_s: 0.0,
+        placement: None,
         functions: None,
     };
     for corner_radius in [0.0, 8.0] {

@@ -91,6 +91,7 @@ fn run(points: &[[f64; 3]], corner_radius: f64) -> f64 {
             constant_speed: false,
             tangential_end: false,
             dwell_s: 0.0,
+            placement: None,
             functions: None,
         };
         workpiece.cut(&element, &tool, Axis::Z);

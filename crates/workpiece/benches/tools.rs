@@ -161,6 +161,7 @@ fn element(curve: Curve, start: [f64; 3], end: [f64; 3]) -> PathElement {
         constant_speed: false,
         tangential_end: false,
         dwell_s: 0.0,
+        placement: None,
         functions: None,
     }
 }

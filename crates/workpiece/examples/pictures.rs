@@ -119,6 +119,7 @@ impl Mill {
             constant_speed: false,
             tangential_end: false,
             dwell_s: 0.0,
+            placement: None,
             functions: None,
         };
         self.workpiece.cut(&element, &self.tool, Axis::Z);

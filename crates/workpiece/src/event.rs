@@ -41,12 +41,18 @@ pub enum EventKind {
     /// `PGM SECTION CANNOT BE SHOWN`: a rotary axis moves, or stands at another angle than in the
     /// beginning. Nothing is removed until it is back (inferred) [003:876-877] [003:7967-7971].
     RotaryAxisNotShown,
+    /// `PGM SECTION CANNOT BE SHOWN`: the working plane is tilted, or the tool leans while swivel axes are compensated. A
+    /// height map has only one direction: nothing is removed (inferred).
+    TiltedNotShown,
 }
 
 impl EventKind {
     /// Whether the control says `PGM SECTION CANNOT BE SHOWN`.
     pub const fn is_not_shown(self) -> bool {
-        matches!(self, EventKind::ToolAxisNotShown | EventKind::RotaryAxisNotShown)
+        matches!(
+            self,
+            EventKind::ToolAxisNotShown | EventKind::RotaryAxisNotShown | EventKind::TiltedNotShown
+        )
     }
 }
 

@@ -166,7 +166,10 @@ impl Workpiece {
 
     /// Keeps the way of the tool when it is remembered.
     fn follow(&mut self, element: &PathElement) {
-        let Some(trail) = &mut self.part.trail else { return };
+        // Coordinates of a tilted plane are not those of the blank.
+        let Some(trail) = self.part.trail.as_mut().filter(|_| element.placement.is_none()) else {
+            return;
+        };
         let rapid = element.feed == FeedRate::Rapid;
         let size = self.part.setup.size;
         let (mut whole, tolerance) = (true, 0.5 * self.part.grid.cell());
@@ -271,7 +274,9 @@ impl Workpiece {
                 .flatten()
                 .any(|angle| !same_angle(angle, shown));
         }
-        if turned {
+        if element.placement.is_some() {
+            Some(EventKind::TiltedNotShown)
+        } else if turned {
             Some(EventKind::RotaryAxisNotShown)
         } else if tool_axis.main() != Some(self.part.setup.axes[2]) {
             Some(EventKind::ToolAxisNotShown)

@@ -140,6 +140,14 @@ fn rotary_movements_are_not_shown_until_the_axis_is_back() {
         Axis::Z,
     );
     assert_eq!(kinds(&mut workpiece), [(EventKind::RotaryAxisNotShown, 2)]);
+    // Nor while the tool leans, whatever the rotary axes do.
+    let mut leans = line(above, below);
+    let swivels = bahn_path::Swivels::default();
+    let nowhere = bahn_path::Position::ZERO;
+    let plane = bahn_path::Placement::tilted(&swivels, &nowhere, [&nowhere; 2], (Axis::Z, 0.0));
+    leans.placement = Some(plane.into());
+    workpiece.cut(&leans, &flat(5.0), Axis::Z);
+    assert_eq!(kinds(&mut workpiece), [(EventKind::TiltedNotShown, 1)]);
     assert_eq!(workpiece.part().removed_mm3(), 0.0);
     workpiece.cut(
         &line(turned(above, 90.0), turned(above, 360.0)),

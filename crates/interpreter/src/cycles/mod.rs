@@ -28,6 +28,7 @@ use crate::definition::{Definition, Resolved, is_contour_cycle, resolve};
 use crate::error::{Cause, Fault};
 use crate::flow::Flow;
 use crate::settings::Settings;
+use crate::tilting::working_plane;
 
 /// One block of a cycle definition.
 pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<(), Fault> {
@@ -94,6 +95,7 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
         11 => scaling(c.modal, &words, c.settings),
         13 => spindle_orientation(c, &words),
         26 => axis_scaling(c, &words),
+        19 => working_plane(c, &words),
         _ => contour_geometry(c.modal, &words, c.settings),
     }
 }

@@ -142,5 +142,5 @@ impl Stops {
 
 /// Whether an element moves one of the axes.
 fn moves(item: &Item, axes: AxisSet) -> bool {
-    axes.iter().any(|axis| item.element.moves(axis))
+    axes.iter().any(|axis| item.element.moves_axis(axis))
 }

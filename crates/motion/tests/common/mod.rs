@@ -178,6 +178,7 @@ impl Path {
             constant_speed: false,
             tangential_end: false,
             dwell_s: 0.0,
+            placement: None,
             functions: None,
         });
         self.at = end;

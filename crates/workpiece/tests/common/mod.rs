@@ -68,6 +68,7 @@ pub fn element(curve: Curve, start: Position, end: Position) -> PathElement {
         constant_speed: false,
         tangential_end: false,
         dwell_s: 0.0,
+        placement: None,
         functions: None,
     }
 }

@@ -1,0 +1,230 @@
+//! Swivel axes on a machine: cycle 19 and M114 with a head that swivels about B.
+#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
+
+mod support;
+
+use support::*;
+
+/// The mill with a swivel head in place of its table: B turns 150 mm above the tool datum.
+fn swivelling() -> Build {
+    let head = ["410.3=1", "7500=1", "7510=%000100", "7512=150", "7520=%010000"];
+    let mill = Build::mill()
+        .plant("[axis.C]", "[axis.B]")
+        .plant("[axis.C.encoder]", "[axis.B.encoder]")
+        .plant("clamps = \"C\"", "clamps = \"B\"");
+    head.into_iter().fold(mill, Build::mp)
+}
+
+fn machine(rig: &Rig) -> [f64; 3] {
+    let axes = rig.control.snapshot().axes;
+    ['X', 'Y', 'Z'].map(|letter| {
+        let axis = axes.iter().find(|axis| axis.letter == letter).expect("an axis");
+        axis.machine
+    })
+}
+
+#[track_caller]
+fn assert_near(a: [f64; 3], b: [f64; 3]) {
+    assert!((0..3).all(|i| (a[i] - b[i]).abs() < 0.01), "{a:?} is not {b:?}");
+}
+
+const START: &str = "L X+300 Y+200 Z+300 B+0 R0 FMAX\n";
+const TILT: &str = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+30\n";
+
+/// X of the plane is cos 30° of the machine's X and -sin 30° of its Z, Z of the plane sin 30° and cos 30°. The display shows
+/// the coordinates of the plane; by hand and behind the program nothing is tilted.
+#[test]
+fn a_tilted_plane_moves_all_axes() {
+    let blocks = format!(
+        "{START}L B+30 FMAX\n{TILT}L IX+50 F5000\nL IZ+40 IY+10\nM0\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL IX+0 FMAX"
+    );
+    let mut rig = swivelling().program("TILT.H", &blocks).rig();
+    rig.power_on();
+    rig.command("mode full");
+    rig.command("select TILT.H");
+    rig.start();
+    rig.until(60.0, "M0", |rig| {
+        rig.control.snapshot().run == bahn_control::RunState::Stopped
+    });
+    rig.seconds(1.0);
+    assert_eq!(rig.messages(), [""; 0]);
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let there = [
+        300.0 + 50.0 * cos + 40.0 * sin,
+        210.0,
+        300.0 - 50.0 * sin + 40.0 * cos,
+    ];
+    assert_near(machine(&rig), there);
+    // The plane is tilted about the datum (0,0,0); the head's centre 150 mm above the tool datum stays where it is, so the
+    // tool datum has gone by (-150 sin, 150 (1 - cos)) in X and Z, and the axes count back.
+    let swung = [-150.0 * sin, 150.0 * (1.0 - cos)];
+    let upright = [there[0] + swung[0], there[2] + swung[1]];
+    let shown = [
+        cos * upright[0] - sin * upright[1],
+        sin * upright[0] + cos * upright[1],
+    ];
+    let axes = rig.control.snapshot().axes;
+    let display = ['X', 'Z'].map(|letter| {
+        axes.iter()
+            .find(|axis| axis.letter == letter)
+            .expect("an axis")
+            .nominal
+    });
+    assert!(
+        (display[0] - shown[0]).abs() < 1e-6 && (display[1] - shown[1]).abs() < 1e-6,
+        "{display:?} {shown:?}"
+    );
+    rig.start();
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    assert_near(machine(&rig), there);
+    let axes = rig.control.snapshot().axes;
+    assert!((axes[0].nominal - there[0]).abs() < 0.01, "{}", axes[0].nominal);
+}
+
+/// What would leave the traverse range behind the plane is refused where it stands: Z+460 of the machine.
+#[test]
+fn limits_are_those_of_the_axes_behind_the_plane() {
+    let run = |way: &str| {
+        let blocks = format!("{START}L B+30 FMAX\n{TILT}L IX-{way} F5000");
+        let mut rig = swivelling().program("LIMIT.H", &blocks).rig();
+        rig.power_on();
+        rig.command("mode full");
+        rig.command("select LIMIT.H");
+        rig.start();
+        rig.until(60.0, "the end or a message", |rig| {
+            rig.control.snapshot().ended || !rig.messages().is_empty()
+        });
+        (rig.messages(), machine(&rig))
+    };
+    // X-300 of the plane raises Z by 150.
+    let (messages, at) = run("300");
+    assert_eq!(messages, [""; 0]);
+    assert_near(at, [300.0 - 300.0 * 30f64.to_radians().cos(), 200.0, 450.0]);
+    let (messages, at) = run("330");
+    assert!(messages[0].contains("LIMIT SWITCH Z"), "{messages:?}");
+    assert_near(at, [300.0, 200.0, 300.0]);
+}
+
+/// M114: the head swivels by 90 degrees and the axes carry its centre around the tip, which is the tool datum here.
+#[test]
+fn m114_keeps_the_tip_where_it_is() {
+    let blocks = format!("{START}L B+90 F3000 M114\nL IX+10 FMAX");
+    let mut rig = swivelling().program("TIP.H", &blocks).rig();
+    rig.power_on();
+    rig.command("mode full");
+    rig.command("select TIP.H");
+    rig.start();
+    let (mut farthest, mut least) = (0.0f64, f64::INFINITY);
+    for _ in 0..20_000 {
+        rig.cycle();
+        let axes = rig.control.snapshot().axes;
+        let nominal = |letter: char| {
+            axes.iter()
+                .find(|axis| axis.letter == letter)
+                .expect("an axis")
+                .machine
+        };
+        let b = nominal('B');
+        let block = rig.control.snapshot().block.map(|block| block.block);
+        if block == Some(2) {
+            // The centre is at (X, Z + 150); the tool datum hangs below it, swung by B.
+            let (sin, cos) = b.to_radians().sin_cos();
+            let tip = [nominal('X') - 150.0 * sin, nominal('Z') + 150.0 * (1.0 - cos)];
+            least = least.min(b);
+            farthest = farthest.max((tip[0] - 300.0).hypot(tip[1] - 300.0));
+        }
+        if rig.control.snapshot().ended {
+            break;
+        }
+    }
+    assert_eq!(rig.messages(), [""; 0]);
+    assert_near(machine(&rig), [300.0 + 150.0 + 10.0, 200.0, 300.0 - 150.0]);
+    // The axes follow the nominal path with their lags: the tip strays by hundredths.
+    assert!(
+        farthest > 0.0 && farthest < 0.05 && least < 1.0,
+        "{farthest} {least}"
+    );
+}
+
+/// NC stop, internal stop and a new start in the plane: the block is run again from where the axes stand.
+#[test]
+fn a_stop_in_the_plane() {
+    let blocks = format!("{START}L B+30 FMAX\n{TILT}L IX+50 F1000\nL IX+0 FMAX");
+    let mut rig = swivelling().program("STOP.H", &blocks).rig();
+    rig.power_on();
+    rig.command("mode full");
+    rig.command("select STOP.H");
+    rig.start();
+    rig.until(60.0, "it is on its way in the plane", |rig| {
+        machine(rig)[2] < 290.0
+    });
+    rig.event("key NC_STOP tap");
+    rig.seconds(0.5);
+    let stopped = machine(&rig);
+    rig.command("stop");
+    rig.seconds(0.5);
+    assert_near(machine(&rig), stopped);
+    rig.start();
+    rig.until(60.0, "the run ends", |rig| rig.control.snapshot().ended);
+    assert_eq!(rig.messages(), [""; 0]);
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    assert_near(machine(&rig), [300.0 + 50.0 * cos, 200.0, 300.0 - 50.0 * sin]);
+}
+
+/// Module 9035, item 18: bit 0 the plane is tilted, bit 2 by the program [000:14899-14933].
+#[test]
+fn the_plc_reads_that_the_plane_is_tilted() {
+    let blocks = format!(
+        "{START}L B+30 FMAX\n{TILT}L IX+50 F5000\nM0\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\nL IX+1 FMAX"
+    );
+    let mut build = swivelling().program("READ.H", &blocks);
+    build.plc = build.plc.replacen(
+        "       EM\n",
+        "       PS    K+18\n       CM    9035\n       PL    W900\n       EM\n",
+        1,
+    );
+    let mut rig = build.rig();
+    rig.power_on();
+    assert_eq!(rig.number("W900"), 0);
+    rig.command("mode full");
+    rig.command("select READ.H");
+    rig.start();
+    rig.until(60.0, "M0", |rig| {
+        rig.control.snapshot().run == bahn_control::RunState::Stopped
+    });
+    rig.seconds(0.1);
+    assert_eq!(rig.number("W900"), 0b101);
+    rig.start();
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    rig.seconds(0.1);
+    assert_eq!(rig.number("W900"), 0);
+}
+
+/// Neither a tilted plane nor M114 allocates in a cycle, nor do their beginning and end.
+#[test]
+fn leaning_cycles_allocate_nothing() {
+    let blocks = format!(
+        "{START}L B+30 FMAX\n{TILT}L IX+50 F5000\nCC IX+0 IY+10\nC IX+0 IY+0 DR+\nCYCL DEF 19.0 WORKING PLANE\n\
+         CYCL DEF 19.1\nL IX+1 FMAX\nL B+0 F3000 M114\nL IX+5 B+10\nL IX+1 M115\nL IX+1 FMAX"
+    );
+    let mut rig = swivelling().program("QUIET.H", &blocks).rig();
+    rig.power_on();
+    rig.command("mode full");
+    rig.command("select QUIET.H");
+    rig.start();
+    for cycle in 0..100_000 {
+        rig.control.prepare();
+        let allocated = allocation_counter::measure(|| rig.control.cycle(&mut rig.machine));
+        assert_eq!(
+            (allocated.count_total, allocated.count_current),
+            (0, 0),
+            "cycle {cycle}: {:?}",
+            rig.control.snapshot()
+        );
+        if rig.control.snapshot().ended {
+            assert_eq!(rig.messages(), [""; 0]);
+            return;
+        }
+    }
+    panic!("{:?}", rig.control.snapshot());
+}

@@ -1,0 +1,264 @@
+//! Swivel axes: the tilted working plane of cycle 19 [000:4250-4276], M114 to M117 [000:4439-4447] [000:6559-6561], M126 and
+//! M127 [000:836].
+
+use std::sync::Arc;
+
+use bahn_parameters::MessageId;
+use bahn_parameters::technology::Deed;
+use bahn_path::{Axis, AxisSet, Frame, Placement, Position, Swivels};
+use bahn_program::Coordinates;
+
+use crate::context::Context;
+use crate::definition::Resolved;
+use crate::error::{Fault, WarningKind};
+use crate::modal::Modal;
+use crate::settings::Settings;
+use crate::status::{Tilting, Way, WorkingPlane};
+
+/// Cycle 19 WORKING PLANE: the positions of the swivel axes, machine coordinates; one that is not given stands at 0. Without
+/// an axis the plane is upright again (inferred).
+pub(crate) fn working_plane(c: &mut Context<'_>, words: &[Resolved]) -> Result<(), Fault> {
+    if c.modal.tilting.compensates {
+        return Err(out_of_order("M114 is in force; M115 ends it"));
+    }
+    let tilting = &c.modal.tilting;
+    let frame = &c.modal.frame;
+    let shift = frame.shift.values();
+    let is_moved = |axis: Axis| !axis.is_rotary() && shift[axis.index()] != 0.0;
+    let plain = Frame {
+        shift: frame.shift,
+        ..Frame::identity(frame.plane)
+    };
+    // Transformations are ended in the reverse order of their beginning [000:4254].
+    if *frame != plain {
+        return Err(out_of_order(
+            "rotation, mirror image and scaling begin behind cycle 19 and end before it",
+        ));
+    }
+    if tilting.plane.is_some() && Axis::ALL.into_iter().any(is_moved) {
+        return Err(out_of_order("a datum shift in the tilted plane is to end first"));
+    }
+    let angles = swivel_angles(c, words)?;
+    c.pen.finish_contour()?;
+    let outer = tilting_frame(c.modal);
+    c.modal.frame = outer;
+    c.modal.tilting.plane = angles.map(|angles| WorkingPlane { angles, outer });
+    if c.modal.tilting.plane.is_some() {
+        // The datum is that of the frame before; only rotary axes keep their shift.
+        for axis in Axis::ALL.into_iter().filter(|axis| !axis.is_rotary()) {
+            c.modal.frame.shift[axis] = 0.0;
+        }
+    }
+    c.modal.forget_tangent();
+    place(c);
+    Ok(())
+}
+
+/// The transformations in force where nothing is tilted; those of rotary axes as they are now.
+fn tilting_frame(modal: &Modal) -> Frame {
+    let Some(plane) = modal.tilting.plane else {
+        return modal.frame;
+    };
+    let mut outer = plane.outer;
+    for axis in [Axis::A, Axis::B, Axis::C] {
+        outer.shift[axis] = modal.frame.shift[axis];
+    }
+    outer.plane = modal.frame.plane;
+    outer
+}
+
+fn out_of_order(detail: &str) -> Fault {
+    Fault::new(MessageId::PlaneWronglyDefined, detail)
+}
+
+/// The positions of cycle 19; `None` where it names no axis.
+fn swivel_angles(c: &mut Context<'_>, words: &[Resolved]) -> Result<Option<Position>, Fault> {
+    let mut angles = Position::ZERO;
+    let mut named = AxisSet::EMPTY;
+    for word in words {
+        let Resolved::Coordinate {
+            axis,
+            value,
+            incremental,
+        } = word
+        else {
+            continue;
+        };
+        if *incremental {
+            let detail = "cycle 19 takes the positions of the swivel axes, not steps";
+            return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
+        }
+        angles[*axis] = *value;
+        named.insert(*axis);
+    }
+    if named.is_empty() || c.pen.rehearsal && c.settings.rules.swivels.is_none() {
+        return Ok(None);
+    }
+    if !c.settings.rules.tilting {
+        pass_over(
+            c,
+            "CYCL DEF 19: MP7500 does not allow to tilt the working plane".into(),
+        )?;
+        return Ok(None);
+    }
+    let Some(swivels) = geometry(c, "CYCL DEF 19")? else {
+        return Ok(None);
+    };
+    let free: AxisSet = swivels.free_axes().collect();
+    match named.iter().find(|axis| !free.contains(*axis)) {
+        Some(axis) => {
+            let detail = format!("{axis} is no swivel axis of MP7510 to MP7592");
+            Err(Fault::new(MessageId::WrongAxisProgrammed, detail))
+        }
+        None => Ok(Some(angles)),
+    }
+}
+
+/// The swivel axes; `None` without them where their functions are passed over.
+fn geometry<'a>(c: &mut Context<'a>, what: &str) -> Result<Option<&'a Swivels>, Fault> {
+    let swivels = c.settings.rules.swivels.as_deref();
+    if swivels.is_none() && !c.pen.rehearsal {
+        pass_over(
+            c,
+            format!("{what} needs the machine geometry of MP7510 to MP7592"),
+        )?;
+    }
+    Ok(swivels)
+}
+
+/// What the machine is not made for is refused, or passed over with a warning where that is wanted.
+fn pass_over(c: &mut Context<'_>, what: String) -> Result<(), Fault> {
+    if !c.settings.skip_unknown {
+        return Err(Fault::new(MessageId::BlockNotKnown, what));
+    }
+    c.warn(WarningKind::PassedOver { what });
+    Ok(())
+}
+
+/// What M functions do with swivel axes.
+pub(crate) fn act(c: &mut Context<'_>, deed: Deed) -> Result<(), Fault> {
+    match deed {
+        Deed::CompensateSwivels(on) => compensate(c, on)?,
+        Deed::SurfaceFeed(on) => {
+            c.modal.tilting.surface_feed = on && geometry(c, "M116")?.is_some();
+        }
+        Deed::ShortestWay(true) => c.modal.tilting.way = Way::Shortest,
+        Deed::ShortestWay(false) if c.modal.tilting.way == Way::Shortest => {
+            c.modal.tilting.way = Way::WithinTurn;
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+/// M114: the tip stays on the path while the head turns; M115: no more.
+fn compensate(c: &mut Context<'_>, on: bool) -> Result<(), Fault> {
+    if on {
+        if c.modal.tilting.plane.is_some() {
+            return Err(out_of_order(
+                "cycle 19 is in force, M114 compensates in workpiece coordinates",
+            ));
+        }
+        if geometry(c, "M114")?.is_none() {
+            return Ok(());
+        }
+    }
+    if c.modal.tilting.compensates != on {
+        c.pen.finish_contour()?;
+        c.modal.tilting.compensates = on;
+        place(c);
+    }
+    Ok(())
+}
+
+/// Makes the placement of what is drawn from now on. Nothing moves: where the tool stands has another name in it.
+pub(crate) fn place(c: &mut Context<'_>) {
+    let placement = placement(c.modal, c.settings);
+    if placement.as_ref() == c.pen.placement.as_deref() {
+        return;
+    }
+    let old = c.pen.placement.take();
+    for position in [&mut c.modal.nominal, &mut c.modal.actual] {
+        *position = Placement::change(old.as_deref(), placement.as_ref(), position);
+    }
+    c.pen.placement = placement.map(Arc::new);
+}
+
+/// Another tool is in the spindle, and where its tip is is known: the placement has it, too.
+pub(crate) fn take_tool(c: &mut Context<'_>) {
+    let placement = placement(c.modal, c.settings);
+    if placement.as_ref() != c.pen.placement.as_deref() {
+        c.pen.placement = placement.map(Arc::new);
+    }
+}
+
+/// Another tool comes into the spindle and the axes stand still: where its tip is. In a tilted plane that is along the tool
+/// as it is without one, which `change_length` does; while swivel axes are compensated it depends on how they stand.
+pub(crate) fn change_tool(
+    c: &mut Context<'_>,
+    axis: Axis,
+    length: f64,
+    change_length: impl FnOnce(&mut Modal, Axis, f64),
+) {
+    let (Some(old), true) = (c.pen.placement.clone(), c.modal.length_mm.is_some()) else {
+        return change_length(c.modal, axis, length);
+    };
+    let noses = [c.modal.nominal, c.modal.actual].map(|position| old.to_nose(&position));
+    c.modal.length_mm = Some(length);
+    let Some(new) = placement_with(c.modal, c.settings, (axis, length)) else {
+        return;
+    };
+    [c.modal.nominal, c.modal.actual] = noses.map(|nose| new.from_nose(&nose));
+}
+
+/// The placement of what is in force; `None` where all stands upright.
+fn placement(modal: &Modal, settings: &Settings) -> Option<Placement> {
+    let length = modal
+        .tool
+        .map_or(modal.length_mm.unwrap_or(0.0), |tool| tool.shape.length);
+    placement_with(modal, settings, (modal.plane.normal, length))
+}
+
+fn placement_with(modal: &Modal, settings: &Settings, tool: (Axis, f64)) -> Option<Placement> {
+    let Tilting {
+        plane, compensates, ..
+    } = &modal.tilting;
+    let swivels = settings.rules.swivels.as_ref()?;
+    // Machine zero seen from the workpiece datum, the other way round.
+    let datum: Position = settings.rules.machine_zero.values().map(|zero| -zero).into();
+    match plane {
+        Some(plane) => {
+            let places = [&datum, &plane.outer.shift];
+            Some(Placement::tilted(swivels, &plane.angles, places, tool))
+        }
+        None => compensates.then(|| Placement::compensated(Arc::clone(swivels), &datum, tool)),
+    }
+}
+
+/// M126, M127: where a rotary axis with a modulo value goes that is told to go to an angle.
+pub(crate) fn take_way(
+    modal: &Modal,
+    settings: &Settings,
+    coordinates: &Coordinates,
+    from: &Position,
+    to: &mut Position,
+) {
+    if modal.tilting.way == Way::Programmed {
+        return;
+    }
+    let absolute = |axis: &Axis| !coordinates.incremental().contains(*axis);
+    for axis in coordinates.axes().iter().filter(absolute) {
+        let modulo = settings.rules.modulo_deg.get(axis.index()).copied().flatten();
+        let (Some(modulo), Some(from)) = (modulo, from.get(axis)) else {
+            continue;
+        };
+        to[axis] = match modal.tilting.way {
+            // Half a turn goes in positive direction (inferred).
+            Way::Shortest => {
+                let way = (to[axis] - from).rem_euclid(modulo);
+                from + if way > 0.5 * modulo { way - modulo } else { way }
+            }
+            _ => (from / modulo).floor() * modulo + to[axis].rem_euclid(modulo),
+        };
+    }
+}

@@ -1,0 +1,346 @@
+//! Swivel axes: cycle 19, M114 to M117, M126 and M127.
+#![allow(clippy::expect_used, clippy::panic, reason = "what fails here fails the test")]
+
+mod support;
+
+use std::sync::Arc;
+
+use bahn_parameters::MessageId::{
+    BlockNotKnown, EntryValueIncorrect, PlaneWronglyDefined, WrongAxisProgrammed,
+};
+use bahn_parameters::{ControlModel, ParameterList};
+use bahn_path::{Axis, FeedRate, Placement, Position};
+use support::*;
+
+/// Example 1 of the manual: a double swivel head, right-angled [000:4303-4340].
+const HEAD: &[&str] = &[
+    "7500=1",
+    "7510=%000100",
+    "7512=200.4",
+    "7520=%000010",
+    "7522=-1.9",
+    "7530=%001000",
+    "7540=%000001",
+    "7542=201.5",
+    "7550=%000100",
+    "7552=3.1",
+    "7560=%010000",
+];
+
+/// A rotary table C with its centre at (400,150,-300) of the machine, under a table B that swivels about (400,150,-500).
+const TABLE: &[&str] = &[
+    "7500=1",
+    "7510=%000001",
+    "7511=%11",
+    "7512=400",
+    "7520=%000010",
+    "7521=%11",
+    "7522=150",
+    "7530=%000100",
+    "7531=%11",
+    "7532=-300",
+    "7540=%100000",
+    "7541=%01",
+    "7550=%000100",
+    "7551=%01",
+    "7552=-200",
+    "7560=%010000",
+    "7561=%01",
+];
+
+const TOOL: &str = "TOOL DEF 1 L+100 R+5\nTOOL CALL 1 Z S1000\n";
+
+fn on(machine: &[&str], blocks: &str) -> Run {
+    on_datum(machine, Position::ZERO, blocks)
+}
+
+/// On a machine whose workpiece datum lies at a place of it.
+fn on_datum(machine: &[&str], datum: Position, blocks: &str) -> Run {
+    let mut list = ParameterList::reference(ControlModel::Tnc415b);
+    for assignment in machine {
+        list.assign(assignment).expect(assignment);
+    }
+    let text = program(&format!("{TOOL}{blocks}"));
+    Job::new(text)
+        .with(|settings| {
+            settings.rules = bahn_interpreter::Rules::of(&list);
+            settings.rules.machine_zero = datum.values().map(|x| -x).into();
+            settings.start = Position::ZERO;
+        })
+        .run()
+}
+
+fn at(x: f64, y: f64, z: f64) -> Position {
+    let mut position = Position::ZERO;
+    (position[Axis::X], position[Axis::Y], position[Axis::Z]) = (x, y, z);
+    position
+}
+
+fn xyz(position: &Position) -> [f64; 3] {
+    [position[Axis::X], position[Axis::Y], position[Axis::Z]]
+}
+
+/// Where the tool datum is at the end of the `n`th movement, and at the start of it.
+fn noses(run: &Run, n: usize) -> [[f64; 3]; 2] {
+    let element = run.moves().nth(n).expect("a movement");
+    let upright = |position: &Position| {
+        let [x, y, z] = xyz(position);
+        [x, y, z + 100.0]
+    };
+    [&element.end, &element.start].map(|position| match &element.placement {
+        Some(placement) => xyz(&placement.to_nose(position)),
+        None => upright(position),
+    })
+}
+
+#[track_caller]
+fn assert_near(a: [f64; 3], b: [f64; 3]) {
+    assert!((0..3).all(|i| (a[i] - b[i]).abs() < 1e-9), "{a:?} is not {b:?}");
+}
+
+/// B+90 lays the tool along -X as it leads from its tip to the datum: +X. In the tilted plane X is then -Z of the machine
+/// and Z its X, and the centre of B, 201.5 beside and 203.5 above the tool datum at B+0, stays above the datum as if the
+/// tool datum had swung around it: from (-201.5, -203.5) to (-203.5, +201.5) in X and Z.
+#[test]
+fn cycle_19_tilts_the_working_plane() {
+    let run = on(
+        HEAD,
+        "L Z+50 R0 FMAX\nL B+90 FMAX\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+90\nL X+10 Y+20 Z+5 R0 FMAX",
+    );
+    run.assert_completed();
+    let swung = [201.5 - 203.5, 0.0, 203.5 + 201.5];
+    let tip = [5.0, 20.0, -10.0];
+    let [end, start] = noses(&run, 2);
+    // The tool datum is 100 from the tip in +X. The axes move by what the tool datum has swung, the other way.
+    assert_near(
+        end,
+        [tip[0] + 100.0 - swung[0], tip[1] + swung[1], tip[2] - swung[2]],
+    );
+    // The definition has moved nothing.
+    assert_near(start, noses(&run, 1)[0]);
+    assert_near(start, [0.0, 0.0, 150.0]);
+}
+
+/// The datum shift before cycle 19 is the datum of the plane, one behind it is in the plane; and they end in the reverse
+/// order [000:4254].
+#[test]
+fn shifts_before_and_behind_cycle_19() {
+    let shift = |x: &str| format!("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X{x}\n");
+    let tilt = |angle: &str| format!("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 {angle}\n");
+    let to = "L X+1 Y+2 Z+3 R0 FMAX\n";
+    let plain = on(HEAD, &format!("{}{to}", tilt("A-45 B+30")));
+    let shifted = on(HEAD, &format!("{}{}{to}", shift("+40"), tilt("A-45 B+30")));
+    shifted.assert_completed();
+    let [x, y, z] = noses(&plain, 0)[0];
+    assert_near(noses(&shifted, 0)[0], [x + 40.0, y, z]);
+    // In the plane the shift leads along its X, which B+30 has turned in the machine's X and Z.
+    let inner = on(HEAD, &format!("{}{}{to}", tilt("A-45 B+30"), shift("+40")));
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    assert_near(noses(&inner, 0)[0], [x + 40.0 * cos, y, z - 40.0 * sin]);
+    // Ended in the reverse order all is as before.
+    let ended = format!(
+        "{}{}{}{}{to}{}{}{to}",
+        shift("+40"),
+        tilt("B+30"),
+        shift("+5"),
+        shift("+0"),
+        tilt(""),
+        shift("+0")
+    );
+    let run = on(HEAD, &ended);
+    run.assert_completed();
+    let last = run.moves().last().expect("a movement");
+    assert!(last.placement.is_none());
+    assert_near(xyz(&last.end), [1.0, 2.0, 3.0]);
+}
+
+/// A tilting table leaves the directions as they are: the datum has gone with the table [000:4264].
+#[test]
+fn a_tilting_table_carries_the_datum() {
+    let blocks = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 C+90 B+0\nL X+1 Y+2 Z+3 R0 FMAX";
+    // The datum lies 60 in X beside the centre of C: with C+90 it lies 60 in -Y from it.
+    let run = on_datum(TABLE, at(460.0, 150.0, -250.0), blocks);
+    run.assert_completed();
+    let gone = [400.0 - 460.0, 90.0 - 150.0, 0.0];
+    assert_near(noses(&run, 0)[0], [1.0 + gone[0], 2.0 + gone[1], 103.0 + gone[2]]);
+    // The direction of the tool, too.
+    let element = run.moves().next().expect("a movement");
+    let placement = element.placement.as_ref().expect("a placement");
+    assert_eq!(
+        placement.rotation(),
+        Some(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    );
+}
+
+/// In the plane all goes on as in an upright one: compensation, circles, roundings, cycles give the same path.
+#[test]
+fn paths_in_the_plane_are_those_of_an_upright_one() {
+    let contour = "L X-20 Y-20 Z+2 R0 FMAX\nL Z-5 F500\nL X+0 Y+0 RL F1000\nL Y+40\nRND R5\nL X+40\nCC X+40 Y+20\n\
+                   C X+40 Y+0 DR-\nL X+0\nL X-20 Y-20 R0\nL Z+50 FMAX\nCYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP -2\n\
+                   CYCL DEF 1.2 DEPTH -10\nCYCL DEF 1.3 PECKG -4\nCYCL DEF 1.4 DWELL 0\nCYCL DEF 1.5 F100\n\
+                   L X+10 Y+10 FMAX M99";
+    let upright = on(HEAD, contour);
+    let tilted = on(
+        HEAD,
+        &format!("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+20 B-35\n{contour}"),
+    );
+    upright.assert_completed();
+    tilted.assert_completed();
+    assert_eq!(upright.moves().count(), tilted.moves().count());
+    for (a, b) in upright.moves().zip(tilted.moves()).skip(1) {
+        assert!(b.placement.is_some());
+        assert_eq!(
+            (&a.curve, &a.start, &a.end, a.feed),
+            (&b.curve, &b.start, &b.end, b.feed)
+        );
+    }
+}
+
+/// Another tool in the tilted plane: the axes stand still, the tip is farther out along the tool.
+#[test]
+fn a_tool_change_in_the_plane() {
+    let blocks = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+90\nL X+10 Y+20 Z+5 R0 FMAX\nTOOL DEF 2 L+130 R+5\n\
+                  TOOL CALL 2 Z S1000\nL IX+0 Z+5 R0 FMAX";
+    let mut list = ParameterList::reference(ControlModel::Tnc415b);
+    for assignment in HEAD {
+        list.assign(assignment).expect(assignment);
+    }
+    let run = Job::new(program(&format!("{TOOL}{blocks}")))
+        .with(|settings| {
+            settings.rules = bahn_interpreter::Rules::of(&list);
+            settings.start = Position::ZERO;
+            settings.machine = true;
+        })
+        .run();
+    run.assert_completed();
+    let [end, start] = noses(&run, 1);
+    assert_near(start, noses(&run, 0)[0]);
+    // It goes back by 30 along the tool, +X of the machine.
+    assert_near(end, [start[0] + 30.0, start[1], start[2]]);
+    let last = run.moves().last().expect("a movement");
+    assert!((last.start[Axis::Z] - (5.0 - 30.0)).abs() < 1e-9);
+}
+
+#[test]
+fn cycle_19_is_refused() {
+    let plane = |angles: &str| format!("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 {angles}\n");
+    let without = [&HEAD[1..], &["7500=0"]].concat();
+    // Blocks 1 and 2 are those of the tool.
+    assert_eq!(on(&without, &plane("A+10")).message(), Some((BlockNotKnown, 4)));
+    assert_eq!(
+        on(&["7500=1"], &plane("A+10")).message(),
+        Some((BlockNotKnown, 4))
+    );
+    assert_eq!(on(HEAD, &plane("C+10")).message(), Some((WrongAxisProgrammed, 4)));
+    assert_eq!(on(HEAD, &plane("X+10")).message(), Some((WrongAxisProgrammed, 4)));
+    assert_eq!(
+        on(HEAD, &plane("IA+10")).message(),
+        Some((EntryValueIncorrect, 4))
+    );
+    // No M91 and M92 in the plane [000:4268].
+    let m91 = format!("{}L X+1 R0 FMAX M91", plane("A+10"));
+    assert_eq!(on(HEAD, &m91).message(), Some((PlaneWronglyDefined, 5)));
+    // What was begun last ends first.
+    let rotation = "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30\n";
+    let before = format!("{rotation}{}", plane("A+10"));
+    assert_eq!(on(HEAD, &before).message(), Some((PlaneWronglyDefined, 6)));
+    let behind = format!("{}{rotation}{}", plane("A+10"), plane(""));
+    assert_eq!(on(HEAD, &behind).message(), Some((PlaneWronglyDefined, 8)));
+    let shift = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+5\n";
+    let behind = format!("{}{shift}{}", plane("A+10"), plane("A+20"));
+    assert_eq!(on(HEAD, &behind).message(), Some((PlaneWronglyDefined, 8)));
+    let both = format!("{}L X+1 R0 FMAX M114", plane("A+10"));
+    assert_eq!(on(HEAD, &both).message(), Some((PlaneWronglyDefined, 5)));
+    let both = format!("L X+1 R0 FMAX M114\n{}", plane("A+10"));
+    assert_eq!(on(HEAD, &both).message(), Some((PlaneWronglyDefined, 5)));
+}
+
+/// M114: while B swivels from 0 to 90 the tip stays where it is programmed, so the tool datum goes as in the tilted plane;
+/// behind M115 the coordinates are those of the tool datum again.
+#[test]
+fn m114_keeps_the_tip_on_the_path() {
+    let run = on(
+        HEAD,
+        "L X+10 Y+20 Z+5 B+0 R0 FMAX\nL B+90 F1000 M114\nL X+11\nL Z+6 M115\nL Z+7",
+    );
+    run.assert_completed();
+    let plane = {
+        let mut list = ParameterList::reference(ControlModel::Tnc415b);
+        for assignment in HEAD {
+            list.assign(assignment).expect(assignment);
+        }
+        let swivels = Arc::new(list.swivels().expect("swivel axes"));
+        let mut angles = Position::ZERO;
+        angles[Axis::B] = 90.0;
+        Placement::tilted(&swivels, &angles, [&Position::ZERO; 2], (Axis::Z, 100.0))
+    };
+    let [end, start] = noses(&run, 1);
+    assert_near(start, [10.0, 20.0, 105.0]);
+    // The tip (10,20,5) of the workpiece is (-5,20,10) in the plane of B+90.
+    assert_near(end, xyz(&plane.to_nose(&at(-5.0, 20.0, 10.0))));
+    assert_near(noses(&run, 2)[0], [end[0] + 1.0, end[1], end[2]]);
+    // M115: nothing moves, and from there on the coordinates count upright: Z+6 is 106 of the tool datum.
+    let [behind, before] = noses(&run, 3);
+    assert_near(before, noses(&run, 2)[0]);
+    assert_near(behind, [before[0], before[1], 106.0]);
+    assert!(run.moves().last().expect("a movement").placement.is_none());
+    // The feed is that of the tip, M114 ends with the program, and needs the geometry.
+    assert!(
+        run.moves()
+            .skip(1)
+            .all(|element| element.feed == FeedRate::Programmed(1000.0))
+    );
+    assert_eq!(
+        on(&["7500=1"], "L X+1 R0 FMAX M114").message(),
+        Some((BlockNotKnown, 3))
+    );
+}
+
+/// M116: a point 60 mm beside the centre of C goes 60 · π/2 mm in a quarter turn; at F600 that takes as long as the quarter
+/// turn at 600 · 90 / (60 · π/2) degrees/min. M117 and the end of the program end it.
+#[test]
+fn m116_feeds_the_tool_over_the_workpiece() {
+    let datum = at(460.0, 150.0, -250.0);
+    let run = on_datum(
+        TABLE,
+        datum,
+        "L X+0 Y+0 R0 FMAX\nL C+90 F600 M116\nL X-60 FMAX\nL C+180 F600\nL C+0 F600 M117",
+    );
+    run.assert_completed();
+    let feeds: Vec<_> = run.moves().map(|element| element.feed).collect();
+    let FeedRate::Programmed(feed) = feeds[1] else {
+        panic!("a feed")
+    };
+    let degrees = 600.0 * 90.0 / (60.0 * std::f64::consts::FRAC_PI_2);
+    assert!((feed - degrees).abs() < 1e-9, "{feed} is not {degrees}");
+    // In the centre nothing goes over the workpiece; without M116 the feed is that of the axis.
+    assert_eq!(feeds[3..], [FeedRate::Programmed(600.0); 2]);
+    // With X along: 60 mm along the axis while the radius falls from 60 to 0, 30 in the middle.
+    let run = on_datum(TABLE, datum, "L X+0 Y+0 R0 FMAX\nL X-60 C+90 F600 M116");
+    let FeedRate::Programmed(feed) = run.moves().last().expect("a movement").feed else {
+        panic!("a feed")
+    };
+    let over = 60f64.hypot(30.0 * std::f64::consts::FRAC_PI_2);
+    assert!((feed - 600.0 * 60.0 / over).abs() < 1e-9, "{feed}");
+    assert_eq!(on(&[], "L C+90 F600 M116").message(), Some((BlockNotKnown, 3)));
+}
+
+/// M126 leads a table with modulo value the short way, M127 the one that does not cross 0 [000:836].
+#[test]
+fn m126_takes_the_shortest_way() {
+    let table = ["10=%11111", "410.3=2", "810.3=360"];
+    let run = on(
+        &table,
+        "L C+350 R0 FMAX\nL C+10 FMAX M126\nL C+350 FMAX\nL IC-20 FMAX\nL C+10 FMAX\nL C+350 FMAX M127\nL C+10 FMAX",
+    );
+    run.assert_completed();
+    let ends: Vec<f64> = run.moves().map(|element| element.end[Axis::C]).collect();
+    // 350 to 370, back, incremental as programmed, 330 to 370; then within the turn from 360: 710 and 370.
+    assert_eq!(ends, [350.0, 370.0, 350.0, 330.0, 370.0, 710.0, 370.0]);
+    // An axis without modulo value goes where it is told.
+    let run = on(
+        &["10=%11111", "410.3=2", "810.3=0"],
+        "L C+350 R0 FMAX M126\nL C+10 FMAX",
+    );
+    assert_eq!(run.moves().last().expect("a movement").end[Axis::C], 10.0);
+}

@@ -1,0 +1,100 @@
+//! What a movement demands of the axes when its path does not stand upright: cycle 19 and M114.
+
+use bahn_path::{Axis, Curve, PathElement, Placement};
+
+use crate::limits::{Dynamics, MAIN, PerAxis};
+
+/// Derivatives of the axes by the path length, and what of it limits the path.
+pub(crate) struct Placed {
+    /// At the start and at the end.
+    pub(crate) directions: [PerAxis; 2],
+    /// Greatest share of each axis on the whole way, or an upper bound of it.
+    pub(crate) share: PerAxis,
+    /// Greatest path speed that the turning of swivel axes allows, mm/s; infinite where none turns.
+    pub(crate) speed: f64,
+}
+
+impl Placed {
+    /// From the derivatives of the path at its ends. `per_square` is its own acceleration at speed 1, across it.
+    pub(crate) fn new(
+        placement: &Placement,
+        element: &PathElement,
+        directions: [PerAxis; 2],
+        per_square: f64,
+        dynamics: &Dynamics,
+    ) -> Placed {
+        let [start, end] = directions;
+        let placed = [
+            placement.velocity(&element.start, &start),
+            placement.velocity(&element.end, &end),
+        ];
+        // A turned straight line is a straight line.
+        let mut share = start.map(f64::abs);
+        match placement.rotation() {
+            Some(rotation) => {
+                for (i, row) in rotation.iter().enumerate() {
+                    share[i] = match &element.curve {
+                        Curve::Arc(arc) => {
+                            let plane = [arc.plane.first.index(), arc.plane.second.index()];
+                            on_circle(row, plane, &directions)
+                        }
+                        _ => placed[0][i].abs(),
+                    };
+                }
+                Placed {
+                    directions: placed,
+                    share,
+                    speed: f64::INFINITY,
+                }
+            }
+            None => {
+                let rate = rate(&start);
+                let reach = placement.reach_mm();
+                for i in MAIN {
+                    let own = match &element.curve {
+                        Curve::Arc(_) => length(&start).max(length(&end)),
+                        _ => start[i].abs(),
+                    };
+                    share[i] = own + reach * rate;
+                }
+                Placed {
+                    directions: placed,
+                    share,
+                    speed: swing_speed(per_square, reach * rate * rate, dynamics),
+                }
+            }
+        }
+    }
+}
+
+/// The greatest share of a main axis in a circle of a turned plane: that where it is tangential to the axis, whether the arc
+/// comes there or not, and its share in the straight part of a helix.
+fn on_circle(row: &[f64; 3], plane: [usize; 2], directions: &[PerAxis; 2]) -> f64 {
+    let of = |i: usize| row.get(i).copied().unwrap_or(0.0);
+    let in_plane = directions.iter().map(|d| d[plane[0]].hypot(d[plane[1]]));
+    let fastest = in_plane.fold(0.0, f64::max);
+    let straight = MAIN
+        .filter(|i| !plane.contains(i))
+        .map(|i| of(i) * directions[0][i]);
+    of(plane[0]).hypot(of(plane[1])) * fastest + straight.sum::<f64>().abs()
+}
+
+/// Radians of the swivel axes by the path length.
+fn rate(direction: &PerAxis) -> f64 {
+    let turns = [Axis::A, Axis::B, Axis::C].map(|axis| direction[axis.index()].abs().to_radians());
+    turns.iter().sum()
+}
+
+fn length(direction: &PerAxis) -> f64 {
+    MAIN.map(|i| direction[i] * direction[i]).sum::<f64>().sqrt()
+}
+
+/// Turning at a constant rate accelerates the main axes across the path. That comes on top of what they accelerate along
+/// it, MP1060: what is left of `sqrt(MP1060² + MP1070²)` is for it.
+fn swing_speed(per_square: f64, swing: f64, dynamics: &Dynamics) -> f64 {
+    if swing <= 0.0 {
+        return f64::INFINITY;
+    }
+    let left = MAIN.map(|i| dynamics.bound[i] - dynamics.acceleration[i]);
+    (left.fold(f64::INFINITY, f64::min) / (per_square + swing)).sqrt()
+}
