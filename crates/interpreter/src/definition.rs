@@ -17,6 +17,8 @@ pub(crate) struct CycleData {
     pub effective: Collector,
     /// Cycle 20.
     pub contour_data: Collector,
+    /// The last one of the machine builder.
+    pub oem: Collector,
 }
 
 impl CycleData {

@@ -10,6 +10,7 @@ use crate::error::{Fault, WarningKind};
 use crate::flow;
 use crate::modal::Modal;
 use crate::numbers::Numbers;
+use crate::oem::Running;
 use crate::pen::Pen;
 use crate::probe::{self, Probing};
 use crate::settings::Settings;
@@ -30,6 +31,8 @@ pub(crate) struct Run {
     pub blank: Option<Blank>,
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
+    /// Cycles of the machine builder that run, each within the one before.
+    pub oem: Vec<Running>,
 }
 
 impl Run {
@@ -43,6 +46,7 @@ impl Run {
             tools: Tools::default(),
             blank: None,
             probing: None,
+            oem: Vec::new(),
         };
         run.take_status(&settings.status);
         run
