@@ -403,7 +403,7 @@ fn parameters_say_that_they_have_no_effect() {
     );
     assert!(
         folder
-            .bahn("mp explain 7680")
+            .bahn("mp explain 7640")
             .out()
             .contains("acts in part here: ")
     );

@@ -37,6 +37,23 @@ impl CycleData {
     }
 }
 
+/// Cycles of the machine builder [003:4904-4906].
+pub(crate) const OEM_CYCLES: std::ops::RangeInclusive<u16> = 68..=99;
+
+/// A cycle of the machine builder that runs, and what its end brings back.
+#[derive(Clone, Debug)]
+pub(crate) struct RunningOem {
+    /// Calls that are open within it.
+    pub depth: usize,
+    /// It comes from the EPROM of the PLC.
+    pub in_eprom: bool,
+    /// Q parameters that may be local.
+    pub q: Vec<f64>,
+    /// The cycle for the call that was defined before it (inferred: standard cycles within it are its own).
+    pub machining: Collector,
+    pub after_each_block: bool,
+}
+
 /// Collects the blocks n.0, n.1, ... of a definition.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Collector {

@@ -5,20 +5,17 @@
 //! (DLG-CALL). The definition assigns its parameters to Q1, Q2, ..., those of DLG-DEF cycles MP7250 higher. What the
 //! cycle makes of Q parameters below Q[100 - MP7251] is gone behind its end [000:17763-17800].
 
-use std::ops::RangeInclusive;
 use std::sync::PoisonError;
 
 use bahn_parameters::MessageId;
 use bahn_program::{MFunctions, Operation};
 
 use crate::Interpreter;
-use crate::definition::{Collector, Definition};
+use crate::definition::{Definition, OEM_CYCLES, RunningOem};
 use crate::error::{Fault, WarningKind};
 use crate::run::Run;
 use crate::settings::Settings;
 
-/// Numbers of the cycles.
-pub(crate) const CYCLES: RangeInclusive<u16> = 68..=99;
 /// Name of the program of a cycle less its number.
 const NAME_BASE: u32 = 99_999_900;
 /// Cycles of the machine builder inside each other [000:17711].
@@ -27,18 +24,6 @@ const NESTING_MAX: usize = 4;
 const FIRST_NEVER_LOCAL: usize = 100;
 /// The dialogue block stands within the first blocks.
 const BLOCKS_BEFORE_DIALOG: u32 = 16;
-
-/// A cycle that runs, and what its end brings back.
-#[derive(Clone, Debug)]
-pub(crate) struct Running {
-    /// Calls that are open within it.
-    depth: usize,
-    in_eprom: bool,
-    q: Vec<f64>,
-    /// The cycle for the call that was defined before it (inferred: standard cycles within it are its own).
-    machining: Collector,
-    after_each_block: bool,
-}
 
 /// What the dialogue block of a cycle says.
 #[derive(Clone, Copy)]
@@ -173,7 +158,7 @@ impl Interpreter {
             let Some(program) = self.open_oem_cycle(&name, in_eprom)? else {
                 continue;
             };
-            let bit = u32::from(number.saturating_sub(*CYCLES.start()));
+            let bit = u32::from(number.saturating_sub(*OEM_CYCLES.start()));
             if in_eprom && self.settings.inhibited_oem_cycles >> bit & 1 != 0 {
                 let detail = format!("M{} of the PLC inhibits cycle {number}", 2240 + bit);
                 return Err(Fault::new(MessageId::BlockNotKnown, detail));
@@ -214,7 +199,7 @@ impl Interpreter {
         self.enter_program(cycle.program)?;
         let run = &mut self.run;
         let machining = run.modal.cycle.machining.clone();
-        run.oem.push(Running {
+        run.oem.push(RunningOem {
             depth: run.at.depth(),
             in_eprom: cycle.in_eprom,
             q: run
@@ -252,7 +237,7 @@ pub(crate) fn leave(run: &mut Run, settings: &Settings) {
 
 /// Refuses what a cycle must not have [000:17705-17724]; no manual prints the message (inferred).
 pub(crate) fn permit(
-    running: Option<&Running>,
+    running: Option<&RunningOem>,
     operation: &Operation,
     settings: &Settings,
 ) -> Result<(), Fault> {
@@ -290,5 +275,5 @@ fn is_name(name: &str) -> bool {
         .parse::<u32>()
         .ok()
         .and_then(|number| number.checked_sub(NAME_BASE));
-    number.is_some_and(|number| u16::try_from(number).is_ok_and(|number| CYCLES.contains(&number)))
+    number.is_some_and(|number| u16::try_from(number).is_ok_and(|number| OEM_CYCLES.contains(&number)))
 }

@@ -6,11 +6,11 @@ use bahn_program::{Compensation, InputSteps, Unit, Value};
 
 use crate::context::Context;
 use crate::cycles::{self, ContourJob, Halt, Watch};
+use crate::definition::RunningOem;
 use crate::error::{Fault, WarningKind};
 use crate::flow;
 use crate::modal::Modal;
 use crate::numbers::Numbers;
-use crate::oem::Running;
 use crate::pen::Pen;
 use crate::probe::{self, Probing};
 use crate::settings::Settings;
@@ -32,7 +32,7 @@ pub(crate) struct Run {
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
     /// Cycles of the machine builder that run, each within the one before.
-    pub oem: Vec<Running>,
+    pub oem: Vec<RunningOem>,
 }
 
 impl Run {

@@ -32,7 +32,7 @@ fn mp(assignments: &'static [&'static str]) -> impl FnOnce(&mut Settings) {
     move |settings| {
         let mut list = ParameterList::reference(ControlModel::Tnc415b);
         for assignment in assignments {
-            list.assign(assignment).unwrap();
+            assert!(list.assign(assignment).is_ok(), "{assignment}");
         }
         settings.rules = bahn_interpreter::Rules::of(&list);
     }

@@ -1,8 +1,9 @@
 //! Cycles: definition, call, and what each does.
 //!
-//! Definitions are collected block by block. Cycles 7-11, 13, 14, 19 and 26 act when they are defined, the
+//! Definitions are collected block by block. Cycles 7-11, 13, 14, 19, 20 and 26 act when they are defined, the
 //! others when they are called [003:4849-4857].
 
+mod contour_cycle;
 mod contour_data;
 mod contour_finish;
 mod contour_pocket;
@@ -15,7 +16,8 @@ mod transformation;
 use bahn_parameters::MessageId;
 use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
-pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_cycle, contour_plane};
+pub(crate) use self::contour_cycle::contour_cycle;
+pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
 use self::drilling::{pecking, rigid_tapping, tapping, thread_cutting};
 use self::machining::Machining;
 use self::pockets::{circular_pocket, pocket_milling, slot_milling};
@@ -24,10 +26,9 @@ use self::transformation::{
 };
 use crate::availability::{Feature, names_datum_table, words};
 use crate::context::Context;
-use crate::definition::{Definition, Resolved, is_contour_cycle, resolve};
+use crate::definition::{Definition, OEM_CYCLES, Resolved, is_contour_cycle, resolve};
 use crate::error::{Cause, Fault};
 use crate::flow::Flow;
-use crate::oem;
 use crate::settings::Settings;
 
 /// One block of a cycle definition.
@@ -37,7 +38,7 @@ pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<Fl
         return Err(Fault::new(MessageId::BlockNotKnown, detail));
     }
     let feature = Feature::Cycle(block.number);
-    if oem::CYCLES.contains(&block.number) {
+    if OEM_CYCLES.contains(&block.number) {
         return define_oem_cycle(c, block);
     }
     let acts_here = is_effective_at_definition(block.number);
@@ -142,7 +143,7 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
         3 => slot_milling(&mut m, &definition)?,
         4 => pocket_milling(&mut m, &definition)?,
         5 => circular_pocket(&mut m, &definition)?,
-        number if oem::CYCLES.contains(&number) => return Ok(Flow::OemCall(number)),
+        number if OEM_CYCLES.contains(&number) => return Ok(Flow::OemCall(number)),
         number if is_contour_cycle(number) => {
             contour_data::check(c.modal, &definition)?;
             return Ok(Flow::ContourCycle);
