@@ -166,6 +166,7 @@ pub(crate) fn interpreter(
         q_values: q_values(&run.set, model)?,
         start: position("--start", &run.start, model)?,
         tool_length_mm: None,
+        inhibited_oem_cycles: 0,
         point_angles_deg: BTreeMap::new(),
         status: bahn_interpreter::Status::default(),
         tool_change: position("--tool-change", &run.tool_change, model)?,

@@ -15,6 +15,14 @@ pub trait Programs: Send + Sync {
     /// # Errors
     /// Why it cannot be read.
     fn open(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
+
+    /// A cycle of the machine builder in the EPROM of the PLC; there is none by default.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn open_in_eprom(&self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+        Ok(None)
+    }
 }
 
 /// Programs as a library for the interpreter.
@@ -23,6 +31,10 @@ pub(crate) struct Shelf(pub Arc<dyn Programs>);
 impl Library for Shelf {
     fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
         self.0.open(name, caller)
+    }
+
+    fn find_in_eprom(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.0.open_in_eprom(name, caller)
     }
 }
 

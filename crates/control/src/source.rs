@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use bahn_exchange::{Bit, signal};
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
@@ -341,6 +342,7 @@ impl Source {
             texts: basis.link.machine_texts().clone(),
             tools: site.magazine.shapes(),
             barred_tools: site.magazine.barred(),
+            inhibited_oem_cycles: inhibited_oem_cycles(site),
             datum_table: basis.link.datums(basis.list),
             strict: self.reading.checking.strict,
             skip_unknown: self.reading.checking.skip_unknown,
@@ -362,6 +364,16 @@ impl Source {
         }
         feeder
     }
+}
+
+/// M2240 to M2271: the PLC inhibits cycles of the machine builder in the EPROM, when the program starts (inferred)
+/// [000:17812-17821].
+fn inhibited_oem_cycles(site: &Site) -> u32 {
+    let first = signal::OEM_CYCLE_68_INHIBITED;
+    (0..32u16)
+        .filter_map(|cycle| Some((cycle, Bit::new(first.area(), first.number() + cycle)?)))
+        .filter(|(_, bit)| site.exchange.nc().bit(*bit))
+        .fold(0, |bits, (cycle, _)| bits | 1 << cycle)
 }
 
 /// Machine zero in workpiece coordinates; unknown for axes that have not passed their reference mark

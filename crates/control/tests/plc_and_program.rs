@@ -58,6 +58,34 @@ fn fn19() {
     near(display(&rig, 'X'), 60.0);
 }
 
+/// M2248: the PLC inhibits cycle 76 of its EPROM, so that it cannot be defined; nothing moves. One in the program memory
+/// it does not inhibit [000:17757-17761] [000:17812-17821].
+#[test]
+fn the_plc_inhibits_cycles_of_the_eprom() {
+    let text = |x: u32| format!("BEGIN PGM 99999976 MM\nDLG-DEF 0\nL X+{x} R0 F6000\nEND PGM 99999976 MM\n");
+    let end = |plc: &str, in_memory: bool| {
+        let mut build = bench(&format!("{ACKNOWLEDGE}{plc}")).mp("7240=1");
+        build = build.program("1.H", "CYCL DEF 76.0 GO\nL IX+1");
+        build.programs.0.insert("eprom/99999976".into(), text(60));
+        if in_memory {
+            build.programs.0.insert("99999976".into(), text(70));
+        }
+        let mut rig = ready(build);
+        rig.start();
+        rig.seconds(3.0);
+        (display(&rig, 'X').round() as i32, rig.messages())
+    };
+    let inhibits = "\n       LN    M900\n       =     M2248";
+    assert_eq!(end("", false), (61, Vec::new()));
+    assert_eq!(end(inhibits, true), (71, Vec::new()));
+    let (x, messages) = end(inhibits, false);
+    assert_eq!(x, 50);
+    assert!(
+        messages.len() == 1 && messages[0].contains("FUNCTION NOT AVAILABLE ON THIS CONTROL"),
+        "{messages:?}"
+    );
+}
+
 /// In a program in inches M2150 is 1, X+3 is 76.2 mm and the display of the Q parameter counts in inches.
 #[test]
 fn inch_program() {

@@ -168,14 +168,39 @@ impl FileLibrary {
     }
 }
 
+/// The folder beside the programs with what is in the EPROM of the PLC.
+const EPROM: &str = "eprom";
+
 impl Library for FileLibrary {
     /// Looks for the name beside the calling program; see `called::find`.
     fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
-        let key = (name.to_owned(), caller.to_owned());
+        self.find_in(memory_of(caller), name, caller)
+    }
+
+    /// Looks for the name in the folder `eprom` beside the calling program.
+    fn find_in_eprom(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.find_in(&memory_of(caller).join(EPROM), name, caller)
+    }
+}
+
+/// The folder of the programs beside a caller, which may itself be in the EPROM.
+fn memory_of(caller: &str) -> &Path {
+    let folder = Path::new(caller).parent().unwrap_or(Path::new(""));
+    match folder.file_name().is_some_and(|name| name == EPROM) {
+        true => folder.parent().unwrap_or(Path::new("")),
+        false => folder,
+    }
+}
+
+impl FileLibrary {
+    fn find_in(&mut self, folder: &Path, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        let key = (
+            folder.join(name).to_string_lossy().into_owned(),
+            caller.to_owned(),
+        );
         if let Some(program) = self.found.get(&key) {
             return Ok(Some(program.clone()));
         }
-        let folder = Path::new(caller).parent().unwrap_or(Path::new(""));
         let Some(path) = called::find(folder, name, Path::new(caller)) else {
             return Ok(None);
         };

@@ -11,6 +11,12 @@ pub trait Library {
     /// Finds a program by the name written in CALL PGM or cycle 12, beside the calling program.
     /// `Ok(None)` when there is none; `Err` says why it cannot be read.
     fn find(&mut self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String>;
+
+    /// Finds a cycle of the machine builder in the EPROM of the PLC, as [`Library::find`] does in the program memory.
+    /// There is none by default.
+    fn find_in_eprom(&mut self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+        Ok(None)
+    }
 }
 
 /// A library without programs.
@@ -120,18 +126,34 @@ impl Code {
         if self.programs.len() > usize::from(u16::MAX) {
             return Err("too many programs".into());
         }
-        let caller_name = self
-            .program(caller)
+        let found = library.find(name, &self.name_of(caller))?;
+        Ok(found.map(|program| self.index_of(program)))
+    }
+
+    /// The index of a program in the EPROM.
+    pub fn open_eprom(
+        &mut self,
+        name: &str,
+        caller: u16,
+        library: &mut dyn Library,
+    ) -> Result<Option<u16>, String> {
+        let found = library.find_in_eprom(name, &self.name_of(caller))?;
+        Ok(found.map(|program| self.index_of(program)))
+    }
+
+    fn name_of(&self, program: u16) -> String {
+        self.program(program)
             .map(|p| p.name().to_owned())
-            .unwrap_or_default();
-        Ok(library.find(name, &caller_name)?.map(|program| {
-            // The same file under another spelling of its name is the same program.
-            let known = self
-                .programs
-                .iter()
-                .position(|p| Arc::ptr_eq(&p.program, &program));
-            known.map_or_else(|| self.add(program), |index| index as u16)
-        }))
+            .unwrap_or_default()
+    }
+
+    /// The same file under another spelling of its name is the same program.
+    fn index_of(&mut self, program: Arc<Program>) -> u16 {
+        let known = self
+            .programs
+            .iter()
+            .position(|p| Arc::ptr_eq(&p.program, &program));
+        known.map_or_else(|| self.add(program), |index| index as u16)
     }
 
     /// Whether a program is called for the first time; only once so.

@@ -17,6 +17,8 @@ pub(crate) struct CycleData {
     pub effective: Collector,
     /// Cycle 20.
     pub contour_data: Collector,
+    /// The last one of the machine builder.
+    pub oem: Collector,
 }
 
 impl CycleData {
@@ -33,6 +35,23 @@ impl CycleData {
             .as_ref()
             .is_some_and(|definition| definition.number == 25)
     }
+}
+
+/// Cycles of the machine builder [003:4904-4906].
+pub(crate) const OEM_CYCLES: std::ops::RangeInclusive<u16> = 68..=99;
+
+/// A cycle of the machine builder that runs, and what its end brings back.
+#[derive(Clone, Debug)]
+pub(crate) struct RunningOem {
+    /// Calls that are open within it.
+    pub depth: usize,
+    /// It comes from the EPROM of the PLC.
+    pub in_eprom: bool,
+    /// Q parameters that may be local.
+    pub q: Vec<f64>,
+    /// The cycle for the call that was defined before it (inferred: standard cycles within it are its own).
+    pub machining: Collector,
+    pub after_each_block: bool,
 }
 
 /// Collects the blocks n.0, n.1, ... of a definition.

@@ -101,7 +101,7 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
         Operation::ErrorNumber(number) => return Err(numbered_error(&c.numbers.q, *number, settings)),
         Operation::Print(items) => print(c, items)?,
         Operation::Plc { a, b } => plc(c, *a, *b)?,
-        Operation::Cycle(block) => define_cycle(c, block)?,
+        Operation::Cycle(block) => return define_cycle(c, block),
         Operation::CycleCall(m) => {
             // CYCL CALL ends M89 [003:4875-4881].
             c.modal.cycle_after_each_block = false;
@@ -121,7 +121,9 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
             } else {
                 words::DIALOG_DEFINITION
             };
-            c.executes(Feature::Word(name))?;
+            if c.executes(Feature::Word(name))? {
+                return Ok(Flow::Dialog);
+            }
         }
         Operation::Invalid(invalid) => return unreadable(run, invalid, settings),
         Operation::Motion(_)

@@ -23,6 +23,12 @@ pub(crate) enum Flow {
     EndOfProgram,
     /// M2 or M30.
     EndOfRun,
+    /// A block `number.sub` of the definition of a machine builder's cycle.
+    OemDefinition(u16, u16),
+    /// A machine builder's cycle is called.
+    OemCall(u16),
+    /// The dialogue block of such a cycle.
+    Dialog,
     /// A cycle is called that needs the contour subprograms.
     ContourCycle,
 }

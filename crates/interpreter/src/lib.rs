@@ -50,6 +50,7 @@ mod growing;
 mod modal;
 mod normals;
 mod numbers;
+mod oem;
 mod output;
 mod outside;
 mod path_functions;
@@ -69,6 +70,7 @@ mod tools;
 mod voltage;
 mod work;
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -133,6 +135,8 @@ pub struct Interpreter {
     /// Long computations are left to whoever drives, and the one that is pending.
     defers: bool,
     pending: Pending,
+    /// Cycles of the machine builder that were looked for: a run keeps what it found.
+    oem_cycles: BTreeMap<u16, Option<oem::Cycle>>,
     /// A main program that is still being transferred has no block to go on with.
     starved: bool,
     /// End of the last element that was handed out.
@@ -168,6 +172,7 @@ impl Interpreter {
             work: None,
             defers: false,
             pending: Pending::None,
+            oem_cycles: BTreeMap::new(),
             starved: false,
             position,
         };
@@ -413,6 +418,7 @@ impl Interpreter {
         } else {
             0
         };
+        oem::permit(self.run.oem.last(), &block.operation, &self.settings)?;
         let flow = execute(&mut self.run, &block.operation, &self.settings)?;
         if label != 0 {
             self.check_label(label, at)?;
@@ -439,6 +445,9 @@ impl Interpreter {
             }
             Flow::Return => self.run.at.return_from_label(),
             Flow::CallProgram(name) => self.call_program(&name)?,
+            Flow::OemDefinition(number, sub) => self.oem_definition(number, sub)?,
+            Flow::OemCall(number) => self.oem_call(number)?,
+            Flow::Dialog => self.dialog()?,
             Flow::EndOfProgram => return self.end_of_program(),
             Flow::EndOfRun => return self.end_of_run(),
             Flow::ContourCycle if self.run.pen.rehearsal => self.rehearse_contours()?,
@@ -503,6 +512,10 @@ impl Interpreter {
                 format!("there is no program {name}"),
             ));
         };
+        self.enter_program(index)
+    }
+
+    pub(crate) fn enter_program(&mut self, index: u16) -> Result<(), Fault> {
         self.run.at.call_program(index, self.settings.model.limits())?;
         self.enter_unit();
         if self.code.is_new(index) {
@@ -520,6 +533,7 @@ impl Interpreter {
 
     fn end_of_program(&mut self) -> Result<(), Fault> {
         if self.run.at.return_from_program()? {
+            oem::leave(&mut self.run, &self.settings);
             self.enter_unit();
             return Ok(());
         }

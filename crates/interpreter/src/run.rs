@@ -6,6 +6,7 @@ use bahn_program::{Compensation, InputSteps, Unit, Value};
 
 use crate::context::Context;
 use crate::cycles::{self, ContourJob, Halt, Watch};
+use crate::definition::RunningOem;
 use crate::error::{Fault, WarningKind};
 use crate::flow;
 use crate::modal::Modal;
@@ -31,6 +32,8 @@ pub(crate) struct Run {
     pub blank: Option<Blank>,
     /// Probing that waits for its touch.
     pub probing: Option<Probing>,
+    /// Cycles of the machine builder that run, each within the one before.
+    pub oem: Vec<RunningOem>,
 }
 
 impl Run {
@@ -44,6 +47,7 @@ impl Run {
             tools: Tools::default(),
             blank: None,
             probing: None,
+            oem: Vec::new(),
         };
         run.take_status(&settings.status, settings);
         run

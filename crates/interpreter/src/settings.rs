@@ -25,6 +25,8 @@ pub struct Settings {
     pub point_angles_deg: BTreeMap<u32, f64>,
     /// Tools of the table that must not be called.
     pub barred_tools: BTreeMap<u32, ToolState>,
+    /// Cycles of the machine builder in the EPROM that the PLC inhibits: bit n is cycle 68 + n [000:17812-17821].
+    pub inhibited_oem_cycles: u32,
     /// The datum table of `CYCL DEF 7.1 #n`; `None` when none is selected.
     pub datum_table: Option<Arc<DatumTable>>,
     /// The M functions that the machine builder synchronises otherwise than the model.
@@ -68,6 +70,7 @@ impl Default for Settings {
             tools: None,
             point_angles_deg: BTreeMap::new(),
             barred_tools: BTreeMap::new(),
+            inhibited_oem_cycles: 0,
             datum_table: None,
             functions: OwnFunctions::default(),
             texts: MachineTexts::default(),
@@ -182,6 +185,8 @@ pub struct Rules {
     pub voltages: Option<Characteristics>,
     /// MP7246: paraxial positioning blocks are disabled [000:7022-7029].
     pub paraxial_inhibited: bool,
+    /// MP7240, MP7250, MP7251: cycles of the machine builder.
+    pub oem_cycles: OemCycleRules,
     /// MP7680 bit 6: in LN blocks the length contains DR2 [000:9179-9192].
     pub normal_length_with_dr2: bool,
     /// MP7510 to MP7592: the swivel axes; `None` when there are none [000:4258-4301].
@@ -254,6 +259,7 @@ impl Rules {
                 let index = list.axis_index(axis)?;
                 list.axis_parameters(index).travel.modulo_deg
             }),
+            oem_cycles: OemCycleRules::of(list),
             ..Rules::default()
         }
     }
@@ -284,6 +290,29 @@ impl Default for Rules {
             swivels: None,
             tilting: false,
             modulo_deg: [None; Axis::COUNT],
+            oem_cycles: OemCycleRules::default(),
+        }
+    }
+}
+
+/// Cycles of the machine builder [000:17757-17810].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OemCycleRules {
+    /// MP7240 = 1: programs in the memory may have their names, and go before those of the EPROM.
+    pub names_free: bool,
+    /// MP7250: by how much the Q parameters of DLG-DEF cycles lie above those of DLG-CALL cycles.
+    pub definition_offset: u16,
+    /// MP7251: how many Q parameters below Q100 a cycle shares with who calls it.
+    pub global_parameters: u16,
+}
+
+impl OemCycleRules {
+    fn of(list: &ParameterList) -> OemCycleRules {
+        let cycles = list.operation_parameters().oem_cycles;
+        OemCycleRules {
+            names_free: cycles.names_free,
+            definition_offset: cycles.definition_offset.into(),
+            global_parameters: cycles.global_parameters.into(),
         }
     }
 }

@@ -90,6 +90,8 @@ fn a_square_pocket_with_an_island() {
     removes(&allowances, ROUGH, 9.5 * rough);
     let finished = [ROUGH, FLOOR, SIDES].join("\n");
     removes(&allowances, &finished, 10.0 * whole);
+    // The floor alone, without a plunging depth.
+    removes(&PLAIN, FLOOR, 10.0 * whole);
     let rounded = Data { corner: 4.0, ..PLAIN };
     removes(&rounded, ROUGH, 10.0 * (80.0 * 60.0 - 20.0 * 10.0 - corners(9.0)));
     // Cutting feeds and depths: two infeeds of 5 mm, from the clearance height by way of the set-up clearance.
@@ -246,6 +248,7 @@ fn wrong_contour_data() {
     };
     let cases: &[(&str, &str, MessageId, u32)] = &[
         ("Q1=-10", "Q1=+0", CyclIncomplete, 16),
+        ("Q10=-5", "Q10=+0", CyclIncomplete, 16),
         ("Q10=-5 Q11=+100 Q12=+350", "Q10=-5 Q12=+350", CyclIncomplete, 16),
         ("Q14=+0", "", CyclIncomplete, 19),
         ("Q2=+1 ", "", CyclIncomplete, 16),

@@ -130,7 +130,15 @@ fn has_word(text: &str, before: &str, word: &str) -> bool {
 /// position for tool changes in the block scan, the output S by feed, a Hirth coupling, a machine geometry of nine links.
 const CIRCUMSTANCES: &[&[&str]] = &[
     &[],
-    &["730=0", "7450=%11111", "410.3=0", "3010=0", "3011=1", "420.3=1", "430.3=2.5"],
+    &[
+        "730=0",
+        "7450=%11111",
+        "410.3=0",
+        "3010=0",
+        "3011=1",
+        "420.3=1",
+        "430.3=2.5",
+    ],
     &["730=%11111", "410.3=2", "410.4=0", "90=5"],
     &[
         "7510=1", "7520=1", "7530=1", "7540=1", "7550=1", "7560=1", "7570=1", "7580=1", "7590=1",

@@ -33,6 +33,10 @@ impl Programs for Shelf {
             .get(name)
             .map(|text| Arc::new(Program::from_bytes(name, text.clone().into_bytes()))))
     }
+
+    fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        self.open(&format!("eprom/{name}"), caller)
+    }
 }
 
 /// Control and machine, and what goes by in the meantime.

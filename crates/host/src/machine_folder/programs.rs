@@ -96,4 +96,14 @@ impl Programs for FolderPrograms {
             (found, _) => Ok(found),
         }
     }
+
+    fn open_in_eprom(&self, name: &str, caller: &str) -> Result<Option<Arc<Program>>, String> {
+        let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
+        if !caller.is_empty()
+            && let Some(program) = library.find_in_eprom(name, caller)?
+        {
+            return Ok(Some(program));
+        }
+        library.find_in_eprom(name, &self.caller)
+    }
 }

@@ -135,6 +135,17 @@ impl Values<'_> {
         Ok(self.number(q)? * self.numbers.unit_mm)
     }
 
+    /// The plunging depth Q10, mm.
+    pub fn plunging(&self) -> Result<f64, Fault> {
+        match self.length(10)? {
+            0.0 => Err(Fault::new(
+                MessageId::CyclIncomplete,
+                "the plunging depth Q10 is 0",
+            )),
+            plunging => Ok(plunging),
+        }
+    }
+
     /// A feed, mm/min.
     pub fn feed(&self, q: u16) -> Result<f64, Fault> {
         let value = bahn_program::Value::Q {
@@ -163,13 +174,8 @@ impl Values<'_> {
     pub fn heights(&self, modal: &Modal, setup: f64) -> Result<Heights, Fault> {
         let normal = modal.plane.normal;
         let depth = self.length(1)?;
-        if depth == 0.0 || self.number(10)? == 0.0 {
-            let what = if depth == 0.0 {
-                "Q1"
-            } else {
-                "the plunging depth Q10"
-            };
-            return Err(Fault::new(MessageId::CyclIncomplete, format!("{what} is 0")));
+        if depth == 0.0 {
+            return Err(Fault::new(MessageId::CyclIncomplete, "the milling depth Q1 is 0"));
         }
         let height = |coordinate: f64| {
             let mut at = Position::ZERO;

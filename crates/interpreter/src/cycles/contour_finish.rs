@@ -47,7 +47,7 @@ impl Data {
         }
         let plunging = match d.number {
             23 => heights.depth,
-            _ => values.length(10)? * scale,
+            _ => values.plunging()? * scale,
         };
         Ok(Data {
             heights,

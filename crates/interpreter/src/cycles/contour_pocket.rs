@@ -10,10 +10,7 @@ use bahn_path::region::{
 };
 use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2};
 
-use super::contour_finish::contour_data_cycle;
-use super::contour_train::{contour_train, train};
 use super::machining::{Heights, Machining, Tracer, infeeds, plane_direction};
-use crate::context::Context;
 use crate::contour::flat::Flat;
 use crate::contour::{ContourMove, Side};
 use crate::definition::Definition;
@@ -168,6 +165,28 @@ impl ContourJob {
     }
 }
 
+/// What a contour subprogram recorded, as a train: a move to its start point, which leads the tool beside it, and its
+/// elements.
+fn train(moves: &[ContourMove]) -> Vec<ContourMove> {
+    let mut in_plane = moves.iter().filter(|item| item.in_plane);
+    let mut train: Vec<ContourMove> = Vec::new();
+    if let Some(first) = in_plane.next() {
+        let mut start = first.clone();
+        start.element.curve = Curve::Line;
+        start.element.start = start.element.end;
+        train.push(start);
+    }
+    for item in in_plane {
+        let ends = item.side == Side::Off && train.last().is_some_and(|before| before.side != Side::Off);
+        if ends {
+            // The contour ends where the compensation does.
+            break;
+        }
+        train.push(item.clone());
+    }
+    train
+}
+
 /// The plane of the subcontours: the working plane, where parallel axes of the first coordinate block
 /// stand for their main axes [003:5397-5432].
 pub(crate) fn contour_plane(working: Plane, first_axes: AxisSet) -> Plane {
@@ -182,27 +201,13 @@ pub(crate) fn contour_plane(working: Plane, first_axes: AxisSet) -> Plane {
     }
 }
 
-/// Runs cycle 6, 15, 16 or 21 to 25 on the contours of cycle 14.
-pub(crate) fn contour_cycle(c: &mut Context<'_>, job: &ContourJob, watch: &Watch<'_>) -> Result<(), Halt> {
-    let Some(definition) = c.modal.cycle.machining.ready().cloned() else {
-        return Err(MessageId::CyclIncomplete.into());
-    };
-    let queued = c.pen.out.queue.len();
-    let result = match definition.number {
-        6 => rough_out(&mut Machining::new(c), job, &definition, watch),
-        15 => pilot_drilling(&mut Machining::new(c), job, &definition, watch),
-        16 => contour_milling(&mut Machining::new(c), job, &definition, watch),
-        25 => contour_train(c, job, watch),
-        _ => contour_data_cycle(c, job, &definition, watch),
-    };
-    if let Err(Halt::Interrupted) = result {
-        c.pen.out.queue.truncate(queued);
-    }
-    result
-}
-
 /// Cycle 6 ROUGH-OUT [003:5477-5521].
-fn rough_out(m: &mut Machining<'_>, job: &ContourJob, d: &Definition, watch: &Watch<'_>) -> Result<(), Halt> {
+pub(super) fn rough_out(
+    m: &mut Machining<'_>,
+    job: &ContourJob,
+    d: &Definition,
+    watch: &Watch<'_>,
+) -> Result<(), Halt> {
     let pecking = d.length(2, 0)?;
     let plunge_feed = d.feed(2, 0)?;
     let allowance = d.length(2, 1)?;
@@ -262,7 +267,7 @@ pub(super) fn clear_areas(
 }
 
 /// Cycle 15 PILOT DRILLING: pecks as cycle 1 at each infeed point [003:5993-6014].
-fn pilot_drilling(
+pub(super) fn pilot_drilling(
     m: &mut Machining<'_>,
     job: &ContourJob,
     d: &Definition,
@@ -285,7 +290,7 @@ fn pilot_drilling(
 }
 
 /// Cycle 16 CONTOUR MILLING: DR+ climb, DR- up-cut with M3 [003:6028-6066].
-fn contour_milling(
+pub(super) fn contour_milling(
     m: &mut Machining<'_>,
     job: &ContourJob,
     d: &Definition,

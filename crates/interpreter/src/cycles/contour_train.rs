@@ -2,7 +2,7 @@
 //! of later controls).
 
 use bahn_path::region::{Contour as PlaneContour, Effort, Segment};
-use bahn_path::{Curve, PathElement, Plane};
+use bahn_path::{PathElement, Plane};
 
 use super::contour_data::Values;
 use super::contour_pocket::{ContourJob, Halt, Milling, Watch};
@@ -21,7 +21,7 @@ pub(super) fn contour_train(c: &mut Context<'_>, job: &ContourJob, watch: &Watch
         settings: c.settings,
     };
     let heights = values.heights(c.modal, 0.0)?;
-    let plunging = values.length(10)? * c.modal.frame.scale(c.modal.plane.normal);
+    let plunging = values.plunging()? * c.modal.frame.scale(c.modal.plane.normal);
     let climb = values.number(15)?;
     let mill = Milling {
         heights,
@@ -119,26 +119,4 @@ fn segment(flat: Flat) -> Segment {
             sweep_deg,
         },
     }
-}
-
-/// What a contour subprogram recorded, as a train: a move to its start point, which leads the tool beside it, and its
-/// elements.
-pub(super) fn train(moves: &[ContourMove]) -> Vec<ContourMove> {
-    let mut in_plane = moves.iter().filter(|item| item.in_plane);
-    let mut train: Vec<ContourMove> = Vec::new();
-    if let Some(first) = in_plane.next() {
-        let mut start = first.clone();
-        start.element.curve = Curve::Line;
-        start.element.start = start.element.end;
-        train.push(start);
-    }
-    for item in in_plane {
-        let ends = item.side == Side::Off && train.last().is_some_and(|before| before.side != Side::Off);
-        if ends {
-            // The contour ends where the compensation does.
-            break;
-        }
-        train.push(item.clone());
-    }
-    train
 }

@@ -1,8 +1,9 @@
 //! Cycles: definition, call, and what each does.
 //!
-//! Definitions are collected block by block. Cycles 7-11, 13, 14, 19 and 26 act when they are defined, the
+//! Definitions are collected block by block. Cycles 7-11, 13, 14, 19, 20 and 26 act when they are defined, the
 //! others when they are called [003:4849-4857].
 
+mod contour_cycle;
 mod contour_data;
 mod contour_finish;
 mod contour_pocket;
@@ -15,7 +16,8 @@ mod transformation;
 use bahn_parameters::MessageId;
 use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
-pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_cycle, contour_plane};
+pub(crate) use self::contour_cycle::contour_cycle;
+pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
 use self::drilling::{pecking, rigid_tapping, tapping, thread_cutting};
 use self::machining::Machining;
 use self::pockets::{circular_pocket, pocket_milling, slot_milling};
@@ -24,27 +26,30 @@ use self::transformation::{
 };
 use crate::availability::{Feature, names_datum_table, words};
 use crate::context::Context;
-use crate::definition::{Definition, Resolved, is_contour_cycle, resolve};
+use crate::definition::{Definition, OEM_CYCLES, Resolved, is_contour_cycle, resolve};
 use crate::error::{Cause, Fault};
 use crate::flow::Flow;
 use crate::settings::Settings;
 use crate::tilting::working_plane;
 
 /// One block of a cycle definition.
-pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<(), Fault> {
+pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<Flow, Fault> {
     if block.sub == 0 && is_inhibited(block.number, c.settings) {
         let detail = format!("MP7245 inhibits cycle {}", block.number);
         return Err(Fault::new(MessageId::BlockNotKnown, detail));
     }
     let feature = Feature::Cycle(block.number);
+    if OEM_CYCLES.contains(&block.number) {
+        return define_oem_cycle(c, block);
+    }
     let acts_here = is_effective_at_definition(block.number);
     // A cycle that acts at its call is refused there, unless the control does not know it at all.
     let is_judged = acts_here || !is_known(block.number, c.settings);
     if is_judged && !c.executes(feature)? && acts_here {
-        return Ok(());
+        return Ok(Flow::Next);
     }
     if names_datum_table(block) && !c.executes(Feature::Word(words::DATUM_TABLE))? {
-        return Ok(());
+        return Ok(Flow::Next);
     }
     let words = resolve(block, c.numbers, c.settings)?;
     if contour_data::is_assigned(block.number) {
@@ -56,10 +61,11 @@ pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<()
             .cycle
             .contour_data
             .take(block.number, block.sub, words, unit_mm, c.pen.block);
-        return Ok(());
+        return Ok(Flow::Next);
     }
     if acts_here {
-        return define_effective(c, block, words);
+        define_effective(c, block, words)?;
+        return Ok(Flow::Next);
     }
     // A new definition ends M89 [003:4875-4881].
     if block.sub == 0 {
@@ -69,7 +75,23 @@ pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<()
         .cycle
         .machining
         .take(block.number, block.sub, words, c.numbers.unit_mm, c.pen.block);
-    Ok(())
+    Ok(Flow::Next)
+}
+
+/// A block of the definition of a machine builder's cycle; where it goes on is for who knows its program.
+fn define_oem_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<Flow, Fault> {
+    if !c.executes(Feature::Cycle(block.number))? {
+        return Ok(Flow::Next);
+    }
+    let words = resolve(block, c.numbers, c.settings)?;
+    contour_data::assign(c.numbers, &words)?;
+    let unit_mm = c.numbers.unit_mm;
+    let at = c.pen.block;
+    c.modal
+        .cycle
+        .oem
+        .take(block.number, block.sub, words, unit_mm, at);
+    Ok(Flow::OemDefinition(block.number, block.sub))
 }
 
 fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved>) -> Result<(), Fault> {
@@ -123,6 +145,7 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
         3 => slot_milling(&mut m, &definition)?,
         4 => pocket_milling(&mut m, &definition)?,
         5 => circular_pocket(&mut m, &definition)?,
+        number if OEM_CYCLES.contains(&number) => return Ok(Flow::OemCall(number)),
         number if is_contour_cycle(number) => {
             contour_data::check(c.modal, &definition)?;
             return Ok(Flow::ContourCycle);

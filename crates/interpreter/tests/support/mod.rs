@@ -43,6 +43,7 @@ pub struct Job {
     text: Vec<u8>,
     pub settings: Settings,
     library: BTreeMap<String, String>,
+    eprom: BTreeMap<String, String>,
     surfaces: Vec<f64>,
     /// Q parameters from the start.
     q: Vec<(u16, f64)>,
@@ -87,6 +88,7 @@ impl Job {
             text: text.into(),
             settings: Settings::default(),
             library: BTreeMap::new(),
+            eprom: BTreeMap::new(),
             surfaces: Vec::new(),
             q: Vec::new(),
         }
@@ -104,6 +106,12 @@ impl Job {
         self
     }
 
+    /// A cycle of the machine builder in the EPROM.
+    pub fn eprom(mut self, name: &str, text: impl Into<String>) -> Job {
+        self.eprom.insert(name.to_owned(), text.into());
+        self
+    }
+
     /// The probe touches at this coordinate of the probing axis, one after the other; afterwards nothing.
     pub fn surfaces(mut self, surfaces: &[f64]) -> Job {
         self.surfaces = surfaces.to_vec();
@@ -112,15 +120,17 @@ impl Job {
 
     pub fn run(self) -> Run {
         let main = Arc::new(Program::from_bytes("TEST", self.text));
-        let library = Shelf(
-            self.library
-                .into_iter()
-                .map(|(name, text)| {
-                    let program = Program::from_bytes(name.as_str(), text.into_bytes());
-                    (name, Arc::new(program))
-                })
-                .collect(),
-        );
+        let shelf = |programs: BTreeMap<String, String>, folder: &str| {
+            let programs = programs.into_iter().map(|(name, text)| {
+                let program = Program::from_bytes(format!("{folder}{name}"), text.into_bytes());
+                (name, Arc::new(program))
+            });
+            programs.collect()
+        };
+        let library = Shelf {
+            memory: shelf(self.library, ""),
+            eprom: shelf(self.eprom, "eprom/"),
+        };
         let mut interpreter = Interpreter::new(main, self.settings, Box::new(library));
         for (number, value) in self.q {
             interpreter.set_q(number, value);
@@ -174,11 +184,18 @@ pub fn run_with(blocks: &str, settings: Settings) -> Run {
     run
 }
 
-struct Shelf(BTreeMap<String, Arc<Program>>);
+struct Shelf {
+    memory: BTreeMap<String, Arc<Program>>,
+    eprom: BTreeMap<String, Arc<Program>>,
+}
 
 impl Library for Shelf {
     fn find(&mut self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
-        Ok(self.0.get(name).cloned())
+        Ok(self.memory.get(name).cloned())
+    }
+
+    fn find_in_eprom(&mut self, name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
+        Ok(self.eprom.get(name).cloned())
     }
 }
 

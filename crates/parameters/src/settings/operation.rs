@@ -38,8 +38,21 @@ pub struct OperationParameters {
     pub tilting: bool,
     /// Length for blocks with surface normals includes DR2: MP7680 bit 6 [000:9179-9192].
     pub normal_length_with_dr2: bool,
+    /// Cycles of the machine builder.
+    pub oem_cycles: OemCycleParameters,
     /// Step of the block numbers of ISO programs: MP7220; 1 where there is none [000:6885].
     pub iso_step: u8,
+}
+
+/// Cycles of the machine builder [000:17757-17810]; the TNC 151/155 have numbers of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OemCycleParameters {
+    /// Programs in the memory may have the names of cycles in the EPROM, and go before them: MP7240 = 1.
+    pub names_free: bool,
+    /// By how much the Q parameters of DLG-DEF cycles lie above those of DLG-CALL cycles: MP7250.
+    pub definition_offset: u8,
+    /// How many Q parameters below Q100 a cycle shares with who calls it: MP7251.
+    pub global_parameters: u8,
 }
 
 /// Whether there is a machine [000:6949-6954].
@@ -238,6 +251,11 @@ impl ParameterList {
             tool_length_shown: is_one(7285),
             tilting: is_one(7500),
             normal_length_with_dr2: multi(6),
+            oem_cycles: OemCycleParameters {
+                names_free: is_one(7240),
+                definition_offset: self.get_new(7250, 0).unwrap_or_default() as u8,
+                global_parameters: self.get_new(7251, 0).unwrap_or_default() as u8,
+            },
             iso_step: self.get_new(7220, 0).map_or(1, |step| step as u8),
         }
     }

@@ -1,4 +1,4 @@
-//! CYCL DEF, CYCL CALL, and the dialog blocks of OEM cycles. Words of cycles vary with the language of the
+//! CYCL DEF and CYCL CALL. Words of cycles vary with the language of the
 //! control, so that only numbers and addresses decide [003:3713-3714] [003:4979].
 
 use bahn_parameters::MessageId::{AxisDoubleProgrammed, CyclIncomplete, EntryValueIncorrect};
@@ -10,12 +10,7 @@ use super::path::{direction, feed_word};
 use crate::check::ANY_LABEL_MAX;
 use crate::cycles::{cycle_parameters, takes_assignments};
 use crate::text::{is_blank, to_words};
-use crate::{CycleBlock, CycleFunction, CycleWord, Dialog, Direction, Operation, Quantity, Word};
-
-/// Most dialog texts of an OEM cycle, its name and 14 parameters [000:17742].
-const MAX_DIALOGS: usize = 15;
-/// Greatest number of a dialog text [000:17742].
-const MAX_DIALOG: u16 = 127;
+use crate::{CycleBlock, CycleFunction, CycleWord, Direction, Operation, Quantity, Word};
 
 /// `CYCL DEF n.m ...` (also `CYCLE DEF`) and `CYCL CALL`.
 pub(super) fn cycle(c: &mut Cursor) -> Parsed<Option<Operation>> {
@@ -399,28 +394,6 @@ fn decoration(c: &mut Cursor, text: &mut Vec<u8>) {
     c.advance(length);
 }
 
-/// `DLG-DEF 0/2/8` and `DLG-CALL 0/1/2` [000:17732-17744].
-pub(super) fn dialog(c: &mut Cursor) -> Parsed<Option<Operation>> {
-    let start = c.position();
-    let call = c.keyword("DLG-CALL");
-    if !call && !c.keyword("DLG-DEF") {
-        return Ok(None);
-    }
-    let mut texts = Vec::new();
-    while !c.at_end() {
-        c.accept(b'/');
-        let item = c.position();
-        texts.push(c.required_integer(item, MAX_DIALOG, "dialog texts have the numbers 0 to 127")?);
-        if texts.len() > MAX_DIALOGS {
-            return c.fault_from(start, EntryValueIncorrect, "a cycle has at most 15 dialog texts");
-        }
-    }
-    Ok(Some(Operation::Dialog(Box::new(Dialog {
-        call,
-        texts: texts.into(),
-    }))))
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::test::{fault, m, operation, q};
@@ -691,15 +664,6 @@ mod tests {
             words_of("CYCL DEF 68.3 Q7 = +100,000 Q8 = Q9 ="),
             [Assignment(7, N(100.0))]
         );
-        assert_eq!(
-            operation("1 DLG-CALL 0/1/2"),
-            Operation::Dialog(Box::new(Dialog {
-                call: true,
-                texts: [0, 1, 2].into()
-            }))
-        );
-        assert_eq!(fault("DLG-DEF 0/200").0, EntryValueIncorrect);
-        assert_eq!(fault("DLG-DOOR 0").0, BlockNotKnown);
     }
 
     #[test]

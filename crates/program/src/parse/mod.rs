@@ -4,6 +4,7 @@
 mod blank;
 mod cursor;
 mod cycle;
+mod dialog;
 mod faults;
 mod foreign;
 mod formula;
@@ -186,7 +187,7 @@ fn operation(c: &mut Cursor) -> Parsed<Operation> {
         (b'C', b'C') => path::circle_centre(c),
         (b'C', b'H') => path::chamfer_word(c),
         (b'C', b'Y') => cycle::cycle(c),
-        (b'D', _) => cycle::dialog(c),
+        (b'D', _) => dialog::dialog(c),
         (b'E', b'N') => header::end(c),
         (b'E', b'R') => header::stored_error(c),
         (b'F', b'N') => q_parameter::function(c),

@@ -267,6 +267,8 @@ fn cycle() -> impl Strategy<Value = CycleBlock> {
             block(number, sub, words)
         }),
         name.prop_map(move |words| block(12, 1, words)),
+        (20..=25_u16, 0..4_u16, cycle_words(false))
+            .prop_map(move |(number, sub, words)| block(number, sub, words)),
         (axis(), value(), axis(), value()).prop_map(move |(factor, a, centre, b)| {
             let words = vec![CycleWord::AxisFactor(factor, a), CycleWord::Centre(centre, b)];
             block(26, 1, words)

@@ -1,0 +1,53 @@
+//! The dialog blocks of OEM cycles.
+
+use bahn_parameters::MessageId::EntryValueIncorrect;
+
+use super::cursor::{Cursor, Parsed};
+use crate::{Dialog, Operation};
+
+/// Most dialog texts of an OEM cycle, its name and 14 parameters [000:17742].
+const MAX_DIALOGS: usize = 15;
+/// Greatest number of a dialog text [000:17742].
+const MAX_DIALOG: u16 = 127;
+
+/// `DLG-DEF 0/2/8` and `DLG-CALL 0/1/2` [000:17732-17744].
+pub(super) fn dialog(c: &mut Cursor) -> Parsed<Option<Operation>> {
+    let start = c.position();
+    let call = c.keyword("DLG-CALL");
+    if !call && !c.keyword("DLG-DEF") {
+        return Ok(None);
+    }
+    let mut texts = Vec::new();
+    while !c.at_end() {
+        c.accept(b'/');
+        let item = c.position();
+        texts.push(c.required_integer(item, MAX_DIALOG, "dialog texts have the numbers 0 to 127")?);
+        if texts.len() > MAX_DIALOGS {
+            return c.fault_from(start, EntryValueIncorrect, "a cycle has at most 15 dialog texts");
+        }
+    }
+    Ok(Some(Operation::Dialog(Box::new(Dialog {
+        call,
+        texts: texts.into(),
+    }))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test::{fault, operation};
+    use super::*;
+    use bahn_parameters::MessageId::BlockNotKnown;
+
+    #[test]
+    fn dialog_blocks() {
+        assert_eq!(
+            operation("1 DLG-CALL 0/1/2"),
+            Operation::Dialog(Box::new(Dialog {
+                call: true,
+                texts: [0, 1, 2].into()
+            }))
+        );
+        assert_eq!(fault("DLG-DEF 0/200").0, EntryValueIncorrect);
+        assert_eq!(fault("DLG-DOOR 0").0, BlockNotKnown);
+    }
+}
