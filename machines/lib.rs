@@ -31,7 +31,7 @@ macro_rules! machine {
 pub const FOLDER: &str = include_str!("FOLDER.md");
 
 /// A mill with rotary table and two gear ranges; its control is a TNC 415 B.
-pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407", "tnc425":
+pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
     "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "programs/BRACKET.H",
     "programs/CIRCLE.H", "programs/INDEX.H", "programs/SADDLE.H",
@@ -41,6 +41,12 @@ pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407", "tnc42
 pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360" for "tnc360", "tnc151", "tnc155":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
     "plc/run.txt", "programs/COVER.H",
+);
+
+/// A mill with digital drives, whose speed loops the control closes; it is a TNC 425.
+pub const DIG425: ShippedMachine = machine!("dig425" for "tnc425":
+    "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
+    "plc/run.txt", "programs/CIRCLE.H", "programs/COVER.H",
 );
 
 /// A portal mill with two channels; its control is a TNC 415 B. It is a start where it is asked for by its name.
@@ -57,7 +63,7 @@ pub const GANTRY: ShippedMachine = machine!("gantry" for "tnc415b":
 );
 
 /// All of them; the first one that has a model is the start for it.
-pub const ALL: [ShippedMachine; 4] = [MILL, MILL_TNC360, TWIN, GANTRY];
+pub const ALL: [ShippedMachine; 5] = [MILL, MILL_TNC360, DIG425, TWIN, GANTRY];
 
 impl ShippedMachine {
     /// The text of a file.

@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::Outcome;
+use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
@@ -16,6 +17,7 @@ use crate::plc::PlcOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
 use crate::test_run::TestOptions;
+use crate::tune::TuneOptions;
 
 /// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
 /// shows every tool movement, the machining time and the finished part.
@@ -42,6 +44,12 @@ pub(crate) enum Command {
     /// Draw recorded signals like an oscilloscope, and sum them up.
     #[command(after_help = crate::scope::EXAMPLES)]
     Scope(Box<ScopeOptions>),
+    /// Find machine parameters by circle tests on the simulated machine, as at commissioning.
+    #[command(after_help = crate::tune::EXAMPLES)]
+    Tune(Box<TuneOptions>),
+    /// Measure axis errors of the simulated machine as a laser interferometer does, and compensate them.
+    #[command(after_help = crate::compensate::EXAMPLES)]
+    Compensate(CompensateOptions),
     /// Write, check and list folders of machines.
     Machine(MachineFolderOptions),
     /// Show all errors of programs that can be found without running them.

@@ -25,6 +25,7 @@
 mod block_time;
 mod check;
 mod cli;
+mod compensate;
 mod conformance;
 mod console;
 mod cutting;
@@ -50,6 +51,7 @@ mod scope;
 mod settings;
 mod shelf;
 mod test_run;
+mod tune;
 
 #[doc(hidden)]
 pub use bahn_host::{check_nc_tables, check_script, check_state, check_tool_table};
@@ -74,6 +76,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Test(options) => test_run::command(*options, shelf::command),
         cli::Command::Run(options) => run::command(&options),
         cli::Command::Scope(options) => scope::command(&options),
+        cli::Command::Tune(options) => tune::command(&options),
+        cli::Command::Compensate(options) => compensate::command(&options),
         cli::Command::Machine(options) => machine_folder::command(&options),
         cli::Command::Check(options) => check::command(&options),
         cli::Command::Fmt(options) => format::command(&options),

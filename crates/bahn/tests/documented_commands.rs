@@ -160,7 +160,7 @@ fn of_the_help_texts() {
 #[test]
 fn of_the_readmes_of_machines() {
     let folder = desk();
-    for machine in ["mill", "mill-tnc360", "twin", "gantry"] {
+    for machine in ["mill", "mill-tnc360", "dig425", "twin", "gantry"] {
         let place = folder.path(&format!("machines/{machine}"));
         let text = fs::read_to_string(place.join("README.md")).unwrap();
         run_all(&folder, &place, &commands(&text));

@@ -96,6 +96,9 @@ impl Axes {
     pub fn measure(&mut self, measured: &Measured) {
         for unit in &mut self.units {
             let encoder = measured.encoder(unit.input());
+            if unit.servo.is_digital() {
+                unit.servo.measure_motor(measured.motor(unit.output()));
+            }
             unit.servo.measure(encoder);
             let drive = measured.drive(unit.output());
             unit.servo.take_drive_fault(drive.fault);
@@ -124,9 +127,17 @@ impl Axes {
     pub fn close_loops(&mut self) {
         for unit in self.units.iter_mut().filter(|unit| unit.parameters.controlled) {
             unit.transfer();
+            unit.servo.end_shutdown();
             unit.servo.close();
         }
         gantry::switch_on(&mut self.units);
+    }
+
+    /// The control voltage goes: digital speed controllers brake as long as MP1980 says.
+    pub fn begin_shutdown(&mut self) {
+        for unit in &mut self.units {
+            unit.servo.begin_shutdown();
+        }
     }
 
     /// The control voltage is gone: nothing moves them.
@@ -294,6 +305,7 @@ impl OwnAxes<'_> {
     /// Those that something moves belong to nobody.
     pub fn release(&mut self, moved_by: impl Fn(Mover) -> bool) {
         for unit in self.iter_mut().filter(|unit| moved_by(unit.mover)) {
+            unit.end_step();
             unit.mover = Mover::None;
         }
     }

@@ -189,6 +189,25 @@ impl AxisUnit {
         self.ptp = PointToPoint::moving(position, self.speed);
     }
 
+    /// Puts out a step of speed in place of a movement, mm/min; `false` without digital speed controller.
+    pub fn step(&mut self, speed_mm_min: f64) -> bool {
+        let steps = self.servo.set_speed_step(Some(speed_mm_min));
+        if steps {
+            self.stand(self.servo.actual_mm());
+            self.speed = speed_mm_min / 60.0;
+        }
+        steps
+    }
+
+    /// A step ends: the position loop goes on where the axis is, and as fast.
+    pub fn end_step(&mut self) {
+        if let Some(speed_mm_min) = self.servo.speed_step_mm_min() {
+            self.servo.set_speed_step(None);
+            self.nominal = self.servo.actual_mm();
+            self.ptp = PointToPoint::moving(self.nominal, speed_mm_min / 60.0);
+        }
+    }
+
     /// Takes over the nominal position of its master.
     pub fn follow_master(&mut self, position: f64, speed_mm_s: f64) {
         self.speed = speed_mm_s;

@@ -608,10 +608,8 @@ impl Channel {
             Command::MFunction(m) => self.desk.enter(Some(m), None),
             Command::Speed(rpm) => self.desk.enter(None, Some(rpm)),
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
-            Command::JogIncrement(mm) => {
-                self.desk.manual.increment = mm;
-                true
-            }
+            Command::JogIncrement(mm) => self.desk.manual.set_increment(mm),
+            Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
             Command::ToolLife(tool, minutes) => {
                 machine.unsaved = true;
                 life::set(&mut machine.magazine, &mut machine.link.files, tool, minutes)

@@ -102,6 +102,9 @@ pub enum Command {
     ToolLife(u32, f64),
     /// `jog MM`: the jog increment, mm.
     JogIncrement(f64),
+    /// `output step FEED`, `output ramp`: what direction keys put out in MANUAL OPERATION on axes with digital speed
+    /// controller, as OUTPUT of the oscilloscope says; the feed in mm/min [000:18737-18756].
+    Output(Option<f64>),
     /// `handwheel AXIS FACTOR`: axis of the handwheel and its interpolation factor 0 to 10.
     Handwheel(Axis, u8),
     /// `manual-operation`: axes may be moved while a run is interrupted (M2018).
@@ -131,6 +134,8 @@ pub enum Command {
 
 /// Where CUR.TIME of a tool ends, minutes (inferred).
 pub(crate) const CURRENT_MAX_MIN: f64 = 9999.0;
+/// Greatest feed of a step, mm/min: that of MP1010.
+const FEED_MAX: f64 = 300_000.0;
 /// Largest coordinate, mm or degrees: 99 999.9999.
 const COORDINATE_MAX: f64 = 999_999_999.0 / 10_000.0;
 
@@ -196,6 +201,13 @@ impl FromStr for Command {
             "key" => number(name, rest, 58, 127).map(Command::Key),
             "s" => value(name, rest, 0.0, 99_999.999).map(Command::Speed),
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
+            "output" if rest == "ramp" => Ok(Command::Output(None)),
+            "output" => {
+                let feed = rest.strip_prefix("step ").map(str::trim);
+                let wrong =
+                    || CommandError::Wrong("`output` takes `ramp`, or `step` and a feed in mm/min".into());
+                value(name, feed.ok_or_else(wrong)?, 0.0, FEED_MAX).map(|feed| Command::Output(Some(feed)))
+            }
             "datum" => {
                 let (axis, rest) = axis(name, rest)?;
                 value(name, rest, -COORDINATE_MAX, COORDINATE_MAX).map(|value| Command::Datum(axis, value))
@@ -292,6 +304,8 @@ impl fmt::Display for Command {
             Command::Datum(axis, value) => write!(f, "datum {axis} {value}"),
             Command::ToolLife(tool, minutes) => write!(f, "tool-life {tool} {minutes}"),
             Command::JogIncrement(mm) => write!(f, "jog {mm}"),
+            Command::Output(Some(feed)) => write!(f, "output step {feed}"),
+            Command::Output(None) => write!(f, "output ramp"),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
             Command::ManualOperation => write!(f, "manual-operation"),
             Command::RestorePosition => write!(f, "restore-position"),
@@ -327,6 +341,8 @@ mod tests {
             "s 1500.5",
             "datum Z -0.25",
             "jog 0.5",
+            "output step 250",
+            "output ramp",
             "handwheel C 3",
             "manual-operation",
             "restore-position",
@@ -360,6 +376,7 @@ mod tests {
             ("select", "needs something"),
             ("I4=1", "`fault input I4 1`"),
             ("M5=2", "takes 0 or 1"),
+            ("output", "`step` and a feed"),
             ("power up", "`on` or `off`"),
         ] {
             let error = text.parse::<Command>().map_err(|error| error.to_string());

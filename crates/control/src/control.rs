@@ -20,6 +20,7 @@ use crate::kernel::Kernel;
 use crate::markers::AXES;
 use crate::message::{Message, Shown};
 use crate::progress::RunState;
+use crate::sampling::{ServoSampler, ServoView};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
@@ -139,7 +140,22 @@ impl Control {
     /// Spends a contour cycle and shows a tracer what the PLC executes in it. A traced scan does what any other one
     /// does, in the reference interpreter.
     pub fn cycle_traced(&mut self, plant: &mut dyn Plant, tracer: Option<&mut (dyn Tracer + '_)>) {
-        self.kernel.cycle(self.supply.off, plant, tracer);
+        self.cycle_watched(plant, tracer, None);
+    }
+
+    /// As [`Control::cycle_traced`], and shows a sampler the axes in each servo step.
+    pub fn cycle_watched(
+        &mut self,
+        plant: &mut dyn Plant,
+        tracer: Option<&mut (dyn Tracer + '_)>,
+        sampler: Option<&mut (dyn ServoSampler + '_)>,
+    ) {
+        self.kernel.cycle(self.supply.off, plant, tracer, sampler);
+    }
+
+    /// The axes as the last servo step left them.
+    pub fn servo_view(&self) -> ServoView<'_> {
+        ServoView(&self.kernel.machine.axes)
     }
 
     /// Interprets and plans ahead; may allocate. To be called after every cycle.

@@ -18,6 +18,7 @@ use crate::magazine::Magazine;
 use crate::message::Message;
 use crate::per_channel::PerChannel;
 use crate::plc_link::{PalletSelection, PlcLink};
+use crate::sampling::{ServoSampler, ServoView};
 use crate::seam::Seam;
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
 use crate::source::Reading;
@@ -147,9 +148,15 @@ impl Kernel {
         kernel
     }
 
-    /// Spends a contour cycle on a machine, and shows a tracer what the PLC executes in it. While the supply is off, time
-    /// passes on the machine alone.
-    pub fn cycle(&mut self, is_off: bool, plant: &mut dyn Plant, mut tracer: Option<&mut (dyn Tracer + '_)>) {
+    /// Spends a contour cycle on a machine, shows a tracer what the PLC executes in it, and a sampler the axes in each
+    /// servo step. While the supply is off, time passes on the machine alone.
+    pub fn cycle(
+        &mut self,
+        is_off: bool,
+        plant: &mut dyn Plant,
+        mut tracer: Option<&mut (dyn Tracer + '_)>,
+        mut sampler: Option<&mut (dyn ServoSampler + '_)>,
+    ) {
         if is_off {
             // The outputs are off.
             self.seam.commands = Commands::default();
@@ -159,6 +166,9 @@ impl Kernel {
         for step in 0..self.machine.timing.steps() {
             if !is_off {
                 self.servo_step(step == 0, reborrow(&mut tracer));
+                if let Some(sampler) = &mut sampler {
+                    sampler.sample(self.now_us, &ServoView(&self.machine.axes));
+                }
             }
             self.exchange_with(plant, self.machine.timing.step_us());
         }
@@ -295,6 +305,7 @@ impl Kernel {
             }
             CircuitOrder::Stop => {
                 machine.show_emergency_stop(self.channels.first().running_block());
+                machine.axes.begin_shutdown();
                 let mut stand = true;
                 for channel in self.channels.iter_mut() {
                     stand &= channel.end_for_emergency(machine);

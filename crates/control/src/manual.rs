@@ -39,6 +39,8 @@ pub(crate) struct Manual {
     m: Option<u16>,
     /// Spindle speed that was entered and waits for NC start, rpm.
     s: Option<f64>,
+    /// OUTPUT of the oscilloscope: STEP with this feed, mm/min, or the RAMP [000:18737-18756].
+    step_mm_min: Option<f64>,
 }
 
 impl Default for Manual {
@@ -53,6 +55,7 @@ impl Default for Manual {
             last_key: 0,
             m: None,
             s: None,
+            step_mm_min: None,
         }
     }
 }
@@ -75,6 +78,22 @@ impl Manual {
     pub fn enter(&mut self, m: Option<u16>, s: Option<f64>) {
         self.m = m.or(self.m);
         self.s = s.or(self.s);
+    }
+
+    /// The jog increment, mm.
+    pub fn set_increment(&mut self, mm: f64) -> bool {
+        self.increment = mm;
+        true
+    }
+
+    /// OUTPUT of the oscilloscope: what direction keys put out in MANUAL OPERATION. A step needs an axis with digital
+    /// speed controller.
+    pub fn set_step(&mut self, feed_mm_min: Option<f64>, axes: &OwnAxes) -> bool {
+        let possible = feed_mm_min.is_none() || axes.iter().any(|unit| unit.servo.speed().is_some());
+        if possible {
+            self.step_mm_min = feed_mm_min;
+        }
+        possible
     }
 
     /// NC start in Manual and Handwheel: outputs what was entered.
@@ -198,6 +217,15 @@ impl Manual {
             }
             return;
         }
+        let step = self.step_mm_min.filter(|_| now.mode == Mode::Manual && !now.stop);
+        if let (Some(feed), Some(direction)) = (step, key)
+            && along(unit, direction, feed) != Aim::Feed(0.0)
+            && unit.step(direction.sign() * feed)
+        {
+            unit.mover = Mover::Manual;
+            return;
+        }
+        unit.end_step();
         let motion = unit.parameters.motion;
         let (aim, feed) = match (key, jog.or(wheel)) {
             _ if now.stop => (Aim::Feed(0.0), motion.rapid_mm_min),

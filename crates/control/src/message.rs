@@ -34,14 +34,14 @@ pub enum HandOverError {
 pub enum Message {
     /// A message that needs nothing else.
     Plain(MessageId),
-    /// A message of one axis, with the letter behind it, 'A' to 'E', where it has one.
+    /// A message of one axis, with what stands behind it, `A` to `E` or `3F`, where it has one.
     Axis {
         /// The message.
         id: MessageId,
         /// Number of the axis ([`AxisId`]); 5 is the spindle.
         axis: u8,
         /// The letter.
-        letter: Option<char>,
+        letter: Option<&'static str>,
     },
     /// `LIMIT SWITCH` with axis and sign.
     Limit {
@@ -82,7 +82,7 @@ impl Message {
         }
     }
 
-    pub(crate) fn axis(id: MessageId, axis: AxisId, letter: Option<char>) -> Message {
+    pub(crate) fn axis(id: MessageId, axis: AxisId, letter: Option<&'static str>) -> Message {
         Message::Axis {
             id,
             axis: axis.number(),
@@ -356,10 +356,10 @@ mod tests {
 
     #[test]
     fn texts_carry_axis_sign_and_letter() {
-        let gross = Message::axis(MessageId::GrossPositioningError, id(3), Some('A'));
+        let gross = Message::axis(MessageId::GrossPositioningError, id(3), Some("A"));
         assert_eq!(text(&gross), "GROSS POSITIONING ERROR C A");
         assert_eq!(text(&Message::limit(id(0), Direction::Minus)), "LIMIT SWITCH X-");
-        let encoder = Message::axis(MessageId::MeasuringSystemDefective, id(2), Some('B'));
+        let encoder = Message::axis(MessageId::MeasuringSystemDefective, id(2), Some("B"));
         assert_eq!(text(&encoder), "MEASURING SYSTEM Z DEFECTIVE B");
         assert_eq!(text(&Message::PlcMarkers(*b"1Q")), "ERROR IN PLC-PROGRAM 1Q");
         assert_eq!(text(&Message::Plc(0)), "TOOL CLAMP OPEN");

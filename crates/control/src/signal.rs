@@ -29,6 +29,12 @@ pub enum AxisSignal {
     NominalSpeed,
     /// `volts`: nominal value output, V.
     Volts,
+    /// `n-actual`: speed of the motor by its encoder, mm/min; 0 where the control closes no speed loop.
+    MotorSpeed,
+    /// `n-nominal`: the speed that the position loop asks of the digital speed controller, mm/min.
+    NominalMotorSpeed,
+    /// `n-int`: the difference of both in the digital speed controller, mm/min.
+    SpeedDifference,
     /// `displayed`: actual position as it is displayed, from the workpiece datum with the tool length in the tool axis,
     /// mm or degrees.
     Displayed,
@@ -103,7 +109,7 @@ pub fn split_channel(text: &str) -> (Option<usize>, &str) {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no signal: there are X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, X.displayed, X.ref, \
-     X.distance for each axis, path.speed, path.block, path.distance, S.rpm, S.volts, S.angle, output.1 to output.5, \
+     X.distance, X.n-actual, X.n-nominal, X.n-int for each axis, path.speed, path.block, path.distance, S.rpm, S.volts, S.angle, output.1 to output.5, \
      output.S, mode, run, tool, Q5, X41/34, X42/4, and operands of the PLC like M2045, I4, O2, W260, D356"
 )]
 pub struct SignalError(String);
@@ -115,7 +121,7 @@ impl SignalError {
     }
 }
 
-const AXIS_SIGNALS: [(&str, AxisSignal); 9] = [
+const AXIS_SIGNALS: [(&str, AxisSignal); 12] = [
     ("actual", AxisSignal::Actual),
     ("nominal", AxisSignal::Nominal),
     ("lag", AxisSignal::Lag),
@@ -125,6 +131,9 @@ const AXIS_SIGNALS: [(&str, AxisSignal); 9] = [
     ("displayed", AxisSignal::Displayed),
     ("ref", AxisSignal::Ref),
     ("distance", AxisSignal::Distance),
+    ("n-actual", AxisSignal::MotorSpeed),
+    ("n-nominal", AxisSignal::NominalMotorSpeed),
+    ("n-int", AxisSignal::SpeedDifference),
 ];
 
 /// Signals with a name of their own.
@@ -219,7 +228,8 @@ impl Signal {
     /// Unit of its values; empty for operands.
     pub fn unit(&self) -> &'static str {
         match self {
-            Signal::Axis(_, AxisSignal::Speed | AxisSignal::NominalSpeed) | Signal::PathSpeed => "mm/min",
+            Signal::Axis(_, signal) if signal.is_speed() => "mm/min",
+            Signal::PathSpeed => "mm/min",
             Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts | Signal::Output(_) => "V",
             Signal::Axis(..) | Signal::PathDistance => "mm",
             Signal::SpindleRpm => "rpm",
@@ -274,6 +284,18 @@ impl Signal {
 }
 
 impl AxisSignal {
+    /// It is a speed, mm/min.
+    pub fn is_speed(self) -> bool {
+        matches!(
+            self,
+            AxisSignal::Speed
+                | AxisSignal::NominalSpeed
+                | AxisSignal::MotorSpeed
+                | AxisSignal::NominalMotorSpeed
+                | AxisSignal::SpeedDifference
+        )
+    }
+
     fn value(self, unit: &AxisUnit, channel: &Channel, machine: &MachineSide) -> f64 {
         match self {
             AxisSignal::Actual => unit.servo.actual_mm(),
@@ -282,6 +304,9 @@ impl AxisSignal {
             AxisSignal::Speed => unit.servo.actual_velocity_mm_min(),
             AxisSignal::NominalSpeed => unit.speed * 60.0,
             AxisSignal::Volts => unit.servo.volts(),
+            AxisSignal::MotorSpeed => unit.servo.speed().map_or(0.0, |speed| speed.actual_mm_min),
+            AxisSignal::NominalMotorSpeed => unit.servo.speed().map_or(0.0, |speed| speed.nominal_mm_min),
+            AxisSignal::SpeedDifference => unit.servo.speed().map_or(0.0, |speed| speed.difference_mm_min),
             AxisSignal::Displayed => {
                 let [actual, _] = path_positions(machine.axes.owned(channel.number()), channel.chain());
                 unit.shown(actual[unit.axis])

@@ -149,6 +149,7 @@ impl SpindleUnit {
                 enabled,
                 volts,
                 speed_per_min: speed,
+                torque: None,
                 position_steps: None,
             };
         }

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use bahn_control::{Cartesian, ChannelSetup, Command, Control, Programs, Setup, Snapshot, SpindleWiring};
+use bahn_control::{
+    Cartesian, ChannelSetup, Command, Control, Programs, ServoSampler, Setup, Snapshot, SpindleWiring,
+};
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
 use bahn_path::PathElement;
@@ -175,10 +177,22 @@ impl<P: Operable> Host<P> {
     /// # Errors
     /// [`HostError::NotStored`].
     pub fn cycle_traced(&mut self, tracer: Option<&mut (dyn Tracer + '_)>) -> Result<(), HostError> {
+        self.cycle_watched(tracer, None)
+    }
+
+    /// As [`Host::cycle_traced`], and shows a sampler the axes in each servo step.
+    ///
+    /// # Errors
+    /// [`HostError::NotStored`].
+    pub fn cycle_watched(
+        &mut self,
+        tracer: Option<&mut (dyn Tracer + '_)>,
+        sampler: Option<&mut (dyn ServoSampler + '_)>,
+    ) -> Result<(), HostError> {
         let beside = self.pace.is_some() && !self.repeats;
         self.background
             .prepare(&mut self.control, beside, &self.break_off);
-        self.control.cycle_traced(&mut self.plant, tracer);
+        self.control.cycle_watched(&mut self.plant, tracer, sampler);
         // A message names the program of its block.
         if self.watched || self.control.has_news() {
             self.background.settle(&mut self.control);

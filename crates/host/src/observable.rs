@@ -107,9 +107,8 @@ impl Observable {
                 | Signal::SpindleVolts
                 | Signal::SpindleAngle
                 | Signal::Output(_) => 4,
-                Signal::Axis(_, AxisSignal::Speed | AxisSignal::NominalSpeed)
-                | Signal::PathSpeed
-                | Signal::SpindleRpm => 3,
+                Signal::Axis(_, signal) if signal.is_speed() => 3,
+                Signal::PathSpeed | Signal::SpindleRpm => 3,
                 Signal::Axis(..) | Signal::PathDistance => 5,
                 Signal::Q(_) => 6,
                 _ => 0,

@@ -1,5 +1,7 @@
 //! A feed axis: amplifier and motor, guideway, play, ends of travel, encoder.
 
+use crate::current_drive::CurrentDrive;
+use crate::deviation::Deviation;
 use crate::encoder::{Counter, EncoderFault};
 use crate::noise::Noise;
 use crate::reader::{Coil, Contact, Section};
@@ -82,6 +84,11 @@ pub(crate) struct Axis {
     /// Limit switches below and above, open when actuated.
     limits: [Option<Cam>; 2],
     on_motor: bool,
+    /// A drive without speed controller of its own.
+    current: Option<Box<CurrentDrive>>,
+    /// Where the motor was at power-on.
+    motor_start: f64,
+    deviation: Option<Box<Deviation>>,
     pub counter: Option<Counter>,
 
     pub volts: f64,
@@ -143,6 +150,49 @@ fn output(section: &Section) -> usize {
     })
 }
 
+/// The speed controller of an amplifier; see the fields of [`Axis`].
+struct Amplifier {
+    gain: f64,
+    rate: f64,
+    integral_rate: f64,
+    early: f64,
+}
+
+impl Amplifier {
+    /// Reads its keys; a drive that is `torque` only has none.
+    fn read(section: &Section, torque: bool, step_s: f64) -> Amplifier {
+        if torque {
+            // The mean of a speed that rises evenly lies half a step before its end.
+            return Amplifier {
+                gain: 0.0,
+                rate: 0.0,
+                integral_rate: 0.0,
+                early: 0.5,
+            };
+        }
+        let speed = section.needed_number("speed", 1.0..=1e6) / 60.0;
+        let volts = section.needed_number("volts", 0.1..=10.0);
+        let turn = if section.flag("reversed").unwrap_or(false) {
+            -1.0
+        } else {
+            1.0
+        };
+        let time = section.number("time_constant_ms", 0.0..=10_000.0).unwrap_or(0.0) / 1000.0;
+        let reset = section.number("reset_ms", 0.0..=100_000.0).unwrap_or(0.0) / 1000.0;
+        let kept = (-step_s / time).exp();
+        Amplifier {
+            gain: turn * speed / volts,
+            rate: (1.0 - kept) / step_s,
+            integral_rate: if reset > 0.0 {
+                step_s / reset.max(step_s)
+            } else {
+                0.0
+            },
+            early: time / step_s - kept / (1.0 - kept),
+        }
+    }
+}
+
 /// Speeds below this count as standing, units/s.
 const STANDING: f64 = 1e-12;
 
@@ -164,38 +214,32 @@ impl Axis {
         if !(travel[0]..=travel[1]).contains(&start) {
             section.fault_at("start", "start lies outside travel".to_owned());
         }
-        let speed = section.needed_number("speed", 1.0..=1e6) / 60.0;
-        let volts = section.needed_number("volts", 0.1..=10.0);
-        let turn = if section.flag("reversed").unwrap_or(false) {
-            -1.0
-        } else {
-            1.0
-        };
-        let time = section.number("time_constant_ms", 0.0..=10_000.0).unwrap_or(0.0) / 1000.0;
-        let reset = section.number("reset_ms", 0.0..=100_000.0).unwrap_or(0.0) / 1000.0;
-        let kept = (-step_s / time).exp();
-        let mass = section.number("mass", 0.001..=1e6).unwrap_or(1.0);
+        let current = section.section("current_drive").map(|table| {
+            let drive = CurrentDrive::read(&table, matches!(letter, 'A' | 'B' | 'C'), step_s);
+            table.finish();
+            Box::new(drive)
+        });
+        let amplifier = Amplifier::read(&section, current.is_some(), step_s);
+        let rotor = current.as_ref().map_or(0.0, |drive| drive.mass);
+        let mass = section.number("mass", 0.001..=1e6).unwrap_or(1.0) + rotor;
         let load = section.number("load", 0.0..=1e6).unwrap_or(0.0);
         let per_force = unit / (mass + load);
         let force = |key| section.number(key, 0.0..=1e9).unwrap_or(0.0) * per_force;
         let friction = force("friction");
-        let axis = Axis {
+        let mut deviation = None;
+        let mut axis = Axis {
             letter,
             output: output(&section),
             enable: section.coil("enable"),
             ready: section.contact("ready"),
-            gain: turn * speed / volts,
+            gain: amplifier.gain,
             offset: section.number("offset_mv", -1000.0..=1000.0).unwrap_or(0.0) / 1000.0,
             noise_volts: section.number("noise_mv", 0.0..=1000.0).unwrap_or(0.0) / 1000.0,
             noise: Noise::new(seed, part),
             // The controller was tuned without the load: with it, it is slower.
-            rate: (1.0 - kept) / step_s * mass / (mass + load),
-            integral_rate: if reset > 0.0 {
-                step_s / reset.max(step_s)
-            } else {
-                0.0
-            },
-            early: time / step_s - kept / (1.0 - kept),
+            rate: amplifier.rate * mass / (mass + load),
+            integral_rate: amplifier.integral_rate,
+            early: amplifier.early,
             motor_max: section
                 .number("force", 0.001..=1e9)
                 .map_or(f64::INFINITY, |force| force * per_force),
@@ -215,9 +259,13 @@ impl Axis {
                 encoder.word("on", &["table", "motor"]);
                 let noise = Noise::new(seed, part + 1000);
                 let counter = Counter::read(&encoder, travel, start, noise);
+                deviation = Deviation::read(&encoder, step_s);
                 encoder.finish();
                 counter
             }),
+            deviation,
+            current,
+            motor_start: start,
             volts: 0.0,
             powered: false,
             clamped: false,
@@ -230,15 +278,31 @@ impl Axis {
             table: start,
         };
         section.finish();
+        axis.set_zero();
         Some(axis)
+    }
+
+    /// The encoder counts from where it says that the axis is at power-on.
+    fn set_zero(&mut self) {
+        let measured = self.measured();
+        if let Some(counter) = self.counter.as_mut().filter(|_| self.deviation.is_some()) {
+            counter.begin(measured);
+        }
     }
 
     /// Lets the drive have voltage or not, as enable output and control voltage say.
     pub fn set_power(&mut self, voltage: bool, outputs: &[bool; OUTPUTS]) {
         let enabled = self.enable.is_none_or(|enable| enable.is_on(outputs));
-        self.powered = voltage && enabled && self.fault != Some(DriveFault::Dead);
+        let mut on = voltage && enabled;
+        if let Some(drive) = &mut self.current {
+            on = drive.holds(on);
+        }
+        self.powered = on && self.fault != Some(DriveFault::Dead);
         if !self.powered {
             self.integral = 0.0;
+            if let Some(drive) = &mut self.current {
+                drive.rest();
+            }
         }
     }
 
@@ -269,7 +333,11 @@ impl Axis {
         let (mut friction, mut stiction) = (self.friction, self.stiction);
         self.driven = 0.0;
         if self.powered {
-            self.driven = self.motor_acceleration();
+            let volts = self.volts_at_drive();
+            self.driven = match &mut self.current {
+                None => self.motor_acceleration(volts),
+                Some(drive) => drive.force(volts) * self.per_force,
+            };
             acceleration += self.driven;
         } else {
             friction += self.brake;
@@ -287,16 +355,18 @@ impl Axis {
             .table
             .clamp(self.motor - self.play / 2.0, self.motor + self.play / 2.0)
             .clamp(self.travel[0], self.travel[1]);
+        if let Some(deviation) = &mut self.deviation {
+            deviation.advance();
+        }
         let measured = self.measured();
         if let Some(counter) = &mut self.counter {
             counter.move_to(measured);
         }
     }
 
-    /// The speed controller of the amplifier: proportional and integral, its force limited. The integral
-    /// part waits while the force is at its limit.
+    /// What the drive makes of its nominal voltage, V.
     #[inline]
-    fn motor_acceleration(&mut self) -> f64 {
+    fn volts_at_drive(&mut self) -> f64 {
         let mut volts = self.volts + self.offset;
         match self.fault {
             Some(DriveFault::Runaway) => volts = 10.0,
@@ -306,6 +376,13 @@ impl Axis {
         if self.noise_volts > 0.0 {
             volts += self.noise.next() * self.noise_volts;
         }
+        volts
+    }
+
+    /// The speed controller of the amplifier: proportional and integral, its force limited. The integral
+    /// part waits while the force is at its limit.
+    #[inline]
+    fn motor_acceleration(&mut self, volts: f64) -> f64 {
         let error = volts * self.gain - self.speed;
         let wanted = (error + self.integral) * self.rate;
         let given = wanted.clamp(-self.motor_max, self.motor_max);
@@ -327,7 +404,17 @@ impl Axis {
 
     /// The position where the encoder sits.
     fn measured(&self) -> f64 {
-        if self.on_motor { self.motor } else { self.table }
+        let truth = if self.on_motor { self.motor } else { self.table };
+        match &self.deviation {
+            None => truth,
+            Some(deviation) => deviation.seen(truth),
+        }
+    }
+
+    /// What the motor's encoder has counted, where the control reads it.
+    pub fn motor_count(&self) -> Option<i64> {
+        let drive = self.current.as_ref()?;
+        Some(drive.count(self.motor - self.motor_start))
     }
 
     /// What the control reads of the encoder; `again` without time having passed.

@@ -146,6 +146,12 @@ impl Counter {
         }
     }
 
+    /// Counts from a position.
+    pub fn begin(&mut self, position: f64) {
+        self.zero = position;
+        self.enclose(position);
+    }
+
     /// Finds the marks on both sides of a position; a mark at the position itself is below.
     fn enclose(&mut self, position: f64) {
         if let (Some(spacing), Some(first)) = (self.every, self.marks.first()) {

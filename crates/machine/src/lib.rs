@@ -39,6 +39,8 @@
 mod acting;
 mod axis;
 mod chain;
+mod current_drive;
+mod deviation;
 mod device;
 mod encoder;
 mod event;

@@ -309,6 +309,9 @@ impl Machine {
             if let Some(input) = axis.counter.as_ref().map(|counter| counter.input) {
                 put(input, axis.read_encoder(again));
             }
+            if let Some(motor) = measured.motors.get_mut(axis.output) {
+                *motor = axis.motor_count();
+            }
         }
         for spindle in &mut self.spindles {
             if let Some(input) = spindle.counter.as_ref().map(|counter| counter.input) {

@@ -302,6 +302,25 @@ impl<'r, 't> Section<'r, 't> {
         Some(numbers)
     }
 
+    /// A list of pairs of numbers.
+    pub fn pairs(&self, key: &'static str) -> Vec<[f64; 2]> {
+        let Some(value) = self.value(key) else {
+            return Vec::new();
+        };
+        let pair = |entry: &Spanned<DeValue<'t>>| {
+            let list = entry.get_ref().as_array().filter(|list| list.len() == 2)?;
+            let number = |place: usize| self.as_number(key, list.get(place)?, &(-1e6..=1e6));
+            Some([number(0)?, number(1)?])
+        };
+        let list = value.get_ref().as_array();
+        list.and_then(|list| list.iter().map(pair).collect())
+            .unwrap_or_else(|| {
+                let form = format!("{key} is a list of pairs like [[0, 0], [100, 4.5]]");
+                self.reader.fault(value.span().start, form);
+                Vec::new()
+            })
+    }
+
     /// A list of whole numbers within a range.
     pub fn whole_numbers(&self, key: &'static str, range: RangeInclusive<u8>) -> Vec<u8> {
         let Some(value) = self.value(key) else {

@@ -35,6 +35,7 @@
     reason = "citations as [003:7868] look like links"
 )]
 
+mod adjustment;
 mod advice;
 mod citation;
 pub mod conformance;
@@ -53,6 +54,7 @@ pub mod space;
 pub mod technology;
 mod text;
 
+pub use adjustment::Adjustment;
 pub use advice::Advice;
 pub use citation::{chapters, with_chapters};
 pub use consistency::Inconsistency;

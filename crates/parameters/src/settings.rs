@@ -58,6 +58,6 @@ impl ParameterList {
 }
 
 /// Whether a bit of a value is set.
-fn bit_of(value: f64, bit: u32) -> bool {
+pub(crate) fn bit_of(value: f64, bit: u32) -> bool {
     value as u64 >> bit & 1 == 1
 }

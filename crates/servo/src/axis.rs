@@ -1,5 +1,7 @@
 //! The position loop of an axis.
 
+mod torque;
+
 use bahn_parameters::axis::AxisParameters;
 
 use crate::characteristic::Characteristic;
@@ -11,7 +13,8 @@ use crate::monitor::{Monitor, Sample};
 use crate::offset::Offset;
 use crate::plant::{AxisCommand, Encoder};
 use crate::reversal::{ReversalPeak, Travel};
-use crate::timing::Timing;
+use crate::speed_loop::SpeedLoop;
+use crate::timing::{OUTPUT_VOLTS, Timing};
 
 /// Time constants of the loop after which an axis whose nominal position stands is at rest (inferred).
 const REST_TIME_CONSTANTS: f64 = 5.0;
@@ -49,6 +52,8 @@ pub struct Axis {
     reversal: ReversalPeak,
     characteristic: Characteristic,
     offset: Offset,
+    /// Of axes with digital speed controller.
+    speed_loop: Option<SpeedLoop>,
     monitor: Monitor,
     method: Method,
     second_set: bool,
@@ -101,6 +106,7 @@ impl Axis {
             reversal: ReversalPeak::default(),
             characteristic: Characteristic::straight(1.0),
             offset: Offset::default(),
+            speed_loop: SpeedLoop::of(&parameters, &timing),
             monitor: Monitor::new(&timing),
             method: Method::Lag,
             second_set: false,
@@ -138,6 +144,9 @@ impl Axis {
     pub fn set_parameters(&mut self, parameters: AxisParameters) {
         self.parameters = parameters;
         self.measuring.set_parameters(&parameters);
+        if let Some(speed_loop) = &mut self.speed_loop {
+            speed_loop.set_parameters(&parameters, &self.timing);
+        }
         self.transient
             .set_entry(self.timing.steps(), parameters.precontrol.transient_m_min);
         self.choose_characteristic();
@@ -150,6 +159,10 @@ impl Axis {
 
     /// Takes an encoder reading; once in each servo step, before [`Axis::step`].
     pub fn measure(&mut self, encoder: Encoder) {
+        let encoder = match &mut self.speed_loop {
+            Some(speed_loop) => speed_loop.position(encoder),
+            None => encoder,
+        };
         if let Some(fault) = self.measuring.read(encoder, &self.parameters) {
             self.raise(Fault::MeasuringSystem(fault));
         }
@@ -184,7 +197,7 @@ impl Axis {
 
     /// One servo step: the voltage for the nominal value output, V.
     pub fn step(&mut self) -> f64 {
-        if self.is_released() {
+        if self.is_released() || self.speed_step_mm_min().is_some() {
             self.transfer();
         }
         let rough_now = self.interpolation.now();
@@ -210,7 +223,13 @@ impl Axis {
         };
         self.update_velocity(next - now);
         let full = self.parameters.output.rapid_volts / self.parameters.motion.rapid_mm_min;
-        let wanted = self.velocity_mm_min * full + self.offset.volts();
+        let by_torque = self.speed_loop.as_ref().is_some_and(SpeedLoop::is_active);
+        // What concerns the voltage of a speed is not monitored then: MP1140 is inactive [000:18360-18365].
+        let wanted = if by_torque {
+            0.0
+        } else {
+            self.velocity_mm_min * full + self.offset.volts()
+        };
         if standing && self.is_in_window() {
             self.in_position = true;
             self.rest_mm = self.commanded_mm;
@@ -219,7 +238,9 @@ impl Axis {
             self.watch(standing, next - now, wanted);
         }
         self.drove = self.drives();
-        self.volts = if self.drove {
+        self.volts = if by_torque {
+            self.torque_volts()
+        } else if self.drove {
             let polarity = if self.parameters.output.polarity_negative {
                 -1.0
             } else {
@@ -235,10 +256,12 @@ impl Axis {
     /// What the last step says to the drive.
     pub fn output(&self) -> AxisCommand {
         let way_mm = self.next_mm - self.actual_mm;
+        let by_torque = self.speed_loop.as_ref().is_some_and(SpeedLoop::is_active);
         AxisCommand {
             enabled: self.drove,
             volts: self.volts,
             speed_per_min: if self.drove { self.velocity_mm_min } else { 0.0 },
+            torque: by_torque.then_some(self.volts / OUTPUT_VOLTS),
             position_steps: Some(self.measuring.steps_after(way_mm))
                 .filter(|steps| self.closed() && steps.is_finite()),
         }
@@ -375,6 +398,11 @@ impl Axis {
 
     /// Closes the loop. The nominal position stays what it was: see [`Axis::transfer`].
     pub fn close(&mut self) {
+        if let Some(speed_loop) = &mut self.speed_loop
+            && !speed_loop.restart()
+        {
+            return;
+        }
         self.closed = true;
         self.in_position = self.is_in_window();
         self.monitor.reset();

@@ -21,12 +21,15 @@ pub enum GrossFault {
     Deviation,
     /// B: more than 10 V with pre-control [000:5258-5264].
     Voltage,
-    /// C: the axis does not move as its voltage says [000:5266-5287].
+    /// C: the axis does not move as its voltage says [000:5266-5287]; position and speed encoder differ by more than
+    /// MP1970 [000:18485-18506].
     Movement,
     /// D: the axis moves at standstill, over its target or backwards [000:5289-5300].
     Standstill,
     /// E: the offset is 100 mV or more [000:5006-5010].
     Offset,
+    /// 3F: the digital speed controller calculates a greater voltage than MP1910 permits [000:18387-18391].
+    SpeedController,
 }
 
 /// The causes of MEASURING SYSTEM DEFECTIVE [000:3290-3297].
@@ -42,14 +45,15 @@ pub enum EncoderFault {
 
 impl Fault {
     /// The letter behind the message.
-    pub fn letter(self) -> Option<char> {
+    pub fn letter(self) -> Option<&'static str> {
         Some(match self {
             Fault::Positioning => return None,
-            Fault::Gross(GrossFault::Deviation) | Fault::MeasuringSystem(EncoderFault::Amplitude) => 'A',
-            Fault::Gross(GrossFault::Voltage) | Fault::MeasuringSystem(EncoderFault::Edges) => 'B',
-            Fault::Gross(GrossFault::Movement) | Fault::MeasuringSystem(EncoderFault::Position) => 'C',
-            Fault::Gross(GrossFault::Standstill) => 'D',
-            Fault::Gross(GrossFault::Offset) => 'E',
+            Fault::Gross(GrossFault::Deviation) | Fault::MeasuringSystem(EncoderFault::Amplitude) => "A",
+            Fault::Gross(GrossFault::Voltage) | Fault::MeasuringSystem(EncoderFault::Edges) => "B",
+            Fault::Gross(GrossFault::Movement) | Fault::MeasuringSystem(EncoderFault::Position) => "C",
+            Fault::Gross(GrossFault::Standstill) => "D",
+            Fault::Gross(GrossFault::Offset) => "E",
+            Fault::Gross(GrossFault::SpeedController) => "3F",
         })
     }
 

@@ -64,6 +64,7 @@ mod monitor;
 mod offset;
 mod plant;
 mod reversal;
+mod speed_loop;
 mod spindle;
 mod timing;
 
@@ -82,6 +83,7 @@ pub use plant::{
     ANALOGUE_INPUTS, AxisCommand, Commands, Drive, ENCODERS, Encoder, INPUTS, Measured, NOMINALS, OUTPUTS,
     OperatorInputs, Plant, Probe, Step,
 };
+pub use speed_loop::SpeedState;
 pub use spindle::{Ramp, Rotation, SpeedCode, Spindle, Way};
 pub use timing::{OUTPUT_VOLTS, Timing};
 

@@ -63,17 +63,22 @@ impl Default for Commands {
     }
 }
 
-/// What one drive is to do in a step: it takes of the three what it follows, they say the same.
+/// What one drive is to do in a step: it takes of voltage, speed, position and torque what it follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisCommand {
     /// The loop is closed and the axis has its feed enable: the drive holds torque. An output that is no axis
     /// under control is not enabled, whatever its voltage.
     pub enabled: bool,
-    /// The analogue output, -10 V to +10 V, with the polarity of MP1040.
+    /// The analogue output, -10 V to +10 V: the speed with the polarity of MP1040, or where the control closes the speed
+    /// loop the torque with that of MP1950 [000:18329-18333].
     pub volts: f64,
     /// The speed that the voltage stands for, mm/min, degrees/min or rpm, in the sense of the axis: position
     /// loop and pre-control.
     pub speed_per_min: f64,
+    /// The torque as part of what the drive gives at 10 V, -1 to +1, in the counting sense of the motor's encoder with the
+    /// polarity of MP1950. `None` where the drive closes the speed loop, which is everywhere but on axes with MP1900
+    /// whose motor's encoder is read ([`Measured::motors`]).
+    pub torque: Option<f64>,
     /// Where the encoder is to stand at the end of the step, counting steps since power-on. `None` where the
     /// control closes no position loop.
     pub position_steps: Option<f64>,
@@ -86,6 +91,10 @@ pub struct Measured {
     pub encoders: [Encoder; ENCODERS],
     /// By the number of the nominal value output.
     pub drives: [Drive; NOMINALS],
+    /// What the motor's encoder at X15 to X19 has counted since power-on, by the number of the nominal value output (X15
+    /// belongs to output 1, inferred): [`Encoder::MOTOR_STEPS`] to a grating period [000:18345]. `None` where there is
+    /// none: the drive controls its speed itself.
+    pub motors: [Option<i64>; NOMINALS],
     /// The acknowledgement "control is ready" at X42/4, input I3 [000:6151].
     pub control_ready: bool,
     /// When that changed first in the step, µs from its beginning: the test of the EMERGENCY STOP circuit is finer than
@@ -108,6 +117,7 @@ impl Default for Measured {
         Measured {
             encoders: [Encoder::default(); ENCODERS],
             drives: [Drive::default(); NOMINALS],
+            motors: [None; NOMINALS],
             control_ready: false,
             control_ready_changed_at: None,
             inputs: [false; INPUTS],
@@ -123,6 +133,11 @@ impl Measured {
     /// An encoder input; one that does not exist stands still.
     pub fn encoder(&self, input: usize) -> Encoder {
         self.encoders.get(input).copied().unwrap_or_default()
+    }
+
+    /// The motor's encoder of the drive at an output.
+    pub fn motor(&self, output: usize) -> Option<i64> {
+        self.motors.get(output).copied().flatten()
     }
 
     /// The drive at an output; one that does not exist says nothing.
@@ -148,6 +163,8 @@ pub struct Encoder {
 impl Encoder {
     /// Counting steps of a signal period.
     pub const STEPS: i64 = 1024;
+    /// Counting steps of a grating period of a motor's encoder at X15 to X19 [000:18299] [000:18345].
+    pub const MOTOR_STEPS: i64 = 256;
 }
 
 /// What a drive says of itself on a bus; an analogue drive says nothing, its contact is a PLC input.

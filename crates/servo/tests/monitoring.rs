@@ -280,7 +280,7 @@ fn a_gross_fault_cannot_be_cleared() {
     bench.table_mm = -2.0;
     bench.stand(0.003);
     let fault = bench.axis.fault().unwrap();
-    assert_eq!(fault.letter(), Some('A'));
+    assert_eq!(fault.letter(), Some("A"));
     assert_eq!(fault.message(), MessageId::GrossPositioningError);
     bench.axis.acknowledge();
     bench.stand(0.003);

@@ -22,6 +22,7 @@ s RPM                               a spindle speed, likewise
 datum AXIS VALUE                    the actual position becomes this value
 tool-life T MIN                     current life of a tool (CUR.TIME), minutes
 jog MM                              jog increment
+output step FEED, output ramp       what direction keys put out on axes with digital speed controller
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
 manual-operation                    axes may be moved while a run is interrupted
 restore-position                    back to the contour with NC start
@@ -44,6 +45,7 @@ X.displayed                         as it is displayed: from the workpiece datum
 X.ref                               as REF shows it, rotary axes within their modulo value
 X.table                             where the table stands in truth, from the zero point of the plant
 X.lag X.distance                    servo lag, distance to go in the block
+X.n-actual X.n-nominal X.n-int      speeds of a digital speed controller (TNC 425, MP1900), their difference
 X.speed X.nominal-speed             mm/min
 X.volts output.1 .. output.S        V: of the axis, at each analogue output
 X.force                             of the motor, N or Nm

@@ -57,7 +57,7 @@ pub(crate) struct NewOptions {
     /// Control model.
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
-    /// A shipped machine by its name, instead of the usual one for the model: mill, mill-tnc360, twin.
+    /// A shipped machine by its name, instead of the usual one for the model: mill, mill-tnc360, dig425, twin.
     #[arg(long, value_name = "MACHINE")]
     pub from: Option<String>,
     /// Name for people; that of the folder without it.

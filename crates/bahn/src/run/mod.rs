@@ -13,6 +13,7 @@ mod executed;
 mod listed;
 mod measured;
 mod options;
+mod oscilloscope;
 mod recording;
 mod report;
 mod session;
@@ -42,6 +43,7 @@ use crate::report::{End, ErrorReport, Place, Record};
 use crate::test_run::{Outputs, print_error};
 use crate::{Outcome, UsageError, console, files, report_text, settings};
 use executed::Executed;
+use oscilloscope::Scoped;
 use recording::Recording;
 use report::{ChannelReport, ProgramReport, Refusal, RunReport};
 use session::{Ended, Patience, Session};
@@ -97,6 +99,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         )
     });
     let recording = recording(options, &machine, host.control())?;
+    let oscilloscope = Scoped::of(&options.oscilloscope, host.control())?;
     let executed = Executed::new(0, cutting, Outputs::create(&options.output)?);
     let patience = Patience {
         time_us: (options.run.max_time * 1e6) as u64,
@@ -111,6 +114,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         }
     }
     let mut session = Session::new(host, Play::new(script), executed, recording, patience);
+    session.oscilloscope = oscilloscope;
     let blocks = programs.main().map_or(0, |main| main.block_count());
     let mut progress = Progress::new(blocks);
     // A file that cannot be written loses no report.
@@ -485,7 +489,13 @@ fn print_report(
         return print_json(report);
     }
     let mut written = report_text::written(&options.output, drawn);
-    let files = options.recording.record.iter().chain(&options.run.log);
+    let scope = &options.oscilloscope.oscilloscope;
+    let files = options
+        .recording
+        .record
+        .iter()
+        .chain(scope)
+        .chain(&options.run.log);
     written.extend(files.map(|path| path.display().to_string()));
     console::print(&report.text(model, result, &written))
 }

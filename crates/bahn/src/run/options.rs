@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use bahn_host::{Attendance, Observed};
 use clap::{Args, ValueHint};
 
+use super::oscilloscope::OscilloscopeOptions;
 use crate::options::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -13,6 +14,9 @@ Examples:
       Switch the machine on, pass the reference marks, run the program; report times, lag, messages.
   bahn run part.h --machine mill --record run.csv --signals X.actual,X.lag,M2045 --every 10
       Record signals, a row every 10 ms; `bahn scope run.csv -o run.svg` draws them.
+  bahn run part.h --machine mill --oscilloscope osc.csv --trigger 'X.diff>50' --pre-trigger 25
+      The control's oscilloscope: 4096 samples in servo steps, a quarter of them before X lags by 50 µm; `bahn scope`
+      draws it. On axes with digital speed controller `output step 300` in a script lets direction keys put out a step.
   bahn run part.h --machine mill --script stop.txt
       What happens at which time, and what is expected, stands in a script.
   bahn run part.h --machine mill --log run.log
@@ -84,6 +88,8 @@ pub(crate) struct RunMachineOptions {
     #[command(flatten)]
     pub recording: RecordingOptions,
     #[command(flatten)]
+    pub oscilloscope: OscilloscopeOptions,
+    #[command(flatten)]
     pub output: OutputOptions,
 }
 
@@ -101,8 +107,11 @@ impl RunMachineOptions {
         let junit = self.run.junit.iter().map(|path| ("--junit", path.as_path()));
         let record = self.recording.record.iter();
         let record = record.map(|path| ("--record", path.as_path()));
+        let scope = self.oscilloscope.oscilloscope.iter();
+        let scope = scope.map(|path| ("--oscilloscope", path.as_path()));
         self.output
             .written()
+            .chain(scope)
             .chain(log)
             .chain(junit)
             .chain(record)
@@ -197,7 +206,7 @@ pub(crate) struct RecordingOptions {
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub record: Option<PathBuf>,
     /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, X.displayed, X.ref, X.distance,
-    /// X.table and X.force (what only the plant knows), path.speed, path.block, path.distance, S.rpm, S.volts, S.angle,
+    /// X.n-actual, X.n-nominal, X.n-int (digital speed controller), X.table and X.force (what only the plant knows), path.speed, path.block, path.distance, S.rpm, S.volts, S.angle,
     /// output.1 to output.5, output.S, mode, run, tool, Q5, X41/34, X42/4, operands of the PLC like M2045, I4, W260, of the second channel as 2:X.actual; by
     /// default speeds, positions, lags, and the handshake of M functions. `bahn machine list` says what each is.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]

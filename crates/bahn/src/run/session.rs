@@ -11,6 +11,7 @@ use super::beside::{Beside, is_idle};
 use super::executed::Executed;
 use super::listed::Listed;
 use super::measured::Measured;
+use super::oscilloscope::Scoped;
 use super::recording::Recording;
 use crate::UsageError;
 use crate::interrupt::Interrupt;
@@ -58,6 +59,7 @@ pub(super) struct Session {
     pub measured: Measured,
     pub listed: Listed,
     pub recording: Option<Recording>,
+    pub oscilloscope: Option<Scoped>,
     patience: Patience,
     notices: Reader<Stamped>,
     /// When the program was started.
@@ -86,6 +88,7 @@ impl Session {
             measured: Measured::new(host.control()),
             listed: Listed::default(),
             recording,
+            oscilloscope: None,
             patience,
             notices: host.notices(),
             start_us: None,
@@ -112,7 +115,10 @@ impl Session {
                 return Ok(ended);
             }
             let tracer = self.recording.as_mut().and_then(Recording::tracer);
-            let stored = self.host.cycle_traced(tracer);
+            let started = self.start_us.is_some() || self.host.operator().phase() == Phase::Ready;
+            let scope = self.oscilloscope.as_mut();
+            let sampler = scope.map(|scope| scope.sampler(started));
+            let stored = self.host.cycle_watched(tracer, sampler);
             self.watch()?;
             if let Some(list) = self.host.restart() {
                 return Ok(Ended::Restart(list.to_owned()));
@@ -139,7 +145,8 @@ impl Session {
     pub fn finish_files(&mut self) -> Result<(), UsageError> {
         let recording = self.recording.take().map_or(Ok(()), Recording::finish);
         let log = self.host.finish_log().map_err(UsageError::from);
-        self.executed.outputs.finish().and(recording).and(log)
+        let scope = self.oscilloscope.take().map_or(Ok(()), Scoped::finish);
+        self.executed.outputs.finish().and(recording).and(scope).and(log)
     }
 
     /// The block that is executed.

@@ -9,7 +9,7 @@ mod circle;
 mod lanes;
 mod options;
 mod plane;
-mod sheet;
+pub(crate) mod sheet;
 mod step;
 mod summary;
 mod table;

@@ -30,7 +30,7 @@ enum Shape {
 }
 
 /// Shapes in the order in which they are drawn, on white.
-pub(super) struct Sheet {
+pub(crate) struct Sheet {
     width: u32,
     height: u32,
     shapes: Vec<Shape>,

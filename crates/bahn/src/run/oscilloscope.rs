@@ -1,0 +1,151 @@
+//! The oscilloscope of the control beside a run [000:18638-18794].
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use bahn_control::{Control, ServoSampler, ServoSignal};
+use bahn_host::oscilloscope::{
+    CHANNELS, Curve, Oscilloscope, OscilloscopeRecord, OscilloscopeSetup, Trigger,
+};
+use bahn_servo::Timing;
+use clap::{Args, ValueHint};
+
+use crate::UsageError;
+use crate::files::{self, NewFile};
+
+/// What the oscilloscope records.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Oscilloscope")]
+pub(crate) struct OscilloscopeOptions {
+    /// Write the memory of the control's oscilloscope, 4096 samples of up to four channels in servo steps; START is the
+    /// start of the program, without one the end of the reference run. `bahn scope` draws it.
+    #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
+    pub oscilloscope: Option<PathBuf>,
+    /// What the channels record: v-actual, v-nominal, s-actual, s-nominal, diff, u of each axis, with digital speed
+    /// controller n-actual, n-nominal, n-int; as X.v-nominal. Those of X without it.
+    #[arg(
+        long,
+        value_name = "CHANNEL,..",
+        value_delimiter = ',',
+        requires = "oscilloscope"
+    )]
+    pub channels: Vec<Curve>,
+    /// Time between two samples, ms: 0.6 to 6, a multiple of the servo step.
+    #[arg(long, value_name = "MS", requires = "oscilloscope")]
+    pub sample_time: Option<f64>,
+    /// free: the memory holds what came last; single: one memory from the start; or a channel that passes a threshold
+    /// upwards or downwards, as X.v-actual>500 (mm/min, mm, mV; diff in µm).
+    #[arg(
+        long,
+        value_name = "TRIGGER",
+        default_value = "single",
+        requires = "oscilloscope"
+    )]
+    pub trigger: Trigger,
+    /// Part of the memory before the trigger, %: 0, 25, 50, 75 or 100.
+    #[arg(long, value_name = "PERCENT", default_value_t = 0, requires = "oscilloscope")]
+    pub pre_trigger: u8,
+}
+
+/// An oscilloscope and the file of its memory.
+pub(super) struct Scoped {
+    path: PathBuf,
+    file: NewFile,
+    scope: Oscilloscope,
+}
+
+impl Scoped {
+    /// The oscilloscope that is asked for.
+    pub fn of(options: &OscilloscopeOptions, control: &Control) -> Result<Option<Scoped>, UsageError> {
+        let Some(path) = &options.oscilloscope else {
+            return Ok(None);
+        };
+        let step_us = Timing::of(control.model()).step_us();
+        let sample_us = options
+            .sample_time
+            .map_or(step_us, |ms| (ms * 1000.0).round().clamp(0.0, 1e9) as u32);
+        if !sample_us.is_multiple_of(step_us) {
+            return Err(UsageError::new(format!(
+                "--sample-time: a servo step of the {} is {} ms; the time is a multiple of it",
+                control.model(),
+                f64::from(step_us) * 1e-3
+            )));
+        }
+        let channels = match options.channels.is_empty() {
+            true => usual(control),
+            false => options.channels.clone(),
+        };
+        let view = control.servo_view();
+        for curve in &channels {
+            let known: Vec<char> = control.axis_letters().collect();
+            if !known.contains(&curve.axis) {
+                let known: Vec<String> = known.iter().map(char::to_string).collect();
+                return Err(UsageError::new(format!(
+                    "--channels {curve}: the machine has no axis {}; there are {}",
+                    curve.axis,
+                    known.join(", ")
+                )));
+            }
+            if curve.signal.is_digital() && !view.is_digital(curve.axis) {
+                return Err(UsageError::new(format!(
+                    "--channels {curve}: {} has no digital speed controller (MP1900)",
+                    curve.axis
+                )));
+            }
+        }
+        let setup = OscilloscopeSetup {
+            channels,
+            sample_us,
+            trigger: options.trigger,
+            pre_trigger_percent: options.pre_trigger,
+        };
+        let scope = Oscilloscope::new(setup).map_err(UsageError::new)?;
+        Ok(Some(Scoped {
+            file: NewFile::create(path)?,
+            path: path.clone(),
+            scope,
+        }))
+    }
+
+    /// Who looks at the servo steps, from START on.
+    pub fn sampler(&mut self, started: bool) -> &mut dyn ServoSampler {
+        if started {
+            self.scope.start();
+        }
+        &mut self.scope
+    }
+
+    /// Writes the memory.
+    pub fn finish(mut self) -> Result<(), UsageError> {
+        let record = self.scope.record();
+        self.file
+            .write_all(record.csv().as_bytes())
+            .map_err(|error| files::cannot("write", &self.path, &error))?;
+        crate::diagnostics::print_line(&said(&record));
+        Ok(self.file.finish()?)
+    }
+}
+
+/// Feeds, trailing error and voltage of the first axis.
+fn usual(control: &Control) -> Vec<Curve> {
+    let signals: [ServoSignal; CHANNELS] = [
+        ServoSignal::NominalFeed,
+        ServoSignal::ActualFeed,
+        ServoSignal::Lag,
+        ServoSignal::Voltage,
+    ];
+    let axis = control.axis_letters().next().unwrap_or('X');
+    signals.map(|signal| Curve { axis, signal }).into()
+}
+
+/// What the memory holds.
+fn said(record: &OscilloscopeRecord) -> String {
+    let count = record.samples.len();
+    let sample_ms = f64::from(record.sample_us) * 1e-3;
+    let seconds = count as f64 * sample_ms * 1e-3;
+    let trigger = match record.trigger {
+        Some(sample) => format!("trigger at sample {sample}"),
+        None => "no trigger".to_owned(),
+    };
+    format!("oscilloscope: {count} samples of {sample_ms} ms ({seconds:.4} s), {trigger}")
+}
