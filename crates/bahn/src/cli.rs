@@ -15,6 +15,7 @@ use crate::options::{
 use crate::plc::PlcOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
+use crate::table::TableOptions;
 use crate::test_run::TestOptions;
 
 /// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
@@ -54,6 +55,8 @@ pub(crate) enum Command {
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// Show, check, change and convert tables: tools, pockets, datums, pallets, points.
+    Table(Box<TableOptions>),
     /// List what each function of a control does here: M functions, cycles, words, machine parameters and so on.
     #[command(after_help = crate::conformance::EXAMPLES)]
     Conformance(ConformanceOptions),

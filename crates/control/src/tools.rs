@@ -373,6 +373,28 @@ mod tests {
         exchange
     }
 
+    /// F of the pocket table: a normal tool returns to its own pocket despite variable coding, with two codes; the
+    /// pocket table stays as it is. Tools without F change their pockets [000:9153-9155].
+    #[test]
+    fn fixed_pocket_under_variable_coding() {
+        let mut changer = tools(ToolOutputKind::Pocket);
+        changer.holds(1);
+        assert_eq!(codes(&mut changer, &[2]), [(12, 2, false)]);
+        assert_eq!((changer.magazine.pocket(1), changer.magazine.pocket(2)), (12, 11));
+        changer.magazine.put(1, 12, false, true);
+        for (call, expected) in [
+            // To the fixed pocket of tool 1, and from there back: tool 2 keeps pocket 11.
+            (1, [(11, 0, true), (12, 1, false)]),
+            (2, [(12, 0, true), (11, 2, false)]),
+        ] {
+            assert_eq!(codes(&mut changer, &[call]), expected);
+            assert_eq!((changer.magazine.pocket(1), changer.magazine.pocket(2)), (12, 11));
+        }
+        let mut double_arm = plc_sets(signal::TOOL_NUMBER_ORDER);
+        let codes = codes_with(&mut changer, &mut double_arm, &[1]);
+        assert_eq!(codes, [(12, 1, true), (11, 0, false)]);
+    }
+
     /// MP7480.0 = 1: the tool number in W262, on change only [000:9221-9263].
     #[test]
     fn tool_numbers() {

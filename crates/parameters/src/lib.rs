@@ -87,6 +87,11 @@ pub mod operation {
     };
 }
 
+/// Of tables in the NC memory: [`ParameterList::table_parameters`](crate::ParameterList::table_parameters).
+pub mod tables {
+    pub use crate::settings::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters};
+}
+
 /// Of the PLC: [`ParameterList::plc_parameters`](crate::ParameterList::plc_parameters).
 pub mod plc {
     pub use crate::settings::{MonitoringInput, PlcParameters, StrobeTimes};

@@ -13,6 +13,7 @@ mod operation;
 mod plc_parameters;
 mod spindle;
 mod spindle_parameters;
+mod tables;
 
 pub use axis_parameters::{
     AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
@@ -32,6 +33,7 @@ pub use spindle_parameters::{
     FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,
     SpindlePolarity, SpindleRamps, TappingParameters,
 };
+pub use tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters};
 
 use crate::{Numbering, ParameterList};
 
