@@ -197,3 +197,40 @@ fn tables_fit_the_parameters_of_their_machine() {
     let (_, text) = said(&[("MP7226.0", "5")], &pallets, "pallets = \"JOBS.P\"");
     assert!(text.contains("JOBS.P:2:1"), "{text}");
 }
+
+/// Variable coding on the mill with its magazine: tool 2 goes to where tool 3 was. What the run leaves is in the state,
+/// the table shows it, and the next run finds the tools there [000:9273-9283].
+#[test]
+fn variable_coding_survives_power_off() {
+    let folder = Folder::with_mill("");
+    folder.write(
+        "mill/programs/TWO.H",
+        "BEGIN PGM TWO MM\nTOOL CALL 2 Z S0\nTOOL CALL 3 Z S0\nEND PGM TWO MM\n",
+    );
+    folder.write(
+        "mill/programs/BACK.H",
+        "BEGIN PGM BACK MM\nTOOL CALL 2 Z S0\nEND PGM BACK MM\n",
+    );
+    let list = folder.read("mill/parameters.mp");
+    let with_magazine = list
+        .replace("MP7261   : 0 ", "MP7261   : 12 ")
+        .replace("MP7480.0 : 1 ", "MP7480.0 : 3 ")
+        .replace("MP4310.0 : 1 ", "MP4310.0 : 3 ");
+    assert_eq!(with_magazine.len(), list.len() + 1);
+    folder.write("mill/parameters.mp", with_magazine);
+    let pockets = |folder: &Folder| -> Vec<i64> {
+        let report = json(folder, "table show mill --kind pocket --format json");
+        let rows = report["rows"].as_array().unwrap();
+        let tool = |row: &Value| row["T"].as_str().map_or(0, |tool| tool.parse().unwrap());
+        rows.iter().take(4).map(tool).collect()
+    };
+    assert_eq!(pockets(&folder), [1, 2, 3, 4]);
+    let run = folder.bahn("run TWO.H --machine mill");
+    assert_eq!(run.code(), 0, "{}{}", run.out(), run.err());
+    assert_eq!(pockets(&folder), [1, 3, 2, 4]);
+    let run = folder.bahn("run BACK.H --machine mill");
+    assert_eq!(run.code(), 0, "{}{}", run.out(), run.err());
+    assert_eq!(pockets(&folder), [1, 2, 3, 4]);
+    // The file is as it was.
+    assert!(folder.read("mill/pockets.tsv").contains("\n2\t2\t"));
+}

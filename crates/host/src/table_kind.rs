@@ -215,6 +215,18 @@ impl PlainTable {
         }
     }
 
+    /// Sets a column of the row with this text in a key column; nothing when there is none.
+    pub fn set(&mut self, key: &str, line: &str, column: &str, value: &str) {
+        let place = |name: &str| self.names.iter().position(|own| own == name);
+        let (Some(key), Some(column)) = (place(key), place(column)) else {
+            return;
+        };
+        let row = self.rows.iter_mut().find(|row| row.get(key).is_some_and(|text| text == line));
+        if let Some(field) = row.and_then(|row| row.get_mut(column)) {
+            value.clone_into(field);
+        }
+    }
+
     /// Takes in every column that a control knows, in its order; what others there are stays behind them.
     pub fn complete(&mut self) {
         let known = self.kind.columns().iter().map(|(name, _)| (*name).to_owned());

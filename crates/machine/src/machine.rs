@@ -7,6 +7,7 @@ use bahn_servo::{
 use crate::axis::{Axis, AxisState};
 use crate::chain::Chain;
 use crate::device::{Device, DeviceState};
+use crate::magazine::{Magazine, MagazineState};
 use crate::panel::Panel;
 use crate::probe::Probe;
 use crate::reader::{PlantError, Reader, Section, Wire};
@@ -55,6 +56,7 @@ pub struct Machine {
     pub(crate) spindles: Vec<Spindle>,
     pub(crate) chain: Chain,
     pub(crate) devices: Vec<Device>,
+    pub(crate) magazine: Option<Magazine>,
     pub(crate) panel: Panel,
     pub(crate) probe: Option<Probe>,
     pub(crate) volts: [f64; ANALOGUE_INPUTS],
@@ -98,6 +100,11 @@ impl Machine {
             .into_iter()
             .filter_map(|(name, section)| Axis::read(&name, section, step_s, seed))
             .collect();
+        let devices: Vec<Device> = root
+            .named_sections("device")
+            .into_iter()
+            .map(|(name, section)| Device::read(name, section))
+            .collect();
         let index = |letter| axes.iter().position(|axis| axis.letter == letter);
         let machine = Machine {
             name: root.text("name").unwrap_or("machine").to_owned(),
@@ -113,11 +120,10 @@ impl Machine {
                 .map(|section| Spindle::read(section, step_s, seed))
                 .collect(),
             chain: Chain::read(&root),
-            devices: root
-                .named_sections("device")
-                .into_iter()
-                .map(|(name, section)| Device::read(name, section))
-                .collect(),
+            magazine: root
+                .section("magazine")
+                .map(|section| Magazine::read(section, &devices)),
+            devices,
             panel: Panel::read(&root),
             probe: root.section("probe").map(Probe::read),
             volts: [0.0; ANALOGUE_INPUTS],
@@ -230,6 +236,18 @@ impl Machine {
         self.devices().find(|device| device.name == name)
     }
 
+    /// Where the tools of the magazine are; `None` without one.
+    pub fn magazine(&self) -> Option<MagazineState<'_>> {
+        self.magazine.as_ref().map(Magazine::state)
+    }
+
+    /// The tools lie in the magazine as its operator has put them there: pocket and tool, and the tool in the spindle.
+    pub fn load_magazine(&mut self, tools: impl Iterator<Item = (u16, u32)>, spindle: u32) {
+        if let Some(magazine) = &mut self.magazine {
+            magazine.load(tools, spindle);
+        }
+    }
+
     /// The control voltage is on.
     pub fn control_voltage(&self) -> bool {
         self.chain.voltage()
@@ -244,6 +262,9 @@ impl Machine {
         self.live = self.chain.live(&self.outputs);
         for device in &mut self.devices {
             device.advance(&self.live);
+        }
+        if let Some(magazine) = &mut self.magazine {
+            magazine.advance(&self.live, &mut self.devices);
         }
         let voltage = self.chain.voltage();
         for axis in &mut self.axes {
@@ -404,6 +425,9 @@ impl Machine {
         }
         for device in &self.devices {
             device.set_inputs(inputs);
+        }
+        if let Some(magazine) = &self.magazine {
+            magazine.set_inputs(inputs);
         }
         for (input, on) in &self.stuck {
             set(inputs, *input, *on);

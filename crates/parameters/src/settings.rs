@@ -33,7 +33,7 @@ pub use spindle_parameters::{
     FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,
     SpindlePolarity, SpindleRamps, TappingParameters,
 };
-pub use tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters};
+pub use tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
 
 use crate::{Numbering, ParameterList};
 

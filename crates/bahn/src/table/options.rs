@@ -37,7 +37,8 @@ Examples:
   bahn table show tool.t --format json
   bahn table show tool.t --format csv
 
-Of a machine --kind chooses the table: tool, pocket, datum, pallet. The columns of its tool table are those of
+Of a machine the tables are as its control remembers them: pockets after variable coding, tool lives, what
+the PLC wrote. --kind chooses the table: tool, pocket, datum, pallet. The columns of its tool table are those of
 MP7266 in their order, those of its pocket table those of MP7267; a list in which all are 0 shows them all.
 The kind of a file is that of its ending (.T .TCH .D .P .PNT), else of its frame (BEGIN TOOL .T MM), else of its
 columns. JSON: file, kind, unit, rows (line, and a key for each column).";

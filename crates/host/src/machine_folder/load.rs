@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Tool};
+use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Remembered, Tool};
 use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ListText, ParameterList};
@@ -12,7 +12,7 @@ use bahn_path::Position;
 use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
 
 use super::channel::{Channels, LoadedChannel, position};
-use super::state;
+use super::{remembered, state};
 use crate::fault::{FileFault, Marked, Severity};
 use crate::plc_source::PlcSource;
 use crate::{HostError, files, lists};
@@ -85,6 +85,13 @@ impl LoadedMachine {
     /// The datum of `machine.toml`, for the axes that it names.
     pub fn datum(&self) -> Position {
         position(&self.folder.datum)
+    }
+
+    /// What the control of the folder remembers, without switching it on; `None` when it remembers nothing, or nobody
+    /// can read it.
+    pub fn remembered(&self) -> Option<Remembered> {
+        let file = self.root.join(&self.folder.state).join(state::control_file(0));
+        remembered::read(&files::read_table(&file).ok()?).ok()
     }
 
     /// The folder of the part programs of a channel, from 0.

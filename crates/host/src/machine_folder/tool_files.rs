@@ -36,7 +36,9 @@ impl Loader<'_> {
             }
             Ok(tools)
         })?;
-        if let Some(name) = &folder.pockets {
+        // Without pockets there is no pocket table [000:9113].
+        let pockets = sizes.as_ref().is_none_or(|sizes| sizes.pockets > 0);
+        if let Some(name) = folder.pockets.as_ref().filter(|_| pockets) {
             self.pockets(name, &mut tools, sizes.as_ref(), files)?;
         }
         Some(Some(tools))

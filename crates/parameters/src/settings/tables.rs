@@ -29,20 +29,8 @@ pub const TOOL_ELEMENTS: [&str; 22] = [
 /// The elements of the pocket table in the order of MP7267 [000:9145-9149].
 pub const POCKET_ELEMENTS: [&str; 5] = ["T", "ST", "F", "L", "PLC"];
 
-impl TableParameters {
-    /// The elements of the tool table that the control shows, in its order.
-    pub fn shown_of_tools(&self) -> Vec<&'static str> {
-        shown(&self.tool_columns, &TOOL_ELEMENTS)
-    }
-
-    /// The elements of the pocket table that the control shows, in its order.
-    pub fn shown_of_pockets(&self) -> Vec<&'static str> {
-        shown(&self.pocket_columns, &POCKET_ELEMENTS)
-    }
-}
-
-/// The names whose place is not 0, by their places; two with the same place in the order of the parameters (inferred).
-fn shown(places: &[u8], names: &[&'static str]) -> Vec<&'static str> {
+/// The elements of a table that the control shows, in its order: the names whose place is not 0, by their places; two with the same place in the order of the parameters (inferred).
+pub fn shown_elements(places: &[u8], names: &[&'static str]) -> Vec<&'static str> {
     let mut shown: Vec<(u8, &'static str)> = places.iter().copied().zip(names.iter().copied()).collect();
     shown.retain(|(place, _)| *place > 0);
     shown.sort_by_key(|(place, _)| *place);
@@ -89,10 +77,10 @@ mod tests {
             list.set(7226, index, lines).unwrap();
         }
         let tables = list.table_parameters();
-        assert_eq!(tables.shown_of_tools(), ["L", "R", "NAME", "DL", "DOC"]);
-        assert_eq!(tables.shown_of_pockets(), ["T", "L", "F"]);
+        assert_eq!(shown_elements(&tables.tool_columns, &TOOL_ELEMENTS), ["L", "R", "NAME", "DL", "DOC"]);
+        assert_eq!(shown_elements(&tables.pocket_columns, &POCKET_ELEMENTS), ["T", "L", "F"]);
         assert_eq!((tables.pallet_lines, tables.datum_lines), (Some(20), Some(255)));
         let old = ParameterList::reference(ControlModel::Tnc155).table_parameters();
-        assert_eq!((old.pallet_lines, old.shown_of_tools().len()), (None, 0));
+        assert_eq!((old.pallet_lines, shown_elements(&old.tool_columns, &TOOL_ELEMENTS).len()), (None, 0));
     }
 }
