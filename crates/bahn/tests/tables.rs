@@ -34,11 +34,20 @@ fn show_in_columns_and_as_json() {
     let report = json(&folder, "table show TOOL.T --format json");
     assert_eq!((&report["kind"], &report["unit"]), (&"tool".into(), &"mm".into()));
     let row = &report["rows"][1];
-    assert_eq!((&row["T"], &row["L"], &row["CUT"]), (&5.0.into(), &95.5.into(), &4.0.into()));
-    assert_eq!((&row["NAME"], &row["PLC"]), (&"MILL D20".into(), &"%00000101".into()));
+    assert_eq!(
+        (&row["T"], &row["L"], &row["CUT"]),
+        (&5.0.into(), &95.5.into(), &4.0.into())
+    );
+    assert_eq!(
+        (&row["NAME"], &row["PLC"]),
+        (&"MILL D20".into(), &"%00000101".into())
+    );
     assert_eq!(row["line"], 4);
     let tsv = folder.bahn("table show TOOL.T --format tsv").out();
-    assert!(tsv.contains("\n7\tDRILL\t+105\t+5.25\t+0\t\tL\t\t\t\t\t\n"), "{tsv}");
+    assert!(
+        tsv.contains("\n7\tDRILL\t+105\t+5.25\t+0\t\tL\t\t\t\t\t\n"),
+        "{tsv}"
+    );
 }
 
 /// The columns of the tool table of a machine are those of MP7266, in their order.
@@ -83,9 +92,20 @@ fn faults_have_file_line_and_column() {
     }
     let report = json(&folder, "table check bad.T --format json");
     let faults = report[0]["faults"].as_array().unwrap();
-    let places: Vec<_> = faults.iter().map(|fault| (fault["line"].as_u64(), fault["column"].as_u64())).collect();
-    assert_eq!(places, [(Some(3), Some(3)), (Some(4), Some(1)), (Some(5), Some(7))]);
-    for (name, text) in [("a.D", "NR X\n0 1\n0 2\n"), ("a.P", "NR PGM\n0\n"), ("a.TCH", "P T\n1 x\n"), ("a.PNT", "NR X\n0 y\n")] {
+    let places: Vec<_> = faults
+        .iter()
+        .map(|fault| (fault["line"].as_u64(), fault["column"].as_u64()))
+        .collect();
+    assert_eq!(
+        places,
+        [(Some(3), Some(3)), (Some(4), Some(1)), (Some(5), Some(7))]
+    );
+    for (name, text) in [
+        ("a.D", "NR X\n0 1\n0 2\n"),
+        ("a.P", "NR PGM\n0\n"),
+        ("a.TCH", "P T\n1 x\n"),
+        ("a.PNT", "NR X\n0 y\n"),
+    ] {
         folder.write(name, text);
         assert_eq!(folder.bahn(&format!("table check {name}")).code(), 1, "{name}");
     }
@@ -111,15 +131,25 @@ fn set_changes_one_line() {
     // What would be a fault changes nothing.
     let before = folder.read("tools.tsv");
     for wrong in ["1 R=x", "1 R=-1", "1 T=9", "1 CUT=3", "5 --delete", "1 L"] {
-        assert_eq!(folder.bahn(&format!("table set tools.tsv {wrong}")).code(), 2, "{wrong}");
+        assert_eq!(
+            folder.bahn(&format!("table set tools.tsv {wrong}")).code(),
+            2,
+            "{wrong}"
+        );
         assert_eq!(folder.read("tools.tsv"), before);
     }
     // The file of a control: fields stay under their names.
     folder.write("TOOL.T", TOOL_T);
     assert_eq!(folder.bahn("table set TOOL.T 5 L=+100.125 CUT=3").code(), 0);
-    let expected = TOOL_T.replace("+95.5     +10      +0   +0.02        4", "+100.125  +10      +0   +0.02        3");
+    let expected = TOOL_T.replace(
+        "+95.5     +10      +0   +0.02        4",
+        "+100.125  +10      +0   +0.02        3",
+    );
     assert_eq!(folder.read("TOOL.T"), expected);
-    assert_eq!(json(&folder, "table show TOOL.T --format json")["rows"][1]["R"], 10.0);
+    assert_eq!(
+        json(&folder, "table show TOOL.T --format json")["rows"][1]["R"],
+        10.0
+    );
     assert_eq!(folder.bahn("table set TOOL.T 5 CUT=123456").code(), 2);
     // Nothing is left beside the files.
     assert_eq!(folder.names(), ["TOOL.T", "tools.tsv"]);
@@ -131,7 +161,10 @@ fn a_protected_table_is_not_changed() {
     let folder = Folder::with_mill("");
     assert_eq!(folder.bahn("table set mill/tools.tsv 1 L=71").code(), 0);
     let list = folder.read("mill/parameters.mp");
-    folder.write("mill/parameters.mp", list.replace("MP7224.1 : %00000000", "MP7224.1 : %00000100"));
+    folder.write(
+        "mill/parameters.mp",
+        list.replace("MP7224.1 : %00000000", "MP7224.1 : %00000100"),
+    );
     let run = folder.bahn("table set mill/tools.tsv 1 L=72");
     assert_eq!(run.code(), 2);
     assert!(run.err().contains("is protected (MP7224.1)"), "{}", run.err());
@@ -146,29 +179,51 @@ fn convert_to_and_fro() {
     assert_eq!(run.code(), 0, "{}", run.err());
     let csv = folder.read("tools.csv");
     // 95.5 inches are 2425.7 mm.
-    assert!(csv.contains("\n5,MILL D20,2425.7,254,0,0.508,,,4,2.54,-,%00000101\n"), "{csv}");
+    assert!(
+        csv.contains("\n5,MILL D20,2425.7,254,0,0.508,,,4,2.54,-,%00000101\n"),
+        "{csv}"
+    );
     assert_eq!(folder.bahn("table convert tools.csv -o again.T").code(), 0);
-    assert!(folder.read("again.T").starts_with("BEGIN AGAIN .T MM\nT NAME     L      R"));
+    assert!(
+        folder
+            .read("again.T")
+            .starts_with("BEGIN AGAIN .T MM\nT NAME     L      R")
+    );
     assert_eq!(folder.bahn("table convert again.T -o third.csv").code(), 0);
     assert_eq!(folder.read("third.csv"), csv);
-    assert_eq!(folder.bahn("table convert again.T -o third.csv").code(), 2, "it is there");
+    assert_eq!(
+        folder.bahn("table convert again.T -o third.csv").code(),
+        2,
+        "it is there"
+    );
     let all = folder.bahn("table convert again.T --all-columns --to tsv").out();
-    assert!(all.starts_with("T\tNAME\tL\tR\tR2\tDL\tDR\tDR2\tTL\tRT\tTIME1\tTIME2\tCUR.TIME\tDOC\tCUT\t"), "{all}");
+    assert!(
+        all.starts_with("T\tNAME\tL\tR\tR2\tDL\tDR\tDR2\tTL\tRT\tTIME1\tTIME2\tCUR.TIME\tDOC\tCUT\t"),
+        "{all}"
+    );
 }
 
-/// What does not fit the machine is a fault of its folder: MP7260, MP7261, MP7264, MP7226 [000:9103-9113].
+/// What does not fit the machine is a fault of its folder: MP7260, MP7261 (TNC 151/155: MP225), MP7264, MP7226
+/// [000:9103-9113] [001:1600-1607].
 #[test]
 fn tables_fit_the_parameters_of_their_machine() {
     let said = |change: &[(&str, &str)], files: &[(&str, &str)], toml: &str| {
         let folder = Folder::with_mill("");
         let mut list = folder.read("mill/parameters.mp");
         for (number, value) in change {
-            let line = list.lines().find(|line| line.split([' ', ':']).next() == Some(number)).unwrap().to_owned();
+            let line = list
+                .lines()
+                .find(|line| line.split([' ', ':']).next() == Some(number))
+                .unwrap()
+                .to_owned();
             list = list.replace(&line, &format!("{number} : {value}"));
         }
         folder.write("mill/parameters.mp", list);
         let description = folder.read("mill/machine.toml");
-        folder.write("mill/machine.toml", description.replacen("\nprograms =", &format!("\n{toml}\nprograms ="), 1));
+        folder.write(
+            "mill/machine.toml",
+            description.replacen("\nprograms =", &format!("\n{toml}\nprograms ="), 1),
+        );
         for (name, text) in files {
             folder.write(&format!("mill/{name}"), text);
         }
@@ -178,21 +233,52 @@ fn tables_fit_the_parameters_of_their_machine() {
     assert_eq!(said(&[], &[], "").0, 0);
     let (code, text) = said(&[("MP7260", "8")], &[], "");
     assert_eq!(code, 1);
-    assert!(text.contains("tools.tsv:10:1") && text.contains("the tool table ends with tool 8 (MP7260)"), "{text}");
+    assert!(
+        text.contains("tools.tsv:10:1") && text.contains("the tool table ends with tool 8 (MP7260)"),
+        "{text}"
+    );
     let (_, text) = said(&[("MP7260", "0")], &[], "");
-    assert!(text.contains("the control has no tool table (MP7260 = 0)"), "{text}");
+    assert!(
+        text.contains("the control has no tool table (MP7260 = 0)"),
+        "{text}"
+    );
+    let old = Folder::new();
+    assert_eq!(old.bahn("machine new o --model tnc155").code(), 0);
+    assert_eq!(old.bahn("table check o").code(), 0);
+    let list = old.read("o/parameters.mp");
+    let line = list.lines().find(|line| line.starts_with("MP225")).unwrap();
+    old.write("o/parameters.mp", list.replace(line, "MP225 : 2"));
+    let text = old.bahn("table check o").err();
+    assert!(text.contains("the tool table ends with tool 2"), "{text}");
     let pockets = "P\tT\tST\tF\tL\tPLC\n1\t1\tS\t\t\t\n2\t\t\t\tL\t%00000001\n3\t2\t\tF\t\t\n12\t3\t\t\t\t\n";
-    let with = "pockets = \"pockets.tsv\"";
+    let with = "";
     let sized = [("MP7261", "12"), ("MP7264", "0")];
     assert_eq!(said(&sized, &[("pockets.tsv", pockets)], with).0, 0);
-    let (_, text) = said(&[("MP7261", "11"), ("MP7264", "0")], &[("pockets.tsv", pockets)], with);
-    assert!(text.contains("pockets.tsv:5:1") && text.contains("the magazine has 11 pockets (MP7261)"), "{text}");
-    let (_, text) = said(&[("MP7261", "12"), ("MP7264", "1")], &[("pockets.tsv", pockets)], with);
-    assert!(text.contains("pockets.tsv:2:5") && text.contains("but 12 holds one"), "{text}");
+    let (_, text) = said(
+        &[("MP7261", "11"), ("MP7264", "0")],
+        &[("pockets.tsv", pockets)],
+        with,
+    );
+    assert!(
+        text.contains("pockets.tsv:5:1") && text.contains("the magazine has 11 pockets (MP7261)"),
+        "{text}"
+    );
+    let (_, text) = said(
+        &[("MP7261", "12"), ("MP7264", "1")],
+        &[("pockets.tsv", pockets)],
+        with,
+    );
+    assert!(
+        text.contains("pockets.tsv:2:5") && text.contains("but 12 holds one"),
+        "{text}"
+    );
     let datums = [("programs/ZERO.D", "NR X\n0 1\n20 2\n")];
     assert_eq!(said(&[("MP7226.1", "21")], &datums, "").0, 0);
     let (_, text) = said(&[("MP7226.1", "20")], &datums, "");
-    assert!(text.contains("ZERO.D:3:1") && text.contains("`20` is no line from 0 to 19"), "{text}");
+    assert!(
+        text.contains("ZERO.D:3:1") && text.contains("`20` is no line from 0 to 19"),
+        "{text}"
+    );
     let pallets = [("programs/JOBS.P", "NR PGM\n5 CIRCLE\n")];
     let (_, text) = said(&[("MP7226.0", "5")], &pallets, "pallets = \"JOBS.P\"");
     assert!(text.contains("JOBS.P:2:1"), "{text}");
@@ -213,10 +299,9 @@ fn variable_coding_survives_power_off() {
     );
     let list = folder.read("mill/parameters.mp");
     let with_magazine = list
-        .replace("MP7261   : 0 ", "MP7261   : 12 ")
         .replace("MP7480.0 : 1 ", "MP7480.0 : 3 ")
         .replace("MP4310.0 : 1 ", "MP4310.0 : 3 ");
-    assert_eq!(with_magazine.len(), list.len() + 1);
+    assert_ne!(with_magazine, list);
     folder.write("mill/parameters.mp", with_magazine);
     let pockets = |folder: &Folder| -> Vec<i64> {
         let report = json(folder, "table show mill --kind pocket --format json");

@@ -9,7 +9,7 @@ use bahn_plc::{MemoryTable, TableFile, TableKind};
 use crate::kinematics::Offsets;
 use crate::magazine::Magazine;
 use crate::plc_link::{NcFiles, Pocket, WrittenElement, differences};
-use crate::tool::{Edges, Oversize, Tool, ToolLife};
+use crate::tool::{Edges, MeasuredTool, Oversize, Tool, ToolCondition, ToolLife};
 use crate::tools::Tools;
 
 /// Elements of the tool table [000:15431-15454].
@@ -235,6 +235,33 @@ pub(crate) fn initialise_geometry(
     if !tools.lengthen_held(longer) && !cancelled {
         offsets.tool_length += longer;
     }
+}
+
+/// The tool probe has measured a tool: its data, or with a check its oversize and whether it is locked. A broken tool
+/// keeps its data (inferred).
+pub(crate) fn take_measured(measured: &MeasuredTool, magazine: &mut Magazine, files: &mut NcFiles) {
+    let Ok(line) = i32::try_from(measured.number) else {
+        return;
+    };
+    let Some(table) = files.tables.get_mut(&TableKind::Tool) else {
+        return;
+    };
+    let (data, oversize) = if measured.radius { (R, DR) } else { (L, DL) };
+    let value = |table: &MemoryTable, element| table.value(line, element).unwrap_or_default();
+    if measured.state != ToolCondition::Good {
+        table.set_value(line, TL, 1.0);
+    }
+    if measured.check {
+        if measured.state != ToolCondition::Broken {
+            let sum = value(table, oversize) + measured.difference;
+            table.set_value(line, oversize, sum);
+        }
+    } else {
+        let sum = value(table, data) + value(table, oversize) + measured.difference;
+        table.set_value(line, data, sum);
+        table.set_value(line, oversize, 0.0);
+    }
+    take_tables(magazine, files);
 }
 
 /// The tools as the tables say.

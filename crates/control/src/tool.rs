@@ -81,6 +81,32 @@ impl Tool {
     }
 }
 
+/// What was found of a tool, for the tool table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MeasuredTool {
+    /// The tool.
+    pub number: u32,
+    /// Of the radius, not of the length.
+    pub radius: bool,
+    /// The difference becomes its oversize; else it becomes its data.
+    pub check: bool,
+    /// How much more it is than the table says, mm.
+    pub difference: f64,
+    /// What a check found.
+    pub state: ToolCondition,
+}
+
+/// What a check found [000:8025].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ToolCondition {
+    /// Within the tolerances.
+    Good,
+    /// Beyond LTOL or RTOL.
+    Worn,
+    /// Beyond LBREAK or RBREAK.
+    Broken,
+}
+
 /// A tool that is not in the pocket of the tool table any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovedTool {

@@ -233,12 +233,10 @@ fn a_broken_wire_of_the_acknowledgement_stops_the_axes() {
     assert!(display(&rig, 'X') < 100.0);
 }
 
-/// Modules 9092 to 9094 on the running control: tool 2 lies in pocket 12 and is 94.5 + 0.5 mm long; written to 90 it
-/// counts at once, is stored, and is there after power-off. A tool table that says something else since counts.
-#[test]
-fn tables_of_the_control() {
+/// What the submit job of [`tables_of_the_control`] asks and writes.
+fn job_on_tables() -> String {
     // Pocket table: the line with tool 2; tool table: its length, then written 90 mm and the tool life 30 min.
-    let job = [
+    [
         call(&["K+2", "K+2", "K+0", "K+0"], 9092, &["W100", "W102"]),
         call(&["K+0", "K+2", "K+0"], 9093, &["D104", "W108"]),
         call(&["K+0", "K+2", "K+0", "K+900000"], 9094, &["W110"]),
@@ -252,10 +250,17 @@ fn tables_of_the_control() {
         call(&["K+2", "K+12", "K+2"], 9093, &["D144", "W148"]),
         call(&["K+2", "K+12", "K+4"], 9093, &["D152", "W150"]),
         call(&["K+2", "K+31", "K+0"], 9093, &["D156", "W160"]),
-    ];
+    ]
+    .concat()
+}
+
+/// Modules 9092 to 9094 on the running control: tool 2 lies in pocket 12 and is 94.5 + 0.5 mm long; written to 90 it
+/// counts at once, is stored, and is there after power-off. A tool table that says something else since counts.
+#[test]
+fn tables_of_the_control() {
     let plc = format!(
         "{ACKNOWLEDGE}       L     I20\n       AN    M0\n       CMT   ASK\n       L     I20\n       = M0\n       EM\nLBL ASK\n       SUBM  JOB\n       = B90\n       EM\nLBL JOB\n{}",
-        job.concat()
+        job_on_tables()
     );
     let with_pocket = |length: f64| {
         let mut tool = bahn_control::Tool::default();

@@ -30,9 +30,12 @@ fn mill_with(output: u8, next: u8, kind: u8) -> Rig {
             );
         }
     }
-    build = build.program("0.H", "TOOL CALL 0 Z S0").program("D.H", "TOOL DEF 6\nL X+200 R0 FMAX");
+    build = build
+        .program("0.H", "TOOL CALL 0 Z S0")
+        .program("D.H", "TOOL DEF 6\nL X+200 R0 FMAX");
     let mut rig = build.rig();
-    rig.machine.load_magazine([1, 2, 4, 6].into_iter().map(|number| (number, number.into())), 0);
+    rig.machine
+        .load_magazine([1, 2, 4, 6].into_iter().map(|number| (number, number.into())), 0);
     rig.power_on();
     rig
 }
@@ -56,7 +59,12 @@ fn strobes(rig: &mut Rig, name: &str) -> Vec<Code> {
     let end = rig.control.time_us() + 120_000_000;
     rig.seconds(0.3);
     while !rig.control.snapshot().ended {
-        assert!(rig.control.time_us() < end, "{name}: {codes:?} {:?} step {}", rig.messages(), rig.number("W112"));
+        assert!(
+            rig.control.time_us() < end,
+            "{name}: {codes:?} {:?} step {}",
+            rig.messages(),
+            rig.number("W112")
+        );
         let strobe = rig.bit("M2046");
         if strobe && !before {
             codes.push((rig.number("W262"), rig.number("W264"), rig.bit("M2093")));
@@ -71,8 +79,15 @@ fn strobes(rig: &mut Rig, name: &str) -> Vec<Code> {
 
 /// The tool in each pocket from 1 to 6 and in the spindle.
 fn places(rig: &Rig) -> ([u32; 6], u32) {
-    let state = rig.machine.magazine().unwrap_or_else(|| unreachable!("the mill has a magazine"));
-    assert_eq!((state.shuttle, state.arm), (0, [0, 0]), "nothing is left on the way");
+    let state = rig
+        .machine
+        .magazine()
+        .unwrap_or_else(|| unreachable!("the mill has a magazine"));
+    assert_eq!(
+        (state.shuttle, state.arm),
+        (0, [0, 0]),
+        "nothing is left on the way"
+    );
     (std::array::from_fn(|place| state.pockets[place]), state.spindle)
 }
 
@@ -95,7 +110,9 @@ fn nine_transitions_on_the_mill() {
         for (old, new, expected) in nine {
             let mut rig = mill(3, kind);
             let codes = strobes(&mut rig, &format!("{old}{new}.H"));
-            let (first, codes) = codes.split_first().unwrap_or_else(|| unreachable!("the old tool is called"));
+            let (first, codes) = codes
+                .split_first()
+                .unwrap_or_else(|| unreachable!("the old tool is called"));
             let pocket = |tool: u32| if matches!(tool, 3 | 5) { 255 } else { tool as i32 };
             assert_eq!(*first, (pocket(old), old as i32, false));
             let swapped: Vec<Code> = match expected {
@@ -139,7 +156,11 @@ fn fixed_pockets_on_the_mill() {
     let mut rig = mill(5, FIXED);
     assert_eq!(strobes(&mut rig, "12.H"), [(1, 1, false), (2, 2, false)]);
     assert_eq!(places(&rig), ([1, 0, 0, 4, 0, 6], 2));
-    assert_eq!(strobes(&mut rig, "21.H"), [(1, 1, false)], "tool 2 is in the spindle");
+    assert_eq!(
+        strobes(&mut rig, "21.H"),
+        [(1, 1, false)],
+        "tool 2 is in the spindle"
+    );
     assert_eq!(places(&rig), ([0, 2, 0, 4, 0, 6], 1));
     assert_eq!(rig.control.remember().pockets, []);
     // T 0 empties the spindle.

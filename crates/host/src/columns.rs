@@ -181,8 +181,13 @@ pub(crate) fn read(
 ) -> Result<(), Vec<TableFault>> {
     let table = TextTable::read(text).map_err(|fault| vec![fault])?;
     let unit_mm = if table.in_inches() { 25.4 } else { 1.0 };
-    form.fits(&table).map_err(|message| vec![TableFault::of_table(message)])?;
-    let names: Vec<String> = table.names.iter().map(|name| canonical(name).to_owned()).collect();
+    form.fits(&table)
+        .map_err(|message| vec![TableFault::of_table(message)])?;
+    let names: Vec<String> = table
+        .names
+        .iter()
+        .map(|name| canonical(name).to_owned())
+        .collect();
     let mut faults = Vec::new();
     for row in &table.rows {
         if faults.len() == FAULTS_MAX {
@@ -334,7 +339,10 @@ impl Layout {
         let mut cells = pieces(&characters, self.bounds(&characters, columns).into_iter());
         if matches!(self, Layout::Separated(separator) if *separator != '\t') {
             for cell in &mut cells {
-                let inner = cell.text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
+                let inner = cell
+                    .text
+                    .strip_prefix('"')
+                    .and_then(|text| text.strip_suffix('"'));
                 if let Some(inner) = inner {
                     cell.text = inner.replace("\"\"", "\"");
                 }
@@ -356,7 +364,11 @@ impl Layout {
         if let Layout::Fixed(starts) = self {
             return with_fixed(line, starts, place, value);
         }
-        let mut cells: Vec<String> = self.cells(line, columns).into_iter().map(|cell| cell.text).collect();
+        let mut cells: Vec<String> = self
+            .cells(line, columns)
+            .into_iter()
+            .map(|cell| cell.text)
+            .collect();
         cells.resize(columns.max(cells.len()), String::new());
         if let Some(cell) = cells.get_mut(place) {
             value.clone_into(cell);
@@ -367,7 +379,9 @@ impl Layout {
                 cells.join(&separator.to_string())
             }
             _ => {
-                let cells = cells.into_iter().map(|cell| if cell.is_empty() { "-".to_owned() } else { cell });
+                let cells = cells
+                    .into_iter()
+                    .map(|cell| if cell.is_empty() { "-".to_owned() } else { cell });
                 cells.collect::<Vec<_>>().join(" ")
             }
         })

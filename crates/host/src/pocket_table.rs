@@ -61,8 +61,7 @@ fn line(row: &Row<'_>) -> Result<(u16, PocketLine), RowFault> {
     let tool = match row.text("T") {
         "" | "-" | "-1" => None,
         text => Some(
-            tool_table::key(text)
-                .ok_or_else(|| row.fault("T", &format!("`{text}` is no tool number")))?,
+            tool_table::key(text).ok_or_else(|| row.fault("T", &format!("`{text}` is no tool number")))?,
         ),
     };
     let pocket = Pocket {
@@ -76,7 +75,14 @@ fn line(row: &Row<'_>) -> Result<(u16, PocketLine), RowFault> {
         return Err(row.fault("L", "a locked pocket holds no tool"));
     }
     let special = row.mark("ST")?;
-    Ok((number, PocketLine { tool, special, pocket }))
+    Ok((
+        number,
+        PocketLine {
+            tool,
+            special,
+            pocket,
+        },
+    ))
 }
 
 /// Whether the tools of a pocket table fit the magazine: its size (MP7261), the pockets that are kept free beside a
@@ -180,18 +186,31 @@ mod tests {
     fn pocket_tables_are_read() {
         let lines = parse(MANUAL).unwrap();
         let line = lines[&1];
-        assert_eq!((line.tool, line.special, line.pocket.fixed), (Some(1), true, true));
+        assert_eq!(
+            (line.tool, line.special, line.pocket.fixed),
+            (Some(1), true, true)
+        );
         assert_eq!(line.pocket.plc, 0b1011_0111);
         assert_eq!((lines[&2].tool, lines[&2].pocket.locked), (None, true));
         assert_eq!((lines[&0].tool, lines[&0].pocket.plc), (None, 0));
         let (mut tools, mut pockets) = (tools(), BTreeMap::new());
         assert_eq!(fits(MANUAL, &lines, &tools, &sizes(6, 0)), Ok(()));
         put_away(&lines, &mut tools, &mut pockets);
-        let kinds: Vec<_> = tools.values().map(|tool| (tool.pocket, tool.special, tool.fixed)).collect();
+        let kinds: Vec<_> = tools
+            .values()
+            .map(|tool| (tool.pocket, tool.special, tool.fixed))
+            .collect();
         let no = (None, false, false);
         assert_eq!(
             kinds,
-            [(Some(1), true, true), no, (Some(3), false, true), no, (Some(5), true, false), no]
+            [
+                (Some(1), true, true),
+                no,
+                (Some(3), false, true),
+                no,
+                (Some(5), true, false),
+                no
+            ]
         );
         assert_eq!(pockets[&2].plc, 0b1000_1100);
         // A table of a later control.
@@ -201,7 +220,8 @@ mod tests {
 
     #[test]
     fn faults_have_line_and_column() {
-        let faults = parse("P;T;F;L;PLC\n1;2;;;\n1;3;;;\n2;2;;;\n255;1;;;\n3;4;;L;\n4;x;;;%3\n5;5;?;;\n").unwrap_err();
+        let faults =
+            parse("P;T;F;L;PLC\n1;2;;;\n1;3;;;\n2;2;;;\n255;1;;;\n3;4;;L;\n4;x;;;%3\n5;5;?;;\n").unwrap_err();
         let places: Vec<_> = faults.iter().map(|fault| (fault.line, fault.column)).collect();
         assert_eq!(places, [(3, 1), (4, 3), (5, 1), (6, 6), (7, 3), (8, 5)]);
         assert_eq!(faults[1].message, "T: tool 2 is in pocket 1 already");
@@ -220,7 +240,10 @@ mod tests {
         let said: Vec<_> = faults.iter().map(|fault| fault.message.as_str()).collect();
         assert_eq!(
             said,
-            ["P: the magazine has 12 pockets (MP7261)", "T: there is no tool 9 in the tool table"]
+            [
+                "P: the magazine has 12 pockets (MP7261)",
+                "T: there is no tool 9 in the tool table"
+            ]
         );
     }
 }

@@ -42,7 +42,8 @@ mod tests {
 
     #[test]
     fn points_are_read() {
-        let points = parse("BEGIN HOLES .PNT INCH\nNR  X    Y    Z\n0   +1   +2   -1\n12  -0.5\n[END]\n").unwrap();
+        let points =
+            parse("BEGIN HOLES .PNT INCH\nNR  X    Y    Z\n0   +1   +2   -1\n12  -0.5\n[END]\n").unwrap();
         assert_eq!(points[&0], [Some(25.4), Some(50.8), Some(-25.4)]);
         assert_eq!(points[&12], [Some(-12.7), None, None]);
         let faults = parse("NR X\n0 1\n0 2\nx 1\n3 y\n").unwrap_err();

@@ -91,7 +91,13 @@ const DATUM: &[KnownColumn] = &[
 /// [000:15332-15340].
 const PALLET: &[KnownColumn] = &[("NR", Number), ("PGM", Text), ("DATUM", Text), ("DOC", Text)];
 
-const POINT: &[KnownColumn] = &[("NR", Number), ("X", Length), ("Y", Length), ("Z", Length), ("DOC", Text)];
+const POINT: &[KnownColumn] = &[
+    ("NR", Number),
+    ("X", Length),
+    ("Y", Length),
+    ("Z", Length),
+    ("DOC", Text),
+];
 
 impl TableForm {
     /// All kinds.
@@ -153,7 +159,11 @@ impl TableForm {
             let mut all = TableForm::ALL.into_iter();
             all.find(|kind| kind.ending().eq_ignore_ascii_case(ending))
         };
-        let ending = path.extension().unwrap_or_default().to_string_lossy().into_owned();
+        let ending = path
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
         let frame = table.frame.as_deref().unwrap_or_default();
         let framed = frame.split_whitespace().filter_map(|word| word.split_once('.'));
         let has = |name: &str| table.place(name).is_some();
@@ -221,7 +231,10 @@ impl PlainTable {
         let (Some(key), Some(column)) = (place(key), place(column)) else {
             return;
         };
-        let row = self.rows.iter_mut().find(|row| row.get(key).is_some_and(|text| text == line));
+        let row = self
+            .rows
+            .iter_mut()
+            .find(|row| row.get(key).is_some_and(|text| text == line));
         if let Some(field) = row.and_then(|row| row.get_mut(column)) {
             value.clone_into(field);
         }
@@ -231,7 +244,12 @@ impl PlainTable {
     pub fn complete(&mut self) {
         let known = self.kind.columns().iter().map(|(name, _)| (*name).to_owned());
         let mut names: Vec<String> = known.collect();
-        names.extend(self.names.iter().filter(|name| self.kind.columns().iter().all(|(known, _)| known != name)).cloned());
+        names.extend(
+            self.names
+                .iter()
+                .filter(|name| self.kind.columns().iter().all(|(known, _)| known != name))
+                .cloned(),
+        );
         self.choose(&names);
     }
 
@@ -261,12 +279,22 @@ impl PlainTable {
     /// A file as controls write it: columns under their names, framed by the name of the table.
     pub fn of_control(&self, name: &str) -> String {
         let width = |at: usize| {
-            let fields = self.rows.iter().filter_map(|row| row.get(at)).chain(self.names.get(at));
-            fields.map(|field| field.chars().count()).max().unwrap_or_default()
+            let fields = self
+                .rows
+                .iter()
+                .filter_map(|row| row.get(at))
+                .chain(self.names.get(at));
+            fields
+                .map(|field| field.chars().count())
+                .max()
+                .unwrap_or_default()
         };
         let widths: Vec<usize> = (0..self.names.len()).map(width).collect();
         let line = |fields: &Vec<String>| {
-            let padded = fields.iter().zip(&widths).map(|(field, width)| format!("{field:<width$}"));
+            let padded = fields
+                .iter()
+                .zip(&widths)
+                .map(|(field, width)| format!("{field:<width$}"));
             padded.collect::<Vec<_>>().join(" ").trim_end().to_owned() + "\n"
         };
         let rows: String = self.rows.iter().map(line).collect();
@@ -315,14 +343,21 @@ mod tests {
         let text = "BEGIN TOOL .T INCH\nT  L     R     TIME1\n3  +1.5  +0.25 15\n[END]\n";
         let plain = PlainTable::new(TableForm::Tool, &TextTable::read(text).unwrap());
         assert_eq!(plain.rows, [["3", "38.1", "6.35", "15"]]);
-        assert!(plain.of_control("tool").starts_with("BEGIN TOOL .T MM\nT L    R    TIME1\n3 38.1 6.35 15\n"));
+        assert!(
+            plain
+                .of_control("tool")
+                .starts_with("BEGIN TOOL .T MM\nT L    R    TIME1\n3 38.1 6.35 15\n")
+        );
     }
 
     #[test]
     fn kinds_are_recognised() {
         let kind = |name: &str, text: &str| TableForm::of(Path::new(name), &TextTable::read(text).unwrap());
         assert_eq!(kind("TOOL.T", "A B\n"), Some(TableForm::Tool));
-        assert_eq!(kind("x.txt", "BEGIN TOOL_P .TCH MM\nP T\n"), Some(TableForm::Pocket));
+        assert_eq!(
+            kind("x.txt", "BEGIN TOOL_P .TCH MM\nP T\n"),
+            Some(TableForm::Pocket)
+        );
         assert_eq!(kind("tools.tsv", "T L R P\n"), Some(TableForm::Tool));
         assert_eq!(kind("pockets.tsv", "P T ST\n"), Some(TableForm::Pocket));
         assert_eq!(kind("a.csv", "NR,PGM\n"), Some(TableForm::Pallet));

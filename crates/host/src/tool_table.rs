@@ -306,7 +306,10 @@ mod tests {
             length_break: 1.0,
             radius_break: 2.0,
         };
-        assert_eq!((tool.edges, tool.plc, tool.left_hand, tool.locked), (edges, 5, true, true));
+        assert_eq!(
+            (tool.edges, tool.plc, tool.left_hand, tool.locked),
+            (edges, 5, true, true)
+        );
         let own = parse("T;R;CUT;L-OFFS;PLC\n1;5;2;-1,5;7\n").unwrap()[&1];
         assert_eq!((own.edges.count, own.edges.length_offset, own.plc), (2, -1.5, 7));
         let faults = parse("T;R;CUT;PLC;LTOL\n1;5;21;;\n2;5;;%2;\n3;5;;;-1\n4;5;1.5;;\n").unwrap_err();

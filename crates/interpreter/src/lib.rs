@@ -61,6 +61,7 @@ mod run;
 mod settings;
 mod status;
 mod told;
+mod tool_measuring;
 mod tools;
 mod work;
 

@@ -63,6 +63,8 @@ pub(crate) struct Modal {
     pub blank_min: Option<(Plane, [f64; 3])>,
     /// Probe block 0.0 waiting for 0.1.
     pub probe: Option<ReferencePlane>,
+    /// Blocks of TCH PROBE 31 or 32 that were read.
+    pub measuring: Option<MeasuringBlocks>,
 }
 
 /// First block of TCH PROBE 0: result parameter, axis and direction [003:4414-4428].
@@ -72,6 +74,17 @@ pub(crate) struct ReferencePlane {
     pub axis: Axis,
     /// +1 in positive, -1 in negative axis direction.
     pub direction: f64,
+}
+
+/// Blocks of TCH PROBE 31 or 32 that were read; height in mm.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MeasuringBlocks {
+    pub number: u16,
+    /// The block that was read last.
+    pub sub: u16,
+    pub check: bool,
+    pub result: Option<u16>,
+    pub height: f64,
 }
 
 /// The last movement in programmed coordinates.
@@ -115,6 +128,7 @@ impl Modal {
             contour_labels: Vec::new(),
             blank_min: None,
             probe: None,
+            measuring: None,
         }
     }
 

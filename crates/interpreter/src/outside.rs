@@ -10,7 +10,7 @@ use crate::Interpreter;
 use crate::checkpoints::{Checkpoint, Kept};
 use crate::code::Code;
 use crate::contour::Contour;
-use crate::settings::{DatumTable, Rules, ToolState};
+use crate::settings::{DatumTable, Rules, ToolState, ToolTable};
 
 impl Interpreter {
     /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
@@ -28,8 +28,9 @@ impl Interpreter {
         };
     }
 
-    /// The tools that must not be called, or are replaced, for the blocks that are read from now on.
-    pub fn set_barred_tools(&mut self, barred: BTreeMap<u32, ToolState>) {
+    /// The tools, and those that must not be called or are replaced, for the blocks that are read from now on.
+    pub fn set_tools(&mut self, tools: Option<ToolTable>, barred: BTreeMap<u32, ToolState>) {
+        self.settings.tools = tools;
         self.settings.barred_tools = barred;
     }
 

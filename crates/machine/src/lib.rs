@@ -50,6 +50,7 @@ mod panel;
 mod probe;
 mod reader;
 mod spindle;
+mod tool_probe;
 
 pub use axis::{AxisState, DriveFault};
 pub use chain::RelayFault;

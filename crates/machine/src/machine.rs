@@ -12,6 +12,7 @@ use crate::panel::Panel;
 use crate::probe::Probe;
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
+use crate::tool_probe::ToolProbe;
 
 /// Contacts, relays and things move once in so many µs.
 const TICK_US: u32 = 1000;
@@ -59,6 +60,7 @@ pub struct Machine {
     pub(crate) magazine: Option<Magazine>,
     pub(crate) panel: Panel,
     pub(crate) probe: Option<Probe>,
+    tool_probe: Option<ToolProbe>,
     pub(crate) volts: [f64; ANALOGUE_INPUTS],
     pub(crate) temperatures: [f64; ANALOGUE_INPUTS],
     /// Time has passed since the encoders were read.
@@ -126,6 +128,7 @@ impl Machine {
             devices,
             panel: Panel::read(&root),
             probe: root.section("probe").map(Probe::read),
+            tool_probe: root.section("tool_probe").map(ToolProbe::read),
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [20.0; ANALOGUE_INPUTS],
             moved_on: true,
@@ -294,6 +297,7 @@ impl Plant for Machine {
         }
         measured.operator = self.panel.operator;
         measured.probe = self.touch_probe();
+        measured.tool_probe = self.tool_probe();
         measured.volts = self.volts;
         measured.temperatures = self.temperatures;
     }
@@ -447,6 +451,27 @@ impl Machine {
     /// The acknowledgement at X42/4.
     pub fn control_ready(&self) -> bool {
         self.chain.acknowledged(&self.stuck)
+    }
+
+    /// The tool probe; none is never ready. It knows the tool that the magazine has put into the spindle.
+    fn tool_probe(&self) -> Touch {
+        let Some(probe) = &self.tool_probe else {
+            return Touch::default();
+        };
+        let tool = self
+            .magazine
+            .as_ref()
+            .map_or(0, |magazine| magazine.state().spindle);
+        let place = self.probe_axes.map(|index| Some(self.axes.get(index?)?.table));
+        let deflected = match place {
+            [Some(x), Some(y), Some(z)] => probe.deflected(tool, [x, y, z]),
+            _ => false,
+        };
+        Touch {
+            deflected,
+            ready: probe.ready,
+            battery_low: false,
+        }
     }
 
     /// The touch probe; none is never ready.

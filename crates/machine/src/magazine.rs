@@ -88,7 +88,9 @@ impl Magazine {
             let name = section.text(key).unwrap_or(usual);
             let place = devices.iter().position(|device| device.name == name);
             if place.is_none() {
-                section.fault(format!("[magazine] needs {key}, the name of a thing: there is no `{name}`"));
+                section.fault(format!(
+                    "[magazine] needs {key}, the name of a thing: there is no `{name}`"
+                ));
             }
             place.unwrap_or_default()
         };
@@ -109,10 +111,12 @@ impl Magazine {
             forward: section.coil("forward"),
             backward: section.coil("backward"),
             in_position: section.contact("in_position"),
-            code: ["code_1", "code_2", "code_4", "code_8", "code_16", "code_32", "code_64", "code_128"]
-                .into_iter()
-                .filter_map(|key| section.contact(key))
-                .collect(),
+            code: [
+                "code_1", "code_2", "code_4", "code_8", "code_16", "code_32", "code_64", "code_128",
+            ]
+            .into_iter()
+            .filter_map(|key| section.contact(key))
+            .collect(),
             shuttle_full: section.contact("shuttle_full"),
             spindle_full: section.contact("spindle_full"),
             before: [parts.shuttle, parts.draw, parts.turn].map(|at| Place::of(devices.get(at))),

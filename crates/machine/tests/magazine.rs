@@ -118,7 +118,10 @@ fn tools_that_are_in_the_way() {
     for on in [&[9][..], &[9, 10], &[9, 10, 11]] {
         with(&mut machine, on, 110);
     }
-    assert!(!input(&mut machine, 74) && !input(&mut machine, 73), "stuck where it began");
+    assert!(
+        !input(&mut machine, 74) && !input(&mut machine, 73),
+        "stuck where it began"
+    );
     assert_eq!(machine.magazine().unwrap().spindle, 12);
     with(&mut machine, &[8, 9, 10, 11], 110);
     machine.apply("repair arm_draw").unwrap();
@@ -143,8 +146,15 @@ fn a_magazine_needs_its_things() {
     let text = format!("{BASE}{IDEAL_X}[magazine]\npockets = 300\n");
     let faults = Machine::from_toml(&text).err().unwrap();
     let said: Vec<&str> = faults.iter().map(|fault| fault.message.as_str()).collect();
-    assert!(said.iter().any(|text| text.contains("pockets is a number from 1 to 254")), "{said:?}");
-    assert!(said.iter().any(|text| text.contains("there is no `arm_draw`")), "{said:?}");
+    assert!(
+        said.iter()
+            .any(|text| text.contains("pockets is a number from 1 to 254")),
+        "{said:?}"
+    );
+    assert!(
+        said.iter().any(|text| text.contains("there is no `arm_draw`")),
+        "{said:?}"
+    );
     let mut machine = running(&format!("{BASE}{IDEAL_X}"));
     assert!(machine.magazine().is_none() && machine.apply("tool 3").is_err());
     assert!(machine.apply("fault magazine lost").is_err());

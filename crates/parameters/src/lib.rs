@@ -76,6 +76,7 @@ pub mod axis {
 pub mod machining {
     pub use crate::settings::{
         ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
+        ToolProbeParameters, ToolProbeTolerance,
     };
 }
 

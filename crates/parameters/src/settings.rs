@@ -14,6 +14,7 @@ mod plc_parameters;
 mod spindle;
 mod spindle_parameters;
 mod tables;
+mod tool_probe;
 
 pub use axis_parameters::{
     AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
@@ -34,6 +35,7 @@ pub use spindle_parameters::{
     SpindlePolarity, SpindleRamps, TappingParameters,
 };
 pub use tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
+pub use tool_probe::{ToolProbeParameters, ToolProbeTolerance};
 
 use crate::{Numbering, ParameterList};
 

@@ -37,4 +37,4 @@ pub use element::{
 };
 pub use frame::Frame;
 pub use plane::{Plane, Point2};
-pub use source::{Barrier, ElementSource, LiveData, Step, Touch};
+pub use source::{Barrier, ElementSource, LiveData, Step, ToolMeasuring, Touch};

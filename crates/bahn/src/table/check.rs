@@ -15,7 +15,11 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     let mut outcome = Outcome::Fine;
     let mut reports = Vec::new();
     for path in &options.tables {
-        let checked = if path.is_dir() { of_machine(path) } else { of_file(path, options) };
+        let checked = if path.is_dir() {
+            of_machine(path)
+        } else {
+            of_file(path, options)
+        };
         match checked {
             Ok(report) => reports.push(report),
             // The other tables are checked all the same.
@@ -85,7 +89,10 @@ fn of_file(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
 /// All tables of a machine; other faults of its files are not looked at.
 fn of_machine(path: &Path) -> Result<Report, UsageError> {
     let (rows, faults) = match LoadedMachine::load(path)? {
-        Ok(machine) => (machine.tables.len() + usize::from(machine.tools.is_some()), Vec::new()),
+        Ok(machine) => (
+            machine.tables.len() + usize::from(machine.tools.is_some()),
+            Vec::new(),
+        ),
         Err(faults) => (0, faults),
     };
     diagnostics::print_faults(&faults);

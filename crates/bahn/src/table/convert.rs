@@ -38,7 +38,10 @@ pub(super) fn command(options: &ConvertOptions) -> Result<Outcome, UsageError> {
         return Ok(Outcome::Fine);
     };
     if path.exists() && !options.force {
-        return Err(UsageError::new(format!("{} is there already; --force replaces it", path.display())));
+        return Err(UsageError::new(format!(
+            "{} is there already; --force replaces it",
+            path.display()
+        )));
     }
     let mut file = NewFile::create(path)?;
     file.write_all(text.as_bytes())

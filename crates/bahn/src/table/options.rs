@@ -56,7 +56,7 @@ A file is checked by itself. The tables of a machine are checked against it, too
 
 const SET_EXAMPLES: &str = "\
 Examples:
-  bahn table set tool.t 1 L=80.45 DR=-0.02
+  bahn table set tool.t 1 L=80.45 R2=0.5
   bahn table set tool.t 7 L=110 R=3.4 NAME=\"DRILL D6.8\"     a new line
   bahn table set tool.t 2 --delete
 

@@ -16,7 +16,10 @@ pub(super) fn command(options: &SetOptions) -> Result<Outcome, UsageError> {
     let path = &options.table;
     let source = source::read(path, options.kind)?;
     if is_protected(path, source.kind) {
-        return Err(UsageError::new(format!("{} is protected (MP7224.1)", path.display())));
+        return Err(UsageError::new(format!(
+            "{} is protected (MP7224.1)",
+            path.display()
+        )));
     }
     if let Err(faults) = source.kind.check(&source.text) {
         source.print(&faults);
@@ -24,14 +27,25 @@ pub(super) fn command(options: &SetOptions) -> Result<Outcome, UsageError> {
     }
     let (text, done) = changed(&source, options)?;
     if let Err(faults) = source.kind.check(&text) {
-        let said = faults.first().map(|fault| fault.message.clone()).unwrap_or_default();
-        return Err(UsageError::new(format!("{}: {said}; nothing was changed", path.display())));
+        let said = faults
+            .first()
+            .map(|fault| fault.message.clone())
+            .unwrap_or_default();
+        return Err(UsageError::new(format!(
+            "{}: {said}; nothing was changed",
+            path.display()
+        )));
     }
     let mut file = NewFile::create(path)?;
     file.write_all(text.as_bytes())
         .map_err(|error| files::cannot("write", path, &error))?;
     file.finish()?;
-    diagnostics::print_text(&format!("{}: {} {} {done}", path.display(), source.kind.name(), options.line));
+    diagnostics::print_text(&format!(
+        "{}: {} {} {done}",
+        path.display(),
+        source.kind.name(),
+        options.line
+    ));
     Ok(Outcome::Fine)
 }
 
@@ -39,12 +53,15 @@ pub(super) fn command(options: &SetOptions) -> Result<Outcome, UsageError> {
 fn changed(source: &Source, options: &SetOptions) -> Result<(String, &'static str), UsageError> {
     let (table, key) = (&source.table, source.kind.key());
     let wrong = |message: String| UsageError::new(format!("{}: {message}", source.path.display()));
-    let is_wanted = |row: &&bahn_host::TextRow| {
-        table.cell(row, key).is_some_and(|cell| cell.text == options.line)
-    };
+    let is_wanted =
+        |row: &&bahn_host::TextRow| table.cell(row, key).is_some_and(|cell| cell.text == options.line);
     let at = table.rows.iter().find(is_wanted).map(|row| row.line as usize - 1);
     let mut lines: Vec<String> = source.text.split_inclusive('\n').map(str::to_owned).collect();
-    let end = if source.text.contains("\r\n") { "\r\n" } else { "\n" };
+    let end = if source.text.contains("\r\n") {
+        "\r\n"
+    } else {
+        "\n"
+    };
     if options.delete {
         let at = at.ok_or_else(|| wrong(format!("there is no line {}", options.line)))?;
         lines.remove(at);
@@ -57,7 +74,10 @@ fn changed(source: &Source, options: &SetOptions) -> Result<(String, &'static st
             .ok_or_else(|| wrong(format!("`{value}` is no COLUMN=VALUE")))?;
         values.push((canonical(&name.trim().to_uppercase()).to_owned(), value.trim()));
     }
-    let values: Vec<(&str, &str)> = values.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    let values: Vec<(&str, &str)> = values
+        .iter()
+        .map(|(name, value)| (name.as_str(), *value))
+        .collect();
     let Some(at) = at else {
         let key = [(key, options.line.as_str())].into_iter();
         let all: Vec<(&str, &str)> = key.chain(values).collect();

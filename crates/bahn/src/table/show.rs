@@ -33,7 +33,10 @@ pub(super) fn command(options: &ShowOptions) -> Result<Outcome, UsageError> {
     if let Some(remembered) = machine.as_ref().and_then(LoadedMachine::remembered) {
         bring_up_to_date(&mut table, &remembered);
     }
-    if let Some(shown) = machine.and_then(|machine| shown(&machine, source.kind)).filter(|_| !options.all) {
+    if let Some(shown) = machine
+        .and_then(|machine| shown(&machine, source.kind))
+        .filter(|_| !options.all)
+    {
         let key = [source.kind.key().to_owned()].into_iter();
         table.choose(&key.chain(shown).collect::<Vec<_>>());
     }
@@ -62,17 +65,28 @@ fn bring_up_to_date(table: &mut PlainTable, remembered: &Remembered) {
     let written: Vec<(String, &str, String)> = written
         .filter_map(|element| {
             let column = kind.columns().get(element.element)?.as_ref()?;
-            Some((element.line.to_string(), canonical(column.name), element.value.to_string()))
+            Some((
+                element.line.to_string(),
+                canonical(column.name),
+                element.value.to_string(),
+            ))
         })
         .collect();
     for (line, column, value) in &written {
         table.set(key, line, column, value);
     }
     let moved = remembered.pockets.iter();
-    let moved: Vec<(String, Option<u16>)> = moved.map(|moved| (moved.tool.to_string(), moved.pocket)).collect();
+    let moved: Vec<(String, Option<u16>)> = moved
+        .map(|moved| (moved.tool.to_string(), moved.pocket))
+        .collect();
     if table.kind == TableForm::Tool {
         for (tool, pocket) in &moved {
-            table.set(key, tool, "P", &pocket.map(|pocket| pocket.to_string()).unwrap_or_default());
+            table.set(
+                key,
+                tool,
+                "P",
+                &pocket.map(|pocket| pocket.to_string()).unwrap_or_default(),
+            );
         }
         return;
     }
@@ -99,18 +113,28 @@ fn shown(machine: &LoadedMachine, kind: TableForm) -> Option<Vec<String>> {
 /// Numbers to the right, text to the left.
 fn columns(table: &PlainTable) -> String {
     let width = |at: usize| {
-        let fields = table.rows.iter().filter_map(|row| row.get(at)).chain(table.names.get(at));
-        fields.map(|field| field.chars().count()).max().unwrap_or_default()
+        let fields = table
+            .rows
+            .iter()
+            .filter_map(|row| row.get(at))
+            .chain(table.names.get(at));
+        fields
+            .map(|field| field.chars().count())
+            .max()
+            .unwrap_or_default()
     };
     let widths: Vec<(usize, bool)> = (0..)
         .zip(&table.names)
         .map(|(at, name)| (width(at), table.kind.content(name) == CellContent::Text))
         .collect();
     let line = |fields: &Vec<String>| {
-        let padded = fields.iter().zip(&widths).map(|(field, (width, left))| match left {
-            true => format!("{field:<width$}"),
-            false => format!("{field:>width$}"),
-        });
+        let padded = fields
+            .iter()
+            .zip(&widths)
+            .map(|(field, (width, left))| match left {
+                true => format!("{field:<width$}"),
+                false => format!("{field:>width$}"),
+            });
         padded.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
     };
     [&table.names].into_iter().chain(&table.rows).map(line).collect()
@@ -127,7 +151,9 @@ fn report(source: &Source, table: &PlainTable) -> Value {
     };
     let row = |(row, at): (&Vec<String>, u32)| {
         let fields = table.names.iter().zip(row).filter(|(_, field)| !field.is_empty());
-        let mut object: Map<String, Value> = fields.map(|(name, field)| (name.clone(), value(name, field))).collect();
+        let mut object: Map<String, Value> = fields
+            .map(|(name, field)| (name.clone(), value(name, field)))
+            .collect();
         object.insert("line".to_owned(), json!(at));
         Value::Object(object)
     };

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Remembered, Tool};
+use bahn_control::{
+    CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Remembered, Tool,
+};
 use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::{ControlModel, ListText, ParameterList};
@@ -163,7 +165,7 @@ impl Loader<'_> {
         let plc_messages = self.texts("plc_messages", folder.plc_messages.as_deref(), MESSAGES);
         let plc_dialogues = self.texts("plc_dialogues", folder.plc_dialogues.as_deref(), 4096);
         let mut files = self.compensation(&folder);
-        let parameters = self.parameters(&folder, model?);
+        let parameters = model.and_then(|model| self.parameters(&folder, model));
         let mut none = NcFiles::default();
         let tools = self.tool_files(&folder, parameters.as_ref(), files.as_mut().unwrap_or(&mut none));
         let plc = self.plc(&folder, model?, parameters.as_ref());

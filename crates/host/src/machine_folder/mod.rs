@@ -43,7 +43,11 @@ pub(crate) fn check_pallet_file(text: &str) -> Result<(), Vec<TableFault>> {
 pub fn check_nc_tables(text: &str) -> [Result<(), Vec<u32>>; 2] {
     let lines = |faults: Vec<TableFault>| faults.iter().map(|fault| fault.line).collect();
     [
-        nc_memory::datum_table(text, [false; 5], nc_memory::LINES_MAX).map(drop).map_err(lines),
-        nc_memory::pallet_file(text, nc_memory::LINES_MAX).map(drop).map_err(lines),
+        nc_memory::datum_table(text, [false; 5], nc_memory::LINES_MAX)
+            .map(drop)
+            .map_err(lines),
+        nc_memory::pallet_file(text, nc_memory::LINES_MAX)
+            .map(drop)
+            .map_err(lines),
     ]
 }

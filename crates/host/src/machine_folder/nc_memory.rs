@@ -35,11 +35,7 @@ const PALLET_FILE: Form = Form {
 };
 
 /// Reads a datum table, with the elements that turn and so have no unit of length.
-pub(super) fn datum_table(
-    text: &str,
-    turns: [bool; 5],
-    most: u16,
-) -> Result<MemoryTable, Vec<TableFault>> {
+pub(super) fn datum_table(text: &str, turns: [bool; 5], most: u16) -> Result<MemoryTable, Vec<TableFault>> {
     let mut lines: BTreeMap<i32, [f64; 5]> = BTreeMap::new();
     columns::read(text, &DATUM_TABLE, |row| {
         let mut values = [0.0; 5];
@@ -105,7 +101,8 @@ impl Loader<'_> {
     ) -> Vec<PathBuf> {
         let mut read = Vec::new();
         let sizes = list.table_parameters();
-        let [datum_lines, pallet_lines] = [sizes.datum_lines, sizes.pallet_lines].map(|lines| lines.unwrap_or(LINES_MAX));
+        let [datum_lines, pallet_lines] =
+            [sizes.datum_lines, sizes.pallet_lines].map(|lines| lines.unwrap_or(LINES_MAX));
         let mut turns = [false; 5];
         for axis in list.axes().iter().filter(|axis| axis.is_rotary()) {
             if let Some(turns) = list
@@ -156,7 +153,12 @@ impl Loader<'_> {
         read
     }
 
-    pub(super) fn table<T>(&mut self, path: &Path, title: &str, read: impl FnOnce(&str) -> Result<T, Vec<TableFault>>) -> Option<T> {
+    pub(super) fn table<T>(
+        &mut self,
+        path: &Path,
+        title: &str,
+        read: impl FnOnce(&str) -> Result<T, Vec<TableFault>>,
+    ) -> Option<T> {
         let bytes = match files::read_table(path) {
             Ok(bytes) => bytes,
             Err(error) => {
@@ -174,13 +176,8 @@ impl Loader<'_> {
         for fault in faults {
             let column = (fault.column > 0).then_some(fault.column as usize);
             let place = (fault.line.max(1) as usize, column);
-            self.faults.push(file_fault(
-                path,
-                text,
-                place,
-                title,
-                &fault.message,
-            ));
+            self.faults
+                .push(file_fault(path, text, place, title, &fault.message));
         }
     }
 }

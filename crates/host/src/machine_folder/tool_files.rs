@@ -53,7 +53,8 @@ impl Loader<'_> {
         files: &mut NcFiles,
     ) -> Option<()> {
         if let Some((tool, _)) = tools.iter().find(|(_, tool)| tool.pocket.is_some()) {
-            let message = format!("the tool table has a pocket for tool {tool}, but {name} says where tools are");
+            let message =
+                format!("the tool table has a pocket for tool {tool}, but {name} says where tools are");
             self.fault_at_key("pockets", &message);
             return None;
         }

@@ -22,8 +22,8 @@ pub struct TableParameters {
 
 /// The elements of the tool table in the order of MP7266 [000:9118-9139].
 pub const TOOL_ELEMENTS: [&str; 22] = [
-    "NAME", "L", "R", "R2", "DL", "DR", "DR2", "TL", "RT", "TIME1", "TIME2", "CUR.TIME", "DOC", "CUT", "LTOL",
-    "RTOL", "DIRECT", "PLC", "L-OFFS", "R-OFFS", "LBREAK", "RBREAK",
+    "NAME", "L", "R", "R2", "DL", "DR", "DR2", "TL", "RT", "TIME1", "TIME2", "CUR.TIME", "DOC", "CUT",
+    "LTOL", "RTOL", "DIRECT", "PLC", "L-OFFS", "R-OFFS", "LBREAK", "RBREAK",
 ];
 
 /// The elements of the pocket table in the order of MP7267 [000:9145-9149].
@@ -77,10 +77,22 @@ mod tests {
             list.set(7226, index, lines).unwrap();
         }
         let tables = list.table_parameters();
-        assert_eq!(shown_elements(&tables.tool_columns, &TOOL_ELEMENTS), ["L", "R", "NAME", "DL", "DOC"]);
-        assert_eq!(shown_elements(&tables.pocket_columns, &POCKET_ELEMENTS), ["T", "L", "F"]);
+        assert_eq!(
+            shown_elements(&tables.tool_columns, &TOOL_ELEMENTS),
+            ["L", "R", "NAME", "DL", "DOC"]
+        );
+        assert_eq!(
+            shown_elements(&tables.pocket_columns, &POCKET_ELEMENTS),
+            ["T", "L", "F"]
+        );
         assert_eq!((tables.pallet_lines, tables.datum_lines), (Some(20), Some(255)));
         let old = ParameterList::reference(ControlModel::Tnc155).table_parameters();
-        assert_eq!((old.pallet_lines, shown_elements(&old.tool_columns, &TOOL_ELEMENTS).len()), (None, 0));
+        assert_eq!(
+            (
+                old.pallet_lines,
+                shown_elements(&old.tool_columns, &TOOL_ELEMENTS).len()
+            ),
+            (None, 0)
+        );
     }
 }
