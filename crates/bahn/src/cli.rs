@@ -16,6 +16,7 @@ use crate::options::{
 use crate::plc::PlcOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
+use crate::table::TableOptions;
 use crate::test_run::TestOptions;
 use crate::tune::TuneOptions;
 
@@ -62,6 +63,8 @@ pub(crate) enum Command {
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// Show, check, change and convert tables: tools, pockets, datums, pallets, points.
+    Table(Box<TableOptions>),
     /// List what each function of a control does here: M functions, cycles, words, machine parameters and so on.
     #[command(after_help = crate::conformance::EXAMPLES)]
     Conformance(ConformanceOptions),

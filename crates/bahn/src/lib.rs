@@ -14,8 +14,8 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
-//! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
-//!   `bahn plc`, `bahn mp`;
+//! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
+//!   groups `bahn plc`, `bahn mp`, `bahn table`;
 //! - `files`: outputs that replace no input;
 //! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
@@ -50,6 +50,7 @@ mod run;
 mod scope;
 mod settings;
 mod shelf;
+mod table;
 mod test_run;
 mod tune;
 
@@ -83,6 +84,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Fmt(options) => format::command(&options),
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
+        cli::Command::Table(options) => table::command(&options),
         cli::Command::Conformance(options) => conformance::command(&options),
         cli::Command::Explain(options) => explain::command(&options),
         cli::Command::Completions(options) => manual::completions(&options, cli::whole_command()),

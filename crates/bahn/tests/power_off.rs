@@ -49,7 +49,16 @@ fn machine() -> Folder {
     let end = start + plc[start..].find("; ---- M functions").unwrap();
     folder.write(
         "m/plc/MAIN.PLC",
-        [&plc[..start], TOOL_CHANGER, &plc[end..]].concat(),
+        [&plc[..start], TOOL_CHANGER, &plc[end..]]
+            .concat()
+            .replace("       CM    CHAIN\n       CM    CHANGER\n       CM    ARM\n", ""),
+    );
+    // The pockets are those of the tool table.
+    let description = folder.read("m/machine.toml");
+    let lines = description.lines().filter(|line| !line.starts_with("pockets"));
+    folder.write(
+        "m/machine.toml",
+        lines.map(|line| format!("{line}\n")).collect::<String>(),
     );
     let list = folder.read("m/parameters.mp");
     let set = |list: String, number: &str, value: &str| -> String {

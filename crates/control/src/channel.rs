@@ -554,7 +554,7 @@ impl Channel {
         run.prepare_restore(&rules, &mut site);
         run.close(&mut site, &basis);
         if tools_changed && let Some(interpreter) = run.source.interpreter_mut() {
-            interpreter.set_barred_tools(site.magazine.barred());
+            interpreter.set_tools(site.magazine.shapes(), site.magazine.barred());
         }
         if datums_changed && let Some(interpreter) = run.source.interpreter_mut() {
             interpreter.set_datum_table(basis.link.datums(basis.list));

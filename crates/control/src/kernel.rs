@@ -104,7 +104,12 @@ impl Kernel {
         };
         let loaded_datums = LoadedDatums::set_up(&mut link, &remembered.written_datums);
         let mut magazine = Magazine::new(tools, &remembered.pockets);
-        let loaded_tables = LoadedTables::set_up(&mut magazine, &mut link.files, &remembered.written);
+        let loaded_tables = LoadedTables::set_up(
+            &mut magazine,
+            &mut link.files,
+            &remembered.written,
+            parameters.operation_parameters().tools.pockets,
+        );
         let parts = MachineParts {
             plc: PlcUnit::new(plc, model),
             link,

@@ -51,6 +51,10 @@ impl LifeCount {
         {
             tools.inserted(magazine, exchange);
         }
+        if let Some(measured) = tools.measured.take() {
+            tables::take_measured(&measured, magazine, files);
+            tools.changed = true;
+        }
         self.count(counting, tools, magazine, files);
         self.tell_time1(tools.number, magazine, exchange);
         let changed = std::mem::take(&mut tools.changed);

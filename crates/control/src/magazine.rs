@@ -146,10 +146,11 @@ impl Magazine {
     }
 
     /// A tool is in a pocket.
-    pub fn put(&mut self, number: u32, pocket: i32, special: bool) {
+    pub fn put(&mut self, number: u32, pocket: i32, special: bool, fixed: bool) {
         if let Some(tool) = self.table.as_mut().and_then(|table| table.get_mut(&number)) {
             tool.pocket = u16::try_from(pocket).ok();
             tool.special = special;
+            tool.fixed = fixed;
         }
     }
 
@@ -178,14 +179,17 @@ impl Magazine {
             .unwrap_or(NO_POCKET)
     }
 
-    /// Whether the old tool has a code of its own: it does not go where the new one comes from.
+    /// Whether the old tool has a code of its own: it does not go where the new one comes from. `own_pocket` is said
+    /// of all special tools, F of the pocket table of single ones [000:9153-9155].
     pub fn needs_two(&self, old: u32, new: u32, own_pocket: bool) -> bool {
         if old == 0 || new == 0 {
             return false;
         }
+        let fixed = [old, new].into_iter().any(|number| self.tool(number).fixed);
         match (self.kind(old), self.kind(new)) {
-            (Kind::Normal, Kind::Normal) | (Kind::Manual, Kind::Manual) => false,
-            (Kind::Special, Kind::Special) => own_pocket,
+            (Kind::Manual, Kind::Manual) => false,
+            (Kind::Normal, Kind::Normal) => fixed,
+            (Kind::Special, Kind::Special) => own_pocket || fixed,
             _ => true,
         }
     }

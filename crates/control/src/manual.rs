@@ -7,6 +7,7 @@ use bahn_parameters::technology::Technology;
 use bahn_plc::JogLimit;
 use bahn_servo::HandwheelInputs;
 
+use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::handwheel::Handwheel;

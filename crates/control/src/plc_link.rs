@@ -28,6 +28,8 @@ pub struct NcFiles {
     pub pallet: Option<BTreeMap<i32, PalletLine>>,
     /// Tool and pocket table with M status.
     pub tables: BTreeMap<TableKind, MemoryTable>,
+    /// What the pocket table says of the pockets themselves, by their numbers.
+    pub pockets: BTreeMap<u16, Pocket>,
     /// The datum tables by their name with extension.
     pub datum_tables: BTreeMap<String, MemoryTable>,
     /// The datum table with M status until module 9090 selects another one.
@@ -38,6 +40,17 @@ pub struct NcFiles {
     pub compensation: Option<CompensationAssignment>,
     /// The compensation tables (.COM) by name.
     pub compensation_tables: BTreeMap<String, CompensationTable>,
+}
+
+/// A pocket of the magazine as the pocket table has it, beside the tool in it [000:9076-9082].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pocket {
+    /// F: the tool in it returns here.
+    pub fixed: bool,
+    /// L: no tool may be in it.
+    pub locked: bool,
+    /// PLC: eight bits for the PLC.
+    pub plc: u8,
 }
 
 /// What module 9036 changed; the last change of an item counts.

@@ -3,7 +3,7 @@
 use bahn_exchange::{Exchange, signal};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, BlockRef, Position, Touch};
+use bahn_path::{Axis, BlockRef, Position, ToolMeasuring, Touch};
 use bahn_servo::Measured;
 
 use crate::axes::OwnAxes;
@@ -12,6 +12,7 @@ use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::panel::Direction;
 use crate::site::Site;
+use crate::tool_measuring::{Measuring, ToolMeasurement};
 use crate::track::{are_in_position, limit_message};
 
 /// What M2502 makes of the stylus.
@@ -62,6 +63,8 @@ pub(crate) enum Probed {
     Moves,
     /// It is over: the program learns of the touch, or that there was none.
     Over(Option<Touch>),
+    /// A tool was measured: Q parameters with their values.
+    Measured(Vec<(u16, f64)>),
     /// It is refused, with a message at its block.
     Refused(Message, BlockRef),
 }
@@ -102,17 +105,31 @@ impl Stylus {
 
 /// The probing movement that is on its way, if one is.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Probe(Option<Probing>);
+pub(crate) struct Probe {
+    probing: Option<Probing>,
+    /// The block that measures a tool.
+    block: Option<BlockRef>,
+    tool: ToolMeasurement,
+}
 
 impl Probe {
     /// A probing movement is on its way.
     pub fn is_on(&self) -> bool {
-        self.0.is_some()
+        self.probing.is_some() || self.tool.is_on()
+    }
+
+    /// The path came to a cycle that measures tools.
+    pub fn measure(&mut self, order: ToolMeasuring, site: &mut Site) -> Probed {
+        self.block = Some(order.block);
+        match self.tool.begin(order, site) {
+            Ok(()) => Probed::Moves,
+            Err(message) => Probed::Refused(message, order.block),
+        }
     }
 
     /// The stylus may touch the workpiece.
     fn touches(&self) -> bool {
-        self.0.is_some_and(|probing| probing.phase != Phase::Enable)
+        self.probing.is_some_and(|probing| probing.phase != Phase::Enable)
     }
 
     /// The path came to a probe block: asks the PLC to enable it [000:7682-7690].
@@ -128,7 +145,7 @@ impl Probe {
             .filter(|unit| moving(&unit.axis))
             .map(|unit| unit.parameters.motion.acceleration_m_s2)
             .fold(f64::INFINITY, f64::min);
-        self.0 = Some(Probing {
+        self.probing = Some(Probing {
             phase: Phase::Enable,
             block,
             limit,
@@ -151,7 +168,8 @@ impl Probe {
         axes: impl Iterator<Item = &'a AxisUnit> + Clone,
         chain: &Chain,
     ) {
-        let Some(probing) = &mut self.0 else { return };
+        self.tool.watch(measured, axes.clone(), chain);
+        let Some(probing) = &mut self.probing else { return };
         if probing.phase != Phase::Search || probing.touch.is_some() || !measured.probe.deflected {
             return;
         }
@@ -175,8 +193,11 @@ impl Probe {
 
     /// Moves the axes of a probing for a cycle.
     pub fn moves(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Probed {
+        if self.tool.is_on() {
+            return self.measures(running, site, measured);
+        }
         let percent = site.now.feed_percent.min(100.0);
-        let Some(probing) = &mut self.0 else {
+        let Some(probing) = &mut self.probing else {
             return Probed::Moves;
         };
         let feed = (probing.feed_mm_min * percent / 100.0).min(site.now.rapid_limit_mm_min);
@@ -237,13 +258,22 @@ impl Probe {
         }
     }
 
+    /// Moves the axes of a tool measuring for a cycle.
+    fn measures(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Probed {
+        match (self.tool.moves(running, site, measured), self.block) {
+            (Measuring::Over(values), _) => Probed::Measured(values.into_iter().flatten().collect()),
+            (Measuring::Refused(message), Some(block)) => Probed::Refused(message, block),
+            _ => Probed::Moves,
+        }
+    }
+
     /// The PLC has enabled the probing: the probe must be ready and at rest.
     fn enter(&mut self, site: &mut Site, measured: &Measured) -> Probed {
         let ready = measured.probe.ready;
         site.exchange.nc_put(signal::PROBE_NOT_READY, !ready);
         site.exchange
             .nc_put(signal::PROBE_BATTERY_LOW, measured.probe.battery_low);
-        let Some(probing) = &mut self.0 else {
+        let Some(probing) = &mut self.probing else {
             return Probed::Moves;
         };
         if !ready {
@@ -267,7 +297,8 @@ impl Probe {
 
     /// Nothing is probed any more.
     pub fn end(&mut self, exchange: &mut Exchange) {
-        if self.0.take().is_some() {
+        self.tool.end(exchange);
+        if self.probing.take().is_some() {
             exchange.nc_put(signal::PROBING_ENABLE, false);
             exchange.nc_put(signal::PROBING_ENDED, true);
         }

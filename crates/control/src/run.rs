@@ -542,6 +542,10 @@ impl ProgramRun {
                 feed_mm_min,
                 ..
             })) => self.probe.begin(block, [from, to], feed_mm_min, site),
+            Some(Stop::Barrier(Barrier::MeasureTool(order))) => {
+                let probed = self.probe.measure(order, site);
+                self.take_probed(probed, site);
+            }
             Some(Stop::End) => self.end(site),
             Some(Stop::Error(fault)) => {
                 self.show_fault(fault, site);
@@ -562,6 +566,14 @@ impl ProgramRun {
                 self.answer = Some(LiveData {
                     touch,
                     q_values: Vec::new(),
+                });
+            }
+            Probed::Measured(q_values) => {
+                self.track.path.set_position(site.here());
+                self.track.forget_position();
+                self.answer = Some(LiveData {
+                    touch: None,
+                    q_values,
                 });
             }
             Probed::Refused(message, block) => {

@@ -1,13 +1,15 @@
 //! Tool and pocket table as modules 9092 to 9094 see them [000:15375-15545]: what the PLC writes there counts
 //! at once and survives power-off.
 
+use std::collections::BTreeMap;
+
 use bahn_path::ToolShape;
 use bahn_plc::{MemoryTable, TableFile, TableKind};
 
 use crate::kinematics::Offsets;
 use crate::magazine::Magazine;
-use crate::plc_link::{NcFiles, WrittenElement, differences};
-use crate::tool::{Tool, ToolLife};
+use crate::plc_link::{NcFiles, Pocket, WrittenElement, differences};
+use crate::tool::{Edges, MeasuredTool, Oversize, Tool, ToolCondition, ToolLife};
 use crate::tools::Tools;
 
 /// Elements of the tool table [000:15431-15454].
@@ -22,9 +24,21 @@ const DL: usize = 9;
 const DR: usize = 10;
 const DR2: usize = 11;
 const TL: usize = 12;
+const CUT: usize = 13;
+const LTOL: usize = 14;
+const RTOL: usize = 15;
+const DIRECT: usize = 16;
+const PLC: usize = 17;
+const L_OFFS: usize = 18;
+const R_OFFS: usize = 19;
+const LBREAK: usize = 20;
+const RBREAK: usize = 21;
 /// Elements of the pocket table [000:15422-15429].
 const T: usize = 0;
 const ST: usize = 1;
+const F: usize = 2;
+const LOCKED: usize = 3;
+const POCKET_PLC: usize = 4;
 /// No tool in a pocket, no replacement tool.
 const NO_TOOL: f64 = -1.0;
 
@@ -33,28 +47,38 @@ const NO_TOOL: f64 = -1.0;
 pub(crate) struct LoadedTables(Vec<MemoryTable>);
 
 impl LoadedTables {
-    /// The tables of a tool table.
-    fn of<'t>(tools: impl Iterator<Item = (u32, &'t Tool)> + Clone) -> LoadedTables {
+    /// The tables of a tool table. The pocket table has a line for each pocket of the magazine (MP7261) and line 0
+    /// [000:9057-9072]; without pockets there is none [000:9113].
+    fn of<'t>(
+        tools: impl Iterator<Item = (u32, &'t Tool)> + Clone,
+        pockets: u32,
+        lines: &BTreeMap<u16, Pocket>,
+    ) -> LoadedTables {
         let line = |number: u32| i32::try_from(number).unwrap_or(i32::MAX);
-        let pockets = tools.clone().filter_map(|(_, tool)| tool.pocket);
-        let last = pockets.max().unwrap_or(0);
         let mut table =
             MemoryTable::with_lines(TableKind::Tool, tools.clone().map(|(number, _)| line(number)));
-        let mut magazine = MemoryTable::with_lines(TableKind::Pocket, (0..=last).map(i32::from));
-        for (number, tool) in tools {
-            let (shape, life) = (tool.shape, tool.life);
-            for (element, value) in [
-                (L, shape.length),
-                (R, shape.radius),
-                (R2, shape.corner_radius),
-                (RT, life.replacement.map_or(NO_TOOL, f64::from)),
-                (TIME1, life.time1_min),
-                (TIME2, life.time2_min),
-                (CURRENT_TIME, life.current_min),
-                (TL, f64::from(u8::from(tool.locked))),
-            ] {
+        for (number, tool) in tools.clone() {
+            for (element, value) in elements(tool) {
                 table.set_value(line(number), element, value);
             }
+        }
+        let used = tools.clone().filter_map(|(_, tool)| tool.pocket);
+        let last = used.chain(lines.keys().copied()).map(u32::from).max();
+        let last = last.unwrap_or(0).max(pockets);
+        if last == 0 {
+            return LoadedTables(vec![table]);
+        }
+        let mut magazine = MemoryTable::with_lines(TableKind::Pocket, 0..=line(last));
+        for (pocket, said) in lines {
+            for (element, value) in [
+                (F, u8::from(said.fixed)),
+                (LOCKED, u8::from(said.locked)),
+                (POCKET_PLC, said.plc),
+            ] {
+                magazine.set_value((*pocket).into(), element, value.into());
+            }
+        }
+        for (number, tool) in tools {
             if let Some(pocket) = tool.pocket {
                 magazine.set_value(pocket.into(), T, number.into());
                 magazine.set_value(pocket.into(), ST, f64::from(u8::from(tool.special)));
@@ -64,14 +88,86 @@ impl LoadedTables {
     }
 }
 
+/// A line of the tool table.
+fn elements(tool: &Tool) -> [(usize, f64); 20] {
+    let ([length, radius, corner_radius], oversize) = (tool.nominal(), tool.oversize);
+    let (life, edges) = (tool.life, tool.edges);
+    [
+        (L, length),
+        (R, radius),
+        (R2, corner_radius),
+        (DL, oversize.length),
+        (DR, oversize.radius),
+        (DR2, oversize.corner_radius),
+        (RT, life.replacement.map_or(NO_TOOL, f64::from)),
+        (TIME1, life.time1_min),
+        (TIME2, life.time2_min),
+        (CURRENT_TIME, life.current_min),
+        (TL, f64::from(u8::from(tool.locked))),
+        (CUT, edges.count.into()),
+        (LTOL, edges.length_wear),
+        (RTOL, edges.radius_wear),
+        (DIRECT, f64::from(u8::from(tool.left_hand))),
+        (PLC, tool.plc.into()),
+        (L_OFFS, edges.length_offset),
+        (R_OFFS, edges.radius_offset),
+        (LBREAK, edges.length_break),
+        (RBREAK, edges.radius_break),
+    ]
+}
+
+/// A tool as its line says.
+fn tool_of(value: impl Fn(usize) -> Option<f64>, loaded: Tool) -> Option<Tool> {
+    let replacement = value(RT)?;
+    let oversize = Oversize {
+        length: value(DL)?,
+        radius: value(DR)?,
+        corner_radius: value(DR2)?,
+    };
+    Some(Tool {
+        shape: ToolShape {
+            length: value(L)? + oversize.length,
+            radius: value(R)? + oversize.radius,
+            corner_radius: value(R2)? + oversize.corner_radius,
+            oversize: [oversize.radius, oversize.corner_radius],
+            ..loaded.shape
+        },
+        oversize,
+        locked: value(TL)? != 0.0,
+        left_hand: value(DIRECT)? != 0.0,
+        life: ToolLife {
+            time1_min: value(TIME1)?,
+            time2_min: value(TIME2)?,
+            current_min: value(CURRENT_TIME)?,
+            replacement: (replacement >= 0.0).then_some(replacement as u32),
+        },
+        edges: Edges {
+            count: value(CUT)? as u8,
+            length_wear: value(LTOL)?,
+            radius_wear: value(RTOL)?,
+            length_offset: value(L_OFFS)?,
+            radius_offset: value(R_OFFS)?,
+            length_break: value(LBREAK)?,
+            radius_break: value(RBREAK)?,
+        },
+        plc: value(PLC)? as u8,
+        ..loaded
+    })
+}
+
 impl LoadedTables {
-    /// The tables at power-on, with what was written before. Elements whose table has changed since are as it
-    /// says.
-    pub fn set_up(tools: &mut Magazine, files: &mut NcFiles, written: &[WrittenElement]) -> LoadedTables {
+    /// The tables at power-on, with what was written before, for a magazine with so many pockets. Elements whose
+    /// table has changed since are as it says.
+    pub fn set_up(
+        tools: &mut Magazine,
+        files: &mut NcFiles,
+        written: &[WrittenElement],
+        pockets: u32,
+    ) -> LoadedTables {
         let Some(all) = tools.all() else {
             return LoadedTables::default();
         };
-        let loaded = LoadedTables::of(all);
+        let loaded = LoadedTables::of(all, pockets, &files.pockets);
         for table in &loaded.0 {
             files.tables.insert(table.kind(), table.clone());
         }
@@ -142,44 +238,51 @@ pub(crate) fn initialise_geometry(
     }
 }
 
+/// The tool probe has measured a tool: its data, or with a check its oversize and whether it is locked. A broken tool
+/// keeps its data (inferred).
+pub(crate) fn take_measured(measured: &MeasuredTool, magazine: &mut Magazine, files: &mut NcFiles) {
+    let Ok(line) = i32::try_from(measured.number) else {
+        return;
+    };
+    let Some(table) = files.tables.get_mut(&TableKind::Tool) else {
+        return;
+    };
+    let (data, oversize) = if measured.radius { (R, DR) } else { (L, DL) };
+    let value = |table: &MemoryTable, element| table.value(line, element).unwrap_or_default();
+    if measured.state != ToolCondition::Good {
+        table.set_value(line, TL, 1.0);
+    }
+    if measured.check {
+        if measured.state != ToolCondition::Broken {
+            let sum = value(table, oversize) + measured.difference;
+            table.set_value(line, oversize, sum);
+        }
+    } else {
+        let sum = value(table, data) + value(table, oversize) + measured.difference;
+        table.set_value(line, data, sum);
+        table.set_value(line, oversize, 0.0);
+    }
+    take_tables(magazine, files);
+}
+
 /// The tools as the tables say.
 fn take_tables(tools: &mut Magazine, files: &NcFiles) {
-    let (Some(table), Some(magazine)) = (
-        files.tables.get(&TableKind::Tool),
-        files.tables.get(&TableKind::Pocket),
-    ) else {
+    let Some(table) = files.tables.get(&TableKind::Tool) else {
         return;
     };
     tools.take(|number, loaded| {
         let line = i32::try_from(number).ok()?;
-        let value = |element| table.value(line, element);
-        let replacement = value(RT)?;
-        // Those of the file are in its radii.
-        let [loaded_dr, loaded_dr2] = loaded.shape.oversize;
-        Some(Tool {
-            shape: ToolShape {
-                length: value(L)? + value(DL)?,
-                radius: value(R)? + value(DR)?,
-                corner_radius: value(R2)? + value(DR2)?,
-                oversize: [loaded_dr + value(DR)?, loaded_dr2 + value(DR2)?],
-                ..loaded.shape
-            },
-            locked: value(TL)? != 0.0,
-            life: ToolLife {
-                time1_min: value(TIME1)?,
-                time2_min: value(TIME2)?,
-                current_min: value(CURRENT_TIME)?,
-                replacement: (replacement >= 0.0).then_some(replacement as u32),
-            },
-            ..loaded
-        })
+        tool_of(|element| table.value(line, element), loaded)
     });
+    let Some(magazine) = files.tables.get(&TableKind::Pocket) else {
+        return;
+    };
     tools.empty_magazine();
     let mut line = magazine.next_line(0);
     while let Some(pocket) = line {
         let value = |element| magazine.value(pocket, element).unwrap_or_default();
         if value(T) >= 0.0 {
-            tools.put(value(T) as u32, pocket, value(ST) != 0.0);
+            tools.put(value(T) as u32, pocket, value(ST) != 0.0, value(F) != 0.0);
         }
         line = magazine.next_line(pocket.saturating_add(1));
     }

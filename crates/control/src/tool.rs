@@ -6,18 +6,56 @@ use bahn_path::ToolShape;
 /// A tool of the tool table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tool {
-    /// Length, radius, corner radius, mm.
+    /// Length, radius, corner radius, mm, with the oversizes.
     pub shape: ToolShape,
+    /// The oversizes that are in the shape.
+    pub oversize: Oversize,
     /// Its pocket in the magazine.
     pub pocket: Option<u16>,
     /// A special tool, which takes more than one pocket.
     pub special: bool,
+    /// F: its pocket is fixed, it returns there whatever the pocket coding [000:9153-9155].
+    pub fixed: bool,
     /// It cuts when the spindle turns counter-clockwise (M4): DIRECT [000:9028].
     pub left_hand: bool,
     /// TL: it is locked and must not be called.
     pub locked: bool,
     /// How long it may work.
     pub life: ToolLife,
+    /// What its edges are, and when they are worn or broken.
+    pub edges: Edges,
+    /// PLC: eight bits for the PLC [000:9029].
+    pub plc: u8,
+}
+
+/// DL, DR, DR2 of the tool table, mm [000:9014-9016].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Oversize {
+    /// DL: of the length.
+    pub length: f64,
+    /// DR: of the radius.
+    pub radius: f64,
+    /// DR2: of the corner radius.
+    pub corner_radius: f64,
+}
+
+/// The edges of a tool and their tolerances, as measuring it wants them [000:9025-9033]. Tolerances of 0 are none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Edges {
+    /// CUT: how many there are.
+    pub count: u8,
+    /// LTOL: wear of the length, mm.
+    pub length_wear: f64,
+    /// RTOL: wear of the radius, mm.
+    pub radius_wear: f64,
+    /// TT:L-OFFS: how much deeper the radius is measured, mm.
+    pub length_offset: f64,
+    /// TT:R-OFFS: how far from its axis the length is measured, mm.
+    pub radius_offset: f64,
+    /// LBREAK: deviation of the length by which it is broken, mm.
+    pub length_break: f64,
+    /// RBREAK: deviation of the radius by which it is broken, mm.
+    pub radius_break: f64,
 }
 
 impl Tool {
@@ -28,6 +66,45 @@ impl Tool {
             false => self.life.state(),
         }
     }
+
+    /// L, R and R2 of the tool table, without the oversizes, mm. A table has no finer step than a nanometre.
+    pub(crate) fn nominal(&self) -> [f64; 3] {
+        let parts = [
+            (self.shape.length, self.oversize.length),
+            (self.shape.radius, self.oversize.radius),
+            (self.shape.corner_radius, self.oversize.corner_radius),
+        ];
+        parts.map(|(whole, oversize)| match oversize {
+            0.0 => whole,
+            oversize => ((whole - oversize) * 1e6).round() / 1e6,
+        })
+    }
+}
+
+/// What was found of a tool, for the tool table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MeasuredTool {
+    /// The tool.
+    pub number: u32,
+    /// Of the radius, not of the length.
+    pub radius: bool,
+    /// The difference becomes its oversize; else it becomes its data.
+    pub check: bool,
+    /// How much more it is than the table says, mm.
+    pub difference: f64,
+    /// What a check found.
+    pub state: ToolCondition,
+}
+
+/// What a check found [000:8025].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ToolCondition {
+    /// Within the tolerances.
+    Good,
+    /// Beyond LTOL or RTOL.
+    Worn,
+    /// Beyond LBREAK or RBREAK.
+    Broken,
 }
 
 /// A tool that is not in the pocket of the tool table any more.

@@ -1,6 +1,7 @@
 //! Tools: what TOOL CALL and TOOL DEF hand to the PLC (MP7480).
 
 use bahn_exchange::{Exchange, signal};
+use bahn_parameters::machining::ToolProbeParameters;
 use bahn_parameters::operation::{ToolOutput, ToolOutputKind, ToolParameters};
 use bahn_path::{Axis, ToolCall};
 use bahn_plc::ToolCallBlock;
@@ -9,6 +10,7 @@ use crate::handshake::{Handshakes, Transfer};
 use crate::kinematics::Offsets;
 use crate::magazine::{Kind, Magazine, NO_POCKET};
 use crate::setup::Remembered;
+use crate::tool::MeasuredTool;
 
 /// The tool in the spindle of a channel, and the one that is called.
 #[derive(Clone, Debug)]
@@ -32,6 +34,8 @@ pub(crate) struct Tools {
     geometry_taken: bool,
     /// Tool of the last TOOL DEF.
     defined: Option<u32>,
+    /// What the tool probe found, until the tables have taken it.
+    pub measured: Option<MeasuredTool>,
     /// A TOOL CALL that module 9150 inserted.
     pub inserted_call: Option<ToolCallBlock>,
 }
@@ -49,8 +53,14 @@ impl Tools {
             takes_larger: false,
             geometry_taken: false,
             defined: None,
+            measured: None,
             inserted_call: None,
         }
+    }
+
+    /// The tool probe of the machine.
+    pub fn probe(&self) -> ToolProbeParameters {
+        self.parameters.probe
     }
 
     /// The tool in the spindle is longer while another one is called; `false` when none is.
@@ -314,6 +324,8 @@ mod tests {
             table_size: 10,
             pockets: 20,
             reserved_pockets: 0,
+            probe: bahn_parameters::ParameterList::reference(bahn_parameters::ControlModel::Tnc415b)
+                .tool_probe(),
             call: output,
             definition: output,
         };
@@ -371,6 +383,28 @@ mod tests {
         exchange.plc_mut().set_bit(marker, true);
         exchange.end_scan();
         exchange
+    }
+
+    /// F of the pocket table: a normal tool returns to its own pocket despite variable coding, with two codes; the
+    /// pocket table stays as it is. Tools without F change their pockets [000:9153-9155].
+    #[test]
+    fn fixed_pocket_under_variable_coding() {
+        let mut changer = tools(ToolOutputKind::Pocket);
+        changer.holds(1);
+        assert_eq!(codes(&mut changer, &[2]), [(12, 2, false)]);
+        assert_eq!((changer.magazine.pocket(1), changer.magazine.pocket(2)), (12, 11));
+        changer.magazine.put(1, 12, false, true);
+        for (call, expected) in [
+            // To the fixed pocket of tool 1, and from there back: tool 2 keeps pocket 11.
+            (1, [(11, 0, true), (12, 1, false)]),
+            (2, [(12, 0, true), (11, 2, false)]),
+        ] {
+            assert_eq!(codes(&mut changer, &[call]), expected);
+            assert_eq!((changer.magazine.pocket(1), changer.magazine.pocket(2)), (12, 11));
+        }
+        let mut double_arm = plc_sets(signal::TOOL_NUMBER_ORDER);
+        let codes = codes_with(&mut changer, &mut double_arm, &[1]);
+        assert_eq!(codes, [(12, 1, true), (11, 0, false)]);
     }
 
     /// MP7480.0 = 1: the tool number in W262, on change only [000:9221-9263].

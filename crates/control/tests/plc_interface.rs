@@ -233,35 +233,59 @@ fn a_broken_wire_of_the_acknowledgement_stops_the_axes() {
     assert!(display(&rig, 'X') < 100.0);
 }
 
-/// Modules 9092 to 9094 on the running control: tool 2 lies in pocket 12 and is 95 mm long; written to 90.5 it
+/// What the submit job of [`tables_of_the_control`] asks and writes.
+fn job_on_tables() -> String {
+    // Pocket table: the line with tool 2; tool table: its length, then written 90 mm and the tool life 30 min.
+    [
+        call(&["K+2", "K+2", "K+0", "K+0"], 9092, &["W100", "W102"]),
+        call(&["K+0", "K+2", "K+0"], 9093, &["D104", "W108"]),
+        call(&["K+0", "K+2", "K+0", "K+900000"], 9094, &["W110"]),
+        call(&["K+0", "K+2", "K+7", "K+30"], 9094, &["W112"]),
+        call(&["K+1", "K+0", "K+0"], 9093, &["D116", "W114"]),
+        // DL 0.5 mm, CUT 4, LTOL 0.1 mm, PLC; then the pocket: F, PLC of pocket 12; pocket 30 of MP7261 = 30.
+        call(&["K+0", "K+2", "K+9"], 9093, &["D120", "W124"]),
+        call(&["K+0", "K+2", "K+13"], 9093, &["D128", "W126"]),
+        call(&["K+0", "K+2", "K+14"], 9093, &["D132", "W136"]),
+        call(&["K+0", "K+2", "K+17"], 9093, &["D140", "W138"]),
+        call(&["K+2", "K+12", "K+2"], 9093, &["D144", "W148"]),
+        call(&["K+2", "K+12", "K+4"], 9093, &["D152", "W150"]),
+        call(&["K+2", "K+31", "K+0"], 9093, &["D156", "W160"]),
+    ]
+    .concat()
+}
+
+/// Modules 9092 to 9094 on the running control: tool 2 lies in pocket 12 and is 94.5 + 0.5 mm long; written to 90 it
 /// counts at once, is stored, and is there after power-off. A tool table that says something else since counts.
 #[test]
 fn tables_of_the_control() {
-    // Pocket table: the line with tool 2; tool table: its length, then written 90.5 mm and the tool life 30 min.
-    let job = [
-        call(&["K+2", "K+2", "K+0", "K+0"], 9092, &["W100", "W102"]),
-        call(&["K+0", "K+2", "K+0"], 9093, &["D104", "W108"]),
-        call(&["K+0", "K+2", "K+0", "K+905000"], 9094, &["W110"]),
-        call(&["K+0", "K+2", "K+7", "K+30"], 9094, &["W112"]),
-        call(&["K+1", "K+0", "K+0"], 9093, &["D116", "W114"]),
-    ];
     let plc = format!(
         "{ACKNOWLEDGE}       L     I20\n       AN    M0\n       CMT   ASK\n       L     I20\n       = M0\n       EM\nLBL ASK\n       SUBM  JOB\n       = B90\n       EM\nLBL JOB\n{}",
-        job.concat()
+        job_on_tables()
     );
     let with_pocket = |length: f64| {
         let mut tool = bahn_control::Tool::default();
         tool.shape.length = length;
-        tool.pocket = Some(12);
+        tool.oversize.length = 0.5;
+        tool.edges.count = 4;
+        tool.edges.length_wear = 0.1;
+        tool.plc = 0b1010_0001;
+        (tool.pocket, tool.fixed) = (Some(12), true);
         tool
     };
     let build = |length, remembered| {
         let mut build = bench(&plc)
             .mp("7480.0=3")
+            .mp("7261=30")
             // The data of the tool stay in force.
             .mp("7300=4")
             .program("1.H", "TOOL CALL 2 Z S0\nL X+60 R0 F6000");
         build.tools = Some([(2, with_pocket(length))].into());
+        let pocket = bahn_control::Pocket {
+            fixed: true,
+            plc: 7,
+            ..bahn_control::Pocket::default()
+        };
+        build.files.pockets.insert(12, pocket);
         build.remembered = remembered;
         build
     };
@@ -284,14 +308,25 @@ fn tables_of_the_control() {
         (12, 0),
         "pocket of tool 2"
     );
-    assert_eq!((rig.number("D104"), rig.number("W108")), (950_000, 0));
+    assert_eq!((rig.number("D104"), rig.number("W108")), (945_000, 0));
     assert_eq!((rig.number("W110"), rig.number("W112")), (0, 0));
     assert_eq!(rig.number("W114"), 3, "there is no datum table");
+    for (word, value) in [
+        ("D120", 5000),
+        ("D128", 4),
+        ("D132", 1000),
+        ("D140", 0b1010_0001),
+        ("D144", 1),
+        ("D152", 7),
+        ("W160", 4),
+    ] {
+        assert_eq!(rig.number(word), value, "{word}");
+    }
     near(display(&rig, 'Z'), z + 4.5);
     let remembered = rig.control.remember();
     assert_eq!(remembered.tool_length, 90.5);
     // After power-off the PLC finds what it wrote, and the tool in the spindle is as long as it was.
-    for (length, expected) in [(95.0, 905_000), (97.0, 970_000)] {
+    for (length, expected) in [(95.0, 900_000), (97.0, 965_000)] {
         let mut rig = ready(build(length, remembered.clone()));
         assert_eq!(rig.control.remember().tool_length, 90.5);
         rig.event("key A press");

@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use bahn_control::{
-    Cartesian, ChannelSetup, Command, Control, Programs, ServoSampler, Setup, Snapshot, SpindleWiring,
+    Cartesian, ChannelSetup, Command, Control, Programs, Remembered, ServoSampler, Setup, Snapshot,
+    SpindleWiring,
 };
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
@@ -67,8 +68,20 @@ impl Host {
         programs: Arc<dyn Programs>,
         operator: Operator,
     ) -> Host {
-        Host::with_plant(machine, machine.plant.clone(), power_on, programs, operator)
+        let mut plant = machine.plant.clone();
+        load_magazine(&mut plant, machine, &power_on.remembered);
+        Host::with_plant(machine, plant, power_on, programs, operator)
     }
+}
+
+/// The tools lie in the magazine where the control remembers them.
+fn load_magazine(plant: &mut Machine, machine: &LoadedMachine, remembered: &Remembered) {
+    let moved = |tool: u32| remembered.pockets.iter().find(|moved| moved.tool == tool);
+    let tools = machine.tools.iter().flatten().filter_map(|(number, tool)| {
+        let pocket = moved(*number).map_or(tool.pocket, |moved| moved.pocket);
+        Some((pocket?, *number))
+    });
+    plant.load_magazine(tools, remembered.tool);
 }
 
 impl<P: Operable> Host<P> {

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use bahn_control::{Tool, ToolLife};
+use bahn_control::{Edges, Oversize, Tool, ToolLife};
 use bahn_interpreter::{ToolState, tool_key};
+use bahn_parameters::operation::ToolParameters;
 use bahn_path::ToolShape;
 
-use crate::columns::{self, Form, Row, TableFault};
+use crate::columns::{self, Form, Row, RowFault, TableFault};
 use crate::{HostError, files};
 
 /// Reads the tool table of a file.
@@ -49,84 +50,139 @@ pub fn parse(text: &str) -> Result<BTreeMap<u32, Tool>, Vec<TableFault>> {
     columns::read(text, &FORM, |row| {
         let (number, tool) = tool(row)?;
         match table.insert(number, tool) {
-            Some(_) => Err(format!("tool {number} is there twice")),
+            Some(_) => Err(format!("tool {number} is there twice").into()),
             None => Ok(()),
         }
     })?;
     Ok(table)
 }
 
-/// Pockets of a magazine: MP7261 [000:10398]; 255 in W262 is a tool without one.
-const POCKET_MAX: u16 = 254;
+/// Whether a tool table fits the sizes of the machine: its tools MP7260, its pockets MP7261 [000:9103-9113].
+///
+/// # Errors
+/// What does not fit, with its line.
+pub fn fits(text: &str, sizes: &ToolParameters) -> Result<(), Vec<TableFault>> {
+    const INDEX_SHIFT: u32 = 16;
+    columns::read(text, &FORM, |row| {
+        let (number, tool) = tool(row)?;
+        let number = number & ((1 << INDEX_SHIFT) - 1);
+        if number > sizes.table_size {
+            return Err(match sizes.table_size {
+                0 => row.fault("T", "the control has no tool table (MP7260 = 0)"),
+                most => row.fault("T", &format!("the tool table ends with tool {most} (MP7260)")),
+            });
+        }
+        match tool.pocket {
+            Some(pocket) if u32::from(pocket) > sizes.pockets => Err(match sizes.pockets {
+                0 => row.fault("P", "the magazine has no pockets (MP7261 = 0)"),
+                most => row.fault("P", &format!("the magazine has {most} pockets (MP7261)")),
+            }),
+            _ => Ok(()),
+        }
+    })
+}
 
-fn tool(row: &Row<'_>) -> Result<(u32, Tool), String> {
+/// Pockets of a magazine: MP7261 [000:10398]; 255 in W262 is a tool without one.
+pub(crate) const POCKET_MAX: u16 = 254;
+/// Edges of a tool (inferred).
+const EDGES_MAX: f64 = 20.0;
+/// Greatest tolerance, mm, and oversize in the table of a control (inferred).
+const TOLERANCE_MAX: f64 = 100.0;
+
+fn tool(row: &Row<'_>) -> Result<(u32, Tool), RowFault> {
     let length = |name: &str| row.number(name).map(|value| value * row.unit_mm);
+    let oversize = Oversize {
+        length: length("DL")?,
+        radius: length("DR")?,
+        corner_radius: length("DR2")?,
+    };
     let shape = ToolShape {
-        length: length("L")? + length("DL")?,
-        radius: length("R")? + length("DR")?,
-        corner_radius: length("R2")? + length("DR2")?,
+        length: length("L")? + oversize.length,
+        radius: length("R")? + oversize.radius,
+        corner_radius: length("R2")? + oversize.corner_radius,
         point_angle_deg: point_angle_deg(row)?,
-        oversize: [length("DR")?, length("DR2")?],
+        oversize: [oversize.radius, oversize.corner_radius],
     };
     if shape.corner_radius < 0.0 || length("R")? < 0.0 {
-        return Err("a radius is negative".into());
+        return Err("a radius is negative".to_owned().into());
     }
     let tool = row.text("T");
-    let tool = key(tool).ok_or_else(|| format!("T: `{tool}` is no tool number"))?;
+    let tool = key(tool).ok_or_else(|| row.fault("T", &format!("`{tool}` is no tool number")))?;
     let pocket = match row.text("P") {
         "" | "-" => None,
         text => Some(
             text.parse::<u16>()
                 .ok()
                 .filter(|pocket| *pocket <= POCKET_MAX)
-                .ok_or_else(|| format!("P: `{text}` is no pocket from 0 to {POCKET_MAX}"))?,
+                .ok_or_else(|| row.fault("P", &format!("`{text}` is no pocket from 0 to {POCKET_MAX}")))?,
         ),
     };
-    let special = match row.text("ST").to_ascii_uppercase().as_str() {
-        "" | "-" | "0" | "N" => false,
-        "1" | "Y" | "J" | "S" | "ST" => true,
-        text => return Err(format!("ST: `{text}` is neither empty nor S")),
-    };
-    // Tables of later controls write `DIRECT.` and `DIR.`; blank and - are M3 [000:15449].
-    let direct = ["DIRECT", "DIRECT.", "DIR."].map(|name| row.text(name));
-    let left_hand = match direct.into_iter().find(|text| !text.is_empty()) {
-        None | Some("-") | Some("0") => false,
-        Some("+") | Some("1") => true,
-        Some(text) => return Err(format!("DIRECT: `{text}` is neither - (M3) nor + (M4)")),
+    // Blank and - are M3 [000:15449].
+    let left_hand = match row.text("DIRECT") {
+        "" | "-" | "0" => false,
+        "+" | "1" => true,
+        text => return Err(row.fault("DIRECT", &format!("`{text}` is neither - (M3) nor + (M4)"))),
     };
     let tool_data = Tool {
         shape,
+        oversize,
         pocket,
-        special,
+        special: row.mark("ST")?,
+        fixed: false,
         locked: !matches!(row.text("TL"), "" | "-" | "0"),
         life: life(row)?,
         left_hand,
+        edges: edges(row)?,
+        plc: row.byte("PLC")?,
     };
     Ok((tool, tool_data))
 }
 
+/// CUT, LTOL, RTOL, the offsets and LBREAK, RBREAK [000:9025-9033].
+fn edges(row: &Row<'_>) -> Result<Edges, RowFault> {
+    let tolerance = |name: &str| row.up_to(name, TOLERANCE_MAX).map(|value| value * row.unit_mm);
+    let offset = |name: &str| row.number(name).map(|value| value * row.unit_mm);
+    let count = row.up_to("CUT", EDGES_MAX)?;
+    if count.fract() != 0.0 {
+        return Err(row.fault("CUT", "edges are counted in whole numbers"));
+    }
+    Ok(Edges {
+        count: count as u8,
+        length_wear: tolerance("LTOL")?,
+        radius_wear: tolerance("RTOL")?,
+        length_offset: offset("L-OFFS")?,
+        // R in later tables: the radius of the tool.
+        radius_offset: match row.text("R-OFFS") {
+            "R" => row.number("R")? * row.unit_mm,
+            _ => offset("R-OFFS")?,
+        },
+        length_break: tolerance("LBREAK")?,
+        radius_break: tolerance("RBREAK")?,
+    })
+}
+
 /// T-ANGLE (later controls): the angle of a drill's point; missing, 0 and 180 are a flat end.
-fn point_angle_deg(row: &Row<'_>) -> Result<f64, String> {
+fn point_angle_deg(row: &Row<'_>) -> Result<f64, RowFault> {
     let angle = row.number("T-ANGLE")?;
     if angle == 0.0 || angle == 180.0 {
         return Ok(0.0);
     }
     if !(ToolShape::POINT_ANGLE_MIN_DEG..180.0).contains(&angle) {
         let least = ToolShape::POINT_ANGLE_MIN_DEG;
-        return Err(format!("T-ANGLE: a point has {least} to 180 degrees"));
+        return Err(row.fault("T-ANGLE", &format!("a point has {least} to 180 degrees")));
     }
     Ok(angle)
 }
 
 /// TIME1, TIME2 and CUR.TIME in minutes, RT [000:9021-9027].
-fn life(row: &Row<'_>) -> Result<ToolLife, String> {
+fn life(row: &Row<'_>) -> Result<ToolLife, RowFault> {
     let minutes = |name: &str| match row.number(name)? {
-        minutes if minutes < 0.0 => Err(format!("{name}: a tool life is not negative")),
+        minutes if minutes < 0.0 => Err(row.fault(name, "a tool life is not negative")),
         minutes => Ok(minutes),
     };
     let replacement = match row.text("RT") {
         "" | "-" | "0" | "-1" => None,
-        text => Some(key(text).ok_or_else(|| format!("RT: `{text}` is no tool number"))?),
+        text => Some(key(text).ok_or_else(|| row.fault("RT", &format!("`{text}` is no tool number")))?),
     };
     Ok(ToolLife {
         time1_min: minutes("TIME1")?,
@@ -137,7 +193,7 @@ fn life(row: &Row<'_>) -> Result<ToolLife, String> {
 }
 
 /// Key of a tool number, with an index of one digit where later controls have one: 253.1.
-fn key(text: &str) -> Option<u32> {
+pub(crate) fn key(text: &str) -> Option<u32> {
     let Some((number, index)) = text.split_once(['.', ',']) else {
         return text.parse().ok();
     };
@@ -174,7 +230,11 @@ mod tests {
             "\u{feff}t,name,l,r,r2\r\n1,END MILL,80.5,10,\r\n2,BALL,62,4,4\r\n",
             "T;L;R;R2\n1;80,5;10;0\n2;62;4;4\n",
         ] {
-            assert_eq!(parse(text).as_ref(), Ok(&expected), "{text}");
+            let mut table = parse(text).unwrap();
+            for tool in table.values_mut() {
+                tool.oversize = Oversize::default();
+            }
+            assert_eq!(table, expected, "{text}");
         }
         let mut oversize = expected;
         if let Some(tool) = oversize.get_mut(&1) {
@@ -194,7 +254,8 @@ mod tests {
                     [END]\n";
         let table = parse(text).unwrap();
         assert_eq!(table.get(&0), Some(&shape(0.0, 0.0, 0.0)));
-        assert_eq!(table.get(&5), Some(&shape(127.0, 12.7, 0.0)));
+        assert_eq!(table[&5].shape, shape(127.0, 12.7, 0.0).shape);
+        assert_eq!(table[&5].oversize.length, 25.4);
         assert_eq!(table.get(&6), Some(&shape(0.0, 6.35, 6.35)));
         assert_eq!(table.len(), 3);
     }
@@ -228,6 +289,38 @@ mod tests {
         for wrong in ["T;R;TIME1\n1;5;-1", "T;R;CUR.TIME\n1;5;x", "T;R;RT\n1;5;y"] {
             assert!(parse(wrong).is_err(), "{wrong}");
         }
+    }
+
+    /// All columns of MP7266, with the names of the control and of later ones [000:9010-9033].
+    #[test]
+    fn all_columns_of_the_tool_table() {
+        let text = "BEGIN TOOL  .T MM\n\
+            T    NAME             L        R        DL      DR       TL RT  CUT. LTOL   RTOL   DIRECT. PLC       \
+            TT:R-OFFS TT:L-OFFS LBREAK RBREAK DOC\n\
+            4    MILL 3 EDGES     +80.1    +10      +0.003  -0.02    L  7   3    0.1    0.05   +       %00000101 \
+            R         +2.5      1      2      ROUGH\n\
+            [END]\n";
+        let tool = parse(text).unwrap()[&4];
+        assert_eq!((tool.oversize.length, tool.oversize.radius), (0.003, -0.02));
+        assert_eq!(tool.shape.length, 80.1 + 0.003);
+        let edges = Edges {
+            count: 3,
+            length_wear: 0.1,
+            radius_wear: 0.05,
+            length_offset: 2.5,
+            radius_offset: 10.0,
+            length_break: 1.0,
+            radius_break: 2.0,
+        };
+        assert_eq!(
+            (tool.edges, tool.plc, tool.left_hand, tool.locked),
+            (edges, 5, true, true)
+        );
+        let own = parse("T;R;CUT;L-OFFS;PLC\n1;5;2;-1,5;7\n").unwrap()[&1];
+        assert_eq!((own.edges.count, own.edges.length_offset, own.plc), (2, -1.5, 7));
+        let faults = parse("T;R;CUT;PLC;LTOL\n1;5;21;;\n2;5;;%2;\n3;5;;;-1\n4;5;1.5;;\n").unwrap_err();
+        let places: Vec<_> = faults.iter().map(|fault| (fault.line, fault.column)).collect();
+        assert_eq!(places, [(2, 5), (3, 6), (4, 7), (5, 5)]);
     }
 
     #[test]

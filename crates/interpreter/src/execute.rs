@@ -18,6 +18,7 @@ use crate::probe::probe;
 use crate::q_parameters::QTable;
 use crate::run::Run;
 use crate::settings::Settings;
+use crate::tool_measuring::{measure_tool, measures_tools};
 
 /// Executes what a block says. The caller has already passed over skipped blocks.
 #[inline]
@@ -110,6 +111,7 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
             c.pen.hold(c.modal, functions)?;
             return call_cycle(c);
         }
+        Operation::Probe(block) if measures_tools(block.number) => measure_tool(c, block)?,
         Operation::Probe(block) => {
             if let Some(probing) = probe(c, block)? {
                 run.probing = Some(probing);

@@ -66,6 +66,7 @@ mod status;
 mod surface_feed;
 mod tilting;
 mod told;
+mod tool_measuring;
 mod tools;
 mod voltage;
 mod work;

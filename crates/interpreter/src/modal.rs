@@ -67,6 +67,8 @@ pub(crate) struct Modal {
     pub tilting: Tilting,
     /// Probe block 0.0 waiting for 0.1.
     pub probe: Option<ReferencePlane>,
+    /// Blocks of TCH PROBE 31 or 32 that were read.
+    pub measuring: Option<MeasuringBlocks>,
 }
 
 /// First block of TCH PROBE 0: result parameter, axis and direction [003:4414-4428].
@@ -76,6 +78,17 @@ pub(crate) struct ReferencePlane {
     pub axis: Axis,
     /// +1 in positive, -1 in negative axis direction.
     pub direction: f64,
+}
+
+/// Blocks of TCH PROBE 31 or 32 that were read; height in mm.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MeasuringBlocks {
+    pub number: u16,
+    /// The block that was read last.
+    pub sub: u16,
+    pub check: bool,
+    pub result: Option<u16>,
+    pub height: f64,
 }
 
 /// The last movement in programmed coordinates.
@@ -121,6 +134,7 @@ impl Modal {
             blank_min: None,
             tilting: Tilting::default(),
             probe: None,
+            measuring: None,
         }
     }
 

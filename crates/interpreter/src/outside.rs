@@ -10,7 +10,7 @@ use crate::Interpreter;
 use crate::checkpoints::{Checkpoint, Kept};
 use crate::code::Code;
 use crate::contour::Contour;
-use crate::settings::{DatumTable, Rules, ToolState};
+use crate::settings::{DatumTable, Rules, ToolState, ToolTable};
 
 impl Interpreter {
     /// How the coordinates of the path stand in the machine at the block that comes next, when not upright.
@@ -33,8 +33,9 @@ impl Interpreter {
         };
     }
 
-    /// The tools that must not be called, or are replaced, for the blocks that are read from now on.
-    pub fn set_barred_tools(&mut self, barred: BTreeMap<u32, ToolState>) {
+    /// The tools, and those that must not be called or are replaced, for the blocks that are read from now on.
+    pub fn set_tools(&mut self, tools: Option<ToolTable>, barred: BTreeMap<u32, ToolState>) {
+        self.settings.tools = tools;
         self.settings.barred_tools = barred;
     }
 

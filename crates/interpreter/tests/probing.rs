@@ -1,5 +1,7 @@
 //! TCH PROBE 0: measuring in the program.
 
+#![allow(clippy::panic, reason = "what fails here fails the test")]
+
 mod support;
 
 use bahn_parameters::MessageId;
@@ -130,4 +132,40 @@ fn digitizing() {
     ))
     .run();
     assert_eq!(run.message(), Some((MessageId::BlockNotKnown, 2)));
+}
+
+/// TCH PROBE 31 and 32 wait until the control has measured; the height is one of the program, the tool that of the
+/// last TOOL CALL [000:7960-8058].
+#[test]
+fn tools_are_measured_at_a_barrier() {
+    let blocks = "TOOL DEF 1 L+50 R+5\nTOOL CALL 1 Z S1000\nL Z+30 R0 FMAX\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 Z+20\n\
+                  TCH PROBE 32.0 TOOL RADIUS\nTCH PROBE 32.1 CHECK: 1 Q5\nTCH PROBE 32.2 HEIGHT: +100\n\
+                  TCH PROBE 32.3 PROBING THE TEETH: 0";
+    let run = run(blocks);
+    let [Barrier::MeasureTool(measuring)] = run.barriers.as_slice() else {
+        panic!("{:?}", run.barriers);
+    };
+    assert!(measuring.radius && measuring.check);
+    assert_eq!((measuring.height, measuring.result), (120.0, Some(5)));
+}
+
+#[test]
+fn faults_of_tool_measuring() {
+    let fault = |blocks: &str| {
+        let text = format!("TOOL DEF 1 L+50 R+5\nTOOL CALL 1 Z S1000\n{blocks}");
+        Job::new(program(&text))
+            .run()
+            .message()
+            .map(|(message, _)| message)
+    };
+    let check = |value: &str| format!("TCH PROBE 31.0 TOOL LENGTH\nTCH PROBE 31.1 CHECK: {value}\n");
+    assert_eq!(fault(&check("2")), Some(MessageId::EntryValueIncorrect));
+    let teeth = check("0") + "TCH PROBE 31.2 HEIGHT: +100\nTCH PROBE 31.3 PROBING THE TEETH: 1";
+    assert_eq!(fault(&teeth), Some(MessageId::EntryValueIncorrect));
+    let missing = check("0") + "TCH PROBE 31.3 PROBING THE TEETH: 0";
+    assert_eq!(fault(&missing), Some(MessageId::CyclIncomplete));
+    let other = check("0") + "TCH PROBE 32.2 HEIGHT: +100";
+    assert_eq!(fault(&other), Some(MessageId::CyclIncomplete));
+    let no_tool = "TOOL CALL 0 Z S0\n".to_owned() + &teeth.replace("TEETH: 1", "TEETH: 0");
+    assert_eq!(fault(&no_tool), Some(MessageId::ToolNotDefined));
 }

@@ -5,6 +5,7 @@ use crate::device::DeviceFault;
 use crate::encoder::EncoderFault;
 use crate::event::{Event, EventError, Fault, KeyAction, input_number};
 use crate::machine::{Machine, set};
+use crate::magazine::Magazine;
 use crate::probe::Probe;
 use crate::spindle::Spindle;
 
@@ -41,6 +42,7 @@ impl Machine {
             Event::EmergencyStop(pressed) => self.chain.button = *pressed,
             Event::Voltage(on) => self.chain.supply = *on,
             Event::Probe(inserted) => self.probe()?.inserted = *inserted,
+            Event::Tool(tool) => self.magazine_mut()?.insert(*tool),
             Event::Analogue(input, volts) => set(&mut self.volts, *input, *volts),
             Event::Temperature(input, celsius) => set(&mut self.temperatures, *input, *celsius),
             Event::Force(letter, force) => self.axis_mut(*letter)?.push(*force),
@@ -93,6 +95,12 @@ impl Machine {
             .ok_or_else(|| no("part", "probe", std::iter::empty()))
     }
 
+    fn magazine_mut(&mut self) -> Result<&mut Magazine, EventError> {
+        self.magazine
+            .as_mut()
+            .ok_or_else(|| no("part", "magazine", std::iter::empty()))
+    }
+
     fn axis_mut(&mut self, letter: char) -> Result<&mut Axis, EventError> {
         let known: String = self.axes.iter().map(|axis| axis.letter).collect();
         self.axes
@@ -127,6 +135,7 @@ impl Machine {
             }
             Fault::Device(name, kind) => return self.device_fault(name, Some(*kind)),
             Fault::Relay(kind) => self.chain.fault = Some(*kind),
+            Fault::ToolLost => self.magazine_mut()?.lose(),
             Fault::ProbeNotReady => self.probe()?.ready = false,
             Fault::ProbeBattery => self.probe()?.battery_low = true,
         }
@@ -161,6 +170,10 @@ impl Machine {
             self.spindle_mut()?.gear_fault = kind;
             return Ok(());
         }
+        if name == "magazine" {
+            self.magazine_mut()?.fault = kind;
+            return Ok(());
+        }
         if let Some(device) = self.devices.iter_mut().find(|device| device.name == name) {
             device.fault = kind;
             return Ok(());
@@ -180,6 +193,9 @@ impl Machine {
                 self.repair("gear")?;
             }
             self.devices.iter_mut().for_each(|device| device.fault = None);
+            if let Some(magazine) = &mut self.magazine {
+                magazine.fault = None;
+            }
             self.stuck.clear();
             self.chain.fault = None;
             if self.probe.is_some() {

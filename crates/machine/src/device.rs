@@ -115,7 +115,8 @@ impl Device {
         self.position >= 1.0 - END
     }
 
-    fn is_back(&self) -> bool {
+    /// It has arrived in its first state.
+    pub fn is_back(&self) -> bool {
         self.position <= END
     }
 

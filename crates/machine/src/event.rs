@@ -33,6 +33,8 @@ pub enum Event {
     Voltage(bool),
     /// The touch probe is put into the spindle or taken out.
     Probe(bool),
+    /// A tool is put into the spindle by hand; 0 takes it out.
+    Tool(u32),
     /// A voltage at an analogue input, V.
     Analogue(usize, f64),
     /// A temperature at a Pt 100 input, degrees Celsius.
@@ -80,6 +82,8 @@ pub enum Fault {
     ProbeNotReady,
     /// The battery of the touch probe is low (M2027).
     ProbeBattery,
+    /// The arm of the magazine, or its shuttle, drops its tools.
+    ToolLost,
 }
 
 /// Why an event was refused.
@@ -119,6 +123,7 @@ impl Event {
         "emergency",
         "voltage",
         "probe",
+        "tool",
         "analogue",
         "temperature",
         "force",
@@ -138,6 +143,7 @@ switch THING STATE                  moves a thing by hand, as a door
 emergency press|release             the EMERGENCY STOP button
 voltage on|off                      the supply of the control voltage
 probe insert|remove                 the touch probe in the spindle
+tool NUMBER                         a tool put into the spindle by hand; 0 takes it out
 analogue INPUT VOLTS                an analogue input 0 to 7
 temperature INPUT CELSIUS           a Pt 100 input 0 to 7
 force AXIS NEWTON                   pushes an axis, N or Nm
@@ -145,10 +151,11 @@ fault encoder AXIS|S amplitude|edges|stuck|marks
 fault drive AXIS|S dead|runaway|reversed
 fault offset AXIS VOLTS
 fault input I12 0|1                 a contact that sticks
-fault device THING|gear jammed|no-feedback
+fault device THING|gear|magazine jammed|no-feedback
+fault magazine lost                 the arm, or the shuttle, drops its tools
 fault relay slow MS | welded | open
 fault probe not-ready|battery
-repair AXIS|S|THING|gear|I12|relay|probe|all
+repair AXIS|S|THING|gear|magazine|I12|relay|probe|all
 ";
 
     /// Reads an event from its text form. Whether the machine has what it names shows when it is
@@ -187,6 +194,10 @@ repair AXIS|S|THING|gear|I12|relay|probe|all
             }
             "voltage" => either(rest, "on", "off", "voltage on|off").map(Event::Voltage),
             "probe" => either(rest, "insert", "remove", "probe insert|remove").map(Event::Probe),
+            "tool" => match rest {
+                [tool] => Ok(Event::Tool(number(tool, 0, 32_767)? as u32)),
+                _ => Err(EventError::Form("tool NUMBER")),
+            },
             "analogue" => match rest {
                 [input, volts] => Ok(Event::Analogue(analogue_input(input)?, number(volts, -10, 10)?)),
                 _ => Err(EventError::Form("analogue INPUT VOLTS")),
@@ -299,6 +310,8 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
         }
         ["device", name, "jammed"] => Ok(Fault::Device((*name).to_owned(), DeviceFault::Jammed)),
         ["device", name, "no-feedback"] => Ok(Fault::Device((*name).to_owned(), DeviceFault::NoFeedback)),
+        ["magazine", "lost"] => Ok(Fault::ToolLost),
+        ["magazine", ..] => Err(EventError::Form("fault magazine lost")),
         ["relay", "slow", delay] => Ok(Fault::Relay(RelayFault::Slow(number(delay, 0, 10_000)? as u32))),
         ["relay", "welded"] => Ok(Fault::Relay(RelayFault::Welded)),
         ["relay", "open"] => Ok(Fault::Relay(RelayFault::Open)),
@@ -307,7 +320,7 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
         ["device", ..] => Err(EventError::Form("fault device THING|gear jammed|no-feedback")),
         ["relay", ..] => Err(EventError::Form("fault relay slow MS | welded | open")),
         _ => Err(EventError::Form(
-            "fault encoder|drive|offset|input|device|relay|probe ..",
+            "fault encoder|drive|offset|input|device|magazine|relay|probe ..",
         )),
     }
 }

@@ -34,6 +34,8 @@ pub struct MachineFolder {
     pub plant: String,
     /// Tool table.
     pub tools: Option<String>,
+    /// Pocket table: which tool is in which pocket of the magazine.
+    pub pockets: Option<String>,
     /// Folder of the part programs, and of the tables that belong to them.
     pub programs: String,
     /// The pallet file (.P) with M status, in the folder of the part programs [000:15332-15334].
@@ -176,6 +178,7 @@ impl MachineFolder {
             compensation: optional("compensation"),
             plant: needed("plant"),
             tools: optional("tools"),
+            pockets: optional("pockets"),
             programs: optional("programs").unwrap_or_else(|| "programs".to_owned()),
             pallets: optional("pallets"),
             datum_table: optional("datum_table"),

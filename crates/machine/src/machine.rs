@@ -7,10 +7,12 @@ use bahn_servo::{
 use crate::axis::{Axis, AxisState};
 use crate::chain::Chain;
 use crate::device::{Device, DeviceState};
+use crate::magazine::{Magazine, MagazineState};
 use crate::panel::Panel;
 use crate::probe::Probe;
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
+use crate::tool_probe::ToolProbe;
 
 /// Contacts, relays and things move once in so many µs.
 const TICK_US: u32 = 1000;
@@ -55,8 +57,10 @@ pub struct Machine {
     pub(crate) spindles: Vec<Spindle>,
     pub(crate) chain: Chain,
     pub(crate) devices: Vec<Device>,
+    pub(crate) magazine: Option<Magazine>,
     pub(crate) panel: Panel,
     pub(crate) probe: Option<Probe>,
+    tool_probe: Option<ToolProbe>,
     pub(crate) volts: [f64; ANALOGUE_INPUTS],
     pub(crate) temperatures: [f64; ANALOGUE_INPUTS],
     /// Time has passed since the encoders were read.
@@ -98,6 +102,11 @@ impl Machine {
             .into_iter()
             .filter_map(|(name, section)| Axis::read(&name, section, step_s, seed))
             .collect();
+        let devices: Vec<Device> = root
+            .named_sections("device")
+            .into_iter()
+            .map(|(name, section)| Device::read(name, section))
+            .collect();
         let index = |letter| axes.iter().position(|axis| axis.letter == letter);
         let machine = Machine {
             name: root.text("name").unwrap_or("machine").to_owned(),
@@ -113,13 +122,13 @@ impl Machine {
                 .map(|section| Spindle::read(section, step_s, seed))
                 .collect(),
             chain: Chain::read(&root),
-            devices: root
-                .named_sections("device")
-                .into_iter()
-                .map(|(name, section)| Device::read(name, section))
-                .collect(),
+            magazine: root
+                .section("magazine")
+                .map(|section| Magazine::read(section, &devices)),
+            devices,
             panel: Panel::read(&root),
             probe: root.section("probe").map(Probe::read),
+            tool_probe: root.section("tool_probe").map(ToolProbe::read),
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [20.0; ANALOGUE_INPUTS],
             moved_on: true,
@@ -230,6 +239,18 @@ impl Machine {
         self.devices().find(|device| device.name == name)
     }
 
+    /// Where the tools of the magazine are; `None` without one.
+    pub fn magazine(&self) -> Option<MagazineState<'_>> {
+        self.magazine.as_ref().map(Magazine::state)
+    }
+
+    /// The tools lie in the magazine as its operator has put them there: pocket and tool, and the tool in the spindle.
+    pub fn load_magazine(&mut self, tools: impl Iterator<Item = (u16, u32)>, spindle: u32) {
+        if let Some(magazine) = &mut self.magazine {
+            magazine.load(tools, spindle);
+        }
+    }
+
     /// The control voltage is on.
     pub fn control_voltage(&self) -> bool {
         self.chain.voltage()
@@ -244,6 +265,9 @@ impl Machine {
         self.live = self.chain.live(&self.outputs);
         for device in &mut self.devices {
             device.advance(&self.live);
+        }
+        if let Some(magazine) = &mut self.magazine {
+            magazine.advance(&self.live, &mut self.devices);
         }
         let voltage = self.chain.voltage();
         for axis in &mut self.axes {
@@ -273,6 +297,7 @@ impl Plant for Machine {
         }
         measured.operator = self.panel.operator;
         measured.probe = self.touch_probe();
+        measured.tool_probe = self.tool_probe();
         measured.volts = self.volts;
         measured.temperatures = self.temperatures;
     }
@@ -408,6 +433,9 @@ impl Machine {
         for device in &self.devices {
             device.set_inputs(inputs);
         }
+        if let Some(magazine) = &self.magazine {
+            magazine.set_inputs(inputs);
+        }
         for (input, on) in &self.stuck {
             set(inputs, *input, *on);
         }
@@ -426,6 +454,27 @@ impl Machine {
     /// The acknowledgement at X42/4.
     pub fn control_ready(&self) -> bool {
         self.chain.acknowledged(&self.stuck)
+    }
+
+    /// The tool probe; none is never ready. It knows the tool that the magazine has put into the spindle.
+    fn tool_probe(&self) -> Touch {
+        let Some(probe) = &self.tool_probe else {
+            return Touch::default();
+        };
+        let tool = self
+            .magazine
+            .as_ref()
+            .map_or(0, |magazine| magazine.state().spindle);
+        let place = self.probe_axes.map(|index| Some(self.axes.get(index?)?.table));
+        let deflected = match place {
+            [Some(x), Some(y), Some(z)] => probe.deflected(tool, [x, y, z]),
+            _ => false,
+        };
+        Touch {
+            deflected,
+            ready: probe.ready,
+            battery_low: false,
+        }
     }
 
     /// The touch probe; none is never ready.

@@ -80,6 +80,7 @@ pub mod axis {
 pub mod machining {
     pub use crate::settings::{
         ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
+        ToolProbeParameters, ToolProbeTolerance,
     };
 }
 
@@ -89,6 +90,11 @@ pub mod operation {
         DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters,
         OverrideSteps, RestartParameters, Station, ToolOutput, ToolOutputKind, ToolParameters, UserParameter,
     };
+}
+
+/// Of tables in the NC memory: [`ParameterList::table_parameters`](crate::ParameterList::table_parameters).
+pub mod tables {
+    pub use crate::settings::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
 }
 
 /// Of the PLC: [`ParameterList::plc_parameters`](crate::ParameterList::plc_parameters).

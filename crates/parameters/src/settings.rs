@@ -15,6 +15,8 @@ mod plc_parameters;
 mod spindle;
 mod spindle_parameters;
 mod swivels;
+mod tables;
+mod tool_probe;
 
 pub use axis_parameters::{
     AxisParameters, CompensationParameters, DigitalSpeedParameters, EncoderParameters, LagParameters,
@@ -35,6 +37,8 @@ pub use spindle_parameters::{
     FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,
     SpindlePolarity, SpindleRamps, TappingParameters,
 };
+pub use tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
+pub use tool_probe::{ToolProbeParameters, ToolProbeTolerance};
 
 use crate::{Numbering, ParameterList};
 

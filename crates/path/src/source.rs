@@ -49,6 +49,9 @@ pub enum Barrier {
         /// Radius of the stylus, mm.
         stylus_radius: f64,
     },
+    /// A tool is measured with the tool probe; the answer is [`LiveData::touch`], where the axes stand then, with the
+    /// results in [`LiveData::q_values`] [000:7960-8058].
+    MeasureTool(ToolMeasuring),
     /// A programmed stop (STOP, M0, M1): the operator or the driver lets it go on.
     Stop {
         /// The stop block.
@@ -59,6 +62,21 @@ pub enum Barrier {
         /// The block whose strobe is waited for.
         block: BlockRef,
     },
+}
+
+/// How a tool is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolMeasuring {
+    /// The block that measures.
+    pub block: BlockRef,
+    /// The radius is measured, not the length.
+    pub radius: bool,
+    /// The tool is compared with its data: the difference becomes its oversize; else its data become what was found.
+    pub check: bool,
+    /// Height of the tool axis at which nothing is in the way, path coordinates, mm.
+    pub height: f64,
+    /// The Q parameter that takes what was found: 0 good, 1 worn, 2 broken.
+    pub result: Option<u16>,
 }
 
 /// What was found out at a barrier.

@@ -106,6 +106,8 @@ pub struct Measured {
     pub operator: OperatorInputs,
     /// The touch probe.
     pub probe: Probe,
+    /// The tool probe.
+    pub tool_probe: Probe,
     /// Analogue inputs of the PLC, V.
     pub volts: [f64; ANALOGUE_INPUTS],
     /// Pt 100 inputs of the PLC, degrees Celsius.
@@ -123,6 +125,7 @@ impl Default for Measured {
             inputs: [false; INPUTS],
             operator: OperatorInputs::default(),
             probe: Probe::default(),
+            tool_probe: Probe::default(),
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [0.0; ANALOGUE_INPUTS],
         }

@@ -110,6 +110,8 @@ const SMALL_MILL_OLD: &[(u16, f64)] = &[
     (112, 200.0),
     (113, 120.0),
     (118, 3.0),
+    // Central tool memory.
+    (225, 99.0),
 ];
 
 /// The list of the shipped machine without what the model does not have. The TNC 151 and 155 number theirs

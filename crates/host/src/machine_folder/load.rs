@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::{CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Tool};
+use bahn_control::{
+    CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Remembered, Tool,
+};
 use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::own_functions::OwnFunctions;
@@ -13,10 +15,10 @@ use bahn_path::Position;
 use bahn_plc::{MemoryTable, Options, PlcProgram, ProgramMemory};
 
 use super::channel::{Channels, LoadedChannel, position};
-use super::state;
+use super::{remembered, state};
 use crate::fault::{FileFault, Marked, Severity};
 use crate::plc_source::PlcSource;
-use crate::{HostError, files, lists, tool_table};
+use crate::{HostError, files, lists};
 
 /// Texts that a PLC message file holds at most: M2924 to M3023 [000:6625-6633].
 const MESSAGES: usize = 100;
@@ -71,6 +73,7 @@ impl LoadedMachine {
             &folder.plc_dialogues,
             &folder.compensation,
             &folder.tools,
+            &folder.pockets,
         ];
         let named = named.into_iter().chain(further.map(Option::as_ref)).flatten();
         let lists = self.channels.iter().map(|channel| &channel.folder.parameters);
@@ -87,6 +90,13 @@ impl LoadedMachine {
     /// The datum of `machine.toml`, for the axes that it names.
     pub fn datum(&self) -> Position {
         position(&self.folder.datum)
+    }
+
+    /// What the control of the folder remembers, without switching it on; `None` when it remembers nothing, or nobody
+    /// can read it.
+    pub fn remembered(&self) -> Option<Remembered> {
+        let file = self.root.join(&self.folder.state).join(state::control_file(0));
+        remembered::read(&files::read_table(&file).ok()?).ok()
     }
 
     /// The folder of the part programs of a channel, from 0.
@@ -155,11 +165,12 @@ impl Loader<'_> {
         self.stays_inside("state", &folder.state);
         let model = self.model(&folder.model);
         let plant = self.plant(&folder, model);
-        let tools = self.tools(&folder);
         let plc_messages = self.texts("plc_messages", folder.plc_messages.as_deref(), MESSAGES);
         let plc_dialogues = self.texts("plc_dialogues", folder.plc_dialogues.as_deref(), 4096);
-        let files = self.compensation(&folder);
-        let parameters = self.parameters(&folder, model?);
+        let mut files = self.compensation(&folder);
+        let parameters = model.and_then(|model| self.parameters(&folder, model));
+        let mut none = NcFiles::default();
+        let tools = self.tool_files(&folder, parameters.as_ref(), files.as_mut().unwrap_or(&mut none));
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
         let mut files = files?;
@@ -210,6 +221,11 @@ impl Loader<'_> {
             self.fault_at_key(key, &format!("`{name}` leads out of the folder of the machine"));
         }
         stays
+    }
+
+    /// The path of a file that `machine.toml` names, when it is there.
+    pub(super) fn named(&mut self, key: &str, name: &str) -> Option<PathBuf> {
+        self.read(key, name).map(|(path, _)| path)
     }
 
     /// The bytes of a file that `machine.toml` names.
@@ -361,30 +377,6 @@ impl Loader<'_> {
             let place = (wire.line, Some(wire.column));
             self.faults
                 .push(file_fault(path, text, place, "the wiring is wrong", &message));
-        }
-    }
-
-    fn tools(&mut self, folder: &MachineFolder) -> Option<Option<BTreeMap<u32, Tool>>> {
-        let Some(name) = &folder.tools else {
-            return Some(None);
-        };
-        let (path, bytes) = self.read("tools", name)?;
-        let text = decode(&bytes);
-        match tool_table::parse(&text) {
-            Ok(tools) => Some(Some(tools)),
-            Err(faults) => {
-                for fault in faults {
-                    let place = (fault.line.max(1) as usize, None);
-                    self.faults.push(file_fault(
-                        &path,
-                        &text,
-                        place,
-                        "the tool table is wrong",
-                        &fault.message,
-                    ));
-                }
-                None
-            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! The folder of a machine.
 //!
-//! `load`: everything in it, all faults at once, with its `channels`; `nc_memory`: its tables; `programs`: its part programs; `state`:
+//! `load`: everything in it, all faults at once, with its `channels`; `nc_memory` and `tool_files`: its tables; `programs`: its part programs; `state`:
 //! what survives power-off, `remembered` as a file.
 
 mod channel;
@@ -11,6 +11,7 @@ mod nc_memory;
 mod programs;
 mod remembered;
 mod state;
+mod tool_files;
 
 pub use channel::LoadedChannel;
 pub use load::{LoadedMachine, decode};
@@ -27,12 +28,27 @@ pub fn check_state(file: &[u8]) -> Option<bool> {
     Some(remembered::read(remembered::write(&read).as_bytes()).as_ref() == Ok(&read))
 }
 
+/// The faults of a datum table whose axes 4 and 5 turn.
+pub(crate) fn check_datum_table(text: &str) -> Result<(), Vec<TableFault>> {
+    let turns = [false, false, false, true, true];
+    nc_memory::datum_table(text, turns, nc_memory::LINES_MAX).map(drop)
+}
+
+/// The faults of a pallet file.
+pub(crate) fn check_pallet_file(text: &str) -> Result<(), Vec<TableFault>> {
+    nc_memory::pallet_file(text, nc_memory::LINES_MAX).map(drop)
+}
+
 /// Reads a text as datum table and as pallet file, for fuzzing: the lines of the faults, 0 is the table as a whole.
 #[doc(hidden)]
 pub fn check_nc_tables(text: &str) -> [Result<(), Vec<u32>>; 2] {
     let lines = |faults: Vec<TableFault>| faults.iter().map(|fault| fault.line).collect();
     [
-        nc_memory::datum_table(text, [false; 5]).map(drop).map_err(lines),
-        nc_memory::pallet_file(text).map(drop).map_err(lines),
+        nc_memory::datum_table(text, [false; 5], nc_memory::LINES_MAX)
+            .map(drop)
+            .map_err(lines),
+        nc_memory::pallet_file(text, nc_memory::LINES_MAX)
+            .map(drop)
+            .map_err(lines),
     ]
 }

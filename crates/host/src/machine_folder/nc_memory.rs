@@ -11,14 +11,16 @@ use bahn_parameters::ParameterList;
 use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};
 
 use super::load::{Loader, decode, file_fault};
-use crate::columns::{self, Form, Row, TableFault};
+use crate::columns::{self, Form, Row, RowFault, TableFault};
 use crate::files;
 
-/// The greatest number of a line: MP7226 gives a table 255 lines at most [000:6892-6896].
-const LINE_MAX: i32 = 254;
+/// Lines that MP7226 gives a table at most [000:6892-6896].
+pub(super) const LINES_MAX: u16 = 255;
 
 /// Elements of a datum table by their columns [000:15414-15420].
 const DATUMS: [&str; 5] = ["X", "Y", "Z", "4", "5"];
+
+const WRONG: &str = "the table is wrong";
 
 const DATUM_TABLE: Form = Form {
     needed: &["NR"],
@@ -33,7 +35,7 @@ const PALLET_FILE: Form = Form {
 };
 
 /// Reads a datum table, with the elements that turn and so have no unit of length.
-pub(super) fn datum_table(text: &str, turns: [bool; 5]) -> Result<MemoryTable, Vec<TableFault>> {
+pub(super) fn datum_table(text: &str, turns: [bool; 5], most: u16) -> Result<MemoryTable, Vec<TableFault>> {
     let mut lines: BTreeMap<i32, [f64; 5]> = BTreeMap::new();
     columns::read(text, &DATUM_TABLE, |row| {
         let mut values = [0.0; 5];
@@ -42,10 +44,10 @@ pub(super) fn datum_table(text: &str, turns: [bool; 5]) -> Result<MemoryTable, V
             let unit = if turns { 1.0 } else { row.unit_mm };
             *value = row.number(name)? * unit;
             if !(column.min..=column.max).contains(value) {
-                return Err(format!("{name}: {} is too large", row.text(name)));
+                return Err(row.fault(name, &format!("{} is too large", row.text(name))));
             }
         }
-        insert(&mut lines, row, values)
+        insert(&mut lines, row, values, most)
     })?;
     let mut table = MemoryTable::with_lines(TableKind::Datum, lines.keys().copied());
     for (line, values) in lines {
@@ -56,8 +58,8 @@ pub(super) fn datum_table(text: &str, turns: [bool; 5]) -> Result<MemoryTable, V
     Ok(table)
 }
 
-/// Reads a pallet file.
-pub(super) fn pallet_file(text: &str) -> Result<BTreeMap<i32, PalletLine>, Vec<TableFault>> {
+/// Reads a pallet file of so many lines at most.
+pub(super) fn pallet_file(text: &str, most: u16) -> Result<BTreeMap<i32, PalletLine>, Vec<TableFault>> {
     let mut lines = BTreeMap::new();
     columns::read(text, &PALLET_FILE, |row| {
         let name = |column: &str| {
@@ -65,21 +67,25 @@ pub(super) fn pallet_file(text: &str) -> Result<BTreeMap<i32, PalletLine>, Vec<T
             (!matches!(name.as_str(), "" | "-")).then_some(name)
         };
         let line = PalletLine {
-            program: name("PGM").ok_or("PGM: the name of the program is missing")?,
+            program: name("PGM").ok_or_else(|| row.fault("PGM", "the name of the program is missing"))?,
             datum_table: name("DATUM"),
         };
-        insert(&mut lines, row, line)
+        insert(&mut lines, row, line, most)
     })?;
     Ok(lines)
 }
 
 /// A line of a table by its number.
-fn insert<T>(lines: &mut BTreeMap<i32, T>, row: &Row<'_>, line: T) -> Result<(), String> {
+fn insert<T>(lines: &mut BTreeMap<i32, T>, row: &Row<'_>, line: T, most: u16) -> Result<(), RowFault> {
     let text = row.text("NR");
-    let number = text.parse().ok().filter(|number| (0..=LINE_MAX).contains(number));
-    let number = number.ok_or_else(|| format!("NR: `{text}` is no line from 0 to {LINE_MAX}"))?;
+    let last = i32::from(most) - 1;
+    let number = text.parse().ok().filter(|number| (0..=last).contains(number));
+    let number = number.ok_or_else(|| match most {
+        0 => row.fault("NR", "this table has no lines (MP7226 = 0)"),
+        _ => row.fault("NR", &format!("`{text}` is no line from 0 to {last}")),
+    })?;
     match lines.insert(number, line) {
-        Some(_) => Err(format!("line {number} is there twice")),
+        Some(_) => Err(row.fault("NR", &format!("line {number} is there twice"))),
         None => Ok(()),
     }
 }
@@ -94,6 +100,9 @@ impl Loader<'_> {
         memory: &mut NcFiles,
     ) -> Vec<PathBuf> {
         let mut read = Vec::new();
+        let sizes = list.table_parameters();
+        let [datum_lines, pallet_lines] =
+            [sizes.datum_lines, sizes.pallet_lines].map(|lines| lines.unwrap_or(LINES_MAX));
         let mut turns = [false; 5];
         for axis in list.axes().iter().filter(|axis| axis.is_rotary()) {
             if let Some(turns) = list
@@ -112,11 +121,11 @@ impl Loader<'_> {
                 && name.ends_with(".D")
             {
                 let message = format!("the datum table {} has the same name", other.display());
-                self.fault_in_table(&entry.path(), "", vec![TableFault { line: 0, message }]);
+                self.fault_in_table(&entry.path(), WRONG, "", vec![TableFault::of_table(message)]);
             }
         }
         for (name, path) in paths.iter().filter(|(name, _)| name.ends_with(".D")) {
-            if let Some(table) = self.table(path, |text| datum_table(text, turns)) {
+            if let Some(table) = self.table(path, WRONG, |text| datum_table(text, turns, datum_lines)) {
                 memory.datum_tables.insert(name.clone(), table);
                 read.push(path.clone());
             }
@@ -131,7 +140,7 @@ impl Loader<'_> {
         if let Some(name) = folder.pallets.as_ref().map(|name| name.to_uppercase()) {
             match paths.get(&name).filter(|_| name.ends_with(".P")) {
                 Some(path) => {
-                    memory.pallet = self.table(path, pallet_file);
+                    memory.pallet = self.table(path, WRONG, |text| pallet_file(text, pallet_lines));
                     read.push(path.clone());
                 }
                 None => {
@@ -144,31 +153,31 @@ impl Loader<'_> {
         read
     }
 
-    fn table<T>(&mut self, path: &Path, read: impl FnOnce(&str) -> Result<T, Vec<TableFault>>) -> Option<T> {
+    pub(super) fn table<T>(
+        &mut self,
+        path: &Path,
+        title: &str,
+        read: impl FnOnce(&str) -> Result<T, Vec<TableFault>>,
+    ) -> Option<T> {
         let bytes = match files::read_table(path) {
             Ok(bytes) => bytes,
             Err(error) => {
-                let message = error.to_string();
-                self.fault_in_table(path, "", vec![TableFault { line: 0, message }]);
+                self.fault_in_table(path, title, "", vec![TableFault::of_table(error.to_string())]);
                 return None;
             }
         };
         let text = decode(&bytes);
         read(&text)
-            .map_err(|faults| self.fault_in_table(path, &text, faults))
+            .map_err(|faults| self.fault_in_table(path, title, &text, faults))
             .ok()
     }
 
-    fn fault_in_table(&mut self, path: &Path, text: &str, faults: Vec<TableFault>) {
+    pub(super) fn fault_in_table(&mut self, path: &Path, title: &str, text: &str, faults: Vec<TableFault>) {
         for fault in faults {
-            let place = (fault.line.max(1) as usize, None);
-            self.faults.push(file_fault(
-                path,
-                text,
-                place,
-                "the table is wrong",
-                &fault.message,
-            ));
+            let column = (fault.column > 0).then_some(fault.column as usize);
+            let place = (fault.line.max(1) as usize, column);
+            self.faults
+                .push(file_fault(path, text, place, title, &fault.message));
         }
     }
 }
@@ -188,19 +197,19 @@ mod tests {
     #[test]
     fn datum_tables_are_read() {
         let text = "NR\tX\tY\tZ\t4\tDOC\n0\t0\t0\t0\t0\tvice\n12\t-1.5\t2,25\t\t90\t\n";
-        let table = datum_table(text, LENGTHS).unwrap();
+        let table = datum_table(text, LENGTHS, LINES_MAX).unwrap();
         assert_eq!(line(&table, 12), Some(vec![-1.5, 2.25, 0.0, 90.0, 0.0]));
         assert_eq!((line(&table, 0), line(&table, 1)), (Some(vec![0.0; 5]), None));
         // As a control writes it, in inches: degrees stay.
         let text = "BEGIN ZERO .D INCH\nNR   X      4\n3    +1     -30\n[END]\n";
-        let table = datum_table(text, [false, false, false, true, false]).unwrap();
+        let table = datum_table(text, [false, false, false, true, false], LINES_MAX).unwrap();
         assert_eq!(line(&table, 3), Some(vec![25.4, 0.0, 0.0, -30.0, 0.0]));
     }
 
     #[test]
     fn faults_of_datum_tables_have_their_lines() {
         let found = |text: &str| -> Vec<u32> {
-            let faults = datum_table(text, LENGTHS).err().unwrap_or_default();
+            let faults = datum_table(text, LENGTHS, LINES_MAX).err().unwrap_or_default();
             faults.iter().map(|fault| fault.line).collect()
         };
         assert_eq!(
@@ -212,10 +221,22 @@ mod tests {
         assert_eq!((found("X Y\n0 1\n"), found("")), (vec![0], vec![0]));
     }
 
+    /// MP7226: tables have so many lines, from 0 on [000:6892-6896].
+    #[test]
+    fn tables_have_as_many_lines_as_the_list_says() {
+        assert!(datum_table("NR X\n0 1\n9 1\n", LENGTHS, 10).is_ok());
+        let faults = datum_table("NR X\n9 1\n  10 1\n", LENGTHS, 10).unwrap_err();
+        assert_eq!(faults.len(), 1);
+        assert_eq!((faults[0].line, faults[0].column), (3, 3));
+        assert_eq!(faults[0].message, "NR: `10` is no line from 0 to 9");
+        let none = pallet_file("NR PGM\n0 A\n", 0).unwrap_err();
+        assert_eq!(none[0].message, "NR: this table has no lines (MP7226 = 0)");
+    }
+
     #[test]
     fn pallet_files_are_read() {
         let text = "NR PGM DATUM\n0 part.h zero\n1 7432 -\n4 B.I\n";
-        let lines = pallet_file(text).unwrap();
+        let lines = pallet_file(text, LINES_MAX).unwrap();
         let lines: Vec<_> = lines
             .iter()
             .map(|(number, line)| (*number, line.program.as_str(), line.datum_table.as_deref()))
@@ -224,7 +245,7 @@ mod tests {
             lines,
             [(0, "PART.H", Some("ZERO")), (1, "7432", None), (4, "B.I", None)]
         );
-        let faults = pallet_file("NR PGM DATUM\n0 A\n1\n0 B\n").unwrap_err();
+        let faults = pallet_file("NR PGM DATUM\n0 A\n1\n0 B\n", LINES_MAX).unwrap_err();
         assert_eq!(faults.iter().map(|fault| fault.line).collect::<Vec<_>>(), [3, 4]);
     }
 }

@@ -16,7 +16,7 @@ use crate::{HostError, kept};
 /// The journal of retained markers and bytes.
 const JOURNAL: &str = "plc.mem";
 /// What the control remembers, of the first channel and of a further one.
-fn control_file(channel: usize) -> String {
+pub(super) fn control_file(channel: usize) -> String {
     match channel {
         0 => "control.toml".to_owned(),
         further => format!("control-{}.toml", further + 1),

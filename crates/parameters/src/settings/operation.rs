@@ -1,6 +1,6 @@
 //! Settings of the operating modes: switch-on, overrides, handwheel, tools, restart, display.
 
-use super::bit_of;
+use super::{ToolProbeParameters, bit_of};
 use crate::{ControlModel, ParameterId, ParameterList};
 
 /// Settings of the operating modes. "old" are the numbers of the TNC 151/155.
@@ -131,7 +131,7 @@ pub enum ToolOutputKind {
 }
 
 /// Tools [000:8994-9283].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolParameters {
     /// Lines of the tool table, 0 without one: MP7260 (old MP225) [000:9103-9111].
     pub table_size: u32,
@@ -144,6 +144,8 @@ pub struct ToolParameters {
     pub call: ToolOutput,
     /// TOOL DEF: MP7480.1 (old MP157).
     pub definition: ToolOutput,
+    /// The probe that measures tools.
+    pub probe: ToolProbeParameters,
 }
 
 /// Datums and traverse ranges: MP7490, MP7295, MP7296, MP7475 [000:3499-3508].
@@ -304,6 +306,7 @@ impl ParameterList {
             reserved_pockets: self.get_new(7264, 0).unwrap_or_default() as u8,
             call: tool_output(self.value((7480, 0), (61, 0))),
             definition: tool_output(self.value((7480, 1), (157, 0))),
+            probe: self.tool_probe(),
         }
     }
 

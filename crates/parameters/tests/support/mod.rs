@@ -80,6 +80,8 @@ pub fn readings(list: &ParameterList) -> Readings {
     note(&mut all, "decimal", &list.decimal());
     note(&mut all, "operation_parameters", &list.operation_parameters());
     note(&mut all, "user_parameters", &list.user_parameters());
+    note(&mut all, "table_parameters", &list.table_parameters());
+    note(&mut all, "tool_probe", &list.tool_probe());
     note(&mut all, "plc_parameters", &list.plc_parameters());
     all
 }

@@ -1,0 +1,111 @@
+//! `bahn table check`: all faults of tables.
+
+use std::path::Path;
+
+use bahn_host::{LoadedMachine, TableFault};
+use serde::Serialize;
+
+use super::options::CheckOptions;
+use super::source;
+use crate::options::Format;
+use crate::{Outcome, UsageError, console, diagnostics};
+
+/// Checks tables and prints what is wrong.
+pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
+    let mut outcome = Outcome::Fine;
+    let mut reports = Vec::new();
+    for path in &options.tables {
+        let checked = if path.is_dir() {
+            of_machine(path)
+        } else {
+            of_file(path, options)
+        };
+        match checked {
+            Ok(report) => reports.push(report),
+            // The other tables are checked all the same.
+            Err(error) => {
+                diagnostics::print_usage_error(&error.to_string());
+                outcome = Outcome::WrongUse;
+            }
+        }
+    }
+    let faulty = reports.iter().any(|report| !report.faults.is_empty());
+    match options.format {
+        Format::Json => {
+            let text = serde_json::to_string_pretty(&reports);
+            let text = text.map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
+            console::print(&(text + "\n"))?;
+        }
+        Format::Text => {
+            for report in reports.iter().filter(|report| report.faults.is_empty()) {
+                let (file, kind, rows) = (&report.file, report.kind, report.rows);
+                console::print(&format!("{file}: {kind}, {rows} lines, no fault\n"))?;
+            }
+        }
+    }
+    Ok(match outcome {
+        Outcome::Fine if faulty => Outcome::ProgramError,
+        other => other,
+    })
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    file: String,
+    kind: &'static str,
+    rows: usize,
+    faults: Vec<Item>,
+}
+
+#[derive(Debug, Serialize)]
+struct Item {
+    file: String,
+    line: u32,
+    column: u32,
+    message: String,
+}
+
+fn of_file(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
+    let source = source::read(path, options.kind)?;
+    let faults = source.kind.check(&source.text).err().unwrap_or_default();
+    if options.format == Format::Text {
+        source.print(&faults);
+    }
+    let file = path.display().to_string();
+    let item = |fault: TableFault| Item {
+        file: file.clone(),
+        line: fault.line,
+        column: fault.column,
+        message: fault.message,
+    };
+    Ok(Report {
+        kind: source.kind.name(),
+        rows: source.table.rows.len(),
+        faults: faults.into_iter().map(item).collect(),
+        file: file.clone(),
+    })
+}
+
+/// All tables of a machine; other faults of its files are not looked at.
+fn of_machine(path: &Path) -> Result<Report, UsageError> {
+    let (rows, faults) = match LoadedMachine::load(path)? {
+        Ok(machine) => (
+            machine.tables.len() + usize::from(machine.tools.is_some()),
+            Vec::new(),
+        ),
+        Err(faults) => (0, faults),
+    };
+    diagnostics::print_faults(&faults);
+    let item = |fault: bahn_host::FileFault| Item {
+        file: fault.path.display().to_string(),
+        line: fault.marked.line,
+        column: fault.marked.columns.map_or(0, |(column, _)| column),
+        message: fault.label,
+    };
+    Ok(Report {
+        file: path.display().to_string(),
+        kind: "machine",
+        rows,
+        faults: faults.into_iter().map(item).collect(),
+    })
+}

@@ -1,0 +1,120 @@
+//! `bahn table set`: changes a line of a table.
+
+use std::io::Write;
+use std::path::Path;
+
+use bahn_host::{LoadedMachine, TableForm, canonical};
+use bahn_machine::MachineFolder;
+
+use super::options::SetOptions;
+use super::source::{self, Source};
+use crate::files::{self, NewFile};
+use crate::{Outcome, UsageError, diagnostics};
+
+/// Changes, adds or removes a line; the file is replaced when the new table has no fault.
+pub(super) fn command(options: &SetOptions) -> Result<Outcome, UsageError> {
+    let path = &options.table;
+    let source = source::read(path, options.kind)?;
+    if is_protected(path, source.kind) {
+        return Err(UsageError::new(format!(
+            "{} is protected (MP7224.1)",
+            path.display()
+        )));
+    }
+    if let Err(faults) = source.kind.check(&source.text) {
+        source.print(&faults);
+        return Ok(Outcome::ProgramError);
+    }
+    let (text, done) = changed(&source, options)?;
+    if let Err(faults) = source.kind.check(&text) {
+        let said = faults
+            .first()
+            .map(|fault| fault.message.clone())
+            .unwrap_or_default();
+        return Err(UsageError::new(format!(
+            "{}: {said}; nothing was changed",
+            path.display()
+        )));
+    }
+    let mut file = NewFile::create(path)?;
+    file.write_all(text.as_bytes())
+        .map_err(|error| files::cannot("write", path, &error))?;
+    file.finish()?;
+    diagnostics::print_text(&format!(
+        "{}: {} {} {done}",
+        path.display(),
+        source.kind.name(),
+        options.line
+    ));
+    Ok(Outcome::Fine)
+}
+
+/// The new text, and what was done.
+fn changed(source: &Source, options: &SetOptions) -> Result<(String, &'static str), UsageError> {
+    let (table, key) = (&source.table, source.kind.key());
+    let wrong = |message: String| UsageError::new(format!("{}: {message}", source.path.display()));
+    let is_wanted =
+        |row: &&bahn_host::TextRow| table.cell(row, key).is_some_and(|cell| cell.text == options.line);
+    let at = table.rows.iter().find(is_wanted).map(|row| row.line as usize - 1);
+    let mut lines: Vec<String> = source.text.split_inclusive('\n').map(str::to_owned).collect();
+    let end = if source.text.contains("\r\n") {
+        "\r\n"
+    } else {
+        "\n"
+    };
+    if options.delete {
+        let at = at.ok_or_else(|| wrong(format!("there is no line {}", options.line)))?;
+        lines.remove(at);
+        return Ok((lines.concat(), "is removed"));
+    }
+    let mut values = Vec::new();
+    for value in &options.values {
+        let (name, value) = value
+            .split_once('=')
+            .ok_or_else(|| wrong(format!("`{value}` is no COLUMN=VALUE")))?;
+        values.push((canonical(&name.trim().to_uppercase()).to_owned(), value.trim()));
+    }
+    let values: Vec<(&str, &str)> = values
+        .iter()
+        .map(|(name, value)| (name.as_str(), *value))
+        .collect();
+    let Some(at) = at else {
+        let key = [(key, options.line.as_str())].into_iter();
+        let all: Vec<(&str, &str)> = key.chain(values).collect();
+        let line = table.new_line(&all).map_err(wrong)? + end;
+        let behind = table.rows.last().map_or(table.header_line, |row| row.line) as usize;
+        if let Some(last) = lines.get_mut(behind - 1).filter(|last| !last.ends_with('\n')) {
+            last.push_str(end);
+        }
+        lines.insert(behind, line);
+        return Ok((lines.concat(), "is added"));
+    };
+    if let Some(line) = lines.get_mut(at) {
+        let mut text = line.trim_end_matches(['\r', '\n']).to_owned();
+        let tail = line.get(text.len()..).unwrap_or_default().to_owned();
+        for (name, value) in values {
+            text = table.line_with(&text, name, value).map_err(wrong)?;
+        }
+        *line = text + &tail;
+    }
+    Ok((lines.concat(), "is changed"))
+}
+
+/// The machine in whose folder the table lies protects it. A machine with faults protects nothing.
+fn is_protected(path: &Path, kind: TableForm) -> bool {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut folders = path.ancestors().skip(1).take(2);
+    let Some(root) = folders.find(|folder| folder.join(MachineFolder::FILE).exists()) else {
+        return false;
+    };
+    let Ok(Ok(machine)) = LoadedMachine::load(root) else {
+        return false;
+    };
+    let [tools, datums, pallets] = machine.parameters.table_parameters().protected;
+    match kind {
+        TableForm::Tool | TableForm::Pocket => tools,
+        TableForm::Datum => datums,
+        TableForm::Pallet => pallets,
+        TableForm::Point => false,
+    }
+}

@@ -1,0 +1,380 @@
+//! Tools are measured with the tool probe: the tool goes over its contact, turns backwards, and probes it
+//! [000:7960-8058].
+
+use bahn_exchange::{Exchange, signal};
+use bahn_motion::{Aim, PointToPoint};
+use bahn_parameters::MessageId;
+use bahn_parameters::machining::ToolProbeParameters;
+use bahn_path::{Axis, Position, ToolMeasuring};
+use bahn_servo::Measured;
+
+use crate::axis::{AxisUnit, Mover};
+use crate::handshake::Transfer;
+use crate::kinematics::Chain;
+use crate::message::Message;
+use crate::probing_speed::{feed_mm_min, speed_rpm};
+use crate::site::Site;
+use crate::tool::{MeasuredTool, ToolCondition};
+use crate::track::are_in_position;
+
+/// Turn against the cutting direction: M4 for a tool that cuts with M3, and stop (inferred: the edges do not cut).
+const BACKWARDS: [u8; 2] = [4, 3];
+const STOP: u8 = 5;
+
+/// A measuring comes to an end, or not yet.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Measuring {
+    Moves,
+    /// Q parameters with their values: differences of length and radius, and what was found.
+    Over([Option<(u16, f64)>; 2]),
+    Refused(Message),
+}
+
+/// Q115 and Q116 take the differences (inferred: those of the successors).
+const Q_LENGTH: u16 = 115;
+const Q_RADIUS: u16 = 116;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// M2503 is set; the PLC resets it.
+    Enable,
+    Up,
+    Over,
+    Down,
+    Spin,
+    Search,
+    Brake,
+    Back,
+    Leave,
+    Stop,
+    /// The tables take what was found.
+    Store,
+}
+
+/// The measuring that is on its way, if one is.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ToolMeasurement(Option<Sequence>);
+
+/// A measuring from the enabling of the probe to its result.
+#[derive(Clone, Debug)]
+struct Sequence {
+    order: ToolMeasuring,
+    phase: Phase,
+    parameters: ToolProbeParameters,
+    axis: Axis,
+    /// The stop before the contact, and the farthest place, path coordinates.
+    before: Position,
+    farthest: Position,
+    /// What the path coordinate is where a tool as the table says touches.
+    expected: f64,
+    probing_axis: Axis,
+    /// +1 in positive direction.
+    direction: f64,
+    /// The movement on its way.
+    from: Position,
+    to: Position,
+    length: f64,
+    way: PointToPoint,
+    touch: Option<f64>,
+    difference: f64,
+    speed_before: f64,
+    asked: bool,
+}
+
+impl ToolMeasurement {
+    pub fn is_on(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// The path came to a cycle that measures.
+    ///
+    /// # Errors
+    /// When tools are not measured on this machine, or this one cannot be.
+    pub fn begin(&mut self, order: ToolMeasuring, site: &mut Site) -> Result<(), Message> {
+        let parameters = site.tools.probe();
+        let axis = site.chain.offsets.tool_axis;
+        let tool = site.magazine.tool(site.tools.number);
+        let radius = tool.shape.radius;
+        if !parameters.enabled || axis != Axis::Z || radius <= 0.0 || parameters.rapid_mm_min <= 0.0 {
+            return Err(Message::Plain(MessageId::ProbeSystemNotReady));
+        }
+        let mut contact = site.axes.machine_position();
+        let [x, y, z] = parameters.centre_mm;
+        (contact[Axis::X], contact[Axis::Y]) = (x, y);
+        contact[Axis::Z] = z + site.chain.offsets.tool_length;
+        let contact = site.chain.to_path(&contact);
+        let (mut before, mut farthest) = (contact, contact);
+        let (probing_axis, direction, expected) = if order.radius {
+            let across = if parameters.across { Axis::Y } else { Axis::X };
+            let direction = if parameters.negative { -1.0 } else { 1.0 };
+            let reach = parameters.width_mm / 2.0 + radius;
+            before[across] -= direction * (reach + parameters.safety_mm);
+            farthest[across] += direction * (reach + parameters.safety_mm);
+            for place in [&mut before, &mut farthest] {
+                place[Axis::Z] -= parameters.depth_mm + tool.edges.length_offset;
+            }
+            (across, direction, contact[across] - direction * reach)
+        } else {
+            for place in [&mut before, &mut farthest] {
+                place[Axis::X] += tool.edges.radius_offset;
+            }
+            before[Axis::Z] += parameters.safety_mm;
+            farthest[Axis::Z] -= parameters.safety_mm;
+            (Axis::Z, -1.0, contact[Axis::Z])
+        };
+        let here = site.here();
+        self.0 = Some(Sequence {
+            order,
+            phase: Phase::Enable,
+            parameters,
+            axis,
+            before,
+            farthest,
+            expected,
+            probing_axis,
+            direction,
+            from: here,
+            to: here,
+            length: 0.0,
+            way: PointToPoint::new(0.0),
+            touch: None,
+            difference: 0.0,
+            speed_before: site.spindle.state().programmed_rpm,
+            asked: false,
+        });
+        let exchange = &mut *site.exchange;
+        exchange.nc_put(signal::TOOL_CYCLE_KIND, order.check);
+        exchange.nc_put(signal::WEAR_TOLERANCE_EXCEEDED, false);
+        exchange.nc_put(signal::BREAKAGE_TOLERANCE_EXCEEDED, false);
+        exchange.nc_put(signal::TOOL_MEASURING_STARTED, true);
+        exchange.nc_put(signal::PROBING_ENDED, false);
+        exchange.nc_set(signal::PROBING_ENABLE, true);
+        Ok(())
+    }
+
+    /// Takes the position of the axes when the contact is deflected; once in each servo step.
+    pub fn watch<'a>(
+        &mut self,
+        measured: &Measured,
+        axes: impl Iterator<Item = &'a AxisUnit>,
+        chain: &Chain,
+    ) {
+        let Some(run) = &mut self.0 else { return };
+        if run.phase != Phase::Search || run.touch.is_some() || !measured.tool_probe.deflected {
+            return;
+        }
+        let mut actual = Position::UNKNOWN;
+        for unit in axes {
+            actual[unit.axis] = unit.servo.actual_mm();
+        }
+        run.touch = Some(chain.to_path(&actual)[run.probing_axis]);
+    }
+
+    /// One contour cycle.
+    pub fn moves(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Measuring {
+        let Some(run) = &mut self.0 else {
+            return Measuring::Moves;
+        };
+        match run.phase {
+            Phase::Enable if running && !site.exchange.nc().bit(signal::PROBING_ENABLE) => {
+                let probe = measured.tool_probe;
+                site.exchange.nc_put(signal::PROBE_NOT_READY, !probe.ready);
+                site.exchange
+                    .nc_put(signal::STYLUS_ALREADY_DEFLECTED, probe.deflected);
+                if !probe.ready {
+                    return Measuring::Refused(Message::Plain(MessageId::ProbeSystemNotReady));
+                }
+                if probe.deflected {
+                    return Measuring::Refused(Message::Plain(MessageId::StylusAlreadyInContact));
+                }
+                run.go_to(Phase::Up, site);
+                Measuring::Moves
+            }
+            Phase::Enable => Measuring::Moves,
+            Phase::Spin | Phase::Stop => {
+                run.turn(site);
+                Measuring::Moves
+            }
+            Phase::Store => match site.tools.measured {
+                Some(_) => Measuring::Moves,
+                None => self.over(site),
+            },
+            _ => run.drive(running, site),
+        }
+    }
+
+    fn over(&mut self, site: &mut Site) -> Measuring {
+        let Some(run) = self.0.take() else {
+            return Measuring::Moves;
+        };
+        ended(site.exchange);
+        let q = if run.order.radius { Q_RADIUS } else { Q_LENGTH };
+        let state = f64::from(run.state(site) as u8);
+        Measuring::Over([
+            Some((q, run.difference)),
+            run.order.result.map(|number| (number, state)),
+        ])
+    }
+
+    /// Nothing is measured any more.
+    pub fn end(&mut self, exchange: &mut Exchange) {
+        if self.0.take().is_some() {
+            exchange.nc_put(signal::PROBING_ENABLE, false);
+            ended(exchange);
+        }
+    }
+}
+
+fn ended(exchange: &mut Exchange) {
+    exchange.nc_put(signal::TOOL_MEASURING_STARTED, false);
+    exchange.nc_put(signal::PROBING_ENDED, true);
+}
+
+impl Sequence {
+    /// Where a phase leads to, from where the axes stand.
+    fn go_to(&mut self, phase: Phase, site: &Site) {
+        self.phase = phase;
+        self.from = site.here();
+        self.to = self.from;
+        self.asked = false;
+        match phase {
+            Phase::Up | Phase::Leave => self.to[self.axis] = self.order.height,
+            Phase::Over => {
+                let height = self.from[self.axis];
+                self.to = self.before;
+                self.to[self.axis] = height;
+            }
+            Phase::Down | Phase::Back => self.to = self.before,
+            Phase::Search => self.to = self.farthest,
+            _ => {}
+        }
+        let way = |axis: Axis| self.to[axis] - self.from[axis];
+        let squares = Axis::ALL.into_iter().map(|axis| way(axis).powi(2));
+        self.length = squares.filter(|square| square.is_finite()).sum::<f64>().sqrt();
+        self.way = PointToPoint::new(0.0);
+    }
+
+    /// The spindle turns backwards at the speed for its radius, or stops and has the speed that was programmed.
+    fn turn(&mut self, site: &mut Site) {
+        if !self.asked {
+            self.asked = true;
+            let tool = site.magazine.tool(site.tools.number);
+            let (rpm, code) = match self.phase {
+                Phase::Spin => {
+                    let rpm = speed_rpm(&self.parameters, tool.shape.radius);
+                    let [normal, left_hand] = BACKWARDS;
+                    (rpm, if tool.left_hand { left_hand } else { normal })
+                }
+                _ => (self.speed_before, STOP),
+            };
+            site.speed(rpm, false);
+            site.handshakes.push(Transfer::M(code));
+            return;
+        }
+        if !site.handshakes.is_idle() {
+            return;
+        }
+        match self.phase {
+            Phase::Spin => self.go_to(Phase::Search, site),
+            _ => {
+                self.phase = Phase::Store;
+                site.tools.measured = Some(self.found(site));
+            }
+        }
+    }
+
+    /// One cycle of a movement.
+    fn drive(&mut self, running: bool, site: &mut Site) -> Measuring {
+        let radius = site.magazine.radius(site.tools.number);
+        let probes = matches!(self.phase, Phase::Search | Phase::Brake);
+        let feed = if probes {
+            feed_mm_min(&self.parameters, radius)
+        } else {
+            self.parameters.rapid_mm_min * (site.now.feed_percent / 100.0).min(1.0)
+        };
+        let feed = feed.min(site.now.rapid_limit_mm_min);
+        if self.phase == Phase::Search && self.touch.is_some() {
+            self.phase = Phase::Brake;
+            site.exchange.nc_set(signal::STYLUS_DEFLECTED, true);
+        }
+        let aim = match self.phase {
+            _ if !running => Aim::Feed(0.0),
+            Phase::Brake => Aim::Feed(0.0),
+            _ => Aim::Position(self.length),
+        };
+        let units = site.axes.iter();
+        let moving = units.filter(|unit| self.to[unit.axis] != self.from[unit.axis]);
+        let acceleration = moving
+            .map(|unit| unit.parameters.motion.acceleration_m_s2)
+            .fold(f64::INFINITY, f64::min);
+        let time = site.now.time_s;
+        let at = self.way.cycle(time, aim, feed, acceleration);
+        let part = if self.length > 0.0 { at / self.length } else { 1.0 };
+        let place = |axis: Axis| self.from[axis] + part * (self.to[axis] - self.from[axis]);
+        let nominal = site.chain.to_axes(&Axis::ALL.map(place).into());
+        for unit in site.axes.iter_mut() {
+            let value = nominal[unit.axis];
+            if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && !unit.is_plc_axis() {
+                unit.mover = Mover::Path;
+                unit.follow(value, time);
+            }
+        }
+        let arrived = match self.phase {
+            Phase::Brake => self.way.speed_mm_s() == 0.0,
+            _ => self.length == 0.0 || self.way.is_at(self.length),
+        };
+        if !arrived || !are_in_position(&site.axes) {
+            return Measuring::Moves;
+        }
+        match self.phase {
+            Phase::Up => self.go_to(Phase::Over, site),
+            Phase::Over => self.go_to(Phase::Down, site),
+            Phase::Down => self.go_to(Phase::Spin, site),
+            Phase::Search => return Measuring::Refused(Message::Plain(MessageId::TouchPointInaccessible)),
+            Phase::Brake => {
+                let touch = self.touch.unwrap_or(self.expected);
+                self.difference = (self.expected - touch) * self.direction;
+                self.go_to(Phase::Back, site);
+            }
+            Phase::Back => self.go_to(Phase::Leave, site),
+            _ => self.go_to(Phase::Stop, site),
+        }
+        Measuring::Moves
+    }
+
+    /// What a check says of the tool; a tolerance of 0 is none.
+    fn state(&self, site: &Site) -> ToolCondition {
+        let edges = site.magazine.tool(site.tools.number).edges;
+        let (wear, breakage) = match self.order.radius {
+            true => (edges.radius_wear, edges.radius_break),
+            false => (edges.length_wear, edges.length_break),
+        };
+        let beyond = |tolerance: f64| tolerance > 0.0 && self.difference.abs() > tolerance;
+        match self.order.check {
+            true if beyond(breakage) => ToolCondition::Broken,
+            true if beyond(wear) => ToolCondition::Worn,
+            _ => ToolCondition::Good,
+        }
+    }
+
+    /// What the tables take: a tool beyond a tolerance is locked, and the PLC is told [000:8025].
+    fn found(&self, site: &mut Site) -> MeasuredTool {
+        let state = self.state(site);
+        let exchange = &mut *site.exchange;
+        exchange.nc_put(signal::WEAR_TOLERANCE_EXCEEDED, state == ToolCondition::Worn);
+        exchange.nc_put(
+            signal::BREAKAGE_TOLERANCE_EXCEEDED,
+            state == ToolCondition::Broken,
+        );
+        if !self.order.radius {
+            site.chain.offsets.tool_length += self.difference;
+        }
+        MeasuredTool {
+            number: site.tools.number,
+            radius: self.order.radius,
+            check: self.order.check,
+            difference: self.difference,
+            state,
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! The magazine of the mill with its double arm: what the control hands to the PLC, and where the tools are then.
+
+mod support;
+
+use bahn_control::Tool;
+use support::*;
+
+/// N are tools 1 and 2, M 3 and 5, S 4 and 6; the number of the pocket is that of the tool.
+fn mill(output: u8, kind: u8) -> Rig {
+    mill_with(output, 0, kind)
+}
+
+fn mill_with(output: u8, next: u8, kind: u8) -> Rig {
+    let tool = |number: u16| Tool {
+        pocket: (!matches!(number, 3 | 5)).then_some(number),
+        special: matches!(number, 4 | 6),
+        ..Tool::default()
+    };
+    let mut build = Build::mill()
+        .mp("7261=12")
+        .mp(&format!("7480.0={output}"))
+        .mp(&format!("7480.1={next}"))
+        .mp(&format!("4310.0={kind}"));
+    build.tools = Some((1..=6).map(|number| (u32::from(number), tool(number))).collect());
+    for old in 1..=6 {
+        for new in 1..=6 {
+            build = build.program(
+                &format!("{old}{new}.H"),
+                &format!("TOOL CALL {old} Z S0\nTOOL CALL {new} Z S0"),
+            );
+        }
+    }
+    build = build
+        .program("0.H", "TOOL CALL 0 Z S0")
+        .program("D.H", "TOOL DEF 6\nL X+200 R0 FMAX");
+    let mut rig = build.rig();
+    rig.machine
+        .load_magazine([1, 2, 4, 6].into_iter().map(|number| (number, number.into())), 0);
+    rig.power_on();
+    rig
+}
+
+/// MP4310.0: changes by hand confirm themselves, the magazine is in use.
+const MAGAZINE: u8 = 0b0011;
+/// With fixed pockets.
+const FIXED: u8 = 0b0111;
+/// The old tool first: M2600 = 0.
+const OLD_FIRST: u8 = 0b1011;
+
+/// A strobe of TOOL CALL: W262, W264, M2093.
+type Code = (i32, i32, bool);
+
+/// Runs a program; the strobes.
+fn strobes(rig: &mut Rig, name: &str) -> Vec<Code> {
+    rig.command("mode full");
+    rig.command(&format!("select {name}"));
+    rig.start();
+    let (mut codes, mut before) = (Vec::new(), false);
+    let end = rig.control.time_us() + 120_000_000;
+    rig.seconds(0.3);
+    while !rig.control.snapshot().ended {
+        assert!(
+            rig.control.time_us() < end,
+            "{name}: {codes:?} {:?} step {}",
+            rig.messages(),
+            rig.number("W112")
+        );
+        let strobe = rig.bit("M2046");
+        if strobe && !before {
+            codes.push((rig.number("W262"), rig.number("W264"), rig.bit("M2093")));
+        }
+        before = strobe;
+        rig.cycle();
+    }
+    rig.seconds(0.2);
+    assert_eq!(rig.messages(), [""; 0]);
+    codes
+}
+
+/// The tool in each pocket from 1 to 6 and in the spindle.
+fn places(rig: &Rig) -> ([u32; 6], u32) {
+    let state = rig
+        .machine
+        .magazine()
+        .unwrap_or_else(|| unreachable!("the mill has a magazine"));
+    assert_eq!(
+        (state.shuttle, state.arm),
+        (0, [0, 0]),
+        "nothing is left on the way"
+    );
+    (std::array::from_fn(|place| state.pockets[place]), state.spindle)
+}
+
+/// All nine transitions with both orders of codes, on the machine: number and order of strobes, W262, W264, M2093
+/// [000:9287-9410], and where the tools are in the end.
+#[test]
+fn nine_transitions_on_the_mill() {
+    let nine: [(u32, u32, &[Code]); 9] = [
+        (1, 2, &[(2, 2, false)]),
+        (3, 5, &[(255, 5, false)]),
+        (4, 6, &[(6, 6, false)]),
+        (4, 1, &[(4, 0, true), (1, 1, false)]),
+        (1, 4, &[(1, 0, true), (4, 4, false)]),
+        (3, 1, &[(255, 0, true), (1, 1, false)]),
+        (3, 4, &[(255, 0, true), (4, 4, false)]),
+        (1, 3, &[(1, 0, true), (255, 3, false)]),
+        (4, 3, &[(4, 0, true), (255, 3, false)]),
+    ];
+    for kind in [OLD_FIRST, MAGAZINE] {
+        for (old, new, expected) in nine {
+            let mut rig = mill(3, kind);
+            let codes = strobes(&mut rig, &format!("{old}{new}.H"));
+            let (first, codes) = codes
+                .split_first()
+                .unwrap_or_else(|| unreachable!("the old tool is called"));
+            let pocket = |tool: u32| if matches!(tool, 3 | 5) { 255 } else { tool as i32 };
+            assert_eq!(*first, (pocket(old), old as i32, false));
+            let swapped: Vec<Code> = match expected {
+                // The new tool first, unless one is changed by hand.
+                [(p, t, _), (q, u, _)] if kind == MAGAZINE && *p != 255 && *q != 255 => {
+                    vec![(*q, *u, true), (*p, *t, false)]
+                }
+                _ => expected.to_vec(),
+            };
+            assert_eq!(codes, swapped, "{old} -> {new}, {kind:b}");
+            assert_eq!(rig.number("W100"), new as i32);
+            // Under variable coding the old tool of a single code takes the pocket of the new one.
+            let mut pockets = [1, 2, 0, 4, 0, 6];
+            let of = |tool: u32| tool as usize - 1;
+            let by_hand = |tool: u32| matches!(tool, 3 | 5);
+            if !by_hand(new) {
+                pockets[of(new)] = if expected.len() == 1 { old } else { 0 };
+            }
+            if expected.len() == 1 && !by_hand(old) {
+                pockets[of(old)] = 0;
+            }
+            let (found, spindle) = places(&rig);
+            assert_eq!(found, pockets, "{old} -> {new}, {kind:b}");
+            if !by_hand(new) {
+                assert_eq!(spindle, new);
+            }
+            // The pocket table agrees with the machine.
+            for moved in rig.control.remember().pockets {
+                if moved.tool != new {
+                    let place = usize::from(moved.pocket.unwrap_or_default()) - 1;
+                    assert_eq!(found[place], moved.tool);
+                }
+            }
+        }
+    }
+}
+
+/// MP7480.0 = 5: every tool returns to its own pocket, the pocket table stays; M2601 does the same for special tools.
+#[test]
+fn fixed_pockets_on_the_mill() {
+    let mut rig = mill(5, FIXED);
+    assert_eq!(strobes(&mut rig, "12.H"), [(1, 1, false), (2, 2, false)]);
+    assert_eq!(places(&rig), ([1, 0, 0, 4, 0, 6], 2));
+    assert_eq!(
+        strobes(&mut rig, "21.H"),
+        [(1, 1, false)],
+        "tool 2 is in the spindle"
+    );
+    assert_eq!(places(&rig), ([0, 2, 0, 4, 0, 6], 1));
+    assert_eq!(rig.control.remember().pockets, []);
+    // T 0 empties the spindle.
+    assert_eq!(strobes(&mut rig, "0.H"), [(1, 0, false)]);
+    assert_eq!(places(&rig), ([1, 2, 0, 4, 0, 6], 0));
+}
+
+/// TOOL DEF turns the chain to the next tool by the shortest way: from pocket 1 to 6 forward, five pockets of 0.4 s.
+#[test]
+fn the_next_tool_is_looked_for() {
+    let mut rig = mill_with(3, 3, MAGAZINE);
+    assert_eq!(rig.machine.magazine().map(|state| state.pocket), Some(1));
+    rig.command("mode full");
+    rig.command("select D.H");
+    rig.start();
+    rig.until(1.0, "the chain turns", |rig| rig.bit("O32"));
+    let begin = rig.control.time_us();
+    rig.until(5.0, "it stands", |rig| !rig.bit("O32"));
+    let seconds = (rig.control.time_us() - begin) as f64 / 1e6;
+    assert!((4.8 * 0.4..5.0 * 0.4).contains(&seconds), "{seconds}");
+    rig.until(5.0, "the program ends", |rig| rig.control.snapshot().ended);
+    assert_eq!(rig.machine.magazine().map(|state| state.pocket), Some(6));
+}
+
+/// An arm that is stuck half way holds the program, with a message of the machine; repaired, the change goes on.
+#[test]
+fn an_arm_that_is_stuck() {
+    let mut rig = mill(3, MAGAZINE);
+    rig.command("mode full");
+    rig.command("select 12.H");
+    rig.start();
+    rig.until(20.0, "the arm is on its way out", |rig| rig.bit("O36"));
+    rig.seconds(0.1);
+    rig.event("fault device arm_draw jammed");
+    rig.until(15.0, "the PLC says so", |rig| rig.bit("M2934"));
+    assert!(!rig.control.snapshot().ended && rig.bit("M2046"));
+    rig.event("repair arm_draw");
+    rig.until(60.0, "the program ends", |rig| rig.control.snapshot().ended);
+    assert_eq!(places(&rig), ([0, 1, 0, 4, 0, 6], 2));
+}

@@ -1,0 +1,200 @@
+//! Tools are measured with the tool probe of the mill: TCH PROBE 31 and 32 [000:7960-8058].
+
+mod support;
+
+use bahn_control::{Edges, Tool};
+use bahn_path::ToolShape;
+use bahn_plc::TableKind;
+use support::*;
+
+/// Tool 2 is 95 mm long with a radius of 10 mm in the table; the one in the spindle is 94.96 and 9.985 mm.
+const DIFFERENCES: [f64; 2] = [-0.04, -0.015];
+/// What encoder steps and the probing feed leave: 6.4 mm/min in a contour cycle of 3 ms and a servo step are less than 1 µm.
+const NEAR: f64 = 0.002;
+
+fn mill(edges: Edges, blocks: &str) -> Rig {
+    mill_with(edges, &[], blocks)
+}
+
+fn mill_with(edges: Edges, parameters: &[&str], blocks: &str) -> Rig {
+    let tool = Tool {
+        shape: ToolShape {
+            length: 95.0,
+            radius: 10.0,
+            ..ToolShape::default()
+        },
+        pocket: Some(2),
+        edges,
+        ..Tool::default()
+    };
+    let mut build = Build::mill()
+        .mp("7261=12")
+        .mp("7480.0=3")
+        .mp("4310.0=3")
+        .mp("7300=4")
+        .program("1.H", &format!("TOOL CALL 2 Z S800\n{blocks}"));
+    for parameter in parameters {
+        build = build.mp(parameter);
+    }
+    build.tools = Some([(2, tool)].into());
+    let mut rig = build.rig();
+    rig.machine.load_magazine([(2, 2)].into_iter(), 0);
+    rig.power_on();
+    rig
+}
+
+fn cycle(number: u8, check: &str) -> String {
+    format!(
+        "TCH PROBE {number}.0 MEASURE\nTCH PROBE {number}.1 CHECK: {check}\nTCH PROBE {number}.2 HEIGHT: +100\n\
+         TCH PROBE {number}.3 PROBING THE TEETH: 0\n"
+    )
+}
+
+fn close_to(value: f64, expected: f64) {
+    assert!((value - expected).abs() < NEAR, "{value} instead of {expected}");
+}
+
+/// What was written into the tool table, by the number of the element.
+fn written(rig: &Rig, element: usize) -> Option<f64> {
+    let written = rig.control.remember().written;
+    let found = written
+        .iter()
+        .find(|row| row.table == TableKind::Tool && row.element == element);
+    found.map(|row| row.value)
+}
+
+/// Element numbers of the tool table [000:15431-15454].
+const L: usize = 0;
+const R: usize = 1;
+const DR: usize = 10;
+const TL: usize = 12;
+
+/// Length and radius become the data of the tool; Q115 and Q116 are the differences. The tool turns backwards at
+/// 40 / (2 π 0.01) = 636.6 rpm while it is probed, and the spindle stands and has its speed again behind.
+#[test]
+fn length_and_radius_are_measured() {
+    let blocks = cycle(31, "0") + "Q10 = Q115\n" + &cycle(32, "0") + "Q11 = Q116";
+    let mut rig = mill(Edges::default(), &blocks);
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(60.0, "it measures", |rig| rig.bit("M2390"));
+    assert!(!rig.bit("M2391"));
+    rig.until(60.0, "the contact is deflected", |rig| rig.bit("M2025"));
+    let spindle = rig.control.snapshot().spindle;
+    assert!((spindle.actual_rpm.abs() - 636.6).abs() < 5.0, "{spindle:?}");
+    assert!(rig.bit("M2486"), "M4");
+    rig.until(200.0, "the program ends", |rig| rig.control.snapshot().ended);
+    rig.seconds(0.1);
+    assert_eq!(rig.messages(), [""; 0]);
+    assert!(!rig.bit("M2390") && !rig.bit("M2486") && rig.bit("M2487"));
+    assert_eq!(rig.control.snapshot().spindle.programmed_rpm, 800.0);
+    close_to(written(&rig, L).unwrap(), 95.0 + DIFFERENCES[0]);
+    close_to(written(&rig, R).unwrap(), 10.0 + DIFFERENCES[1]);
+    close_to(q(&rig, 10), DIFFERENCES[0]);
+    close_to(q(&rig, 11), DIFFERENCES[1]);
+    // The length counts at once.
+    close_to(rig.control.remember().tool_length, 95.0 + DIFFERENCES[0]);
+}
+
+/// A check: the difference becomes DR; beyond RTOL the tool is worn and locked, M2392; Q5 is 1.
+#[test]
+fn a_worn_tool_is_locked() {
+    let edges = Edges {
+        radius_wear: 0.01,
+        radius_break: 0.1,
+        ..Edges::default()
+    };
+    let mut rig = mill(edges, &(cycle(32, "1 Q5") + "TOOL CALL 0 Z S0\nTOOL CALL 2 Z S0"));
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(60.0, "it checks", |rig| rig.bit("M2390") && rig.bit("M2391"));
+    rig.until(200.0, "the tool is refused", |rig| !rig.messages().is_empty());
+    assert!(rig.bit("M2392") && !rig.bit("M2393"));
+    assert!(rig.messages()[0].contains("LOCKED"), "{:?}", rig.messages());
+    close_to(written(&rig, DR).unwrap(), DIFFERENCES[1]);
+    assert_eq!((written(&rig, TL), written(&rig, R)), (Some(1.0), None));
+    assert_eq!(q(&rig, 5), 1.0);
+}
+
+/// Beyond RBREAK it is broken: M2393, Q5 is 2, its data stay.
+#[test]
+fn a_broken_tool_is_locked() {
+    let edges = Edges {
+        radius_wear: 0.005,
+        radius_break: 0.01,
+        ..Edges::default()
+    };
+    let mut rig = mill(edges, &cycle(32, "1 Q5"));
+    rig.run("1.H", 200.0);
+    rig.seconds(0.1);
+    assert!(rig.bit("M2393") && !rig.bit("M2392"));
+    assert_eq!((written(&rig, TL), written(&rig, DR)), (Some(1.0), None));
+    assert_eq!(q(&rig, 5), 2.0);
+}
+
+/// Where the tool goes by MP6505, MP6530, MP6531, MP6540 and L-OFFS: for the radius in negative Y (MP6505 = 3) from
+/// 40 + 40/2 + 10 + 2 mm, its tip 5 + 1 mm below the upper face at 60 mm, at MP6550 = 3000 mm/min.
+#[test]
+fn the_contact_is_where_the_list_says() {
+    let edges = Edges {
+        length_offset: 1.0,
+        ..Edges::default()
+    };
+    let mut rig = mill_with(edges, &["6505=3", "6530=5", "6531=40", "6540=2"], &cycle(32, "0"));
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(60.0, "it measures", |rig| rig.bit("M2390"));
+    let mut fastest: f64 = 0.0;
+    let here = |rig: &Rig| ['X', 'Y'].map(|letter| rig.axis(letter).nominal);
+    let (mut before, mut time) = (here(&rig), rig.control.time_us());
+    while !rig.bit("M2486") {
+        rig.cycle();
+        let (now, passed) = (here(&rig), rig.control.time_us() - time);
+        let way = (now[0] - before[0]).hypot(now[1] - before[1]);
+        fastest = fastest.max(way / (passed as f64 / 6e7));
+        (before, time) = (now, rig.control.time_us());
+    }
+    assert!((fastest - 3000.0).abs() < 1.0, "{fastest}");
+    close_to(rig.axis('X').nominal, 560.0);
+    close_to(rig.axis('Y').nominal, 40.0 + 40.0 / 2.0 + 10.0 + 2.0);
+    close_to(rig.axis('Z').nominal, 60.0 - 5.0 - 1.0);
+    rig.until(200.0, "the program ends", |rig| rig.control.snapshot().ended);
+    close_to(written(&rig, R).unwrap(), 10.0 + DIFFERENCES[1]);
+}
+
+/// Without MP6500 nothing is measured; a contact that is not where MP6580 says is not found, and the axes stand.
+#[test]
+fn nothing_to_measure_with() {
+    for (parameter, said) in [
+        ("6500=0", "PROBE SYSTEM NOT READY"),
+        ("6580.2=80", "TOUCH POINT INACCESSIBLE"),
+    ] {
+        let mut build = Build::mill()
+            .mp("7261=12")
+            .mp("7480.0=3")
+            .mp("4310.0=3")
+            .mp(parameter);
+        build = build.program("1.H", &format!("TOOL CALL 2 Z S800\n{}", cycle(31, "0")));
+        let mut rig = build.rig();
+        rig.power_on();
+        rig.command("mode full");
+        rig.command("select 1.H");
+        rig.start();
+        rig.until(200.0, "it is refused", |rig| {
+            rig.messages().iter().any(|text| text.contains(said))
+        });
+        rig.seconds(0.5);
+        assert!(!rig.bit("M2390") && !rig.control.snapshot().ended, "{parameter}");
+    }
+}
+
+/// A Q parameter as the control remembers it.
+fn q(rig: &Rig, number: u16) -> f64 {
+    let all = rig.control.remember().q;
+    all.iter()
+        .find(|(own, _)| *own == number)
+        .map_or(0.0, |(_, value)| *value)
+}

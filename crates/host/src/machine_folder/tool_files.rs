@@ -1,0 +1,72 @@
+//! Tool table and pocket table of a machine, and whether they fit its parameters.
+
+use std::collections::BTreeMap;
+
+use bahn_control::{NcFiles, Tool};
+use bahn_machine::MachineFolder;
+use bahn_parameters::ParameterList;
+use bahn_parameters::operation::ToolParameters;
+
+use super::load::Loader;
+use crate::{pocket_table, tool_table};
+
+/// The tools of a machine; `None` when they come from TOOL DEF.
+pub(super) type Tools = Option<BTreeMap<u32, Tool>>;
+
+impl Loader<'_> {
+    /// Reads tool table and pocket table; `None` when one of them is faulty.
+    pub(super) fn tool_files(
+        &mut self,
+        folder: &MachineFolder,
+        parameters: Option<&ParameterList>,
+        files: &mut NcFiles,
+    ) -> Option<Tools> {
+        let Some(name) = &folder.tools else {
+            if folder.pockets.is_some() {
+                self.fault_at_key("pockets", "a pocket table needs a tool table (tools)");
+            }
+            return Some(None);
+        };
+        let sizes = parameters.map(|list| list.operation_parameters().tools);
+        let path = self.named("tools", name)?;
+        let mut tools = self.table(&path, "the tool table is wrong", |text| {
+            let tools = tool_table::parse(text)?;
+            if let Some(sizes) = &sizes {
+                tool_table::fits(text, sizes)?;
+            }
+            Ok(tools)
+        })?;
+        // Without pockets there is no pocket table [000:9113].
+        let pockets = sizes.as_ref().is_none_or(|sizes| sizes.pockets > 0);
+        if let Some(name) = folder.pockets.as_ref().filter(|_| pockets) {
+            self.pockets(name, &mut tools, sizes.as_ref(), files)?;
+        }
+        Some(Some(tools))
+    }
+
+    /// Reads the pocket table: from there on it says where the tools are.
+    fn pockets(
+        &mut self,
+        name: &str,
+        tools: &mut BTreeMap<u32, Tool>,
+        sizes: Option<&ToolParameters>,
+        files: &mut NcFiles,
+    ) -> Option<()> {
+        if let Some((tool, _)) = tools.iter().find(|(_, tool)| tool.pocket.is_some()) {
+            let message =
+                format!("the tool table has a pocket for tool {tool}, but {name} says where tools are");
+            self.fault_at_key("pockets", &message);
+            return None;
+        }
+        let path = self.named("pockets", name)?;
+        let lines = self.table(&path, "the pocket table is wrong", |text| {
+            let lines = pocket_table::parse(text)?;
+            if let Some(sizes) = sizes {
+                pocket_table::fits(text, &lines, tools, sizes)?;
+            }
+            Ok(lines)
+        })?;
+        pocket_table::put_away(&lines, tools, &mut files.pockets);
+        Some(())
+    }
+}
