@@ -119,6 +119,7 @@ mod tools;
 mod track;
 mod upkeep;
 mod view;
+mod watch;
 mod window;
 
 pub use axis::AxisId;
@@ -142,4 +143,5 @@ pub use spindle::{SpindleState, SpindleWiring};
 pub use test_run::{TestReport, TestState};
 pub use tool::{MovedTool, Tool, ToolLife};
 pub use view::ChannelView;
+pub use watch::AxisWatch;
 pub use window::Window;
