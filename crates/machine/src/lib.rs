@@ -51,7 +51,7 @@ mod reader;
 mod spindle;
 
 pub use axis::{AxisState, DriveFault};
-pub use chain::RelayFault;
+pub use chain::{ContactFault, RelayFault};
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
 pub use event::{Event, EventError, Fault, KeyAction};

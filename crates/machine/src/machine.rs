@@ -5,7 +5,7 @@ use bahn_servo::{
 };
 
 use crate::axis::{Axis, AxisState};
-use crate::chain::Chain;
+use crate::chain::{Chain, ContactFault};
 use crate::device::{Device, DeviceState};
 use crate::panel::Panel;
 use crate::probe::Probe;
@@ -64,7 +64,7 @@ pub struct Machine {
     /// As the PLC set them, and as they arrive.
     outputs: [bool; OUTPUTS],
     live: [bool; OUTPUTS],
-    pub(crate) stuck: Vec<(usize, bool)>,
+    pub(crate) stuck: Vec<(usize, ContactFault)>,
     wires: Vec<Wire>,
 }
 
@@ -405,14 +405,21 @@ impl Machine {
         for device in &self.devices {
             device.set_inputs(inputs);
         }
-        for (input, on) in &self.stuck {
-            set(inputs, *input, *on);
+        for (input, fault) in &self.stuck {
+            if let Some(level) = inputs.get_mut(*input) {
+                *level = fault.level(self.time_us, *level);
+            }
         }
     }
 
     /// Sets the PLC outputs.
     pub fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]) {
         self.outputs = *outputs;
+    }
+
+    /// The PLC outputs as they were set last.
+    pub fn outputs(&self) -> &[bool; OUTPUTS] {
+        &self.outputs
     }
 
     /// Switches the output X41/34 "control is ready".
@@ -422,7 +429,12 @@ impl Machine {
 
     /// The acknowledgement at X42/4.
     pub fn control_ready(&self) -> bool {
-        self.chain.acknowledged(&self.stuck)
+        self.chain.acknowledged(&self.stuck, self.time_us)
+    }
+
+    /// No limit switch of an axis is actuated.
+    pub fn limit_switches_clear(&self) -> bool {
+        self.axes.iter().all(Axis::limits_clear)
     }
 
     /// The touch probe; none is never ready.
@@ -435,6 +447,7 @@ impl Machine {
             [Some(x), Some(y), Some(z)] => probe.deflected([x, y, z]),
             _ => false,
         };
+        let deflected = deflected || probe.early && probe.inserted;
         Touch {
             deflected,
             ready: probe.inserted && probe.ready,
