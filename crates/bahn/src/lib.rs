@@ -14,6 +14,7 @@
 //!   `path_csv`, `path_svg` and `cutting` take the path elements; `shelf`: many programs as a table;
 //! - `run`: a program on the simulated machine, `scope` draws what was recorded, `machine_folder` makes and
 //!   checks folders of machines;
+//! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc` and `mp`: the groups
 //!   `bahn plc`, `bahn mp`;
 //! - `files`: outputs that replace no input;
@@ -30,6 +31,7 @@ mod console;
 mod cutting;
 mod diagnostics;
 mod explain;
+mod faults;
 mod files;
 mod format;
 mod interrupt;
@@ -50,6 +52,7 @@ mod scope;
 mod settings;
 mod shelf;
 mod test_run;
+mod torture;
 
 #[doc(hidden)]
 pub use bahn_host::{check_nc_tables, check_script, check_state, check_tool_table};
@@ -80,6 +83,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Conformance(options) => conformance::command(&options),
+        cli::Command::Faults(options) => faults::command(&options),
+        cli::Command::Torture(options) => torture::command(&options),
         cli::Command::Explain(options) => explain::command(&options),
         cli::Command::Completions(options) => manual::completions(&options, cli::whole_command()),
         cli::Command::Man(options) => manual::man(&options, cli::whole_command()),

@@ -70,6 +70,7 @@ mod saved;
 mod script;
 mod text;
 pub mod tool_table;
+pub mod torture;
 
 pub use columns::TableFault;
 pub use deed::{Answer, Deed, DeedError, Operable, Source};
