@@ -6,7 +6,7 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test bench doc pictures conformance trails tools clean
+.PHONY: run test bench doc pictures conformance faults torture trails tools clean
 
 # Built for the first look: without the screen of `bahn plc watch`, and with the profile for it.
 BAHN := $(CARGO) run --quiet --profile quick -p bahn --no-default-features --
@@ -65,6 +65,15 @@ trails:
 # docs/conformance.md, made anew from the registry.
 conformance:
 	BAHN_WRITE_DOCS=1 $(CARGO) test -p bahn --locked --quiet --test conformance the_document
+
+# docs/faults.md, made anew from the table of faults.
+faults:
+	BAHN_WRITE_DOCS=1 $(CARGO) test -p bahn --locked --quiet --test torture the_document
+
+# A long fault campaign over the shipped machines: make torture SEEDS=0..100000
+SEEDS ?= 0..20000
+torture:
+	$(CARGO) run --quiet --release -p bahn -- torture --seeds $(SEEDS)
 
 # Parts of the toolchain that a minimal installation lacks.
 tools:

@@ -7,6 +7,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::Outcome;
 use crate::compensate::CompensateOptions;
 use crate::conformance::ConformanceOptions;
+use crate::faults::FaultsOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
@@ -18,6 +19,7 @@ use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
 use crate::table::TableOptions;
 use crate::test_run::TestOptions;
+use crate::torture::TortureOptions;
 use crate::tune::TuneOptions;
 
 /// Software contouring control for HEIDENHAIN plain-language programs: checks them as the control would,
@@ -68,6 +70,12 @@ pub(crate) enum Command {
     /// List what each function of a control does here: M functions, cycles, words, machine parameters and so on.
     #[command(after_help = crate::conformance::EXAMPLES)]
     Conformance(ConformanceOptions),
+    /// List what the control does about each fault: message, reaction, way that is left, what clears it.
+    #[command(after_help = crate::faults::EXAMPLES)]
+    Faults(FaultsOptions),
+    /// Run the programs of machines while random things fail, and hold every contour cycle to rules.
+    #[command(after_help = crate::torture::EXAMPLES)]
+    Torture(TortureOptions),
     /// Say what a message or PLC error means and what to do about it; search by word.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(ExplainOptions),

@@ -16,6 +16,7 @@
 //!   checks folders of machines;
 //! - `check`, `format`, `explain`, `conformance`, `manual`: the other subcommands; `plc`, `mp` and `table`: the
 //!   groups `bahn plc`, `bahn mp`, `bahn table`;
+//! - `torture`: the fault campaign, `faults` the table it holds the control to;
 //! - `files`: outputs that replace no input;
 //! - `paragraph`: labelled text in 80 columns; `junit`: expectations for build servers;
 //! - `diagnostics`: errors as rustc prints them; `console`: standard output that may close.
@@ -31,6 +32,7 @@ mod console;
 mod cutting;
 mod diagnostics;
 mod explain;
+mod faults;
 mod files;
 mod format;
 mod interrupt;
@@ -52,6 +54,7 @@ mod settings;
 mod shelf;
 mod table;
 mod test_run;
+mod torture;
 mod tune;
 
 #[doc(hidden)]
@@ -86,6 +89,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Mp(options) => mp::command(&options),
         cli::Command::Table(options) => table::command(&options),
         cli::Command::Conformance(options) => conformance::command(&options),
+        cli::Command::Faults(options) => faults::command(&options),
+        cli::Command::Torture(options) => torture::command(&options),
         cli::Command::Explain(options) => explain::command(&options),
         cli::Command::Completions(options) => manual::completions(&options, cli::whole_command()),
         cli::Command::Man(options) => manual::man(&options, cli::whole_command()),

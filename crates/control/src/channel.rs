@@ -148,12 +148,9 @@ impl Channel {
     }
 
     /// Shows a message at the block that is executed.
-    fn show(&self, message: Message, flashing: bool, machine: &mut MachineSide) {
+    fn show(&self, message: Message, machine: &mut MachineSide) {
         let block = self.run.running_block();
-        machine
-            .messages
-            .of_channel(self.number)
-            .show(message, flashing, block);
+        machine.messages.of_channel(self.number).show(message, block);
     }
 
     /// NC stop, or anything that stops like it.
@@ -373,7 +370,7 @@ impl Channel {
         };
         spindle.cycle(exchange, percent);
         if spindle.take_wrong_speed() {
-            self.show(Message::Plain(MessageId::WrongRpm), false, machine);
+            self.show(Message::Plain(MessageId::WrongRpm), machine);
             let (run, mut site, _) = self.parts(machine);
             if !run.refuse_block(&mut site) {
                 self.stop();
@@ -405,7 +402,7 @@ impl Channel {
     /// What the PLC asked for in the scan that has ended.
     pub fn after_scan(&mut self, machine: &mut MachineSide) {
         if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
-            self.show(Message::PlcMarkers(code), true, machine);
+            self.show(Message::PlcMarkers(code), machine);
         }
     }
 
@@ -415,7 +412,7 @@ impl Channel {
         let exchange = machine.memory.of_mut(self.number);
         let wanted = self.positioning.is_wanted(exchange.nc());
         if strobes::is_transfer_doubly_used(wanted, exchange.nc()) {
-            self.show(Message::PlcMarkers(*b"1R"), true, machine);
+            self.show(Message::PlcMarkers(*b"1R"), machine);
             return;
         }
         let mut axes = machine.axes.of(self.number);
@@ -454,7 +451,7 @@ impl Channel {
             .take_geometry_strobe(&machine.magazine, exchange, offsets);
         let spindle = machine.spindles.of_mut(self.number);
         if let Some(code) = spindle.take_markers(exchange) {
-            self.show(Message::PlcMarkers(code), true, machine);
+            self.show(Message::PlcMarkers(code), machine);
         }
     }
 

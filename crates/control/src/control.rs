@@ -308,7 +308,7 @@ impl Control {
             .machine
             .messages
             .of_channel(channel)
-            .show(refused, false, block);
+            .show(refused, block);
         false
     }
 

@@ -74,7 +74,7 @@ impl Ordered {
                     axis: axis.number(),
                     why,
                 };
-                machine.messages.of_machine().show(message, false, None);
+                machine.messages.of_machine().show(message, None);
             }
             Err(_) => {}
         }

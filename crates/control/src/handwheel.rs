@@ -127,7 +127,7 @@ impl Handwheel {
         let rules = &reach.rules.handwheel;
         let missing = rules.kind != Kind::None && !inputs.connected;
         if missing && !self.missing {
-            reach.messages.show(MISSING, false, reach.block);
+            reach.messages.show(MISSING, reach.block);
         } else if self.missing && !missing {
             reach.messages.remove(&MISSING);
         }

@@ -339,7 +339,7 @@ impl Kernel {
         let operation = self.machine.link.list().operation_parameters();
         if operation.power_interrupted {
             let message = Message::Plain(MessageId::PowerInterrupted);
-            self.machine.messages.of_machine().show(message, false, None);
+            self.machine.messages.of_machine().show(message, None);
         }
     }
 

@@ -126,6 +126,7 @@ mod track;
 mod upkeep;
 mod view;
 mod voltage;
+mod watch;
 mod window;
 
 pub use axis::AxisId;
@@ -150,4 +151,5 @@ pub use spindle::{SpindleState, SpindleWiring};
 pub use test_run::{TestReport, TestState};
 pub use tool::{Edges, MovedTool, Oversize, Tool, ToolLife};
 pub use view::ChannelView;
+pub use watch::AxisWatch;
 pub use window::Window;

@@ -40,12 +40,15 @@ pub(crate) fn follow(axes: &mut OwnAxes, nc: &Image, permission: Permission) {
 
 /// Closes the loop of an axis when that is wanted and nothing is wrong with it, or opens it.
 fn hold(unit: &mut AxisUnit, wanted: bool) {
-    let sound = unit.servo.fault().is_none_or(Fault::cancellable);
+    let sound = unit.servo.fault().is_none_or(Fault::keeps_loop);
     if wanted && sound && !unit.servo.closed() {
         // A clamped axis goes back to its nominal position, unless it was moved meanwhile.
         let moved = (unit.servo.actual_mm() - unit.nominal).abs();
         if moved > unit.parameters.monitoring.standstill_mm {
+            // The path goes on from there: nothing goes back.
+            let left_at = unit.left_at;
             unit.transfer();
+            unit.left_at = left_at;
         }
         unit.servo.close();
     } else if !wanted && unit.servo.closed() {
@@ -72,8 +75,8 @@ fn enable(unit: &mut AxisUnit, enabled: bool) {
     unit.servo.set_enabled(!unit.halted);
 }
 
-/// Faults of the loops and of the spindle's encoder: message and machine stop [000:5162]. Whether there is a new
-/// one.
+/// Faults of the loops and of the spindle's encoder: message and machine stop [000:5162]. Whether one is new that
+/// stops the channel.
 pub(crate) fn show_faults(
     axes: &OwnAxes,
     spindle: &SpindleUnit,
@@ -87,8 +90,8 @@ pub(crate) fn show_faults(
         let Some(fault) = fault else { continue };
         let message = Message::axis(fault.message(), id, fault.letter());
         if !messages.contains(&message) {
-            messages.show(message, !fault.cancellable(), block);
-            found = true;
+            found |= fault.id().row().reaction.stops();
+            messages.show(message, block);
         }
     }
     found

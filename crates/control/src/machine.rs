@@ -2,6 +2,7 @@
 //! survives power-off.
 
 use bahn_exchange::{Bit, BitArea, Exchange, signal};
+use bahn_parameters::fault::{FaultId, Reaction};
 use bahn_parameters::operation::{HandwheelParameters, Station};
 use bahn_parameters::plc::PlcParameters;
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
@@ -290,7 +291,7 @@ impl MachineSide {
             file: error.file,
             line: error.line,
         };
-        self.messages.of_machine().show(message, true, block);
+        self.messages.of_machine().show(message, block);
         false
     }
 
@@ -315,36 +316,41 @@ impl MachineSide {
         }
         let circuit = self.emergency.circuit();
         if circuit == Circuit::VoltageMissing {
-            self.messages.of_machine().show(VOLTAGE_MISSING, false, block);
+            self.messages.of_machine().show(VOLTAGE_MISSING, block);
         } else if self.messages.contains(&VOLTAGE_MISSING) {
             self.messages.remove(&VOLTAGE_MISSING);
         }
-        match circuit {
-            Circuit::Ready if !self.loops_closed => CircuitOrder::CloseLoops,
+        let fault = match circuit {
+            Circuit::Ready if !self.loops_closed => return CircuitOrder::CloseLoops,
             Circuit::PowerInterrupted | Circuit::VoltageMissing | Circuit::Testing | Circuit::Ready => {
-                CircuitOrder::Nothing
+                return CircuitOrder::Nothing;
             }
             Circuit::Defective => {
                 if !self.messages.is_fatal() {
                     let defective = Message::Plain(MessageId::EmergencyStopDefective);
-                    self.messages.of_machine().show(defective, true, block);
+                    self.messages.of_machine().show(defective, block);
                 }
-                CircuitOrder::OpenLoops
+                FaultId::EmergencyStopDefective
             }
             Circuit::EmergencyStop | Circuit::VoltageBack => {
                 let nc = self.memory.first().nc();
-                if nc.bit(signal::EMERGENCY_STOP_AS_NC_STOP) {
-                    CircuitOrder::StopSilently
-                } else {
-                    CircuitOrder::Stop
+                match nc.bit(signal::EMERGENCY_STOP_AS_NC_STOP) {
+                    true => FaultId::EmergencyStopAsNcStop,
+                    false => FaultId::ExternalEmergencyStop,
                 }
             }
+        };
+        match fault.row().reaction {
+            Reaction::ControlReadyOff => CircuitOrder::OpenLoops,
+            Reaction::AllLoopsOpen => CircuitOrder::StopSilently,
+            Reaction::RampThenOpen => CircuitOrder::Stop,
+            _ => CircuitOrder::Nothing,
         }
     }
 
     /// The stop of the circuit is reported.
     pub fn show_emergency_stop(&mut self, block: Option<BlockRef>) {
-        self.messages.of_machine().show(EMERGENCY_STOP, false, block);
+        self.messages.of_machine().show(EMERGENCY_STOP, block);
     }
 
     /// The silent stop of M2827 is over with the control voltage.
@@ -383,16 +389,9 @@ impl MachineSide {
 
     /// CE: clears a message, and what it stands for.
     pub fn clear_message(&mut self) -> bool {
-        let circuit = self.emergency.circuit();
-        let may = |message: &Message| match message {
-            // Only when the control voltage is back [000:6203-6204].
-            Message::Plain(MessageId::ExternalEmergencyStop) => {
-                matches!(circuit, Circuit::VoltageBack | Circuit::Ready)
-            }
-            Message::Plain(MessageId::RelayExtDcVoltageMissing) => false,
-            _ => true,
-        };
-        let Some(message) = self.messages.clear(self.memory.first_mut(), may) else {
+        // EMERGENCY STOP only when the control voltage is back [000:6203-6204].
+        let back = matches!(self.emergency.circuit(), Circuit::VoltageBack | Circuit::Ready);
+        let Some(message) = self.messages.clear(self.memory.first_mut(), back) else {
             return false;
         };
         match message {

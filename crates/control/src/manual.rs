@@ -284,9 +284,7 @@ impl Manual {
             unit.at_limit = None;
         }
         if let Some(direction) = reached {
-            reach
-                .messages
-                .show(Message::limit(id, direction), false, reach.block);
+            reach.messages.show(Message::limit(id, direction), reach.block);
         } else if let Some(direction) = left {
             reach.messages.remove(&Message::limit(id, direction));
         }

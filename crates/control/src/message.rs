@@ -5,6 +5,7 @@
 
 use bahn_exchange::{Exchange, signal};
 use bahn_interpreter::ProgramError;
+use bahn_parameters::fault::{Clearing, FaultId, Reaction};
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_path::BlockRef;
 
@@ -152,6 +153,20 @@ impl Message {
         }
     }
 
+    /// Its row in the table of faults; a message of the PLC as it is without M2815.
+    pub fn fault(&self) -> FaultId {
+        match self {
+            Message::Plain(id) => of_plain(*id),
+            Message::Axis { id, letter, .. } => of_axis(*id, *letter),
+            Message::Limit { .. } => FaultId::Limit,
+            Message::PlcMarkers(_) => FaultId::PlcMarkers,
+            Message::PlcStopped { .. } => FaultId::PlcStopped,
+            Message::Plc(_) => FaultId::PlcMessage,
+            Message::Program(_) => FaultId::Program,
+            Message::HandOver { .. } => FaultId::HandOver,
+        }
+    }
+
     fn is_emergency_stop(&self) -> bool {
         *self == Message::Plain(MessageId::ExternalEmergencyStop)
     }
@@ -162,6 +177,44 @@ impl Message {
             _ => None,
         }
     }
+}
+
+/// The row of a message that needs nothing else.
+fn of_plain(id: MessageId) -> FaultId {
+    let of_machine = [
+        FaultId::PowerInterrupted,
+        FaultId::VoltageMissing,
+        FaultId::EmergencyStopDefective,
+        FaultId::ExternalEmergencyStop,
+        FaultId::EmergencyStopPlc,
+        FaultId::Key,
+        FaultId::SpindleSpeed,
+    ];
+    let mut rows = of_machine.into_iter();
+    rows.find(|fault| fault.row().message == Some(id))
+        .unwrap_or(FaultId::Other)
+}
+
+/// The row of a message of an axis.
+fn of_axis(id: MessageId, letter: Option<&str>) -> FaultId {
+    let of_loops = [
+        FaultId::Positioning,
+        FaultId::GrossDeviation,
+        FaultId::GrossVoltage,
+        FaultId::GrossMovement,
+        FaultId::GrossStandstill,
+        FaultId::GrossOffset,
+        FaultId::SpeedController,
+        FaultId::EncoderAmplitude,
+        FaultId::EncoderEdges,
+        FaultId::EncoderMarks,
+    ];
+    let mut rows = of_loops.into_iter();
+    rows.find(|fault| {
+        let row = fault.row();
+        row.message == Some(id) && row.letter == letter.unwrap_or_default()
+    })
+    .unwrap_or(FaultId::Other)
 }
 
 /// A message with how it is shown.
@@ -177,6 +230,16 @@ pub struct Shown {
     pub block: Option<BlockRef>,
     /// The channel that says it, from 0; `None` for the machine as a whole.
     pub channel: Option<usize>,
+}
+
+impl Shown {
+    /// Its row in the table of faults.
+    pub fn fault(&self) -> FaultId {
+        match self.message.fault() {
+            FaultId::PlcMessage if self.flashing => FaultId::PlcMessageFlashing,
+            fault => fault,
+        }
+    }
 }
 
 /// The messages that are shown, and their history.
@@ -230,8 +293,13 @@ impl Messages {
         self
     }
 
-    /// Shows a message; the same one again changes nothing.
-    pub fn show(&mut self, message: Message, flashing: bool, block: Option<BlockRef>) {
+    /// Shows a message; the same one again changes nothing. Whether it flashes is said by its fault.
+    pub fn show(&mut self, message: Message, block: Option<BlockRef>) {
+        let fault = message.fault();
+        self.show_as(fault, message, block);
+    }
+
+    fn show_as(&mut self, fault: FaultId, message: Message, block: Option<BlockRef>) {
         let own = self.channel;
         let is_same = |shown: &Shown| {
             let other = shown.channel.zip(own).is_some_and(|(one, other)| one != other);
@@ -242,7 +310,7 @@ impl Messages {
         }
         let shown = Shown {
             message,
-            flashing,
+            flashing: fault.row().flashes(),
             time_us: self.now_us,
             block,
             channel: self.channel,
@@ -264,9 +332,10 @@ impl Messages {
         !self.news.is_empty()
     }
 
-    /// A flashing message is shown: the control does nothing more.
+    /// A message is shown that switches "control is ready" off: the control does nothing more.
     pub fn is_fatal(&self) -> bool {
-        self.shown.iter().any(|shown| shown.flashing)
+        let fatal = |shown: &Shown| shown.fault().row().reaction == Reaction::ControlReadyOff;
+        self.shown.iter().any(fatal)
     }
 
     pub fn contains(&self, message: &Message) -> bool {
@@ -277,12 +346,14 @@ impl Messages {
         std::mem::take(&mut self.news)
     }
 
-    /// CE: clears the first message that does not flash and that `may` be cleared.
-    pub fn clear(&mut self, exchange: &mut Exchange, may: impl Fn(&Message) -> bool) -> Option<Message> {
-        let at = self
-            .shown
-            .iter()
-            .position(|shown| !shown.flashing && may(&shown.message))?;
+    /// CE: clears the first message that it clears, with the control voltage `back` or not.
+    pub fn clear(&mut self, exchange: &mut Exchange, back: bool) -> Option<Message> {
+        let may = |shown: &Shown| match shown.fault().row().clearing {
+            Clearing::Ce | Clearing::CeOrPlc => true,
+            Clearing::CeWithVoltage => back,
+            Clearing::Itself | Clearing::PowerOff => false,
+        };
+        let at = self.shown.iter().position(may)?;
         let message = self.shown.remove(at).message;
         if let Some(marker) = message
             .plc_number()
@@ -304,11 +375,18 @@ impl Messages {
         self.channel = None;
         let nc = exchange.nc();
         let flashes = nc.bit(signal::PLC_MESSAGE_FLASHES);
+        let fault = match flashes {
+            true => FaultId::PlcMessageFlashing,
+            false => FaultId::PlcMessage,
+        };
         let mut any = false;
         for (number, marker) in (0..).zip(signal::PLC_MESSAGES.iter()) {
             if nc.bit(marker) {
                 any = true;
-                self.show(Message::Plc(number), flashes, block);
+                if flashes {
+                    self.flash(&Message::Plc(number));
+                }
+                self.show_as(fault, Message::Plc(number), block);
             }
         }
         self.shown.retain(|shown| {
@@ -319,8 +397,14 @@ impl Messages {
             shown.flashing || marker.is_none_or(|marker| nc.bit(marker))
         });
         if flashes && !any {
-            self.show(Message::Plain(MessageId::EmergencyStopPlc), true, block);
+            self.show(Message::Plain(MessageId::EmergencyStopPlc), block);
         }
+    }
+
+    /// A message that is shown begins to flash.
+    fn flash(&mut self, message: &Message) {
+        let shown = self.shown.iter_mut().filter(|shown| shown.message == *message);
+        shown.for_each(|shown| shown.flashing = true);
     }
 
     /// M2190 and M2191.
@@ -389,7 +473,7 @@ mod tests {
         }
         messages.follow_plc(&exchange, None);
         assert_eq!(messages.shown().len(), 2);
-        assert_eq!(messages.clear(&mut exchange, |_| true), Some(Message::Plc(5)));
+        assert_eq!(messages.clear(&mut exchange, true), Some(Message::Plc(5)));
         exchange.begin_scan();
         assert_eq!(
             marker(5).map(|m| exchange.plc().bit(m)),
@@ -400,6 +484,21 @@ mod tests {
         plc_sets(&mut exchange, marker(7).unwrap_or(signal::NC_START), false);
         messages.follow_plc(&exchange, None);
         assert!(messages.shown().is_empty());
+    }
+
+    /// M2815 acts on a message that is shown, too [000:6625-6633].
+    #[test]
+    fn m2815_makes_a_shown_message_flash() {
+        let mut exchange = Exchange::default();
+        let mut messages = Messages::default();
+        plc_sets(&mut exchange, signal::PLC_MESSAGES.get(3).unwrap(), true);
+        messages.follow_plc(&exchange, None);
+        assert!(!messages.is_fatal());
+        plc_sets(&mut exchange, signal::PLC_MESSAGE_FLASHES, true);
+        messages.follow_plc(&exchange, None);
+        assert!(messages.is_fatal());
+        assert_eq!(messages.shown().len(), 1);
+        assert_eq!(messages.clear(&mut exchange, true), None);
     }
 
     #[test]
@@ -413,10 +512,6 @@ mod tests {
             Some("EMERGENCY STOP PLC")
         );
         assert!(messages.is_fatal());
-        assert_eq!(
-            messages.clear(&mut exchange, |_| true),
-            None,
-            "CE does not clear it"
-        );
+        assert_eq!(messages.clear(&mut exchange, true), None, "CE does not clear it");
     }
 }

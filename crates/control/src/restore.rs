@@ -89,6 +89,12 @@ impl Restoration {
         let mut away = false;
         for unit in axes.iter_mut() {
             if let Some(left_at) = unit.left_at.take() {
+                // What is clamped stays where its clamp holds it, unless it was moved (inferred).
+                let held = !unit.servo.closed()
+                    && (left_at - unit.nominal).abs() <= unit.parameters.monitoring.standstill_mm;
+                if held {
+                    unit.stand(left_at);
+                }
                 target[unit.axis] = left_at;
                 away |= left_at != unit.nominal;
             }
@@ -244,14 +250,17 @@ fn lead_to(target: &Position, site: &mut Site) -> bool {
         .all(there);
     let tool_there = axes.iter().filter(|unit| unit.axis == tool_axis).all(there);
     for unit in axes.iter_mut().filter(|unit| !unit.is_plc_axis()) {
-        if !(unit.servo.closed() && unit.enabled) {
-            continue;
-        }
         let turn = if unit.axis == tool_axis {
             raise || others_there
         } else {
             !raise || tool_there
         };
+        if turn && !unit.ptp.is_at(target[unit.axis]) {
+            unit.ask_to_unclamp();
+        }
+        if !(unit.servo.closed() && unit.enabled) {
+            continue;
+        }
         unit.mover = Mover::Positioning;
         let feed = (unit.parameters.motion.plc_mm_min * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
         if now.stop || !turn {

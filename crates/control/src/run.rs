@@ -117,7 +117,7 @@ impl ProgramRun {
             Message::Program(error) => Some(error.block),
             _ => self.running_block(),
         };
-        site.messages.show(message, false, block);
+        site.messages.show(message, block);
     }
 
     /// NC start in an automatic mode.
@@ -578,7 +578,7 @@ impl ProgramRun {
             }
             Probed::Refused(message, block) => {
                 let sequence = self.source.interpreter().map_or(0, Interpreter::blocks_executed);
-                site.messages.show(message, false, Some(block));
+                site.messages.show(message, Some(block));
                 self.abort(Resume::Block(sequence), site);
             }
         }
@@ -595,7 +595,7 @@ impl ProgramRun {
                 ..
             } => {
                 let message = track::limit_message(&mut site.axes, axis, direction);
-                site.messages.show(message, false, Some(block));
+                site.messages.show(message, Some(block));
             }
             RunFault::Absent { axis, block, .. } => {
                 let error = feeder::absent(axis, block, self.source.interpreter());

@@ -177,7 +177,11 @@ impl Track {
             }
             unit.servo
                 .set_circular(element.is_some_and(|element| is_circular(element, unit.axis)));
-            if moved {
+            if moved && let Some(left_at) = &mut unit.left_at {
+                // CE has taken it over from where it is while the path came to a standstill: it goes back with NC start.
+                *left_at = value;
+                unit.follow(unit.nominal, time_s);
+            } else if moved {
                 unit.mover = Mover::Path;
                 unit.follow(value, time_s);
             } else {
@@ -189,7 +193,8 @@ impl Track {
     /// The axes stand elsewhere than the path: the PLC has moved them, corrected the datum or changed the
     /// tool length. The path then goes on from where they are, within the traverse range as it is now.
     pub fn regain(&mut self, site: &Site) {
-        if self.path.is_coupled() {
+        // Axes that were taken over from where an EMERGENCY STOP left them go back to the path with NC start.
+        if self.path.is_coupled() || site.axes.iter().any(|unit| unit.left_at.is_some()) {
             return;
         }
         // A tool call lets the tip stand elsewhere without a movement.

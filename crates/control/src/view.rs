@@ -1,8 +1,9 @@
 //! A channel to be looked at.
 
 use bahn_interpreter::Interpreter;
-use bahn_path::PathElement;
+use bahn_path::{PathElement, Position};
 
+use crate::axes::path_positions;
 use crate::channel::Channel;
 use crate::command::Mode;
 use crate::handshake::Waiting;
@@ -13,6 +14,7 @@ use crate::setup::Remembered;
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::upkeep::by_index;
+use crate::watch::AxisWatch;
 
 /// A channel of a control as of now.
 #[derive(Clone, Copy)]
@@ -93,6 +95,22 @@ impl<'a> ChannelView<'a> {
             .axes
             .owned(self.channel.number())
             .map(|unit| unit.axis.letter())
+    }
+
+    /// The axes that it has now, as the kernel moves them.
+    pub fn watch(&self) -> impl Iterator<Item = AxisWatch> + use<'a> {
+        self.machine.axes.owned(self.channel.number()).map(AxisWatch::of)
+    }
+
+    /// Where its axes are commanded to be, in the coordinates of its path.
+    pub fn commanded(&self) -> Position {
+        let [_, commanded] = path_positions(self.machine.axes.owned(self.number()), self.channel.chain());
+        commanded
+    }
+
+    /// Axes are being brought back to the contour, or are to be.
+    pub fn restores(&self) -> bool {
+        self.channel.run.restores()
     }
 
     /// The value of a signal; an axis that the channel does not have reads 0.

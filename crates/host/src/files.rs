@@ -232,7 +232,56 @@ pub struct NewFile {
     path: PathBuf,
     /// Beside the path; `None` when the path is no regular file (`/dev/stdout`) and is written to directly.
     temporary: Option<PathBuf>,
-    writer: BufWriter<File>,
+    writer: BufWriter<Medium>,
+}
+
+/// What a file is written on. In tests its room ends where they say.
+#[derive(Debug)]
+struct Medium {
+    file: File,
+    #[cfg(test)]
+    room: Option<usize>,
+}
+
+impl Medium {
+    fn new(file: File) -> Medium {
+        Medium {
+            file,
+            #[cfg(test)]
+            room: tests::ROOM.get(),
+        }
+    }
+
+    /// Everything is on the medium.
+    fn sync(&self) -> io::Result<()> {
+        self.file.sync_all()
+    }
+}
+
+impl Write for Medium {
+    #[cfg(not(test))]
+    #[inline]
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    #[cfg(test)]
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let Some(room) = &mut self.room else {
+            return self.file.write(bytes);
+        };
+        if *room == 0 {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        let fits = bytes.get(..(*room).min(bytes.len())).unwrap_or(bytes);
+        let written = self.file.write(fits)?;
+        *room -= written;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
 }
 
 impl NewFile {
@@ -253,7 +302,7 @@ impl NewFile {
             return Ok(NewFile {
                 path,
                 temporary: None,
-                writer: BufWriter::with_capacity(1 << 16, file),
+                writer: BufWriter::with_capacity(1 << 16, Medium::new(file)),
             });
         }
         let name = path
@@ -272,7 +321,7 @@ impl NewFile {
         Ok(NewFile {
             path,
             temporary: Some(temporary),
-            writer: BufWriter::with_capacity(1 << 16, file),
+            writer: BufWriter::with_capacity(1 << 16, Medium::new(file)),
         })
     }
 
@@ -290,7 +339,7 @@ impl NewFile {
         let Some(temporary) = &self.temporary else {
             return Ok(());
         };
-        self.writer.get_ref().sync_all()?;
+        self.writer.get_ref().sync()?;
         fs::rename(temporary, &self.path)?;
         temporaries().retain(|known| known != temporary);
         self.temporary = None;
@@ -328,5 +377,45 @@ pub fn sync_folder(path: &Path) {
         .unwrap_or(Path::new("."));
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+    use std::cell::Cell;
+
+    thread_local! {
+        /// So many bytes find room in each file that is begun on this thread.
+        pub(crate) static ROOM: Cell<Option<usize>> = const { Cell::new(None) };
+    }
+
+    /// The medium is full behind any byte: what was there stays, nothing half written is left, and the next try with
+    /// room writes it.
+    #[test]
+    fn a_full_medium_leaves_what_was_there() {
+        let folder = std::env::temp_dir().join(format!("bahn-full-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("control.toml");
+        fs::write(&path, "before").unwrap();
+        let text = vec![b'x'; 300];
+        let put = || {
+            let mut file = NewFile::create(&path)?;
+            file.write_all(&text)
+                .map_err(|error| cannot("write", &path, &error))?;
+            file.finish()
+        };
+        for room in 0..text.len() {
+            ROOM.set(Some(room));
+            assert!(put().is_err(), "{room}");
+            assert_eq!(fs::read(&path).unwrap(), b"before", "{room}");
+            assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "{room}");
+        }
+        ROOM.set(Some(text.len()));
+        put().unwrap();
+        ROOM.set(None);
+        assert_eq!(fs::read(&path).unwrap(), text);
+        fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -75,6 +75,7 @@ mod script;
 mod table_kind;
 mod text;
 pub mod tool_table;
+pub mod torture;
 mod trial;
 pub mod tuning;
 

@@ -129,15 +129,18 @@ impl Machine {
             Fault::Drive('S', kind) => self.spindle_mut()?.fault = Some(*kind),
             Fault::Drive(letter, kind) => self.axis_mut(*letter)?.set_drive_fault(Some(*kind)),
             Fault::Offset(letter, volts) => self.axis_mut(*letter)?.offset = *volts,
-            Fault::Input(input, on) => {
+            Fault::Input(input, fault) => {
                 self.stuck.retain(|(stuck, _)| stuck != input);
-                self.stuck.push((*input, *on));
+                self.stuck.push((*input, *fault));
             }
+            Fault::Brake(letter) => self.axis_mut(*letter)?.brake_lost = true,
+            Fault::Clamp(letter) => self.axis_mut(*letter)?.jammed = true,
             Fault::Device(name, kind) => return self.device_fault(name, Some(*kind)),
             Fault::Relay(kind) => self.chain.fault = Some(*kind),
             Fault::ToolLost => self.magazine_mut()?.lose(),
             Fault::ProbeNotReady => self.probe()?.ready = false,
             Fault::ProbeBattery => self.probe()?.battery_low = true,
+            Fault::ProbeEarly => self.probe()?.early = true,
         }
         Ok(())
     }
@@ -213,6 +216,7 @@ impl Machine {
                 let probe = self.probe()?;
                 probe.ready = true;
                 probe.battery_low = false;
+                probe.early = false;
             }
             "S" => {
                 let spindle = self.spindle_mut()?;
@@ -234,6 +238,8 @@ impl Machine {
         let axis = self.axis_mut(letter)?;
         axis.set_drive_fault(None);
         axis.set_encoder_fault(None);
+        axis.brake_lost = false;
+        axis.jammed = false;
         Ok(())
     }
 }

@@ -16,6 +16,13 @@ pub enum DriveFault {
     Runaway,
     /// The drive turns the other way: its wires are exchanged.
     Reversed,
+    /// The drive turns with a part of the speed only, [`DriveFault::SLOW`].
+    Slow,
+}
+
+impl DriveFault {
+    /// What is left of the speed of a slow drive.
+    pub const SLOW: f64 = 0.3;
 }
 
 /// The true state of an axis, which no control sees.
@@ -37,6 +44,12 @@ pub struct AxisState {
     pub clamped: bool,
     /// Force of the motor in the last step, N or Nm.
     pub force: f64,
+    /// The place of its nominal value output.
+    pub output: usize,
+    /// Without power friction and brake brake it at least so, mm/s² or degrees/s²; less than 0 when it falls.
+    pub braking: f64,
+    /// So much at most the motor accelerates it, mm/s² or degrees/s².
+    pub motor: f64,
 }
 
 /// A switch that is closed within a range of the travel.
@@ -95,6 +108,10 @@ pub(crate) struct Axis {
     pub powered: bool,
     pub clamped: bool,
     fault: Option<DriveFault>,
+    /// The brake does not hold.
+    pub brake_lost: bool,
+    /// Something holds it that nobody knows of.
+    pub jammed: bool,
     /// Acceleration by the motor in the last step.
     driven: f64,
     /// Acceleration by a force from outside.
@@ -193,6 +210,8 @@ impl Amplifier {
     }
 }
 
+/// The travel of an axis that has no ends.
+const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 /// Speeds below this count as standing, units/s.
 const STANDING: f64 = 1e-12;
 
@@ -207,9 +226,7 @@ impl Axis {
         } else {
             1000.0
         };
-        let travel = section
-            .range("travel")
-            .unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let travel = section.range("travel").unwrap_or(ENDLESS);
         let start = section.number("start", -1e6..=1e6).unwrap_or(0.0);
         if !(travel[0]..=travel[1]).contains(&start) {
             section.fault_at("start", "start lies outside travel".to_owned());
@@ -270,6 +287,8 @@ impl Axis {
             powered: false,
             clamped: false,
             fault: None,
+            brake_lost: false,
+            jammed: false,
             driven: 0.0,
             push: 0.0,
             speed: 0.0,
@@ -340,11 +359,11 @@ impl Axis {
             };
             acceleration += self.driven;
         } else {
-            friction += self.brake;
-            stiction += self.brake;
+            friction += self.held();
+            stiction += self.held();
         }
         let before = self.speed;
-        self.speed = if self.clamped {
+        self.speed = if self.clamped || self.jammed {
             0.0
         } else {
             rubbed(before, acceleration, friction, stiction, step_s)
@@ -364,6 +383,11 @@ impl Axis {
         }
     }
 
+    /// The acceleration by which the brake holds.
+    fn held(&self) -> f64 {
+        if self.brake_lost { 0.0 } else { self.brake }
+    }
+
     /// What the drive makes of its nominal voltage, V.
     #[inline]
     fn volts_at_drive(&mut self) -> f64 {
@@ -371,6 +395,7 @@ impl Axis {
         match self.fault {
             Some(DriveFault::Runaway) => volts = 10.0,
             Some(DriveFault::Reversed) => volts = -volts,
+            Some(DriveFault::Slow) => volts *= DriveFault::SLOW,
             _ => {}
         }
         if self.noise_volts > 0.0 {
@@ -459,8 +484,11 @@ impl Axis {
             speed_per_min: self.speed * 60.0,
             volts: self.volts,
             powered: self.powered,
-            clamped: self.clamped,
+            clamped: self.clamped || self.jammed,
             force: self.driven / self.per_force,
+            output: self.output,
+            braking: self.friction + self.held() - self.weight.abs() - self.push.abs(),
+            motor: self.motor_max,
         }
     }
 }

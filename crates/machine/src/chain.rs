@@ -19,6 +19,28 @@ pub enum RelayFault {
     Open,
 }
 
+/// How a contact at an input can fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactFault {
+    /// It always reads so.
+    Stuck(bool),
+    /// It chatters: every [`ContactFault::CHATTER_US`] it reads the other way.
+    Bouncing,
+}
+
+impl ContactFault {
+    /// So long a chattering contact stays as it is, µs.
+    pub const CHATTER_US: u64 = 17_000;
+
+    /// What is read of a contact at a time that would read `level`.
+    pub(crate) fn level(self, time_us: u64, level: bool) -> bool {
+        match self {
+            ContactFault::Stuck(level) => level,
+            ContactFault::Bouncing => level ^ (time_us / ContactFault::CHATTER_US % 2 == 1),
+        }
+    }
+}
+
 /// See the module.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
@@ -149,10 +171,10 @@ impl Chain {
 
     /// What the control sees at its acknowledgement: a wire that sticks at a level says the same to the NC as
     /// to the PLC.
-    pub fn acknowledged(&self, stuck: &[(usize, bool)]) -> bool {
+    pub fn acknowledged(&self, stuck: &[(usize, ContactFault)], time_us: u64) -> bool {
         let level = self.acknowledgement.and_then(|contact| {
-            let (_, level) = stuck.iter().rev().find(|(input, _)| *input == contact.input())?;
-            Some(contact.says(*level))
+            let (_, fault) = stuck.iter().rev().find(|(input, _)| *input == contact.input())?;
+            Some(contact.says(fault.level(time_us, contact.says(self.voltage()))))
         });
         level.unwrap_or_else(|| self.voltage())
     }

@@ -11,6 +11,15 @@ pub enum DeviceFault {
     Jammed,
     /// It moves, but none of its switches closes.
     NoFeedback,
+    /// It moves, and its second switch stays closed all the time.
+    Permanent,
+    /// It moves slowly, [`DeviceFault::SLOW`] times as long.
+    Slow,
+}
+
+impl DeviceFault {
+    /// So many times as long a slow thing moves.
+    pub const SLOW: f64 = 8.0;
 }
 
 /// The true state of such a thing.
@@ -103,10 +112,14 @@ impl Device {
         if self.fault == Some(DeviceFault::Jammed) {
             return;
         }
+        let [mut back, mut forth] = self.speed;
+        if self.fault == Some(DeviceFault::Slow) {
+            (back, forth) = (back / DeviceFault::SLOW, forth / DeviceFault::SLOW);
+        }
         self.position = if self.forth {
-            (self.position + self.speed[1]).min(1.0)
+            (self.position + forth).min(1.0)
         } else {
-            (self.position - self.speed[0]).max(0.0)
+            (self.position - back).max(0.0)
         };
     }
 
@@ -122,7 +135,8 @@ impl Device {
 
     pub fn set_inputs(&self, inputs: &mut [bool; INPUTS]) {
         let seen = self.fault != Some(DeviceFault::NoFeedback);
-        for (contact, reached) in self.inputs.iter().zip([self.is_back(), self.is_forth()]) {
+        let stays = self.fault == Some(DeviceFault::Permanent);
+        for (contact, reached) in self.inputs.iter().zip([self.is_back(), self.is_forth() || stays]) {
             if let Some(contact) = contact {
                 contact.set(inputs, reached && seen);
             }

@@ -20,7 +20,24 @@ pub enum EncoderFault {
     /// Every second reference mark is seen at a wrong place: a dirty scale; monitoring C
     /// of distance-coded marks has to find it.
     Marks,
+    /// No reference mark is seen: its signal is lost.
+    NoMarks,
+    /// Every reference mark is seen twice: there is another one behind it, on a scale that is scratched.
+    Twice,
 }
+
+impl EncoderFault {
+    /// Only the marks are concerned: it counts as ever.
+    fn counts(self) -> bool {
+        matches!(
+            self,
+            EncoderFault::Marks | EncoderFault::NoMarks | EncoderFault::Twice
+        )
+    }
+}
+
+/// So many signal periods behind a mark that is seen twice it is seen again.
+const AGAIN_PERIODS: i64 = 20;
 
 /// A scale or rotary encoder, read at a position in mm or degrees.
 #[derive(Clone, Debug)]
@@ -154,19 +171,33 @@ impl Counter {
 
     /// Finds the marks on both sides of a position; a mark at the position itself is below.
     fn enclose(&mut self, position: f64) {
+        [self.below, self.above] = self.enclosing(position);
+        if self.fault == Some(EncoderFault::Twice) {
+            let behind = self.again();
+            let [below, above] = self.enclosing(position - behind);
+            self.below = self.below.max(below + behind);
+            self.above = self.above.min(above + behind);
+        }
+    }
+
+    /// So far behind a mark it is seen again.
+    fn again(&self) -> f64 {
+        (AGAIN_PERIODS * Encoder::STEPS) as f64 / self.steps_per_unit.abs()
+    }
+
+    fn enclosing(&self, position: f64) -> [f64; 2] {
         if let (Some(spacing), Some(first)) = (self.every, self.marks.first()) {
             let turn = ((position - first) / spacing).floor();
-            self.below = first + turn * spacing;
-            self.above = first + (turn + 1.0) * spacing;
-            return;
+            return [first + turn * spacing, first + (turn + 1.0) * spacing];
         }
         let next = self.marks.partition_point(|mark| *mark <= position);
-        self.above = self.marks.get(next).copied().unwrap_or(f64::INFINITY);
-        self.below = next
+        let above = self.marks.get(next).copied().unwrap_or(f64::INFINITY);
+        let below = next
             .checked_sub(1)
             .and_then(|last| self.marks.get(last))
             .copied()
             .unwrap_or(f64::NEG_INFINITY);
+        [below, above]
     }
 
     /// Notices the marks passed on the way to a position. The mark has its own place: the latched count
@@ -184,7 +215,7 @@ impl Counter {
     fn pass(&mut self, mark: f64, position: f64) {
         self.enclose(position);
         match self.fault {
-            None => self.latched = Some(self.steps(mark)),
+            None | Some(EncoderFault::Twice) => self.latched = Some(self.steps(mark)),
             Some(EncoderFault::Marks) => {
                 let moved = if self.is_even(mark) { 3 * Encoder::STEPS } else { 0 };
                 self.latched = Some(self.steps(mark) + moved);
@@ -221,7 +252,7 @@ impl Counter {
 
     /// The same once more, without the mark.
     pub fn look_at(&self, position: f64, speed: f64) -> Encoder {
-        let failing = self.fault.filter(|fault| *fault != EncoderFault::Marks);
+        let failing = self.fault.filter(|fault| !fault.counts());
         Encoder {
             count: if failing.is_some() {
                 self.frozen
@@ -236,7 +267,7 @@ impl Counter {
 
     /// Makes the encoder fail, or repairs it; what was not counted meanwhile stays lost.
     pub fn set_fault(&mut self, fault: Option<EncoderFault>, position: f64) {
-        let frozen = |fault: Option<EncoderFault>| fault.is_some_and(|fault| fault != EncoderFault::Marks);
+        let frozen = |fault: Option<EncoderFault>| fault.is_some_and(|fault| !fault.counts());
         match (frozen(self.fault), frozen(fault)) {
             (false, true) => self.frozen = self.steps(position),
             (true, false) => {
@@ -245,6 +276,7 @@ impl Counter {
             _ => {}
         }
         self.fault = fault;
+        self.enclose(position);
     }
 }
 

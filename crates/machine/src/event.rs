@@ -4,7 +4,7 @@ use bahn_servo::ANALOGUE_INPUTS;
 use bahn_servo::{HandwheelKey, INPUTS, WHEELS};
 
 use crate::axis::DriveFault;
-use crate::chain::RelayFault;
+use crate::chain::{ContactFault, RelayFault};
 use crate::device::DeviceFault;
 use crate::encoder::EncoderFault;
 
@@ -72,8 +72,12 @@ pub enum Fault {
     Drive(char, DriveFault),
     /// The offset of the amplifier of an axis jumps to this voltage, V.
     Offset(char, f64),
-    /// A PLC input always reads so.
-    Input(usize, bool),
+    /// The contact of a PLC input fails.
+    Input(usize, ContactFault),
+    /// The brake of an axis does not hold.
+    Brake(char),
+    /// Something holds an axis that nobody knows of.
+    Clamp(char),
     /// A thing with two states, or `gear`.
     Device(String, DeviceFault),
     /// The relay of the control voltage.
@@ -84,6 +88,8 @@ pub enum Fault {
     ProbeBattery,
     /// The arm of the magazine, or its shuttle, drops its tools.
     ToolLost,
+    /// The touch probe says that it is deflected whatever it touches.
+    ProbeEarly,
 }
 
 /// Why an event was refused.
@@ -147,14 +153,16 @@ tool NUMBER                         a tool put into the spindle by hand; 0 takes
 analogue INPUT VOLTS                an analogue input 0 to 7
 temperature INPUT CELSIUS           a Pt 100 input 0 to 7
 force AXIS NEWTON                   pushes an axis, N or Nm
-fault encoder AXIS|S amplitude|edges|stuck|marks
-fault drive AXIS|S dead|runaway|reversed
+fault encoder AXIS|S amplitude|edges|stuck|marks|no-marks|twice
+fault drive AXIS|S dead|runaway|reversed|slow
+fault brake AXIS                    it does not hold
+fault clamp AXIS                    something holds the axis
 fault offset AXIS VOLTS
-fault input I12 0|1                 a contact that sticks
-fault device THING|gear|magazine jammed|no-feedback
+fault input I12 0|1|bouncing        a contact that sticks, or chatters
+fault device THING|gear|magazine jammed|no-feedback|permanent|slow
 fault magazine lost                 the arm, or the shuttle, drops its tools
 fault relay slow MS | welded | open
-fault probe not-ready|battery
+fault probe not-ready|battery|early
 repair AXIS|S|THING|gear|magazine|I12|relay|probe|all
 ";
 
@@ -275,52 +283,72 @@ fn handwheel(rest: &[&str]) -> Result<Event, EventError> {
 fn fault(rest: &[&str]) -> Result<Fault, EventError> {
     match rest {
         ["encoder", axis, kind] => {
-            const FORM: &str = "fault encoder AXIS|S amplitude|edges|stuck|marks";
+            const FORM: &str = "fault encoder AXIS|S amplitude|edges|stuck|marks|no-marks|twice";
             let kind = match *kind {
                 "amplitude" => EncoderFault::Amplitude,
                 "edges" => EncoderFault::Edges,
                 "stuck" => EncoderFault::Stuck,
                 "marks" => EncoderFault::Marks,
+                "no-marks" => EncoderFault::NoMarks,
+                "twice" => EncoderFault::Twice,
                 _ => return Err(EventError::Form(FORM)),
             };
             Ok(Fault::Encoder(letter(axis, FORM)?, kind))
         }
         ["drive", axis, kind] => {
-            const FORM: &str = "fault drive AXIS|S dead|runaway|reversed";
+            const FORM: &str = "fault drive AXIS|S dead|runaway|reversed|slow";
             let kind = match *kind {
                 "dead" => DriveFault::Dead,
                 "runaway" => DriveFault::Runaway,
                 "reversed" => DriveFault::Reversed,
+                "slow" => DriveFault::Slow,
                 _ => return Err(EventError::Form(FORM)),
             };
             Ok(Fault::Drive(letter(axis, FORM)?, kind))
         }
+        ["brake", axis] => Ok(Fault::Brake(letter(axis, "fault brake AXIS")?)),
+        ["clamp", axis] => Ok(Fault::Clamp(letter(axis, "fault clamp AXIS")?)),
         ["offset", axis, volts] => Ok(Fault::Offset(
             letter(axis, "fault offset AXIS VOLTS")?,
             number(volts, -10, 10)?,
         )),
         ["input", input, state] => {
-            const FORM: &str = "fault input I12 0|1";
+            const FORM: &str = "fault input I12 0|1|bouncing";
             let input = input_number(input).ok_or(EventError::Form(FORM))?;
             match *state {
-                "0" => Ok(Fault::Input(input, false)),
-                "1" => Ok(Fault::Input(input, true)),
+                "0" => Ok(Fault::Input(input, ContactFault::Stuck(false))),
+                "1" => Ok(Fault::Input(input, ContactFault::Stuck(true))),
+                "bouncing" => Ok(Fault::Input(input, ContactFault::Bouncing)),
                 _ => Err(EventError::Form(FORM)),
             }
         }
-        ["device", name, "jammed"] => Ok(Fault::Device((*name).to_owned(), DeviceFault::Jammed)),
-        ["device", name, "no-feedback"] => Ok(Fault::Device((*name).to_owned(), DeviceFault::NoFeedback)),
         ["magazine", "lost"] => Ok(Fault::ToolLost),
         ["magazine", ..] => Err(EventError::Form("fault magazine lost")),
+        [
+            "device",
+            name,
+            kind @ ("jammed" | "no-feedback" | "permanent" | "slow"),
+        ] => {
+            let kind = match *kind {
+                "jammed" => DeviceFault::Jammed,
+                "no-feedback" => DeviceFault::NoFeedback,
+                "permanent" => DeviceFault::Permanent,
+                _ => DeviceFault::Slow,
+            };
+            Ok(Fault::Device((*name).to_owned(), kind))
+        }
         ["relay", "slow", delay] => Ok(Fault::Relay(RelayFault::Slow(number(delay, 0, 10_000)? as u32))),
         ["relay", "welded"] => Ok(Fault::Relay(RelayFault::Welded)),
         ["relay", "open"] => Ok(Fault::Relay(RelayFault::Open)),
         ["probe", "not-ready"] => Ok(Fault::ProbeNotReady),
         ["probe", "battery"] => Ok(Fault::ProbeBattery),
-        ["device", ..] => Err(EventError::Form("fault device THING|gear jammed|no-feedback")),
+        ["probe", "early"] => Ok(Fault::ProbeEarly),
+        ["device", ..] => Err(EventError::Form(
+            "fault device THING|gear|magazine jammed|no-feedback|permanent|slow",
+        )),
         ["relay", ..] => Err(EventError::Form("fault relay slow MS | welded | open")),
         _ => Err(EventError::Form(
-            "fault encoder|drive|offset|input|device|magazine|relay|probe ..",
+            "fault encoder|drive|brake|clamp|offset|input|device|magazine|relay|probe ..",
         )),
     }
 }

@@ -55,7 +55,7 @@ mod spindle;
 mod tool_probe;
 
 pub use axis::{AxisState, DriveFault};
-pub use chain::RelayFault;
+pub use chain::{ContactFault, RelayFault};
 pub use device::{DeviceFault, DeviceState};
 pub use encoder::EncoderFault;
 pub use event::{Event, EventError, Fault, KeyAction};

@@ -5,7 +5,7 @@ use bahn_servo::{
 };
 
 use crate::axis::{Axis, AxisState};
-use crate::chain::Chain;
+use crate::chain::{Chain, ContactFault};
 use crate::device::{Device, DeviceState};
 use crate::magazine::{Magazine, MagazineState};
 use crate::panel::Panel;
@@ -68,7 +68,7 @@ pub struct Machine {
     /// As the PLC set them, and as they arrive.
     outputs: [bool; OUTPUTS],
     live: [bool; OUTPUTS],
-    pub(crate) stuck: Vec<(usize, bool)>,
+    pub(crate) stuck: Vec<(usize, ContactFault)>,
     wires: Vec<Wire>,
 }
 
@@ -436,14 +436,21 @@ impl Machine {
         if let Some(magazine) = &self.magazine {
             magazine.set_inputs(inputs);
         }
-        for (input, on) in &self.stuck {
-            set(inputs, *input, *on);
+        for (input, fault) in &self.stuck {
+            if let Some(level) = inputs.get_mut(*input) {
+                *level = fault.level(self.time_us, *level);
+            }
         }
     }
 
     /// Sets the PLC outputs.
     pub fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]) {
         self.outputs = *outputs;
+    }
+
+    /// The PLC outputs as they were set last.
+    pub fn outputs(&self) -> &[bool; OUTPUTS] {
+        &self.outputs
     }
 
     /// Switches the output X41/34 "control is ready".
@@ -453,7 +460,12 @@ impl Machine {
 
     /// The acknowledgement at X42/4.
     pub fn control_ready(&self) -> bool {
-        self.chain.acknowledged(&self.stuck)
+        self.chain.acknowledged(&self.stuck, self.time_us)
+    }
+
+    /// No limit switch of an axis is actuated.
+    pub fn limit_switches_clear(&self) -> bool {
+        self.axes.iter().all(Axis::limits_clear)
     }
 
     /// The tool probe; none is never ready. It knows the tool that the magazine has put into the spindle.
@@ -487,6 +499,7 @@ impl Machine {
             [Some(x), Some(y), Some(z)] => probe.deflected([x, y, z]),
             _ => false,
         };
+        let deflected = deflected || probe.early && probe.inserted;
         Touch {
             deflected,
             ready: probe.inserted && probe.ready,

@@ -20,6 +20,8 @@ pub(crate) struct Probe {
     pub inserted: bool,
     pub ready: bool,
     pub battery_low: bool,
+    /// It says that it is deflected whatever it touches.
+    pub early: bool,
 }
 
 impl Probe {
@@ -49,6 +51,7 @@ impl Probe {
             inserted: section.flag("inserted").unwrap_or(false),
             ready: true,
             battery_low: false,
+            early: false,
         };
         section.finish();
         probe

@@ -164,6 +164,7 @@ impl Spindle {
         match self.fault {
             Some(DriveFault::Runaway) => 10.0 * self.gain,
             Some(DriveFault::Reversed) => -self.volts * self.gain,
+            Some(DriveFault::Slow) => self.volts * self.gain * DriveFault::SLOW,
             _ => self.volts * self.gain,
         }
     }
@@ -202,7 +203,10 @@ impl Spindle {
                 contact.set(inputs, on);
             }
         };
-        let nominal = self.nominal();
+        let nominal = match self.fault {
+            Some(DriveFault::Slow) => self.volts * self.gain,
+            _ => self.nominal(),
+        };
         let near = (self.motor - nominal).abs() <= nominal.abs() * self.tolerance;
         set(self.ready, self.fault != Some(DriveFault::Dead));
         set(self.at_speed, self.powered && nominal != 0.0 && near);

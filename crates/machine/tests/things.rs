@@ -284,10 +284,50 @@ fn wrong_events_say_what_is_right() {
     );
     assert_eq!(
         error("fault input I999 1"),
-        "this event is written `fault input I12 0|1`"
+        "this event is written `fault input I12 0|1|bouncing`"
     );
     assert_eq!(error("analogue 8 1"), "`8` is no number from 0 to 7");
     for word in Event::WORDS {
         assert!(Event::HELP.contains(&format!("{word} ")), "{word} is explained");
     }
+}
+
+/// A contact that chatters reads the other way every 17 ms: ten times in 170 ms.
+#[test]
+fn a_chattering_contact_changes_all_the_time() {
+    let mut machine = running(&with(""));
+    machine.apply("fault input I146 bouncing").unwrap();
+    let mut changes = 0;
+    let mut before = input(&mut machine, 146);
+    for _ in 0..170 {
+        milliseconds(&mut machine, 1);
+        let now = input(&mut machine, 146);
+        changes += u32::from(now != before);
+        before = now;
+    }
+    assert_eq!(changes, 10);
+    machine.apply("repair I146").unwrap();
+    assert!(!input(&mut machine, 146));
+}
+
+/// Held, X stands at full voltage; slow, it does 30 % of the speed; repaired, all of it.
+#[test]
+fn an_axis_is_held_or_slow() {
+    let mut machine = running(&with(""));
+    let mut way = |fault: &str| {
+        machine.apply("repair X").unwrap();
+        if !fault.is_empty() {
+            machine.apply(fault).unwrap();
+        }
+        machine.set_nominal(0, 0.9);
+        milliseconds(&mut machine, 50);
+        let from = machine.axis('X').unwrap().position;
+        milliseconds(&mut machine, 100);
+        machine.axis('X').unwrap().position - from
+    };
+    let whole = way("");
+    assert!(whole > 0.1, "{whole}");
+    assert_eq!(way("fault clamp X"), 0.0);
+    assert!((way("fault drive X slow") - 0.3 * whole).abs() < 1e-6 * whole);
+    assert!((way("") - whole).abs() < 1e-6 * whole);
 }

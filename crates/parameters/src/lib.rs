@@ -42,6 +42,7 @@ pub mod conformance;
 mod consistency;
 mod definition;
 mod error;
+pub mod fault;
 mod fn14;
 mod limits;
 mod list;

@@ -388,7 +388,7 @@ impl Axis {
     }
 
     fn is_sound(&self) -> bool {
-        self.fault.is_none_or(Fault::cancellable)
+        self.fault.is_none_or(Fault::keeps_loop)
     }
 
     /// Whether the residual voltage after POSITIONING ERROR is switched off.

@@ -1,6 +1,7 @@
 //! What the monitoring of an axis finds.
 
 use bahn_parameters::MessageId;
+use bahn_parameters::fault::{FaultId, Reaction};
 
 /// A fault of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,23 +45,35 @@ pub enum EncoderFault {
 }
 
 impl Fault {
-    /// The letter behind the message.
-    pub fn letter(self) -> Option<&'static str> {
-        Some(match self {
-            Fault::Positioning => return None,
-            Fault::Gross(GrossFault::Deviation) | Fault::MeasuringSystem(EncoderFault::Amplitude) => "A",
-            Fault::Gross(GrossFault::Voltage) | Fault::MeasuringSystem(EncoderFault::Edges) => "B",
-            Fault::Gross(GrossFault::Movement) | Fault::MeasuringSystem(EncoderFault::Position) => "C",
-            Fault::Gross(GrossFault::Standstill) => "D",
-            Fault::Gross(GrossFault::Offset) => "E",
-            Fault::Gross(GrossFault::SpeedController) => "3F",
-        })
+    /// Its row in the table of faults.
+    pub fn id(self) -> FaultId {
+        match self {
+            Fault::Positioning => FaultId::Positioning,
+            Fault::Gross(GrossFault::Deviation) => FaultId::GrossDeviation,
+            Fault::Gross(GrossFault::Voltage) => FaultId::GrossVoltage,
+            Fault::Gross(GrossFault::Movement) => FaultId::GrossMovement,
+            Fault::Gross(GrossFault::Standstill) => FaultId::GrossStandstill,
+            Fault::Gross(GrossFault::Offset) => FaultId::GrossOffset,
+            Fault::Gross(GrossFault::SpeedController) => FaultId::SpeedController,
+            Fault::MeasuringSystem(EncoderFault::Amplitude) => FaultId::EncoderAmplitude,
+            Fault::MeasuringSystem(EncoderFault::Edges) => FaultId::EncoderEdges,
+            Fault::MeasuringSystem(EncoderFault::Position) => FaultId::EncoderMarks,
+        }
     }
 
-    /// Whether CE clears it; the others need switching off. What clears a defective measuring system is not
-    /// said: as the gross errors (inferred).
+    /// The letter behind the message.
+    pub fn letter(self) -> Option<&'static str> {
+        Some(self.id().row().letter).filter(|letter| !letter.is_empty())
+    }
+
+    /// Whether CE clears it; the others need switching off.
     pub fn cancellable(self) -> bool {
-        self == Fault::Positioning
+        !self.id().row().flashes()
+    }
+
+    /// The loop stays closed with it.
+    pub fn keeps_loop(self) -> bool {
+        self.id().row().reaction != Reaction::ControlReadyOff
     }
 
     /// The message; the axis and the letter belong to it.

@@ -86,6 +86,10 @@ impl Monitor {
         parameters: &AxisParameters,
         timing: &Timing,
     ) -> Option<Fault> {
+        if !sample.enabled {
+            // With 0 V nothing is pre-controlled: the axis runs on by as much as its drive needs to stop (inferred).
+            self.limits = Method::Lag;
+        }
         let deviation = self.deviation(sample, method, parameters);
         if !sample.enabled {
             self.reset();
@@ -109,8 +113,8 @@ impl Monitor {
         }
     }
 
-    /// The lag against the limits of the method. After a change from lag to pre-control those of the lag
-    /// hold until it is run down (inferred).
+    /// The lag against the limits of the method. After a change from lag to pre-control, and after the feed enable
+    /// was withdrawn, those of the lag hold until it is run down (inferred).
     fn deviation(&mut self, sample: &Sample, method: Method, parameters: &AxisParameters) -> Option<Fault> {
         let (lag, precontrol) = (&parameters.lag, &parameters.precontrol);
         let amount = sample.lag_mm.abs();

@@ -205,3 +205,45 @@ fn remove_half_written(folder: &Path, file: &Path) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("bahn-state-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        folder
+    }
+
+    fn with_tool(tool: u32) -> String {
+        remembered::write(&Remembered {
+            tool,
+            q: vec![(1, 12.5), (100, -3.0)],
+            ..Remembered::default()
+        })
+    }
+
+    /// The supply goes behind any byte of the new file, before its name changes: the machine begins with what was
+    /// remembered before, and what is half written goes.
+    #[test]
+    fn a_power_failure_inside_a_write_keeps_what_was_remembered() {
+        let folder = folder("torn");
+        drop(State::open(&folder, 1).unwrap());
+        let (old, new) = (with_tool(3), with_tool(4));
+        fs::write(folder.join("control.toml"), &old).unwrap();
+        for written in 0..=new.len() {
+            let half = folder.join(".control.toml.4711.tmp");
+            fs::write(&half, &new.as_bytes()[..written]).unwrap();
+            let found = State::open(&folder, 1).unwrap();
+            assert_eq!(found.remembered.unwrap().tool, 3, "{written} bytes");
+            assert!(!half.exists() && found.warnings.is_empty(), "{written} bytes");
+        }
+        // The name changes in one step.
+        fs::write(folder.join(".control.toml.4711.tmp"), &new).unwrap();
+        fs::rename(folder.join(".control.toml.4711.tmp"), folder.join("control.toml")).unwrap();
+        assert_eq!(State::open(&folder, 1).unwrap().remembered.unwrap().tool, 4);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,278 @@
+//! The axes after every contour cycle: travel, speed, acceleration, enable, monitoring, the way behind a reaction.
+
+use bahn_control::{AxisWatch, ChannelView};
+use bahn_machine::{AxisState, Machine};
+use bahn_parameters::fault::FaultId;
+
+use super::rule::{Rule, Violation};
+
+/// Rounding of positions and speeds.
+const EPSILON: f64 = 1e-6;
+/// What a corner may make of the bound of the acceleration at once: four fifths of it over the window of the servo, as
+/// [`bahn_motion`](https://docs.rs/bahn-motion) passes corners, s.
+const CORNER_S: f64 = 0.8 * 0.15;
+/// The drive has no power so long behind a reaction at the latest: relay and PLC, s.
+const POWER_OFF_S: f64 = 0.06;
+/// What play, windows and the rest of a lag add to a way, mm or degrees.
+const REST: f64 = 0.5;
+
+/// What an axis did in the last cycle.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    watch: AxisWatch,
+    channel: usize,
+    /// The lag was beyond what is monitored.
+    beyond: bool,
+}
+
+/// Where an axis of the machine was when its power was taken.
+#[derive(Clone, Copy, Debug)]
+struct Braking {
+    output: usize,
+    position: f64,
+    bound: f64,
+}
+
+/// Follows the axes of a machine.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Axes {
+    before: Vec<Before>,
+    braking: Vec<Braking>,
+    /// The elements that were executed last, by channel.
+    sequences: Vec<u64>,
+    corners: Vec<bool>,
+}
+
+/// What is known of the moment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    pub time_us: u64,
+    pub cycle_s: f64,
+    /// The supply of the control is on, and it has not begun anew in this cycle.
+    pub on: bool,
+    pub loops_closed: bool,
+    /// A message is shown that switches "control is ready" off.
+    pub fatal: bool,
+    /// Something of the machine has failed: its axes are where they are.
+    pub broken: bool,
+    /// The way behind a reaction says nothing: the relay or a brake does not do what it should.
+    pub unbraked: bool,
+}
+
+impl Axes {
+    /// Forgets what was: another moment begins.
+    pub fn restart(&mut self) {
+        *self = Axes::default();
+    }
+
+    /// A cycle of a channel.
+    pub fn channel(&mut self, channel: ChannelView, moment: &Moment) -> Result<(), Violation> {
+        let number = channel.number();
+        if self.sequences.len() <= number {
+            self.sequences.resize(number + 1, 0);
+            self.corners.resize(number + 1, true);
+        }
+        let element = channel.element();
+        let sequence = element.map_or(0, |element| element.sequence);
+        let threaded =
+            element.is_some_and(|element| !matches!(element.override_law, bahn_path::OverrideLaw::Free));
+        if let Some(last) = self.sequences.get_mut(number) {
+            let passed = std::mem::replace(last, sequence) != sequence;
+            if let Some(corner) = self.corners.get_mut(number) {
+                *corner = passed || threaded;
+            }
+        }
+        for watch in channel.watch() {
+            self.axis(number, watch, moment)?;
+        }
+        Ok(())
+    }
+
+    fn axis(&mut self, channel: usize, watch: AxisWatch, moment: &Moment) -> Result<(), Violation> {
+        let place = self.before.iter().position(|before| before.watch.id == watch.id);
+        let before = place.and_then(|place| self.before.get(place)).copied();
+        let corner = self.corners.get(channel).copied().unwrap_or(true);
+        let judge = Judge {
+            watch: &watch,
+            moment,
+        };
+        judge.numbers()?;
+        judge.speed()?;
+        if let Some(before) = before.filter(|before| before.channel == channel) {
+            judge.travel(&before.watch)?;
+            judge.acceleration(&before.watch, corner)?;
+            judge.enable(&before.watch)?;
+            judge.monitoring(before.beyond)?;
+        }
+        let now = Before {
+            watch,
+            channel,
+            beyond: watch.closed && watch.lag.abs() > watch.lag_max,
+        };
+        match place.and_then(|place| self.before.get_mut(place)) {
+            Some(before) => *before = now,
+            None => self.before.push(now),
+        }
+        Ok(())
+    }
+
+    /// "Control is ready" has gone off: from here on the machine brakes.
+    pub fn brake(&mut self, plant: &Machine) {
+        self.braking = plant.axes().filter_map(|axis| Braking::of(&axis)).collect();
+    }
+
+    /// The way behind it.
+    pub fn distance(&self, plant: &Machine, moment: &Moment) -> Result<(), Violation> {
+        if moment.unbraked || !moment.fatal {
+            return Ok(());
+        }
+        for axis in plant.axes() {
+            let braking = self.braking.iter().find(|braking| braking.output == axis.output);
+            let Some(braking) = braking else { continue };
+            let way = (axis.position - braking.position).abs();
+            if way > braking.bound {
+                let values = format!(
+                    "{} travels {way:.3} behind the reaction, {:.3} are left to it",
+                    axis.letter, braking.bound
+                );
+                return Err(Violation::new(Rule::Distance, moment.time_us, values));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Braking {
+    /// `None` where nothing brakes it.
+    fn of(axis: &AxisState) -> Option<Braking> {
+        let braking = axis.braking.min(axis.motor);
+        // Until its power is off the motor may still accelerate it.
+        let speed = axis.speed_per_min.abs() / 60.0 + axis.motor.min(20_000.0) * POWER_OFF_S;
+        (braking > 0.0).then(|| Braking {
+            output: axis.output,
+            position: axis.position,
+            bound: speed * POWER_OFF_S + speed * speed / (2.0 * braking) + REST,
+        })
+    }
+}
+
+/// An axis in a cycle.
+struct Judge<'a> {
+    watch: &'a AxisWatch,
+    moment: &'a Moment,
+}
+
+impl Judge<'_> {
+    fn breaks(&self, rule: Rule, values: String) -> Result<(), Violation> {
+        let letter = self.watch.axis.letter();
+        let values = format!("{letter} (axis {}): {values}", self.watch.id.number());
+        Err(Violation::new(rule, self.moment.time_us, values))
+    }
+
+    fn numbers(&self) -> Result<(), Violation> {
+        let watch = self.watch;
+        let numbers = [
+            watch.commanded,
+            watch.speed_mm_s,
+            watch.actual,
+            watch.lag,
+            watch.volts,
+        ];
+        if numbers.iter().any(|number| !number.is_finite()) || watch.volts.abs() > 10.0 {
+            return self.breaks(Rule::Numbers, format!("{watch:?}"));
+        }
+        Ok(())
+    }
+
+    /// No axis is commanded out of its range; what has failed may have brought it there, and it may come back.
+    fn travel(&self, before: &AxisWatch) -> Result<(), Violation> {
+        // With its reference mark an axis is elsewhere without having moved.
+        let Some([least, greatest]) = self.watch.limits.filter(|_| before.limits.is_some()) else {
+            return Ok(());
+        };
+        let (at, was) = (self.watch.commanded, before.commanded);
+        let beyond = |at: f64| (least - at).max(at - greatest);
+        let moves = self.watch.closed && self.watch.speed_mm_s != 0.0;
+        // What a wrong reference mark put outside comes to a standstill there.
+        let inside = beyond(was) <= EPSILON || !self.moment.broken;
+        if moves && inside && beyond(at) > EPSILON && beyond(at) > beyond(was) + EPSILON {
+            return self.breaks(
+                Rule::Travel,
+                format!("commanded to {at:.6}, limits {least} and {greatest}"),
+            );
+        }
+        // The axis itself is no farther out than its lag may be.
+        let out = beyond(self.watch.actual);
+        if !self.moment.broken && out > self.watch.lag_max {
+            let actual = self.watch.actual;
+            return self.breaks(
+                Rule::Travel,
+                format!("is at {actual:.4}, limits {least} and {greatest}"),
+            );
+        }
+        Ok(())
+    }
+
+    fn speed(&self) -> Result<(), Violation> {
+        let (speed, rapid) = (self.watch.speed_mm_s, self.watch.rapid_mm_s);
+        if speed.abs() > rapid * (1.0 + EPSILON) + EPSILON {
+            return self.breaks(Rule::Speed, format!("{speed:.4} mm/s, rapid traverse {rapid:.4}"));
+        }
+        Ok(())
+    }
+
+    fn acceleration(&self, before: &AxisWatch, corner: bool) -> Result<(), Violation> {
+        let (watch, cycle_s) = (self.watch, self.moment.cycle_s);
+        // It stands at once without enable or loop, where it was taken over from its actual position, and where
+        // another one moves it.
+        let held = watch.closed && before.closed && !watch.halted && !before.halted;
+        let faultless = watch.fault.is_none() && before.fault.is_none();
+        if !held || !faultless || self.moment.fatal || watch.on_path != before.on_path {
+            return Ok(());
+        }
+        // MP1070 is no greater than MP1060.
+        let bound = watch.acceleration_mm_s2 * std::f64::consts::SQRT_2;
+        let step = (watch.speed_mm_s - before.speed_mm_s).abs();
+        let most = bound * if corner { cycle_s + CORNER_S } else { cycle_s };
+        if step > most * (1.0 + 1e-3) + 1e-4 {
+            let values = format!(
+                "{:.4} mm/s behind {:.4}: {:.1} mm/s², at most {:.1}",
+                watch.speed_mm_s,
+                before.speed_mm_s,
+                step / cycle_s,
+                most / cycle_s
+            );
+            return self.breaks(Rule::Acceleration, values);
+        }
+        Ok(())
+    }
+
+    fn enable(&self, before: &AxisWatch) -> Result<(), Violation> {
+        let watch = self.watch;
+        let without = |watch: &AxisWatch| !watch.closed || watch.halted;
+        let off = !self.moment.loops_closed || !self.moment.on;
+        if (off || without(watch) && without(before)) && watch.volts != 0.0 && !watch.closed {
+            return self.breaks(Rule::Enable, format!("{:.4} V without loop", watch.volts));
+        }
+        if without(watch) && without(before) && watch.volts != 0.0 {
+            return self.breaks(Rule::Enable, format!("{:.4} V without enable", watch.volts));
+        }
+        Ok(())
+    }
+
+    /// A lag beyond the limits is a fault by the next cycle.
+    fn monitoring(&self, beyond: bool) -> Result<(), Violation> {
+        let watch = self.watch;
+        let lag = watch.lag.abs();
+        if beyond && watch.closed && lag > watch.lag_max && watch.fault.is_none() {
+            let values = format!("lag {lag:.4} beyond {:.4} without a fault", watch.lag_max);
+            return self.breaks(Rule::Monitoring, values);
+        }
+        let gross = watch.fault.is_some_and(|fault| fault != FaultId::Positioning);
+        if beyond && watch.closed && lag > watch.lag_gross && !gross {
+            let values = format!("lag {lag:.4} beyond {:.4} is no gross fault", watch.lag_gross);
+            return self.breaks(Rule::Monitoring, values);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,212 @@
+//! Messages: each has a cause, and what must be said is said in its time.
+
+use std::collections::BTreeSet;
+
+use bahn_control::{AxisWatch, Control, Message, Shown};
+use bahn_parameters::fault::{FaultId, Reaction};
+
+use super::catalogue::Kind;
+use super::plan::Happening;
+use super::rule::{Rule, Violation};
+
+/// From the relay to the message: the longest drop-out of a sound one and a contour cycle, µs.
+const EMERGENCY_US: u64 = 60_000;
+/// From a signal of an encoder to the message, µs.
+const ENCODER_US: u64 = 20_000;
+
+/// A message that must come.
+#[derive(Clone, Debug)]
+struct Due {
+    fault: FaultId,
+    axis: Option<u8>,
+    until_us: u64,
+    why: String,
+}
+
+/// Follows what is said.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Messages {
+    causes: BTreeSet<Kind>,
+    /// What was done, in words.
+    done: Vec<String>,
+    due: Vec<Due>,
+    /// A message that switches "control is ready" off is shown since then.
+    pub fatal_since: Option<u64>,
+    scans: u64,
+}
+
+impl Messages {
+    /// Something happens.
+    pub fn happens(&mut self, happening: &Happening, control: &Control) {
+        self.causes.insert(happening.kind);
+        self.done.push(happening.what.clone());
+        let now = happening.time_us.max(control.time_us());
+        // What is put back need not be said any more.
+        let withdrawn = [
+            "repair",
+            "emergency release",
+            "voltage on",
+            "power",
+            "fault input I3",
+            "fault relay",
+        ];
+        if withdrawn.iter().any(|word| happening.what.starts_with(word)) {
+            self.due.clear();
+            return;
+        }
+        let stopped = control
+            .shown()
+            .iter()
+            .any(|shown| shown.fault() == FaultId::ExternalEmergencyStop);
+        if !control.loops_closed() || control.is_off() || is_fatal(control) || stopped || !self.due.is_empty()
+        {
+            return;
+        }
+        if ["emergency press", "voltage off"].contains(&happening.what.as_str())
+            && !self.has("relay")
+            && !self.has("I3")
+        {
+            self.due.push(Due {
+                fault: FaultId::ExternalEmergencyStop,
+                axis: None,
+                until_us: now + EMERGENCY_US,
+                why: happening.what.clone(),
+            });
+        }
+        let words: Vec<&str> = happening.what.split_whitespace().collect();
+        let ["fault", "encoder", letter, signal] = words.as_slice() else {
+            return;
+        };
+        let (fault, monitor) = match *signal {
+            "amplitude" => (FaultId::EncoderAmplitude, 0),
+            "edges" => (FaultId::EncoderEdges, 1),
+            _ => return,
+        };
+        let first = control.channel(0);
+        let named = |watch: &AxisWatch| letter.starts_with(watch.axis.letter());
+        // On a machine of several channels a letter of the plant may be another one of the control.
+        let axis = first
+            .filter(|_| control.channels() == 1)
+            .and_then(|view| view.watch().find(named));
+        let Some(axis) = axis.filter(|axis| axis.fault.is_none()) else {
+            return;
+        };
+        if axis.monitors.get(monitor).copied().unwrap_or(false) && axis.closed {
+            self.due.push(Due {
+                fault,
+                axis: Some(axis.id.number()),
+                until_us: now + ENCODER_US,
+                why: happening.what.clone(),
+            });
+        }
+    }
+
+    fn has(&self, word: &str) -> bool {
+        self.done.iter().any(|done| done.contains(word))
+    }
+
+    /// Something of the machine has failed, or the PLC was made to say something wrong.
+    pub fn is_broken(&self) -> bool {
+        self.causes.contains(&Kind::Fault) || self.causes.contains(&Kind::Plc)
+    }
+
+    /// The way of the axes behind a reaction is not the machine's usual one.
+    pub fn is_unbraked(&self) -> bool {
+        ["relay", "brake", "force", "drive", "offset", "input", "device"]
+            .iter()
+            .any(|word| self.has(word))
+    }
+
+    /// A message has come up; the undisturbed run says it, too, or not.
+    pub fn shown(&mut self, shown: &Shown, usual: bool, control: &Control) -> Result<(), Violation> {
+        let fault = shown.fault();
+        let of_axis = |due: &Due| match (&shown.message, due.axis) {
+            (Message::Axis { axis, .. }, Some(own)) => *axis == own,
+            _ => true,
+        };
+        self.due.retain(|due| !(due.fault == fault && of_axis(due)));
+        if fault.row().flashes() {
+            // The control does nothing more, and says nothing more.
+            self.due.clear();
+        }
+        if shown.flashing != fault.row().flashes() {
+            let text = control.shown_text(shown);
+            let values = format!(
+                "{text} flashes: {}, by the table: {}",
+                shown.flashing,
+                fault.row().flashes()
+            );
+            return Err(Violation::new(Rule::Reaction, control.time_us(), values));
+        }
+        if usual || self.explains(fault) {
+            return Ok(());
+        }
+        let text = control.shown_text(shown);
+        let place = shown.message.place().unwrap_or_default();
+        let values = format!("{text} {place} ({}) comes of {:?}", fault.name(), self.done);
+        Err(Violation::new(Rule::Cause, control.time_us(), values))
+    }
+
+    /// What was done may lead to a fault.
+    fn explains(&self, fault: FaultId) -> bool {
+        let any = |kinds: &[Kind]| kinds.iter().any(|kind| self.causes.contains(kind));
+        let stopped = any(&[Kind::Emergency, Kind::Power]);
+        any(&[Kind::Fault])
+            || match fault {
+                // What runs on without feed enable is driven back at once when it is there again.
+                FaultId::Positioning if any(&[Kind::Thing]) => true,
+                // Blocked drives may lag behind an EMERGENCY STOP [000:6157].
+                FaultId::Positioning
+                | FaultId::GrossDeviation
+                | FaultId::GrossMovement
+                | FaultId::GrossStandstill => any(&[Kind::Emergency]),
+                FaultId::PowerInterrupted => any(&[Kind::Power]),
+                FaultId::VoltageMissing | FaultId::ExternalEmergencyStop => stopped,
+                FaultId::PlcMessage => stopped || any(&[Kind::Thing, Kind::Plc, Kind::Use, Kind::AxisKey]),
+                FaultId::PlcMessageFlashing | FaultId::EmergencyStopPlc | FaultId::PlcMarkers => {
+                    any(&[Kind::Plc])
+                }
+                FaultId::Key | FaultId::Other => any(&[Kind::Use, Kind::AxisKey]) || stopped,
+                FaultId::Limit => any(&[Kind::AxisKey]) || stopped,
+                FaultId::Program | FaultId::SpindleSpeed => any(&[Kind::Power, Kind::Use]),
+                _ => false,
+            }
+    }
+
+    /// What must be so behind a cycle.
+    pub fn cycle(&mut self, control: &Control) -> Result<(), Violation> {
+        let now = control.time_us();
+        if let Some(due) = self.due.iter().find(|due| due.until_us < now) {
+            let values = format!("{} does not come of `{}`", due.fault.name(), due.why);
+            return Err(Violation::new(Rule::Reaction, now, values));
+        }
+        let scans = control.plc_scans();
+        let runs = std::mem::replace(&mut self.scans, scans) != scans;
+        if !is_fatal(control) || control.is_off() {
+            self.fatal_since = None;
+            return Ok(());
+        }
+        let since = *self.fatal_since.get_or_insert(now);
+        // One cycle for the message, one for what is done about it.
+        if now < since + 2 * u64::from(control.cycle_us()) {
+            return Ok(());
+        }
+        let fault = |values: String| Err(Violation::new(Rule::Reaction, now, values));
+        if control.loops_closed() {
+            return fault("the loops are closed under a flashing message".to_owned());
+        }
+        if control.observe(&bahn_control::Signal::ReadyOutput) != 0.0 {
+            return fault("control is ready is on under a flashing message".to_owned());
+        }
+        if runs {
+            return fault("the PLC runs under a flashing message".to_owned());
+        }
+        Ok(())
+    }
+}
+
+/// A message is shown that switches "control is ready" off.
+pub(super) fn is_fatal(control: &Control) -> bool {
+    let mut shown = control.shown().iter();
+    shown.any(|shown| shown.fault().row().reaction == Reaction::ControlReadyOff)
+}
