@@ -219,6 +219,24 @@ fn fine_roughing_behind_a_coarse_tool() {
     }
 }
 
+/// The tool reaches the floor straight down; a feed for going to and fro (Q19) is not passed over in silence.
+#[test]
+fn reciprocation_is_said() {
+    let said = |q19: &str| {
+        let run = run_of(&PLAIN, &ROUGH.replace("Q12=+350", &format!("Q12=+350 {q19}")));
+        run.assert_completed();
+        run.warnings
+            .iter()
+            .map(|warning| warning.kind.to_string())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        said("Q19=+150"),
+        ["cycle 22: Q19, the tool reaches the floor straight down"]
+    );
+    assert_eq!(said("Q19=+0"), [""; 0]);
+}
+
 /// The parameters are Q parameters: what the program sets behind the definition counts at the call.
 #[test]
 fn parameters_are_q_parameters() {

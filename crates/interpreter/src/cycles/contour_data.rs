@@ -81,6 +81,11 @@ pub(super) fn is_assigned(number: u16) -> bool {
     PARAMETERS.iter().any(|(cycle, _)| *cycle == number)
 }
 
+/// Whether the tool is to reach the floor to and fro, with the feed Q19: not here.
+pub(super) fn reciprocates(definition: &Definition) -> bool {
+    matches!(definition.number, 22 | 23) && definition.assigned(19).is_some_and(|feed| feed != 0.0)
+}
+
 /// Refuses a cycle without one of its parameters, and 21 to 24 without cycle 20.
 pub(super) fn check(modal: &Modal, definition: &Definition) -> Result<(), Fault> {
     if !is_assigned(definition.number) {

@@ -27,7 +27,7 @@ use self::transformation::{
 use crate::availability::{Feature, names_datum_table, words};
 use crate::context::Context;
 use crate::definition::{Definition, OEM_CYCLES, Resolved, is_contour_cycle, resolve};
-use crate::error::{Cause, Fault};
+use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
 use crate::settings::Settings;
 use crate::tilting::working_plane;
@@ -148,6 +148,13 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
         number if OEM_CYCLES.contains(&number) => return Ok(Flow::OemCall(number)),
         number if is_contour_cycle(number) => {
             contour_data::check(c.modal, &definition)?;
+            if contour_data::reciprocates(&definition) {
+                let text = format!("cycle {number}: Q19, the tool reaches the floor straight down");
+                if c.settings.strict {
+                    return Err(Fault::new(MessageId::BlockNotKnown, text));
+                }
+                c.warn(WarningKind::Function { text });
+            }
             return Ok(Flow::ContourCycle);
         }
         17 => rigid_tapping(&mut m, &definition)?,
