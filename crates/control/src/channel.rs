@@ -67,7 +67,7 @@ impl Channel {
     pub fn new(parts: Parts, remembered: &Remembered, machine: &mut MachineSide) -> Channel {
         let list = parts.own_list.as_ref().unwrap_or(machine.link.list());
         let operation = list.operation_parameters();
-        let limits = path_limits(list, machine.axes.owned(parts.number));
+        let limits = path_limits(list, machine.axes.owned(parts.number), &*parts.kinematics);
         let selection = Selection {
             program: remembered.program.clone(),
             ..Selection::default()
@@ -521,7 +521,8 @@ impl Channel {
 
     /// Its axes are others from now on: the path has their limits, the datum their corrections.
     pub fn take_axes(&mut self, machine: &mut MachineSide) {
-        let limits = path_limits(self.list(machine), machine.axes.owned(self.number));
+        let (list, axes) = (self.list(machine), machine.axes.owned(self.number));
+        let limits = path_limits(list, axes, self.datums.chain.kinematics());
         self.run.track.change_limits(&limits, self.run.is_active());
         self.select_range(self.datums.range(), machine);
     }
@@ -536,7 +537,8 @@ impl Channel {
     pub fn prepare(&mut self, datums_changed: bool, machine: &mut MachineSide) {
         if self.run.track.limits_changed && !self.run.is_active() {
             let list = self.own_list.as_ref().unwrap_or(machine.link.list());
-            let limits = path_limits(list, machine.axes.owned(self.number));
+            let axes = machine.axes.owned(self.number);
+            let limits = path_limits(list, axes, self.datums.chain.kinematics());
             self.run.track.take_limits(&limits);
         }
         self.datums_changed |= datums_changed;

@@ -51,6 +51,32 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// The least and greatest axis positions on a curve from a start to an end: software limits are checked
     /// here, behind the kinematics.
     fn bounds(&self, curve: &Curve, start: &Position, end: &Position, offsets: &Offsets) -> [Position; 2];
+
+    /// By how much each axis moves at most when a slot of the path moves by 1: a row for each axis, a column for each
+    /// slot. Feed and acceleration of the path are such that no axis exceeds its own.
+    fn shares(&self) -> Shares {
+        let mut shares = [[0.0; Axis::COUNT]; Axis::COUNT];
+        for (index, row) in shares.iter_mut().enumerate() {
+            if let Some(own) = row.get_mut(index) {
+                *own = 1.0;
+            }
+        }
+        shares
+    }
+}
+
+/// See [`Kinematics::shares`].
+pub type Shares = [[f64; Axis::COUNT]; Axis::COUNT];
+
+/// What each slot of the path may have of something of which each axis has a limit, so that all slots together leave no
+/// axis more than its limit.
+pub(crate) fn behind(shares: &Shares, limits: [f64; Axis::COUNT]) -> [f64; Axis::COUNT] {
+    Axis::ALL.map(|slot| {
+        let rows = shares.iter().zip(limits);
+        let moved = rows.filter(|(row, _)| row.get(slot.index()).is_some_and(|share| *share != 0.0));
+        let each = moved.map(|(row, limit)| limit / row.iter().map(|share| share.abs()).sum::<f64>());
+        each.fold(f64::INFINITY, f64::min)
+    })
 }
 
 /// Each axis moves one coordinate of the path.
@@ -89,6 +115,11 @@ impl Chain {
             offsets,
             placement: None,
         }
+    }
+
+    /// The kinematics alone.
+    pub fn kinematics(&self) -> &dyn Kinematics {
+        self.kinematics.as_ref()
     }
 
     /// The path stands in this placement from now on.

@@ -138,7 +138,7 @@ pub use control::Control;
 pub use hand_over::HandOver;
 pub use handshake::{Handshake, Transfer, Waiting};
 pub use handwheel::HANDWHEEL_STEPS;
-pub use kinematics::{Cartesian, Kinematics, Offsets};
+pub use kinematics::{Cartesian, Kinematics, Offsets, Shares};
 pub use message::{HandOverError, Message, Shown};
 pub use plc_link::{NcFiles, Pocket, WrittenElement, datum_shifts};
 pub use programs::Programs;

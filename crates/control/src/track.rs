@@ -12,7 +12,7 @@ use crate::axes::OwnAxes;
 use crate::axis::{AxisId, AxisUnit, Mover};
 use crate::feeder::RunFault;
 use crate::handshake::LOOK_AHEAD;
-use crate::kinematics::Chain;
+use crate::kinematics::{Chain, Kinematics, behind};
 use crate::markers::WAIT_OPEN_LOOP;
 use crate::message::Message;
 use crate::panel::Direction;
@@ -295,16 +295,19 @@ fn is_circular(element: &PathElement, axis: Axis) -> bool {
     }
 }
 
-/// The limits of a path: those of the axes by their slots.
+/// The limits of a path: those of the axes, behind the kinematics.
 pub(crate) fn path_limits<'a>(
     parameters: &ParameterList,
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
+    kinematics: &dyn Kinematics,
 ) -> Limits {
+    let shares = kinematics.shares();
     let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
-        Axis::ALL.map(|axis| {
+        let limits = Axis::ALL.map(|axis| {
             let mut axes = axes.clone();
             axes.find(|unit| unit.axis == axis).map_or(otherwise, value)
-        })
+        });
+        behind(&shares, limits)
     };
     Limits {
         max_feed_mm_min: of(|unit| unit.parameters.motion.rapid_mm_min, 0.0),

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use bahn_control::{
     AxisId, Cartesian, ChannelError, ChannelSetup, Command, Control, HandOver, Kinematics, Mode, Offsets,
-    Remembered, RunState, Setup, Snapshot, SpindleWiring, Window,
+    Remembered, RunState, Setup, Shares, Snapshot, SpindleWiring, Window,
 };
 use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
@@ -615,6 +615,56 @@ impl Kinematics for Leaning {
         let bound = |of: fn(f64, f64) -> f64| Axis::ALL.map(|axis| of(ends[0][axis], ends[1][axis])).into();
         [bound(f64::min), bound(f64::max)]
     }
+
+    fn shares(&self) -> Shares {
+        let mut shares = Cartesian.shares();
+        shares[Axis::X.index()][Axis::Y.index()] = 0.5;
+        shares
+    }
+}
+
+/// X of the leaning portal takes 3000 mm/min and 0.5 m/s²; going at 45 degrees it moves one and a half times as fast as
+/// the path does in X. It keeps to its limits, and comes near them.
+#[test]
+fn feed_and_acceleration_are_limited_behind_the_kinematics() {
+    let build = machine("L Z+60 R0 FMAX").mps("10=%00100 50=%00100");
+    let (setup, machine) = build.setup();
+    let mut parameters = setup.parameters.clone();
+    for assignment in [
+        "10=%00011",
+        "50=%00011",
+        "3010=0",
+        "1010.0=3000",
+        "1060.0=0.5",
+        "1070=0",
+    ] {
+        let _ = parameters.assign(assignment);
+    }
+    let axes = [AxisId::new(6), AxisId::new(7), None, None, None];
+    let mut other = channel(parameters, axes, "L X+40 Y+40 R0 FMAX\nL X+60 Y+60");
+    other.kinematics = Arc::new(Leaning);
+    other.window = other
+        .window
+        .markers("M2556".parse().unwrap(), "M2556".parse().unwrap(), 2);
+    let mut rig = ready(setup, other, machine);
+    rig.event("key START2 press");
+    let cycle_s = 0.003;
+    let place = |rig: &Rig| nominal(rig, 1, 'X') + 0.5 * nominal(rig, 1, 'Y');
+    let (mut before, mut speed) = (place(&rig), 0.0);
+    let (mut fastest, mut hardest) = (0.0f64, 0.0f64);
+    for _ in 0..3000 {
+        rig.cycle();
+        let now = place(&rig);
+        let next = (now - before) / cycle_s;
+        (fastest, hardest) = (
+            fastest.max(next.abs()),
+            hardest.max((next - speed).abs() / cycle_s),
+        );
+        (before, speed) = (now, next);
+    }
+    assert!((nominal(&rig, 1, 'Y') - 60.0).abs() < 1e-9);
+    assert!((49.0..=50.0 + 1e-6).contains(&fastest), "{fastest} mm/s");
+    assert!((400.0..=500.0 + 1.0).contains(&hardest), "{hardest} mm/s²");
 }
 
 /// The second channel has X and Y on the leaning portal: X+60 Y+80 is X at 60 + 40 = 100 mm. X+120 Y+110 would be X at
