@@ -112,12 +112,18 @@ fn the_part_programs_run_without_a_warning() {
                 said(&output)
             );
             let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-            assert_eq!(
-                report["warnings"].as_array().map_or(0, Vec::len),
-                0,
-                "{}",
-                program.display()
-            );
+            // A tool that leans is not shown, and that is said.
+            let else_said = |warning: &&serde_json::Value| {
+                let message = warning["message"].as_str().unwrap_or_default();
+                message != "PGM SECTION CANNOT BE SHOWN: the tool leans"
+            };
+            let warnings: Vec<_> = report["warnings"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .filter(else_said)
+                .collect();
+            assert!(warnings.is_empty(), "{}: {warnings:?}", program.display());
         }
     }
 }

@@ -72,7 +72,7 @@ fn parameters_of_the_command_line_say_what_they_do_not() {
         "test main.H --report shelf.json",
         "run main.H --machine m --fresh --no-graphics",
     ] {
-        let run = folder.bahn(&format!("{command} --mp 7350=5,7680=1,1060.0=2"));
+        let run = folder.bahn(&format!("{command} --mp 7350=5,7310=1,1060.0=2"));
         assert_eq!(run.code(), 0, "{command}: {}", run.err());
         let said = run.err();
         assert!(
@@ -80,7 +80,7 @@ fn parameters_of_the_command_line_say_what_they_do_not() {
             "{command}: {said}"
         );
         assert!(
-            said.contains("--mp 7680=1: MP7680 acts in part here, without: "),
+            said.contains("--mp 7310=1: MP7310 acts in part here, without: "),
             "{command}: {said}"
         );
         assert!(!said.contains("MP1060"), "{command}: {said}");

@@ -125,8 +125,10 @@ impl Magazine {
     pub fn set_life(&mut self, number: u32, minutes: f64) -> bool {
         let tool = self.table.as_mut().and_then(|table| table.get_mut(&number));
         let Some(tool) = tool else { return false };
+        let before = tool.state();
         tool.life.current_min = minutes;
-        self.version += 1;
+        // Who reads programs has to know a tool whose life ends or begins anew, not each tenth of a minute.
+        self.version += u64::from(tool.state() != before);
         true
     }
 

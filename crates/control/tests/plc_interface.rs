@@ -160,7 +160,7 @@ fn the_plc_reads_the_status() {
             .map(|place| rig.number(&format!("W{}", 100 + 2 * place)))
             .collect::<Vec<i32>>()
     };
-    rig.command("handwheel Z 7");
+    rig.command("handwheel Z 5");
     rig.command("handwheel X 3");
     // Full sequence is 5; a .H is selected, none is tested; the handwheel moves X.
     assert_eq!(status(&mut rig), [5, 0, 1, 0, 1, 3, 7, 0, 0, 0, 0, 0]);

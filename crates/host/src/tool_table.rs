@@ -230,15 +230,16 @@ mod tests {
             "\u{feff}t,name,l,r,r2\r\n1,END MILL,80.5,10,\r\n2,BALL,62,4,4\r\n",
             "T;L;R;R2\n1;80,5;10;0\n2;62;4;4\n",
         ] {
-            let mut table = parse(text).unwrap();
-            for tool in table.values_mut() {
-                tool.oversize = Oversize::default();
-            }
-            assert_eq!(table, expected, "{text}");
+            assert_eq!(parse(text).as_ref(), Ok(&expected), "{text}");
         }
         let mut oversize = expected;
         if let Some(tool) = oversize.get_mut(&1) {
             tool.shape.oversize = [0.5, 0.0];
+            tool.oversize = Oversize {
+                length: 0.5,
+                radius: 0.5,
+                corner_radius: 0.0,
+            };
         }
         let text = "T L R R2 DL DR\n1 80 9.5 0 +0.5 0.5\n2 62 4 4";
         assert_eq!(parse(text).as_ref(), Ok(&oversize));

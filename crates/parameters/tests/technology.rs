@@ -123,8 +123,8 @@ fn where_the_path_waits() {
 /// What the registry says to act does something, and nothing else of three digits.
 #[test]
 fn registry_and_table_agree() {
-    /// It needs no deed: M124 and M127 ask for what is done anyway.
-    const NOTHING_TO_DO: [u16; 2] = [124, 127];
+    /// It needs no deed: M124 asks for what is done anyway.
+    const NOTHING_TO_DO: [u16; 1] = [124];
     for model in ControlModel::ALL {
         for code in 100..1000 {
             let entry = conformance::find(model, Kind::MFunction, &format!("M{code}"));
