@@ -59,7 +59,7 @@ pub const TWIN: ShippedMachine = machine!("twin" for "tnc415b":
 /// asked for by its name.
 pub const GANTRY: ShippedMachine = machine!("gantry" for "tnc415b":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
-    "programs/ROOF.H", "programs/NOSE.H",
+    "plc/start.txt", "programs/ROOF.H", "programs/NOSE.H",
 );
 
 /// All of them; the first one that has a model is the start for it.
