@@ -236,7 +236,7 @@ fn limits_of_the_control_model() {
     assert_eq!(at("FN14: ERROR = 500"), entry("500"));
     assert_eq!(at("Q1 = SIN 30").map(|(message, _)| message), Some(BlockNotKnown));
     assert_eq!(
-        at("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+30").map(|(message, _)| message),
+        at("CYCL DEF 20.0 CONTOUR DATA").map(|(message, _)| message),
         Some(BlockNotKnown)
     );
     assert_eq!(
