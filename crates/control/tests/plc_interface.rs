@@ -151,7 +151,7 @@ fn the_plc_reads_the_status() {
         format!("       PS    K+{item}\n       CM    9035\n       PL    W{to}\n")
     };
     let reads: String = (0..).zip(items).map(read).collect();
-    let build = bench(&format!("{ACKNOWLEDGE}{reads}")).mp("7641=1").mp("7640=2");
+    let build = bench(&format!("{ACKNOWLEDGE}{reads}")).mp("7640=2");
     let build = build.program("1.H", "L X+60 R0 F6000").program("2.I", "");
     let mut rig = ready(build);
     let status = |rig: &mut Rig| {
@@ -160,7 +160,7 @@ fn the_plc_reads_the_status() {
             .map(|place| rig.number(&format!("W{}", 100 + 2 * place)))
             .collect::<Vec<i32>>()
     };
-    rig.command("handwheel Z 5");
+    rig.command("handwheel Z 7");
     rig.command("handwheel X 3");
     // Full sequence is 5; a .H is selected, none is tested; the handwheel moves X.
     assert_eq!(status(&mut rig), [5, 0, 1, 0, 1, 3, 7, 0, 0, 0, 0, 0]);
