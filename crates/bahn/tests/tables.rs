@@ -171,6 +171,37 @@ fn a_protected_table_is_not_changed() {
     assert!(folder.read("mill/tools.tsv").contains("\n1\t71\t"));
 }
 
+/// A machine that is switched on reads its tables at power-on only: they are not changed behind its back.
+#[test]
+fn tables_of_a_machine_that_is_on_stay() {
+    let folder = Folder::with_mill("");
+    std::fs::create_dir_all(folder.path("mill/state")).unwrap();
+    let lock = std::fs::File::create(folder.path("mill/state/lock")).unwrap();
+    lock.lock().unwrap();
+    let run = folder.bahn("table set mill/tools.tsv 1 L=72");
+    assert_eq!(run.code(), 2);
+    assert!(
+        run.err().contains("a machine that is switched on"),
+        "{}",
+        run.err()
+    );
+    drop(lock);
+    let run = folder.bahn("table set mill/tools.tsv 1 L=72");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert!(folder.read("mill/tools.tsv").contains("\n1\t72\t"));
+}
+
+/// As JSON the faults of a machine are in the report, and nowhere else.
+#[test]
+fn faults_of_a_machine_as_json() {
+    let folder = Folder::with_mill("");
+    folder.write("mill/tools.tsv", "T\tL\tR\n1\tx\t5\n");
+    let run = folder.bahn("table check mill --format json");
+    assert_eq!((run.code(), run.err().as_str()), (1, ""));
+    assert_eq!(run.json()[0]["faults"][0]["line"], 2);
+    assert!(folder.bahn("table check mill").err().contains("tools.tsv:2:3"));
+}
+
 #[test]
 fn convert_to_and_fro() {
     let folder = Folder::new();

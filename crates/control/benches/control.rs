@@ -5,6 +5,8 @@
 #[path = "../tests/support/mod.rs"]
 mod support;
 
+use bahn_control::Tool;
+use bahn_path::ToolShape;
 use divan::Bencher;
 use support::{Build, Rig};
 
@@ -18,6 +20,38 @@ const ZIGZAG: &str = "TOOL CALL 1 Z S1000\nL X+200 Y+100 Z+200 R0 FMAX M3\nLBL 1
 /// Lines of 0.1 mm at 6 m/min: 1000 blocks a second.
 const SHORT: &str = "TOOL CALL 1 Z S1000\nL X+200 Y+100 Z+200 R0 FMAX M3\nLBL 1\nL IX+0.1 IZ+0.01 F6000\nL IX+0.1 IZ-0.01\n\
                      CALL LBL 1 REP 200\nL IX-40 F6000\nLBL 2\nCALL LBL 1\nCALL LBL 2 REP 65000";
+
+/// Tools that the magazine changes and the tool probe measures, and the rotary table with them.
+const CHANGES: &str = "LBL 1\nTOOL CALL 2 Z S1000\nTCH PROBE 31.0 TOOL LENGTH\nTCH PROBE 31.1 CHECK: 1 Q5\n\
+                       TCH PROBE 31.2 HEIGHT: +100\nTCH PROBE 31.3 PROBING THE TEETH: 0\n\
+                       L X+200 Y+100 Z+200 R0 FMAX M3\nL IX+50 IY+10 IC+20 F3000\nL IX-50 IY-10 IC+20\n\
+                       TOOL CALL 1 Z S1000\nL IX+50 IC-40 F3000 M3\nCALL LBL 1 REP 65000";
+
+/// The mill with its magazine in use, over a minute of machine time: changes, measuring, cutting and turning.
+#[divan::bench(sample_count = 20)]
+fn minute_with_magazine_and_tool_probe(bencher: Bencher) {
+    let tool = |pocket: u16, length: f64, radius: f64| Tool {
+        shape: ToolShape {
+            length,
+            radius,
+            ..ToolShape::default()
+        },
+        pocket: Some(pocket),
+        ..Tool::default()
+    };
+    let build = Build::mill().mp("7261=12").mp("7480.0=3").mp("4310.0=3");
+    let mut build = build.program("1.H", CHANGES);
+    build.tools = Some([(1, tool(1, 70.0, 31.5)), (2, tool(2, 95.0, 10.0))].into());
+    let mut rig = build.rig();
+    rig.machine.load_magazine([(1, 1), (2, 2)].into_iter(), 0);
+    rig.power_on();
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(120.0, "the first tool is measured", |rig| rig.bit("M2390"));
+    bencher.bench_local(|| rig.seconds(60.0));
+    assert!(rig.messages().is_empty(), "{:?}", rig.messages());
+}
 
 /// A mill that cuts.
 fn cutting(program: &str) -> Rig {

@@ -686,6 +686,7 @@ impl Channel {
             tool: self.tools.number,
             tool_length,
             tool_axis: Some(tool_axis),
+            tool_probe: self.tools.calibration,
             q: self.run.q_values(),
             program: self.run.selection.program.clone(),
             ..Remembered::default()

@@ -1,6 +1,6 @@
 //! Probing in the program: the axes move until the stylus is deflected [000:7613-7718].
 
-use bahn_exchange::{Exchange, signal};
+use bahn_exchange::signal;
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_path::{Axis, BlockRef, Position, ToolMeasuring, Touch};
@@ -291,16 +291,16 @@ impl Probe {
     }
 
     fn finish(&mut self, touched: Option<Position>, site: &mut Site) -> Probed {
-        self.end(site.exchange);
+        self.end(site);
         Probed::Over(touched.map(|position| Touch { position }))
     }
 
     /// Nothing is probed any more.
-    pub fn end(&mut self, exchange: &mut Exchange) {
-        self.tool.end(exchange);
+    pub fn end(&mut self, site: &mut Site) {
+        self.tool.end(site);
         if self.probing.take().is_some() {
-            exchange.nc_put(signal::PROBING_ENABLE, false);
-            exchange.nc_put(signal::PROBING_ENDED, true);
+            site.exchange.nc_put(signal::PROBING_ENABLE, false);
+            site.exchange.nc_put(signal::PROBING_ENDED, true);
         }
     }
 }

@@ -193,8 +193,8 @@ impl ProgramRun {
         self.answer = None;
         self.restoration.break_off();
         self.source.break_off(site.now.mode == Mode::Mdi);
-        self.probe.end(site.exchange);
         site.handshakes.abort(site.exchange);
+        self.probe.end(site);
         site.tools.take_back(&mut site.chain.offsets);
         site.positioning.end_all(site.exchange);
         site.axes.release(|mover| mover == Mover::Path);

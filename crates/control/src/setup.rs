@@ -104,6 +104,8 @@ pub struct Remembered {
     pub tool_length: f64,
     /// Axis of the tool.
     pub tool_axis: Option<Axis>,
+    /// Where the contact of the tool probe was found.
+    pub tool_probe: Option<ToolProbeCalibration>,
     /// Pockets that tools have taken by variable pocket coding [000:9281].
     pub pockets: Vec<MovedTool>,
     /// What the PLC wrote into the tool and pocket table with module 9094.
@@ -137,6 +139,15 @@ impl Remembered {
         }
         fits
     }
+}
+
+/// What TCH PROBE 30 has found: X, Y, Z of the middle of the contact in machine coordinates and its width, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolProbeCalibration {
+    /// Where it is.
+    pub found: [f64; 4],
+    /// What the list said then, MP6580 and MP6531: when it says something else, it counts again.
+    pub list: [f64; 4],
 }
 
 /// A position that is 0 by default.

@@ -304,8 +304,13 @@ impl SpindleUnit {
         self.is_analogue() && self.parameters.controlled
     }
 
-    /// Orients before a thread: from standstill by the shorter way [000:623].
-    pub fn orient_for_thread(&mut self, angle_deg: f64) {
+    /// The angle that D592 = $80000000 stands for, degrees.
+    pub fn cycle_angle_deg(&self) -> f64 {
+        self.cycle_deg
+    }
+
+    /// Orients for a thread or the tool probe: from standstill by the shorter way [000:623].
+    pub fn orient_shortest(&mut self, angle_deg: f64) {
         self.servo.orient(angle_deg, 0.0, Way::Shortest);
     }
 

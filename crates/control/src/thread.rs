@@ -104,7 +104,7 @@ impl Tapping {
             return Preparation::Waits;
         }
         if let Some(angle) = thread.orientation_deg.filter(|_| !self.oriented) {
-            site.spindle.orient_for_thread(angle);
+            site.spindle.orient_shortest(angle);
             self.oriented = true;
             return Preparation::Waits;
         }

@@ -1,11 +1,11 @@
-//! Tools are measured with the tool probe: the tool goes over its contact, turns backwards, and probes it
-//! [000:7960-8058].
+//! Tools are measured with the tool probe, and the tool probe with a tool: the tool goes over its contact, turns
+//! backwards or is oriented, and probes it, once or at each of its places [000:7960-8058].
 
 use bahn_exchange::{Exchange, signal};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
-use bahn_parameters::machining::ToolProbeParameters;
-use bahn_path::{Axis, Position, ToolMeasuring};
+use bahn_parameters::machining::{ProbeOrientation, ToolProbeParameters};
+use bahn_path::{Axis, MeasuredPart, Plane, Position, ToolMeasuring};
 use bahn_servo::Measured;
 
 use crate::axis::{AxisUnit, Mover};
@@ -15,6 +15,7 @@ use crate::message::Message;
 use crate::probing_speed::{feed_mm_min, speed_rpm};
 use crate::site::Site;
 use crate::tool::{MeasuredTool, ToolCondition};
+use crate::tool_contacts::{Contact, Contacts};
 use crate::track::are_in_position;
 
 /// Turn against the cutting direction: M4 for a tool that cuts with M3, and stop (inferred: the edges do not cut).
@@ -41,7 +42,9 @@ enum Phase {
     Up,
     Over,
     Down,
+    /// The spindle turns backwards, or is oriented.
     Spin,
+    Orient,
     Search,
     Brake,
     Back,
@@ -62,22 +65,20 @@ struct Sequence {
     phase: Phase,
     parameters: ToolProbeParameters,
     axis: Axis,
-    /// The stop before the contact, and the farthest place, path coordinates.
-    before: Position,
-    farthest: Position,
-    /// What the path coordinate is where a tool as the table says touches.
-    expected: f64,
-    probing_axis: Axis,
-    /// +1 in positive direction.
-    direction: f64,
+    contacts: Contacts,
+    /// The touch that is under way.
+    contact: Contact,
     /// The movement on its way.
     from: Position,
     to: Position,
     length: f64,
     way: PointToPoint,
     touch: Option<f64>,
-    difference: f64,
     speed_before: f64,
+    /// The angle of cycle 13, which the PLC is told of each tooth.
+    angle_before: f64,
+    /// The spindle was turned or oriented: it does not stay so.
+    turned: bool,
     asked: bool,
 }
 
@@ -91,55 +92,42 @@ impl ToolMeasurement {
     /// # Errors
     /// When tools are not measured on this machine, or this one cannot be.
     pub fn begin(&mut self, order: ToolMeasuring, site: &mut Site) -> Result<(), Message> {
+        let not_ready = || Message::Plain(MessageId::ProbeSystemNotReady);
         let parameters = site.tools.probe();
         let axis = site.chain.offsets.tool_axis;
         let tool = site.magazine.tool(site.tools.number);
-        let radius = tool.shape.radius;
-        if !parameters.enabled || axis != Axis::Z || radius <= 0.0 || parameters.rapid_mm_min <= 0.0 {
-            return Err(Message::Plain(MessageId::ProbeSystemNotReady));
-        }
-        let mut contact = site.axes.machine_position();
+        let plane = Plane::of_tool_axis(axis).filter(|plane| plane.normal.main() == Some(plane.normal));
+        let mut middle = site.axes.machine_position();
         let [x, y, z] = parameters.centre_mm;
-        (contact[Axis::X], contact[Axis::Y]) = (x, y);
-        contact[Axis::Z] = z + site.chain.offsets.tool_length;
-        let contact = site.chain.to_path(&contact);
-        let (mut before, mut farthest) = (contact, contact);
-        let (probing_axis, direction, expected) = if order.radius {
-            let across = if parameters.across { Axis::Y } else { Axis::X };
-            let direction = if parameters.negative { -1.0 } else { 1.0 };
-            let reach = parameters.width_mm / 2.0 + radius;
-            before[across] -= direction * (reach + parameters.safety_mm);
-            farthest[across] += direction * (reach + parameters.safety_mm);
-            for place in [&mut before, &mut farthest] {
-                place[Axis::Z] -= parameters.depth_mm + tool.edges.length_offset;
-            }
-            (across, direction, contact[across] - direction * reach)
-        } else {
-            for place in [&mut before, &mut farthest] {
-                place[Axis::X] += tool.edges.radius_offset;
-            }
-            before[Axis::Z] += parameters.safety_mm;
-            farthest[Axis::Z] -= parameters.safety_mm;
-            (Axis::Z, -1.0, contact[Axis::Z])
+        (middle[Axis::X], middle[Axis::Y], middle[Axis::Z]) = (x, y, z);
+        middle[axis] += site.chain.offsets.tool_length;
+        let middle = site.chain.to_path(&middle);
+        let contacts = plane.and_then(|plane| Contacts::new(order, parameters, &tool, plane, middle));
+        let contacts = contacts.ok_or_else(not_ready)?;
+        let contact = contacts.next().ok_or_else(not_ready)?;
+        let (feed, oriented) = match contacts.stands() {
+            true => (parameters.standing_mm_min, may_be_oriented(&parameters, site)),
+            false => (feed_mm_min(&parameters, tool.shape.radius), true),
         };
+        if !parameters.enabled || !oriented || parameters.rapid_mm_min <= 0.0 || feed <= 0.0 {
+            return Err(not_ready());
+        }
         let here = site.here();
         self.0 = Some(Sequence {
             order,
             phase: Phase::Enable,
             parameters,
             axis,
-            before,
-            farthest,
-            expected,
-            probing_axis,
-            direction,
+            contacts,
+            contact,
             from: here,
             to: here,
             length: 0.0,
             way: PointToPoint::new(0.0),
             touch: None,
-            difference: 0.0,
             speed_before: site.spindle.state().programmed_rpm,
+            angle_before: site.spindle.cycle_angle_deg(),
+            turned: false,
             asked: false,
         });
         let exchange = &mut *site.exchange;
@@ -167,7 +155,7 @@ impl ToolMeasurement {
         for unit in axes {
             actual[unit.axis] = unit.servo.actual_mm();
         }
-        run.touch = Some(chain.to_path(&actual)[run.probing_axis]);
+        run.touch = Some(chain.to_path(&actual)[run.contact.axis]);
     }
 
     /// One contour cycle.
@@ -195,6 +183,10 @@ impl ToolMeasurement {
                 run.turn(site);
                 Measuring::Moves
             }
+            Phase::Orient => {
+                run.orient(site);
+                Measuring::Moves
+            }
             Phase::Store => match site.tools.measured {
                 Some(_) => Measuring::Moves,
                 None => self.over(site),
@@ -208,20 +200,34 @@ impl ToolMeasurement {
             return Measuring::Moves;
         };
         ended(site.exchange);
-        let q = if run.order.radius { Q_RADIUS } else { Q_LENGTH };
+        let q = match run.order.part {
+            MeasuredPart::Length => Q_LENGTH,
+            MeasuredPart::Radius => Q_RADIUS,
+            MeasuredPart::Probe => return Measuring::Over([None; 2]),
+        };
         let state = f64::from(run.state(site) as u8);
-        Measuring::Over([
-            Some((q, run.difference)),
-            run.order.result.map(|number| (number, state)),
-        ])
+        let [longest, _] = run.contacts.found();
+        Measuring::Over([Some((q, longest)), run.order.result.map(|number| (number, state))])
     }
 
-    /// Nothing is measured any more.
-    pub fn end(&mut self, exchange: &mut Exchange) {
-        if self.0.take().is_some() {
-            exchange.nc_put(signal::PROBING_ENABLE, false);
-            ended(exchange);
+    /// Nothing is measured any more: a tool that was turned stops, with the speed that was programmed, so that nobody
+    /// meets a tool that turns backwards (inferred).
+    pub fn end(&mut self, site: &mut Site) {
+        let Some(run) = self.0.take() else { return };
+        site.exchange.nc_put(signal::PROBING_ENABLE, false);
+        ended(site.exchange);
+        if run.turned {
+            run.stop_spindle(site);
         }
+    }
+}
+
+/// The spindle has a loop, and who orients it.
+fn may_be_oriented(parameters: &ToolProbeParameters, site: &Site) -> bool {
+    match parameters.orientation {
+        ProbeOrientation::None => false,
+        ProbeOrientation::Nc => site.spindle.can_be_led(),
+        ProbeOrientation::Plc(_) => true,
     }
 }
 
@@ -241,11 +247,11 @@ impl Sequence {
             Phase::Up | Phase::Leave => self.to[self.axis] = self.order.height,
             Phase::Over => {
                 let height = self.from[self.axis];
-                self.to = self.before;
+                self.to = self.contact.before;
                 self.to[self.axis] = height;
             }
-            Phase::Down | Phase::Back => self.to = self.before,
-            Phase::Search => self.to = self.farthest,
+            Phase::Down | Phase::Back => self.to = self.contact.before,
+            Phase::Search => self.to = self.contact.farthest,
             _ => {}
         }
         let way = |axis: Axis| self.to[axis] - self.from[axis];
@@ -258,16 +264,14 @@ impl Sequence {
     fn turn(&mut self, site: &mut Site) {
         if !self.asked {
             self.asked = true;
+            if self.phase == Phase::Stop {
+                return self.stop_spindle(site);
+            }
             let tool = site.magazine.tool(site.tools.number);
-            let (rpm, code) = match self.phase {
-                Phase::Spin => {
-                    let rpm = speed_rpm(&self.parameters, tool.shape.radius);
-                    let [normal, left_hand] = BACKWARDS;
-                    (rpm, if tool.left_hand { left_hand } else { normal })
-                }
-                _ => (self.speed_before, STOP),
-            };
-            site.speed(rpm, false);
+            let [normal, left_hand] = BACKWARDS;
+            self.turned = true;
+            site.speed(speed_rpm(&self.parameters, tool.shape.radius), false);
+            let code = if tool.left_hand { left_hand } else { normal };
             site.handshakes.push(Transfer::M(code));
             return;
         }
@@ -277,9 +281,71 @@ impl Sequence {
         match self.phase {
             Phase::Spin => self.go_to(Phase::Search, site),
             _ => {
+                self.turned = false;
                 self.phase = Phase::Store;
-                site.tools.measured = Some(self.found(site));
+                self.store(site);
             }
+        }
+    }
+
+    /// M5, and what the program has set of speed and angle.
+    fn stop_spindle(&self, site: &mut Site) {
+        if self.contacts.stands() {
+            site.spindle.set_cycle_angle(self.angle_before, site.exchange);
+        }
+        site.speed(self.speed_before, false);
+        site.handshakes.push(Transfer::M(STOP));
+    }
+
+    /// The spindle brings the tooth to the contact: by itself, for which M2499 must be reset, or the PLC does it with an
+    /// M function to the angle of cycle 13 [000:7979] (inferred: that angle).
+    fn orient(&mut self, site: &mut Site) {
+        let Some(angle) = self.contact.orientation_deg else {
+            return;
+        };
+        let by_nc = !matches!(self.parameters.orientation, ProbeOrientation::Plc(_));
+        if by_nc && site.exchange.nc().bit(signal::OPEN_SPINDLE_LOOP) {
+            return;
+        }
+        if !self.asked {
+            (self.asked, self.turned) = (true, true);
+            match self.parameters.orientation {
+                ProbeOrientation::Plc(code) => {
+                    site.spindle.set_cycle_angle(angle, site.exchange);
+                    site.handshakes.push(Transfer::M(code));
+                }
+                _ => site.spindle.orient_shortest(angle),
+            }
+            return;
+        }
+        let oriented = match by_nc {
+            true => site.spindle.is_oriented(),
+            false => site.handshakes.is_idle() && !site.spindle.is_orienting(),
+        };
+        if oriented {
+            self.go_to(Phase::Search, site);
+        }
+    }
+
+    /// Behind a touch: another one from the same place, or from another one, or none.
+    fn go_on(&mut self, site: &Site) {
+        let Some(next) = self.contacts.next() else {
+            return self.go_to(Phase::Leave, site);
+        };
+        let same = next.before == self.contact.before;
+        self.contact = next;
+        self.touch = None;
+        match same {
+            true => self.go_to(self.turns(), site),
+            false => self.go_to(Phase::Up, site),
+        }
+    }
+
+    /// What the spindle does for a touch.
+    fn turns(&self) -> Phase {
+        match self.contact.orientation_deg {
+            Some(_) => Phase::Orient,
+            None => Phase::Spin,
         }
     }
 
@@ -287,7 +353,9 @@ impl Sequence {
     fn drive(&mut self, running: bool, site: &mut Site) -> Measuring {
         let radius = site.magazine.radius(site.tools.number);
         let probes = matches!(self.phase, Phase::Search | Phase::Brake);
-        let feed = if probes {
+        let feed = if probes && self.contacts.stands() {
+            self.parameters.standing_mm_min
+        } else if probes {
             feed_mm_min(&self.parameters, radius)
         } else {
             self.parameters.rapid_mm_min * (site.now.feed_percent / 100.0).min(1.0)
@@ -329,31 +397,43 @@ impl Sequence {
         match self.phase {
             Phase::Up => self.go_to(Phase::Over, site),
             Phase::Over => self.go_to(Phase::Down, site),
-            Phase::Down => self.go_to(Phase::Spin, site),
+            Phase::Down => self.go_to(self.turns(), site),
             Phase::Search => return Measuring::Refused(Message::Plain(MessageId::TouchPointInaccessible)),
             Phase::Brake => {
-                let touch = self.touch.unwrap_or(self.expected);
-                self.difference = (self.expected - touch) * self.direction;
+                let touch = self.touch.unwrap_or(self.contact.expected);
+                self.contacts.take(&self.contact, touch);
                 self.go_to(Phase::Back, site);
             }
-            Phase::Back => self.go_to(Phase::Leave, site),
+            Phase::Back => self.go_on(site),
             _ => self.go_to(Phase::Stop, site),
         }
         Measuring::Moves
     }
 
-    /// What a check says of the tool; a tolerance of 0 is none.
+    /// What a check says of the tool, by the tooth that is farthest off; a tolerance of 0 is none.
     fn state(&self, site: &Site) -> ToolCondition {
         let edges = site.magazine.tool(site.tools.number).edges;
-        let (wear, breakage) = match self.order.radius {
+        let [_, farthest] = self.contacts.found();
+        let (wear, breakage) = match self.order.part == MeasuredPart::Radius {
             true => (edges.radius_wear, edges.radius_break),
             false => (edges.length_wear, edges.length_break),
         };
-        let beyond = |tolerance: f64| tolerance > 0.0 && self.difference.abs() > tolerance;
+        let beyond = |tolerance: f64| tolerance > 0.0 && farthest.abs() > tolerance;
         match self.order.check {
             true if beyond(breakage) => ToolCondition::Broken,
             true if beyond(wear) => ToolCondition::Worn,
             _ => ToolCondition::Good,
+        }
+    }
+
+    /// What was found: the place of the contact, or what the tables take.
+    fn store(&self, site: &mut Site) {
+        match self.order.part {
+            MeasuredPart::Probe => {
+                let (centre, width) = self.contacts.calibrated();
+                site.tools.calibrate(centre, width);
+            }
+            _ => site.tools.measured = Some(self.found(site)),
         }
     }
 
@@ -366,14 +446,16 @@ impl Sequence {
             signal::BREAKAGE_TOLERANCE_EXCEEDED,
             state == ToolCondition::Broken,
         );
-        if !self.order.radius {
-            site.chain.offsets.tool_length += self.difference;
+        let [difference, _] = self.contacts.found();
+        let radius = self.order.part == MeasuredPart::Radius;
+        if !radius {
+            site.chain.offsets.tool_length += difference;
         }
         MeasuredTool {
             number: site.tools.number,
-            radius: self.order.radius,
+            radius,
             check: self.order.check,
-            difference: self.difference,
+            difference,
             state,
         }
     }

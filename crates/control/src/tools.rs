@@ -9,7 +9,7 @@ use bahn_plc::ToolCallBlock;
 use crate::handshake::{Handshakes, Transfer};
 use crate::kinematics::Offsets;
 use crate::magazine::{Kind, Magazine, NO_POCKET};
-use crate::setup::Remembered;
+use crate::setup::{Remembered, ToolProbeCalibration};
 use crate::tool::MeasuredTool;
 
 /// The tool in the spindle of a channel, and the one that is called.
@@ -36,6 +36,8 @@ pub(crate) struct Tools {
     defined: Option<u32>,
     /// What the tool probe found, until the tables have taken it.
     pub measured: Option<MeasuredTool>,
+    /// Where the contact of the tool probe was found.
+    pub calibration: Option<ToolProbeCalibration>,
     /// A TOOL CALL that module 9150 inserted.
     pub inserted_call: Option<ToolCallBlock>,
 }
@@ -54,13 +56,29 @@ impl Tools {
             geometry_taken: false,
             defined: None,
             measured: None,
+            calibration: remembered.tool_probe,
             inserted_call: None,
         }
     }
 
-    /// The tool probe of the machine.
+    /// The tool probe of the machine; its contact is where it was found, unless the list was changed since.
     pub fn probe(&self) -> ToolProbeParameters {
-        self.parameters.probe
+        let mut probe = self.parameters.probe;
+        let list = place_of(&probe);
+        if let Some(calibration) = self.calibration.filter(|known| known.list == list) {
+            let [x, y, z, width] = calibration.found;
+            (probe.centre_mm, probe.width_mm) = ([x, y, z], width);
+        }
+        probe
+    }
+
+    /// The contact of the tool probe was found: its middle (X, Y, Z) and its width, mm.
+    pub fn calibrate(&mut self, [x, y, z]: [f64; 3], width: f64) {
+        self.calibration = Some(ToolProbeCalibration {
+            found: [x, y, z, width],
+            list: place_of(&self.parameters.probe),
+        });
+        self.changed = true;
     }
 
     /// The tool in the spindle is longer while another one is called; `false` when none is.
@@ -275,6 +293,12 @@ pub(crate) fn inserted_axis(number: i32) -> Option<Axis> {
     }
 }
 
+/// MP6580 and MP6531.
+fn place_of(probe: &ToolProbeParameters) -> [f64; 4] {
+    let [x, y, z] = probe.centre_mm;
+    [x, y, z, probe.width_mm]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -333,6 +357,22 @@ mod tests {
             tools: Tools::new(parameters, &Remembered::default()),
             magazine: Magazine::new(Some(table.into_iter().collect()), &[]),
         }
+    }
+
+    /// What calibrating found counts until the list says something else than it did then.
+    #[test]
+    fn a_changed_list_counts() {
+        let mut tools = tools(ToolOutputKind::Tool).tools;
+        let list = tools.probe();
+        tools.calibrate([1.0, 2.0, 3.0], 4.0);
+        let found = tools.probe();
+        assert_eq!((found.centre_mm, found.width_mm), ([1.0, 2.0, 3.0], 4.0));
+        tools.parameters.probe.width_mm += 1.0;
+        let changed = tools.probe();
+        assert_eq!(
+            (changed.centre_mm, changed.width_mm),
+            (list.centre_mm, list.width_mm + 1.0)
+        );
     }
 
     fn tool_call(tool: u32) -> ToolCall {

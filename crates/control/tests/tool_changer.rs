@@ -201,3 +201,29 @@ fn an_arm_that_is_stuck() {
     rig.until(60.0, "the program ends", |rig| rig.control.snapshot().ended);
     assert_eq!(places(&rig), ([0, 1, 0, 4, 0, 6], 2));
 }
+
+/// The supply goes while the arm is on its way with both tools. The change did not happen for the control, and nothing
+/// moves by itself at power-on; when the tool is called again the PLC finishes what its arm has begun.
+#[test]
+fn a_change_that_power_off_interrupts() {
+    let mut rig = mill(3, MAGAZINE);
+    rig.command("mode full");
+    rig.command("select 12.H");
+    rig.start();
+    rig.until(60.0, "the arm holds both tools", |rig| {
+        rig.machine
+            .magazine()
+            .is_some_and(|state| !state.arm.contains(&0))
+    });
+    assert_eq!(rig.control.tool(), 1);
+    rig.command("power off");
+    rig.seconds(1.0);
+    rig.command("power on");
+    rig.power_on();
+    assert_eq!(rig.control.tool(), 1);
+    rig.run("12.H", 120.0);
+    rig.seconds(0.2);
+    assert_eq!(rig.messages(), [""; 0]);
+    assert_eq!(rig.control.tool(), 2);
+    assert_eq!(places(&rig), ([0, 1, 0, 4, 0, 6], 2));
+}

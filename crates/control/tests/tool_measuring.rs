@@ -17,22 +17,37 @@ fn mill(edges: Edges, blocks: &str) -> Rig {
 }
 
 fn mill_with(edges: Edges, parameters: &[&str], blocks: &str) -> Rig {
+    mill_of([95.0, 10.0], edges, parameters, |build| build, blocks)
+}
+
+fn mill_of(
+    [length, radius]: [f64; 2],
+    edges: Edges,
+    parameters: &[&str],
+    plant: impl Fn(Build) -> Build,
+    blocks: &str,
+) -> Rig {
     let tool = Tool {
         shape: ToolShape {
-            length: 95.0,
-            radius: 10.0,
+            length,
+            radius,
             ..ToolShape::default()
         },
         pocket: Some(2),
         edges,
         ..Tool::default()
     };
-    let mut build = Build::mill()
+    let called = if blocks.starts_with("TOOL CALL") {
+        ""
+    } else {
+        "TOOL CALL 2 Z S800\n"
+    };
+    let mut build = plant(Build::mill())
         .mp("7261=12")
         .mp("7480.0=3")
         .mp("4310.0=3")
         .mp("7300=4")
-        .program("1.H", &format!("TOOL CALL 2 Z S800\n{blocks}"));
+        .program("1.H", &format!("{called}{blocks}"));
     for parameter in parameters {
         build = build.mp(parameter);
     }
@@ -197,4 +212,214 @@ fn q(rig: &Rig, number: u16) -> f64 {
     all.iter()
         .find(|(own, _)| *own == number)
         .map_or(0.0, |(_, value)| *value)
+}
+
+/// Tool 2 with three teeth: radii 9.985, 9.9 and 9.95 mm, lengths 94.96, 94.96 and 94.9 mm.
+fn three_teeth(build: Build) -> Build {
+    let tooth = "\n[[tool_probe.tool.tooth]]\n";
+    let teeth = format!("radius = 9.985\n{tooth}{tooth}radius = 9.9\n{tooth}radius = 9.95\nlength = 94.9\n");
+    build.plant("radius = 9.985\n", &teeth)
+}
+
+fn teeth(number: u8, check: &str) -> String {
+    cycle(number, check).replace("TEETH: 0", "TEETH: 1")
+}
+
+/// MP6520 so slow that a contour cycle is a way of 1 µm.
+const SLOWLY: &str = "6520=20";
+
+/// The spindle angles at which the contact was deflected, whole degrees, until the program ends.
+fn angles_of_touches(rig: &mut Rig) -> Vec<i64> {
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    let angle: bahn_control::Signal = "S.angle".parse().unwrap();
+    let (mut angles, mut moved, mut touched) = (Vec::new(), false, false);
+    rig.until(60.0, "it measures", |rig| rig.bit("M2390"));
+    let end = rig.control.time_us() + 400_000_000;
+    while rig.bit("M2390") {
+        assert!(rig.control.time_us() < end, "{:?}", rig.messages());
+        assert!(!rig.bit("M2486"), "it does not turn");
+        moved |= rig.bit("M2127");
+        rig.cycle();
+        let touches = rig.machine.tool_probe().deflected;
+        if touches && !touched {
+            angles.push((rig.control.observe(&angle).round() as i64).rem_euclid(360));
+        }
+        touched = touches;
+    }
+    assert!(moved, "M2127");
+    rig.until(60.0, "the program ends", |rig| rig.control.snapshot().ended);
+    rig.seconds(0.2);
+    angles
+}
+
+/// Each tooth is turned to the contact and probed with MP6520; the longest one is the radius, the farthest off counts
+/// for the tolerances: 0.1 mm are beyond RTOL 0.06, not beyond RBREAK 0.2. Seen from the spindle M3 turns against the
+/// plane: to look in +X, the probing direction of MP6505 = 0, teeth at 0, 120 and 240° need as much.
+#[test]
+fn single_teeth_have_a_radius_each() {
+    let edges = Edges {
+        count: 3,
+        radius_wear: 0.06,
+        radius_break: 0.2,
+        ..Edges::default()
+    };
+    let blocks = teeth(32, "1 Q5");
+    let mut rig = mill_of([95.0, 10.0], edges, &["6560=-1", SLOWLY], three_teeth, &blocks);
+    assert_eq!(angles_of_touches(&mut rig), [0, 120, 240]);
+    assert!(rig.bit("M2392") && !rig.bit("M2393"));
+    assert_eq!(q(&rig, 5), 1.0);
+    close_to(q(&rig, 116), 9.985 - 10.0);
+    close_to(written(&rig, DR).unwrap(), 9.985 - 10.0);
+}
+
+/// The length of teeth is measured R-OFFS = 25 mm beside the middle, where only the tooth that looks back to it (-X, 180°)
+/// is over the contact: 94.9 mm are 0.1 less than the table says, broken beyond LBREAK 0.08.
+#[test]
+fn single_teeth_have_a_length_each() {
+    let edges = Edges {
+        count: 3,
+        length_break: 0.08,
+        radius_offset: 25.0,
+        ..Edges::default()
+    };
+    let blocks = teeth(31, "1 Q5");
+    let mut rig = mill_of([95.0, 10.0], edges, &["6560=-1", SLOWLY], three_teeth, &blocks);
+    assert_eq!(angles_of_touches(&mut rig), [180, 300, 60]);
+    assert_eq!(q(&rig, 5), 2.0);
+    assert!(rig.bit("M2393"));
+    close_to(q(&rig, 115), 94.96 - 95.0);
+}
+
+/// MP6560 = 19: M19 orients to the angle of cycle 13, which is that of the program again behind it.
+#[test]
+fn the_plc_orients_for_teeth() {
+    let edges = Edges {
+        count: 3,
+        ..Edges::default()
+    };
+    let mut rig = mill_of(
+        [95.0, 10.0],
+        edges,
+        &["6560=19", SLOWLY],
+        three_teeth,
+        &teeth(32, "0"),
+    );
+    assert_eq!(angles_of_touches(&mut rig), [0, 120, 240]);
+    close_to(written(&rig, R).unwrap(), 9.985);
+}
+
+/// Nobody orients the spindle (MP6560 = 0), or the tool has no teeth (CUT).
+#[test]
+fn teeth_that_cannot_be_measured() {
+    for (count, parameter) in [(3, "6560=0"), (0, "6560=-1")] {
+        let edges = Edges {
+            count,
+            ..Edges::default()
+        };
+        let mut rig = mill_of([95.0, 10.0], edges, &[parameter], three_teeth, &teeth(31, "0"));
+        rig.command("mode full");
+        rig.command("select 1.H");
+        rig.start();
+        rig.until(60.0, "it is refused", |rig| !rig.messages().is_empty());
+        assert!(
+            rig.messages()[0].contains("PROBE SYSTEM NOT READY"),
+            "{:?}",
+            rig.messages()
+        );
+    }
+}
+
+/// With a tool whose data are exact (94.96 and 9.985 mm) TCH PROBE 30 finds the contact at 560, 40, 60 with 40 mm, where
+/// the list says 560.3, 39.8, 60.1 and 40.2: its face, then four sides at 0° and 180°. The tool is then right as it is.
+#[test]
+fn the_contact_is_calibrated() {
+    let blocks = "TCH PROBE 30.0 TT CALIBRATION\nTCH PROBE 30.1 HEIGHT: +100\n";
+    let list = [
+        "6580.0=560.3",
+        "6580.1=39.8",
+        "6580.2=60.1",
+        "6531=40.2",
+        "6560=-1",
+        SLOWLY,
+    ];
+    let mut rig = mill_of([94.96, 9.985], Edges::default(), &list, |build| build, blocks);
+    assert_eq!(angles_of_touches(&mut rig), [0, 0, 180, 0, 180, 0, 180, 0, 180]);
+    assert_eq!(rig.messages(), [""; 0]);
+    let calibration = rig.control.remember().tool_probe.unwrap();
+    assert_eq!(calibration.list, [560.3, 39.8, 60.1, 40.2]);
+    // A disc that is probed d mm beside its middle is met d² / (2 (20 + 9.985)) later; on two sides of two axes.
+    let later = (0.3f64.powi(2) + 0.2f64.powi(2)) / (2.0 * (20.0 + 9.985));
+    for (found, true_place) in calibration
+        .found
+        .into_iter()
+        .zip([560.0, 40.0, 60.0, 40.0 - later])
+    {
+        close_to(found, true_place);
+    }
+    assert_eq!(written(&rig, L), None);
+}
+
+/// A tool that is refused while it turns backwards, and one that INTERNAL STOP leaves, come to a stop with the speed of
+/// the program.
+#[test]
+fn a_measuring_that_is_broken_off_stops_the_spindle() {
+    for (parameter, stops) in [("6580.2=80", false), ("6580.2=60", true)] {
+        let mut rig = mill_with(Edges::default(), &[parameter], &cycle(31, "0"));
+        rig.command("mode full");
+        rig.command("select 1.H");
+        rig.start();
+        rig.until(60.0, "it turns backwards", |rig| {
+            rig.bit("M2486") && rig.control.snapshot().spindle.actual_rpm.abs() > 600.0
+        });
+        if stops {
+            rig.event("key NC_STOP tap");
+            rig.seconds(1.0);
+            assert!(rig.bit("M2486"), "NC stop alone interrupts nothing");
+            rig.command("stop");
+        } else {
+            rig.until(200.0, "it is refused", |rig| !rig.messages().is_empty());
+        }
+        rig.seconds(5.0);
+        let spindle = rig.control.snapshot().spindle;
+        assert!(spindle.actual_rpm.abs() < 1.0, "{parameter}: {spindle:?}");
+        assert_eq!(spindle.programmed_rpm, 800.0);
+        assert!(!rig.bit("M2486") && rig.bit("M2487") && !rig.bit("M2390"));
+    }
+}
+
+/// Tool axis Y: the length in -Y, the radius in the angle reference axis of its plane, Z.
+#[test]
+fn a_tool_in_y() {
+    let blocks = format!("TOOL CALL 2 Y S800\n{}{}", cycle(31, "0"), cycle(32, "0")).replace("+100", "+250");
+    let plant = |build: Build| build.plant("centre = [560, 40, 60]", "centre = [560, 40, 60]\naxis = \"Y\"");
+    let mut rig = mill_of([95.0, 10.0], Edges::default(), &[], plant, &blocks);
+    rig.run("1.H", 300.0);
+    rig.seconds(0.1);
+    assert_eq!(rig.messages(), [""; 0]);
+    close_to(written(&rig, L).unwrap(), 95.0 + DIFFERENCES[0]);
+    close_to(written(&rig, R).unwrap(), 10.0 + DIFFERENCES[1]);
+}
+
+/// Without a magazine the tool probe knows the tool that was put into the spindle by hand.
+#[test]
+fn a_tool_that_was_changed_by_hand() {
+    let tool = Tool {
+        shape: ToolShape {
+            length: 95.0,
+            radius: 10.0,
+            ..ToolShape::default()
+        },
+        ..Tool::default()
+    };
+    let blocks = format!("TOOL CALL 2 Z S800\n{}", cycle(31, "0"));
+    let build = Build::mill().mp("4310.0=1").mp("7300=4");
+    let mut build = build.program("1.H", &blocks);
+    build.tools = Some([(2, tool)].into());
+    let mut rig = build.rig();
+    rig.power_on();
+    rig.machine.tool_is_called(2);
+    rig.run("1.H", 200.0);
+    close_to(q(&rig, 115), DIFFERENCES[0]);
 }

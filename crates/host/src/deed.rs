@@ -14,11 +14,18 @@ pub trait Operable: Plant {
     /// # Errors
     /// In words, when it has not what the event names.
     fn operate(&mut self, event: &Event) -> Result<(), String>;
+
+    /// The tool that the control has in the spindle; who changes tools by hand puts it there.
+    fn tool_is_called(&mut self, _tool: u32) {}
 }
 
 impl Operable for Machine {
     fn operate(&mut self, event: &Event) -> Result<(), String> {
         self.act(event).map_err(|error| error.to_string())
+    }
+
+    fn tool_is_called(&mut self, tool: u32) {
+        Machine::tool_is_called(self, tool);
     }
 }
 

@@ -206,6 +206,7 @@ impl<P: Operable> Host<P> {
         self.background
             .prepare(&mut self.control, beside, &self.break_off);
         self.control.cycle_watched(&mut self.plant, tracer, sampler);
+        self.plant.tool_is_called(self.control.tool());
         // A message names the program of its block.
         if self.watched || self.control.has_news() {
             self.background.settle(&mut self.control);

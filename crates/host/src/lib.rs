@@ -115,7 +115,7 @@ pub use bahn_exchange::{Assignment, Content, Operand};
 #[doc(hidden)]
 pub use machine_folder::{check_nc_tables, check_state};
 pub use notice::{Notice, Stamped, Why};
-pub use observable::{Decimals, Observable, Observed, Truth};
+pub use observable::{Decimals, MagazineTruth, Observable, Observed, Truth};
 pub use operator::{Attendance, Job, Operator, Phase};
 pub use orders::{Desk, Order, When};
 pub use pace::{Clock, Late, Lateness};

@@ -17,6 +17,48 @@ pub enum Truth {
 
 const TRUTHS: [(&str, Truth); 2] = [("table", Truth::Table), ("force", Truth::Force)];
 
+/// What only the plant knows of its tool magazine; 0 is no tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MagazineTruth {
+    /// `magazine.pocket`: the pocket that is nearest to the change position.
+    Pocket,
+    /// `magazine.shuttle`: the tool in the shuttle.
+    Shuttle,
+    /// `magazine.gripper`: the tool in the gripper at the side of the shuttle.
+    Gripper,
+    /// `magazine.gripper2`: the tool in the gripper at the side of the spindle.
+    SpindleGripper,
+    /// `magazine.spindle`: the tool in the spindle.
+    Spindle,
+    /// `magazine.angle`: how far the arm has turned, degrees.
+    Angle,
+}
+
+const MAGAZINE: [(&str, MagazineTruth); 6] = [
+    ("magazine.pocket", MagazineTruth::Pocket),
+    ("magazine.shuttle", MagazineTruth::Shuttle),
+    ("magazine.gripper", MagazineTruth::Gripper),
+    ("magazine.gripper2", MagazineTruth::SpindleGripper),
+    ("magazine.spindle", MagazineTruth::Spindle),
+    ("magazine.angle", MagazineTruth::Angle),
+];
+
+impl MagazineTruth {
+    fn value(self, plant: &Machine) -> f64 {
+        let Some(magazine) = plant.magazine() else {
+            return 0.0;
+        };
+        match self {
+            MagazineTruth::Pocket => magazine.pocket as f64,
+            MagazineTruth::Shuttle => f64::from(magazine.shuttle),
+            MagazineTruth::Gripper => f64::from(magazine.arm[0]),
+            MagazineTruth::SpindleGripper => f64::from(magazine.arm[1]),
+            MagazineTruth::Spindle => f64::from(magazine.spindle),
+            MagazineTruth::Angle => magazine.arm_deg,
+        }
+    }
+}
+
 /// Something with a value in every cycle: `X.lag`, `M2045`, `X.table`.
 ///
 /// ```
@@ -31,6 +73,8 @@ pub enum Observable {
     Signal(Signal),
     /// What the plant knows of the axis of a letter.
     Truth(char, Truth),
+    /// What the plant knows of its magazine; without one 0.
+    Magazine(MagazineTruth),
 }
 
 impl FromStr for Observable {
@@ -38,6 +82,9 @@ impl FromStr for Observable {
 
     fn from_str(text: &str) -> Result<Observable, SignalError> {
         let text = text.trim();
+        if let Some((_, truth)) = MAGAZINE.iter().find(|(known, _)| *known == text) {
+            return Ok(Observable::Magazine(*truth));
+        }
         if let Some((axis, name)) = text.split_once('.')
             && let Some((_, truth)) = TRUTHS.iter().find(|(known, _)| *known == name)
             && let Ok(Signal::Axis(letter, _)) = format!("{axis}.actual").parse()
@@ -52,6 +99,10 @@ impl fmt::Display for Observable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Observable::Signal(signal) => signal.fmt(f),
+            Observable::Magazine(truth) => {
+                let name = MAGAZINE.iter().find(|(_, of)| of == truth);
+                f.write_str(name.map_or("", |(name, _)| name))
+            }
             Observable::Truth(letter, truth) => {
                 let name = TRUTHS.iter().find(|(_, of)| of == truth);
                 write!(f, "{letter}.{}", name.map_or("", |(name, _)| name))
@@ -65,6 +116,7 @@ impl Observable {
     pub fn value(&self, channel: ChannelView, plant: &Machine) -> f64 {
         match self {
             Observable::Signal(signal) => channel.observe(signal),
+            Observable::Magazine(truth) => truth.value(plant),
             Observable::Truth(letter, truth) => plant.axis(*letter).map_or(0.0, |axis| match truth {
                 Truth::Table => axis.position,
                 Truth::Force => axis.force,
@@ -76,7 +128,7 @@ impl Observable {
     pub fn axis(&self) -> Option<char> {
         match self {
             Observable::Signal(Signal::Axis(letter, _)) | Observable::Truth(letter, _) => Some(*letter),
-            Observable::Signal(_) => None,
+            Observable::Signal(_) | Observable::Magazine(_) => None,
         }
     }
 
@@ -84,6 +136,8 @@ impl Observable {
     pub fn unit(&self) -> &'static str {
         let unit = match self {
             Observable::Signal(signal) => signal.unit(),
+            Observable::Magazine(MagazineTruth::Angle) => "degrees",
+            Observable::Magazine(_) => "",
             Observable::Truth(_, Truth::Table) => "mm",
             Observable::Truth(_, Truth::Force) => "N",
         };
@@ -100,6 +154,8 @@ impl Observable {
     /// A value with as many decimals as it is good for.
     pub fn decimals(&self, value: f64) -> Decimals {
         let places = match self {
+            Observable::Magazine(MagazineTruth::Angle) => 1,
+            Observable::Magazine(_) => 0,
             Observable::Truth(_, Truth::Table) => 5,
             Observable::Truth(_, Truth::Force) => 1,
             Observable::Signal(signal) => match signal {
@@ -144,7 +200,7 @@ impl FromStr for Observed {
         let what = of_it.parse()?;
         match (channel, what) {
             // That is no signal of a channel.
-            (Some(_), Observable::Truth(..)) => Err(SignalError::of(text)),
+            (Some(_), Observable::Truth(..) | Observable::Magazine(_)) => Err(SignalError::of(text)),
             (channel, what) => Ok(Observed {
                 channel: channel.unwrap_or(0),
                 what,
@@ -202,6 +258,9 @@ mod tests {
         assert_eq!(text("C.speed", 5.0), "5.000 deg/min");
         assert_eq!(text("C.force", 5.0), "5.0 Nm");
         assert_eq!(text("X.table", 5.0), "5.00000 mm");
+        assert_eq!(text("magazine.angle", 90.04), "90.0 deg");
+        assert_eq!(text("magazine.gripper2", 3.0), "3 ");
+        assert!("magazine.table".parse::<Observable>().is_err());
         assert!("Q.table".parse::<Observable>().is_err() && "M.table".parse::<Observable>().is_err());
         assert!("X.table".parse::<Observed>().is_ok() && "2:X.table".parse::<Observed>().is_err());
     }

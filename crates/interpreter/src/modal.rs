@@ -67,7 +67,7 @@ pub(crate) struct Modal {
     pub tilting: Tilting,
     /// Probe block 0.0 waiting for 0.1.
     pub probe: Option<ReferencePlane>,
-    /// Blocks of TCH PROBE 31 or 32 that were read.
+    /// Blocks of TCH PROBE 30, 31 or 32 that were read.
     pub measuring: Option<MeasuringBlocks>,
 }
 
@@ -89,6 +89,7 @@ pub(crate) struct MeasuringBlocks {
     pub check: bool,
     pub result: Option<u16>,
     pub height: f64,
+    pub teeth: bool,
 }
 
 /// The last movement in programmed coordinates.

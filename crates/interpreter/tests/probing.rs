@@ -5,6 +5,7 @@
 mod support;
 
 use bahn_parameters::MessageId;
+use bahn_path::MeasuredPart;
 use bahn_path::{Axis, Barrier};
 use support::*;
 
@@ -145,8 +146,32 @@ fn tools_are_measured_at_a_barrier() {
     let [Barrier::MeasureTool(measuring)] = run.barriers.as_slice() else {
         panic!("{:?}", run.barriers);
     };
-    assert!(measuring.radius && measuring.check);
+    assert_eq!(measuring.part, MeasuredPart::Radius);
+    assert!(measuring.check && !measuring.teeth);
     assert_eq!((measuring.height, measuring.result), (120.0, Some(5)));
+}
+
+/// TCH PROBE 30 has the height only; PROBING THE TEETH: 1 wants each tooth.
+#[test]
+fn calibrating_and_single_teeth() {
+    let tool = "TOOL DEF 1 L+50 R+5\nTOOL CALL 1 Z S1000\n";
+    let calibrates = run(&format!(
+        "{tool}TCH PROBE 30.0 TT CALIBRATION\nTCH PROBE 30.1 HEIGHT: +90"
+    ));
+    let teeth = run(&format!(
+        "{tool}TCH PROBE 31.0 TOOL LENGTH\nTCH PROBE 31.1 CHECK: 0\nTCH PROBE 31.2 HEIGHT: +100\n\
+         TCH PROBE 31.3 PROBING THE TEETH: 1"
+    ));
+    for (run, part, single, height) in [
+        (calibrates, MeasuredPart::Probe, false, 90.0),
+        (teeth, MeasuredPart::Length, true, 100.0),
+    ] {
+        let [Barrier::MeasureTool(measuring)] = run.barriers.as_slice() else {
+            panic!("{:?}", run.barriers);
+        };
+        assert_eq!((measuring.part, measuring.teeth), (part, single));
+        assert_eq!(measuring.height, height);
+    }
 }
 
 #[test]
@@ -160,12 +185,12 @@ fn faults_of_tool_measuring() {
     };
     let check = |value: &str| format!("TCH PROBE 31.0 TOOL LENGTH\nTCH PROBE 31.1 CHECK: {value}\n");
     assert_eq!(fault(&check("2")), Some(MessageId::EntryValueIncorrect));
-    let teeth = check("0") + "TCH PROBE 31.2 HEIGHT: +100\nTCH PROBE 31.3 PROBING THE TEETH: 1";
+    let teeth = check("0") + "TCH PROBE 31.2 HEIGHT: +100\nTCH PROBE 31.3 PROBING THE TEETH: 2";
     assert_eq!(fault(&teeth), Some(MessageId::EntryValueIncorrect));
     let missing = check("0") + "TCH PROBE 31.3 PROBING THE TEETH: 0";
     assert_eq!(fault(&missing), Some(MessageId::CyclIncomplete));
     let other = check("0") + "TCH PROBE 32.2 HEIGHT: +100";
     assert_eq!(fault(&other), Some(MessageId::CyclIncomplete));
-    let no_tool = "TOOL CALL 0 Z S0\n".to_owned() + &teeth.replace("TEETH: 1", "TEETH: 0");
+    let no_tool = "TOOL CALL 0 Z S0\n".to_owned() + &teeth.replace("TEETH: 2", "TEETH: 0");
     assert_eq!(fault(&no_tool), Some(MessageId::ToolNotDefined));
 }

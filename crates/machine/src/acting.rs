@@ -42,7 +42,15 @@ impl Machine {
             Event::EmergencyStop(pressed) => self.chain.button = *pressed,
             Event::Voltage(on) => self.chain.supply = *on,
             Event::Probe(inserted) => self.probe()?.inserted = *inserted,
-            Event::Tool(tool) => self.magazine_mut()?.insert(*tool),
+            Event::Tool(tool) => {
+                if self.tool_probe.is_none() {
+                    self.magazine_mut()?;
+                }
+                self.by_hand.insert(*tool);
+                if let Some(magazine) = &mut self.magazine {
+                    magazine.insert(*tool);
+                }
+            }
             Event::Analogue(input, volts) => set(&mut self.volts, *input, *volts),
             Event::Temperature(input, celsius) => set(&mut self.temperatures, *input, *celsius),
             Event::Force(letter, force) => self.axis_mut(*letter)?.push(*force),

@@ -38,6 +38,7 @@
 
 mod acting;
 mod axis;
+mod by_hand;
 mod chain;
 mod current_drive;
 mod deviation;

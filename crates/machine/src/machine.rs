@@ -5,6 +5,7 @@ use bahn_servo::{
 };
 
 use crate::axis::{Axis, AxisState};
+use crate::by_hand::ByHand;
 use crate::chain::{Chain, ContactFault};
 use crate::device::{Device, DeviceState};
 use crate::magazine::{Magazine, MagazineState};
@@ -60,7 +61,8 @@ pub struct Machine {
     pub(crate) magazine: Option<Magazine>,
     pub(crate) panel: Panel,
     pub(crate) probe: Option<Probe>,
-    tool_probe: Option<ToolProbe>,
+    pub(crate) tool_probe: Option<ToolProbe>,
+    pub(crate) by_hand: ByHand,
     pub(crate) volts: [f64; ANALOGUE_INPUTS],
     pub(crate) temperatures: [f64; ANALOGUE_INPUTS],
     /// Time has passed since the encoders were read.
@@ -129,6 +131,7 @@ impl Machine {
             panel: Panel::read(&root),
             probe: root.section("probe").map(Probe::read),
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
+            by_hand: ByHand::default(),
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [20.0; ANALOGUE_INPUTS],
             moved_on: true,
@@ -241,13 +244,28 @@ impl Machine {
 
     /// Where the tools of the magazine are; `None` without one.
     pub fn magazine(&self) -> Option<MagazineState<'_>> {
-        self.magazine.as_ref().map(Magazine::state)
+        let magazine = self.magazine.as_ref()?;
+        Some(magazine.state(&self.devices))
     }
 
     /// The tools lie in the magazine as its operator has put them there: pocket and tool, and the tool in the spindle.
     pub fn load_magazine(&mut self, tools: impl Iterator<Item = (u16, u32)>, spindle: u32) {
         if let Some(magazine) = &mut self.magazine {
             magazine.load(tools, spindle);
+        }
+        self.by_hand.insert(spindle);
+    }
+
+    /// A tool was called and its change is confirmed: unless the magazine has changed it, who stands at the machine has.
+    pub fn tool_is_called(&mut self, tool: u32) {
+        self.by_hand.called(tool);
+    }
+
+    /// The tool in the spindle.
+    fn tool_in_spindle(&self) -> u32 {
+        match &self.magazine {
+            Some(magazine) if magazine.has_changed => magazine.tool_in_spindle(),
+            _ => self.by_hand.tool(),
         }
     }
 
@@ -468,18 +486,15 @@ impl Machine {
         self.axes.iter().all(Axis::limits_clear)
     }
 
-    /// The tool probe; none is never ready. It knows the tool that the magazine has put into the spindle.
-    fn tool_probe(&self) -> Touch {
+    /// The tool probe; none is never ready. It knows the tool that the magazine or a hand has put into the spindle.
+    pub fn tool_probe(&self) -> Touch {
         let Some(probe) = &self.tool_probe else {
             return Touch::default();
         };
-        let tool = self
-            .magazine
-            .as_ref()
-            .map_or(0, |magazine| magazine.state().spindle);
+        let tool = self.tool_in_spindle();
         let place = self.probe_axes.map(|index| Some(self.axes.get(index?)?.table));
         let deflected = match place {
-            [Some(x), Some(y), Some(z)] => probe.deflected(tool, [x, y, z]),
+            [Some(x), Some(y), Some(z)] => probe.deflected(tool, [x, y, z], self.spindle()),
             _ => false,
         };
         Touch {

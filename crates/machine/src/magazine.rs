@@ -14,8 +14,11 @@ const POCKETS_MAX: usize = 254;
 /// A pocket is at the change position when the chain stands so near, in pockets.
 const POSITION_WINDOW: f64 = 0.2;
 
+/// The arm turns by half a turn.
+const HALF_TURN_DEG: f64 = 180.0;
+
 /// Where the tools of a magazine are.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MagazineState<'a> {
     /// The pocket that is nearest to the change position, from 1.
     pub pocket: usize,
@@ -27,6 +30,8 @@ pub struct MagazineState<'a> {
     pub arm: [u32; 2],
     /// The tool in the spindle.
     pub spindle: u32,
+    /// How far the arm has turned, degrees: 0 to 180 and back.
+    pub arm_deg: f64,
 }
 
 /// What moves the tools: places in the list of things.
@@ -58,6 +63,8 @@ pub(crate) struct Magazine {
     spindle_full: Option<Contact>,
     parts: Parts,
     pub fault: Option<DeviceFault>,
+    /// Its arm has drawn a tool since power-on.
+    pub has_changed: bool,
     /// Where the parts were a tick ago: shuttle, draw, turn.
     before: [Place; 3],
 }
@@ -122,6 +129,7 @@ impl Magazine {
             before: [parts.shuttle, parts.draw, parts.turn].map(|at| Place::of(devices.get(at))),
             parts,
             fault: None,
+            has_changed: false,
         };
         section.finish();
         magazine
@@ -152,14 +160,20 @@ impl Magazine {
         }
     }
 
-    pub fn state(&self) -> MagazineState<'_> {
+    pub fn state(&self, devices: &[Device]) -> MagazineState<'_> {
+        let turn = devices.get(self.parts.turn).map(Device::state);
         MagazineState {
             pocket: self.at() + 1,
             pockets: &self.pockets,
             shuttle: self.shuttle,
             arm: self.arm,
             spindle: self.spindle,
+            arm_deg: turn.map_or(0.0, |turn| turn.position * HALF_TURN_DEG),
         }
+    }
+
+    pub fn tool_in_spindle(&self) -> u32 {
+        self.spindle
     }
 
     /// Lets a millisecond pass, behind the things.
@@ -251,7 +265,10 @@ impl Magazine {
             };
             match (*from, *to) {
                 (0, _) => {}
-                (_, 0) => *to = std::mem::take(from),
+                (_, 0) => {
+                    *to = std::mem::take(from);
+                    self.has_changed = true;
+                }
                 _ => fits = false,
             }
         }

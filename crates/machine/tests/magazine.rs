@@ -159,3 +159,17 @@ fn a_magazine_needs_its_things() {
     assert!(machine.magazine().is_none() && machine.apply("tool 3").is_err());
     assert!(machine.apply("fault magazine lost").is_err());
 }
+
+/// Two tools of one number in a tool probe are a fault, at the second one.
+#[test]
+fn a_tool_probe_has_each_tool_once() {
+    let tool = "[[tool_probe.tool]]\nnumber = 3\nlength = 80\nradius = 5\n";
+    let text = format!("{BASE}{IDEAL_X}[tool_probe]\ncentre = [0, 0, 0]\ndiameter = 40\n{tool}{tool}");
+    let faults = Machine::from_toml(&text).err().unwrap();
+    let line = text.lines().count() - 2;
+    let said: Vec<(usize, &str)> = faults
+        .iter()
+        .map(|fault| (fault.line as usize, fault.message.as_str()))
+        .collect();
+    assert_eq!(said, [(line, "tool 3 stands here already")]);
+}

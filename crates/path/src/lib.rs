@@ -43,5 +43,5 @@ pub use element::{
 pub use frame::{AxisScaling, Frame};
 pub use placement::Placement;
 pub use plane::{Plane, Point2};
-pub use source::{Barrier, ElementSource, LiveData, Step, ToolMeasuring, Touch};
+pub use source::{Barrier, ElementSource, LiveData, MeasuredPart, Step, ToolMeasuring, Touch};
 pub use swivel::{Link, Swivels};

@@ -69,14 +69,27 @@ pub enum Barrier {
 pub struct ToolMeasuring {
     /// The block that measures.
     pub block: BlockRef,
-    /// The radius is measured, not the length.
-    pub radius: bool,
+    /// What is measured.
+    pub part: MeasuredPart,
+    /// Each tooth on its own, with the spindle oriented.
+    pub teeth: bool,
     /// The tool is compared with its data: the difference becomes its oversize; else its data become what was found.
     pub check: bool,
     /// Height of the tool axis at which nothing is in the way, path coordinates, mm.
     pub height: f64,
     /// The Q parameter that takes what was found: 0 good, 1 worn, 2 broken.
     pub result: Option<u16>,
+}
+
+/// What a tool probe measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeasuredPart {
+    /// The length of the tool.
+    Length,
+    /// The radius of the tool.
+    Radius,
+    /// The place and the width of its own contact, with a tool whose data are exact: calibrating.
+    Probe,
 }
 
 /// What was found out at a barrier.

@@ -52,6 +52,9 @@ X.force                             of the motor, N or Nm
 path.speed path.distance path.block speed, way to the end of the element, number of the block
 S.rpm S.volts S.angle               the spindle; angle since power-on with all turns
 mode run tool                       W272; 0 idle 1 running 2 interrupted 3 stopped 4 block-end; in the spindle
+magazine.pocket magazine.angle      pocket at the change position; how far the arm has turned, degrees
+magazine.shuttle magazine.gripper   tool in the shuttle, in the gripper beside it (0 none)
+magazine.gripper2 magazine.spindle  tool in the gripper at the spindle, in the spindle
 Q5                                  a Q parameter at the block that is executed
 X41/34 X42/4                        control is ready, and its acknowledgement
 M2045 I4 O2 T48 C0 B8 W260 D356     as the PLC sees it; the column event tells of `M100 pulse` inside a scan

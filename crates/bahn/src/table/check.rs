@@ -16,7 +16,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     let mut reports = Vec::new();
     for path in &options.tables {
         let checked = if path.is_dir() {
-            of_machine(path)
+            of_machine(path, options)
         } else {
             of_file(path, options)
         };
@@ -87,7 +87,7 @@ fn of_file(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
 }
 
 /// All tables of a machine; other faults of its files are not looked at.
-fn of_machine(path: &Path) -> Result<Report, UsageError> {
+fn of_machine(path: &Path, options: &CheckOptions) -> Result<Report, UsageError> {
     let (rows, faults) = match LoadedMachine::load(path)? {
         Ok(machine) => (
             machine.tables.len() + usize::from(machine.tools.is_some()),
@@ -95,7 +95,9 @@ fn of_machine(path: &Path) -> Result<Report, UsageError> {
         ),
         Err(faults) => (0, faults),
     };
-    diagnostics::print_faults(&faults);
+    if options.format == Format::Text {
+        diagnostics::print_faults(&faults);
+    }
     let item = |fault: bahn_host::FileFault| Item {
         file: fault.path.display().to_string(),
         line: fault.marked.line,

@@ -15,11 +15,8 @@ use crate::{Outcome, UsageError, diagnostics};
 pub(super) fn command(options: &SetOptions) -> Result<Outcome, UsageError> {
     let path = &options.table;
     let source = source::read(path, options.kind)?;
-    if is_protected(path, source.kind) {
-        return Err(UsageError::new(format!(
-            "{} is protected (MP7224.1)",
-            path.display()
-        )));
+    if let Some(why) = refused(path, source.kind) {
+        return Err(UsageError::new(format!("{} {why}", path.display())));
     }
     if let Err(faults) = source.kind.check(&source.text) {
         source.print(&faults);
@@ -100,21 +97,24 @@ fn changed(source: &Source, options: &SetOptions) -> Result<(String, &'static st
     Ok((lines.concat(), "is changed"))
 }
 
-/// The machine in whose folder the table lies protects it. A machine with faults protects nothing.
-fn is_protected(path: &Path, kind: TableForm) -> bool {
+/// Why a table is not changed: the machine in whose folder it lies protects it, or is switched on and would not see what
+/// is changed. A machine with faults protects nothing.
+fn refused(path: &Path, kind: TableForm) -> Option<&'static str> {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut folders = path.ancestors().skip(1).take(2);
-    let Some(root) = folders.find(|folder| folder.join(MachineFolder::FILE).exists()) else {
-        return false;
-    };
-    let Ok(Ok(machine)) = LoadedMachine::load(root) else {
-        return false;
-    };
+    let root = folders.find(|folder| folder.join(MachineFolder::FILE).exists())?;
+    let machine = LoadedMachine::load(root).ok()?.ok()?;
     let [tools, datums, pallets] = machine.parameters.table_parameters().protected;
-    match kind {
+    let protected = match kind {
         TableForm::Tool | TableForm::Pocket => tools,
         TableForm::Datum => datums,
         TableForm::Pallet => pallets,
         TableForm::Point => false,
+    };
+    if protected {
+        return Some("is protected (MP7224.1)");
     }
+    machine
+        .is_switched_on()
+        .then_some("belongs to a machine that is switched on, which reads its tables at power-on")
 }

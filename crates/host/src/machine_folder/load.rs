@@ -99,6 +99,11 @@ impl LoadedMachine {
         remembered::read(&files::read_table(&file).ok()?).ok()
     }
 
+    /// Somebody has switched it on: its state is in use.
+    pub fn is_switched_on(&self) -> bool {
+        state::is_in_use(&self.root.join(&self.folder.state))
+    }
+
     /// The folder of the part programs of a channel, from 0.
     pub fn programs(&self, channel: usize) -> PathBuf {
         let own = channel.checked_sub(1).and_then(|place| self.channels.get(place));

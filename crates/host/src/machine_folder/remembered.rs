@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use bahn_control::{MovedTool, Position0, Remembered, WrittenElement};
+use bahn_control::{MovedTool, Position0, Remembered, ToolProbeCalibration, WrittenElement};
 use bahn_path::{Axis, Position};
 use bahn_plc::TableKind;
 use serde::Deserialize;
@@ -15,6 +15,8 @@ struct Form {
     tool: u32,
     tool_length: f64,
     tool_axis: Option<char>,
+    /// Of the contact of the tool probe: found, and in the list.
+    tool_probe: Option<[[f64; 4]; 2]>,
     parameter_list: Option<String>,
     program: Option<String>,
     pallet_line: Option<i32>,
@@ -80,6 +82,13 @@ fn text(remembered: &Remembered) -> String {
     line("tool_length", number(remembered.tool_length));
     if let Some(axis) = remembered.tool_axis {
         line("tool_axis", format!("\"{}\"", axis.letter()));
+    }
+    if let Some(probe) = &remembered.tool_probe {
+        let [found, file] = [probe.found, probe.list].map(|place| list(place.map(number)));
+        line(
+            "# Contact of the tool probe, X, Y, Z and width: found, and in the list of machine parameters then\ntool_probe",
+            format!("[{found}, {file}]"),
+        );
     }
     if let Some(list) = &remembered.parameter_list {
         line("parameter_list", toml::Value::from(list.as_str()).to_string());
@@ -224,11 +233,17 @@ fn content_of(text: &str) -> Result<Remembered, String> {
     for volts in form.offsets_volts {
         finite(volts)?;
     }
+    for value in form.tool_probe.iter().flatten().flatten() {
+        finite(*value)?;
+    }
     Ok(Remembered {
         datums,
         tool: form.tool,
         tool_length: finite(form.tool_length)?,
         tool_axis: form.tool_axis.map(axis).transpose()?,
+        tool_probe: form
+            .tool_probe
+            .map(|[found, list]| ToolProbeCalibration { found, list }),
         pockets,
         written,
         q,
@@ -280,6 +295,10 @@ mod tests {
             tool: 12,
             tool_length: 81.25,
             tool_axis: Some(Axis::Z),
+            tool_probe: Some(ToolProbeCalibration {
+                found: [560.01, 40.0, 59.98, 40.002],
+                list: [560.0, 40.0, 60.0, 40.0],
+            }),
             pockets: vec![
                 MovedTool {
                     tool: 3,

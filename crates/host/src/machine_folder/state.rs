@@ -27,6 +27,13 @@ pub(super) const LOCK: &str = "lock";
 /// How often changes are looked for that nothing waits for.
 const PERIOD: Duration = Duration::from_millis(200);
 
+/// A control is on that uses a state folder; nothing is made where there is none.
+pub(super) fn is_in_use(folder: &Path) -> bool {
+    let lock = folder.join(LOCK);
+    let file = kept::open(&lock).ok().flatten();
+    file.is_some_and(|file| kept::lock(&file, &lock) == Ok(false))
+}
+
 /// The state folder of a machine that is switched on.
 pub struct State {
     journal: Retained,

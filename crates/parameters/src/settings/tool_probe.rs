@@ -15,6 +15,10 @@ pub struct ToolProbeParameters {
     pub tolerance: ToolProbeTolerance,
     /// Greatest measuring error with a rotating tool, mm: MP6510.
     pub error_mm: f64,
+    /// Probing feed with a standing tool, mm/min: MP6520.
+    pub standing_mm_min: f64,
+    /// How the spindle is oriented for standing tools: MP6560.
+    pub orientation: ProbeOrientation,
     /// How far below the top of the contact radii are measured, mm: MP6530.
     pub depth_mm: f64,
     /// Diameter or edge length of the contact, mm: MP6531.
@@ -27,6 +31,17 @@ pub struct ToolProbeParameters {
     pub surface_m_min: f64,
     /// Centre of the contact from the machine datum, X, Y, Z, mm: MP6580.
     pub centre_mm: [f64; 3],
+}
+
+/// MP6560 [000:7978-7982].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProbeOrientation {
+    /// 0: not at all; standing tools are not measured.
+    None,
+    /// -1: by the NC itself.
+    Nc,
+    /// 1 to 88: by the PLC with this M function, to the angle of cycle 13.
+    Plc(u8),
 }
 
 /// MP6507 [000:8007-8021].
@@ -55,6 +70,12 @@ impl ParameterList {
                 _ => ToolProbeTolerance::ConstantFeed,
             },
             error_mm: value(6510, 0),
+            standing_mm_min: value(6520, 0),
+            orientation: match value(6560, 0) {
+                0.0 => ProbeOrientation::None,
+                code if code < 0.0 => ProbeOrientation::Nc,
+                code => ProbeOrientation::Plc(code as u8),
+            },
             depth_mm: value(6530, 0),
             width_mm: value(6531, 0),
             safety_mm: value(6540, 0),

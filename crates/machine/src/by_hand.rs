@@ -1,0 +1,26 @@
+//! The tool that somebody has put into the spindle by hand.
+
+/// See the module. 0 is no tool.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ByHand {
+    tool: u32,
+    called: u32,
+}
+
+impl ByHand {
+    /// Somebody puts a tool into the spindle, whichever is called.
+    pub fn insert(&mut self, tool: u32) {
+        self.tool = tool;
+    }
+
+    /// The tool that is called goes into the spindle, once for each call.
+    pub fn called(&mut self, tool: u32) {
+        if self.called != tool {
+            (self.called, self.tool) = (tool, tool);
+        }
+    }
+
+    pub fn tool(self) -> u32 {
+        self.tool
+    }
+}
