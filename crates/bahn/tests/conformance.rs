@@ -329,7 +329,7 @@ fn the_table_can_be_narrowed() {
 /// The same program in all three commands: refused, strict, passed over.
 #[test]
 fn the_commands_say_what_is_not_done() {
-    let folder = Folder::with_program("L X+1 R0 FMAX\nL X+2 R0 FMAX M96\nL X+3 R0 FMAX M118");
+    let folder = Folder::with_program("L X+1 R0 FMAX\nL X+2 R0 FMAX M96\nL X+3 R0 FMAX M128");
     let check = folder.bahn("check main.H");
     assert_eq!(check.code(), 1);
     assert!(check.err().contains("M96 has no effect here"), "{}", check.err());
@@ -358,7 +358,7 @@ fn the_commands_say_what_is_not_done() {
 
 #[test]
 fn the_machine_says_it_too() {
-    let folder = Folder::with_program("L X+10 R0 FMAX\nL X+12 R0 FMAX M96\nL X+13 R0 FMAX M118");
+    let folder = Folder::with_program("L X+10 R0 FMAX\nL X+12 R0 FMAX M96\nL X+13 R0 FMAX M128");
     let mill = root().join("machines/mill");
     let run = |options: &str| {
         let mill = mill.display();
@@ -372,7 +372,7 @@ fn the_machine_says_it_too() {
     assert_eq!(skipped.code(), 0, "{}", skipped.err());
     let text = skipped.out();
     assert!(
-        text.contains("M96 has no effect here") && text.contains("passed over: M118"),
+        text.contains("M96 has no effect here") && text.contains("passed over: this control has no M128"),
         "{text}"
     );
 }

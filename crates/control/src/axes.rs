@@ -320,7 +320,7 @@ pub(crate) fn path_positions<'a>(
     for unit in axes.clone() {
         actual[unit.axis] = unit.servo.actual_mm();
     }
-    [actual, machine_position(axes)].map(|machine| chain.to_path(&machine))
+    [actual, machine_position(axes)].map(|machine| chain.tip(&machine))
 }
 
 /// Where axes stand, machine coordinates; unknown where there is none.

@@ -91,7 +91,8 @@ impl Channel {
             test: None,
             desk: Desk::new(operation),
         };
-        channel.select_range(0, machine);
+        let mut axes = machine.axes.of(channel.number);
+        channel.datums.select_range(0, &mut axes);
         let exchange = machine.memory.of_mut(channel.number);
         let axes = machine.axes.owned(channel.number);
         status::preset(axes, channel.desk.rules().english, exchange);
@@ -228,7 +229,9 @@ impl Channel {
         let handwheel = measured.operator.handwheel;
         let mut axes = machine.axes.of(self.number);
         reference::count_display_axes(&mut axes);
-        self.desk.count_handwheel(&handwheel);
+        let superimposes = self.datums.chain.superimposed.is_on();
+        let nc = machine.memory.of(self.number).nc();
+        self.desk.count_handwheel(superimposes, &handwheel, &axes, nc);
         let automatic = now.mode.is_automatic();
         let rigid = self.run.taps_rigidly();
         let ready = axes.choose_methods(automatic && !self.desk.runs_reference(), rigid);
@@ -391,7 +394,7 @@ impl Channel {
     pub fn inform(&self, machine: &mut MachineSide) {
         let (axes, link) = (machine.axes.owned(self.number), &mut machine.link);
         let spindle = machine.spindles.of(self.number);
-        status::coordinates(axes, &self.datums.chain, &self.run, link);
+        status::coordinates(axes, &self.datums.chain, &self.run, self.desk.manual.leans, link);
         let executed = self.run.selection.program.as_deref();
         let tested = self.test.as_ref().map(TestRun::program);
         status::items(self.desk.mode(), &self.desk.manual, executed, tested, link);
@@ -524,12 +527,8 @@ impl Channel {
         let (list, axes) = (self.list(machine), machine.axes.owned(self.number));
         let limits = path_limits(list, axes, self.datums.chain.kinematics());
         self.run.track.change_limits(&limits, self.run.is_active());
-        self.select_range(self.datums.range(), machine);
-    }
-
-    fn select_range(&mut self, range: usize, machine: &mut MachineSide) {
-        let mut axes = machine.axes.of(self.number);
-        self.datums.select_range(range, &mut axes);
+        let range = self.datums.range();
+        self.datums.select_range(range, &mut machine.axes.of(self.number));
     }
 
     /// Interprets and plans ahead; may allocate. `datums_changed`: blocks that are read from now on find other
@@ -542,6 +541,8 @@ impl Channel {
             self.run.track.take_limits(&limits);
         }
         self.datums_changed |= datums_changed;
+        let by_hand = self.desk.is_by_hand() && !self.run.progress().is_on_its_way();
+        self.desk.leaning.refresh(by_hand, &mut self.datums.chain);
         if self.run.source.is_lent() {
             return self.prepare_test(machine);
         }
@@ -614,9 +615,13 @@ impl Channel {
                 life::set(&mut machine.magazine, &mut machine.link.files, tool, minutes)
             }
             Command::Handwheel(axis, factor) => {
-                let axes = machine.axes.of(self.number);
-                let index = axes.at(axis).map(|unit| unit.index);
-                index.is_some_and(|index| self.desk.choose_handwheel(index, factor))
+                self.desk
+                    .choose_handwheel(axis, factor, &machine.axes.of(self.number))
+            }
+            Command::WorkingPlane(on) => {
+                let list = self.own_list.as_ref().unwrap_or(machine.link.list());
+                let (axes, chain) = (machine.axes.of(self.number), &mut self.datums.chain);
+                self.desk.switch_plane(on, list, &axes, chain)
             }
             Command::ManualOperation => {
                 let (run, mut site, _) = self.parts(machine);
@@ -635,17 +640,14 @@ impl Channel {
                 machine.offsets.shown |= desk::enter_code(code, exchange);
                 true
             }
-            Command::Key(code) => {
-                desk::press_key(code, machine.memory.of_mut(self.number));
-                true
-            }
+            Command::Key(code) => desk::press_key(code, machine.memory.of_mut(self.number)),
             Command::Test(name) => {
                 let (run, site, basis) = self.parts(machine);
                 let feeder = run.test_feeder(&name, &site, &basis);
-                feeder.is_some_and(|feeder| {
-                    self.test = Some(TestRun::new(&name, feeder));
-                    true
-                })
+                let test = feeder.map(|feeder| TestRun::new(&name, feeder));
+                let found = test.is_some();
+                self.test = test.or(self.test.take());
+                found
             }
             Command::EndTest => {
                 self.test = None;
@@ -664,7 +666,11 @@ impl Channel {
     /// DATUM SET: the actual position becomes a value.
     fn set_datum(&mut self, axis: Axis, value: f64, machine: &mut MachineSide) -> bool {
         let axes = machine.axes.of(self.number);
-        let done = self.desk.is_by_hand() && self.datums.set(axis, value, &axes);
+        let shift = self
+            .desk
+            .leaning
+            .datum_shift(axis, value, &axes, &self.datums.chain);
+        let done = self.desk.is_by_hand() && self.datums.set_or_shift(axis, value, shift, &axes);
         machine.unsaved |= done;
         done
     }
@@ -676,11 +682,8 @@ impl Channel {
 
     /// What survives power-off of the channel: datums, tool, Q parameters, program.
     pub fn remember(&self) -> Remembered {
-        let offsets = (
-            self.datums.chain.offsets.tool_length,
-            self.datums.chain.offsets.tool_axis,
-        );
-        let (tool_length, tool_axis) = self.tools.held_geometry().unwrap_or(offsets);
+        let held = self.tools.held_geometry();
+        let (tool_length, tool_axis) = held.unwrap_or(self.datums.chain.offsets.tool());
         Remembered {
             datums: self.datums.points().map(crate::setup::Position0),
             tool: self.tools.number,

@@ -105,6 +105,9 @@ pub enum Command {
     /// `output step FEED`, `output ramp`: what direction keys put out in MANUAL OPERATION on axes with digital speed
     /// controller, as OUTPUT of the oscilloscope says; the feed in mm/min [000:18737-18756].
     Output(Option<f64>),
+    /// `3d-rot on`, `3d-rot off`: by hand the axes move, are shown and get their datum in the plane of the swivel axes as
+    /// they stand [000:4256].
+    WorkingPlane(bool),
     /// `handwheel AXIS FACTOR`: axis of the handwheel and its interpolation factor 0 to 10.
     Handwheel(Axis, u8),
     /// `manual-operation`: axes may be moved while a run is interrupted (M2018).
@@ -222,6 +225,11 @@ impl FromStr for Command {
                 let (axis, rest) = axis(name, rest)?;
                 number(name, rest, 0, 10).map(|factor| Command::Handwheel(axis, factor))
             }
+            "3d-rot" => match rest {
+                "on" => Ok(Command::WorkingPlane(true)),
+                "off" => Ok(Command::WorkingPlane(false)),
+                _ => Err(CommandError::Wrong("`3d-rot` takes `on` or `off`".into())),
+            },
             "offset" => match rest {
                 "adjust" => Ok(Command::OffsetAdjustment(true)),
                 "off" => Ok(Command::OffsetAdjustment(false)),
@@ -306,6 +314,7 @@ impl fmt::Display for Command {
             Command::JogIncrement(mm) => write!(f, "jog {mm}"),
             Command::Output(Some(feed)) => write!(f, "output step {feed}"),
             Command::Output(None) => write!(f, "output ramp"),
+            Command::WorkingPlane(on) => write!(f, "3d-rot {}", if *on { "on" } else { "off" }),
             Command::Handwheel(axis, factor) => write!(f, "handwheel {axis} {factor}"),
             Command::ManualOperation => write!(f, "manual-operation"),
             Command::RestorePosition => write!(f, "restore-position"),
@@ -344,6 +353,7 @@ mod tests {
             "output step 250",
             "output ramp",
             "handwheel C 3",
+            "3d-rot on",
             "manual-operation",
             "restore-position",
             "restore-at 7",
@@ -377,6 +387,7 @@ mod tests {
             ("I4=1", "`fault input I4 1`"),
             ("M5=2", "takes 0 or 1"),
             ("output", "`step` and a feed"),
+            ("3d-rot B", "`on` or `off`"),
             ("power up", "`on` or `off`"),
         ] {
             let error = text.parse::<Command>().map_err(|error| error.to_string());

@@ -6,8 +6,12 @@ use bahn_path::{Axis, Position};
 
 use crate::axes::OwnAxes;
 use crate::kinematics::{Chain, Kinematics, Offsets};
+use crate::leaning::MAIN;
 use crate::markers::AXES;
 use crate::setup::Remembered;
+
+/// A datum that moves less than this stays where it is, mm: rounding.
+const NO_WAY_MM: f64 = 1e-9;
 
 /// Datums, traverse range and datum correction.
 #[derive(Clone, Debug)]
@@ -71,7 +75,7 @@ impl Datums {
     }
 
     /// DATUM SET: the actual position becomes a value. `false` for an axis for which that is inhibited.
-    pub fn set(&mut self, axis: Axis, value: f64, axes: &OwnAxes) -> bool {
+    fn set(&mut self, axis: Axis, value: f64, axes: &OwnAxes) -> bool {
         let unit = axes.at(axis);
         let Some(unit) = unit.filter(|unit| !unit.parameters.travel.datum_inhibited) else {
             return false;
@@ -90,6 +94,38 @@ impl Datums {
         let place = self.place();
         if let Some(points) = self.points.get_mut(place) {
             points[axis] = datum;
+        }
+        self.chain.offsets.datum = self.active(axes);
+        true
+    }
+
+    /// DATUM SET, in a tilted plane by its shift.
+    pub fn set_or_shift(&mut self, axis: Axis, value: f64, shift: Option<[f64; 3]>, axes: &OwnAxes) -> bool {
+        match shift {
+            Some(ways) => self.shift(ways, axes),
+            None => self.set(axis, value, axes),
+        }
+    }
+
+    /// DATUM SET in a tilted plane: the datum moves, mm of the machine. `false` where that is inhibited for an axis.
+    fn shift(&mut self, ways: [f64; 3], axes: &OwnAxes) -> bool {
+        let ways = || {
+            MAIN.into_iter()
+                .zip(ways)
+                .filter(|(_, way)| way.abs() > NO_WAY_MM)
+        };
+        let free = |axis| {
+            axes.at(axis)
+                .is_some_and(|unit| !unit.parameters.travel.datum_inhibited)
+        };
+        if !ways().all(|(axis, _)| free(axis)) {
+            return false;
+        }
+        let place = self.place();
+        if let Some(points) = self.points.get_mut(place) {
+            for (axis, way) in ways() {
+                points[axis] += way;
+            }
         }
         self.chain.offsets.datum = self.active(axes);
         true

@@ -1,13 +1,16 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
 use bahn_exchange::{Exchange, Image, signal};
+use bahn_parameters::ParameterList;
 use bahn_parameters::operation::OperationParameters;
-use bahn_path::BlockRef;
+use bahn_path::{Axis, BlockRef};
 use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
 use crate::command::Mode;
+use crate::kinematics::Chain;
+use crate::leaning::Leaning;
 use crate::manual::Manual;
 use crate::message::Messages;
 use crate::now::{Facts, Now};
@@ -37,6 +40,8 @@ pub(crate) struct Desk {
     feed_override: Override,
     spindle_override: Override,
     pub manual: Manual,
+    /// 3D ROT by hand.
+    pub leaning: Leaning,
     reference: ReferenceRun,
     stylus: Stylus,
 }
@@ -50,6 +55,7 @@ impl Desk {
             feed_override: Override::feed(rules.overrides.feed_steps),
             spindle_override: Override::spindle(rules.overrides.spindle_steps),
             manual: Manual::default(),
+            leaning: Leaning::default(),
             reference: ReferenceRun::default(),
             stylus: Stylus::default(),
             rules,
@@ -131,6 +137,7 @@ impl Desk {
             feed_percent,
             program_percent: if rapid { 100.0 } else { feed_percent },
             axis_keys: self.panel.axis_keys,
+            wheel_mm: self.manual.handwheel.travels(),
             rapid_limit_mm_min,
         }
     }
@@ -238,15 +245,44 @@ impl Desk {
         });
     }
 
-    /// The handwheel moves the axis with an index, with an interpolation factor.
-    pub fn choose_handwheel(&mut self, index: usize, factor: u8) -> bool {
-        self.manual.handwheel.choose(index, factor, &self.rules.handwheel)
+    /// The handwheel moves an axis, with an interpolation factor.
+    pub fn choose_handwheel(&mut self, axis: Axis, factor: u8, axes: &OwnAxes) -> bool {
+        let (handwheel, rules) = (&mut self.manual.handwheel, &self.rules.handwheel);
+        axes.at(axis)
+            .is_some_and(|unit| handwheel.choose(unit.index, factor, rules))
     }
 
-    /// What is turned at the handwheel in another mode moves nothing later.
-    pub fn count_handwheel(&mut self, inputs: &HandwheelInputs) {
-        if self.mode != Mode::Handwheel {
-            self.manual.handwheel.forget_turns(inputs);
+    /// Switches 3D ROT on or off.
+    pub fn switch_plane(
+        &mut self,
+        on: bool,
+        list: &ParameterList,
+        axes: &OwnAxes,
+        chain: &mut Chain,
+    ) -> bool {
+        let swivels = list.swivels().filter(|_| self.rules.tilting && self.is_by_hand());
+        let was = self.leaning.is_on();
+        let done = self.leaning.switch(on, swivels, axes, chain.offsets);
+        if done && was && !on {
+            Leaning::leave(chain);
+        }
+        self.manual.leans = self.leaning.is_on();
+        done
+    }
+
+    /// What is turned at the handwheel in another mode moves nothing later, but what M118 superimposes on a path.
+    pub fn count_handwheel(
+        &mut self,
+        superimposes: bool,
+        inputs: &HandwheelInputs,
+        axes: &OwnAxes,
+        nc: &Image,
+    ) {
+        let handwheel = &mut self.manual.handwheel;
+        if superimposes && self.mode.is_automatic() {
+            handwheel.superimpose(inputs, &self.rules.handwheel, axes, nc);
+        } else if self.mode != Mode::Handwheel {
+            handwheel.forget_turns(inputs);
         }
     }
 
@@ -268,7 +304,7 @@ impl Desk {
             messages,
             block,
         };
-        self.manual.moves(handwheel, &mut reach, now);
+        self.manual.moves(handwheel, &mut reach, now, &mut self.leaning);
     }
 
     /// Moves the axes over their reference marks for a cycle; at the end the mode is Manual.
@@ -293,10 +329,11 @@ pub(crate) fn enter_code(code: u32, exchange: &mut Exchange) -> bool {
 }
 
 /// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319].
-pub(crate) fn press_key(code: u8, exchange: &mut Exchange) {
+pub(crate) fn press_key(code: u8, exchange: &mut Exchange) -> bool {
     let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + u16::from(code));
     if marker.is_some_and(|marker| exchange.nc().bit(marker)) {
         exchange.nc_put_number(signal::INHIBITED_KEY_CODE, code.into());
         exchange.nc_set(signal::INHIBITED_KEY_PRESSED, true);
     }
+    true
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bahn_interpreter::{Cause, Interpreter, Message, ProgramError, Settings};
 use bahn_parameters::MessageId;
 use bahn_path::{
-    Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, LiveData, PathElement, Position, Step,
+    Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, Position, Step,
 };
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
@@ -85,6 +85,8 @@ pub(crate) struct Feeder {
     limits: Box2,
     /// The axes that there are.
     axes: AxisSet,
+    /// How far M118 lets the handwheel lead them beside the path.
+    beside: Position,
     fault: Option<RunFault>,
     /// Elements that were given back: they come next.
     found: VecDeque<PathElement>,
@@ -116,6 +118,7 @@ impl Feeder {
             chain,
             limits,
             axes,
+            beside: Position::ZERO,
             fault: None,
             found: VecDeque::new(),
             refused: None,
@@ -298,6 +301,7 @@ impl Feeder {
         self.fault = None;
         self.chain.clone_from(chain);
         self.limits = limits;
+        self.beside = Position::ZERO;
         self.interpreter.retry();
         self.chain.place(self.interpreter.placement());
         self.interpreter.relocate(&self.chain.to_path(machine));
@@ -339,6 +343,15 @@ impl Feeder {
         }
     }
 
+    /// Takes the ranges of M118 in an element.
+    fn take_ranges(&mut self, element: &PathElement, range_of: impl Fn(Axis, &Position) -> f64) {
+        for output in element.functions() {
+            if let Function::Superimpose(range) = &output.function {
+                self.beside = Axis::ALL.map(|axis| range_of(axis, range)).into();
+            }
+        }
+    }
+
     /// The first axis that would leave its range on an element, or is not there.
     fn outside(&self, element: &PathElement) -> Option<RunFault> {
         // The resolution of positions is no violation.
@@ -360,9 +373,10 @@ impl Feeder {
             if placed || upright && element.start[axis] == element.end[axis] {
                 continue;
             }
-            let direction = if max[axis] > greatest[axis] + ROUNDING {
+            let beside = self.beside[axis];
+            let direction = if max[axis] + beside > greatest[axis] + ROUNDING {
                 Direction::Plus
-            } else if min[axis] < least[axis] - ROUNDING {
+            } else if min[axis] - beside < least[axis] - ROUNDING {
                 Direction::Minus
             } else {
                 continue;
@@ -395,6 +409,8 @@ impl ElementSource for Feeder {
                 },
             },
         };
+        let before = self.beside;
+        self.take_ranges(&element, |axis, range| before[axis].max(range[axis]));
         if element.curve != Curve::Hold
             && let Some(fault) = self.outside(&element)
         {
@@ -404,8 +420,11 @@ impl ElementSource for Feeder {
             }
             let block = element.block;
             self.refused = Some((element, false));
+            self.beside = before;
             return Step::Barrier(Barrier::Acknowledge { block });
         }
+        // The handwheel goes back on the element that cancels its range.
+        self.take_ranges(&element, |axis, range| range[axis]);
         Step::Element(element)
     }
 

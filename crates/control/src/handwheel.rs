@@ -1,10 +1,11 @@
 //! The electronic handwheel: which axis its wheels lead and how far, and where its keys go [000:8060-8446].
 
-use bahn_exchange::signal;
+use bahn_exchange::{Image, signal};
 use bahn_parameters::MessageId;
 use bahn_parameters::operation::{Handwheel as Kind, HandwheelParameters};
 use bahn_servo::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
 
+use crate::axes::OwnAxes;
 use crate::command::Mode;
 use crate::markers::AXES;
 use crate::message::Message;
@@ -46,6 +47,8 @@ pub(crate) struct Handwheel {
     keys: HandwheelKeys,
     /// It was asked for.
     missing: bool,
+    /// What was turned for M118 in this cycle, by axis index, mm.
+    travels: [f64; AXES],
 }
 
 /// One wheel.
@@ -66,6 +69,7 @@ impl Default for Handwheel {
             wheels: [Wheel::default(); WHEELS],
             keys: HandwheelKeys::default(),
             missing: false,
+            travels: [0.0; AXES],
         }
     }
 }
@@ -75,6 +79,43 @@ impl Handwheel {
     pub fn forget_turns(&mut self, inputs: &HandwheelInputs) {
         for (wheel, count) in self.wheels.iter_mut().zip(inputs.counts) {
             wheel.count = Some(count);
+        }
+        self.travels = [0.0; AXES];
+    }
+
+    /// What was turned for M118 in this cycle, by axis index, mm.
+    pub fn travels(&self) -> [f64; AXES] {
+        self.travels
+    }
+
+    /// Counts the wheels for M118: axes and factors are those of Electronic Handwheel.
+    pub fn superimpose(
+        &mut self,
+        inputs: &HandwheelInputs,
+        rules: &HandwheelParameters,
+        axes: &OwnAxes,
+        nc: &Image,
+    ) {
+        self.take_keys(inputs, rules, axes);
+        self.travels = [0.0; AXES];
+        for (number, count) in inputs.counts.into_iter().enumerate() {
+            let axis = wheel_axis(number, rules, inputs, self.axis);
+            let factor = axis.map_or(FACTOR_MAX, |index| self.factor(index, rules, axes));
+            let Some(wheel) = self.wheels.get_mut(number) else {
+                continue;
+            };
+            wheel.lead = None;
+            let before = wheel.count.replace(count).unwrap_or(count);
+            let steps = count.wrapping_sub(before);
+            let travel = axis.and_then(|index| self.travels.get_mut(index));
+            let Some(travel) = travel.filter(|_| inputs.connected && rules.kind != Kind::None) else {
+                continue;
+            };
+            if steps.unsigned_abs() < u64::from(rules.threshold) {
+                wheel.count = Some(before);
+            } else if !nc.bit(signal::SUPPRESS_HANDWHEEL) {
+                *travel += travel_mm(steps, factor, rules);
+            }
         }
     }
 
@@ -132,11 +173,16 @@ impl Handwheel {
             reach.messages.remove(&MISSING);
         }
         self.missing = missing;
+        self.take_keys(inputs, rules, reach.axes);
+    }
+
+    /// The keys that choose an axis or a speed.
+    fn take_keys(&mut self, inputs: &HandwheelInputs, rules: &HandwheelParameters, axes: &OwnAxes) {
         let before = std::mem::replace(&mut self.keys, inputs.keys);
         let pressed = |key: &HandwheelKey| inputs.keys.has(*key) && !before.has(*key);
         if axis_keys_are_of_the_nc(rules)
             && let Some(index) = AXIS_KEYS.iter().position(pressed)
-            && reach.axes.with_index(index).is_some()
+            && axes.with_index(index).is_some()
         {
             self.axis = index;
         }
@@ -184,7 +230,7 @@ impl Handwheel {
         let rules = &reach.rules.handwheel;
         for (number, count) in inputs.counts.into_iter().enumerate() {
             let axis = wheel_axis(number, rules, inputs, self.axis);
-            let factor = axis.map_or(FACTOR_MAX, |index| self.factor(index, reach));
+            let factor = axis.map_or(FACTOR_MAX, |index| self.factor(index, rules, reach.axes));
             let Some(wheel) = self.wheels.get_mut(number) else {
                 continue;
             };
@@ -201,9 +247,8 @@ impl Handwheel {
 
     /// The interpolation factor of an axis: not below what the rapid traverse of the slowest axis allows, nor
     /// MP7670; with an HR 410 that of the speed that is chosen.
-    fn factor(&self, index: usize, reach: &Reach) -> u8 {
-        let rules = &reach.rules.handwheel;
-        let rapid = reach.axes.iter().map(|unit| unit.parameters.motion.rapid_mm_min);
+    fn factor(&self, index: usize, rules: &HandwheelParameters, axes: &OwnAxes) -> u8 {
+        let rapid = axes.iter().map(|unit| unit.parameters.motion.rapid_mm_min);
         let least = factor_min(rapid.fold(f64::INFINITY, f64::min));
         let [slow, ..] = rules.factor_min;
         let chosen = match rules.factor_min.get(self.speed) {
@@ -244,10 +289,8 @@ impl Wheel {
                 self.count = Some(before);
             }
         } else if steps != 0 {
-            let travel = TRAVEL_MM / f64::from(1u32 << factor.min(FACTOR_MAX));
-            let sign = if rules.positive { 1.0 } else { -1.0 };
             let from = self.lead.map_or(unit.nominal, |(_, target)| target);
-            let target = from + sign * steps as f64 / HANDWHEEL_STEPS * travel;
+            let target = from + travel_mm(steps, factor, rules);
             let (target, limit) = within(unit, target);
             self.lead = Some((index, target));
             if let Some(slot) = pushed.get_mut(index) {
@@ -258,6 +301,13 @@ impl Wheel {
             self.lead = None;
         }
     }
+}
+
+/// How far counting steps lead, mm.
+fn travel_mm(steps: i64, factor: u8, rules: &HandwheelParameters) -> f64 {
+    let travel = TRAVEL_MM / f64::from(1u32 << factor.min(FACTOR_MAX));
+    let sign = if rules.positive { 1.0 } else { -1.0 };
+    sign * steps as f64 / HANDWHEEL_STEPS * travel
 }
 
 /// The axis that a wheel leads: the first and second at an HRA 110 X and Y, the third the one of MP7645 or of

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use bahn_path::{Axis, Curve, Function, PathElement, Placement, Position};
 
+use crate::superimposing::Superimposed;
+
 /// The least and greatest machine position of each axis; infinite where there is no limit.
 pub(crate) type Box2 = [Position; 2];
 
@@ -28,6 +30,11 @@ impl Offsets {
             0.0
         };
         self.datum[axis] + length
+    }
+
+    /// Length, mm, and axis of the tool.
+    pub(crate) fn tool(&self) -> (f64, Axis) {
+        (self.tool_length, self.tool_axis)
     }
 
     /// Takes the tool of a call.
@@ -104,6 +111,8 @@ impl Kinematics for Cartesian {
 pub(crate) struct Chain {
     kinematics: Arc<dyn Kinematics>,
     pub offsets: Offsets,
+    /// What the handwheel adds to the axes.
+    pub superimposed: Superimposed,
     /// How the path stands that is executed, when not upright.
     placement: Option<Arc<Placement>>,
 }
@@ -113,6 +122,7 @@ impl Chain {
         Chain {
             kinematics,
             offsets,
+            superimposed: Superimposed::default(),
             placement: None,
         }
     }
@@ -152,14 +162,20 @@ impl Chain {
 
     /// The axis positions of a path position.
     pub fn to_axes(&self, path: &Position) -> Position {
-        match &self.placement {
+        let axes = match &self.placement {
             None => self.kinematics.to_axes(path, &self.offsets),
             Some(placement) => self.kinematics.to_axes(&placement.to_nose(path), &self.behind()),
-        }
+        };
+        self.superimposed.added(axes, 1.0)
     }
 
     /// The path position of axis positions.
     pub fn to_path(&self, axes: &Position) -> Position {
+        self.tip(&self.superimposed.added(*axes, -1.0))
+    }
+
+    /// Where the tool is in the coordinates of the path, beside which the handwheel may have led it.
+    pub fn tip(&self, axes: &Position) -> Position {
         match &self.placement {
             None => self.kinematics.to_path(axes, &self.offsets),
             Some(placement) => placement.from_nose(&self.kinematics.to_path(axes, &self.behind())),

@@ -11,6 +11,7 @@ use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::handwheel::Handwheel;
+use crate::leaning::{Leaning, MAIN, Wish};
 use crate::markers::AXES;
 use crate::message::Message;
 use crate::now::Now;
@@ -40,6 +41,8 @@ pub(crate) struct Manual {
     m: Option<u16>,
     /// Spindle speed that was entered and waits for NC start, rpm.
     s: Option<f64>,
+    /// 3D ROT is on.
+    pub leans: bool,
     /// OUTPUT of the oscilloscope: STEP with this feed, mm/min, or the RAMP [000:18737-18756].
     step_mm_min: Option<f64>,
 }
@@ -56,6 +59,7 @@ impl Default for Manual {
             last_key: 0,
             m: None,
             s: None,
+            leans: false,
             step_mm_min: None,
         }
     }
@@ -130,20 +134,91 @@ impl Manual {
 
 impl Manual {
     /// Moves the axes in Manual and Handwheel, and while a run is interrupted with MANUAL OPERATION.
-    pub fn moves(&mut self, handwheel: &HandwheelInputs, reach: &mut Reach, now: &Now) {
+    pub fn moves(
+        &mut self,
+        handwheel: &HandwheelInputs,
+        reach: &mut Reach,
+        now: &Now,
+        leaning: &mut Leaning,
+    ) {
         if now.stop {
             self.stop();
         }
         self.handwheel.look(handwheel, reach);
         let keys = self.keys(reach, now);
-        self.handwheel.turn(handwheel, reach, now, &mut self.pushed);
+        let leans = self.leans && !now.mode.is_automatic();
+        if leans {
+            self.lean(&keys, handwheel, reach, now, leaning);
+        } else {
+            self.handwheel.turn(handwheel, reach, now, &mut self.pushed);
+        }
         for place in reach.axes.places() {
-            let Some(index) = reach.axes.get(place).map(|unit| unit.index) else {
+            let unit = reach.axes.get(place);
+            let Some(index) = unit
+                .filter(|unit| !leans || !MAIN.contains(&unit.axis))
+                .map(|unit| unit.index)
+            else {
                 continue;
             };
             let key = keys.get(index).copied().flatten();
             self.move_by_hand(place, index, key, reach, now);
         }
+    }
+
+    /// Moves the main axes along those of the plane of 3D ROT. A wheel that has a rotary axis leads it as ever; jog
+    /// increments are those of upright axes only.
+    fn lean(
+        &mut self,
+        keys: &[Option<Direction>; AXES],
+        handwheel: &HandwheelInputs,
+        reach: &mut Reach,
+        now: &Now,
+        leaning: &mut Leaning,
+    ) {
+        let of_plane = |index| {
+            let unit = reach.axes.with_index(index);
+            unit.is_some_and(|unit| MAIN.contains(&unit.axis))
+        };
+        let leads = now.mode == Mode::Handwheel && of_plane(self.handwheel.axis());
+        if leads {
+            let rules = &reach.rules.handwheel;
+            self.handwheel.superimpose(handwheel, rules, reach.axes, reach.nc);
+        } else {
+            self.handwheel.turn(handwheel, reach, now, &mut self.pushed);
+        }
+        let travels = self.handwheel.travels();
+        let wishes = MAIN.map(|axis| {
+            let Some(unit) = reach.axes.at(axis) else {
+                return Wish::default();
+            };
+            let key = keys.get(unit.index).copied().flatten();
+            let wheel_mm = travels.get(unit.index).filter(|_| leads).copied();
+            Wish {
+                key: key.map(|direction| (direction, self.key_feed(unit, reach, now))),
+                wheel_mm: wheel_mm.unwrap_or(0.0),
+            }
+        });
+        leaning.moves(&wishes, reach, now);
+    }
+
+    /// The feed of a direction key, mm/min.
+    fn key_feed(&self, unit: &AxisUnit, reach: &Reach, now: &Now) -> f64 {
+        let (motion, rules) = (&unit.parameters.motion, &reach.rules.handwheel);
+        let in_wheel_mode = now.mode == Mode::Handwheel;
+        if reach.panel.rapid || in_wheel_mode && self.handwheel.rapid(rules) {
+            let percent = if reach.rules.overrides.on_manual_rapid {
+                now.feed_percent.min(100.0)
+            } else {
+                100.0
+            };
+            return motion.rapid_mm_min * percent / 100.0;
+        }
+        let share = if in_wheel_mode {
+            self.handwheel.share(rules)
+        } else {
+            1.0
+        };
+        motion.manual_mm_min * share * now.feed_percent / 100.0
     }
 
     /// The direction keys that count, latched ones included.
@@ -188,19 +263,10 @@ impl Manual {
         now: &Now,
     ) {
         let feed_percent = now.feed_percent;
-        let rapid_percent = if reach.rules.overrides.on_manual_rapid {
-            feed_percent.min(100.0)
-        } else {
-            100.0
-        };
-        let in_wheel_mode = now.mode == Mode::Handwheel;
-        let rules = &reach.rules.handwheel;
-        let rapid = reach.panel.rapid || in_wheel_mode && self.handwheel.rapid(rules);
-        let share = if in_wheel_mode {
-            self.handwheel.share(rules)
-        } else {
-            1.0
-        };
+        let key_feed = reach
+            .axes
+            .get(place)
+            .map_or(0.0, |unit| self.key_feed(unit, reach, now));
         let jog = self.jog_target(place, index, reach, now);
         let wheel = self.handwheel.target(index);
         let Some(unit) = reach.axes.get_mut(place) else {
@@ -230,14 +296,7 @@ impl Manual {
         let motion = unit.parameters.motion;
         let (aim, feed) = match (key, jog.or(wheel)) {
             _ if now.stop => (Aim::Feed(0.0), motion.rapid_mm_min),
-            (Some(direction), _) => {
-                let feed = if rapid {
-                    motion.rapid_mm_min * rapid_percent / 100.0
-                } else {
-                    motion.manual_mm_min * share * feed_percent / 100.0
-                };
-                (along(unit, direction, feed), feed)
-            }
+            (Some(direction), _) => (along(unit, direction, key_feed), key_feed),
             (None, Some(target)) => {
                 let feed = if jog.is_some() {
                     motion.manual_mm_min * feed_percent / 100.0

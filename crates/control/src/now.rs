@@ -42,6 +42,8 @@ pub(crate) struct Now {
     pub program_percent: f64,
     /// The direction keys that are pressed, by axis index.
     pub axis_keys: [Option<Direction>; AXES],
+    /// What the handwheel was turned for M118 in this cycle, by axis index, mm.
+    pub wheel_mm: [f64; AXES],
     /// Rapid traverse as PLC and probe limit it, mm/min.
     pub rapid_limit_mm_min: f64,
 }

@@ -3,7 +3,7 @@
 use bahn_exchange::signal;
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, BlockRef, Position, ToolMeasuring, Touch};
+use bahn_path::{Axis, Barrier, BlockRef, Position, ToolMeasuring, Touch};
 use bahn_servo::Measured;
 
 use crate::axes::OwnAxes;
@@ -67,6 +67,17 @@ pub(crate) enum Probed {
     Measured(Vec<(u16, f64)>),
     /// It is refused, with a message at its block.
     Refused(Message, BlockRef),
+}
+
+impl Probed {
+    /// What would be measured beside the path (M118) is refused: nobody would know where it lies (inferred).
+    pub fn beside_the_path(barrier: &Barrier) -> Probed {
+        let (Barrier::Probe { block, .. }
+        | Barrier::Stop { block }
+        | Barrier::Acknowledge { block }
+        | Barrier::MeasureTool(ToolMeasuring { block, .. })) = barrier;
+        Probed::Refused(Message::Plain(MessageId::ProbeSystemNotReady), *block)
+    }
 }
 
 /// How the axes move that a stylus guards.

@@ -196,6 +196,7 @@ impl ProgramRun {
         site.handshakes.abort(site.exchange);
         self.probe.end(site);
         site.tools.take_back(&mut site.chain.offsets);
+        site.chain.superimposed.forget();
         site.positioning.end_all(site.exchange);
         site.axes.release(|mover| mover == Mover::Path);
         site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
@@ -244,7 +245,7 @@ impl ProgramRun {
             q_transfer.take_all()
         });
         if closed && site.chain.placement().is_some() {
-            // By hand nothing is tilted: 3D ROT is off there (inferred).
+            // By hand 3D ROT alone tilts.
             site.chain.place(None);
             self.track.begin_at(site.here(), site.chain);
         }
@@ -332,6 +333,8 @@ impl ProgramRun {
                     return;
                 }
             }
+        } else if let Some(interpreter) = self.source.interpreter() {
+            site.chain.place(interpreter.placement());
         }
         self.track.begin_at(site.here(), site.chain);
         self.progress.enter(RunState::Running);
@@ -439,6 +442,8 @@ impl ProgramRun {
         let cycle = self.track.path.cycle(&drive);
         self.track.set_speed(cycle.speed_mm_s);
         self.tapping.lead(cycle.lead, site.spindle);
+        let holds = self.track.path.is_coupled();
+        site.chain.superimposed.follow(&site.axes, &site.now, holds);
         self.track
             .follow(&cycle.position, &mut site.axes, site.chain, site.now.time_s);
         let inch = self.source.inch();
@@ -534,6 +539,9 @@ impl ProgramRun {
             Some(Stop::Barrier(Barrier::Stop { .. })) => self.progress.enter(RunState::Stopped),
             Some(Stop::Barrier(Barrier::Acknowledge { .. })) => {
                 self.answer = Some(self.q_transfer.answer());
+            }
+            Some(Stop::Barrier(barrier)) if site.chain.superimposed.is_on() => {
+                self.take_probed(Probed::beside_the_path(&barrier), site);
             }
             Some(Stop::Barrier(Barrier::Probe {
                 block,

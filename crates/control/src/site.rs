@@ -59,6 +59,7 @@ impl Site<'_> {
                 values: values.map(|value| value.map(|value| value.round() as i32)),
                 inch,
             }),
+            Function::Superimpose(range) => self.chain.superimposed.set_range(*range),
             // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
             // printing and the blank concern nothing that moves;
             // a voltage belongs to the path.

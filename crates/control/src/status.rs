@@ -168,6 +168,7 @@ pub(crate) fn coordinates<'a>(
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
     chain: &Chain,
     run: &ProgramRun,
+    leans: bool,
     link: &mut PlcLink,
 ) {
     let [actual, nominal] = path_positions(axes.clone(), chain);
@@ -191,9 +192,13 @@ pub(crate) fn coordinates<'a>(
     }
     let [actual, ..] = rows;
     link.set_coordinates(CoordinateKind::ShiftedDatum, actual);
-    // Bit 0: tilted; bit 2: by the program that runs.
+    // Bit 0: tilted; bit 1: selected by hand; bit 2: by the program that runs.
     let tilted = chain.placement().is_some_and(|placement| placement.is_tilted());
-    link.set_status(StatusItem::WorkingPlane, if tilted { 0b101 } else { 0 });
+    let by_program = tilted && (!leans || run.progress().is_on_its_way());
+    link.set_status(
+        StatusItem::WorkingPlane,
+        i32::from(tilted) | i32::from(leans) << 1 | i32::from(by_program) << 2,
+    );
 }
 
 /// What module 9035 reads.

@@ -170,6 +170,7 @@ impl Track {
             chain.place(element.placement.as_ref());
         }
         let nominal = chain.to_axes(position);
+        let superimposed = &chain.superimposed;
         for unit in axes.iter_mut() {
             let value = nominal[unit.axis];
             if value.is_nan() || !matches!(unit.mover, Mover::None | Mover::Path) || unit.is_plc_axis() {
@@ -184,6 +185,12 @@ impl Track {
             } else if moved {
                 unit.mover = Mover::Path;
                 unit.follow(value, time_s);
+            } else if let way = superimposed.way(unit.axis)
+                && way != 0.0
+            {
+                // Only the handwheel leads it, from where it is.
+                unit.mover = Mover::Path;
+                unit.follow(unit.nominal + way, time_s);
             } else {
                 unit.follow(unit.nominal, time_s);
             }

@@ -228,3 +228,196 @@ fn leaning_cycles_allocate_nothing() {
     }
     panic!("{:?}", rig.control.snapshot());
 }
+
+/// B stops where X goes straight on: the path stops there as MP7460 has it, and in no contour cycle B changes its
+/// velocity by more than MP1060 allows: 1 m/s² of a rotary axis are 1000 degrees/s², 0.009 degrees in (3 ms)².
+#[test]
+fn a_rotary_axis_makes_no_step_at_a_straight_joint() {
+    let blocks = "L X+300 Y+200 Z+300 B+0 R0 FMAX\nL IX+5 B+10 F3000\nL IX+5";
+    let mut rig = swivelling()
+        .mp("7460=10")
+        .mp("1060.3=1")
+        .program("JOINT.H", blocks)
+        .rig();
+    rig.power_on();
+    rig.command("mode full");
+    rig.command("select JOINT.H");
+    rig.start();
+    let nominal = |rig: &Rig| {
+        let axes = rig.control.snapshot().axes;
+        axes.iter()
+            .find(|axis| axis.letter == 'B')
+            .expect("an axis")
+            .nominal
+    };
+    let (mut before, mut step, mut greatest, mut fastest) = (nominal(&rig), 0.0, 0.0f64, 0.0f64);
+    for _ in 0..20_000 {
+        rig.cycle();
+        let way = nominal(&rig) - before;
+        greatest = greatest.max((way - step).abs());
+        fastest = fastest.max(way);
+        (before, step) = (before + way, way);
+        if rig.control.snapshot().ended {
+            break;
+        }
+    }
+    assert!(rig.control.snapshot().ended);
+    assert_eq!(rig.messages(), [""; 0]);
+    assert!(fastest > 0.1, "B moved: {fastest}");
+    assert!(greatest <= 1000.0 * 0.003 * 0.003 * 1.001, "{greatest}");
+}
+
+/// By hand in the plane of B+30, switched on there.
+fn by_hand(build: Build) -> Rig {
+    let mut rig = build.rig();
+    rig.power_on();
+    rig.command("mode mdi");
+    rig.command("mdi L X+300 Y+200 Z+300 B+30 R0 FMAX");
+    rig.start();
+    rig.until(60.0, "B+30", |rig| rig.control.snapshot().ended);
+    rig.command("mode manual");
+    rig.seconds(0.5);
+    assert_near(machine(&rig), [300.0, 200.0, 300.0]);
+    rig.command("3d-rot on");
+    rig.seconds(0.1);
+    rig
+}
+
+/// Positions of X, Y and Z in the display.
+fn shown(rig: &Rig) -> [f64; 3] {
+    let axes = rig.control.snapshot().axes;
+    ['X', 'Y', 'Z'].map(|letter| {
+        let axis = axes.iter().find(|axis| axis.letter == letter).expect("an axis");
+        axis.nominal
+    })
+}
+
+/// 3D ROT: X+ and Z- lead along the axes of the plane, as fast as manual feed has it; a datum set there makes the display
+/// what it says and leaves the others. Off again, X is that of the machine.
+#[test]
+fn by_hand_in_the_plane() {
+    let mut build = swivelling();
+    build.plc = build.plc.replacen(
+        "       EM\n",
+        "       PS    K+18\n       CM    9035\n       PL    W900\n       EM\n",
+        1,
+    );
+    let mut rig = by_hand(build);
+    assert_eq!(rig.number("W900"), 0b011);
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let mut at = machine(&rig);
+    for (key, [x, z]) in [("X+", [cos, -sin]), ("Z-", [-sin, -cos])] {
+        let before = shown(&rig);
+        rig.event(&format!("key {key} press"));
+        rig.seconds(1.0);
+        rig.event(&format!("key {key} release"));
+        rig.seconds(0.5);
+        let after = shown(&rig);
+        let way = (after[0] - before[0]).abs() + (after[2] - before[2]).abs();
+        assert!(way > 5.0, "{key}: {way}");
+        let axis = usize::from(key == "Z-");
+        assert!(
+            (after[1] - before[1]).abs() < 1e-9 && (after[2 - 2 * axis] - before[2 - 2 * axis]).abs() < 1e-6,
+            "{before:?} {after:?}"
+        );
+        at = [at[0] + way * x, at[1], at[2] + way * z];
+        assert_near(machine(&rig), at);
+    }
+    let before = shown(&rig);
+    rig.command("datum Z 10");
+    rig.seconds(0.1);
+    let after = shown(&rig);
+    assert!(
+        (after[0] - before[0]).abs() < 0.01 && (after[2] - 10.0).abs() < 0.01,
+        "{before:?} {after:?}"
+    );
+    rig.event("key X+ press");
+    rig.seconds(0.5);
+    rig.event("key X+ release");
+    rig.seconds(0.5);
+    assert!((shown(&rig)[2] - 10.0).abs() < 0.01);
+    rig.command("3d-rot off");
+    rig.seconds(0.1);
+    assert_eq!(rig.number("W900"), 0);
+    let before = machine(&rig);
+    rig.event("key X- press");
+    rig.seconds(0.5);
+    rig.event("key X- release");
+    rig.seconds(0.5);
+    let after = machine(&rig);
+    assert!(after[0] < before[0] - 1.0 && (after[2] - before[2]).abs() < 0.01);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// The software limits are those of the machine: X- of the plane raises Z, which stops at its limit, and X with it. The
+/// way back is free, and the message goes.
+#[test]
+fn by_hand_in_the_plane_up_to_the_limit() {
+    let mut rig = by_hand(swivelling());
+    rig.event("key X- press");
+    rig.event("key RAPID press");
+    rig.seconds(20.0);
+    let at = machine(&rig);
+    let messages = rig.messages();
+    assert!(
+        messages.len() == 1 && messages[0].contains("LIMIT SWITCH"),
+        "{messages:?} {at:?}"
+    );
+    rig.seconds(1.0);
+    assert_near(machine(&rig), at);
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    // Both axes came along the plane.
+    assert!(
+        ((300.0 - at[0]) * sin - (at[2] - 300.0) * cos).abs() < 0.01,
+        "{at:?}"
+    );
+    rig.event("key X- release");
+    rig.event("key RAPID release");
+    rig.seconds(0.1);
+    rig.event("key X+ press");
+    rig.seconds(0.5);
+    rig.event("key X+ release");
+    rig.seconds(0.5);
+    assert_eq!(rig.messages(), [""; 0]);
+    assert!(machine(&rig)[0] > at[0] + 1.0);
+}
+
+/// The wheel leads along the plane, too; a program that starts then is upright, and by hand the plane is there again.
+#[test]
+fn the_wheel_in_the_plane() {
+    let build = ["7640=2", "7650=1", "7660=0"]
+        .into_iter()
+        .fold(swivelling(), Build::mp);
+    let mut rig = by_hand(build.program("UP.H", "L IX+10 R0 F5000\nL IX+0"));
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let way = |turns: f64, rig: &mut Rig| {
+        let before = shown(rig);
+        rig.event(&format!("handwheel {}", turns * bahn_control::HANDWHEEL_STEPS));
+        rig.seconds(2.0);
+        let after = shown(rig);
+        assert!((after[0] - before[0]).abs() < 1e-6, "{before:?} {after:?}");
+        after[2] - before[2]
+    };
+    rig.command("mode handwheel");
+    rig.command("handwheel Z 4");
+    rig.seconds(0.1);
+    let before = machine(&rig);
+    let z = way(2.0, &mut rig);
+    assert!((z - 2.5).abs() < 0.01, "{z}");
+    assert_near(
+        machine(&rig),
+        [before[0] + z * sin, before[1], before[2] + z * cos],
+    );
+    let before = machine(&rig);
+    rig.command("mode full");
+    rig.command("select UP.H");
+    rig.start();
+    rig.seconds(0.5);
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    assert_near(machine(&rig), [before[0] + 10.0, before[1], before[2]]);
+    rig.command("mode handwheel");
+    rig.seconds(0.1);
+    let z = way(-1.0, &mut rig);
+    assert!((z + 1.25).abs() < 0.01, "{z}");
+    assert_eq!(rig.messages(), [""; 0]);
+}

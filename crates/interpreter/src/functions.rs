@@ -17,6 +17,7 @@ use crate::numbers::Numbers;
 use crate::q_parameters::preassigned;
 use crate::settings::Settings;
 use crate::status::Spindle;
+use crate::superimposing;
 use crate::tilting;
 use crate::voltage;
 
@@ -59,6 +60,7 @@ fn take_m_function(
             Deed::Control(ControlFunction::SecondServoSet(_)) if !rules.m105_enabled => continue,
             Deed::Control(control) => Function::Control(control),
             Deed::Voltage => Function::Voltage(voltage::of(code, m, c.numbers, c.settings)?),
+            Deed::Superimpose => Function::Superimpose(superimposing::ranges(m, c.numbers)?),
             Deed::SpindleOrientation => Function::SpindleOrientation(
                 c.modal
                     .orientation_deg

@@ -63,6 +63,7 @@ mod rehearsal;
 mod run;
 mod settings;
 mod status;
+mod superimposing;
 mod surface_feed;
 mod tilting;
 mod told;

@@ -60,7 +60,6 @@ fn strict_checking_refuses_it() {
 const MOVES: &[&str] = &[
     "L X+5 FMAX M114",
     "L X+5 FMAX M116",
-    "L X+5 FMAX M118 X1",
     "L X+5 FMAX M128",
     "L X+5 FMAX M200 V1",
     "L X+5 FMAX M202 FNR.5",

@@ -345,3 +345,26 @@ fn m13_and_m14_switch_the_coolant_on() {
         assert_eq!((run.q[110], run.q[111]), (spindle, 1.0), "{m}");
     }
 }
+
+/// M118 takes a range for each axis it names, mm or degrees, in inches those of linear axes as inches; without words
+/// there is none any more. A range is a distance: -1 is no entry value.
+#[test]
+fn ranges_of_the_handwheel() {
+    let ranges = |text: &str| {
+        let run = Job::new(text).run();
+        let of = |(_, function): (u32, &Function)| match function {
+            Function::Superimpose(range) => Some([range[Axis::X], range[Axis::Z], range[Axis::C]]),
+            _ => None,
+        };
+        run.functions().into_iter().filter_map(of).collect::<Vec<_>>()
+    };
+    let blocks = "L X+1 R0 FMAX M118 X0.5 Z2 C3\nL X+2 FMAX M118";
+    let of_unit = |unit: &str| ranges(&format!("BEGIN PGM 1 {unit}\n{blocks}\nEND PGM 1 {unit}\n"));
+    assert_eq!(of_unit("MM"), [[0.5, 2.0, 3.0], [0.0; 3]]);
+    assert_eq!(of_unit("INCH"), [[12.7, 50.8, 3.0], [0.0; 3]]);
+    let wrong = Job::new(program("L X+1 R0 FMAX M118 X-1")).run();
+    assert_eq!(
+        wrong.message(),
+        Some((bahn_parameters::MessageId::EntryValueIncorrect, 1))
+    );
+}

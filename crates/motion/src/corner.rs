@@ -24,7 +24,7 @@ use std::ops::Range;
 use bahn_path::Axis;
 
 use crate::limits::{Dynamics, MAIN, PerAxis};
-use crate::motion::{Motion, product};
+use crate::motion::{Motion, ROTARY, product};
 
 /// The time over which the servo spreads a step of velocity, s *(inferred)*: 2.5 time constants of a loop
 /// with kv = 1 (m/min)/mm, from which machines are commissioned [000:9674-9682]. It decides how great a
@@ -38,6 +38,18 @@ const SHARE: f64 = 0.8;
 /// Differences of direction below this are rounding, no corner; thousands of them in one window make
 /// less than a hundredth of a corner that is felt.
 const NO_CHANGE: f64 = 1e-8;
+
+/// Which change of direction a joint may have to be passed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Passing {
+    /// That of MP7460.
+    #[default]
+    ByAngle,
+    /// The path is tangential by construction, but for rounding; axes beside it keep to MP7460.
+    Tangential,
+    /// Any: M90.
+    AnyAngle,
+}
 
 /// What happens between two motions.
 #[derive(Clone, Debug)]
@@ -64,28 +76,29 @@ pub(crate) struct Corner {
 }
 
 impl Joint {
-    /// The joint between two motions. `before` is the way since the corner or stop before it, mm;
-    /// `any_angle` says that the corner is passed whatever its angle.
+    /// The joint between two motions. `before` is the way since the corner or stop before it, mm.
     #[inline]
     pub(crate) fn between(
         last: &Motion,
         next: &Motion,
         before: f64,
-        any_angle: bool,
+        passing: Passing,
         dynamics: &Dynamics,
     ) -> Joint {
         // From degrees of a rotary axis to mm there is no common speed.
         if last.rotary != next.rotary {
             return Joint::Stop;
         }
-        if !any_angle && cosine(last, next) < dynamics.corner_cosine {
+        let only_main = last.main_axes && next.main_axes;
+        let turn = match passing {
+            Passing::AnyAngle => 1.0,
+            Passing::Tangential => 1.0 - beside(last, next, only_main),
+            Passing::ByAngle => cosine(last, next) - beside(last, next, only_main),
+        };
+        if turn < dynamics.corner_cosine {
             return Joint::Stop;
         }
-        let axes = if last.main_axes && next.main_axes {
-            MAIN
-        } else {
-            0..Axis::COUNT
-        };
+        let axes = if only_main { MAIN } else { 0..Axis::COUNT };
         let speed = last.speed.min(next.speed);
         match step_limit(last.end(), next.start(), axes, dynamics) {
             None => Joint::Smooth(speed),
@@ -115,6 +128,18 @@ fn cosine(last: &Motion, next: &Motion) -> f64 {
     } else {
         dot
     }
+}
+
+/// What rotary axes that move beside the path add to its change of direction, as a part of the cosine: a degree
+/// for a mm counts like a mm, so that such an axis makes no greater step of velocity than a linear one does at a
+/// corner of MP7460 (inferred). A chord `|Δt|` stands for `1 - |Δt|² / 2`.
+#[inline]
+fn beside(last: &Motion, next: &Motion, only_main: bool) -> f64 {
+    if only_main || last.rotary {
+        return 0.0;
+    }
+    let (a, b) = (last.end(), next.start());
+    0.5 * ROTARY.map(|i| (b[i] - a[i]) * (b[i] - a[i])).sum::<f64>()
 }
 
 /// The least `SHARE · bound / |Δt|`, mm/s²; `None` when no axis changes its velocity.

@@ -6,7 +6,7 @@
 
 use bahn_path::PathElement;
 
-use crate::corner::{Corner, Joint};
+use crate::corner::{Corner, Joint, Passing};
 use crate::gate::Gates;
 use crate::limits::Dynamics;
 use crate::motion::Motion;
@@ -30,8 +30,8 @@ pub(crate) struct Joints {
     stop: bool,
     /// The last motion since a stop. Elements without length leave it as it is.
     last: Option<Motion>,
-    /// The joint after `last` is passed whatever its angle.
-    any_angle: bool,
+    /// Which angle the joint after `last` may have to be passed.
+    passing: Passing,
     /// Way since the last corner or stop, mm.
     way: f64,
     /// The last corner while the way after it is too short to say how fast it may be passed.
@@ -58,7 +58,7 @@ impl Joints {
             // Without a length there is no direction: the corner is where the path goes on.
             return caps.join(last.speed);
         };
-        match Joint::between(last, next, self.way, self.any_angle, dynamics) {
+        match Joint::between(last, next, self.way, self.passing, dynamics) {
             Joint::Stop => self.join_stop(caps),
             Joint::Smooth(speed) => caps.join(speed),
             Joint::Corner(corner) => {
@@ -82,12 +82,16 @@ impl Joints {
     ) {
         if let Some(motion) = motion {
             self.way += motion.length;
-            self.any_angle = false;
+            self.passing = Passing::ByAngle;
             self.last = Some(motion);
         }
         // M90 is effective in operation with servo lag only [000:5114]; a joint that is tangential by
         // construction may differ by rounding.
-        self.any_angle |= element.constant_speed && dynamics.servo_lag || element.tangential_end;
+        if element.constant_speed && dynamics.servo_lag {
+            self.passing = Passing::AnyAngle;
+        } else if element.tangential_end && self.passing == Passing::ByAngle {
+            self.passing = Passing::Tangential;
+        }
         self.open = true;
         self.stop = gates.end;
         let enough = |corner: &Corner| corner.knows_enough(self.way);

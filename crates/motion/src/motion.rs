@@ -8,7 +8,7 @@ use crate::limits::{Dynamics, MAIN, PerAxis, Slowest};
 use crate::placed::Placed;
 
 /// Indices of the rotary axes A, B, C.
-const ROTARY: Range<usize> = Axis::A as usize..Axis::C as usize + 1;
+pub(crate) const ROTARY: Range<usize> = Axis::A as usize..Axis::C as usize + 1;
 /// Indices of the parallel axes U, V, W.
 const PARALLEL: Range<usize> = Axis::U as usize..Axis::W as usize + 1;
 /// Shorter movements are none, mm or degrees: a thousandth of the finest resolution of any model.

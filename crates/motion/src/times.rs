@@ -119,6 +119,7 @@ impl Stopwatch {
             | Function::Print(_)
             | Function::Synchronise
             | Function::Voltage(_)
+            | Function::Superimpose(_)
             | Function::Plc(_)
             | Function::Blank(_) => 0.0,
         }

@@ -303,3 +303,31 @@ fn sampler_stands_while_waiting() {
     assert!(x[..=100].iter().all(|x| *x < 1e-9) && x[101] > 1e-3);
     assert!(x[107..].iter().all(|x| *x == 1.0));
 }
+
+/// A rotary axis beside the path keeps to MP7460 too, a degree for a mm as a mm: B stops from 2 degrees/mm at a
+/// joint where X goes straight on. A change of 0.1 degrees/mm is a corner of 5.7 degrees, passed within 10, not
+/// within 5; at a tangential joint likewise. M90 passes it however the axis steps, as far as the servo follows.
+#[test]
+fn a_rotary_axis_beside_the_path_stops_at_a_straight_joint() {
+    let exit = |first: f64, second: f64, corner_deg: f64, change: fn(&mut PathElement)| {
+        let mut path = Path::new(3000.0);
+        path.line(&[(X, 50.0), (Axis::B, 50.0 * first)]);
+        change(path.last());
+        path.line(&[(X, 100.0), (Axis::B, 50.0 * (first + second))]);
+        let limits = bahn_motion::Limits {
+            corner_angle_deg: corner_deg,
+            ..limits()
+        };
+        plan(&path.elements, &limits)[0].profile.exit_mm_s
+    };
+    let plain = |_: &mut PathElement| {};
+    assert_eq!(exit(2.0, 0.0, 10.0, plain), 0.0);
+    assert_eq!(exit(0.0, 2.0, 10.0, plain), 0.0);
+    assert_eq!(exit(0.3, 0.4, 5.0, plain), 0.0);
+    assert!(exit(0.3, 0.4, 10.0, plain) > 0.0);
+    close(exit(0.3, 0.3, 5.0, plain), 50.0);
+    let tangential = |element: &mut PathElement| element.tangential_end = true;
+    assert_eq!(exit(0.3, 0.4, 5.0, tangential), 0.0);
+    close(exit(0.3, 0.3, 5.0, tangential), 50.0);
+    assert!(exit(2.0, 0.0, 10.0, |element| element.constant_speed = true) > 0.0);
+}

@@ -107,6 +107,8 @@ pub enum Deed {
     CornerArcs,
     /// M113.
     SharpCorners,
+    /// M118: the handwheel moves axes beside the path [000:742].
+    Superimpose,
     /// M200 to M204: output S gives a voltage.
     Voltage,
     /// M114, M115: the offsets of swivel axes are compensated, or no more.
@@ -121,7 +123,7 @@ pub enum Deed {
 
 impl Deed {
     /// All deeds with their names in the table.
-    const NAMES: [(&'static str, Deed); 38] = [
+    const NAMES: [(&'static str, Deed); 39] = [
         ("program-stop", Deed::ProgramStop),
         ("program-end", Deed::ProgramEnd),
         ("tool-change", Deed::ToolChange),
@@ -157,6 +159,7 @@ impl Deed {
         ("corner-arcs", Deed::CornerArcs),
         ("sharp-corners", Deed::SharpCorners),
         ("voltage", Deed::Voltage),
+        ("superimpose", Deed::Superimpose),
         (
             "replace-worn-tools",
             Deed::Control(ControlFunction::ReplaceWornTools(true)),

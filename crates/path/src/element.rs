@@ -244,6 +244,9 @@ pub enum Function {
     Print(String),
     /// M200 to M204: what output S gives from here on [000:9841-9909].
     Voltage(Voltage),
+    /// M118: how far the handwheel may lead each axis to either side of the path, mm or degrees; 0 not at all
+    /// [000:742].
+    Superimpose(Position),
     /// FN19: PLC, one or two values already in the unit of the control model [003:4387-4395].
     Plc([Option<f64>; 2]),
     /// What waits for a place of the program ([`Synchronisation::MvsSlp`]) is to be acknowledged here [004:75].

@@ -24,6 +24,7 @@ tool-life T MIN                     current life of a tool (CUR.TIME), minutes
 jog MM                              jog increment
 output step FEED, output ramp       what direction keys put out on axes with digital speed controller
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
+3d-rot on, 3d-rot off               by hand the axes move in the plane of the swivel axes
 manual-operation                    axes may be moved while a run is interrupted
 restore-position                    back to the contour with NC start
 restore-at N                        block scan to block N

@@ -1,0 +1,114 @@
+//! M118: handwheel movements on top of the path of a program [000:742].
+
+use bahn_motion::{Aim, PointToPoint};
+use bahn_path::{Axis, Position};
+
+use crate::axes::OwnAxes;
+use crate::now::Now;
+
+/// How far the axes may be led beside the path, how far they are to be, and where they are on the way there. In
+/// coordinates of the axes, whatever the path stands in (inferred).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Superimposed {
+    /// To either side of the path, mm or degrees; 0 where there is nothing.
+    range: Position,
+    /// Where the wheels lead.
+    target: Position,
+    /// What is added to the path now, each on its own ramp of MP1060.
+    ramps: [PointToPoint; Axis::COUNT],
+    /// By how much that changed in this cycle.
+    ways: Position,
+    /// Anything of it is not 0.
+    on: bool,
+}
+
+impl Default for Superimposed {
+    fn default() -> Superimposed {
+        Superimposed {
+            range: Position::ZERO,
+            target: Position::ZERO,
+            ramps: [PointToPoint::new(0.0); Axis::COUNT],
+            ways: Position::ZERO,
+            on: false,
+        }
+    }
+}
+
+impl Superimposed {
+    /// Something is added to the path, or may be.
+    pub fn is_on(&self) -> bool {
+        self.on
+    }
+
+    /// What is added to an axis, mm or degrees.
+    pub fn of(&self, axis: Axis) -> f64 {
+        self.ramps.get(axis.index()).map_or(0.0, PointToPoint::position)
+    }
+
+    /// By how much that changed in this cycle.
+    pub fn way(&self, axis: Axis) -> f64 {
+        self.ways[axis]
+    }
+
+    /// M118: other ranges; an axis without one goes back to the path.
+    pub fn set_range(&mut self, range: Position) {
+        self.range = range;
+        self.on = true;
+    }
+
+    /// Nothing is added any more: the axes stand where they are, and the path begins there.
+    pub fn forget(&mut self) {
+        if self.on {
+            *self = Superimposed::default();
+        }
+    }
+
+    /// Axis positions with what is added (`sign` 1), or without it (-1).
+    pub fn added(&self, axes: Position, sign: f64) -> Position {
+        if !self.on {
+            return axes;
+        }
+        Axis::ALL.map(|axis| axes[axis] + sign * self.of(axis)).into()
+    }
+
+    /// Follows the wheels for a cycle, unless the path `holds` it. An axis without loop or feed enable stands at once,
+    /// and what is turned meanwhile moves nothing later; none is led out of its traverse range.
+    pub fn follow(&mut self, axes: &OwnAxes, now: &Now, holds: bool) {
+        if !self.on {
+            return;
+        }
+        let mut on = self.range != Position::ZERO;
+        self.ways = Position::ZERO;
+        for unit in axes.iter().filter(|unit| unit.is_free()) {
+            let axis = unit.axis;
+            let Some(ramp) = self.ramps.get_mut(axis.index()) else {
+                continue;
+            };
+            if !(unit.enabled && unit.servo.closed()) {
+                *ramp = PointToPoint::new(ramp.position());
+                self.target[axis] = ramp.position();
+                on |= ramp.position() != 0.0;
+                continue;
+            }
+            let turned = now.wheel_mm.get(unit.index).filter(|_| !holds).copied();
+            let most = self.range[axis];
+            let mut target = (self.target[axis] + turned.unwrap_or(0.0)).clamp(-most, most);
+            if let Some([least, greatest]) = unit.limited() {
+                let path = unit.nominal - ramp.position();
+                target = target
+                    .min((greatest - path).max(0.0))
+                    .max((least - path).min(0.0));
+            }
+            self.target[axis] = target;
+            let motion = &unit.parameters.motion;
+            // What the path leaves of the rapid traverse.
+            let by_path = (unit.speed - ramp.speed_mm_s()).abs() * 60.0;
+            let feed = (motion.rapid_mm_min.min(now.rapid_limit_mm_min) - by_path).max(0.0);
+            let before = ramp.position();
+            self.ways[axis] =
+                ramp.cycle(now.time_s, Aim::Position(target), feed, motion.acceleration_m_s2) - before;
+            on |= !ramp.is_at(0.0) || self.ways[axis] != 0.0;
+        }
+        self.on = on;
+    }
+}

@@ -1,0 +1,207 @@
+//! M118: the handwheel leads axes beside the path of a program [000:742].
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+mod support;
+
+use bahn_control::{HANDWHEEL_STEPS, RunState};
+use support::bench::*;
+use support::*;
+
+/// Acceleration of Z, m/s²: MP1060.2; and the contour cycle, s.
+const ACCELERATION: f64 = 0.5;
+const CYCLE_S: f64 = 0.003;
+
+/// The bench with a handwheel on Z, a turn 10 mm; the program is selected.
+fn wheel(blocks: &str) -> Rig {
+    let mut rig = bench("")
+        .plant("speed = 6000", "speed = 12000")
+        .mps("1710.0=8 1720.0=10 7640=2 7650=1 7660=0 7670.0=0 7460=10 1060.2=0.5")
+        .mps("1010.0=12000 1010.1=12000 1010.2=12000")
+        .program("1.H", blocks)
+        .ready();
+    rig.command("handwheel Z 1");
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig
+}
+
+/// Turns the wheel by so many mm of Z; what Z and X do meanwhile, and the greatest change of Z's way in a cycle.
+fn turn(rig: &mut Rig, mm: f64, seconds: f64) -> f64 {
+    rig.event(&format!("handwheel {}", mm / 10.0 * HANDWHEEL_STEPS));
+    let mut greatest = 0.0f64;
+    let mut before = [rig.axis('Z').nominal; 2];
+    for _ in 0..(seconds / CYCLE_S) as usize {
+        rig.cycle();
+        let z = rig.axis('Z').nominal;
+        greatest = greatest.max((z - 2.0 * before[0] + before[1]).abs());
+        before = [z, before[0]];
+    }
+    greatest
+}
+
+/// No change of velocity beyond MP1060, but for the resolution of the display.
+#[track_caller]
+fn assert_ramp(greatest: f64) {
+    let most = 1000.0 * ACCELERATION * CYCLE_S * CYCLE_S;
+    assert!(greatest <= most * 1.001 + 1e-9, "{greatest} beyond {most}");
+    assert!(greatest > 0.0);
+}
+
+/// Z goes as far as the wheel leads it, 2 mm at most, on its ramp, while X keeps to its path.
+#[test]
+fn the_handwheel_leads_beside_the_path() {
+    let mut rig = wheel("L IX+40 R0 F600 M118 Z2\nL IX+10");
+    let [x, z] = ['X', 'Z'].map(|axis| rig.axis(axis).nominal);
+    rig.start();
+    rig.seconds(0.3);
+    assert_ramp(turn(&mut rig, 1.0, 0.5));
+    close(rig.axis('Z').nominal - z, 1.0, 1e-9);
+    close(rig.table('Z') - z, 1.0, 0.005);
+    close(rig.speed('X'), 600.0, 1.0);
+    assert_ramp(turn(&mut rig, 5.0, 0.5));
+    close(rig.axis('Z').nominal - z, 2.0, 1e-9);
+    assert_ramp(turn(&mut rig, -9.0, 1.0));
+    close(rig.axis('Z').nominal - z, -2.0, 1e-9);
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    close(rig.axis('X').nominal - x, 50.0, 1e-9);
+    assert_eq!(rig.messages(), [""; 0]);
+    // Behind the end nothing moves; the next run begins where the axes stand.
+    close(rig.axis('Z').nominal - z, -2.0, 1e-9);
+    turn(&mut rig, 1.0, 0.3);
+    close(rig.axis('Z').nominal - z, -2.0, 1e-9);
+}
+
+/// M118 without words: Z goes back to the path on its ramp, and the wheel moves nothing any more. Without M118 it
+/// never does.
+#[test]
+fn m118_ends_on_a_ramp() {
+    let mut rig = wheel("L IX+5 R0 F600 M118 Z2\nL IX+10 M118\nL IX+5");
+    let z = rig.axis('Z').nominal;
+    rig.start();
+    rig.seconds(0.2);
+    turn(&mut rig, 1.5, 0.25);
+    close(rig.axis('Z').nominal - z, 1.5, 1e-9);
+    let greatest = turn(&mut rig, 0.0, 0.8);
+    assert_ramp(greatest);
+    close(rig.axis('Z').nominal, z, 1e-9);
+    turn(&mut rig, 1.0, 0.4);
+    close(rig.axis('Z').nominal, z, 1e-9);
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// At an NC stop the wheel still leads; INTERNAL STOP ends it where the axes stand. The block is then run to its end
+/// as it is programmed.
+#[test]
+fn an_internal_stop_ends_it() {
+    let mut rig = wheel("L X+100 Z+60 R0 FMAX M118 Z2\nL X+120 F600\nL Z+60");
+    rig.start();
+    rig.until(20.0, "the second block", |rig| rig.axis('X').nominal > 105.0);
+    turn(&mut rig, 1.0, 0.3);
+    rig.event("key NC_STOP tap");
+    rig.seconds(0.3);
+    turn(&mut rig, 0.5, 0.5);
+    close(rig.axis('Z').nominal, 61.5, 1e-9);
+    rig.command("stop");
+    assert_eq!(rig.control.snapshot().run, RunState::Idle);
+    rig.start();
+    rig.seconds(0.3);
+    turn(&mut rig, -1.0, 0.2);
+    close(rig.axis('Z').nominal, 61.5, 1e-9);
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    close(rig.axis('Z').nominal, 60.0, 1e-9);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// The software limits hold: a block on whose way the handwheel could lead Z beyond 170 is refused.
+#[test]
+fn the_traverse_range_holds() {
+    let run = |z: &str| {
+        let mut rig = wheel(&format!("L IX+1 R0 F600 M118 Z2\nL Z{z} FMAX\nL IX+1 F600"));
+        rig.start();
+        rig.until(20.0, "the end or a message", |rig| {
+            rig.control.snapshot().ended || !rig.messages().is_empty()
+        });
+        rig.messages()
+    };
+    assert_eq!(run("+168"), [""; 0]);
+    assert_eq!(run("+168.1"), ["LIMIT SWITCH Z+"]);
+}
+
+/// Return to the contour: axes moved by hand go back to the path, and Z to beside it.
+#[test]
+fn the_return_to_the_contour_knows_it() {
+    let mut rig = bench("")
+        .plant("speed = 6000", "speed = 12000")
+        .mps("1710.0=8 1720.0=10 7640=2 7650=1 7660=0 7670.0=0 7680=%0000010")
+        .mps("1010.0=12000 1010.1=12000 1010.2=12000")
+        .program("1.H", "L X+100 Z+60 R0 FMAX M118 Z2\nL X+120 F600\nL IY+1")
+        .ready();
+    rig.command("handwheel Z 1");
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(20.0, "the second block", |rig| rig.axis('X').nominal > 105.0);
+    turn(&mut rig, 1.0, 0.3);
+    rig.event("key NC_STOP tap");
+    rig.seconds(0.5);
+    let x = rig.axis('X').nominal;
+    rig.command("manual-operation");
+    rig.event("key Z+ press");
+    rig.seconds(0.5);
+    rig.event("key Z+ release");
+    rig.seconds(0.5);
+    assert!(rig.axis('Z').nominal > 62.0);
+    rig.command("restore-position");
+    rig.start();
+    rig.seconds(2.0);
+    close(rig.axis('Z').nominal, 61.0, 1e-6);
+    close(rig.axis('X').nominal, x, 1e-6);
+    rig.start();
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    close(rig.axis('Z').nominal, 61.0, 1e-6);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// Neither the wheel under M118 nor its end allocates in a cycle.
+#[test]
+fn cycles_allocate_nothing() {
+    let mut rig = wheel("L IX+5 R0 F600 M118 Z2\nL IX+3 M118\nL IX+1");
+    rig.start();
+    for cycle in 0..10_000 {
+        if cycle == 50 {
+            rig.event("handwheel 150");
+        }
+        rig.control.prepare();
+        let allocated = allocation_counter::measure(|| rig.control.cycle(&mut rig.machine));
+        assert_eq!(
+            (allocated.count_total, allocated.count_current),
+            (0, 0),
+            "{cycle}"
+        );
+        if rig.control.snapshot().ended {
+            return;
+        }
+    }
+    panic!("{:?}", rig.control.snapshot());
+}
+
+/// Beside the path nothing is measured: nobody would know where the touch lies.
+#[test]
+fn measuring_under_m118_is_refused() {
+    let probe = "TCH PROBE 0.0 REF. PLANE Q5 X+\nTCH PROBE 0.1 X+80 Y+50 Z+50\nL IX+1 F600";
+    let run = |m118: &str| {
+        let mut rig = wheel(&format!("L IX+1 R0 F600 M118 Z2\nL IX+1 {m118}\n{probe}"));
+        rig.start();
+        rig.seconds(15.0);
+        (rig.messages(), rig.control.snapshot().run)
+    };
+    assert_eq!(
+        run("M9"),
+        (vec!["PROBE SYSTEM NOT READY".to_owned()], RunState::Interrupted)
+    );
+    let (messages, state) = run("M118");
+    assert_eq!(messages, [""; 0]);
+    assert_eq!(state, RunState::Running);
+}
