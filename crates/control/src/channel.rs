@@ -67,7 +67,7 @@ impl Channel {
     pub fn new(parts: Parts, remembered: &Remembered, machine: &mut MachineSide) -> Channel {
         let list = parts.own_list.as_ref().unwrap_or(machine.link.list());
         let operation = list.operation_parameters();
-        let limits = path_limits(list, machine.axes.owned(parts.number), &*parts.kinematics);
+        let limits = path_limits(list, machine.axes.owned(parts.number));
         let selection = Selection {
             program: remembered.program.clone(),
             ..Selection::default()
@@ -238,7 +238,7 @@ impl Channel {
         // What the mode before moved comes to a standstill first.
         let waits = automatic && !ready && !self.run.is_active();
         if !waits {
-            self.move_by_mode(&handwheel, &now, machine, measured);
+            self.move_by_mode(&now, machine, measured);
         }
         self.move_for_plc(&now, machine);
         machine.axes.of(self.number).slow_down(now.time_s);
@@ -247,13 +247,8 @@ impl Channel {
         }
     }
 
-    fn move_by_mode(
-        &mut self,
-        handwheel: &HandwheelInputs,
-        now: &Now,
-        machine: &mut MachineSide,
-        measured: &Measured,
-    ) {
+    fn move_by_mode(&mut self, now: &Now, machine: &mut MachineSide, measured: &Measured) {
+        let handwheel = &measured.operator.handwheel;
         match now.mode {
             Mode::Manual | Mode::Handwheel => {
                 if now.start && !now.stop {
@@ -524,8 +519,7 @@ impl Channel {
 
     /// Its axes are others from now on: the path has their limits, the datum their corrections.
     pub fn take_axes(&mut self, machine: &mut MachineSide) {
-        let (list, axes) = (self.list(machine), machine.axes.owned(self.number));
-        let limits = path_limits(list, axes, self.datums.chain.kinematics());
+        let limits = path_limits(self.list(machine), machine.axes.owned(self.number));
         self.run.track.change_limits(&limits, self.run.is_active());
         let range = self.datums.range();
         self.datums.select_range(range, &mut machine.axes.of(self.number));
@@ -536,8 +530,7 @@ impl Channel {
     pub fn prepare(&mut self, datums_changed: bool, machine: &mut MachineSide) {
         if self.run.track.limits_changed && !self.run.is_active() {
             let list = self.own_list.as_ref().unwrap_or(machine.link.list());
-            let axes = machine.axes.owned(self.number);
-            let limits = path_limits(list, axes, self.datums.chain.kinematics());
+            let limits = path_limits(list, machine.axes.owned(self.number));
             self.run.track.take_limits(&limits);
         }
         self.datums_changed |= datums_changed;
