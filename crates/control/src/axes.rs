@@ -116,9 +116,10 @@ impl Axes {
     }
 
     /// Hands the nominal positions of a contour cycle to the loops; slaves follow their masters.
-    pub fn command(&mut self) {
+    pub fn command(&mut self, time_s: f64) {
         for unit in self.units.iter_mut().filter(|unit| unit.coupling.is_none()) {
-            unit.servo.command(unit.nominal);
+            let wanted = unit.wanted(time_s);
+            unit.servo.command(wanted);
         }
         gantry::command(&mut self.units);
     }

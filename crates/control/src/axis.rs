@@ -3,9 +3,10 @@
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::axis::AxisParameters;
 use bahn_path::Axis;
-use bahn_servo::{Axis as Servo, Gantry, Method, Timing};
+use bahn_servo::{Axis as Servo, Gantry, Mark, Method, Timing};
 
 use crate::panel::Direction;
+use crate::way_back::WayBack;
 
 /// So far below 0 an axis counts as being at 0, degrees.
 const TURN_TOLERANCE_DEG: f64 = 1e-3;
@@ -106,6 +107,8 @@ pub(crate) struct AxisUnit {
     pub at_limit: Option<Direction>,
     /// The feed enable was withdrawn while it moved: 0 V until the enable is back.
     pub halted: bool,
+    /// Back from where it ran on without feed enable.
+    pub way_back: WayBack,
     /// Where an interrupted path has left it, when the actual position became the nominal one meanwhile.
     pub left_at: Option<f64>,
     /// A synchronized slave is led by its master.
@@ -144,6 +147,7 @@ impl AxisUnit {
             limits: [f64::NEG_INFINITY, f64::INFINITY],
             at_limit: None,
             halted: false,
+            way_back: WayBack::default(),
             left_at: None,
             coupling: None,
             parameters,
@@ -236,7 +240,26 @@ impl AxisUnit {
             self.left_at.get_or_insert(self.nominal);
         }
         self.servo.transfer();
+        self.way_back.end();
         self.stand(self.servo.actual_mm());
+    }
+
+    /// The feed enable is back: from where it is the axis goes back to its nominal position on its ramp.
+    pub fn go_back(&mut self) {
+        self.servo.transfer();
+        let speed_mm_s = self.servo.actual_velocity_mm_min() / 60.0;
+        self.way_back
+            .begin(self.servo.actual_mm() - self.nominal, speed_mm_s);
+    }
+
+    /// The position that its loop is to have at the end of the contour cycle.
+    pub fn wanted(&mut self, time_s: f64) -> f64 {
+        let motion = &self.parameters.motion;
+        if !self.halted {
+            self.way_back
+                .goes_on(time_s, motion.rapid_mm_min, motion.acceleration_m_s2);
+        }
+        self.nominal + self.way_back.beside()
     }
 
     /// The place of its encoder among the inputs of the machine.
@@ -302,6 +325,28 @@ impl AxisUnit {
         self.last_actual += shift;
         self.ptp = PointToPoint::moving(self.nominal, self.speed);
         shift
+    }
+
+    /// Count and machine position of a mark that was crossed, once it tells where it is. Coded marks that put the axis
+    /// farther out of its traverse ranges than half of their width are refused: a doubled mark does (inferred).
+    pub fn located(&mut self, mark: Mark) -> Option<(i64, f64)> {
+        let travel = &self.parameters.travel;
+        let position = mark.scale_mm? - travel.machine_datum_mm;
+        let least = travel
+            .ranges_mm
+            .iter()
+            .fold(f64::INFINITY, |least, range| least.min(range[0]));
+        let greatest = travel
+            .ranges_mm
+            .iter()
+            .fold(f64::NEG_INFINITY, |most, range| most.max(range[1]));
+        let beyond = (least - position).max(position - greatest);
+        let endless = travel.modulo_deg.is_some() || !self.parameters.reference.kind.is_coded();
+        if !endless && beyond > (greatest - least) / 2.0 {
+            self.servo.refuse_marks();
+            return None;
+        }
+        Some((mark.count, position))
     }
 
     /// Counts within one turn again (MP810), after it has turned farther; nothing moves.

@@ -65,9 +65,8 @@ pub(crate) fn command(axes: &mut [AxisUnit]) {
         let Some(coupling) = &mut slave.coupling else {
             continue;
         };
-        coupling
-            .gantry
-            .command(master.nominal, &master.servo, &mut slave.servo);
+        let wanted = master.nominal + master.way_back.beside();
+        coupling.gantry.command(wanted, &master.servo, &mut slave.servo);
         // The nominal display of the slave is the master's nominal value [000:4519-4539].
         slave.follow_master(master.nominal, master.speed);
     }
@@ -118,10 +117,9 @@ pub(crate) fn reference(
         if !slave.referenced && slave.parameters.synchronization.from_reference_marks {
             let counts = marks_count && !on_cam(slave);
             let mark = slave.servo.take_mark().filter(|_| counts);
-            if let Some((count, scale)) = mark.and_then(|mark| Some((mark.count, mark.scale_mm?))) {
-                let datum = slave.parameters.travel.machine_datum_mm;
+            if let Some((count, position_mm)) = mark.and_then(|mark| slave.located(mark)) {
                 slave.referenced = true;
-                let shift = slave.set_datum(count, scale - datum);
+                let shift = slave.set_datum(count, position_mm);
                 shifted(axes, place, shift);
             }
         }

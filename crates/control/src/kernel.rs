@@ -268,7 +268,8 @@ impl Kernel {
             for channel in self.channels.iter_mut() {
                 channel.move_axes(machine, &self.seam.measured);
             }
-            machine.axes.command();
+            let time_s = f64::from(machine.timing.contour_us()) * 1e-6;
+            machine.axes.command(time_s);
             for channel in self.channels.iter_mut() {
                 channel.settle(&mut machine.axes);
             }

@@ -130,6 +130,7 @@ mod upkeep;
 mod view;
 mod voltage;
 mod watch;
+mod way_back;
 mod window;
 
 pub use axis::AxisId;

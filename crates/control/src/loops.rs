@@ -53,6 +53,7 @@ fn hold(unit: &mut AxisUnit, wanted: bool) {
         unit.servo.close();
     } else if !wanted && unit.servo.closed() {
         unit.servo.open();
+        unit.way_back.end();
         unit.stand(unit.nominal);
     }
 }
@@ -65,10 +66,12 @@ fn enable(unit: &mut AxisUnit, enabled: bool) {
         unit.halted = true;
         unit.stand(unit.nominal);
     } else if unit.halted && enabled {
-        // The lag that was left is driven out on a path; by hand the axis stands where it stopped.
+        // An axis of a path goes back to it; by hand it stands where it stopped.
         unit.halted = false;
         if unit.mover != Mover::Path {
             unit.transfer();
+        } else if unit.servo.closed() {
+            unit.go_back();
         }
     }
     unit.enabled = enabled;

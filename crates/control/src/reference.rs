@@ -211,10 +211,9 @@ fn next_step(place: usize, step: Step, cam: bool, axes: &mut OwnAxes, nc: &Image
     let counts = turned == step && !choosing;
     let mark = unit.servo.take_mark();
     let mark = mark.filter(|_| counts && !unit.referenced && !(cam && kind == ReferenceType::OneMark));
-    if let Some((count, scale_mm)) = mark.and_then(|mark| Some((mark.count, mark.scale_mm?))) {
-        let datum = unit.parameters.travel.machine_datum_mm;
+    if let Some((count, position_mm)) = mark.and_then(|mark| unit.located(mark)) {
         unit.referenced = true;
-        let shift = unit.set_datum(count, scale_mm - datum);
+        let shift = unit.set_datum(count, position_mm);
         gantry::shifted(axes.all_mut(), place, shift);
     }
     let slaves = gantry::reference(axes.all_mut(), place, counts, |unit| {

@@ -130,7 +130,7 @@ impl Track {
                 .all(AxisUnit::stands)
     }
 
-    /// The axes that the current element moves are held in their loops and have feed enable. An element
+    /// The axes that the current element moves are held in their loops, have feed enable and are where they shall be. An element
     /// that waits for a clamped axis may do so.
     pub fn is_able(&self, axes: &OwnAxes) -> bool {
         let Some(element) = self.path.element() else {
@@ -139,7 +139,7 @@ impl Track {
         let stands = self.path.speed_mm_s() == 0.0;
         axes.iter()
             .filter(|unit| element.moves_axis(unit.axis))
-            .all(|unit| unit.enabled && (unit.servo.closed() || stands))
+            .all(|unit| unit.enabled && unit.way_back.is_over() && (unit.servo.closed() || stands))
     }
 
     /// A block wants a clamped axis: its marker M2008 ff. falls, and the PLC unclamps it [000:5407].

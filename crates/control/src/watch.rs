@@ -16,6 +16,8 @@ pub struct AxisWatch {
     pub output: usize,
     /// Where it is commanded to be at the end of the contour cycle.
     pub commanded: f64,
+    /// How far its loop is commanded beside that: back from where it ran on without feed enable.
+    pub beside: f64,
     /// Speed that is commanded, mm/s, with its sign.
     pub speed_mm_s: f64,
     /// Where it is.
@@ -32,6 +34,11 @@ pub struct AxisWatch {
     pub halted: bool,
     /// The path of a program moves it.
     pub on_path: bool,
+    /// It follows a master: no path names it.
+    pub slave: bool,
+    /// With a digital speed controller: so long its torque goes on when the loop is opened, MP1980, s; without feed enable
+    /// it is held by torque.
+    pub torque_s: Option<f64>,
     /// Its software limits, least and greatest, where they are effective.
     pub limits: Option<[f64; 2]>,
     /// What its monitoring has found.
@@ -57,6 +64,7 @@ impl AxisWatch {
             axis: unit.axis,
             output: unit.output(),
             commanded: unit.nominal,
+            beside: unit.way_back.beside(),
             speed_mm_s: unit.speed,
             actual: unit.servo.actual_mm(),
             lag: unit.servo.lag_mm(),
@@ -65,6 +73,8 @@ impl AxisWatch {
             enabled: unit.enabled,
             halted: unit.halted,
             on_path: unit.mover == Mover::Path,
+            slave: unit.coupling.is_some(),
+            torque_s: parameters.digital.map(|digital| digital.emergency_stop_s),
             limits: unit.limited(),
             fault: unit.servo.fault().map(bahn_servo::Fault::id),
             lag_max: lag.monitoring_mm.max(precontrol.monitoring_mm),

@@ -184,6 +184,32 @@ fn distance_coded_marks() {
     assert!(greatest < 50.0 + 20.0 + 3.0, "{greatest}");
 }
 
+/// A scratched scale has a second mark 20 periods, 0.4 mm, behind each. Behind 50.06 the pair would stand at (960 + 1 - 1) ·
+/// 500 - 20 + 20 periods of 20 µm = 9600 mm, far outside of 10 to 170: with MP30 the scale is defective, without it the pair
+/// does not count, and the next sound one, 60 and 70.08, does (inferred).
+#[test]
+fn doubled_marks_are_refused() {
+    let build = only_x(3, "marks_coded = 20\nmarks_from = 0", 50.0).mps("960.0=0");
+    let mut rig = asked(build.mps("30=1"));
+    rig.event("fault encoder X twice");
+    rig.start();
+    rig.until(8.0, "the doubled mark", |rig| !rig.messages().is_empty());
+    assert_eq!(rig.messages(), ["MEASURING SYSTEM X DEFECTIVE C"]);
+    assert!(rig.table('X') < 52.0 && !rig.axis('X').referenced);
+
+    let build = only_x(3, "marks_coded = 20\nmarks_from = 0", 50.0).mps("960.0=0");
+    let mut rig = asked(build.mps("30=0"));
+    rig.event("fault encoder X twice");
+    rig.start();
+    rig.until(8.0, "behind the doubled mark", |rig| rig.table('X') > 55.0);
+    assert!(!rig.axis('X').referenced);
+    rig.event("repair X");
+    done(&mut rig);
+    assert_eq!(rig.messages(), [""; 0]);
+    close(rig.machine_position('X'), rig.table('X'), 0.001);
+    assert!((70.0..75.0).contains(&rig.table('X')), "{}", rig.table('X'));
+}
+
 /// The cam closes before two marks were passed: the axis reverses and counts anew.
 #[test]
 fn distance_coded_marks_near_the_cam() {

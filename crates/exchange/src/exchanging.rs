@@ -132,6 +132,12 @@ impl Exchange {
         self.plc.erase_retained();
     }
 
+    /// What power-off keeps, as the PLC has it: M1000-M1999, then B0-B127 [000:11579].
+    pub fn retained(&self) -> impl Iterator<Item = u8> {
+        let cells = self.plc.cells();
+        crate::image::retained_cells().filter_map(|cell| cells.get(cell).copied())
+    }
+
     /// RESET: everything but M1000-M1999 and B0-B127 is cleared on both sides [000:11579-11584]. That
     /// markers outside M1000-M1999 are cleared is inferred.
     pub fn reset(&mut self) {

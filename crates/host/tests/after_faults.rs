@@ -4,10 +4,10 @@
 mod support;
 
 use bahn_control::{Control, RunState};
-use bahn_host::{Deed, Host, Source};
+use bahn_host::{Deed, Host, PowerOn, Source};
 use bahn_parameters::fault::FaultId;
 use bahn_path::Axis;
-use support::{mill, seconds};
+use support::{host, machine, mill, seconds};
 
 fn give(host: &mut Host, what: &str) {
     host.act(Source::Script, Deed::parse(what).unwrap()).unwrap();
@@ -16,7 +16,12 @@ fn give(host: &mut Host, what: &str) {
 fn until(host: &mut Host, what: &str, holds: impl Fn(&Control) -> bool) {
     let end_us = host.control().time_us() + 60_000_000;
     while !holds(host.control()) {
-        assert!(host.control().time_us() < end_us, "{what} does not come");
+        let shown = host.control().shown();
+        assert!(
+            host.control().time_us() < end_us,
+            "{what} does not come: {shown:?}, {:?}",
+            host.plant().magazine()
+        );
         host.step().unwrap();
     }
 }
@@ -118,6 +123,57 @@ fn a_door_in_rapid_traverse_is_no_positioning_error() {
     assert_eq!(commanded(host.control(), Axis::X), 300.0);
 }
 
+/// The feed enable is back: what X ran on without it, 250²/(2 · 7000) = 4.5 mm, it goes back on its ramp (MP1060), no lag
+/// jumps, so that neither MP1410 = 0.5 nor the drive is at its end; the path goes on where X is.
+#[test]
+fn what_ran_on_without_feed_enable_goes_back_on_the_ramp() {
+    let mut host = mill("L X-100 Y+0 Z+100 R0 FMAX\nL X+300 FMAX");
+    until(&mut host, "rapid traverse", |control| {
+        commanded(control, Axis::X) > 50.0 && control.run_state() == RunState::Running
+    });
+    let x = |host: &Host| {
+        let mut watch = host.control().first().watch();
+        watch.find(|axis| axis.axis == Axis::X).unwrap()
+    };
+    give(&mut host, "switch door open");
+    seconds(&mut host, 1.0);
+    let ran_on = x(&host).lag.abs();
+    assert!(ran_on > 3.0, "{ran_on}");
+    give(&mut host, "switch door closed");
+    let (mut goes_back, mut greatest, mut fastest) = (false, 0.0_f64, 0.0_f64);
+    let mut before = x(&host).actual;
+    for _ in 0..500 {
+        host.step().unwrap();
+        let now = x(&host);
+        if !now.halted && now.speed_mm_s == 0.0 {
+            goes_back |= (now.actual - now.commanded).abs() > 1.0;
+            greatest = greatest.max(now.lag.abs());
+            fastest =
+                fastest.max((now.actual - before).abs() / (f64::from(host.control().cycle_us()) * 1e-6));
+        }
+        before = now.actual;
+    }
+    // The fastest place of the way is its middle: √(a · 4.5 mm), a little more with what the loop adds.
+    let bound = (x(&host).acceleration_mm_s2 * ran_on).sqrt();
+    assert!(goes_back && greatest < 0.5, "{greatest}");
+    assert!(
+        fastest > 0.5 * bound && fastest < 1.2 * bound,
+        "{fastest} of {bound}"
+    );
+    assert_eq!(
+        host.control()
+            .shown()
+            .iter()
+            .filter(|shown| shown.fault() == FaultId::Positioning)
+            .count(),
+        0
+    );
+    give(&mut host, "ce");
+    give(&mut host, "key NC_START tap");
+    until(&mut host, "the end", Control::has_ended);
+    assert_eq!(commanded(host.control(), Axis::X), 300.0);
+}
+
 /// CE while the path still comes to a standstill behind POSITIONING ERROR: X is taken over from where it is, and no
 /// nominal position jumps, 250 mm/s is the rapid traverse. Behind NC start it goes back, and the run goes on.
 #[test]
@@ -153,4 +209,87 @@ fn ce_on_the_ramp_makes_no_axis_jump() {
         "{:?}",
         host.control().shown()
     );
+}
+
+/// Digital drives: whatever keeps the motor from the speed that its controller asks for, which then asks for more than
+/// MP1910 permits, is GROSS POSITIONING ERROR 3F: the loops are opened, and only power-off helps.
+#[test]
+fn a_digital_drive_that_does_not_follow_is_3f() {
+    for fault in ["fault motor X", "fault drive X dead", "fault clamp X"] {
+        let digital = machine("dig425");
+        let mut host = host(
+            &digital,
+            PowerOn::fresh(&digital),
+            "L X-100 Y+0 Z+100 R0 FMAX\nL X+200 F6000",
+        );
+        until(&mut host, "the feed", |control| {
+            commanded(control, Axis::X) > 0.0 && control.run_state() == RunState::Running
+        });
+        give(&mut host, fault);
+        seconds(&mut host, 0.5);
+        let shown = host.control().shown();
+        let first = shown
+            .iter()
+            .find(|shown| shown.flashing)
+            .map(|shown| shown.fault());
+        assert_eq!(first, Some(FaultId::SpeedController), "{fault}: {shown:?}");
+        assert!(!host.control().loops_closed(), "{fault}");
+        give(&mut host, "ce");
+        assert!(
+            host.control().shown().iter().any(|shown| shown.flashing),
+            "{fault}"
+        );
+    }
+}
+
+/// The magazine changes from tool 1 to tool 2 when its arm is stuck, a switch is silent or the chain stands: the PLC says
+/// that it does not answer. Repaired, the change goes on where it was, and tool 2 is in the spindle.
+#[test]
+fn a_magazine_that_is_stuck_goes_on_when_it_is_repaired() {
+    for (part, how) in [
+        ("arm_turn", "jammed"),
+        ("arm_draw", "no-feedback"),
+        ("shuttle", "jammed"),
+        ("magazine", "jammed"),
+        ("magazine", "no-feedback"),
+    ] {
+        let mut mill = machine("mill");
+        for assignment in ["7480.0=3", "4310.0=3"] {
+            mill.parameters.assign(assignment).unwrap();
+        }
+        let power_on = PowerOn::fresh(&mill);
+        let mut host = host(
+            &mill,
+            power_on,
+            "TOOL CALL 1 Z S1000\nTOOL CALL 5 Z S1000\nL Z+100 R0 FMAX",
+        );
+        while host.plant().magazine().unwrap().spindle != 1 {
+            assert!(
+                host.control().time_us() < 90_000_000,
+                "{:?}",
+                host.control().shown()
+            );
+            host.step().unwrap();
+        }
+        give(&mut host, &format!("fault device {part} {how}"));
+        until(&mut host, &format!("the message of {part} {how}"), |control| {
+            let mut shown = control.shown().iter();
+            shown.any(|shown| control.shown_text(shown) == "TOOL MAGAZINE DOES NOT ANSWER")
+        });
+        assert!(!host.control().has_ended(), "{part} {how}");
+        give(&mut host, &format!("repair {part}"));
+        give(&mut host, "ce");
+        until(
+            &mut host,
+            &format!("the end behind {part} {how}"),
+            Control::has_ended,
+        );
+        let magazine = host.plant().magazine().unwrap();
+        assert_eq!(
+            (magazine.spindle, magazine.arm, magazine.shuttle),
+            (5, [0, 0], 0),
+            "{part} {how}"
+        );
+        assert_eq!(host.control().remember().tool, 5, "{part} {how}");
+    }
 }

@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_host::torture::{Campaign, Kind, Rule};
+use bahn_host::LoadedMachine;
+use bahn_host::torture::{Campaign, Happening, Kind, Rule};
 
 fn folder(machine: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -20,7 +21,10 @@ fn campaign(machine: &str) -> Campaign {
 
 /// Tries seeds of a machine: every rule holds, and every kind of thing happens in them.
 fn try_seeds(machine: &str, seeds: std::ops::Range<u64>) {
-    let campaign = campaign(machine);
+    try_campaign(machine, &campaign(machine), seeds);
+}
+
+fn try_campaign(machine: &str, campaign: &Campaign, seeds: std::ops::Range<u64>) {
     let mut worker = campaign.worker().unwrap();
     let (mut went_on, mut messages, mut kinds) = (0, 0, std::collections::BTreeSet::new());
     for seed in seeds.clone() {
@@ -57,6 +61,67 @@ fn the_mill_of_a_tnc_360_keeps_every_rule() {
 #[test]
 fn the_twin_keeps_every_rule() {
     try_seeds("twin", 0..500);
+}
+
+/// Tools come from the magazine: MP4310.0 bit 1, any pocket.
+#[test]
+fn the_mill_with_its_magazine_keeps_every_rule() {
+    let mut machine = LoadedMachine::load(&folder("mill")).unwrap().unwrap();
+    for assignment in ["7480.0=3", "4310.0=3"] {
+        machine.parameters.assign(assignment).unwrap();
+    }
+    let campaign = Campaign::new(machine, &["BRACKET.H".to_owned()]).unwrap();
+    try_campaign("mill with its magazine", &campaign, 0..250);
+}
+
+#[test]
+fn the_gantry_keeps_every_rule() {
+    try_seeds("gantry", 0..250);
+}
+
+#[test]
+fn the_mill_with_digital_drives_keeps_every_rule() {
+    try_seeds("dig425", 0..350);
+}
+
+/// A PLC program that hangs in a loop (M198) or calls itself (M199): time-out and nesting too deep stop PLC and machine with
+/// a flashing message, and behind power-off, which resets the markers, the run goes on.
+#[test]
+fn a_plc_program_that_fails_stops_the_machine_and_no_more() {
+    let copy = std::env::temp_dir().join(format!("bahn-torture-plc-{}", std::process::id()));
+    copy_all(&folder("mill-tnc360"), &copy);
+    let program = copy.join("plc/MAIN.PLC");
+    let text = std::fs::read_to_string(&program).unwrap();
+    let begin = "       L     M198\n       CMT   HANGS\n       L     M199\n       CMT   DEEPER\n";
+    let end = "LBL HANGS\n       JP    HANGS\nLBL DEEPER\n       CM    DEEPER\n       EM\n";
+    std::fs::write(&program, format!("{begin}{text}\n{end}")).unwrap();
+    let mut campaign = Campaign::load(&copy, &[])
+        .unwrap()
+        .map_err(|faults| faults.len())
+        .unwrap();
+    assert!(campaign.also("M198").is_err(), "no event");
+    campaign.also("M198=1").unwrap();
+    campaign.also("M199=1").unwrap();
+    let mut worker = campaign.worker().unwrap();
+    let (mut stopped, mut went_on) = (std::collections::BTreeSet::new(), 0);
+    for seed in 0..300 {
+        let plan = worker.plan(seed);
+        let fails = |what: &Happening| ["M198=1", "M199=1"].contains(&what.what.as_str());
+        if !plan.happenings.iter().any(fails) {
+            continue;
+        }
+        let trial = worker.run(&plan);
+        assert_eq!(trial.violation, None, "seed {seed}");
+        let said = trial
+            .messages
+            .iter()
+            .filter(|text| text.starts_with("ERROR IN PLC-PROGRAM 5"));
+        let count = stopped.len();
+        stopped.extend(said.cloned());
+        went_on += usize::from(trial.went_on && stopped.len() >= count);
+    }
+    let _ = std::fs::remove_dir_all(&copy);
+    assert!(stopped.len() >= 2 && went_on > 0, "{stopped:?} {went_on}");
 }
 
 /// A seed is the same run every time, and whatever came before it.

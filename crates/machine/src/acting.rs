@@ -134,6 +134,7 @@ impl Machine {
     pub fn inject(&mut self, fault: &Fault) -> Result<(), EventError> {
         match fault {
             Fault::Encoder(letter, kind) => return self.encoder_fault(*letter, Some(*kind)),
+            Fault::Motor(letter) => return self.lose_motor(*letter),
             Fault::Drive('S', kind) => self.spindle_mut()?.fault = Some(*kind),
             Fault::Drive(letter, kind) => self.axis_mut(*letter)?.set_drive_fault(Some(*kind)),
             Fault::Offset(letter, volts) => self.axis_mut(*letter)?.offset = *volts,
@@ -171,6 +172,19 @@ impl Machine {
             .collect();
         Err(no(
             "encoder",
+            &letter.to_string(),
+            known.iter().map(String::as_str),
+        ))
+    }
+
+    fn lose_motor(&mut self, letter: char) -> Result<(), EventError> {
+        if self.axis_mut(letter)?.lose_motor() {
+            return Ok(());
+        }
+        let digital = self.axes.iter().filter(|axis| axis.motor_count().is_some());
+        let known: Vec<String> = digital.map(|axis| axis.letter.to_string()).collect();
+        Err(no(
+            "digital drive",
             &letter.to_string(),
             known.iter().map(String::as_str),
         ))
@@ -245,6 +259,7 @@ impl Machine {
     fn repair_axis(&mut self, letter: char) -> Result<(), EventError> {
         let axis = self.axis_mut(letter)?;
         axis.set_drive_fault(None);
+        axis.find_motor();
         axis.set_encoder_fault(None);
         axis.brake_lost = false;
         axis.jammed = false;

@@ -108,6 +108,8 @@ pub(crate) struct Axis {
     pub powered: bool,
     pub clamped: bool,
     fault: Option<DriveFault>,
+    /// What the motor's encoder had counted when it failed.
+    motor_lost: Option<i64>,
     /// The brake does not hold.
     pub brake_lost: bool,
     /// Something holds it that nobody knows of.
@@ -287,6 +289,7 @@ impl Axis {
             powered: false,
             clamped: false,
             fault: None,
+            motor_lost: None,
             brake_lost: false,
             jammed: false,
             driven: 0.0,
@@ -439,7 +442,23 @@ impl Axis {
     /// What the motor's encoder has counted, where the control reads it.
     pub fn motor_count(&self) -> Option<i64> {
         let drive = self.current.as_ref()?;
-        Some(drive.count(self.motor - self.motor_start))
+        Some(match self.motor_lost {
+            Some(seen) => seen,
+            None => drive.count(self.motor - self.motor_start),
+        })
+    }
+
+    /// The motor's encoder counts nothing from now on; `false` where the control reads none.
+    pub fn lose_motor(&mut self) -> bool {
+        self.motor_lost = self.motor_count();
+        self.motor_lost.is_some()
+    }
+
+    /// The motor's encoder counts again: what it lost stays lost.
+    pub fn find_motor(&mut self) {
+        if let (Some(seen), Some(drive)) = (self.motor_lost.take(), &self.current) {
+            self.motor_start = self.motor - drive.way(seen);
+        }
     }
 
     /// What the control reads of the encoder; `again` without time having passed.

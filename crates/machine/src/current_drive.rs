@@ -80,6 +80,11 @@ impl CurrentDrive {
         self.force
     }
 
+    /// The way of the motor at which its encoder has counted so much, mm or degrees.
+    pub fn way(&self, count: i64) -> f64 {
+        count as f64 / self.steps_per_unit
+    }
+
     /// What the motor's encoder has counted at a way of the motor, mm or degrees.
     pub fn count(&self, way: f64) -> i64 {
         (way * self.steps_per_unit).floor() as i64

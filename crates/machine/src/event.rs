@@ -68,6 +68,8 @@ impl KeyAction {
 pub enum Fault {
     /// The encoder of an axis, or of the spindle (`S`).
     Encoder(char, EncoderFault),
+    /// The encoder of an axis's motor, which a digital speed controller reads, counts nothing.
+    Motor(char),
     /// The drive of an axis, or of the spindle (`S`).
     Drive(char, DriveFault),
     /// The offset of the amplifier of an axis jumps to this voltage, V.
@@ -155,6 +157,7 @@ temperature INPUT CELSIUS           a Pt 100 input 0 to 7
 force AXIS NEWTON                   pushes an axis, N or Nm
 fault encoder AXIS|S amplitude|edges|stuck|marks|no-marks|twice
 fault drive AXIS|S dead|runaway|reversed|slow
+fault motor AXIS                    its encoder counts nothing (digital drives)
 fault brake AXIS                    it does not hold
 fault clamp AXIS                    something holds the axis
 fault offset AXIS VOLTS
@@ -306,6 +309,7 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
             };
             Ok(Fault::Drive(letter(axis, FORM)?, kind))
         }
+        ["motor", axis] => Ok(Fault::Motor(letter(axis, "fault motor AXIS")?)),
         ["brake", axis] => Ok(Fault::Brake(letter(axis, "fault brake AXIS")?)),
         ["clamp", axis] => Ok(Fault::Clamp(letter(axis, "fault clamp AXIS")?)),
         ["offset", axis, volts] => Ok(Fault::Offset(
@@ -348,7 +352,7 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
         )),
         ["relay", ..] => Err(EventError::Form("fault relay slow MS | welded | open")),
         _ => Err(EventError::Form(
-            "fault encoder|drive|brake|clamp|offset|input|device|magazine|relay|probe ..",
+            "fault encoder|drive|motor|brake|clamp|offset|input|device|magazine|relay|probe ..",
         )),
     }
 }

@@ -141,6 +141,43 @@ fn a_mark_is_latched_where_it_is_not_where_a_step_ends() {
     );
 }
 
+/// Marks of a scratched scale stand twice, 20 periods apart; a scale whose mark signal is lost has none, and still counts.
+#[test]
+fn marks_are_doubled_or_lost() {
+    for (fault, periods) in [
+        ("twice", &[350 * 1024 + 512, 370 * 1024 + 512][..]),
+        ("no-marks", &[]),
+    ] {
+        let text = x("start = 3\nencoder = { input = \"X1\", period_um = 20, mark = 10.01 }");
+        let mut machine = running(&text);
+        machine.apply(&format!("fault encoder X {fault}")).unwrap();
+        machine.set_nominal(0, 9.0);
+        let mut marks = Vec::new();
+        for _ in 0..60 {
+            machine.advance(1000);
+            marks.extend(machine.encoder(0).mark);
+        }
+        // 7.01 mm from the start are 350.5 periods.
+        assert_eq!(marks, periods, "{fault}");
+        assert!(machine.encoder(0).count > 400 * 1024, "{fault}");
+    }
+}
+
+/// The brake of a hanging axis is lost, and found again.
+#[test]
+fn a_brake_that_does_not_hold() {
+    let mut machine = running(&x("mass = 100\nweight = 1000\nenable = \"O8\"\nbrake = 1500"));
+    machine.apply("fault brake X").unwrap();
+    milliseconds(&mut machine, 100);
+    // 10 m/s² for 0.1 s: 50 mm, and 1 m/s.
+    let fallen = machine.axis('X').unwrap().position;
+    assert!((fallen + 50.0).abs() < 0.5, "{fallen}");
+    machine.apply("repair X").unwrap();
+    // (1500 - 1000) N brake 100 kg by 5 m/s²: 1 m/s ends in 0.2 s.
+    milliseconds(&mut machine, 210);
+    assert_eq!(machine.axis('X').unwrap().speed_per_min, 0.0);
+}
+
 #[test]
 fn two_coded_marks_tell_the_place() {
     // Marks at -100, -89.98, -80, -69.96: 501 and 499 periods apart, then 502.

@@ -182,6 +182,27 @@ fn the_speed_loop_is_closed_by_the_control() {
     assert_eq!(x.commands.axes[0].volts, torque * 10.0);
 }
 
+/// The encoder of the motor fails while the axis travels: the speed controller sees a standing motor, asks for more than
+/// MP1910 permits, and gives no torque any more: 3F.
+#[test]
+fn a_lost_encoder_of_the_motor_is_gross_positioning_error_3f() {
+    let mut x = Loop::plain(&["1810.0=2"]);
+    let target = x.travel(3000.0, 1.0);
+    x.machine.apply("fault motor X").unwrap();
+    let counted = x.measured.motor(0);
+    let mut cycles = 0;
+    while x.axis.fault().is_none() {
+        x.cycle(target + 0.15 * f64::from(cycles));
+        cycles += 1;
+        assert!(cycles < 200, "{:?}", x.axis.speed());
+    }
+    assert_eq!(x.axis.fault(), Some(Fault::Gross(GrossFault::SpeedController)));
+    assert_eq!((x.measured.motor(0), x.axis.volts()), (counted, 0.0));
+    // What was not counted stays lost; from then on it counts.
+    x.machine.apply("repair X").unwrap();
+    assert!(x.machine.apply("fault motor Y").is_err());
+}
+
 /// With pre-control the deviation while speeding up with 2 m/s² falls by MP1945: 1 V/(m/s²) is what this drive needs.
 #[test]
 fn acceleration_is_pre_controlled() {

@@ -138,6 +138,23 @@ fn a_clamp_takes_its_time_and_reports() {
     assert_eq!(see(&[], 1), (Some("open".to_owned()), true, false));
 }
 
+/// The second switch stays closed all the time, whatever the thing does.
+#[test]
+fn a_switch_stays_closed() {
+    let clamp = "[device.clamp]\noutput = \"O9\"\nstates = [\"open\", \"clamped\"]\nforth_ms = 30\n\
+                 back_ms = 10\ninput_first = \"I40\"\ninput_second = \"I41\"\n";
+    let mut machine = running(&with(clamp));
+    let inputs = |machine: &mut bahn_machine::Machine| (input(machine, 40), input(machine, 41));
+    assert_eq!(inputs(&mut machine), (true, false));
+    machine.apply("fault device clamp permanent").unwrap();
+    assert_eq!(inputs(&mut machine), (true, true));
+    outputs(&mut machine, &[9]);
+    milliseconds(&mut machine, 15);
+    assert_eq!(inputs(&mut machine), (false, true), "on its way");
+    machine.apply("repair clamp").unwrap();
+    assert_eq!(inputs(&mut machine), (false, false));
+}
+
 #[test]
 fn a_valve_with_two_coils_stays_where_it_is() {
     let valve = "[device.valve]\noutput = \"O9\"\noutput_back = \"O10\"\n";
@@ -252,6 +269,13 @@ fn the_probe_touches_a_block_beside_and_from_above() {
     // The face at 10 less the radius; 2.5 mm/s are 0.0025 mm in a millisecond.
     let touched = touched.unwrap();
     assert!((touched - 8.0).abs() < 0.0026, "{touched}");
+    machine.set_nominal(0, -0.9);
+    milliseconds(&mut machine, 500);
+    assert!(!machine.touch_probe().deflected, "it is free again");
+    machine.apply("fault probe early").unwrap();
+    assert!(machine.touch_probe().deflected, "whatever it touches");
+    machine.apply("repair probe").unwrap();
+    assert!(!machine.touch_probe().deflected);
     machine.apply("fault probe not-ready").unwrap();
     machine.apply("fault probe battery").unwrap();
     assert!(!machine.touch_probe().ready && machine.touch_probe().battery_low);

@@ -5,7 +5,7 @@ mod torque;
 use bahn_parameters::axis::AxisParameters;
 
 use crate::characteristic::Characteristic;
-use crate::fault::{Fault, GrossFault};
+use crate::fault::{EncoderFault, Fault, GrossFault};
 use crate::interpolation::{FineInterpolation, Transient};
 use crate::measuring::{Mark, MeasuringSystem};
 use crate::method::Method;
@@ -487,6 +487,14 @@ impl Axis {
     /// Forgets the marks that were crossed, at the start of a reference run.
     pub fn forget_marks(&mut self) {
         self.measuring.forget_marks();
+    }
+
+    /// The marks say a place where the axis cannot be: they are forgotten, and with MP30 the scale is defective (inferred).
+    pub fn refuse_marks(&mut self) {
+        self.measuring.forget_marks();
+        if self.parameters.encoder.check_distance_code {
+            self.raise(Fault::MeasuringSystem(EncoderFault::Position));
+        }
     }
 
     /// Says at which position a count is, mm: the reference mark's, or for a display axis that of

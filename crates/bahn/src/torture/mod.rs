@@ -10,12 +10,13 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::thread;
 
+use bahn_host::LoadedMachine;
 use bahn_host::torture::{Campaign, Happening, Rule};
 use serde::Serialize;
 
 use crate::interrupt::Interrupt;
 use crate::options::Format;
-use crate::{Outcome, UsageError, console, diagnostics, files};
+use crate::{Outcome, UsageError, console, diagnostics, files, settings};
 use crew::Tried;
 
 /// What is said in the end.
@@ -76,13 +77,18 @@ pub(crate) fn command(options: &TortureOptions) -> Result<Outcome, UsageError> {
     let mut report = Report::default();
     let mut script = None;
     for folder in &folders {
-        let campaign = match Campaign::load(folder, &options.program)? {
-            Ok(campaign) => campaign,
+        let mut machine = match LoadedMachine::load(folder)? {
+            Ok(machine) => machine,
             Err(faults) => {
                 diagnostics::print_faults(&faults);
                 return Ok(Outcome::ProgramError);
             }
         };
+        settings::assign(&mut machine.parameters, &options.mp)?;
+        let mut campaign = Campaign::new(machine, &options.program)?;
+        for event in &options.event {
+            campaign.also(event)?;
+        }
         let machine = try_machine(
             &campaign,
             folder,
@@ -125,7 +131,10 @@ fn try_machine(
         ..MachineReport::default()
     };
     let single = options.seeds.end - options.seeds.start == 1;
-    let folder = folder.display().to_string();
+    let mut folder = folder.display().to_string();
+    if !options.mp.is_empty() {
+        folder = format!("{folder} --mp {}", options.mp.join(","));
+    }
     crew::run(campaign, options.seeds.clone(), jobs, interrupt, |tried| {
         machine.seeds += 1;
         machine.machine_s += tried.trial.machine_us as f64 * 1e-6;

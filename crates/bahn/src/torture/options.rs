@@ -11,6 +11,10 @@ Examples:
   bahn torture --seeds 0..20                          the shipped machines, 20 seeds each
   bahn torture --machine machines/twin --seeds 0..100 --most 1
       Ends with the first seed that breaks a rule.
+  bahn torture --machine machines/mill --program BRACKET.H --mp 7480.0=3,4310.0=3 --seeds 0..50
+      The mill changes its tools with the magazine.
+  bahn torture --machine mine --event M190=1
+      A marker by which a copy of the PLC program is made to fail joins what happens.
   bahn torture --machine machines/mill-tnc360 --seeds 31..32 --record seed.txt
       Repeats one seed, and writes what happens in it as a script; bahn run repeats that with its report.
 
@@ -29,6 +33,12 @@ pub(crate) struct TortureOptions {
     /// Only these programs of the machine.
     #[arg(long, value_name = "PROGRAM")]
     pub program: Vec<String>,
+    /// One machine parameter instead of that of the list, as 4310.0=3 (repeatable, or several with commas).
+    #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
+    pub mp: Vec<String>,
+    /// Operands that the PLC program does not expect, as a script has them, again for several: M190=1.
+    #[arg(long, value_name = "OPERANDS")]
+    pub event: Vec<String>,
     /// Seeds from A to below B, for each machine.
     #[arg(long, value_name = "A..B", value_parser = seeds, default_value = "0..1000")]
     pub seeds: std::ops::Range<u64>,

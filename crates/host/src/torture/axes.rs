@@ -23,6 +23,10 @@ struct Before {
     channel: usize,
     /// The lag was beyond what is monitored.
     beyond: bool,
+    /// Its loop has been open for so long, s.
+    open_s: f64,
+    /// Speed on the way back behind a feed enable, mm/s; not known in its first cycle.
+    back_mm_s: Option<f64>,
 }
 
 /// Where an axis of the machine was when its power was taken.
@@ -101,12 +105,20 @@ impl Axes {
         if let Some(before) = before.filter(|before| before.channel == channel) {
             judge.travel(&before.watch)?;
             judge.acceleration(&before.watch, corner)?;
-            judge.enable(&before.watch)?;
+            judge.way_back(&before)?;
+            judge.enable(&before)?;
             judge.monitoring(before.beyond)?;
         }
         let now = Before {
             watch,
             channel,
+            back_mm_s: before
+                .filter(|before| before.watch.beside != 0.0 && watch.beside != 0.0 && !watch.halted)
+                .map(|before| (watch.beside - before.watch.beside) / moment.cycle_s),
+            open_s: match before.filter(|_| !watch.closed) {
+                Some(before) => before.open_s + moment.cycle_s,
+                None => 0.0,
+            },
             beyond: watch.closed && watch.lag.abs() > watch.lag_max,
         };
         match place.and_then(|place| self.before.get_mut(place)) {
@@ -247,15 +259,40 @@ impl Judge<'_> {
         Ok(())
     }
 
-    fn enable(&self, before: &AxisWatch) -> Result<(), Violation> {
-        let watch = self.watch;
-        let without = |watch: &AxisWatch| !watch.closed || watch.halted;
-        let off = !self.moment.loops_closed || !self.moment.on;
-        if (off || without(watch) && without(before)) && watch.volts != 0.0 && !watch.closed {
+    /// The torque of a digital drive brakes for a while, and holds it without feed enable.
+    fn enable(&self, before: &Before) -> Result<(), Violation> {
+        let (watch, was) = (self.watch, &before.watch);
+        let holds = watch.torque_s.is_some();
+        let braked = watch.torque_s.is_none_or(|torque_s| before.open_s > torque_s);
+        let open = !watch.closed && (!was.closed || !self.moment.loops_closed || !self.moment.on);
+        if open && braked && watch.volts != 0.0 {
             return self.breaks(Rule::Enable, format!("{:.4} V without loop", watch.volts));
         }
-        if without(watch) && without(before) && watch.volts != 0.0 {
+        if watch.halted && was.halted && !holds && watch.volts != 0.0 {
             return self.breaks(Rule::Enable, format!("{:.4} V without enable", watch.volts));
+        }
+        Ok(())
+    }
+
+    /// Back from where it ran on without feed enable it goes with no more than MP1060, MP1010.
+    fn way_back(&self, before: &Before) -> Result<(), Violation> {
+        // A contact that chatters lets it begin anew between two looks.
+        if self.moment.broken {
+            return Ok(());
+        }
+        let (watch, was) = (self.watch, &before.watch);
+        let Some(speed) = before
+            .back_mm_s
+            .filter(|_| watch.beside != 0.0 && !watch.halted && !was.halted)
+        else {
+            return Ok(());
+        };
+        let now = (watch.beside - was.beside) / self.moment.cycle_s;
+        // Mean speeds of two cycles differ by no more than that of their ends.
+        let most = watch.acceleration_mm_s2 * self.moment.cycle_s;
+        if (now - speed).abs() > most * (1.0 + 1e-3) + 1e-4 || now.abs() > watch.rapid_mm_s + 1e-4 {
+            let values = format!("{now:.4} mm/s behind {speed:.4} on the way back, at most {most:.4} more");
+            return self.breaks(Rule::Acceleration, values);
         }
         Ok(())
     }

@@ -84,6 +84,18 @@ impl Catalogue {
         }
     }
 
+    /// Something of the machine's own that the PLC does not expect.
+    pub fn also(&mut self, what: &str) {
+        let own = self.by_kind.iter_mut().filter(|(kind, _)| *kind == Kind::Plc);
+        for (kind, mishaps) in own {
+            mishaps.push(Mishap {
+                kind: *kind,
+                what: what.to_owned(),
+                undone_by: None,
+            });
+        }
+    }
+
     /// One of a kind.
     pub fn pick(&self, kind: Kind, dice: &mut Dice) -> Option<Mishap> {
         let (_, mishaps) = self.by_kind.iter().find(|(own, _)| *own == kind)?;
@@ -170,6 +182,7 @@ impl Finder<'_> {
             for drive in ["dead", "runaway", "reversed", "slow"] {
                 self.event(Kind::Fault, &format!("fault drive {axis} {drive}"), Some(&repair));
             }
+            self.event(Kind::Fault, &format!("fault motor {axis}"), Some(&repair));
             self.event(Kind::Fault, &format!("fault brake {axis}"), Some(&repair));
             self.event(Kind::Fault, &format!("fault clamp {axis}"), Some(&repair));
             self.event(Kind::Fault, &format!("fault offset {axis} 0.15"), None);
@@ -183,12 +196,14 @@ impl Finder<'_> {
             .devices()
             .map(|device| device.name.to_owned())
             .collect();
-        for thing in things.iter().map(String::as_str).chain(["gear"]) {
+        for thing in things.iter().map(String::as_str).chain(["gear", "magazine"]) {
             let repair = format!("repair {thing}");
             for how in ["jammed", "no-feedback", "permanent", "slow"] {
                 self.event(Kind::Fault, &format!("fault device {thing} {how}"), Some(&repair));
             }
         }
+        // What is lost stays lost: the operator takes the tools out, as the PLC's dialogue says.
+        self.event(Kind::Fault, "fault magazine lost", None);
         let operands = self.plant.wires().iter().map(|wire| wire.operand.clone());
         let inputs: Vec<String> = operands.filter(|operand| operand.starts_with('I')).collect();
         for input in inputs {

@@ -153,8 +153,6 @@ impl Messages {
         let stopped = any(&[Kind::Emergency, Kind::Power]);
         any(&[Kind::Fault])
             || match fault {
-                // What runs on without feed enable is driven back at once when it is there again.
-                FaultId::Positioning if any(&[Kind::Thing]) => true,
                 // Blocked drives may lag behind an EMERGENCY STOP [000:6157].
                 FaultId::Positioning
                 | FaultId::GrossDeviation
@@ -163,9 +161,10 @@ impl Messages {
                 FaultId::PowerInterrupted => any(&[Kind::Power]),
                 FaultId::VoltageMissing | FaultId::ExternalEmergencyStop => stopped,
                 FaultId::PlcMessage => stopped || any(&[Kind::Thing, Kind::Plc, Kind::Use, Kind::AxisKey]),
-                FaultId::PlcMessageFlashing | FaultId::EmergencyStopPlc | FaultId::PlcMarkers => {
-                    any(&[Kind::Plc])
-                }
+                FaultId::PlcMessageFlashing
+                | FaultId::EmergencyStopPlc
+                | FaultId::PlcMarkers
+                | FaultId::PlcStopped => any(&[Kind::Plc]),
                 FaultId::Key | FaultId::Other => any(&[Kind::Use, Kind::AxisKey]) || stopped,
                 FaultId::Limit => any(&[Kind::AxisKey]) || stopped,
                 FaultId::Program | FaultId::SpindleSpeed => any(&[Kind::Power, Kind::Use]),

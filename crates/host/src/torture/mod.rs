@@ -24,6 +24,7 @@ pub use plan::{Happening, Plan};
 pub use rule::{Rule, Violation};
 pub use trial::Trial;
 
+use crate::deed::Deed;
 use crate::machine_folder::LoadedMachine;
 use crate::{FileFault, HostError};
 use bench::Bench;
@@ -64,6 +65,19 @@ impl Campaign {
             Ok(machine) => Ok(Campaign::new(machine, named)?),
             Err(faults) => Err(faults),
         })
+    }
+
+    /// Adds an event of the machine's own to what the PLC does not expect: operands, as a script has them. A marker by which
+    /// a copy of the PLC program is made to fail, for example; power-off is to reset it.
+    ///
+    /// # Errors
+    /// When a script could not have it.
+    pub fn also(&mut self, what: &str) -> Result<(), HostError> {
+        for part in what.split(',') {
+            Deed::parse(part.trim()).map_err(|error| HostError::new(format!("{part}: {error}")))?;
+        }
+        self.catalogue.also(what);
+        Ok(())
     }
 
     /// The name of the machine.

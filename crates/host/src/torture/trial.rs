@@ -55,7 +55,7 @@ struct Course<'a> {
     messages: Messages,
     trial: Trial,
     /// What was remembered when the supply went.
-    remembered: Option<Vec<Remembered>>,
+    remembered: Option<(Vec<Remembered>, Vec<u8>)>,
     starts: u32,
     cycles: u32,
     /// The contour of each channel is that of the undisturbed run, and where it was last.
@@ -161,7 +161,14 @@ impl Course<'_> {
                 if let Some(before) = self.remembered.take()
                     && before != self.remember()
                 {
-                    let values = format!("{before:?} is {:?} behind the power-off", self.remember());
+                    let (control, plc) = self.remember();
+                    let values = match before.0 == control {
+                        true => {
+                            let cell = before.1.iter().zip(&plc).position(|(before, now)| before != now);
+                            format!("retained cell {cell:?} of the PLC is another one behind the power-off")
+                        }
+                        false => format!("{:?} is {control:?} behind the power-off", before.0),
+                    };
                     return Err(self.breaks(Rule::Retained, values));
                 }
             }
@@ -169,12 +176,12 @@ impl Course<'_> {
         Ok(())
     }
 
-    fn remember(&self) -> Vec<Remembered> {
+    /// What survives power-off: of the control, and the PLC's markers and bytes.
+    fn remember(&self) -> (Vec<Remembered>, Vec<u8>) {
         let control = self.control();
         let others = (1..control.channels()).filter_map(|number| control.channel(number));
-        std::iter::once(control.remember())
-            .chain(others.map(|channel| channel.remember()))
-            .collect()
+        let own = std::iter::once(control.remember()).chain(others.map(|channel| channel.remember()));
+        (own.collect(), control.exchange().retained().collect())
     }
 
     /// A contour cycle, and what must be so behind it.
@@ -260,7 +267,10 @@ impl Course<'_> {
             if !channel.watch().any(|axis| axis.on_path && axis.speed_mm_s != 0.0) {
                 continue;
             }
-            let place = channel.commanded();
+            let mut place = channel.commanded();
+            for slave in channel.watch().filter(|axis| axis.slave) {
+                place[slave.axis] = f64::NAN;
+            }
             let away = contour.distance(&place, element.block, CONTOUR, hint);
             if away > CONTOUR {
                 let values = format!(

@@ -206,6 +206,16 @@ pub enum ReferenceType {
     DistanceCoded,
 }
 
+impl ReferenceType {
+    /// Two neighbouring marks tell where they are.
+    pub fn is_coded(self) -> bool {
+        matches!(
+            self,
+            ReferenceType::DistanceCodedOld | ReferenceType::DistanceCoded
+        )
+    }
+}
+
 /// Reference run of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceParameters {
