@@ -7,7 +7,7 @@ use bahn_servo::{Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
-use crate::command::Mode;
+use crate::command::{Command, Mode};
 use crate::manual::{Manual, Reach};
 use crate::message::Messages;
 use crate::now::{Facts, Now};
@@ -191,13 +191,20 @@ impl Desk {
         }
     }
 
-    /// M and S are entered in Manual and Handwheel.
-    pub fn enter(&mut self, m: Option<u16>, s: Option<f64>) -> bool {
-        let possible = self.is_by_hand();
-        if possible {
-            self.manual.enter(m, s);
+    /// What is entered for moving by hand: M and S in Manual and Handwheel, jog increment, handwheel.
+    pub fn enter(&mut self, command: &Command, axes: &OwnAxes) -> bool {
+        let by_hand = self.is_by_hand();
+        match command {
+            Command::MFunction(m) if by_hand => self.manual.enter(Some(*m), None),
+            Command::Speed(rpm) if by_hand => self.manual.enter(None, Some(*rpm)),
+            Command::JogIncrement(mm) => self.manual.increment = *mm,
+            Command::Handwheel(axis, factor) => {
+                let Some(unit) = axes.at(*axis) else { return false };
+                self.manual.choose_handwheel(unit.index, *factor);
+            }
+            _ => return false,
         }
-        possible
+        true
     }
 
     /// Operating mode and overrides before a PLC scan.

@@ -535,6 +535,8 @@ impl ProgramRun {
                 feed_mm_min,
                 ..
             })) => self.probe.begin(block, [from, to], feed_mm_min, site),
+            // What is not there on a machine was refused before.
+            Some(Stop::Barrier(Barrier::Scan { .. })) => self.answer = Some(LiveData::default()),
             Some(Stop::End) => self.end(site),
             Some(Stop::Error(fault)) => {
                 self.show_fault(fault, site);
@@ -554,12 +556,12 @@ impl ProgramRun {
                 self.track.forget_position();
                 self.answer = Some(LiveData {
                     touch,
-                    q_values: Vec::new(),
+                    ..LiveData::default()
                 });
             }
             Probed::Refused(message, block) => {
                 let sequence = self.source.interpreter().map_or(0, Interpreter::blocks_executed);
-                site.messages.show(message, false, Some(block));
+                site.messages.show(message, false, block);
                 self.abort(Resume::Block(sequence), site);
             }
         }

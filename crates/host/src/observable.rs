@@ -110,7 +110,7 @@ impl Observable {
                 Signal::Axis(_, AxisSignal::Speed | AxisSignal::NominalSpeed)
                 | Signal::PathSpeed
                 | Signal::SpindleRpm => 3,
-                Signal::Axis(..) | Signal::PathDistance => 5,
+                Signal::Axis(..) | Signal::PathDistance | Signal::Probe(_) => 5,
                 Signal::Q(_) => 6,
                 _ => 0,
             },

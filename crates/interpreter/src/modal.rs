@@ -5,7 +5,7 @@ use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position};
 use bahn_program::Compensation;
 
 use crate::contour::{CornerArcs, FeedLaw, Side};
-use crate::definition::CycleData;
+use crate::definition::{CycleData, Digitizing};
 use crate::error::{Cause, Fault};
 use crate::q_parameters::{QTable, preassigned};
 use crate::status::{Spindle, Status, Tool};
@@ -65,6 +65,8 @@ pub(crate) struct Modal {
     pub blank_min: Option<(Plane, [f64; 3])>,
     /// Probe block 0.0 waiting for 0.1.
     pub probe: Option<ReferencePlane>,
+    /// TCH PROBE 5 to 7.
+    pub digitizing: Digitizing,
 }
 
 /// First block of TCH PROBE 0: result parameter, axis and direction [003:4414-4428].
@@ -118,6 +120,7 @@ impl Modal {
             contour_labels: Vec::new(),
             blank_min: None,
             probe: None,
+            digitizing: Digitizing::default(),
         }
     }
 

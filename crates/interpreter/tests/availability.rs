@@ -70,7 +70,6 @@ const MOVES: &[&str] = &[
     "DLG-CALL 1/2",
     "DLG-DEF 1/2",
     "CYCL DEF 27.0 CYLINDER SURFACE\nCYCL DEF 27.1 Q1=-5\nCYCL CALL",
-    "TCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: 5007",
 ];
 
 /// What would move differently on the control is refused; passed over with a warning when that is wanted.

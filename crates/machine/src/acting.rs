@@ -34,7 +34,10 @@ impl Machine {
             Event::Switch(name, state) => self.switch(name, state)?,
             Event::EmergencyStop(pressed) => self.chain.button = *pressed,
             Event::Voltage(on) => self.chain.supply = *on,
-            Event::Probe(inserted) => self.probe()?.inserted = *inserted,
+            Event::Probe(inserted) => {
+                let angle = self.spindle_deg();
+                self.probe()?.insert(*inserted, angle);
+            }
             Event::Analogue(input, volts) => set(&mut self.volts, *input, *volts),
             Event::Temperature(input, celsius) => set(&mut self.temperatures, *input, *celsius),
             Event::Force(letter, force) => self.axis_mut(*letter)?.push(*force),

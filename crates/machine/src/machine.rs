@@ -425,6 +425,13 @@ impl Machine {
         self.chain.acknowledged(&self.stuck)
     }
 
+    /// The angle of the first spindle since power-on, degrees.
+    pub(crate) fn spindle_deg(&self) -> f64 {
+        self.spindles
+            .first()
+            .map_or(0.0, |spindle| spindle.state().angle_deg)
+    }
+
     /// The touch probe; none is never ready.
     pub fn touch_probe(&self) -> Touch {
         let Some(probe) = &self.probe else {
@@ -432,7 +439,7 @@ impl Machine {
         };
         let place = self.probe_axes.map(|index| Some(self.axes.get(index?)?.table));
         let deflected = match place {
-            [Some(x), Some(y), Some(z)] => probe.deflected([x, y, z]),
+            [Some(x), Some(y), Some(z)] => probe.deflected([x, y, z], self.spindle_deg()),
             _ => false,
         };
         Touch {

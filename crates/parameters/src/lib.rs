@@ -77,7 +77,8 @@ pub mod axis {
 /// Of part programs: cycles, M functions, probing, graphics.
 pub mod machining {
     pub use crate::settings::{
-        ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
+        ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, ProbeSettings, ProbeTurn,
+        ProgramEndClearing, ScaledAxes,
     };
 }
 

@@ -28,6 +28,7 @@ mod element;
 mod frame;
 mod plane;
 pub mod region;
+mod scan;
 mod source;
 
 pub use axis::{Axis, AxisSet, Position};
@@ -39,4 +40,5 @@ pub use element::{
 };
 pub use frame::{AxisScaling, Frame};
 pub use plane::{Plane, Point2};
+pub use scan::{ScanFault, ScanJob, ScanPattern, ScanPoint, ScanRules, Scanned};
 pub use source::{Barrier, ElementSource, LiveData, Step, Touch};
