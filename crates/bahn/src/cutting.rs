@@ -315,6 +315,11 @@ impl Cutting {
         Some(Touch { position })
     }
 
+    /// The part as it is now; `None` without a blank.
+    pub fn part(&mut self) -> Option<&Part> {
+        self.workpiece.as_mut().map(|(_, workpiece)| workpiece.part())
+    }
+
     /// Whether there is a blank.
     pub fn has_part(&self) -> bool {
         self.workpiece.is_some()

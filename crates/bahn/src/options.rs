@@ -146,6 +146,9 @@ pub(crate) struct OutputOptions {
     /// Write what FN15 PRINT puts out, a line each.
     #[arg(long, value_name = "OUT.txt", value_hint = ValueHint::FilePath)]
     pub print: Option<PathBuf>,
+    /// Write the programs that TCH PROBE 5 to 7 digitize into this folder; a program of that name is replaced.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub digitized: Option<PathBuf>,
     /// Write a picture of the finished part (PNG).
     #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
     pub image: Option<PathBuf>,

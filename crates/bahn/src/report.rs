@@ -59,6 +59,8 @@ pub(crate) enum Notice {
     BlankRedefined,
     /// TCH PROBE without a part.
     NothingToProbe,
+    /// Digitized points that no folder takes.
+    Digitized { points: u64 },
     /// The drawing of the path has too many elements.
     DrawingIncomplete,
 }
@@ -273,6 +275,9 @@ impl Notice {
                 )
             }
             Notice::BlankRedefined => "another BLK FORM after the first movement: the first one stays".into(),
+            Notice::Digitized { points } => {
+                format!("{points} points are digitized and written nowhere: --digitized names a folder")
+            }
             Notice::NothingToProbe => {
                 "there is no part to touch: the program needs a BLK FORM, and graphics".into()
             }

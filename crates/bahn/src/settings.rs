@@ -153,6 +153,7 @@ pub(crate) fn interpreter(
     };
     rules.machine_zero = machine_zero(list, &datum);
     Ok(bahn_interpreter::Settings {
+        basic_rotation: Default::default(),
         model,
         rules,
         functions: equipment.functions.clone(),

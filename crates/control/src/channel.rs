@@ -18,20 +18,22 @@ use crate::kinematics::{Chain, Kinematics};
 use crate::life::{self, LifeCount};
 use crate::loops::{self, Permission};
 use crate::machine::MachineSide;
+use crate::manual_probing::{Answer, ManualProbing};
 use crate::message::Message;
 use crate::now::Now;
 use crate::plc_link::PalletRequest;
 use crate::positioning::{Moving, Positioning};
+use crate::probe_command::ProbeCommand;
 use crate::programs::Selection;
 use crate::reference;
 use crate::run::ProgramRun;
 use crate::setup::Remembered;
 use crate::site::Site;
-use crate::source::{Basis, Reading, Source};
+use crate::source::{self, Basis, Reading, Source};
 use crate::test_run::TestRun;
 use crate::tools::Tools;
 use crate::track::{Track, path_limits};
-use crate::{status, strobes, tables, upkeep};
+use crate::{run_command, status, strobes, tables, upkeep};
 
 /// A channel.
 #[derive(Clone)]
@@ -51,6 +53,8 @@ pub(crate) struct Channel {
     /// Of the tool in the spindle.
     life: LifeCount,
     pub run: ProgramRun,
+    /// The functions of the TOUCH PROBE menu.
+    pub touch: ManualProbing,
     test: Option<TestRun>,
 }
 
@@ -67,7 +71,7 @@ impl Channel {
     pub fn new(parts: Parts, remembered: &Remembered, machine: &mut MachineSide) -> Channel {
         let list = parts.own_list.as_ref().unwrap_or(machine.link.list());
         let operation = list.operation_parameters();
-        let limits = path_limits(list, machine.axes.owned(parts.number));
+        let limits = path_limits(list, machine.axes.owned(parts.number), &*parts.kinematics);
         let selection = Selection {
             program: remembered.program.clone(),
             ..Selection::default()
@@ -88,6 +92,7 @@ impl Channel {
             datums_changed: false,
             life: LifeCount::default(),
             run: ProgramRun::new(selection, source, Track::new(&limits)),
+            touch: ManualProbing::new(remembered.probe),
             test: None,
             desk: Desk::new(operation),
         };
@@ -144,6 +149,7 @@ impl Channel {
         let basis = Basis {
             list: self.own_list.as_ref().unwrap_or(machine.link.list()),
             link: &machine.link,
+            touch: self.touch,
         };
         (&mut self.run, site, basis)
     }
@@ -226,12 +232,12 @@ impl Channel {
     /// operating mode waits for axes to come to a standstill.
     pub fn move_axes(&mut self, machine: &mut MachineSide, measured: &Measured) {
         let now = self.now(machine);
-        let handwheel = measured.operator.handwheel;
         let mut axes = machine.axes.of(self.number);
         reference::count_display_axes(&mut axes);
         let superimposes = self.datums.chain.superimposed.is_on();
         let nc = machine.memory.of(self.number).nc();
-        self.desk.count_handwheel(superimposes, &handwheel, &axes, nc);
+        self.desk
+            .count_handwheel(superimposes, &measured.operator.handwheel, &axes, nc);
         let automatic = now.mode.is_automatic();
         let rigid = self.run.taps_rigidly();
         let ready = axes.choose_methods(automatic && !self.desk.runs_reference(), rigid);
@@ -251,7 +257,11 @@ impl Channel {
         let handwheel = &measured.operator.handwheel;
         match now.mode {
             Mode::Manual | Mode::Handwheel => {
-                if now.start && !now.stop {
+                if self.touch.is_chosen() {
+                    if self.probe_by_hand(machine, measured) {
+                        return;
+                    }
+                } else if now.start && !now.stop {
                     self.output_entered(machine);
                 }
                 self.move_manually(handwheel, now, machine);
@@ -287,6 +297,34 @@ impl Channel {
         let (_, mut site, _) = self.parts(machine);
         manual.output_entered(model, &mut site);
         self.desk.manual = manual;
+    }
+
+    /// A function of the TOUCH PROBE menu is chosen: whether it moves the axes.
+    fn probe_by_hand(&mut self, machine: &mut MachineSide, measured: &Measured) -> bool {
+        let mut touch = self.touch;
+        let (run, mut site, basis) = self.parts(machine);
+        let settings = basis.list.probe();
+        let (moves, kept) = touch.moves(&mut run.probe, &settings, measured, &mut site);
+        self.touch = touch;
+        machine.unsaved |= kept;
+        moves
+    }
+
+    /// A command of the TOUCH PROBE menu.
+    fn probe_menu(&mut self, command: ProbeCommand, machine: &mut MachineSide) -> bool {
+        let mut touch = self.touch;
+        let barred = self.run.source.bars_probing();
+        let (_, mut site, basis) = self.parts(machine);
+        let answer = touch.execute(command, basis.list.probe().turn, barred, &mut site);
+        self.touch = touch;
+        let [done, kept] = match answer {
+            Answer::Refused => [false; 2],
+            Answer::Done => [true, false],
+            Answer::Kept => [true; 2],
+            Answer::Datum(datum) => [self.datums.set_at(datum, &machine.axes.of(self.number)); 2],
+        };
+        machine.unsaved |= kept;
+        done
     }
 
     fn move_manually(&mut self, handwheel: &HandwheelInputs, now: &Now, machine: &mut MachineSide) {
@@ -447,8 +485,7 @@ impl Channel {
         let offsets = &mut self.datums.chain.offsets;
         self.tools
             .take_geometry_strobe(&machine.magazine, exchange, offsets);
-        let spindle = machine.spindles.of_mut(self.number);
-        if let Some(code) = spindle.take_markers(exchange) {
+        if let Some(code) = machine.spindles.of_mut(self.number).take_markers(exchange) {
             self.show(Message::PlcMarkers(code), machine);
         }
     }
@@ -459,14 +496,9 @@ impl Channel {
         let spindle = machine.spindles.of_mut(self.number);
         let requests = &mut machine.link.requests;
         self.positioning.take_requests(requests);
-        if let Some(orientation) = requests.orientation.take() {
-            spindle.orient(orientation, exchange);
-        }
+        spindle.take_requests(requests, exchange);
         if let Some(call) = requests.tool_call.take() {
             self.tools.inserted_call = Some(call);
-        }
-        if let Some(volts) = requests.spindle_volts.take() {
-            spindle.set_plc_volts(volts);
         }
         self.desk.manual.take_status(std::mem::take(&mut requests.status));
         let pallet = &mut requests.pallet;
@@ -503,7 +535,7 @@ impl Channel {
     /// those of the path with the next run.
     pub fn take_parameters(&mut self, machine: &mut MachineSide) {
         let list = self.own_list.as_ref().unwrap_or(machine.link.list());
-        self.run.source.set_rules(Rules::of(list));
+        self.run.source.set_rules(self.touch.calibrated(Rules::of(list)));
         let operation = list.operation_parameters();
         self.datums.each_range = operation.datums.datum_for_each_range;
         self.desk.set_rules(operation);
@@ -519,7 +551,8 @@ impl Channel {
 
     /// Its axes are others from now on: the path has their limits, the datum their corrections.
     pub fn take_axes(&mut self, machine: &mut MachineSide) {
-        let limits = path_limits(self.list(machine), machine.axes.owned(self.number));
+        let (list, axes) = (self.list(machine), machine.axes.owned(self.number));
+        let limits = path_limits(list, axes, self.datums.chain.kinematics());
         self.run.track.change_limits(&limits, self.run.is_active());
         let range = self.datums.range();
         self.datums.select_range(range, &mut machine.axes.of(self.number));
@@ -530,7 +563,8 @@ impl Channel {
     pub fn prepare(&mut self, datums_changed: bool, machine: &mut MachineSide) {
         if self.run.track.limits_changed && !self.run.is_active() {
             let list = self.own_list.as_ref().unwrap_or(machine.link.list());
-            let limits = path_limits(list, machine.axes.owned(self.number));
+            let axes = machine.axes.owned(self.number);
+            let limits = path_limits(list, axes, self.datums.chain.kinematics());
             self.run.track.take_limits(&limits);
         }
         self.datums_changed |= datums_changed;
@@ -546,11 +580,8 @@ impl Channel {
         let (run, mut site, basis) = self.parts(machine);
         run.prepare_restore(&rules, &mut site);
         run.close(&mut site, &basis);
-        if tools_changed && let Some(interpreter) = run.source.interpreter_mut() {
-            interpreter.set_tools(site.magazine.shapes(), site.magazine.barred());
-        }
-        if datums_changed && let Some(interpreter) = run.source.interpreter_mut() {
-            interpreter.set_datum_table(basis.link.datums(basis.list));
+        if let Some(interpreter) = run.source.interpreter_mut() {
+            source::renew(interpreter, [tools_changed, datums_changed], &site, &basis);
         }
         run.prepare(&mut site, &basis);
         self.prepare_test(machine);
@@ -578,56 +609,31 @@ impl Channel {
     /// Executes a command; `false` when it is not possible now.
     pub fn execute(&mut self, command: Command, machine: &mut MachineSide) -> bool {
         let rules = self.desk.rules().restart;
-        if self.run.source.is_lent() && command.needs_program() {
+        let probes = self.desk.is_by_hand() && self.run.probe.is_on();
+        if self.run.source.is_lent() && command.needs_program() || probes && command.needs_axes() {
             return false;
         }
         match command {
+            Command::Probe(command) => self.desk.is_by_hand() && self.probe_menu(command, machine),
             Command::Mode(mode) => {
+                self.touch.leave();
                 let progress = self.run.progress();
                 let mut axes = machine.axes.of(self.number);
                 self.desk.choose_mode(mode, progress, &mut axes)
             }
             Command::Ce => machine.clear_message(),
-            Command::InternalStop => {
-                let (run, mut site, _) = self.parts(machine);
-                run.internal_stop(&mut site)
-            }
-            Command::Select(name) => {
-                let (run, mut site, basis) = self.parts(machine);
-                run.select(name, &mut site, &basis)
-            }
-            Command::Goto(block) => self.run.goto(block),
-            Command::Mdi(blocks) => self.run.set_mdi(blocks),
-            Command::MFunction(m) => self.desk.enter(Some(m), None),
-            Command::Speed(rpm) => self.desk.enter(None, Some(rpm)),
-            Command::Datum(axis, value) => self.set_datum(axis, value, machine),
-            Command::JogIncrement(mm) => self.desk.manual.set_increment(mm),
             Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
-            Command::ToolLife(tool, minutes) => {
-                machine.unsaved = true;
-                life::set(&mut machine.magazine, &mut machine.link.files, tool, minutes)
-            }
-            Command::Handwheel(axis, factor) => {
-                self.desk
-                    .choose_handwheel(axis, factor, &machine.axes.of(self.number))
-            }
             Command::WorkingPlane(on) => {
                 let list = self.own_list.as_ref().unwrap_or(machine.link.list());
                 let (axes, chain) = (machine.axes.of(self.number), &mut self.datums.chain);
                 self.desk.switch_plane(on, list, &axes, chain)
             }
-            Command::ManualOperation => {
-                let (run, mut site, _) = self.parts(machine);
-                run.manual_operation(&rules, &mut site)
+            Command::MFunction(_) | Command::Speed(_) | Command::JogIncrement(_) | Command::Handwheel(..) => {
+                let axes = machine.axes.of(self.number);
+                self.desk.enter(&command, &axes)
             }
-            Command::RestorePosition => {
-                let (run, mut site, _) = self.parts(machine);
-                run.restore_position(&mut site)
-            }
-            Command::RestoreAt(block) => {
-                let (run, mut site, basis) = self.parts(machine);
-                run.restore_at(block, &rules, &mut site, &basis)
-            }
+            Command::Datum(axis, value) => self.set_datum(axis, value, machine),
+            Command::ToolLife(tool, minutes) => machine.set_tool_life(tool, minutes),
             Command::Code(code) => {
                 let exchange = machine.memory.of_mut(self.number);
                 machine.offsets.shown |= desk::enter_code(code, exchange);
@@ -646,12 +652,10 @@ impl Channel {
                 self.test = None;
                 true
             }
-            // They are of the whole control.
-            Command::Set(_) | Command::Power(_) => false,
-            Command::OffsetAdjustment(adjust) => {
-                let done = machine.offsets.answer(adjust, &mut machine.axes);
-                machine.unsaved |= done;
-                done
+            Command::OffsetAdjustment(adjust) => machine.adjust_offsets(adjust),
+            of_the_run => {
+                let (run, mut site, basis) = self.parts(machine);
+                run_command::execute(of_the_run, &rules, run, &mut site, &basis)
             }
         }
     }
@@ -675,8 +679,7 @@ impl Channel {
 
     /// What survives power-off of the channel: datums, tool, Q parameters, program.
     pub fn remember(&self) -> Remembered {
-        let held = self.tools.held_geometry();
-        let (tool_length, tool_axis) = held.unwrap_or(self.datums.chain.offsets.tool());
+        let (tool_length, tool_axis) = self.tools.remembered_geometry(&self.datums.chain.offsets);
         Remembered {
             datums: self.datums.points().map(crate::setup::Position0),
             tool: self.tools.number,
@@ -685,6 +688,7 @@ impl Channel {
             tool_probe: self.tools.calibration,
             q: self.run.q_values(),
             program: self.run.selection.program.clone(),
+            probe: self.touch.memory,
             ..Remembered::default()
         }
     }

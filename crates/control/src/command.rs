@@ -6,6 +6,8 @@ use std::str::FromStr;
 use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_path::Axis;
 
+use crate::probe_command::ProbeCommand;
+
 /// The machine operating modes, as W272 codes them [000:4680-4687].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
@@ -98,6 +100,8 @@ pub enum Command {
     Speed(f64),
     /// `datum AXIS VALUE`: the actual position of the axis becomes this value, mm or degrees.
     Datum(Axis, f64),
+    /// `probe ..`: a function of the TOUCH PROBE menu [003:1226-1405].
+    Probe(ProbeCommand),
     /// `tool-life T MIN`: the current life of a tool (CUR.TIME), minutes; 0 begins anew [000:9185].
     ToolLife(u32, f64),
     /// `jog MM`: the jog increment, mm.
@@ -161,6 +165,11 @@ impl Command {
             Command::InternalStop | Command::Select(_) | Command::Goto(_) | Command::RestoreAt(_)
         )
     }
+
+    /// It must wait until a probing by hand is over.
+    pub(crate) fn needs_axes(&self) -> bool {
+        matches!(self, Command::Mode(_) | Command::Probe(_) | Command::Datum(..))
+    }
 }
 
 impl FromStr for Command {
@@ -215,6 +224,9 @@ impl FromStr for Command {
                 let (axis, rest) = axis(name, rest)?;
                 value(name, rest, -COORDINATE_MAX, COORDINATE_MAX).map(|value| Command::Datum(axis, value))
             }
+            "probe" => ProbeCommand::parse(rest)
+                .map(Command::Probe)
+                .map_err(CommandError::Wrong),
             "tool-life" => {
                 let (tool, minutes) = rest.split_once(' ').unwrap_or((rest, ""));
                 let tool = number(name, tool, 0, u32::MAX)?;
@@ -225,26 +237,23 @@ impl FromStr for Command {
                 let (axis, rest) = axis(name, rest)?;
                 number(name, rest, 0, 10).map(|factor| Command::Handwheel(axis, factor))
             }
-            "3d-rot" => match rest {
-                "on" => Ok(Command::WorkingPlane(true)),
-                "off" => Ok(Command::WorkingPlane(false)),
-                _ => Err(CommandError::Wrong("`3d-rot` takes `on` or `off`".into())),
-            },
-            "offset" => match rest {
-                "adjust" => Ok(Command::OffsetAdjustment(true)),
-                "off" => Ok(Command::OffsetAdjustment(false)),
-                _ => Err(CommandError::Wrong("`offset` takes `adjust` or `off`".into())),
-            },
-            "power" => match rest {
-                "on" => Ok(Command::Power(true)),
-                "off" => Ok(Command::Power(false)),
-                _ => Err(CommandError::Wrong("`power` takes `on` or `off`".into())),
-            },
+            "3d-rot" => switch(name, rest, "on").map(Command::WorkingPlane),
+            "offset" => switch(name, rest, "adjust").map(Command::OffsetAdjustment),
+            "power" => switch(name, rest, "on").map(Command::Power),
             "select" | "test" | "mdi" => {
                 Err(CommandError::Wrong(format!("`{name}` needs something behind it")))
             }
             _ => Err(CommandError::Unknown(name.to_owned())),
         }
+    }
+}
+
+/// What a word switches on, or `off`.
+fn switch(name: &str, rest: &str, on: &str) -> Result<bool, CommandError> {
+    match rest {
+        "off" => Ok(false),
+        _ if rest == on => Ok(true),
+        _ => Err(CommandError::Wrong(format!("`{name}` takes `{on}` or `off`"))),
     }
 }
 
@@ -310,6 +319,7 @@ impl fmt::Display for Command {
             Command::MFunction(m) => write!(f, "m {m}"),
             Command::Speed(rpm) => write!(f, "s {rpm}"),
             Command::Datum(axis, value) => write!(f, "datum {axis} {value}"),
+            Command::Probe(command) => write!(f, "probe {command}"),
             Command::ToolLife(tool, minutes) => write!(f, "tool-life {tool} {minutes}"),
             Command::JogIncrement(mm) => write!(f, "jog {mm}"),
             Command::Output(Some(feed)) => write!(f, "output step {feed}"),
@@ -349,6 +359,7 @@ mod tests {
             "m 3",
             "s 1500.5",
             "datum Z -0.25",
+            "probe radius 25",
             "jog 0.5",
             "output step 250",
             "output ramp",

@@ -12,6 +12,13 @@ use crate::setup::Remembered;
 
 /// A datum that moves less than this stays where it is, mm: rounding.
 const NO_WAY_MM: f64 = 1e-9;
+/// A datum that is set: a place from machine zero becomes a value, mm or degrees.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NewDatum {
+    pub axis: Axis,
+    pub at: f64,
+    pub value: f64,
+}
 
 /// Datums, traverse range and datum correction.
 #[derive(Clone, Debug)]
@@ -86,8 +93,18 @@ impl Datums {
         } else {
             0.0
         };
+        let at = unit.servo.actual_mm() - length;
+        self.set_at(NewDatum { axis, at, value }, axes)
+    }
+
+    /// A place from machine zero becomes a value. `false` for an axis for which that is inhibited.
+    pub fn set_at(&mut self, NewDatum { axis, at, value }: NewDatum, axes: &OwnAxes) -> bool {
+        let unit = axes.at(axis);
+        let Some(unit) = unit.filter(|unit| !unit.parameters.travel.datum_inhibited) else {
+            return false;
+        };
         let correction = self.correction.get(unit.index).copied().unwrap_or(0.0);
-        let datum = unit.servo.actual_mm() - length - value + correction;
+        let datum = at - value + correction;
         // An axis with a Hirth coupling stands on its grid only: so does its datum [000:8564].
         let grid = unit.parameters.travel.hirth_deg;
         let datum = grid.map_or(datum, |grid| (datum / grid).round() * grid);

@@ -8,7 +8,7 @@ use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
-use crate::command::Mode;
+use crate::command::{Command, Mode};
 use crate::kinematics::Chain;
 use crate::leaning::Leaning;
 use crate::manual::Manual;
@@ -199,13 +199,17 @@ impl Desk {
         }
     }
 
-    /// M and S are entered in Manual and Handwheel.
-    pub fn enter(&mut self, m: Option<u16>, s: Option<f64>) -> bool {
-        let possible = self.is_by_hand();
-        if possible {
-            self.manual.enter(m, s);
+    /// What is entered for moving by hand: M and S in Manual and Handwheel, jog increment, handwheel.
+    pub fn enter(&mut self, command: &Command, axes: &OwnAxes) -> bool {
+        let by_hand = self.is_by_hand();
+        match command {
+            Command::MFunction(m) if by_hand => self.manual.enter(Some(*m), None),
+            Command::Speed(rpm) if by_hand => self.manual.enter(None, Some(*rpm)),
+            Command::JogIncrement(mm) => self.manual.increment = *mm,
+            Command::Handwheel(axis, factor) => return self.choose_handwheel(*axis, *factor, axes),
+            _ => return false,
         }
-        possible
+        true
     }
 
     /// Operating mode and overrides before a PLC scan.

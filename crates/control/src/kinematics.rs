@@ -32,11 +32,6 @@ impl Offsets {
         self.datum[axis] + length
     }
 
-    /// Length, mm, and axis of the tool.
-    pub(crate) fn tool(&self) -> (f64, Axis) {
-        (self.tool_length, self.tool_axis)
-    }
-
     /// Takes the tool of a call.
     pub(crate) fn take(&mut self, function: &Function) {
         if let Function::Tool(call) = function {

@@ -16,6 +16,7 @@ use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::emergency::{Circuit, EmergencyStop};
 use crate::handwheel;
+use crate::life;
 use crate::magazine::Magazine;
 use crate::message::{Message, Messages};
 use crate::now::Facts;
@@ -138,6 +139,19 @@ impl Wiring {
 }
 
 impl MachineSide {
+    /// The current life of a tool, minutes; `false` for one that is not in the table.
+    pub fn set_tool_life(&mut self, tool: u32, minutes: f64) -> bool {
+        self.unsaved = true;
+        life::set(&mut self.magazine, &mut self.link.files, tool, minutes)
+    }
+
+    /// The answer to the dialogue of the offset adjustment; `false` when it is not open.
+    pub fn adjust_offsets(&mut self, adjust: bool) -> bool {
+        let done = self.offsets.answer(adjust, &mut self.axes);
+        self.unsaved |= done;
+        done
+    }
+
     /// A machine at power-on.
     pub fn new(parameters: &ParameterList, parts: MachineParts) -> MachineSide {
         let MachineParts {

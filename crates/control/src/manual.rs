@@ -85,12 +85,6 @@ impl Manual {
         self.s = s.or(self.s);
     }
 
-    /// The jog increment, mm.
-    pub fn set_increment(&mut self, mm: f64) -> bool {
-        self.increment = mm;
-        true
-    }
-
     /// OUTPUT of the oscilloscope: what direction keys put out in MANUAL OPERATION. A step needs an axis with digital
     /// speed controller.
     pub fn set_step(&mut self, feed_mm_min: Option<f64>, axes: &OwnAxes) -> bool {

@@ -3,6 +3,7 @@
 use bahn_exchange::signal;
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
+use bahn_parameters::machining::ProbeSettings;
 use bahn_path::{Axis, Barrier, BlockRef, Position, ToolMeasuring, Touch};
 use bahn_servo::Measured;
 
@@ -29,7 +30,10 @@ pub(crate) struct Stylus {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probing {
     phase: Phase,
-    block: BlockRef,
+    /// The block that probes; `None` for the operator, who finds the axes where he started.
+    block: Option<BlockRef>,
+    /// Feed back to the start, mm/min.
+    home_mm_min: Option<f64>,
     /// The software limit that lies within the way: it ends there [000:3522].
     limit: Option<(Axis, Direction)>,
     /// Start of the way and its farthest end, path coordinates.
@@ -54,6 +58,8 @@ enum Phase {
     Brake,
     /// Back to where the stylus was deflected.
     Return,
+    /// Back to the start.
+    Home,
 }
 
 /// What a probing comes to in a cycle.
@@ -66,7 +72,7 @@ pub(crate) enum Probed {
     /// A tool was measured: Q parameters with their values.
     Measured(Vec<(u16, f64)>),
     /// It is refused, with a message at its block.
-    Refused(Message, BlockRef),
+    Refused(Message, Option<BlockRef>),
 }
 
 impl Probed {
@@ -75,8 +81,9 @@ impl Probed {
         let (Barrier::Probe { block, .. }
         | Barrier::Stop { block }
         | Barrier::Acknowledge { block }
+        | Barrier::Scan { block }
         | Barrier::MeasureTool(ToolMeasuring { block, .. })) = barrier;
-        Probed::Refused(Message::Plain(MessageId::ProbeSystemNotReady), *block)
+        Probed::Refused(Message::Plain(MessageId::ProbeSystemNotReady), Some(*block))
     }
 }
 
@@ -134,7 +141,7 @@ impl Probe {
         self.block = Some(order.block);
         match self.tool.begin(order, site) {
             Ok(()) => Probed::Moves,
-            Err(message) => Probed::Refused(message, order.block),
+            Err(message) => Probed::Refused(message, Some(order.block)),
         }
     }
 
@@ -145,7 +152,21 @@ impl Probe {
 
     /// The path came to a probe block: asks the PLC to enable it [000:7682-7690].
     pub fn begin(&mut self, block: BlockRef, ends: [Position; 2], feed_mm_min: f64, site: &mut Site) {
-        let [from, to] = ends;
+        self.enable(Some(block), ends, [feed_mm_min, 0.0], site);
+    }
+
+    /// The operator probes: behind the touch the axes go back to the start in rapid traverse [003:1217-1224].
+    pub fn begin_by_hand(&mut self, ends: [Position; 2], settings: &ProbeSettings, site: &mut Site) {
+        self.enable(None, ends, [settings.feed_mm_min, settings.rapid_mm_min], site);
+    }
+
+    /// It moves no axis now.
+    pub fn stands(&self) -> bool {
+        self.probing.is_none_or(|probing| probing.way.speed_mm_s() == 0.0)
+    }
+
+    fn enable(&mut self, block: Option<BlockRef>, ends: [Position; 2], feeds: [f64; 2], site: &mut Site) {
+        let ([from, to], [feed_mm_min, home_mm_min]) = (ends, feeds);
         let (to, limit) = within_range(&from, to, &site.axes, site.chain);
         let way = |axis: Axis| to[axis] - from[axis];
         let moving = |axis: &Axis| way(*axis).abs() > 0.0;
@@ -159,6 +180,7 @@ impl Probe {
         self.probing = Some(Probing {
             phase: Phase::Enable,
             block,
+            home_mm_min: block.is_none().then_some(home_mm_min),
             limit,
             from,
             to,
@@ -230,6 +252,11 @@ impl Probe {
             },
             Phase::Brake => Aim::Feed(0.0),
             Phase::Return => Aim::Position(probing.touch.unwrap_or(0.0)),
+            Phase::Home => Aim::Position(0.0),
+        };
+        let feed = match probing.home_mm_min.filter(|_| probing.phase == Phase::Home) {
+            Some(rapid) => (rapid * percent / 100.0).min(site.now.rapid_limit_mm_min),
+            None => feed,
         };
         let feed = if aim == Aim::Feed(0.0) {
             probing.feed_mm_min
@@ -245,7 +272,12 @@ impl Probe {
                 probing.phase = Phase::Return;
                 None
             }
+            (Phase::Return, Some(touch)) if probing.way.is_at(touch) && probing.home_mm_min.is_some() => {
+                probing.phase = Phase::Home;
+                None
+            }
             (Phase::Return, Some(touch)) if probing.way.is_at(touch) => Some(Some(position)),
+            (Phase::Home, Some(touch)) if probing.way.is_at(0.0) => Some(Some(along(probing, touch))),
             (Phase::Search, None) if probing.way.is_at(probing.length) => Some(None),
             _ => None,
         };
@@ -273,7 +305,7 @@ impl Probe {
     fn measures(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Probed {
         match (self.tool.moves(running, site, measured), self.block) {
             (Measuring::Over(values), _) => Probed::Measured(values.into_iter().flatten().collect()),
-            (Measuring::Refused(message), Some(block)) => Probed::Refused(message, block),
+            (Measuring::Refused(message), block @ Some(_)) => Probed::Refused(message, block),
             _ => Probed::Moves,
         }
     }
@@ -287,12 +319,21 @@ impl Probe {
         let Some(probing) = &mut self.probing else {
             return Probed::Moves;
         };
+        if measured.probe.battery_low {
+            // Only an infrared probe has one [003:8043].
+            let message = Message::Plain(MessageId::ExchangeTouchProbeBattery);
+            site.messages.show(message, probing.block);
+        }
         if !ready {
             let message = Message::Plain(MessageId::ProbeSystemNotReady);
             return Probed::Refused(message, probing.block);
         }
         let deflected = measured.probe.deflected;
         site.exchange.nc_put(signal::STYLUS_ALREADY_DEFLECTED, deflected);
+        if deflected && probing.block.is_none() {
+            let message = Message::Plain(MessageId::StylusAlreadyInContact);
+            return Probed::Refused(message, None);
+        }
         if deflected {
             let from = probing.from;
             return self.finish(Some(from), site);

@@ -554,6 +554,7 @@ impl ProgramRun {
                 let probed = self.probe.measure(order, site);
                 self.take_probed(probed, site);
             }
+            Some(Stop::Barrier(Barrier::Scan { .. })) => self.answer = Some(LiveData::default()),
             Some(Stop::End) => self.end(site),
             Some(Stop::Error(fault)) => {
                 self.show_fault(fault, site);
@@ -573,20 +574,20 @@ impl ProgramRun {
                 self.track.forget_position();
                 self.answer = Some(LiveData {
                     touch,
-                    q_values: Vec::new(),
+                    ..LiveData::default()
                 });
             }
             Probed::Measured(q_values) => {
                 self.track.path.set_position(site.here());
                 self.track.forget_position();
                 self.answer = Some(LiveData {
-                    touch: None,
                     q_values,
+                    ..LiveData::default()
                 });
             }
             Probed::Refused(message, block) => {
                 let sequence = self.source.interpreter().map_or(0, Interpreter::blocks_executed);
-                site.messages.show(message, Some(block));
+                site.messages.show(message, block);
                 self.abort(Resume::Block(sequence), site);
             }
         }

@@ -114,6 +114,8 @@ pub struct Remembered {
     pub q: Vec<(u16, f64)>,
     /// Offsets of the axes as adjusted with code number 75 368, V.
     pub offsets_volts: [f64; 5],
+    /// The touch probe: what was calibrated, and the basic rotation.
+    pub probe: ProbeMemory,
     /// Name of the list of machine parameters that module 9033 has selected.
     pub parameter_list: Option<String>,
     /// Name of the selected program.
@@ -148,6 +150,26 @@ pub struct ToolProbeCalibration {
     pub found: [f64; 4],
     /// What the list said then, MP6580 and MP6531: when it says something else, it counts again.
     pub list: [f64; 4],
+}
+
+/// What the TOUCH PROBE menu keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ProbeMemory {
+    /// `None` for a probe that was never calibrated.
+    pub calibration: Option<Calibration>,
+    /// Basic rotation of the workpiece in the working plane, degrees [003:1291].
+    pub basic_rotation_deg: f64,
+}
+
+/// The effective size of the touch probe [003:1246-1280].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Calibration {
+    /// Effective length, mm.
+    pub length_mm: f64,
+    /// Effective radius of the ball, mm.
+    pub radius_mm: f64,
+    /// How far the ball stands beside the spindle in both axes of the working plane, mm [000:7654].
+    pub offset_mm: [f64; 2],
 }
 
 /// A position that is 0 by default.

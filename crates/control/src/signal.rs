@@ -43,6 +43,23 @@ pub enum AxisSignal {
     Ref,
     /// `distance`: distance to go in the block, mm or degrees.
     Distance,
+    /// `probed`: the coordinate that the TOUCH PROBE menu shows as DATUM, mm.
+    Probed,
+}
+
+/// What of the touch probe is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProbeSignal {
+    /// `probe.length`: calibrated effective length, mm.
+    Length,
+    /// `probe.radius`: calibrated effective radius of the ball, mm.
+    Radius,
+    /// `probe.angle`: basic rotation, degrees.
+    Angle,
+    /// `probe.touches`: touches of the function that is chosen.
+    Touches,
+    /// `probe.circle`: radius PR of the circle that was probed, mm.
+    Circle,
 }
 
 /// A signal: `X.lag`, `path.speed`, `S.rpm`, `S.volts`, `M2045`, `W260`.
@@ -76,6 +93,8 @@ pub enum Signal {
     Run,
     /// `tool`: number of the tool in the spindle.
     Tool,
+    /// `probe.length`, `probe.angle` ..: of the touch probe and its menu.
+    Probe(ProbeSignal),
     /// `Q5`: a Q parameter at the block that is executed, not as far as blocks are read ahead.
     Q(u16),
     /// `output.1` to `output.5`, `output.S`, `output.7` ..: the voltage at an analogue output, V.
@@ -109,8 +128,9 @@ pub fn split_channel(text: &str) -> (Option<usize>, &str) {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no signal: there are X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, X.displayed, X.ref, \
-     X.distance, X.n-actual, X.n-nominal, X.n-int for each axis, path.speed, path.block, path.distance, S.rpm, S.volts, S.angle, output.1 to output.5, \
-     output.S, mode, run, tool, Q5, X41/34, X42/4, and operands of the PLC like M2045, I4, O2, W260, D356"
+     X.distance, X.probed, X.n-actual, X.n-nominal, X.n-int for each axis, path.speed, path.block, path.distance, S.rpm, \
+     S.volts, S.angle, output.1 to output.5, output.S, mode, run, tool, probe.length, probe.radius, probe.angle, \
+     probe.touches, probe.circle, Q5, X41/34, X42/4, and operands of the PLC like M2045, I4, O2, W260, D356"
 )]
 pub struct SignalError(String);
 
@@ -121,7 +141,7 @@ impl SignalError {
     }
 }
 
-const AXIS_SIGNALS: [(&str, AxisSignal); 12] = [
+const AXIS_SIGNALS: [(&str, AxisSignal); 13] = [
     ("actual", AxisSignal::Actual),
     ("nominal", AxisSignal::Nominal),
     ("lag", AxisSignal::Lag),
@@ -134,10 +154,11 @@ const AXIS_SIGNALS: [(&str, AxisSignal); 12] = [
     ("n-actual", AxisSignal::MotorSpeed),
     ("n-nominal", AxisSignal::NominalMotorSpeed),
     ("n-int", AxisSignal::SpeedDifference),
+    ("probed", AxisSignal::Probed),
 ];
 
 /// Signals with a name of their own.
-const NAMED: [(&str, Signal); 11] = [
+const NAMED: [(&str, Signal); 16] = [
     ("path.speed", Signal::PathSpeed),
     ("path.block", Signal::Block),
     ("path.distance", Signal::PathDistance),
@@ -147,6 +168,11 @@ const NAMED: [(&str, Signal); 11] = [
     ("mode", Signal::Mode),
     ("run", Signal::Run),
     ("tool", Signal::Tool),
+    ("probe.length", Signal::Probe(ProbeSignal::Length)),
+    ("probe.radius", Signal::Probe(ProbeSignal::Radius)),
+    ("probe.angle", Signal::Probe(ProbeSignal::Angle)),
+    ("probe.touches", Signal::Probe(ProbeSignal::Touches)),
+    ("probe.circle", Signal::Probe(ProbeSignal::Circle)),
     ("X41/34", Signal::ReadyOutput),
     ("X42/4", Signal::ReadyInput),
 ];
@@ -233,7 +259,8 @@ impl Signal {
             Signal::Axis(_, AxisSignal::Volts) | Signal::SpindleVolts | Signal::Output(_) => "V",
             Signal::Axis(..) | Signal::PathDistance => "mm",
             Signal::SpindleRpm => "rpm",
-            Signal::SpindleAngle => "degrees",
+            Signal::SpindleAngle | Signal::Probe(ProbeSignal::Angle) => "degrees",
+            Signal::Probe(ProbeSignal::Length | ProbeSignal::Radius | ProbeSignal::Circle) => "mm",
             _ => "",
         }
     }
@@ -271,6 +298,7 @@ impl Signal {
             },
             Signal::Tool => channel.tools.number.into(),
             Signal::Q(number) => run.q_value(*number),
+            Signal::Probe(signal) => signal.value(channel),
             Signal::Output(number) => {
                 let command = seam.commands.axes.get(*number);
                 command.map_or(0.0, |command| command.volts)
@@ -279,6 +307,21 @@ impl Signal {
             Signal::ReadyInput => bit(seam.measured.control_ready),
             Signal::Bit(operand) => bit(plc.bit(*operand)),
             Signal::Number(number) => plc.number(*number).into(),
+        }
+    }
+}
+
+impl ProbeSignal {
+    fn value(self, channel: &Channel) -> f64 {
+        let touch = &channel.touch;
+        let calibration = touch.memory.calibration.unwrap_or_default();
+        let shown = || touch.shown(&channel.chain().offsets);
+        match self {
+            ProbeSignal::Length => calibration.length_mm,
+            ProbeSignal::Radius => calibration.radius_mm,
+            ProbeSignal::Angle => touch.memory.basic_rotation_deg,
+            ProbeSignal::Touches => shown().map_or(0.0, |shown| shown.touches as f64),
+            ProbeSignal::Circle => shown().and_then(|shown| shown.radius_mm).unwrap_or(0.0),
         }
     }
 }
@@ -312,6 +355,10 @@ impl AxisSignal {
                 unit.shown(actual[unit.axis])
             }
             AxisSignal::Ref => unit.shown(unit.servo.actual_mm()),
+            AxisSignal::Probed => {
+                let shown = channel.touch.shown(&channel.chain().offsets);
+                shown.and_then(|shown| shown.datum.get(unit.axis)).unwrap_or(0.0)
+            }
             AxisSignal::Distance => channel.run.distance_to_go(unit, channel.chain()),
         }
     }
@@ -328,6 +375,8 @@ mod tests {
             "C.ref",
             "Z.displayed",
             "Y.distance",
+            "Z.probed",
+            "probe.angle",
             "path.distance",
             "S.angle",
             "mode",

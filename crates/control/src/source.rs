@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bahn_exchange::{Bit, signal};
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
 use bahn_parameters::own_functions::OwnFunctions;
-use bahn_parameters::{ControlModel, InchFeed, ParameterList};
+use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
 use bahn_path::{Axis, Position};
 use bahn_program::Program;
 use bahn_servo::Rotation;
@@ -15,6 +15,7 @@ use crate::axes::OwnAxes;
 use crate::beside::Loan;
 use crate::feeder::Feeder;
 use crate::kinematics::Chain;
+use crate::manual_probing::ManualProbing;
 use crate::plc_link::PlcLink;
 use crate::programs::Programs;
 use crate::setup::Checking;
@@ -27,6 +28,8 @@ const BLOCKS_WITHOUT_MOTION: u64 = 100_000;
 /// What programs find of the machine: machine parameters, texts and datum tables.
 pub(crate) struct Basis<'a> {
     pub list: &'a ParameterList,
+    /// What was calibrated and measured by hand.
+    pub touch: ManualProbing,
     pub link: &'a PlcLink,
 }
 
@@ -239,6 +242,11 @@ impl Source {
         self.mdi_over
     }
 
+    /// Why nothing is probed by hand: a transformation stays in force behind the end of the program.
+    pub fn bars_probing(&self) -> Option<MessageId> {
+        self.status.bars_probing()
+    }
+
     /// The program that MDI has set aside is back, once the blocks of MDI have run.
     pub fn take_back(&mut self) {
         if std::mem::take(&mut self.mdi_over)
@@ -334,7 +342,7 @@ impl Source {
 
     /// A feeder of a program with what is in force before it.
     pub fn feeder_from(&self, program: Arc<Program>, status: Status, site: &Site, basis: &Basis) -> Feeder {
-        let mut rules = Rules::of(basis.list);
+        let mut rules = basis.touch.calibrated(Rules::of(basis.list));
         rules.machine_zero = machine_zero(&site.axes, site.chain);
         let settings = Settings {
             model: self.reading.model,
@@ -350,6 +358,7 @@ impl Source {
             start: site.here(),
             tool_length_mm: Some(site.chain.offsets.tool_length),
             status,
+            basic_rotation: basis.touch.basic_rotation(site.chain.offsets.tool_axis),
             machine: true,
             max_blocks_without_motion: BLOCKS_WITHOUT_MOTION,
             inch_feed: self.reading.inch_feed,
@@ -374,6 +383,16 @@ fn inhibited_oem_cycles(site: &Site) -> u32 {
         .filter_map(|cycle| Some((cycle, Bit::new(first.area(), first.number() + cycle)?)))
         .filter(|(_, bit)| site.exchange.nc().bit(*bit))
         .fold(0, |bits, (cycle, _)| bits | 1 << cycle)
+}
+
+/// Blocks that are read from now on find other tools, or other datums in the tables.
+pub(crate) fn renew(interpreter: &mut Interpreter, [tools, datums]: [bool; 2], site: &Site, basis: &Basis) {
+    if tools {
+        interpreter.set_tools(site.magazine.shapes(), site.magazine.barred());
+    }
+    if datums {
+        interpreter.set_datum_table(basis.link.datums(basis.list));
+    }
 }
 
 /// Machine zero in workpiece coordinates; unknown for axes that have not passed their reference mark

@@ -9,6 +9,7 @@ use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCo
 
 use crate::handshake::Transfer;
 use crate::panel::PlcFaultCode;
+use crate::plc_link::Requests;
 use crate::voltage::{Along, VoltageOutput};
 
 /// Range of the analogue outputs, V.
@@ -284,6 +285,16 @@ impl SpindleUnit {
             .orient(orientation.angle + added, orientation.speed, way);
         self.orienting = true;
         exchange.nc_set(signal::ORIENT_SPINDLE, true);
+    }
+
+    /// What modules ask of it.
+    pub fn take_requests(&mut self, requests: &mut Requests, exchange: &mut Exchange) {
+        if let Some(orientation) = requests.orientation.take() {
+            self.orient(orientation, exchange);
+        }
+        if let Some(volts) = requests.spindle_volts.take() {
+            self.set_plc_volts(volts);
+        }
     }
 
     /// Opens the loop and takes the voltage away: EMERGENCY STOP, M2830.

@@ -107,7 +107,7 @@ impl TestRun {
                 // Every probing touches where the block says it will.
                 Step::Barrier(Barrier::Probe { to, .. }) => self.feeder.resume(LiveData {
                     touch: Some(Touch { position: to }),
-                    q_values: Vec::new(),
+                    ..LiveData::default()
                 }),
                 Step::Barrier(_) => self.feeder.resume(LiveData::default()),
                 Step::Starved => return,

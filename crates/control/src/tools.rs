@@ -215,9 +215,9 @@ impl Tools {
         }
     }
 
-    /// Length and axis of the tool in the spindle while another one is called.
-    pub fn held_geometry(&self) -> Option<(f64, Axis)> {
-        self.held
+    /// Length and axis of the tool in the spindle; while another one is called not those in force.
+    pub fn remembered_geometry(&self, in_force: &Offsets) -> (f64, Axis) {
+        self.held.unwrap_or((in_force.tool_length, in_force.tool_axis))
     }
 
     /// The data of the tool are cancelled: it counts without length.

@@ -126,7 +126,8 @@ fn a_low_battery_is_told_when_it_is_probed() {
     rig.until(5.0, "the touch", |rig| rig.bit("M2025"));
     assert!(rig.bit("M2027"));
     rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
-    assert_eq!(rig.messages(), [""; 0]);
+    assert_eq!(rig.messages(), ["EXCHANGE TOUCH PROBE BATTERY"]);
+    rig.command("ce");
     rig.event("repair probe");
     rig.seconds(1.0);
     assert!(rig.bit("M2027"), "nothing probes");

@@ -165,7 +165,7 @@ impl Observable {
                 | Signal::Output(_) => 4,
                 Signal::Axis(_, signal) if signal.is_speed() => 3,
                 Signal::PathSpeed | Signal::SpindleRpm => 3,
-                Signal::Axis(..) | Signal::PathDistance => 5,
+                Signal::Axis(..) | Signal::PathDistance | Signal::Probe(_) => 5,
                 Signal::Q(_) => 6,
                 _ => 0,
             },

@@ -1,7 +1,7 @@
 //! Cycle definitions as they are read, block by block.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, BlockRef};
+use bahn_path::{Axis, BlockRef, ScanJob};
 use bahn_program::{
     CycleBlock, CycleFunction, CycleWord, Direction, Feed, Quantity, Value, cycle_parameters,
 };
@@ -52,6 +52,15 @@ pub(crate) struct RunningOem {
     /// The cycle for the call that was defined before it (inferred: standard cycles within it are its own).
     pub machining: Collector,
     pub after_each_block: bool,
+}
+
+/// Digitizing: the cycles that are being read, and the scan that is on its way.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Digitizing {
+    pub range: Collector,
+    pub pattern: Collector,
+    /// What is scanned, and the name of its program.
+    pub scan: Option<(ScanJob, Box<str>)>,
 }
 
 /// Collects the blocks n.0, n.1, ... of a definition.

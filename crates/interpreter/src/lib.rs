@@ -42,6 +42,7 @@ mod context;
 mod contour;
 mod cycles;
 mod definition;
+mod digitize;
 mod error;
 mod execute;
 mod flow;
@@ -77,7 +78,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Barrier, BlockRef, ElementSource, LiveData, Position, Step};
+use bahn_path::{Axis, Barrier, BlockRef, ElementSource, LiveData, Position, ScanJob, Step};
 use bahn_program::{Block, MotionKind, Operation, Program};
 
 pub use checkpoints::Checkpoint;
@@ -86,8 +87,8 @@ pub use error::{Cause, Message, ProgramError, Warning, WarningKind};
 pub use q_parameters::Q_VALUE_MAX;
 pub use rehearsal::{Rehearsal, rehearse};
 pub use settings::{
-    ContourPocketRules, DatumTable, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings, TappingRules,
-    ToolState, ToolTable, tool_key,
+    BasicRotation, ContourPocketRules, DatumTable, MFunctionRules, MachineTexts, ProbeRules, Rules, Settings,
+    TappingRules, ToolState, ToolTable, tool_key,
 };
 pub use status::Status;
 pub use work::{Done, Work};
@@ -210,6 +211,12 @@ impl Interpreter {
     /// Executed blocks; BEGIN, END, comments and skipped blocks do not count.
     pub fn blocks_executed(&self) -> u64 {
         self.run.pen.sequence
+    }
+
+    /// What is to be scanned, and the name of the program that takes it, while the interpreter waits for it.
+    pub fn scan(&self) -> Option<(&ScanJob, &str)> {
+        let scan = self.run.modal.digitizing.scan.as_ref();
+        scan.map(|(job, name)| (job, &**name))
     }
 
     /// What is in force behind the last block that was read.
@@ -625,9 +632,12 @@ impl ElementSource for Interpreter {
         for &(number, value) in &live.q_values {
             self.run.numbers.q.preassign(number, value);
         }
-        if let Barrier::Probe { block, .. } = barrier
-            && let Err(fault) = self.run.finish_probing(&live, &self.settings)
-        {
+        let (block, over) = match barrier {
+            Barrier::Probe { block, .. } => (block, self.run.finish_probing(&live, &self.settings)),
+            Barrier::Scan { block, .. } => (block, self.run.finish_scan(live.scan, &self.settings)),
+            _ => return,
+        };
+        if let Err(fault) = over {
             self.fail(fault, block);
         }
     }

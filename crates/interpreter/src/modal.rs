@@ -5,7 +5,7 @@ use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position};
 use bahn_program::Compensation;
 
 use crate::contour::{CornerArcs, FeedLaw, Side};
-use crate::definition::CycleData;
+use crate::definition::{CycleData, Digitizing};
 use crate::error::{Cause, Fault};
 use crate::q_parameters::{QTable, preassigned};
 use crate::status::{Spindle, Status, Tilting, Tool};
@@ -69,6 +69,8 @@ pub(crate) struct Modal {
     pub probe: Option<ReferencePlane>,
     /// Blocks of TCH PROBE 30, 31 or 32 that were read.
     pub measuring: Option<MeasuringBlocks>,
+    /// TCH PROBE 5 to 7.
+    pub digitizing: Digitizing,
 }
 
 /// First block of TCH PROBE 0: result parameter, axis and direction [003:4414-4428].
@@ -136,6 +138,7 @@ impl Modal {
             tilting: Tilting::default(),
             probe: None,
             measuring: None,
+            digitizing: Digitizing::default(),
         }
     }
 

@@ -277,7 +277,7 @@ fn to_workpiece(modal: &Modal, p: &Programmed) -> Result<(AxisSet, Position, Cur
     let mut axes = p.axes;
     let mut to = p.to;
     let turned = AxisSet::EMPTY.with(frame.plane.first).with(frame.plane.second);
-    if frame.rotation_deg != 0.0 && !axes.intersection(turned).is_empty() {
+    if frame.turns() && !axes.intersection(turned).is_empty() {
         axes = axes.union(turned);
         for axis in turned.iter() {
             to[axis] = known(to[axis]);
@@ -298,7 +298,7 @@ fn to_workpiece(modal: &Modal, p: &Programmed) -> Result<(AxisSet, Position, Cur
 fn arc_to_workpiece(frame: &Frame, arc: &Arc) -> Result<Arc, Fault> {
     let plane = arc.plane;
     let same_plane = frame.plane.contains(plane.first) && frame.plane.contains(plane.second);
-    if frame.rotation_deg != 0.0 && !same_plane {
+    if frame.turns() && !same_plane {
         let detail = "an arc outside the working plane cannot be rotated";
         return Err(Fault::new(MessageId::PlaneWronglyDefined, detail));
     }

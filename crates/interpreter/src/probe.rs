@@ -7,6 +7,7 @@ use bahn_program::{CycleBlock, Direction};
 use crate::availability::Feature;
 use crate::context::Context;
 use crate::definition::{Resolved, resolve};
+use crate::digitize::digitize;
 use crate::error::Fault;
 use crate::modal::{Modal, ReferencePlane};
 use crate::numbers::{Numbers, known};
@@ -30,6 +31,9 @@ pub(crate) struct Probing {
 pub(crate) fn probe(c: &mut Context<'_>, block: &CycleBlock) -> Result<Option<Probing>, Fault> {
     if !c.executes(Feature::Probe(block.number))? {
         return Ok(None);
+    }
+    if block.number != 0 {
+        return digitize(c, block).map(|()| None);
     }
     let words = resolve(block, c.numbers, c.settings)?;
     match block.sub {
@@ -161,6 +165,21 @@ fn approach_probe_point(modal: &Modal, pen: &mut Pen, before: &Position, rules: 
     pen.since_motion = 0;
 }
 
+/// How far the ball stands beside the spindle in an axis of the plane, as it is programmed.
+fn beside(modal: &Modal, axis: Axis, rules: &ProbeRules) -> f64 {
+    let plane = modal.plane;
+    let place = |of: [f64; 2]| {
+        let mut position = modal.actual;
+        let here = plane.point(&modal.actual);
+        plane.set(&mut position, [here[0] + of[0], here[1] + of[1]]);
+        modal.frame.to_programmed(&position)[axis]
+    };
+    match rules.offset_mm {
+        [0.0, 0.0] => 0.0,
+        offset => place(offset) - place([0.0; 2]),
+    }
+}
+
 /// Takes the touch: the measured coordinate goes to the Q parameter, the position to Q115-Q118.
 pub(crate) fn finish_probing(c: &mut Context<'_>, probing: &Probing, live: &LiveData) -> Result<(), Fault> {
     let Some(touch) = live.touch else {
@@ -176,7 +195,7 @@ pub(crate) fn finish_probing(c: &mut Context<'_>, probing: &Probing, live: &Live
     let surface = if along_tool_axis {
         0.0
     } else {
-        probing.direction * probing.radius
+        probing.direction * probing.radius + beside(c.modal, probing.axis, &c.settings.rules.probe)
     };
     c.numbers
         .q

@@ -1,12 +1,13 @@
 //! The state of a run: its parts.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Blank, LiveData};
+use bahn_path::{Axis, Blank, LiveData, Scanned};
 use bahn_program::{Compensation, InputSteps, Unit, Value};
 
 use crate::context::Context;
 use crate::cycles::{self, ContourJob, Halt, Watch};
 use crate::definition::RunningOem;
+use crate::digitize;
 use crate::error::{Fault, WarningKind};
 use crate::flow;
 use crate::modal::Modal;
@@ -50,6 +51,11 @@ impl Run {
             oem: Vec::new(),
         };
         run.take_status(&settings.status, settings);
+        let basic = settings.basic_rotation;
+        run.modal.frame.basic_rotation_deg = basic.angle_deg;
+        if basic.angle_deg != 0.0 {
+            run.modal.take_plane(basic.plane);
+        }
         run
     }
 
@@ -166,6 +172,11 @@ impl Run {
     /// See [`Tools::come_back`].
     pub fn come_back(&mut self) {
         self.tools.come_back(&mut self.modal, &mut self.pen);
+    }
+
+    /// See [`digitize::finish_scan`].
+    pub fn finish_scan(&mut self, scanned: Option<Scanned>, settings: &Settings) -> Result<(), Fault> {
+        digitize::finish_scan(&mut self.context(settings), scanned)
     }
 
     /// See [`probe::finish_probing`].

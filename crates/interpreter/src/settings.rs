@@ -8,7 +8,7 @@ use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::spindle::{Characteristics, FreeOutput, SpindleParameters};
 use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
-use bahn_path::{Axis, Function, Position, Swivels, TechnologyFunction, ToolShape};
+use bahn_path::{Axis, Function, Plane, Position, ScanRules, Swivels, TechnologyFunction, ToolShape};
 
 use crate::status::Status;
 
@@ -42,6 +42,8 @@ pub struct Settings {
     pub tool_length_mm: Option<f64>,
     /// What the run before has left in force.
     pub status: Status,
+    /// Basic rotation of the workpiece about its datum [003:1282-1304].
+    pub basic_rotation: BasicRotation,
     /// Where the tip stands after the change to another tool, workpiece coordinates, mm; axes that are not
     /// given stay where they are, the tool axis at least on the upper face of the blank. On a machine the
     /// axes stand where they stand.
@@ -78,6 +80,7 @@ impl Default for Settings {
             start: Position::UNKNOWN,
             tool_length_mm: None,
             status: Status::default(),
+            basic_rotation: BasicRotation::default(),
             tool_change: Position::UNKNOWN,
             skip_blocks: false,
             inch_feed: None,
@@ -133,6 +136,24 @@ impl MachineTexts {
     }
 }
 
+/// How a workpiece lies that is not aligned: the control turns the programs with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BasicRotation {
+    /// Degrees, counter-clockwise positive; 0 for none.
+    pub angle_deg: f64,
+    /// The working plane in which it was measured.
+    pub plane: Plane,
+}
+
+impl Default for BasicRotation {
+    fn default() -> BasicRotation {
+        BasicRotation {
+            angle_deg: 0.0,
+            plane: Plane::XY,
+        }
+    }
+}
+
 /// Datums by their line, mm and degrees; axes without a position are not shifted.
 pub type DatumTable = BTreeMap<i32, Position>;
 
@@ -177,6 +198,10 @@ pub struct Rules {
     pub radial_acceleration_m_s2: f64,
     /// Touch probe.
     pub probe: ProbeRules,
+    /// Digitizing: MP6120 to MP6270.
+    pub scan: ScanRules,
+    /// MP6200 = 1: the probe measures and does not trigger.
+    pub measuring_probe: bool,
     /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
     pub speed_max_rpm: f64,
     /// MP7245: bit n inhibits cycle n [000:6655-6698].
@@ -243,6 +268,8 @@ impl Rules {
                 rapid_mm_min: probe.rapid_mm_min,
                 ..ProbeRules::default()
             },
+            scan: scan_rules(list),
+            measuring_probe: list.digitizing().measuring,
             speed_max_rpm: list.spindle_speed_max_rpm(),
             inhibited_cycles: (1..=31)
                 .filter(|cycle| list.cycle_inhibited(*cycle))
@@ -265,6 +292,23 @@ impl Rules {
     }
 }
 
+/// Digitizing; what the list leaves at 0 has the value with which optimizing begins (inferred) [000:7835-7839].
+fn scan_rules(list: &ParameterList) -> ScanRules {
+    let (probe, scan, initial) = (list.probe(), list.digitizing(), ScanRules::default());
+    let or = |value: f64, initial: f64| if value > 0.0 { value } else { initial };
+    ScanRules {
+        probing_mm_min: or(probe.feed_mm_min, initial.probing_mm_min),
+        rapid_mm_min: or(probe.rapid_mm_min, initial.rapid_mm_min),
+        oscillations_hz: or(scan.oscillations_hz, initial.oscillations_hz),
+        lubrication_mm: scan.lubrication_mm,
+        lubrication_min: scan.lubrication_min,
+        normal_mm_min: or(scan.normal_mm_min, initial.normal_mm_min),
+        deflection_mm: or(scan.deflection_mm, initial.deflection_mm),
+        m90: scan.m90,
+        step_mm: scan.step_mm,
+    }
+}
+
 impl Default for Rules {
     fn default() -> Self {
         Rules {
@@ -282,6 +326,8 @@ impl Default for Rules {
             acceleration_m_s2: [1.0; Axis::COUNT],
             radial_acceleration_m_s2: 1.0,
             probe: ProbeRules::default(),
+            scan: ScanRules::default(),
+            measuring_probe: false,
             speed_max_rpm: 99_999.0,
             inhibited_cycles: 0,
             voltages: None,
@@ -437,6 +483,9 @@ pub struct ProbeRules {
     pub radius_mm: f64,
     /// Calibrated effective length of the probe, mm.
     pub length_mm: f64,
+    /// Calibrated centre offset: the ball stands so far beside the spindle in the first and second axis of the
+    /// plane, mm [000:7654].
+    pub offset_mm: [f64; 2],
 }
 
 impl Default for ProbeRules {
@@ -448,6 +497,7 @@ impl Default for ProbeRules {
             rapid_mm_min: 2000.0,
             radius_mm: 2.0,
             length_mm: 0.0,
+            offset_mm: [0.0; 2],
         }
     }
 }

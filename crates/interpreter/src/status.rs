@@ -1,5 +1,6 @@
 //! Tool and spindle, and what of a run stays in force behind its end.
 
+use bahn_parameters::MessageId;
 use bahn_path::{Axis, Frame, Position, ToolShape};
 
 /// A tool in the spindle.
@@ -97,6 +98,20 @@ pub(crate) enum Way {
     WithinTurn,
 }
 
+/// The message of the transformation that must be reset before a surface is probed.
+pub(crate) fn bars_probing(frame: &Frame) -> Option<MessageId> {
+    let of_any = |is: fn(f64) -> bool| Axis::ALL.into_iter().any(|axis| is(frame.factor[axis]));
+    if of_any(|factor| factor < 0.0) {
+        Some(MessageId::MirroringNotPermitted)
+    } else if frame.rotation_deg != 0.0 {
+        Some(MessageId::RotationNotPermitted)
+    } else if of_any(|factor| factor.abs() != 1.0) || frame.axis_scaling.is_some() {
+        Some(MessageId::ScalingFactorNotAllowed)
+    } else {
+        None
+    }
+}
+
 /// What of a run stays in force behind its end until a machine cancels it: coordinate transformations, feed and
 /// the data of the tool [003:6199-6205] [000:6589-6601].
 #[derive(Clone, Debug, Default)]
@@ -163,6 +178,11 @@ impl Status {
 
     pub(crate) fn tool_data(&self) -> Option<Tool> {
         self.tool
+    }
+
+    /// Why nothing is probed by hand or digitized: a transformation is active [003:8053-8077].
+    pub fn bars_probing(&self) -> Option<MessageId> {
+        self.programmed.and_then(|(frame, _)| bars_probing(&frame))
     }
 
     /// Number of the tool whose data are in force.

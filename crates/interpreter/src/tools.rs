@@ -297,7 +297,7 @@ fn set_tool_axis(modal: &mut Modal, numbers: &mut Numbers, axis: Axis) -> Result
             "a rotary axis cannot be the tool axis",
         ));
     };
-    if plane != modal.plane && modal.frame.rotation_deg != 0.0 {
+    if plane != modal.plane && modal.frame.turns() {
         return Err(Fault::new(MessageId::PlaneWronglyDefined, "a rotation is active"));
     }
     modal.take_plane(plane);

@@ -66,7 +66,6 @@ const MOVES: &[&str] = &[
     "L X+5 FMAX M203 V5 TIME3",
     "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+45",
     "CYCL DEF 27.0 CYLINDER SURFACE\nCYCL DEF 27.1 Q1=-5\nCYCL CALL",
-    "TCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: 5007",
 ];
 
 /// What would move differently on the control is refused; passed over with a warning when that is wanted.

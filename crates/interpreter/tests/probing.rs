@@ -5,8 +5,7 @@
 mod support;
 
 use bahn_parameters::MessageId;
-use bahn_path::MeasuredPart;
-use bahn_path::{Axis, Barrier};
+use bahn_path::{Axis, Barrier, MeasuredPart, ScanPattern};
 use support::*;
 
 /// P17: the height of an island as the difference of two measured coordinates [003:4452-4487].
@@ -125,14 +124,40 @@ fn tool_data_while_probing() {
     assert_eq!(with(false), (1.5, 77.0));
 }
 
-/// Digitizing needs a probe on a machine: the test run refuses it at its block.
+/// A cycle that digitizes, over a range of 10 by 10 mm.
+const DIGITIZING: &str = "TCH PROBE 5.0 RANGE
+TCH PROBE 5.1 PGM NAME: 5007
+TCH PROBE 5.2 Z X+0 Y+0 Z-5
+TCH PROBE 5.3 X+10 Y+10 Z+2
+TCH PROBE 5.4 HEIGHT: +20
+TCH PROBE 6.0 MEANDER
+TCH PROBE 6.1 DIRECTN: Y
+TCH PROBE 6.2 TRAVEL: 0.5 L.SPAC: 1 P.P. INT: 0.5";
+
+/// The stylus goes to clearance height, above MIN, and the surface is scanned from there; a datum shift moves the range.
 #[test]
 fn digitizing() {
-    let run = Job::new(program(
-        "L X+1 FMAX\nTCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: 5007",
-    ))
-    .run();
-    assert_eq!(run.message(), Some((MessageId::BlockNotKnown, 2)));
+    let blocks = format!("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+3\nL X+1 Y+1 Z+30 FMAX\n{DIGITIZING}");
+    let run = Job::new(program(&blocks)).run();
+    run.assert_completed();
+    let [job] = run.scans.as_slice() else {
+        panic!("{:?}", run.scans)
+    };
+    assert_eq!((job.min, job.max), ([3.0, 0.0, -5.0], [13.0, 10.0, 2.0]));
+    assert_eq!(job.pattern, ScanPattern::Meander { line: Axis::Y });
+    assert_eq!((job.travel_mm, job.spacing_mm, job.interval_mm), (0.5, 1.0, 0.5));
+    // MP6210 = 5: 5 times 0.5 mm in a second.
+    close(job.feed_mm_min(), 150.0, 1e-9);
+    assert_eq!(job.begin(), [3.0, 0.0, 20.0]);
+}
+
+/// On a machine nothing digitizes: the block is refused. So is a measuring probe (MP6200 = 1) everywhere.
+#[test]
+fn digitizing_is_refused_on_a_machine() {
+    let machine = Job::new(program(DIGITIZING)).with(|settings| settings.machine = true);
+    assert_eq!(machine.run().message(), Some((MessageId::BlockNotKnown, 8)));
+    let measuring = Job::new(program(DIGITIZING)).with(|settings| settings.rules.measuring_probe = true);
+    assert_eq!(measuring.run().message(), Some((MessageId::BlockNotKnown, 8)));
 }
 
 /// TCH PROBE 31 and 32 wait until the control has measured; the height is one of the program, the tool that of the

@@ -41,7 +41,6 @@ impl Machine {
             Event::Switch(name, state) => self.switch(name, state)?,
             Event::EmergencyStop(pressed) => self.chain.button = *pressed,
             Event::Voltage(on) => self.chain.supply = *on,
-            Event::Probe(inserted) => self.probe()?.inserted = *inserted,
             Event::Tool(tool) => {
                 if self.tool_probe.is_none() {
                     self.magazine_mut()?;
@@ -50,6 +49,10 @@ impl Machine {
                 if let Some(magazine) = &mut self.magazine {
                     magazine.insert(*tool);
                 }
+            }
+            Event::Probe(inserted) => {
+                let angle = self.spindle_deg();
+                self.probe()?.insert(*inserted, angle);
             }
             Event::Analogue(input, volts) => set(&mut self.volts, *input, *volts),
             Event::Temperature(input, celsius) => set(&mut self.temperatures, *input, *celsius),

@@ -504,6 +504,13 @@ impl Machine {
         }
     }
 
+    /// The angle of the first spindle since power-on, degrees.
+    pub(crate) fn spindle_deg(&self) -> f64 {
+        self.spindles
+            .first()
+            .map_or(0.0, |spindle| spindle.state().angle_deg)
+    }
+
     /// The touch probe; none is never ready.
     pub fn touch_probe(&self) -> Touch {
         let Some(probe) = &self.probe else {
@@ -511,7 +518,7 @@ impl Machine {
         };
         let place = self.probe_axes.map(|index| Some(self.axes.get(index?)?.table));
         let deflected = match place {
-            [Some(x), Some(y), Some(z)] => probe.deflected([x, y, z]),
+            [Some(x), Some(y), Some(z)] => probe.deflected([x, y, z], self.spindle_deg()),
             _ => false,
         };
         let deflected = deflected || probe.early && probe.inserted;

@@ -25,7 +25,8 @@ pub use axis_parameters::{
 };
 pub use characteristics::Characteristics;
 pub use machining::{
-    ContourPocket, Decimal, GraphicsSettings, MFunctions, ProbeSettings, ProgramEndClearing, ScaledAxes,
+    ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, ProbeSettings, ProbeTurn,
+    ProgramEndClearing, ScaledAxes,
 };
 pub use operation::{
     DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters, OverrideSteps,

@@ -18,6 +18,7 @@ fn said(list: &ParameterList) -> BTreeMap<String, String> {
         ("plc", format!("{:#?}", list.plc_parameters())),
         ("graphics", format!("{:#?}", list.graphics())),
         ("probe", format!("{:#?}", list.probe())),
+        ("digitizing", format!("{:#?}", list.digitizing())),
         ("clearing", format!("{:#?}", list.program_end_clearing())),
         ("scaled_axes", format!("{:?}", list.scaled_axes())),
         ("m", format!("{:#?}", list.m_functions())),
@@ -315,6 +316,14 @@ Activate analogue inputs | plc.analogue_inputs.0
 Probing feed rate, triggering probe | probe.feed_mm_min
 Setup clearance over measuring point | probe.clearance_mm
 Rapid traverse in probing cycle, triggering probe | probe.rapid_mm_min
+Triggering or measuring probe | digitizing.measuring
+Oscillations per second in normal direction | digitizing.oscillations_hz
+Traverse for lubricating probe axis at end of line | digitizing.lubrication_mm
+Time after which probe axis must be lubricated | digitizing.lubrication_min
+Feed rate in normal direction | digitizing.normal_mm_min
+Maximum stylus deflection | digitizing.deflection_mm
+M90 in NC blocks of digitized data | digitizing.m90
+Rounding of decimal places in digitized data | digitizing.step_mm
 Minimum feed override when tapping | spindle.tapping.override_percent.0
 Maximum feed override when tapping | spindle.tapping.override_percent.1
 Spindle run-in characteristic (rigid tapping, like MP1520) | spindle.tapping.run_in_deg_min

@@ -5,9 +5,10 @@ use crate::{Axis, Plane, Position};
 /// Datum shift, mirror image, rotation and scaling combined in the recommended order
 /// (inferred) [003:6240] [003:6315]:
 ///
-/// `point_machine = shift + R(rotation) · M(mirror) · S(scale) · (c + F(factors of single axes) · (p - c))`
+/// `point_machine = B(basic rotation) · (shift + R(rotation) · M(mirror) · S(scale) · (c + F(factors of single axes) · (p - c)))`
 ///
-/// Rotation turns in the working plane about the active datum; mirroring and scaling act on each axis.
+/// Rotation turns in the working plane about the active datum; mirroring and scaling act on each axis. The basic
+/// rotation turns all of it about the datum of the workpiece [003:1282-1304].
 ///
 /// ```
 /// use bahn_path::{Axis, Frame, Plane, Position};
@@ -28,6 +29,8 @@ pub struct Frame {
     pub shift: Position,
     /// Rotation in the plane, degrees, counter-clockwise positive.
     pub rotation_deg: f64,
+    /// Basic rotation of the workpiece in the plane, degrees, counter-clockwise positive.
+    pub basic_rotation_deg: f64,
     /// Factor of each axis: the scaling factor, negative where the axis is mirrored.
     pub factor: Position,
     /// Factors of single axes, which act on what is programmed before everything else.
@@ -60,6 +63,7 @@ impl Frame {
             plane,
             shift: Position::ZERO,
             rotation_deg: 0.0,
+            basic_rotation_deg: 0.0,
             factor: Position::from([1.0; Axis::COUNT]),
             axis_scaling: None,
         }
@@ -86,12 +90,14 @@ impl Frame {
         for axis in Axis::ALL {
             result[axis] += self.shift[axis];
         }
+        self.rotate(&mut result, self.basic_rotation_deg);
         result
     }
 
     /// From coordinates of the workpiece datum back to programmed ones.
     pub fn to_programmed(&self, outer: &Position) -> Position {
         let mut result = *outer;
+        self.rotate(&mut result, -self.basic_rotation_deg);
         for axis in Axis::ALL {
             result[axis] -= self.shift[axis];
         }
@@ -105,6 +111,16 @@ impl Frame {
             }
         }
         result
+    }
+
+    /// By how much directions are turned in the plane, degrees.
+    pub fn turn_deg(&self) -> f64 {
+        self.rotation_deg + self.basic_rotation_deg
+    }
+
+    /// Both axes of the plane depend on each other.
+    pub fn turns(&self) -> bool {
+        self.rotation_deg != 0.0 || self.basic_rotation_deg != 0.0
     }
 
     /// How many times as long as programmed a length along an axis is; positive.

@@ -30,6 +30,7 @@ mod frame;
 mod placement;
 mod plane;
 pub mod region;
+mod scan;
 mod source;
 mod swivel;
 
@@ -43,5 +44,6 @@ pub use element::{
 pub use frame::{AxisScaling, Frame};
 pub use placement::Placement;
 pub use plane::{Plane, Point2};
+pub use scan::{ScanFault, ScanJob, ScanPattern, ScanPoint, ScanRules, Scanned};
 pub use source::{Barrier, ElementSource, LiveData, MeasuredPart, Step, ToolMeasuring, Touch};
 pub use swivel::{Link, Swivels};

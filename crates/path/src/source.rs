@@ -1,6 +1,6 @@
 //! How every stage pulls path elements from the stage before it.
 
-use crate::{BlockRef, PathElement, Position};
+use crate::{BlockRef, PathElement, Position, Scanned};
 
 /// A stage that yields path elements. Everything is pulled: a stage asks for the next element only
 /// when it has room, so programs of any length run in constant memory. Stages that split, join or
@@ -52,6 +52,11 @@ pub enum Barrier {
     /// A tool is measured with the tool probe; the answer is [`LiveData::touch`], where the axes stand then, with the
     /// results in [`LiveData::q_values`] [000:7960-8058].
     MeasureTool(ToolMeasuring),
+    /// A surface is digitized; the source knows what is scanned, and the answer is [`LiveData::scan`].
+    Scan {
+        /// The last block of the cycle.
+        block: BlockRef,
+    },
     /// A programmed stop (STOP, M0, M1): the operator or the driver lets it go on.
     Stop {
         /// The stop block.
@@ -97,6 +102,8 @@ pub enum MeasuredPart {
 pub struct LiveData {
     /// Where the stylus touched; `None` when it did not.
     pub touch: Option<Touch>,
+    /// How a scan ended; `None` where nothing was scanned: every surface is then taken for digitized.
+    pub scan: Option<Scanned>,
     /// Q parameters that were written meanwhile (by the PLC: Q100-Q107): number, value.
     pub q_values: Vec<(u16, f64)>,
 }

@@ -29,6 +29,7 @@ mod chords;
 mod coarsen;
 mod cutters;
 mod event;
+mod feeler;
 mod grid;
 mod leads;
 mod part;
@@ -46,6 +47,7 @@ mod view;
 mod workpiece;
 
 pub use event::{Event, EventKind};
+pub use feeler::Feeler;
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
 pub use stl::{MAX_TRIANGLES, MeshError};

@@ -20,6 +20,16 @@ mdi BLOCK                           a block for MDI; \\n separates several
 m N                                 an M function in manual operation, output with NC start
 s RPM                               a spindle speed, likewise
 datum AXIS VALUE                    the actual position becomes this value
+probe length HEIGHT                 calibrates the effective length on a face at this height; NC start probes
+probe radius R                      effective radius and centre offset in a ring gauge of this radius
+probe turn                          turns the probe by 180 degrees for the centre offset
+probe rotation                      basic rotation over two points of a side
+probe surface|circle                datum in an axis, at the centre of a circle
+probe corner [reuse]                datum in a corner; reuse takes over the side of the basic rotation
+probe direction X+|all              what the next NC start probes; all four directions from within
+probe datum AXIS VALUE              what was probed becomes this value
+probe angle DEGREES                 rotation angle: the basic rotation, and nominal angle of the next side
+probe end                           leaves the function
 tool-life T MIN                     current life of a tool (CUR.TIME), minutes
 jog MM                              jog increment
 output step FEED, output ramp       what direction keys put out on axes with digital speed controller
@@ -47,6 +57,10 @@ X.ref                               as REF shows it, rotary axes within their mo
 X.table                             where the table stands in truth, from the zero point of the plant
 X.lag X.distance                    servo lag, distance to go in the block
 X.n-actual X.n-nominal X.n-int      speeds of a digital speed controller (TNC 425, MP1900), their difference
+X.probed                            what the probe menu shows as datum
+probe.length probe.radius           calibrated, mm
+probe.angle probe.touches           basic rotation, degrees; touches of the function that is chosen
+probe.circle                        radius of the circle that was probed, mm
 X.speed X.nominal-speed             mm/min
 X.volts output.1 .. output.S        V: of the axis, at each analogue output
 X.force                             of the motor, N or Nm

@@ -205,9 +205,11 @@ pub(crate) struct RecordingOptions {
     /// Write signals over time as a table.
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub record: Option<PathBuf>,
-    /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, X.displayed, X.ref, X.distance,
-    /// X.n-actual, X.n-nominal, X.n-int (digital speed controller), X.table and X.force (what only the plant knows), path.speed, path.block, path.distance, S.rpm, S.volts, S.angle,
-    /// output.1 to output.5, output.S, mode, run, tool, Q5, X41/34, X42/4, operands of the PLC like M2045, I4, W260, of the second channel as 2:X.actual; by
+    /// What is recorded: X.actual, X.nominal, X.lag, X.speed, X.nominal-speed, X.volts, X.displayed, X.ref, X.distance, X.probed,
+    /// X.n-actual, X.n-nominal, X.n-int (digital speed controller), X.table and X.force (what only the plant knows), path.speed,
+    /// path.block, path.distance, S.rpm, S.volts, S.angle, output.1 to output.5, output.S, mode, run, tool, probe.length,
+    /// probe.radius, probe.angle, probe.touches, probe.circle, Q5, X41/34, X42/4, operands of the PLC like M2045, I4, W260, of
+    /// the second channel as 2:X.actual; by
     /// default speeds, positions, lags, and the handshake of M functions. `bahn machine list` says what each is.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
     pub signals: Vec<Observed>,

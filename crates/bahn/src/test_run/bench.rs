@@ -1,16 +1,17 @@
 //! One program run to its end: nothing is printed here, so that many can run side by side.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_interpreter::{Interpreter, ProgramError};
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position};
+use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanFault, Scanned};
 use bahn_program::{Operation, Program};
 use bahn_workpiece::Part;
 
+use super::digitizing::digitize;
 use super::options::TestOptions;
 use super::outputs::Outputs;
 use super::survey::Survey;
@@ -35,6 +36,8 @@ pub(crate) struct Bench {
     columns: Option<Columns>,
     memory: Memory,
     ends_at_stop: bool,
+    /// Where digitized programs go.
+    digitized: Option<PathBuf>,
     /// Simulate the block processing time of the model.
     block_time: bool,
 }
@@ -77,6 +80,7 @@ impl Bench {
             memory: Memory::of(&options.output),
             columns: (!options.output.no_graphics).then_some(wanted),
             ends_at_stop: options.run.stop,
+            digitized: options.output.digitized.clone(),
             block_time: machine.block_time,
             list: equipment.list,
         })
@@ -117,6 +121,7 @@ impl Bench {
             company,
             unwritten: None,
             ends_at_stop: self.ends_at_stop,
+            digitized: self.digitized.clone(),
             block_time: self.block_time.then(|| BlockTime::of(self.list.model())),
             last_stop: None,
             model: self.list.model(),
@@ -139,6 +144,7 @@ struct TestRun {
     unwritten: Option<UsageError>,
     progress: Option<Progress>,
     ends_at_stop: bool,
+    digitized: Option<PathBuf>,
     block_time: Option<BlockTime>,
     /// The block of the last stop and its function: in a loop it is the same again and again.
     last_stop: Option<(BlockRef, Option<&'static str>)>,
@@ -163,7 +169,13 @@ impl TestRun {
                     if self.is_stop(&barrier) && self.ends_at_stop {
                         return Ok(End::Stopped);
                     }
-                    let live = self.live_data(&barrier);
+                    let live = match barrier {
+                        Barrier::Scan { block } => match self.digitize(block)? {
+                            Some(live) => live,
+                            None => return Ok(self.broken_off()),
+                        },
+                        _ => self.live_data(&barrier),
+                    };
                     self.planner.resume(live);
                 }
                 PlannedStep::End => {
@@ -266,6 +278,33 @@ impl TestRun {
             touch,
             ..LiveData::default()
         }
+    }
+
+    /// Scans the part as it is; `None` when the run is interrupted.
+    fn digitize(&mut self, block: BlockRef) -> Result<Option<LiveData>, UsageError> {
+        let Some((job, name)) = self.planner.source().scan() else {
+            return Ok(Some(LiveData::default()));
+        };
+        let (job, name) = (*job, name.to_owned());
+        let Some(part) = self.cutting.as_mut().and_then(Cutting::part) else {
+            self.record.warn(block, Notice::NothingToProbe, 1);
+            let at = job.begin();
+            let fault = Some(ScanFault::Inaccessible);
+            return Ok(Some(LiveData {
+                scan: Some(Scanned { at, fault }),
+                ..LiveData::default()
+            }));
+        };
+        let done = digitize(&job, &name, part, self.digitized.as_deref(), &self.company.stop)?;
+        self.record.machining_time_s += done.time_s;
+        if self.digitized.is_none() {
+            self.record
+                .warn(block, Notice::Digitized { points: done.points }, 1);
+        }
+        Ok(done.scanned.map(|scanned| LiveData {
+            scan: Some(scanned),
+            ..LiveData::default()
+        }))
     }
 
     fn error_report(&self, error: &ProgramError) -> ErrorReport {

@@ -5,6 +5,7 @@
 //! - here: what is said of a single program. The table of many is [`crate::shelf`].
 
 mod bench;
+mod digitizing;
 mod options;
 mod outputs;
 mod survey;

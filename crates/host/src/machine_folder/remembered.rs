@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use bahn_control::{MovedTool, Position0, Remembered, ToolProbeCalibration, WrittenElement};
+use bahn_control::{
+    Calibration, MovedTool, Position0, ProbeMemory, Remembered, ToolProbeCalibration, WrittenElement,
+};
 use bahn_path::{Axis, Position};
 use bahn_plc::TableKind;
 use serde::Deserialize;
@@ -32,6 +34,10 @@ struct Form {
     /// Datum table, line, element, value, value in the file.
     #[serde(default)]
     written_datums: Vec<(String, i32, usize, f64, f64)>,
+    /// Length, radius, offset in both axes of the plane.
+    probe_calibration: Option<[f64; 4]>,
+    #[serde(default)]
+    basic_rotation: f64,
     #[serde(default)]
     q: BTreeMap<String, f64>,
 }
@@ -119,6 +125,17 @@ fn text(remembered: &Remembered) -> String {
             "# Elements of datum tables that the PLC wrote: line, element, value, value in the file\nwritten_datums",
             format!("[{}\n]", rows.collect::<String>()),
         );
+    }
+    if let Some(probe) = remembered.probe.calibration {
+        let [x, y] = probe.offset_mm;
+        let values = [probe.length_mm, probe.radius_mm, x, y].map(number);
+        line(
+            "# Touch probe: effective length and radius, centre offset in both axes of the plane\nprobe_calibration",
+            list(values),
+        );
+    }
+    if remembered.probe.basic_rotation_deg != 0.0 {
+        line("basic_rotation", number(remembered.probe.basic_rotation_deg));
     }
     line("offsets_volts", list(remembered.offsets_volts.map(number)));
     let datum = |Position0(datum): &Position0| {
@@ -238,6 +255,7 @@ fn content_of(text: &str) -> Result<Remembered, String> {
     }
     Ok(Remembered {
         datums,
+        probe: probe_memory(form.probe_calibration, form.basic_rotation)?,
         tool: form.tool,
         tool_length: finite(form.tool_length)?,
         tool_axis: form.tool_axis.map(axis).transpose()?,
@@ -253,6 +271,21 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         pallet_line: form.pallet_line,
         datum_table: form.datum_table,
         written_datums,
+    })
+}
+
+fn probe_memory(calibration: Option<[f64; 4]>, basic_rotation: f64) -> Result<ProbeMemory, String> {
+    let calibration = match calibration {
+        Some([length, radius, x, y]) => Some(Calibration {
+            length_mm: finite(length)?,
+            radius_mm: finite(radius)?,
+            offset_mm: [finite(x)?, finite(y)?],
+        }),
+        None => None,
+    };
+    Ok(ProbeMemory {
+        calibration,
+        basic_rotation_deg: finite(basic_rotation)?,
     })
 }
 
@@ -329,6 +362,14 @@ mod tests {
             ],
             q: vec![(1, 0.5), (107, -1e-4)],
             offsets_volts: [0.0, 0.0015, 0.0, 0.0, 0.0],
+            probe: ProbeMemory {
+                calibration: Some(Calibration {
+                    length_mm: 148.25,
+                    radius_mm: 1.9987,
+                    offset_mm: [0.01, -0.0025],
+                }),
+                basic_rotation_deg: -2.5,
+            },
             parameter_list: Some("LATHE.MP".to_owned()),
             program: Some("7432.H".to_owned()),
             pallet_line: Some(3),

@@ -130,7 +130,7 @@ pub(super) fn plane_direction(modal: &Modal, v: Point2) -> Point2 {
         v[0] * frame.factor[plane.first].signum(),
         v[1] * frame.factor[plane.second].signum(),
     ];
-    let (sin, cos) = (sin_deg(frame.rotation_deg), cos_deg(frame.rotation_deg));
+    let (sin, cos) = (sin_deg(frame.turn_deg()), cos_deg(frame.turn_deg()));
     [
         mirrored[0] * cos - mirrored[1] * sin,
         mirrored[0] * sin + mirrored[1] * cos,

@@ -142,6 +142,7 @@ impl Job {
                 Step::Element(element) => run.elements.push(element),
                 Step::Barrier(barrier) => {
                     run.barriers.push(barrier);
+                    run.scans.extend(interpreter.scan().map(|(job, _)| *job));
                     interpreter.resume(LiveData {
                         touch: touch(&barrier, &mut surfaces),
                         ..LiveData::default()
@@ -217,6 +218,8 @@ fn touch(barrier: &Barrier, surfaces: &mut impl Iterator<Item = f64>) -> Option<
 pub struct Run {
     pub elements: Vec<PathElement>,
     pub barriers: Vec<Barrier>,
+    /// What was to be digitized.
+    pub scans: Vec<bahn_path::ScanJob>,
     /// The Q parameters after each barrier.
     pub touched_q: Vec<Vec<f64>>,
     pub error: Option<ProgramError>,
@@ -231,6 +234,7 @@ impl Run {
         Run {
             elements: Vec::new(),
             barriers: Vec::new(),
+            scans: Vec::new(),
             touched_q: Vec::new(),
             error: None,
             q: Vec::new(),

@@ -78,6 +78,40 @@ pub struct ProbeSettings {
     pub keeps_tool_data: bool,
     /// The probe sends without a cable and is on standby between probings, a TS 511: MP6010 [000:7654].
     pub on_standby: bool,
+    /// How the spindle turns the probe by 180°: MP6160.
+    pub turn: ProbeTurn,
+}
+
+/// How the probe is turned by 180° when its centre offset is calibrated: MP6160 [000:7654] [000:10311].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProbeTurn {
+    /// Not at all.
+    Off,
+    /// The control orients the spindle.
+    ByControl,
+    /// The PLC orients it with this M function.
+    ByPlc(u8),
+}
+
+/// Digitizing with a triggering probe: MP6200 to MP6270 [000:7734-7799].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DigitizingSettings {
+    /// Oscillations of the stylus, 1/s: MP6210.
+    pub oscillations_hz: f64,
+    /// Traverse that lubricates the axis of the probe at the end of a line, mm: MP6220.
+    pub lubrication_mm: f64,
+    /// Time after which it is lubricated, min: MP6221.
+    pub lubrication_min: f64,
+    /// Feed in the normal direction, mm/min: MP6230.
+    pub normal_mm_min: f64,
+    /// How far the stylus may be deflected, mm: MP6240.
+    pub deflection_mm: f64,
+    /// M90 in every block: MP6260.
+    pub m90: bool,
+    /// Step of the coordinates, mm: MP6270.
+    pub step_mm: f64,
+    /// The probe is a measuring one, a TM 110: MP6200.
+    pub measuring: bool,
 }
 
 /// Settings of the graphics: MP7310 (old MP236) [000:6368-6409] [001:1654].
@@ -218,6 +252,29 @@ impl ParameterList {
             rapid_mm_min: self.value((6150, 0), (251, 0)),
             keeps_tool_data: self.get(7411, 0) == Some(1.0),
             on_standby: self.get_new(6010, 0) == Some(1.0),
+            turn: match self.get_new(6160, 0) {
+                Some(-1.0) => ProbeTurn::ByControl,
+                Some(code) if code >= 1.0 => ProbeTurn::ByPlc(code as u8),
+                _ => ProbeTurn::Off,
+            },
+        }
+    }
+
+    /// How surfaces are digitized with a triggering probe.
+    pub fn digitizing(&self) -> DigitizingSettings {
+        DigitizingSettings {
+            oscillations_hz: self.get_new(6210, 0).unwrap_or(0.0),
+            lubrication_mm: self.get_new(6220, 0).unwrap_or(0.0),
+            lubrication_min: self.get_new(6221, 0).unwrap_or(0.0),
+            normal_mm_min: self.get_new(6230, 0).unwrap_or(0.0),
+            deflection_mm: self.get_new(6240, 0).unwrap_or(0.0),
+            m90: self.get_new(6260, 0) == Some(1.0),
+            step_mm: match self.get_new(6270, 0) {
+                Some(1.0) => 0.01,
+                Some(2.0) => 0.0001,
+                _ => 0.001,
+            },
+            measuring: self.get_new(6200, 0) == Some(1.0),
         }
     }
 

@@ -1,0 +1,172 @@
+//! Digitizing with a triggering probe: the stylus taps along the surface, in lines or in levels [000:7722-7880].
+//!
+//! A [`Scan`] wants a velocity in every cycle and is told what the stylus feels; how far the axes have come and where the
+//! stylus was deflected it learns, too. So it is the same on a machine and on a height map.
+
+mod course;
+mod follow;
+
+use bahn_path::{ScanFault, ScanJob, ScanPoint, Scanned};
+
+use course::Course;
+use follow::{Felt, Follower, Wish};
+
+/// Points of a scan at most; a program of more is refused by every control (inferred).
+const POINTS_MAX: u64 = 10_000_000;
+/// How far the surface may lie below the range, mm: the stylus overshoots (inferred).
+const BELOW_MM: f64 = 0.1;
+
+/// What the stylus feels in a cycle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sense {
+    /// It is deflected now.
+    pub deflected: bool,
+    /// Where the tip is.
+    pub at: ScanPoint,
+    /// Where the tip was when it was deflected within the cycle.
+    pub touch: Option<ScanPoint>,
+}
+
+/// What a cycle of a scan comes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ScanStep {
+    /// It goes on.
+    Moves,
+    /// It goes on, and this is a point of the surface.
+    Point(ScanPoint),
+    /// It is over: the axes stand.
+    Over(Scanned),
+}
+
+/// A scan on its way.
+#[derive(Clone, Debug)]
+pub struct Scan {
+    job: ScanJob,
+    course: Course,
+    follower: Follower,
+    /// Nominal position, mm, and speed, mm/s.
+    position: ScanPoint,
+    velocity: ScanPoint,
+    acceleration_mm_s2: f64,
+    points: u64,
+    /// Since the scan began, s.
+    time_s: f64,
+    over: Option<Option<ScanFault>>,
+}
+
+impl Scan {
+    /// A scan that begins where [`ScanJob::begin`] says, with this acceleration of the axes, m/s².
+    pub fn new(job: ScanJob, acceleration_m_s2: f64) -> Scan {
+        Scan {
+            course: Course::new(&job),
+            follower: Follower::new(&job),
+            position: job.begin(),
+            velocity: [0.0; 3],
+            acceleration_mm_s2: acceleration_m_s2 * 1e3,
+            points: 0,
+            time_s: 0.0,
+            over: None,
+            job,
+        }
+    }
+
+    /// Nominal position of the tip, mm.
+    pub fn position(&self) -> ScanPoint {
+        self.position
+    }
+
+    /// Points so far.
+    pub fn points(&self) -> u64 {
+        self.points
+    }
+
+    /// Breaks it off with a message; the axes come to a standstill.
+    pub fn break_off(&mut self, fault: ScanFault) {
+        self.over.get_or_insert(Some(fault));
+    }
+
+    /// Spends a cycle of this time, s, with a feed override, 0 to 1: none holds the stylus where it is.
+    pub fn cycle(&mut self, time_s: f64, sense: &Sense, feed: f64) -> ScanStep {
+        let felt = Felt {
+            at: sense.at,
+            deflected: sense.deflected,
+            touch: sense.touch,
+            time_s,
+        };
+        let (mut wish, mut point) = (Wish::stand(), None);
+        if self.over.is_none() && feed > 0.0 {
+            self.time_s += time_s;
+            match self.course.cycle(&mut self.follower, &self.job, &felt) {
+                Ok((wanted, touched)) => (wish, point) = (wanted, touched),
+                Err(end) => self.over = Some(end),
+            }
+            self.guard(&felt);
+        }
+        self.slew(&wish, time_s, feed);
+        if let Some(point) = point {
+            self.points += 1;
+            return ScanStep::Point(point);
+        }
+        match self.over {
+            Some(fault) if self.velocity == [0.0; 3] => ScanStep::Over(Scanned {
+                at: self.position,
+                fault,
+            }),
+            _ => ScanStep::Moves,
+        }
+    }
+
+    /// What ends every scan.
+    fn guard(&mut self, felt: &Felt) {
+        let place = self.job.tool_place();
+        let [low, high, at] = [&self.job.min, &self.job.max, &felt.at].map(|of| of.get(place).copied());
+        let (low, high, at) = (low.unwrap_or(0.0), high.unwrap_or(0.0), at.unwrap_or(0.0));
+        if at < low - BELOW_MM {
+            self.break_off(match self.points {
+                0 => ScanFault::Inaccessible,
+                _ => ScanFault::RangeExceeded,
+            });
+        } else if at >= self.job.clearance_mm && felt.deflected {
+            self.break_off(ScanFault::CannotRetract);
+        } else if felt.touch.is_some() && at > high + BELOW_MM {
+            self.break_off(match self.points {
+                0 => ScanFault::Inaccessible,
+                _ => ScanFault::RangeExceeded,
+            });
+        } else if self.points >= POINTS_MAX {
+            self.break_off(ScanFault::MemoryFull);
+        }
+    }
+
+    /// The speed goes over to the one that is wanted as fast as the axes can.
+    fn slew(&mut self, wish: &Wish, time_s: f64, feed: f64) {
+        let mut wanted = wish.velocity.map(|part| part * feed);
+        if let Some((axis, sign, end)) = wish.end {
+            // No faster than it can be braked before the end.
+            let way = ((end - self.position[axis]) * sign).max(0.0);
+            let able = (2.0 * self.acceleration_mm_s2 * way)
+                .sqrt()
+                .max(self.acceleration_mm_s2 * time_s);
+            wanted[axis] = wanted[axis].clamp(-able, able);
+        }
+        let missing: ScanPoint = std::array::from_fn(|k| wanted[k] - self.velocity[k]);
+        let length = missing.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let possible = self.acceleration_mm_s2 * time_s;
+        let part = if length > possible { possible / length } else { 1.0 };
+        for k in 0..3 {
+            self.velocity[k] += missing[k] * part;
+            if part == 1.0 {
+                self.velocity[k] = wanted[k];
+            }
+            self.position[k] += self.velocity[k] * time_s;
+            // It neither runs over the end of a line nor over a level.
+            if let Some((axis, sign, end)) = wish.end
+                && axis == k
+                && (self.position[k] - end) * sign > 0.0
+            {
+                self.position[k] = end;
+                self.velocity[k] = 0.0;
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The stylus on ideal surfaces [000:7722-7880].
+
+use bahn_motion::{Scan, ScanStep, Sense};
+use bahn_path::{Axis, ScanFault, ScanJob, ScanPattern, ScanPoint, ScanRules, Scanned};
+
+const CYCLE_S: f64 = 3e-3;
+
+/// The example of the manual [000:7842-7855] on a range of 20 by 4 mm: X, TRAVEL 0.5, L.SPAC 1, P.P.INT 1.
+fn job() -> ScanJob {
+    ScanJob {
+        tool_axis: Axis::Z,
+        min: [0.0, 0.0, -10.0],
+        max: [20.0, 4.0, 10.0],
+        shift: [0.0; 3],
+        clearance_mm: 25.0,
+        pattern: ScanPattern::Meander { line: Axis::X },
+        travel_mm: 0.5,
+        spacing_mm: 1.0,
+        interval_mm: 1.0,
+        stylus_radius_mm: 0.0,
+        inch: false,
+        rules: ScanRules::default(),
+    }
+}
+
+/// Scans a surface that the tip touches where its height is not greater than this.
+fn scan(job: ScanJob, height: impl Fn(f64, f64) -> f64) -> (Vec<ScanPoint>, Scanned, f64) {
+    let mut scan = Scan::new(job, 1.0);
+    let (mut points, mut sense) = (Vec::new(), Sense::default());
+    sense.at = scan.position();
+    for cycle in 1..10_000_000 {
+        match scan.cycle(CYCLE_S, &sense, 1.0) {
+            ScanStep::Moves => {}
+            ScanStep::Point(point) => points.push(point),
+            ScanStep::Over(scanned) => return (points, scanned, f64::from(cycle) * CYCLE_S),
+        }
+        let at = scan.position();
+        let speed = (0..3)
+            .map(|k| ((at[k] - sense.at[k]) / CYCLE_S).powi(2))
+            .sum::<f64>()
+            .sqrt()
+            * 60.0;
+        assert!(speed <= job.rules.rapid_mm_min * 1.5, "{speed} mm/min");
+        let deflected = at[2] <= height(at[0], at[1]);
+        sense = Sense {
+            touch: (deflected && !sense.deflected).then_some(at),
+            deflected,
+            at,
+        };
+    }
+    panic!("it never ends: {} points, at {:?}", points.len(), scan.position());
+}
+
+/// Every point lies on the surface within what the stylus goes in a cycle, and no farther than P.P.INT from the one before;
+/// each of the five lines begins and ends at the range.
+fn assert_scanned(points: &[ScanPoint], scanned: &Scanned, tolerance: f64, height: impl Fn(f64, f64) -> f64) {
+    assert_eq!(scanned.fault, None);
+    assert!((scanned.at[2] - 25.0).abs() < 2e-3, "{:?}", scanned.at);
+    for point in points {
+        let around = [-tolerance, 0.0, tolerance].map(|by| height(point[0] + by, point[1]));
+        let low = around.iter().copied().fold(f64::INFINITY, f64::min) - tolerance;
+        let high = around.iter().copied().fold(f64::NEG_INFINITY, f64::max) + tolerance;
+        assert!(low <= point[2] && point[2] <= high, "{point:?}");
+    }
+    for pair in points.windows(2) {
+        let way = (pair[0][0] - pair[1][0]).hypot(pair[0][1] - pair[1][1]);
+        assert!(way <= 1.05, "{pair:?}");
+    }
+    for line in 0..5 {
+        for end in [0.0, 20.0] {
+            let there = |point: &&ScanPoint| {
+                (point[0] - end).abs() < 0.02 && (point[1] - f64::from(line)).abs() < 0.02
+            };
+            assert!(
+                points.iter().any(|point| there(&point)),
+                "line {line} does not reach {end}"
+            );
+        }
+    }
+}
+
+/// Flat: five oscillations a second, four fifths of P.P.INT from point to point.
+#[test]
+fn a_flat_surface() {
+    let (points, scanned, _) = scan(job(), |_, _| 1.0);
+    assert_scanned(&points, &scanned, 0.02, |_, _| 1.0);
+    let spaced = points
+        .windows(2)
+        .filter(|pair| (0.7..=1.0).contains(&(pair[0][0] - pair[1][0]).abs()))
+        .count();
+    assert!(spaced > 5 * 20, "{spaced} of {}", points.len());
+}
+
+/// Slopes of 30° up and down, a wave, a step of 3 mm up and down: outside and inside corners.
+#[test]
+fn slopes_and_steps() {
+    let slope = |x: f64, _: f64| 5.0 - (x - 10.0).abs() * 30f64.to_radians().tan();
+    let wave = |x: f64, y: f64| (x * 0.6).sin() * 2.0 + y * 0.2;
+    let step = |x: f64, _: f64| if (7.0..=13.0).contains(&x) { 3.0 } else { 0.0 };
+    let surfaces: [&dyn Fn(f64, f64) -> f64; 3] = [&slope, &wave, &step];
+    for surface in surfaces {
+        let (points, scanned, _) = scan(job(), surface);
+        assert_scanned(&points, &scanned, 0.05, surface);
+    }
+}
+
+/// Nothing within the range, something above it, a hole deeper than the range, a wall higher than the clearance height.
+#[test]
+fn what_cannot_be_scanned_says_why() {
+    let surfaces: [(&dyn Fn(f64, f64) -> f64, ScanFault); 4] = [
+        (&|_, _| -20.0, ScanFault::Inaccessible),
+        (&|_, _| 12.0, ScanFault::Inaccessible),
+        (
+            &|x, _| if x > 10.0 { -20.0 } else { 0.0 },
+            ScanFault::RangeExceeded,
+        ),
+        (
+            &|x, _| if x > 10.0 { 30.0 } else { 0.0 },
+            ScanFault::RangeExceeded,
+        ),
+    ];
+    for (surface, fault) in surfaces {
+        let (_, scanned, _) = scan(job(), surface);
+        assert_eq!(scanned.fault, Some(fault));
+    }
+}
+
+/// Override 0 holds the stylus, half the override takes about twice the time.
+#[test]
+fn the_override_slows_the_stylus() {
+    let mut held = Scan::new(job(), 1.0);
+    let sense = Sense {
+        at: held.position(),
+        ..Sense::default()
+    };
+    for _ in 0..1000 {
+        assert_eq!(held.cycle(CYCLE_S, &sense, 0.0), ScanStep::Moves);
+    }
+    assert_eq!(held.position(), job().begin());
+}
