@@ -108,24 +108,7 @@ fn text(remembered: &Remembered) -> String {
     if let Some(table) = &remembered.datum_table {
         line("datum_table", toml::Value::from(table.as_str()).to_string());
     }
-    if !remembered.written.is_empty() {
-        let rows = remembered
-            .written
-            .iter()
-            .map(|row| element_of(letter_of(row.table).to_string(), row));
-        line(
-            "# Elements of tool (T) and pocket (P) table that the PLC wrote: line, element, value, value in the file\nwritten",
-            format!("[{}\n]", rows.collect::<String>()),
-        );
-    }
-    if !remembered.written_datums.is_empty() {
-        let rows = remembered.written_datums.iter();
-        let rows = rows.map(|(table, row)| element_of(table.clone(), row));
-        line(
-            "# Elements of datum tables that the PLC wrote: line, element, value, value in the file\nwritten_datums",
-            format!("[{}\n]", rows.collect::<String>()),
-        );
-    }
+    written(remembered, &mut line);
     if let Some(probe) = remembered.probe.calibration {
         let [x, y] = probe.offset_mm;
         let values = [probe.length_mm, probe.radius_mm, x, y].map(number);
@@ -163,6 +146,28 @@ fn text(remembered: &Remembered) -> String {
         }
     }
     text
+}
+
+/// What the PLC wrote into tables.
+fn written(remembered: &Remembered, line: &mut impl FnMut(&str, String)) {
+    if !remembered.written.is_empty() {
+        let rows = remembered
+            .written
+            .iter()
+            .map(|row| element_of(letter_of(row.table).to_string(), row));
+        line(
+            "# Elements of tool (T) and pocket (P) table that the PLC wrote: line, element, value, value in the file\nwritten",
+            format!("[{}\n]", rows.collect::<String>()),
+        );
+    }
+    if !remembered.written_datums.is_empty() {
+        let rows = remembered.written_datums.iter();
+        let rows = rows.map(|(table, row)| element_of(table.clone(), row));
+        line(
+            "# Elements of datum tables that the PLC wrote: line, element, value, value in the file\nwritten_datums",
+            format!("[{}\n]", rows.collect::<String>()),
+        );
+    }
 }
 
 /// The tables by their letters.
