@@ -443,7 +443,7 @@ impl ProgramRun {
         self.track.set_speed(cycle.speed_mm_s);
         self.tapping.lead(cycle.lead, site.spindle);
         let holds = self.track.path.is_coupled();
-        site.chain.superimposed.follow(&site.axes, &site.now, holds);
+        site.chain.superimposed.follow(site.axes.iter(), &site.now, holds);
         self.track
             .follow(&cycle.position, &mut site.axes, site.chain, site.now.time_s);
         let inch = self.source.inch();

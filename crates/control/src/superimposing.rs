@@ -3,7 +3,7 @@
 use bahn_motion::{Aim, PointToPoint};
 use bahn_path::{Axis, Position};
 
-use crate::axes::OwnAxes;
+use crate::axis::AxisUnit;
 use crate::now::Now;
 
 /// How far the axes may be led beside the path, how far they are to be, and where they are on the way there. In
@@ -73,13 +73,13 @@ impl Superimposed {
 
     /// Follows the wheels for a cycle, unless the path `holds` it. An axis without loop or feed enable stands at once,
     /// and what is turned meanwhile moves nothing later; none is led out of its traverse range.
-    pub fn follow(&mut self, axes: &OwnAxes, now: &Now, holds: bool) {
+    pub fn follow<'a>(&mut self, axes: impl Iterator<Item = &'a AxisUnit>, now: &Now, holds: bool) {
         if !self.on {
             return;
         }
         let mut on = self.range != Position::ZERO;
         self.ways = Position::ZERO;
-        for unit in axes.iter().filter(|unit| unit.is_free()) {
+        for unit in axes.filter(|unit| unit.is_free()) {
             let axis = unit.axis;
             let Some(ramp) = self.ramps.get_mut(axis.index()) else {
                 continue;

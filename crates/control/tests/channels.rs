@@ -623,30 +623,31 @@ impl Kinematics for Leaning {
     }
 }
 
+/// The second channel has X and Y on the leaning portal, with these parameters beside its own.
+fn leaning(program: &str, parameters_of_it: &[&str]) -> Rig {
+    let build = machine("L Z+60 R0 FMAX").mps("10=%00100 50=%00100");
+    let (setup, machine) = build.setup();
+    let mut parameters = setup.parameters.clone();
+    for assignment in ["10=%00011", "50=%00011", "3010=0"]
+        .iter()
+        .chain(parameters_of_it)
+    {
+        parameters.assign(assignment).unwrap();
+    }
+    let axes = [AxisId::new(6), AxisId::new(7), None, None, None];
+    let mut other = channel(parameters, axes, program);
+    other.kinematics = Arc::new(Leaning);
+    let cams = "M2556".parse().unwrap();
+    other.window = other.window.markers(cams, cams, 2);
+    ready(setup, other, machine)
+}
+
 /// X of the leaning portal takes 3000 mm/min and 0.5 m/s²; going at 45 degrees it moves one and a half times as fast as
 /// the path does in X. It keeps to its limits, and comes near them.
 #[test]
 fn feed_and_acceleration_are_limited_behind_the_kinematics() {
-    let build = machine("L Z+60 R0 FMAX").mps("10=%00100 50=%00100");
-    let (setup, machine) = build.setup();
-    let mut parameters = setup.parameters.clone();
-    for assignment in [
-        "10=%00011",
-        "50=%00011",
-        "3010=0",
-        "1010.0=3000",
-        "1060.0=0.5",
-        "1050.0=4.5",
-    ] {
-        parameters.assign(assignment).unwrap();
-    }
-    let axes = [AxisId::new(6), AxisId::new(7), None, None, None];
-    let mut other = channel(parameters, axes, "L X+40 Y+40 R0 FMAX\nL X+60 Y+60 FMAX");
-    other.kinematics = Arc::new(Leaning);
-    other.window = other
-        .window
-        .markers("M2556".parse().unwrap(), "M2556".parse().unwrap(), 2);
-    let mut rig = ready(setup, other, machine);
+    let program = "L X+40 Y+40 R0 FMAX\nL X+60 Y+60 FMAX";
+    let mut rig = leaning(program, &["1010.0=3000", "1050.0=4.5", "1060.0=0.5"]);
     rig.event("key START2 press");
     let cycle_s = 0.003;
     let place = |rig: &Rig| nominal(rig, 1, 'X') + 0.5 * nominal(rig, 1, 'Y');
@@ -674,19 +675,7 @@ fn feed_and_acceleration_are_limited_behind_the_kinematics() {
 #[test]
 fn limits_are_checked_behind_the_kinematics() {
     let program = "L X+60 Y+80 R0 F3000\nL X+110 Y+110\nL X+120 Y+110";
-    let build = machine("L Z+60 R0 FMAX").mps("10=%00100 50=%00100");
-    let (setup, machine) = build.setup();
-    let mut parameters = setup.parameters.clone();
-    for assignment in ["10=%00011", "50=%00011", "3010=0"] {
-        parameters.assign(assignment).unwrap();
-    }
-    let axes = [AxisId::new(6), AxisId::new(7), None, None, None];
-    let mut other = channel(parameters, axes, program);
-    other.kinematics = Arc::new(Leaning);
-    other.window = other
-        .window
-        .markers("M2556".parse().unwrap(), "M2556".parse().unwrap(), 2);
-    let mut rig = ready(setup, other, machine);
+    let mut rig = leaning(program, &[]);
     let machine_x = |rig: &Rig| {
         let axes = state(rig, 1).axes;
         axes.iter().find(|axis| axis.letter == 'X').unwrap().machine

@@ -13,7 +13,7 @@ Examples:
       Ends with the first seed that breaks a rule.
   bahn torture --machine machines/mill --program BRACKET.H --mp 7480.0=3,4310.0=3 --seeds 0..50
       The mill changes its tools with the magazine.
-  bahn torture --machine mine --event M190=1
+  bahn torture --machine machines/mill --seeds 0..2 --event M190=1
       A marker by which a copy of the PLC program is made to fail joins what happens.
   bahn torture --machine machines/mill-tnc360 --seeds 31..32 --record seed.txt
       Repeats one seed, and writes what happens in it as a script; bahn run repeats that with its report.
