@@ -1,4 +1,5 @@
 //! The functions of the TOUCH PROBE menu in MANUAL and HANDWHEEL [003:1217-1512].
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 #[path = "support/stand.rs"]
 mod stand;
