@@ -30,7 +30,7 @@ fuzz_target!(|data: (u8, f64, &[u8])| {
     list.spindle_parameters();
     list.plc_parameters();
     list.operation_parameters();
-    list.laser_characteristics();
+    list.characteristics();
     list.user_parameters();
     list.inconsistencies();
     let _ = text.set(
