@@ -57,9 +57,7 @@ pub(crate) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
         }
     }
     if options.format == Format::Json {
-        let json = serde_json::to_string_pretty(&reports)
-            .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-        console::print(&(json + "\n"))?;
+        console::print_json(&reports)?;
     }
     Ok(outcome)
 }

@@ -143,11 +143,7 @@ pub(crate) fn command(options: &CompensateOptions) -> Result<Outcome, UsageError
         axes: found.axes.iter().map(Row::of).collect(),
     };
     match options.format {
-        Format::Json => {
-            let json = serde_json::to_string_pretty(&report)
-                .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-            console::print(&(json + "\n"))?;
-        }
+        Format::Json => console::print_json(&report)?,
         Format::Text => console::print(&text(&report))?,
     }
     Ok(Outcome::Fine)

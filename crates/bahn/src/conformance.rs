@@ -69,11 +69,7 @@ pub(crate) fn command(options: &ConformanceOptions) -> Result<Outcome, UsageErro
     let text = match options.format {
         TableFormat::Text => table.text(),
         TableFormat::Markdown => table.markdown(),
-        TableFormat::Json => {
-            let json = serde_json::to_string_pretty(&table)
-                .map_err(|error| UsageError::new(format!("cannot write the table: {error}")))?;
-            json + "\n"
-        }
+        TableFormat::Json => console::json(&table)?,
     };
     console::print(&text)?;
     Ok(Outcome::Fine)

@@ -15,6 +15,18 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), UsageError> {
     finish(out.write_all(bytes).and_then(|()| out.flush()))
 }
 
+/// A report as JSON, with a line end.
+pub(crate) fn json(report: &impl serde::Serialize) -> Result<String, UsageError> {
+    serde_json::to_string_pretty(report)
+        .map(|text| text + "\n")
+        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))
+}
+
+/// Prints a report as JSON.
+pub(crate) fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
+    print(&json(report)?)
+}
+
 /// Prints something that writes itself piece by piece.
 pub(crate) fn print_display(value: &impl std::fmt::Display) -> Result<(), UsageError> {
     let mut out = io::BufWriter::with_capacity(1 << 16, io::stdout().lock());

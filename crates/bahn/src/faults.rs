@@ -78,11 +78,7 @@ pub(crate) fn command(options: &FaultsOptions) -> Result<Outcome, UsageError> {
         .map(|id| Row::of(id.row(), options.model))
         .collect();
     let text = match options.format {
-        TableFormat::Json => {
-            let json = serde_json::to_string_pretty(&rows)
-                .map_err(|error| UsageError::new(format!("cannot write the table: {error}")))?;
-            json + "\n"
-        }
+        TableFormat::Json => console::json(&rows)?,
         TableFormat::Markdown => markdown(&rows),
         TableFormat::Text => rows.iter().map(text).collect(),
     };

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use bahn_parameters::conformance::{Effect, Entry, Kind, all};
 use bahn_parameters::{ControlModel, Definition, MessageId};
-use support::Folder;
+use support::{Folder, holds_document};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -293,16 +293,10 @@ fn every_m_function_has_one_row() {
 /// docs/conformance.md is what the command prints. It is written anew with BAHN_WRITE_DOCS=1.
 #[test]
 fn the_document_is_the_table() {
-    let path = root().join("docs/conformance.md");
-    let run = Folder::new().bahn("conformance --format markdown");
-    assert_eq!(run.code(), 0, "{}", run.err());
-    if std::env::var_os("BAHN_WRITE_DOCS").is_some() {
-        fs::write(&path, run.out()).unwrap();
-    }
-    let written = fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        written == run.out(),
-        "docs/conformance.md is not what `bahn conformance --format markdown` prints: make conformance"
+    holds_document(
+        "docs/conformance.md",
+        "conformance --format markdown",
+        "make conformance",
     );
 }
 

@@ -3,28 +3,11 @@
 
 mod support;
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use support::{Folder, machines};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use support::{Folder, holds_document, machines};
 
 #[test]
 fn the_document_is_the_table_of_faults() {
-    let path = root().join("docs/faults.md");
-    let run = Folder::new().bahn("faults --format markdown");
-    assert_eq!(run.code(), 0, "{}", run.err());
-    if std::env::var_os("BAHN_WRITE_DOCS").is_some() {
-        fs::write(&path, run.out()).unwrap();
-    }
-    let written = fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        written == run.out(),
-        "docs/faults.md is not what `bahn faults --format markdown` prints: make faults"
-    );
+    holds_document("docs/faults.md", "faults --format markdown", "make faults");
 }
 
 /// POSITIONING ERROR ramps and is cleared with CE; a gross one flashes [000:5192-5224].

@@ -193,8 +193,7 @@ impl Handwheel {
         }
     }
 
-    /// The direction key that moves an axis, and whether rapid traverse is pressed with it: with the HR 330 and the
-    /// HR 410, where the NC has them [000:8124-8151] [000:8292-8304]. Both at once move nothing.
+    /// The direction key that moves an axis: with the HR 330 and the HR 410, where the NC has them [000:8124-8151] [000:8292-8304]. Both at once move nothing.
     pub fn direction(&self, rules: &HandwheelParameters) -> Option<(usize, Direction)> {
         let has = |key| self.keys.has(key);
         let of_the_nc = matches!(rules.kind, Kind::Hr330 | Kind::Hr130) || is_hr410_of_the_nc(rules);
@@ -352,7 +351,7 @@ fn is_hr410_of_the_nc(rules: &HandwheelParameters) -> bool {
     rules.kind == Kind::Hr410 && rules.initialization[0] == 0
 }
 
-/// The inputs I160 to I175 that a handwheel sets, and whether it does [000:8153-8186] [000:8257-8302] [000:8353-8385].
+/// The inputs I160 to I175 as a handwheel sets them [000:8153-8186] [000:8257-8302] [000:8353-8385].
 pub(crate) fn plc_inputs(rules: &HandwheelParameters, inputs: &HandwheelInputs) -> [bool; 16] {
     use HandwheelKey as Key;
     let mut bits = [false; 16];

@@ -8,10 +8,10 @@ use bahn_parameters::{Inconsistency, ListError, ListText, ParameterError, Parame
 use serde::Serialize;
 
 use super::options::CheckOptions;
-use super::{count, print_json, source};
+use super::{count, source};
 use crate::diagnostics::{self, FileFault};
 use crate::options::Format;
-use crate::{Outcome, UsageError, files};
+use crate::{Outcome, UsageError, console, files};
 
 /// Checks lists and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
@@ -30,7 +30,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
         }
     }
     if options.format == Format::Json {
-        print_json(&reports)?;
+        console::print_json(&reports)?;
     }
     let has_errors = reports.iter().any(|report| !report.errors.is_empty());
     Ok(if outcome == Outcome::Fine && has_errors {

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::list::Row;
 use super::options::DiffOptions;
 use super::style::Style;
-use super::{count, explain, print_json, source};
+use super::{count, explain, source};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 
@@ -26,7 +26,7 @@ pub(super) fn command(options: &DiffOptions) -> Result<Outcome, UsageError> {
         .map(|definition| Difference::new((Row::new(definition, &a), Row::new(definition, &b))))
         .collect();
     match options.format {
-        Format::Json => print_json(&differences)?,
+        Format::Json => console::print_json(&differences)?,
         Format::Text => console::print(&text(&differences, Style::of_output()))?,
     }
     Ok(if differences.is_empty() {

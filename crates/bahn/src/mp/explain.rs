@@ -4,8 +4,8 @@ use bahn_parameters::{Definition, chapters, with_chapters};
 
 use super::list::Row;
 use super::options::ExplainOptions;
+use super::source;
 use super::style::Style;
-use super::{print_json, source};
 use crate::options::Format;
 use crate::paragraph::{labelled, labelled_lines};
 use crate::{Outcome, UsageError, console};
@@ -38,7 +38,7 @@ pub(super) fn command(options: &ExplainOptions) -> Result<Outcome, UsageError> {
         )));
     };
     match options.values.format {
-        Format::Json => print_json(&rows)?,
+        Format::Json => console::print_json(&rows)?,
         Format::Text => console::print(&text(first, &rows, &name, Style::of_output()))?,
     }
     Ok(Outcome::Fine)

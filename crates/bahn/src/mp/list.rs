@@ -5,8 +5,8 @@ use bahn_parameters::{Advice, Change, ControlModel, Definition, ParameterList, R
 use serde::Serialize;
 
 use super::options::ListOptions;
+use super::source;
 use super::style::Style;
-use super::{print_json, source};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 
@@ -22,7 +22,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
         .filter(|row| !options.without_effect || row.effect != "acts")
         .collect();
     match options.values.format {
-        Format::Json => print_json(&rows)?,
+        Format::Json => console::print_json(&rows)?,
         Format::Text => console::print(&text(&rows, Style::of_output()))?,
     }
     if rows.is_empty() && !options.wanted.is_empty() {

@@ -16,7 +16,7 @@ mod style;
 
 pub(crate) use options::MpOptions;
 
-use crate::{Outcome, UsageError, console};
+use crate::{Outcome, UsageError};
 use options::MpCommand;
 
 /// Executes a subcommand of `bahn mp`.
@@ -28,13 +28,6 @@ pub(crate) fn command(options: &MpOptions) -> Result<Outcome, UsageError> {
         MpCommand::Diff(options) => diff::command(options),
         MpCommand::New(options) => new::command(options),
     }
-}
-
-/// Prints a report as JSON.
-fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
-    let json = serde_json::to_string_pretty(report)
-        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-    console::print(&(json + "\n"))
 }
 
 /// `1 error`, `2 errors`.

@@ -3,10 +3,9 @@
 use bahn_plc::Diagnostic as Fault;
 
 use super::options::CheckOptions;
-use super::print_json;
 use super::source::Source;
 use crate::options::Format;
-use crate::{Outcome, UsageError, diagnostics};
+use crate::{Outcome, UsageError, console, diagnostics};
 
 /// Compiles a program and prints what is wrong.
 pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
@@ -21,7 +20,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
         nominal_percent: compilation.nominal_percent(),
     };
     match options.format {
-        Format::Json => print_json(&report)?,
+        Format::Json => console::print_json(&report)?,
         Format::Text => {
             source.print_faults();
             let count = |number: usize, what: &str| match number {

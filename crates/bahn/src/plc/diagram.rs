@@ -7,7 +7,6 @@ use bahn_exchange::Exchange;
 
 use super::drawing::{self, Diagram};
 use super::options::DiagramOptions;
-use super::print_json;
 use super::subject::Subject;
 use crate::files::{self, NewFile};
 use crate::options::Format;
@@ -97,7 +96,7 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
             file.finish()?;
         }
         (None, Format::Text) => console::print(&drawing::text(&diagram))?,
-        (None, Format::Json) => print_json(&Report::new(&diagram))?,
+        (None, Format::Json) => console::print_json(&Report::new(&diagram))?,
     }
     Ok(outcome)
 }

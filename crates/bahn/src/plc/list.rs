@@ -6,7 +6,6 @@ use bahn_plc::Compilation;
 
 use super::check::Entry;
 use super::options::ListOptions;
-use super::print_json;
 use super::source::Source;
 use crate::diagnostics::printable;
 use crate::options::Format;
@@ -23,7 +22,7 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
         .map(|file| File::new(&file.name, &file.lines, compilation))
         .collect();
     match options.format {
-        Format::Json => print_json(&files)?,
+        Format::Json => console::print_json(&files)?,
         Format::Text => {
             let files: Vec<String> = files.iter().map(File::text).collect();
             console::print(&files.join("\n"))?;

@@ -39,7 +39,7 @@ use std::path::Path;
 
 use bahn_host::Retained;
 
-use crate::{Outcome, UsageError, console, diagnostics};
+use crate::{Outcome, UsageError, diagnostics};
 use options::PlcCommand;
 
 /// Executes a subcommand of `bahn plc`.
@@ -64,11 +64,4 @@ fn retained(path: Option<&Path>) -> Result<Option<Retained>, UsageError> {
         diagnostics::print_line(&format!("warning: {damage}"));
     }
     Ok(retained)
-}
-
-/// Prints a report as JSON.
-fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
-    let json = serde_json::to_string_pretty(report)
-        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-    console::print(&(json + "\n"))
 }

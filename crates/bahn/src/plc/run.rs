@@ -11,7 +11,6 @@ use super::bench::{self, Bench, Failure};
 use super::failure;
 use super::live;
 use super::options::RunOptions;
-use super::print_json;
 use super::record::Record;
 use super::source::Source;
 use super::trace::{Line, Trace};
@@ -38,7 +37,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
     let parameters = source.parameters.clone();
     let Some(program) = source.program() else {
         if options.format == Format::Json {
-            print_json(&Report::not_run(first_error))?;
+            console::print_json(&Report::not_run(first_error))?;
         }
         return Ok(Outcome::ProgramError);
     };
@@ -98,7 +97,7 @@ pub(super) fn command(options: &RunOptions) -> Result<Outcome, UsageError> {
         Format::Json => {
             report.trace_left_off = options.trace.map(|_| trace.left_off);
             report.trace = options.trace.map(|_| trace.lines);
-            print_json(&report)?;
+            console::print_json(&report)?;
         }
         Format::Text => console::print(&(trace.text() + &report.text()))?,
     }

@@ -3,7 +3,6 @@
 use bahn_exchange::signal::{self, Signal, SignalOperand};
 
 use super::options::SignalsOptions;
-use super::print_json;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console};
 use bahn_host::Operand;
@@ -16,7 +15,9 @@ pub(super) fn command(options: &SignalsOptions) -> Result<Outcome, UsageError> {
         .filter(|signal| words.iter().all(|word| matches(signal, word)))
         .collect();
     match options.format {
-        Format::Json => print_json(&chosen.iter().map(|signal| Entry::new(signal)).collect::<Vec<_>>())?,
+        Format::Json => {
+            console::print_json(&chosen.iter().map(|signal| Entry::new(signal)).collect::<Vec<_>>())?
+        }
         Format::Text => console::print(&text(&chosen))?,
     }
     Ok(Outcome::Fine)

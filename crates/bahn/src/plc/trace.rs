@@ -6,7 +6,6 @@ use bahn_plc::{OperandContent, TraceStep, Tracer};
 use super::diagram;
 use super::halt::Halt;
 use super::options::TraceOptions;
-use super::print_json;
 use super::subject::Subject;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
@@ -43,7 +42,7 @@ pub(super) fn command(options: &TraceOptions) -> Result<Outcome, UsageError> {
     match options.format {
         Format::Text => console::print(&trace.text())?,
         Format::Json => {
-            print_json(&trace.lines)?;
+            console::print_json(&trace.lines)?;
             if let Some(more) = trace.more() {
                 diagnostics::print_line(&format!("warning: {more}"));
             }

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 use bahn_plc::{Label, LabelPlace, PlcProgram, SourceLine};
 
 use super::options::XrefOptions;
-use super::print_json;
 use super::source::Source;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console};
@@ -27,7 +26,7 @@ pub(super) fn command(options: &XrefOptions) -> Result<Outcome, UsageError> {
         reference.labels.clear();
     }
     match options.format {
-        Format::Json => print_json(&reference)?,
+        Format::Json => console::print_json(&reference)?,
         Format::Text => console::print(&reference.text())?,
     }
     Ok(Outcome::Fine)

@@ -132,7 +132,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
 fn refused(faults: &[FileFault], options: &RunMachineOptions) -> Result<Outcome, UsageError> {
     diagnostics::print_faults(faults);
     if options.format == Format::Json {
-        print_json(&Refusal::of(faults))?;
+        console::print_json(&Refusal::of(faults))?;
     }
     Ok(Outcome::ProgramError)
 }
@@ -472,12 +472,6 @@ fn say_failure(error: &ErrorReport, channel: usize, session: &Session, programs:
     }
 }
 
-fn print_json(report: &impl serde::Serialize) -> Result<(), UsageError> {
-    let json = serde_json::to_string_pretty(report)
-        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-    console::print(&(json + "\n"))
-}
-
 fn print_report(
     report: &RunReport,
     result: &str,
@@ -486,7 +480,7 @@ fn print_report(
     drawn: bool,
 ) -> Result<(), UsageError> {
     if options.format == Format::Json {
-        return print_json(report);
+        return console::print_json(report);
     }
     let mut written = report_text::written(&options.output, drawn);
     let scope = &options.oscilloscope.oscilloscope;

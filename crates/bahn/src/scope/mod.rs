@@ -67,11 +67,7 @@ pub(crate) fn command(options: &ScopeOptions) -> Result<Outcome, UsageError> {
     }
     match options.format {
         Format::Text => console::print(&summary.text())?,
-        Format::Json => {
-            let json = serde_json::to_string_pretty(&summary)
-                .map_err(|error| UsageError::new(format!("cannot write the summary: {error}")))?;
-            console::print(&(json + "\n"))?;
-        }
+        Format::Json => console::print_json(&summary)?,
     }
     Ok(Outcome::Fine)
 }

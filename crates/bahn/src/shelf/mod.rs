@@ -200,9 +200,7 @@ fn json(rows: &[&Row], options: &TestOptions) -> Result<String, UsageError> {
         totals: Totals::of(rows),
         programs: rows.iter().map(|row| (*row).clone()).collect(),
     };
-    serde_json::to_string_pretty(&shelf)
-        .map(|text| text + "\n")
-        .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))
+    console::json(&shelf)
 }
 
 fn write(

@@ -31,11 +31,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     }
     let faulty = reports.iter().any(|report| !report.faults.is_empty());
     match options.format {
-        Format::Json => {
-            let text = serde_json::to_string_pretty(&reports);
-            let text = text.map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-            console::print(&(text + "\n"))?;
-        }
+        Format::Json => console::print_json(&reports)?,
         Format::Text => {
             for report in reports.iter().filter(|report| report.faults.is_empty()) {
                 let (file, kind, rows) = (&report.file, report.kind, report.rows);

@@ -44,11 +44,7 @@ pub(super) fn command(options: &ShowOptions) -> Result<Outcome, UsageError> {
         ShowFormat::Text => console::print(&columns(&table))?,
         ShowFormat::Csv => console::print(&table.separated(','))?,
         ShowFormat::Tsv => console::print(&table.separated('\t'))?,
-        ShowFormat::Json => {
-            let text = serde_json::to_string_pretty(&report(&source, &table));
-            let text = text.map_err(|error| UsageError::new(format!("cannot write the table: {error}")))?;
-            console::print(&(text + "\n"))?;
-        }
+        ShowFormat::Json => console::print_json(&report(&source, &table))?,
     }
     Ok(Outcome::Fine)
 }

@@ -144,10 +144,6 @@ fn print_report(report: &Report, options: &TestOptions, drawn: bool) -> Result<(
             options.model,
             &report_text::written(&options.output, drawn),
         )),
-        Format::Json => {
-            let json = serde_json::to_string_pretty(report)
-                .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-            console::print(&(json + "\n"))
-        }
+        Format::Json => console::print_json(report),
     }
 }

@@ -188,9 +188,7 @@ fn write(path: &Path, text: &str) -> Result<(), UsageError> {
 
 fn print(report: &Report, options: &TortureOptions) -> Result<(), UsageError> {
     if options.format == Format::Json {
-        let json = serde_json::to_string_pretty(report)
-            .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-        return console::print(&(json + "\n"));
+        return console::print_json(report);
     }
     let mut text = String::new();
     for violation in &report.violations {

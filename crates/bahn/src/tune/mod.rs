@@ -149,11 +149,7 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
     }
     let report = report(&tuned, circle, &list, options.write);
     match options.format {
-        Format::Json => {
-            let json = serde_json::to_string_pretty(&report)
-                .map_err(|error| UsageError::new(format!("cannot write the report: {error}")))?;
-            console::print(&(json + "\n"))?;
-        }
+        Format::Json => console::print_json(&report)?,
         Format::Text => console::print(&text(&report))?,
     }
     Ok(Outcome::Fine)

@@ -101,6 +101,21 @@ pub fn machines() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines")
 }
 
+/// Holds a document of the repository to what a command prints; with `BAHN_WRITE_DOCS` it is written anew first.
+pub fn holds_document(document: &str, command: &str, written_by: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(document);
+    let run = Folder::new().bahn(command);
+    assert_eq!(run.code(), 0, "{}", run.err());
+    if std::env::var_os("BAHN_WRITE_DOCS").is_some() {
+        std::fs::write(&path, run.out()).unwrap();
+    }
+    let written = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        written == run.out(),
+        "{document} is not what `bahn {command}` prints: {written_by}"
+    );
+}
+
 /// Copies a folder, without what a control in it remembers.
 pub fn copy(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).unwrap();
