@@ -2,7 +2,7 @@
 
 use bahn_motion::Aim;
 use bahn_parameters::ParameterList;
-use bahn_path::{Axis, AxisSet, Position};
+use bahn_path::{Axis, AxisSet, PerAxis, Position};
 use bahn_servo::{Commands, Gantry, Measured, Timing};
 
 use crate::axis::{AxisId, AxisUnit, Mover};
@@ -236,8 +236,8 @@ impl OwnAxes<'_> {
     /// The box of the active traverse range.
     pub fn traverse_box(&self) -> Box2 {
         let mut limits: Box2 = [
-            [f64::NEG_INFINITY; Axis::COUNT].into(),
-            [f64::INFINITY; Axis::COUNT].into(),
+            PerAxis::splat(f64::NEG_INFINITY).into(),
+            PerAxis::splat(f64::INFINITY).into(),
         ];
         for unit in self.iter() {
             if let Some([least, greatest]) = unit.limited() {

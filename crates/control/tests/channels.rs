@@ -11,7 +11,7 @@ use bahn_control::{
 };
 use bahn_machine::Machine;
 use bahn_parameters::ParameterList;
-use bahn_path::{Axis, Curve, Position};
+use bahn_path::{Axis, Curve, PerAxis, Position};
 use support::bench::{bench, close, fourth};
 use support::{Build, Rig, Shelf};
 
@@ -612,13 +612,14 @@ impl Kinematics for Leaning {
     fn bounds(&self, _: &Curve, start: &Position, end: &Position, offsets: &Offsets) -> [Position; 2] {
         // On a straight line the axes are farthest at its ends.
         let ends = [start, end].map(|at| self.to_axes(at, offsets));
-        let bound = |of: fn(f64, f64) -> f64| Axis::ALL.map(|axis| of(ends[0][axis], ends[1][axis])).into();
+        let bound =
+            |of: fn(f64, f64) -> f64| PerAxis::from_fn(|axis| of(ends[0][axis], ends[1][axis])).into();
         [bound(f64::min), bound(f64::max)]
     }
 
     fn shares(&self) -> Shares {
         let mut shares = Cartesian.shares();
-        shares[Axis::X.index()][Axis::Y.index()] = 0.5;
+        shares[Axis::X][Axis::Y] = 0.5;
         shares
     }
 }
