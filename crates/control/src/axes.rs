@@ -1,7 +1,7 @@
 //! The servo axes of the machine, and those of them that a channel moves.
 
 use bahn_motion::Aim;
-use bahn_parameters::ParameterList;
+use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, AxisSet, PerAxis, Position};
 use bahn_servo::{Commands, Gantry, Measured, Timing};
 
@@ -152,15 +152,15 @@ impl Axes {
 }
 
 /// The numbers of the axes of the first channel.
-pub(crate) fn first_ids() -> [Option<AxisId>; AXES] {
-    [0, 1, 2, 3, 4].map(AxisId::new)
+pub(crate) fn first_ids() -> PerPlcAxis<Option<AxisId>> {
+    PerPlcAxis::from_fn(AxisId::new)
 }
 
 /// The axes that a list of machine parameters gives to a channel, whose connectors count from a place on the machine.
 pub(crate) fn units(
     parameters: &ParameterList,
     of: (usize, usize),
-    ids: [Option<AxisId>; AXES],
+    ids: PerPlcAxis<Option<AxisId>>,
 ) -> Vec<AxisUnit> {
     let timing = Timing::of(parameters.model());
     let ids = (0u8..).zip(ids);

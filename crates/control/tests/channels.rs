@@ -10,7 +10,7 @@ use bahn_control::{
     Remembered, RunState, Setup, Shares, Snapshot, SpindleWiring, Window,
 };
 use bahn_machine::Machine;
-use bahn_parameters::ParameterList;
+use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Curve, PerAxis, Position};
 use support::bench::{bench, close, fourth};
 use support::{Build, Rig, Shelf};
@@ -127,12 +127,12 @@ fn setups(first: &str, second: &str) -> (Setup, ChannelSetup, Machine) {
     for assignment in ["10=%00001", "50=%00001", "110.0=3", "120.0=3", "3010=0"] {
         parameters.assign(assignment).unwrap();
     }
-    let axes = [AxisId::new(3), None, None, None, None];
+    let axes = PerPlcAxis([AxisId::new(3), None, None, None, None]);
     (setup, channel(parameters, axes, second), machine)
 }
 
 /// A channel with the program 2.H.
-fn channel(parameters: ParameterList, axes: [Option<AxisId>; 5], blocks: &str) -> ChannelSetup {
+fn channel(parameters: ParameterList, axes: PerPlcAxis<Option<AxisId>>, blocks: &str) -> ChannelSetup {
     let mut programs = Shelf::default();
     let text = format!("BEGIN PGM 2 MM\n{blocks}\nEND PGM 2 MM\n");
     programs.0.insert("2.H".to_owned(), text);
@@ -584,7 +584,7 @@ fn channels_are_put_together_with_care() {
         Some(ChannelError::TooMany)
     );
     let x = AxisId::new(0).unwrap();
-    other.axes = [Some(x), None, None, None, None];
+    other.axes = PerPlcAxis([Some(x), None, None, None, None]);
     assert_eq!(
         Control::with_channels(setup, vec![other]).err(),
         Some(ChannelError::AxisTwice(x))
@@ -635,7 +635,7 @@ fn leaning(program: &str, parameters_of_it: &[&str]) -> Rig {
     {
         parameters.assign(assignment).unwrap();
     }
-    let axes = [AxisId::new(6), AxisId::new(7), None, None, None];
+    let axes = PerPlcAxis([AxisId::new(6), AxisId::new(7), None, None, None]);
     let mut other = channel(parameters, axes, program);
     other.kinematics = Arc::new(Leaning);
     let cams = "M2556".parse().unwrap();
