@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use bahn_interpreter::{Interpreter, NoLibrary, Settings};
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
-use bahn_path::{Axis, LiveData};
+use bahn_path::{LiveData, PerAxis};
 use bahn_program::Program;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -38,8 +38,8 @@ fn wave(compensation: &str, step: f64) -> Vec<u8> {
 fn run(bytes: &[u8]) -> f64 {
     let program = Arc::new(Program::from_bytes("BENCH.H", bytes.to_vec()));
     let limits = Limits {
-        max_feed_mm_min: [15_000.0; Axis::COUNT],
-        acceleration_m_s2: [1.0; Axis::COUNT],
+        max_feed_mm_min: PerAxis::splat(15_000.0),
+        acceleration_m_s2: PerAxis::splat(1.0),
         radial_acceleration_m_s2: 0.5,
         corner_angle_deg: 10.0,
         servo_lag: false,

@@ -9,7 +9,7 @@ use bahn_interpreter::{MachineTexts, Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, ParameterList, conformance};
-use bahn_path::{Axis, Position};
+use bahn_path::{Axis, PerAxis, Position};
 use bahn_plc::MemoryTable;
 
 use crate::UsageError;
@@ -188,14 +188,14 @@ fn machine_zero(list: &ParameterList, datum: &Position) -> Position {
         (None, 0.0) => f64::NAN,
         (None, machine_datum) => machine_datum,
     };
-    Axis::ALL.map(zero).into()
+    PerAxis::from_fn(zero).into()
 }
 
 /// The limits of motion.
 pub(crate) fn limits(list: &ParameterList, machine: &MachineOptions) -> Limits {
     Limits {
-        max_feed_mm_min: all_axes(|axis| list.rapid_traverse_mm_min(axis)),
-        acceleration_m_s2: all_axes(|axis| list.acceleration_m_s2(axis)),
+        max_feed_mm_min: PerAxis::from_fn(|axis| list.rapid_traverse_mm_min(axis)),
+        acceleration_m_s2: PerAxis::from_fn(|axis| list.acceleration_m_s2(axis)),
         radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
         corner_angle_deg: list.corner_angle_deg(),
         servo_lag: !list.feed_precontrol(),
@@ -276,10 +276,6 @@ fn q_value(text: &str, model: ControlModel) -> Result<(u16, f64), UsageError> {
         Ok(value) if value.abs() <= Q_VALUE_MAX => Ok((number, value)),
         _ => Err(wrong(format!("`{value}` is no number"))),
     }
-}
-
-fn all_axes(value: impl Fn(Axis) -> f64) -> [f64; Axis::COUNT] {
-    Axis::ALL.map(value)
 }
 
 #[cfg(test)]

@@ -84,6 +84,22 @@ const WHOLES: &[(&str, &str, &str)] = &[
     ("control", "ProgramRun", "run.rs"),
 ];
 
+/// Arrays of five or nine numbers, letters or the like that are not those of axes.
+const NOT_OF_AXES: &[(&str, &str)] = &[
+    ("control/src/touched.rs", "the sums of a circle through points"),
+    (
+        "control/src/handwheel.rs",
+        "the rapid traverses from which on a factor is possible, the positions of a switch",
+    ),
+    ("path/src/region/offset.rs", "the places of segments"),
+    ("plc/src/modules/coordinates.rs", "the coordinates of a spindle"),
+    (
+        "parameters/src/settings/tables.rs",
+        "the columns of a pocket table",
+    ),
+    ("workpiece/benches/tools.rs", "corner radii"),
+];
+
 const UNFINISHED: &[&str] = &["todo!(", "unimplemented!(", "FIXME", "HACK"];
 
 fn root() -> PathBuf {
@@ -195,6 +211,69 @@ fn parameter_numbers_stand_in_one_room() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// How many axes there are, two types know: `PerAxis` those of a path, `PerPlcAxis` those of a list of machine
+/// parameters. Nobody has an array of nine or five of them, or counts them otherwise.
+#[test]
+fn axes_are_counted_in_one_place() {
+    let mut faults = Vec::new();
+    let mut known: BTreeSet<&str> = NOT_OF_AXES.iter().map(|(file, _)| *file).collect();
+    let rooms = ["crates", "machines", "fuzz/fuzz_targets"].map(|folder| source_files(&root().join(folder)));
+    for file in rooms.iter().flatten().filter(|file| !file.ends_with("tidy.rs")) {
+        let path = file.to_string_lossy();
+        let other = NOT_OF_AXES.iter().find(|(other, _)| path.ends_with(other));
+        let text = fs::read_to_string(file).unwrap();
+        for (number, line) in (1..).zip(text.lines()) {
+            let counts = line.contains("Axis::COUNT") || line.contains("Axis::ALL.map(");
+            let array = is_array_of_axes(line);
+            if let (true, Some((other, _))) = (array, other) {
+                known.remove(other);
+            } else if (array || counts) && !path.ends_with("path/src/axis.rs") {
+                faults.push(format!("{path}:{number}: {}", line.trim()));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(known.is_empty(), "no such arrays any more: {known:?}");
+}
+
+/// Whether a line has an array of literal length 5 or 9 whose elements may be of axes: numbers, letters, what is or is
+/// not, axes and their numbers. What is given in other types (texts, keys, pairs) is no value of an axis.
+fn is_array_of_axes(line: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default();
+    ["; 5]", "; 9]"].iter().any(|end| {
+        code.match_indices(end).any(|(at, _)| {
+            let element = code[..at].rsplit('[').next().unwrap_or_default();
+            let literal = element.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+            let types = [
+                "f32", "f64", "u8", "i32", "usize", "bool", "char", "true", "false", "None",
+            ];
+            let of_axis = element.starts_with("Option<") || element.contains("Axis");
+            literal || of_axis || types.contains(&element)
+        })
+    })
+}
+
+#[test]
+fn arrays_of_axes_are_told_from_others() {
+    for array in [
+        "axes: [Option<AxisId>; 5],",
+        "[TestAxis::default(); 5]",
+        "[0.0; 9].into()",
+        "[[1.0; 5]; 3]",
+    ] {
+        assert!(is_array_of_axes(array), "{array}");
+    }
+    for other in [
+        "[0.0; PLC_AXES]",
+        "[Bit; 5]",
+        "[[f64; 2]; 5]",
+        "[f64; 15]",
+        "// [f64; 5]",
+    ] {
+        assert!(!is_array_of_axes(other), "{other}");
+    }
 }
 
 /// Arrows point down within a room, too: no file uses one that uses it, but for the circles that are known.

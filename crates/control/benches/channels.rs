@@ -10,6 +10,7 @@ use std::sync::Arc;
 use bahn_control::{
     AxisId, Cartesian, ChannelSetup, Command, Control, Mode, Remembered, RunState, SpindleWiring, Window,
 };
+use bahn_parameters::PerPlcAxis;
 use bahn_servo::IdealAxes;
 use divan::Bencher;
 use support::Shelf;
@@ -50,7 +51,7 @@ fn cutting(channels: u8) -> (Control, IdealAxes) {
         let axis = |place| AxisId::new(5 + 4 * (number - 1) + place);
         ChannelSetup {
             parameters: setup.parameters.clone(),
-            axes: [axis(1), axis(2), axis(3), axis(4), None],
+            axes: PerPlcAxis([axis(1), axis(2), axis(3), axis(4), None]),
             connectors: 5 * number,
             spindle: SpindleWiring { output: 5, input: 5 },
             programs: Arc::new(programs),

@@ -1,8 +1,8 @@
 //! The servo axes of the machine, and those of them that a channel moves.
 
 use bahn_motion::Aim;
-use bahn_parameters::ParameterList;
-use bahn_path::{Axis, AxisSet, Position};
+use bahn_parameters::{ParameterList, PerPlcAxis};
+use bahn_path::{Axis, AxisSet, PerAxis, Position};
 use bahn_servo::{Commands, Gantry, Measured, Timing};
 
 use crate::axis::{AxisId, AxisUnit, Mover};
@@ -152,15 +152,15 @@ impl Axes {
 }
 
 /// The numbers of the axes of the first channel.
-pub(crate) fn first_ids() -> [Option<AxisId>; AXES] {
-    [0, 1, 2, 3, 4].map(AxisId::new)
+pub(crate) fn first_ids() -> PerPlcAxis<Option<AxisId>> {
+    PerPlcAxis::from_fn(AxisId::new)
 }
 
 /// The axes that a list of machine parameters gives to a channel, whose connectors count from a place on the machine.
 pub(crate) fn units(
     parameters: &ParameterList,
     of: (usize, usize),
-    ids: [Option<AxisId>; AXES],
+    ids: PerPlcAxis<Option<AxisId>>,
 ) -> Vec<AxisUnit> {
     let timing = Timing::of(parameters.model());
     let ids = (0u8..).zip(ids);
@@ -236,8 +236,8 @@ impl OwnAxes<'_> {
     /// The box of the active traverse range.
     pub fn traverse_box(&self) -> Box2 {
         let mut limits: Box2 = [
-            [f64::NEG_INFINITY; Axis::COUNT].into(),
-            [f64::INFINITY; Axis::COUNT].into(),
+            PerAxis::splat(f64::NEG_INFINITY).into(),
+            PerAxis::splat(f64::INFINITY).into(),
         ];
         for unit in self.iter() {
             if let Some([least, greatest]) = unit.limited() {

@@ -1,11 +1,7 @@
 //! Non-linear axis errors: compensation tables (.COM) and their assignment (.CMA) [000:3770-3865].
 
+use bahn_parameters::{PLC_AXIS_NAMES, PerPlcAxis};
 use bahn_servo::ErrorTable;
-
-use crate::markers::AXES;
-
-/// Names of the axes in tables, by axis index.
-const NAMES: [&str; AXES] = ["X", "Y", "Z", "4", "5"];
 
 /// A compensation table: errors of several axes over the position of the axis that it is assigned to.
 ///
@@ -43,7 +39,7 @@ pub struct CompensationTable {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CompensationAssignment {
     /// Names of tables by line and axis index.
-    pub lines: Vec<[Option<String>; AXES]>,
+    pub lines: Vec<PerPlcAxis<Option<String>>>,
     /// The line that is active at power-on.
     pub active: Option<usize>,
 }
@@ -73,7 +69,9 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
 /// `Y=VALUE`: axis index and value.
 fn cell(line: usize, word: &str) -> Result<(usize, &str), CompensationError> {
     let found = word.split_once('=').and_then(|(name, value)| {
-        let axis = NAMES.iter().position(|known| known.eq_ignore_ascii_case(name))?;
+        let axis = PLC_AXIS_NAMES
+            .iter()
+            .position(|known| known.eq_ignore_ascii_case(name))?;
         Some((axis, value))
     });
     found.map_or_else(|| error(line, "a cell is written axis=value, as Y=0.005"), Ok)
@@ -99,7 +97,10 @@ impl CompensationTable {
         };
         let mut columns = Vec::new();
         for name in axes {
-            match NAMES.iter().position(|known| known.eq_ignore_ascii_case(name)) {
+            match PLC_AXIS_NAMES
+                .iter()
+                .position(|known| known.eq_ignore_ascii_case(name))
+            {
                 Some(axis) => columns.push((axis, Vec::new())),
                 None => return error(line, "the axes are X, Y, Z, 4 and 5"),
             }
@@ -176,7 +177,7 @@ impl CompensationAssignment {
             if number.parse() != Ok(assignment.lines.len()) {
                 return error(line, "lines are numbered 0, 1, 2 in their order");
             }
-            let mut tables: [Option<String>; AXES] = Default::default();
+            let mut tables: PerPlcAxis<Option<String>> = Default::default();
             for word in cells {
                 let (axis, name) = cell(line, word)?;
                 if let Some(table) = tables.get_mut(axis) {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Warning, Work};
-use bahn_parameters::{ControlModel, MessageId, ParameterList};
+use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::PathElement;
 use bahn_plc::Tracer;
 use bahn_servo::Plant;
@@ -17,7 +17,6 @@ use crate::command::{Command, Mode};
 use crate::hand_over::{HandOver, Ordered};
 use crate::handshake::Waiting;
 use crate::kernel::Kernel;
-use crate::markers::AXES;
 use crate::message::{Message, Shown};
 use crate::progress::RunState;
 use crate::sampling::{ServoSampler, ServoView};
@@ -397,7 +396,7 @@ impl Control {
 
     /// The offsets that code number 75 368 shows while its dialogue is open, by axis index, in units of
     /// 0.15 mV [000:5014-5016].
-    pub fn offsets_shown(&self) -> Option<[i32; AXES]> {
+    pub fn offsets_shown(&self) -> Option<PerPlcAxis<i32>> {
         let axes = self.kernel.machine.axes.owned(0);
         let units = by_index(axes, |unit| unit.index, |unit| unit.servo.offset_units());
         self.kernel.machine.offsets.shown.then_some(units)

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use bahn_parameters::PerPlcAxis;
 use bahn_path::{Axis, Position};
 
 use crate::axes::OwnAxes;
 use crate::kinematics::{Chain, Kinematics, Offsets};
 use crate::leaning::MAIN;
-use crate::markers::AXES;
 use crate::setup::Remembered;
 
 /// A datum that moves less than this stays where it is, mm: rounding.
@@ -26,7 +26,7 @@ pub(crate) struct Datums {
     /// Machine position of the workpiece datum for each traverse range.
     points: [Position; 3],
     /// Datum correction by the PLC, mm or degrees, by axis index.
-    correction: [f64; AXES],
+    correction: PerPlcAxis<f64>,
     /// Active traverse range, 0 to 2.
     range: usize,
     /// Each traverse range has its datum (MP7490).
@@ -47,7 +47,7 @@ impl Datums {
         };
         Datums {
             points,
-            correction: [0.0; AXES],
+            correction: PerPlcAxis::splat(0.0),
             range: 0,
             each_range,
             chain: Chain::new(kinematics, offsets),
@@ -76,7 +76,7 @@ impl Datums {
     }
 
     /// Datum correction by the PLC: each replaces the last one.
-    pub fn correct(&mut self, correction: [f64; AXES], axes: &OwnAxes) {
+    pub fn correct(&mut self, correction: PerPlcAxis<f64>, axes: &OwnAxes) {
         self.correction = correction;
         self.chain.offsets.datum = self.active(axes);
     }

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use bahn_interpreter::{Cause, Interpreter, Message, ProgramError, Settings};
 use bahn_parameters::MessageId;
 use bahn_path::{
-    Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, Position, Step,
+    Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, PerAxis,
+    Position, Step,
 };
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
@@ -347,7 +348,7 @@ impl Feeder {
     fn take_ranges(&mut self, element: &PathElement, range_of: impl Fn(Axis, &Position) -> f64) {
         for output in element.functions() {
             if let Function::Superimpose(range) = &output.function {
-                self.beside = Axis::ALL.map(|axis| range_of(axis, range)).into();
+                self.beside = PerAxis::from_fn(|axis| range_of(axis, range)).into();
             }
         }
     }
@@ -469,7 +470,7 @@ mod tests {
             tool_axis: Axis::Z,
             tool_length: 0.0,
         };
-        let limits = [[-200.0; 9].into(), [200.0; 9].into()];
+        let limits = [PerAxis::splat(-200.0).into(), PerAxis::splat(200.0).into()];
         let settings = Settings {
             start: Position::ZERO,
             tool_length_mm: Some(0.0),

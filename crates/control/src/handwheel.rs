@@ -1,8 +1,8 @@
 //! The electronic handwheel: which axis its wheels lead and how far, and where its keys go [000:8060-8446].
 
 use bahn_exchange::{Image, signal};
-use bahn_parameters::MessageId;
 use bahn_parameters::operation::{Handwheel as Kind, HandwheelParameters};
+use bahn_parameters::{MessageId, PerPlcAxis};
 use bahn_servo::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
 
 use crate::axes::OwnAxes;
@@ -39,7 +39,7 @@ pub(crate) struct Handwheel {
     /// Axis index of the wheel that has no axis of its own.
     axis: usize,
     /// Interpolation factors, by axis index.
-    factors: [u8; AXES],
+    factors: PerPlcAxis<u8>,
     /// Speed of the HR 410: slow, medium, fast.
     speed: usize,
     wheels: [Wheel; WHEELS],
@@ -48,7 +48,7 @@ pub(crate) struct Handwheel {
     /// It was asked for.
     missing: bool,
     /// What was turned for M118 in this cycle, by axis index, mm.
-    travels: [f64; AXES],
+    travels: PerPlcAxis<f64>,
 }
 
 /// One wheel.
@@ -64,12 +64,12 @@ impl Default for Handwheel {
     fn default() -> Handwheel {
         Handwheel {
             axis: 0,
-            factors: [5; AXES],
+            factors: PerPlcAxis::splat(5),
             speed: 0,
             wheels: [Wheel::default(); WHEELS],
             keys: HandwheelKeys::default(),
             missing: false,
-            travels: [0.0; AXES],
+            travels: PerPlcAxis::splat(0.0),
         }
     }
 }
@@ -80,11 +80,11 @@ impl Handwheel {
         for (wheel, count) in self.wheels.iter_mut().zip(inputs.counts) {
             wheel.count = Some(count);
         }
-        self.travels = [0.0; AXES];
+        self.travels = PerPlcAxis::splat(0.0);
     }
 
     /// What was turned for M118 in this cycle, by axis index, mm.
-    pub fn travels(&self) -> [f64; AXES] {
+    pub fn travels(&self) -> PerPlcAxis<f64> {
         self.travels
     }
 
@@ -97,7 +97,7 @@ impl Handwheel {
         nc: &Image,
     ) {
         self.take_keys(inputs, rules, axes);
-        self.travels = [0.0; AXES];
+        self.travels = PerPlcAxis::splat(0.0);
         for (number, count) in inputs.counts.into_iter().enumerate() {
             let axis = wheel_axis(number, rules, inputs, self.axis);
             let factor = axis.map_or(FACTOR_MAX, |index| self.factor(index, rules, axes));
@@ -132,7 +132,7 @@ impl Handwheel {
     }
 
     /// Interpolation factors by axis index.
-    pub fn factors(&self) -> [u8; AXES] {
+    pub fn factors(&self) -> PerPlcAxis<u8> {
         self.factors
     }
 
@@ -150,7 +150,7 @@ impl Handwheel {
     }
 
     /// Module 9036: factors and axis.
-    pub fn take(&mut self, factors: [Option<u8>; AXES], axis: Option<usize>) {
+    pub fn take(&mut self, factors: PerPlcAxis<Option<u8>>, axis: Option<usize>) {
         for (factor, changed) in self.factors.iter_mut().zip(factors) {
             *factor = changed.unwrap_or(*factor);
         }
@@ -224,7 +224,7 @@ impl Handwheel {
         inputs: &HandwheelInputs,
         reach: &Reach,
         now: &Now,
-        pushed: &mut [Option<Direction>; AXES],
+        pushed: &mut PerPlcAxis<Option<Direction>>,
     ) {
         let rules = &reach.rules.handwheel;
         for (number, count) in inputs.counts.into_iter().enumerate() {
@@ -266,7 +266,7 @@ impl Wheel {
         factor: u8,
         reach: &Reach,
         now: &Now,
-        pushed: &mut [Option<Direction>; AXES],
+        pushed: &mut PerPlcAxis<Option<Direction>>,
     ) {
         let before = self.count.replace(count).unwrap_or(count);
         if self.lead.is_some_and(|(index, _)| Some(index) != axis) {
@@ -373,7 +373,7 @@ pub(crate) fn plc_inputs(rules: &HandwheelParameters, inputs: &HandwheelInputs) 
         (10, Key::Plus),
     ];
     // The places of the axis keys are inferred from those that are left.
-    const HR332_AXES: [(usize, Key); 5] = [
+    const HR332_AXES: [(usize, Key); AXES] = [
         (0, Key::X),
         (1, Key::Y),
         (2, Key::Z),

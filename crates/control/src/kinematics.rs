@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bahn_path::{Axis, Curve, Function, PathElement, Placement, Position};
+use bahn_path::{Axis, Curve, Function, PathElement, PerAxis, Placement, Position};
 
 use crate::superimposing::Superimposed;
 
@@ -57,25 +57,19 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// By how much each axis moves at most when a slot of the path moves by 1: a row for each axis, a column for each
     /// slot. Feed and acceleration of the path are such that no axis exceeds its own.
     fn shares(&self) -> Shares {
-        let mut shares = [[0.0; Axis::COUNT]; Axis::COUNT];
-        for (index, row) in shares.iter_mut().enumerate() {
-            if let Some(own) = row.get_mut(index) {
-                *own = 1.0;
-            }
-        }
-        shares
+        PerAxis::from_fn(|axis| PerAxis::from_fn(|slot| if slot == axis { 1.0 } else { 0.0 }))
     }
 }
 
 /// See [`Kinematics::shares`].
-pub type Shares = [[f64; Axis::COUNT]; Axis::COUNT];
+pub type Shares = PerAxis<PerAxis<f64>>;
 
 /// What each slot of the path may have of something of which each axis has a limit, so that all slots together leave no
 /// axis more than its limit.
-pub(crate) fn behind(shares: &Shares, limits: [f64; Axis::COUNT]) -> [f64; Axis::COUNT] {
-    Axis::ALL.map(|slot| {
-        let rows = shares.iter().zip(limits);
-        let moved = rows.filter(|(row, _)| row.get(slot.index()).is_some_and(|share| *share != 0.0));
+pub(crate) fn behind(shares: &Shares, limits: &PerAxis<f64>) -> PerAxis<f64> {
+    PerAxis::from_fn(|slot| {
+        let rows = shares.iter().zip(limits.iter());
+        let moved = rows.filter(|(row, _)| row[slot] != 0.0);
         let each = moved.map(|(row, limit)| limit / row.iter().map(|share| share.abs()).sum::<f64>());
         each.fold(f64::INFINITY, f64::min)
     })
@@ -87,11 +81,11 @@ pub struct Cartesian;
 
 impl Kinematics for Cartesian {
     fn to_axes(&self, path: &Position, offsets: &Offsets) -> Position {
-        Axis::ALL.map(|axis| path[axis] + offsets.of(axis)).into()
+        PerAxis::from_fn(|axis| path[axis] + offsets.of(axis)).into()
     }
 
     fn to_path(&self, axes: &Position, offsets: &Offsets) -> Position {
-        Axis::ALL.map(|axis| axes[axis] - offsets.of(axis)).into()
+        PerAxis::from_fn(|axis| axes[axis] - offsets.of(axis)).into()
     }
 
     fn bounds(&self, curve: &Curve, start: &Position, end: &Position, offsets: &Offsets) -> [Position; 2] {

@@ -2,8 +2,8 @@
 
 use bahn_exchange::signal;
 use bahn_motion::Aim;
-use bahn_parameters::ControlModel;
 use bahn_parameters::technology::Technology;
+use bahn_parameters::{ControlModel, PerPlcAxis};
 use bahn_plc::JogLimit;
 use bahn_servo::HandwheelInputs;
 
@@ -12,7 +12,6 @@ use crate::axis::{AxisUnit, Mover};
 use crate::command::Mode;
 use crate::handwheel::Handwheel;
 use crate::leaning::{Leaning, MAIN, Wish};
-use crate::markers::AXES;
 use crate::message::Message;
 use crate::now::Now;
 use crate::panel::Direction;
@@ -24,15 +23,15 @@ use crate::site::Site;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Manual {
     /// Direction keys that were latched (M2450 with MP7680 bit 0): they count until NC stop [000:7545-7552].
-    latched: [Option<Direction>; AXES],
+    latched: PerPlcAxis<Option<Direction>>,
     /// Jog increment, mm.
     pub increment: f64,
     /// Limit of the jog increment by module 9036, mm.
     increment_limit: Option<f64>,
     /// Positions that jogging goes to.
-    jogging: [Option<f64>; AXES],
+    jogging: PerPlcAxis<Option<f64>>,
     /// Handwheel or jog increment would lead beyond a limit.
-    pushed: [Option<Direction>; AXES],
+    pushed: PerPlcAxis<Option<Direction>>,
     /// The electronic handwheel.
     pub handwheel: Handwheel,
     /// Axis key pressed last.
@@ -50,11 +49,11 @@ pub(crate) struct Manual {
 impl Default for Manual {
     fn default() -> Manual {
         Manual {
-            latched: [None; AXES],
+            latched: PerPlcAxis::splat(None),
             increment: 0.0,
             increment_limit: None,
-            jogging: [None; AXES],
-            pushed: [None; AXES],
+            jogging: PerPlcAxis::splat(None),
+            pushed: PerPlcAxis::splat(None),
             handwheel: Handwheel::default(),
             last_key: 0,
             m: None,
@@ -68,9 +67,9 @@ impl Default for Manual {
 impl Manual {
     /// Lets go of everything.
     pub fn stop(&mut self) {
-        self.latched = [None; AXES];
-        self.jogging = [None; AXES];
-        self.pushed = [None; AXES];
+        self.latched = PerPlcAxis::splat(None);
+        self.jogging = PerPlcAxis::splat(None);
+        self.pushed = PerPlcAxis::splat(None);
         self.handwheel.stop();
     }
 
@@ -163,7 +162,7 @@ impl Manual {
     /// increments are those of upright axes only.
     fn lean(
         &mut self,
-        keys: &[Option<Direction>; AXES],
+        keys: &PerPlcAxis<Option<Direction>>,
         handwheel: &HandwheelInputs,
         reach: &mut Reach,
         now: &Now,
@@ -216,15 +215,15 @@ impl Manual {
     }
 
     /// The direction keys that count, latched ones included.
-    fn keys(&mut self, reach: &Reach, now: &Now) -> [Option<Direction>; AXES] {
+    fn keys(&mut self, reach: &Reach, now: &Now) -> PerPlcAxis<Option<Direction>> {
         if now.mode == Mode::Handwheel {
             // The direction keys work in Handwheel, too, unless jogging is on.
             if reach.nc.bit(signal::ENABLE_JOG_INCREMENT) {
-                return [None; AXES];
+                return PerPlcAxis::splat(None);
             }
         }
         let mut keys = if now.stop {
-            [None; AXES]
+            PerPlcAxis::splat(None)
         } else {
             reach.panel.axis_keys
         };

@@ -4,7 +4,7 @@
 use bahn_interpreter::{BasicRotation, Rules};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::{ProbeSettings, ProbeTurn};
-use bahn_path::{Axis, Plane, Position};
+use bahn_path::{Axis, PerAxis, Plane, Position};
 use bahn_plc::{OrientationDirection, SpindleOrientation};
 use bahn_servo::Measured;
 
@@ -254,7 +254,7 @@ impl ManualProbing {
     /// What is shown of the function that is chosen.
     pub fn shown(&self, offsets: &Offsets) -> Option<ProbeShown> {
         let job = self.job.as_ref()?;
-        let datum = Axis::ALL.map(|axis| match self.probed(axis, offsets) {
+        let datum = PerAxis::from_fn(|axis| match self.probed(axis, offsets) {
             Some(at) => at - offsets.datum[axis],
             None => f64::NAN,
         });
@@ -470,7 +470,7 @@ impl Job {
             return;
         };
         let plane = plane_of(offsets.tool_axis);
-        let mut tip: Position = Axis::ALL.map(|axis| touch[axis] + offsets.datum[axis]).into();
+        let mut tip: Position = PerAxis::from_fn(|axis| touch[axis] + offsets.datum[axis]).into();
         tip[offsets.tool_axis] += offsets.tool_length - calibration.length_mm;
         let [x, y] = plane.point(&tip);
         let [dx, dy] = calibration.offset_mm;

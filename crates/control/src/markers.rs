@@ -2,9 +2,10 @@
 
 use bahn_exchange::signal::*;
 use bahn_exchange::{Bit, Number};
+use bahn_parameters::PLC_AXES;
 
 /// Axes that have markers.
-pub(crate) const AXES: usize = 5;
+pub(crate) const AXES: usize = PLC_AXES;
 
 /// M2000 ff.: the axis is held in its position loop.
 pub(crate) const ENABLED: [Bit; AXES] = [

@@ -428,7 +428,7 @@ mod tests {
     use super::*;
 
     const MODEL: ControlModel = ControlModel::Tnc415b;
-    const LETTERS: [char; 5] = ['X', 'Y', 'Z', 'C', 'V'];
+    const LETTERS: [char; bahn_parameters::PLC_AXES] = ['X', 'Y', 'Z', 'C', 'V'];
 
     fn id(number: u8) -> AxisId {
         AxisId::new(number).unwrap()

@@ -1,8 +1,8 @@
 //! What holds for all that is done in a contour cycle.
 
 use crate::command::Mode;
-use crate::markers::AXES;
 use crate::panel::Direction;
+use bahn_parameters::PerPlcAxis;
 
 /// What the machine side says of now.
 #[derive(Clone, Copy, Debug)]
@@ -41,9 +41,9 @@ pub(crate) struct Now {
     pub feed_percent: f64,
     pub program_percent: f64,
     /// The direction keys that are pressed, by axis index.
-    pub axis_keys: [Option<Direction>; AXES],
+    pub axis_keys: PerPlcAxis<Option<Direction>>,
     /// What the handwheel was turned for M118 in this cycle, by axis index, mm.
-    pub wheel_mm: [f64; AXES],
+    pub wheel_mm: PerPlcAxis<f64>,
     /// Rapid traverse as PLC and probe limit it, mm/min.
     pub rapid_limit_mm_min: f64,
 }

@@ -6,6 +6,7 @@
 use bahn_exchange::{Bit, Image, signal};
 
 use crate::markers::AXES;
+use bahn_parameters::PerPlcAxis;
 
 /// The letters behind `ERROR IN PLC-PROGRAM`.
 pub(crate) type PlcFaultCode = [u8; 2];
@@ -153,11 +154,11 @@ pub(crate) struct Panel {
     /// Feed enable for all axes.
     pub feed_enable: bool,
     /// The direction key of each axis; none when both are pressed.
-    pub axis_keys: [Option<Direction>; AXES],
+    pub axis_keys: PerPlcAxis<Option<Direction>>,
     /// The direction key of each axis for the jog increment became active with this scan.
-    pub jog_started: [Option<Direction>; AXES],
+    pub jog_started: PerPlcAxis<Option<Direction>>,
     start: bool,
-    jog: [Option<Direction>; AXES],
+    jog: PerPlcAxis<Option<Direction>>,
 }
 
 impl Panel {
@@ -170,9 +171,9 @@ impl Panel {
         let jog = if plc.bit(signal::ENABLE_JOG_INCREMENT) {
             keys(&JOG_KEYS, plc)?
         } else {
-            [None; AXES]
+            PerPlcAxis::splat(None)
         };
-        let mut jog_started = [None; AXES];
+        let mut jog_started = PerPlcAxis::splat(None);
         for ((started, now), before) in jog_started.iter_mut().zip(&jog).zip(&self.jog) {
             *started = now.filter(|_| before.is_none());
         }
@@ -200,8 +201,8 @@ impl Command {
     }
 }
 
-fn keys(commands: &[[Command; 2]; AXES], plc: &Image) -> Result<[Option<Direction>; AXES], PlcFaultCode> {
-    let mut keys = [None; AXES];
+fn keys(commands: &[[Command; 2]; AXES], plc: &Image) -> Result<PerPlcAxis<Option<Direction>>, PlcFaultCode> {
+    let mut keys = PerPlcAxis::splat(None);
     for (key, [plus, minus]) in keys.iter_mut().zip(commands) {
         *key = match (plus.active(plc)?, minus.active(plc)?) {
             (true, false) => Some(Direction::Plus),
@@ -254,7 +255,7 @@ mod tests {
         press(&mut plc, 2460, 2476);
         let panel = Panel::default().read(&plc).unwrap();
         let expected = [Some(Direction::Minus), None, Some(Direction::Plus), None, None];
-        assert_eq!(panel.axis_keys, expected);
+        assert_eq!(*panel.axis_keys, expected);
         press(&mut plc, 2456, 2472);
         assert_eq!(
             Panel::default().read(&plc).unwrap().axis_keys[0],

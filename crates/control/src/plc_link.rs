@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bahn_interpreter::{DatumTable, MachineTexts};
-use bahn_parameters::{ParameterId, ParameterList};
+use bahn_parameters::{ParameterId, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::{
     CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable, NcInterfaces, NcMemory,
@@ -57,7 +57,7 @@ pub struct Pocket {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StatusChanges {
     /// Handwheel subdivision of each axis.
-    pub factors: [Option<u8>; AXES],
+    pub factors: PerPlcAxis<Option<u8>>,
     pub handwheel_axis: Option<usize>,
     pub jog_limit: Option<JogLimit>,
 }
@@ -73,7 +73,9 @@ impl StatusChanges {
                     *slot = Some(factor);
                 }
             }
-            StatusChange::Subdivision { axis: None, factor } => self.factors = [Some(factor); AXES],
+            StatusChange::Subdivision { axis: None, factor } => {
+                self.factors = PerPlcAxis::splat(Some(factor))
+            }
             StatusChange::HandwheelAxis(axis) => self.handwheel_axis = Some(axis),
             StatusChange::JogLimit(limit) => self.jog_limit = Some(limit),
         }
@@ -83,8 +85,8 @@ impl StatusChanges {
 /// What modules asked for since it was taken.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Requests {
-    pub plc_axes: [Option<PlcAxisCommand>; AXES],
-    pub plc_axis_override: [Option<f64>; AXES],
+    pub plc_axes: PerPlcAxis<Option<PlcAxisCommand>>,
+    pub plc_axis_override: PerPlcAxis<Option<f64>>,
     pub spindle_volts: Option<f64>,
     pub tool_call: Option<ToolCallBlock>,
     pub orientation: Option<SpindleOrientation>,
@@ -134,10 +136,10 @@ pub(crate) struct PlcLink {
     pub interfaces: [DataInterface; 2],
     pub host: Option<HostLink>,
     pub program_running: bool,
-    pub coordinates: [[f64; AXES]; KINDS],
+    pub coordinates: [PerPlcAxis<f64>; KINDS],
     pub spindle: SpindlePosition,
     pub status: [i32; ITEMS],
-    pub plc_axes: [PlcAxisStatus; AXES],
+    pub plc_axes: PerPlcAxis<PlcAxisStatus>,
     pub orienting: bool,
     pub requests: Requests,
     /// The list that module 9033 has selected.
@@ -168,10 +170,10 @@ impl PlcLink {
             interfaces: Default::default(),
             host: None,
             program_running: false,
-            coordinates: [[0.0; AXES]; KINDS],
+            coordinates: [PerPlcAxis::splat(0.0); KINDS],
             spindle: SpindlePosition::default(),
             status: [0; ITEMS],
-            plc_axes: [PlcAxisStatus::default(); AXES],
+            plc_axes: PerPlcAxis::splat(PlcAxisStatus::default()),
             orienting: false,
             requests: Requests::default(),
             selected_list: None,
@@ -209,7 +211,7 @@ impl PlcLink {
     }
 
     /// Sets what a module will read.
-    pub fn set_coordinates(&mut self, kind: CoordinateKind, values: [f64; AXES]) {
+    pub fn set_coordinates(&mut self, kind: CoordinateKind, values: PerPlcAxis<f64>) {
         if let Some(row) = self.coordinates.get_mut(kind as usize) {
             *row = values;
         }
@@ -341,7 +343,7 @@ impl NcStatus for PlcLink {
         self.requests.status.take(change);
     }
 
-    fn coordinates(&self, kind: CoordinateKind) -> [f64; 5] {
+    fn coordinates(&self, kind: CoordinateKind) -> PerPlcAxis<f64> {
         self.coordinates.get(kind as usize).copied().unwrap_or_default()
     }
 

@@ -2,6 +2,7 @@
 
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_motion::Aim;
+use bahn_parameters::PerPlcAxis;
 use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
 
 use crate::axes::OwnAxes;
@@ -17,11 +18,11 @@ pub(crate) const PER_MM: f64 = 10_000.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Positioning {
     /// Targets of PLC positioning, machine coordinates, with their feed.
-    targets: [Option<(f64, f64)>; AXES],
+    targets: PerPlcAxis<Option<(f64, f64)>>,
     /// What each PLC axis executes.
-    plc_axes: [PlcAxis; AXES],
+    plc_axes: PerPlcAxis<PlcAxis>,
     /// Free rotation: feed with sign, by axis.
-    rotation: [Option<f64>; AXES],
+    rotation: PerPlcAxis<Option<f64>>,
 }
 
 /// A PLC axis.
@@ -61,7 +62,7 @@ impl Positioning {
                 axis.command = Some(PlcAxisCommand::Stop);
             }
         }
-        self.rotation = [None; AXES];
+        self.rotation = PerPlcAxis::splat(None);
     }
 
     /// PLC positioning: M2704 ff. with target and feed, relative to the machine datum, without software
@@ -106,7 +107,7 @@ impl Positioning {
         let now = &moving.now;
         // NC stop ends it in Manual and Handwheel; in the automatic modes only with internal stop.
         let broken_off = now.stop && !moving.active;
-        let mut reached = [false; AXES];
+        let mut reached = PerPlcAxis::splat(false);
         for unit in axes.iter_mut() {
             let Some((target, feed)) = self.targets.get(unit.index).copied().flatten() else {
                 if unit.mover == Mover::Positioning && !moving.restores {
@@ -176,7 +177,7 @@ impl Positioning {
 
     /// PLC axes: modules 9120 to 9124. Always with servo lag, no override but that of 9124, no software
     /// limits in the reference run [000:4094-4116] [000:15938-16000].
-    pub fn move_plc_axes(&mut self, axes: &mut OwnAxes, statuses: &mut [PlcAxisStatus; AXES], now: &Now) {
+    pub fn move_plc_axes(&mut self, axes: &mut OwnAxes, statuses: &mut PerPlcAxis<PlcAxisStatus>, now: &Now) {
         for unit in axes.iter_mut().filter(|unit| unit.is_plc_axis()) {
             if let (Some(axis), Some(status)) =
                 (self.plc_axes.get_mut(unit.index), statuses.get_mut(unit.index))

@@ -4,7 +4,7 @@ use bahn_exchange::signal;
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::ProbeSettings;
-use bahn_path::{Axis, Barrier, BlockRef, Position, ToolMeasuring, Touch};
+use bahn_path::{Axis, Barrier, BlockRef, PerAxis, Position, ToolMeasuring, Touch};
 use bahn_servo::Measured;
 
 use crate::axes::OwnAxes;
@@ -391,7 +391,7 @@ fn within_range(
     if limit.is_none() {
         return (to, None);
     }
-    let end = Axis::ALL.map(|axis| {
+    let end = PerAxis::from_fn(|axis| {
         let way = to[axis] - from[axis];
         if way == 0.0 {
             to[axis]
@@ -409,7 +409,5 @@ fn along(probing: &Probing, way: f64) -> Position {
     } else {
         0.0
     };
-    Axis::ALL
-        .map(|axis| probing.from[axis] + part * (probing.to[axis] - probing.from[axis]))
-        .into()
+    PerAxis::from_fn(|axis| probing.from[axis] + part * (probing.to[axis] - probing.from[axis])).into()
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use bahn_exchange::Exchange;
 use bahn_parameters::own_functions::OwnFunctions;
-use bahn_parameters::{InchFeed, ParameterList};
+use bahn_parameters::{InchFeed, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::PlcProgram;
 
@@ -62,7 +62,7 @@ pub struct ChannelSetup {
     pub parameters: ParameterList,
     /// The number on the machine of each of its axes, by their indices in the list. An axis without number is not
     /// there.
-    pub axes: [Option<AxisId>; 5],
+    pub axes: PerPlcAxis<Option<AxisId>>,
     /// Output 1 and encoder input X1 of its list are this one of the machine, from 0.
     pub connectors: u8,
     /// Where its spindle is connected.
@@ -113,7 +113,7 @@ pub struct Remembered {
     /// Q parameters by number.
     pub q: Vec<(u16, f64)>,
     /// Offsets of the axes as adjusted with code number 75 368, V.
-    pub offsets_volts: [f64; 5],
+    pub offsets_volts: PerPlcAxis<f64>,
     /// The touch probe: what was calibrated, and the basic rotation.
     pub probe: ProbeMemory,
     /// Name of the list of machine parameters that module 9033 has selected.

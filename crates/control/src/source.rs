@@ -7,7 +7,7 @@ use bahn_exchange::{Bit, signal};
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
-use bahn_path::{Axis, Position};
+use bahn_path::{PerAxis, Position};
 use bahn_program::Program;
 use bahn_servo::Rotation;
 
@@ -398,7 +398,7 @@ pub(crate) fn renew(interpreter: &mut Interpreter, [tools, datums]: [bool; 2], s
 /// Machine zero in workpiece coordinates; unknown for axes that have not passed their reference mark
 /// [000:4568-4576].
 pub(crate) fn machine_zero(axes: &OwnAxes, chain: &Chain) -> Position {
-    let mut zero: Position = Axis::ALL.map(|axis| -chain.offsets.datum[axis]).into();
+    let mut zero: Position = PerAxis::from_fn(|axis| -chain.offsets.datum[axis]).into();
     for unit in axes.iter().filter(|unit| !unit.referenced && !unit.is_plc_axis()) {
         zero[unit.axis] = f64::NAN;
     }

@@ -1,6 +1,7 @@
 //! What the NC tells the PLC of itself: markers and words of state, before every scan.
 
 use bahn_exchange::{Exchange, signal};
+use bahn_parameters::PerPlcAxis;
 use bahn_plc::{CoordinateKind, StatusItem};
 use bahn_servo::Measured;
 
@@ -10,7 +11,7 @@ use crate::command::Mode;
 use crate::kinematics::Chain;
 use crate::manual::Manual;
 use crate::markers::{
-    ANALOGUE, AXES, ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING,
+    ANALOGUE, ENABLED, IN_MOTION, IN_POSITION, LIMIT, NEGATIVE_TRAVERSE, REFERENCE_MISSING,
 };
 use crate::panel::Direction;
 use crate::plc_link::PlcLink;
@@ -159,10 +160,6 @@ pub(crate) fn run(run: &ProgramRun, waits: bool, exchange: &mut Exchange) {
     exchange.nc_put_number(signal::CURRENT_FEED, feed as i32);
 }
 
-/// The coordinates of an axis that modules 9040 and 9041 read, in the order of [`CoordinateKind`]: actual and
-/// nominal from the datum, actual from the machine datum, lag, distance to go.
-pub(crate) type Coordinates = [f64; 5];
-
 /// The coordinates that modules 9040 and 9041 read in the next scan.
 pub(crate) fn coordinates<'a>(
     axes: impl Iterator<Item = &'a AxisUnit> + Clone,
@@ -171,10 +168,13 @@ pub(crate) fn coordinates<'a>(
     leans: bool,
     link: &mut PlcLink,
 ) {
+    /// Kinds of coordinates that each axis has, in the order of [`CoordinateKind`]: actual and nominal from the datum,
+    /// actual from the machine datum, lag, distance to go.
+    const SERVED: usize = 5;
     let [actual, nominal] = path_positions(axes.clone(), chain);
-    let mut rows = [[0.0; AXES]; 5];
+    let mut rows = [PerPlcAxis::splat(0.0); SERVED];
     for unit in axes {
-        let values: Coordinates = [
+        let values: [f64; SERVED] = [
             actual[unit.axis],
             nominal[unit.axis],
             unit.servo.actual_mm(),

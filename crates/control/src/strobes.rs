@@ -7,9 +7,10 @@ use bahn_exchange::{Exchange, Image, signal};
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
 use crate::command::{Command, Mode};
-use crate::markers::{ACTUAL_TO_NOMINAL, AXES, LAG_TRACKING, LUBRICATED, LUBRICATION_PULSE, TRANSFER};
+use crate::markers::{ACTUAL_TO_NOMINAL, LAG_TRACKING, LUBRICATED, LUBRICATION_PULSE, TRANSFER};
 use crate::positioning::PER_MM;
 use crate::q_transfer::Q_FROM_PLC;
+use bahn_parameters::PerPlcAxis;
 
 /// W576 ff. count in 1/10 µm [000:10950].
 const PER_MM_TRACKING: f64 = 10_000.0;
@@ -46,13 +47,13 @@ pub(crate) fn range(exchange: &mut Exchange) -> Option<Option<usize>> {
 
 /// M2716: datum correction D528 ff., each replaces the last one, when it `may` be corrected: without a program, or
 /// during an M, S or T strobe [000:8910-8940].
-pub(crate) fn datum_correction(may: bool, exchange: &mut Exchange) -> Option<[f64; AXES]> {
+pub(crate) fn datum_correction(may: bool, exchange: &mut Exchange) -> Option<PerPlcAxis<f64>> {
     if !exchange.nc().bit(signal::CORRECT_DATUM) {
         return None;
     }
     exchange.nc_set(signal::CORRECT_DATUM, false);
     let nc = exchange.nc();
-    may.then(|| TRANSFER.map(|number| f64::from(nc.number(number)) / PER_MM))
+    may.then(|| PerPlcAxis(TRANSFER.map(|number| f64::from(nc.number(number)) / PER_MM)))
 }
 
 /// M2713: D528 into Q100 to Q107 by W516 [000:6997-7008] [000:11657-11663].

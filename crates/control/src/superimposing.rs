@@ -1,7 +1,7 @@
 //! M118: handwheel movements on top of the path of a program [000:742].
 
 use bahn_motion::{Aim, PointToPoint};
-use bahn_path::{Axis, Position};
+use bahn_path::{Axis, PerAxis, Position};
 
 use crate::axis::AxisUnit;
 use crate::now::Now;
@@ -15,7 +15,7 @@ pub(crate) struct Superimposed {
     /// Where the wheels lead.
     target: Position,
     /// What is added to the path now, each on its own ramp of MP1060.
-    ramps: [PointToPoint; Axis::COUNT],
+    ramps: PerAxis<PointToPoint>,
     /// By how much that changed in this cycle.
     ways: Position,
     /// Anything of it is not 0.
@@ -27,7 +27,7 @@ impl Default for Superimposed {
         Superimposed {
             range: Position::ZERO,
             target: Position::ZERO,
-            ramps: [PointToPoint::new(0.0); Axis::COUNT],
+            ramps: PerAxis::splat(PointToPoint::new(0.0)),
             ways: Position::ZERO,
             on: false,
         }
@@ -42,7 +42,7 @@ impl Superimposed {
 
     /// What is added to an axis, mm or degrees.
     pub fn of(&self, axis: Axis) -> f64 {
-        self.ramps.get(axis.index()).map_or(0.0, PointToPoint::position)
+        self.ramps[axis].position()
     }
 
     /// By how much that changed in this cycle.
@@ -68,7 +68,7 @@ impl Superimposed {
         if !self.on {
             return axes;
         }
-        Axis::ALL.map(|axis| axes[axis] + sign * self.of(axis)).into()
+        PerAxis::from_fn(|axis| axes[axis] + sign * self.of(axis)).into()
     }
 
     /// Follows the wheels for a cycle, unless the path `holds` it. An axis without loop or feed enable stands at once,
@@ -81,9 +81,7 @@ impl Superimposed {
         self.ways = Position::ZERO;
         for unit in axes.filter(|unit| unit.is_free()) {
             let axis = unit.axis;
-            let Some(ramp) = self.ramps.get_mut(axis.index()) else {
-                continue;
-            };
+            let ramp = &mut self.ramps[axis];
             if !(unit.enabled && unit.servo.closed()) {
                 *ramp = PointToPoint::new(ramp.position());
                 self.target[axis] = ramp.position();

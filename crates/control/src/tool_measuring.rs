@@ -5,7 +5,7 @@ use bahn_exchange::{Exchange, signal};
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::{ProbeOrientation, ToolProbeParameters};
-use bahn_path::{Axis, MeasuredPart, Plane, Position, ToolMeasuring};
+use bahn_path::{Axis, MeasuredPart, PerAxis, Plane, Position, ToolMeasuring};
 use bahn_servo::Measured;
 
 use crate::axis::{AxisUnit, Mover};
@@ -379,7 +379,7 @@ impl Sequence {
         let at = self.way.cycle(time, aim, feed, acceleration);
         let part = if self.length > 0.0 { at / self.length } else { 1.0 };
         let place = |axis: Axis| self.from[axis] + part * (self.to[axis] - self.from[axis]);
-        let nominal = site.chain.to_axes(&Axis::ALL.map(place).into());
+        let nominal = site.chain.to_axes(&PerAxis::from_fn(place).into());
         for unit in site.axes.iter_mut() {
             let value = nominal[unit.axis];
             if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && !unit.is_plc_axis() {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use bahn_exchange::Image;
 use bahn_motion::{FunctionOutput, Interpolator, Limits};
 use bahn_parameters::ParameterList;
-use bahn_path::{Axis, AxisSet, Curve, FeedRate, Function, PathElement, Position};
+use bahn_path::{Axis, AxisSet, Curve, FeedRate, Function, PathElement, PerAxis, Position};
 use bahn_servo::Timing;
 
 use crate::axes::OwnAxes;
@@ -310,11 +310,11 @@ pub(crate) fn path_limits<'a>(
 ) -> Limits {
     let shares = kinematics.shares();
     let of = |value: fn(&AxisUnit) -> f64, otherwise: f64| {
-        let limits = Axis::ALL.map(|axis| {
+        let limits = PerAxis::from_fn(|axis| {
             let mut axes = axes.clone();
             axes.find(|unit| unit.axis == axis).map_or(otherwise, value)
         });
-        behind(&shares, limits)
+        behind(&shares, &limits)
     };
     Limits {
         max_feed_mm_min: of(|unit| unit.parameters.motion.rapid_mm_min, 0.0),

@@ -2,11 +2,12 @@
 //! have left.
 
 use bahn_exchange::Exchange;
+use bahn_parameters::PerPlcAxis;
 use bahn_servo::OffsetInterval;
 
 use crate::axes::{Axes, OwnAxes};
 use crate::axis::AxisUnit;
-use crate::markers::{AXES, LUBRICATION_PULSE};
+use crate::markers::LUBRICATION_PULSE;
 use crate::message::{Message, Messages};
 use crate::panel::Direction;
 
@@ -75,8 +76,8 @@ pub(crate) fn by_index<'a, T: Copy + Default>(
     axes: impl Iterator<Item = &'a AxisUnit>,
     index: impl Fn(&AxisUnit) -> usize,
     of: impl Fn(&AxisUnit) -> T,
-) -> [T; AXES] {
-    let mut values = [T::default(); AXES];
+) -> PerPlcAxis<T> {
+    let mut values = PerPlcAxis::splat(T::default());
     for unit in axes {
         if let Some(slot) = values.get_mut(index(unit)) {
             *slot = of(unit);

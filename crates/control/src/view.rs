@@ -1,6 +1,7 @@
 //! A channel to be looked at.
 
 use bahn_interpreter::Interpreter;
+use bahn_parameters::PerPlcAxis;
 use bahn_path::{PathElement, Position};
 
 use crate::axes::path_positions;
@@ -134,7 +135,7 @@ impl<'a> ChannelView<'a> {
 }
 
 /// The adjusted offsets of the axes that the list of a channel describes, whichever channel has them now, V.
-pub(crate) fn offsets_volts(machine: &MachineSide, channel: usize) -> [f64; crate::markers::AXES] {
+pub(crate) fn offsets_volts(machine: &MachineSide, channel: usize) -> PerPlcAxis<f64> {
     let axes = machine.axes.iter().filter(|unit| unit.home.0 == channel);
     by_index(
         axes,

@@ -10,8 +10,8 @@ use bahn_control::{
     Remembered, RunState, Setup, Shares, Snapshot, SpindleWiring, Window,
 };
 use bahn_machine::Machine;
-use bahn_parameters::ParameterList;
-use bahn_path::{Axis, Curve, Position};
+use bahn_parameters::{ParameterList, PerPlcAxis};
+use bahn_path::{Axis, Curve, PerAxis, Position};
 use support::bench::{bench, close, fourth};
 use support::{Build, Rig, Shelf};
 
@@ -127,12 +127,12 @@ fn setups(first: &str, second: &str) -> (Setup, ChannelSetup, Machine) {
     for assignment in ["10=%00001", "50=%00001", "110.0=3", "120.0=3", "3010=0"] {
         parameters.assign(assignment).unwrap();
     }
-    let axes = [AxisId::new(3), None, None, None, None];
+    let axes = PerPlcAxis([AxisId::new(3), None, None, None, None]);
     (setup, channel(parameters, axes, second), machine)
 }
 
 /// A channel with the program 2.H.
-fn channel(parameters: ParameterList, axes: [Option<AxisId>; 5], blocks: &str) -> ChannelSetup {
+fn channel(parameters: ParameterList, axes: PerPlcAxis<Option<AxisId>>, blocks: &str) -> ChannelSetup {
     let mut programs = Shelf::default();
     let text = format!("BEGIN PGM 2 MM\n{blocks}\nEND PGM 2 MM\n");
     programs.0.insert("2.H".to_owned(), text);
@@ -584,7 +584,7 @@ fn channels_are_put_together_with_care() {
         Some(ChannelError::TooMany)
     );
     let x = AxisId::new(0).unwrap();
-    other.axes = [Some(x), None, None, None, None];
+    other.axes = PerPlcAxis([Some(x), None, None, None, None]);
     assert_eq!(
         Control::with_channels(setup, vec![other]).err(),
         Some(ChannelError::AxisTwice(x))
@@ -612,13 +612,14 @@ impl Kinematics for Leaning {
     fn bounds(&self, _: &Curve, start: &Position, end: &Position, offsets: &Offsets) -> [Position; 2] {
         // On a straight line the axes are farthest at its ends.
         let ends = [start, end].map(|at| self.to_axes(at, offsets));
-        let bound = |of: fn(f64, f64) -> f64| Axis::ALL.map(|axis| of(ends[0][axis], ends[1][axis])).into();
+        let bound =
+            |of: fn(f64, f64) -> f64| PerAxis::from_fn(|axis| of(ends[0][axis], ends[1][axis])).into();
         [bound(f64::min), bound(f64::max)]
     }
 
     fn shares(&self) -> Shares {
         let mut shares = Cartesian.shares();
-        shares[Axis::X.index()][Axis::Y.index()] = 0.5;
+        shares[Axis::X][Axis::Y] = 0.5;
         shares
     }
 }
@@ -634,7 +635,7 @@ fn leaning(program: &str, parameters_of_it: &[&str]) -> Rig {
     {
         parameters.assign(assignment).unwrap();
     }
-    let axes = [AxisId::new(6), AxisId::new(7), None, None, None];
+    let axes = PerPlcAxis([AxisId::new(6), AxisId::new(7), None, None, None]);
     let mut other = channel(parameters, axes, program);
     other.kinematics = Arc::new(Leaning);
     let cams = "M2556".parse().unwrap();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use bahn_control::{CompensationAssignment, CompensationTable, Signal};
 use bahn_parameters::axis::AxisParameters;
-use bahn_parameters::{Adjustment, ParameterList};
+use bahn_parameters::{Adjustment, PLC_AXIS_NAMES, ParameterList, PerPlcAxis};
 
 use crate::machine_folder::LoadedMachine;
 use crate::trial;
@@ -82,7 +82,10 @@ impl AxisErrors {
     /// Its table as a file.
     pub fn table(&self) -> String {
         use std::fmt::Write as _;
-        let name = AXIS_NAMES.get(usize::from(self.index)).copied().unwrap_or("X");
+        let name = PLC_AXIS_NAMES
+            .get(usize::from(self.index))
+            .copied()
+            .unwrap_or("X");
         let datum = self.at_mm.first().copied().unwrap_or(0.0);
         let mut text = format!(
             "{TABLE_NAME}{} MM DATUM {datum:.4} DIST {} {name}\n",
@@ -97,9 +100,6 @@ impl AxisErrors {
         text
     }
 }
-
-/// Names of the axes in tables, by their index.
-const AXIS_NAMES: [&str; 5] = ["X", "Y", "Z", "4", "5"];
 
 /// What compensates the errors of a machine.
 #[derive(Clone, Debug)]
@@ -149,8 +149,8 @@ pub fn compensate(
 }
 
 fn linear_axes(list: &ParameterList, letters: &[char]) -> Result<Vec<AxisParameters>, String> {
-    let all: Vec<AxisParameters> = (0..5)
-        .map(|index| list.axis_parameters(index))
+    let all: Vec<AxisParameters> = PerPlcAxis::from_fn(|index| list.axis_parameters(index))
+        .into_iter()
         .filter(|axis| axis.controlled && !axis.plc_axis && axis.synchronization.master.is_none())
         .filter(|axis| axis.letter.is_some_and(|letter| !letter.is_rotary()))
         .collect();
@@ -188,7 +188,7 @@ fn find(
         if result.by_table {
             let name = format!("{TABLE_NAME}{}", result.before.letter);
             let index = usize::from(axis.index);
-            cells += &format!(" {}={name}", AXIS_NAMES.get(index).copied().unwrap_or("X"));
+            cells += &format!(" {}={name}", PLC_AXIS_NAMES.get(index).copied().unwrap_or("X"));
             tables.insert(name, result.before.table());
         }
         result.after = result.before.clone();

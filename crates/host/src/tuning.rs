@@ -4,7 +4,7 @@
 use bahn_control::{Control, Signal};
 use bahn_machine::Machine;
 use bahn_parameters::axis::AxisParameters;
-use bahn_parameters::{Adjustment, ParameterId, ParameterList};
+use bahn_parameters::{Adjustment, ParameterId, ParameterList, PerPlcAxis};
 
 use crate::machine_folder::LoadedMachine;
 use crate::trial;
@@ -100,7 +100,7 @@ pub fn tune(
     circle: Circle,
 ) -> Result<Tuned, String> {
     let axis = |letter: char| {
-        let mut axes = (0..5).map(|index| list.axis_parameters(index));
+        let mut axes = PerPlcAxis::from_fn(|index| list.axis_parameters(index)).into_iter();
         let found =
             axes.find(|axis| axis.controlled && axis.letter.is_some_and(|own| own.letter() == letter));
         found.ok_or_else(|| format!("the machine has no axis {letter}"))

@@ -171,8 +171,8 @@ fn corner_arcs(
         angle_deg: angle.unwrap_or(0.0),
         acceleration_m_s2: [plane.first, plane.second]
             .into_iter()
-            .filter_map(|axis| rules.acceleration_m_s2.get(axis.index()))
-            .fold(rules.radial_acceleration_m_s2, |least, value| least.min(*value)),
+            .map(|axis| rules.acceleration_m_s2[axis])
+            .fold(rules.radial_acceleration_m_s2, f64::min),
     })
 }
 

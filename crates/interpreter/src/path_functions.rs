@@ -237,7 +237,7 @@ fn tangential(modal: &Modal, plane: Plane, p: &Programmed) -> Result<Curve, Faul
     };
     let last = modal.last_move.as_ref().ok_or_else(no_tangent)?;
     let direction = last.curve.tangent(&last.start, &last.end, 1.0);
-    let tangent = [direction[plane.first.index()], direction[plane.second.index()]];
+    let tangent = [direction[plane.first], direction[plane.second]];
     if tangent == [0.0, 0.0] {
         return Err(no_tangent());
     }

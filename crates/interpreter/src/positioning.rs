@@ -87,7 +87,7 @@ fn short_line(c: &mut Context<'_>, motion: &Motion) -> Result<Flow, Fault> {
     let numbers = motion.coordinates.numbers();
     let axes = motion.coordinates.axes();
     for axis in axes.iter() {
-        let value = numbers[axis.index()] * c.numbers.axis_unit(axis);
+        let value = numbers[axis] * c.numbers.axis_unit(axis);
         c.modal.nominal[axis] = value;
         c.modal.actual[axis] = value;
     }
@@ -172,7 +172,7 @@ fn plain_line(modal: &Modal, numbers: &Numbers, coordinates: &Coordinates) -> Pr
     let axes = coordinates.axes();
     let values = coordinates.numbers();
     for axis in axes.iter() {
-        let value = values[axis.index()] * numbers.axis_unit(axis);
+        let value = values[axis] * numbers.axis_unit(axis);
         to[axis] = if coordinates.incremental().contains(axis) {
             known(modal.increments_from.unwrap_or(from)[axis]) + value
         } else {

@@ -8,7 +8,7 @@ use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::spindle::{Characteristics, FreeOutput, SpindleParameters};
 use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
-use bahn_path::{Axis, Function, Plane, Position, ScanRules, Swivels, TechnologyFunction, ToolShape};
+use bahn_path::{Function, PerAxis, Plane, Position, ScanRules, Swivels, TechnologyFunction, ToolShape};
 
 use crate::status::Status;
 
@@ -193,7 +193,7 @@ pub struct Rules {
     /// MP7475 = 1: datum tables count from the machine datum, not from the workpiece datum [000:6900-6902].
     pub datums_from_machine: bool,
     /// MP1060: acceleration of each axis, m/s²: limits the rounding arcs of M112 [000:5140-5152].
-    pub acceleration_m_s2: [f64; Axis::COUNT],
+    pub acceleration_m_s2: PerAxis<f64>,
     /// MP1070: radial acceleration, m/s².
     pub radial_acceleration_m_s2: f64,
     /// Touch probe.
@@ -219,7 +219,7 @@ pub struct Rules {
     /// MP7500: the working plane can be tilted [000:4273-4276].
     pub tilting: bool,
     /// MP810: the modulo values of rotary axes, degrees [000:6468-6484].
-    pub modulo_deg: [Option<f64>; Axis::COUNT],
+    pub modulo_deg: PerAxis<Option<f64>>,
 }
 
 impl Rules {
@@ -258,9 +258,9 @@ impl Rules {
                 orients: tapping.orientation,
             },
             datums_from_machine: list.operation_parameters().datums.table_from_machine,
-            acceleration_m_s2: Axis::ALL.map(|axis| list.acceleration_m_s2(axis)),
+            acceleration_m_s2: PerAxis::from_fn(|axis| list.acceleration_m_s2(axis)),
             radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
-            machine_datum: Axis::ALL.map(|axis| list.m92_datum(axis)).into(),
+            machine_datum: PerAxis::from_fn(|axis| list.m92_datum(axis)).into(),
             probe: ProbeRules {
                 feed_mm_min: probe.feed_mm_min,
                 range_mm: probe.range_mm,
@@ -282,7 +282,7 @@ impl Rules {
             normal_length_with_dr2: list.operation_parameters().normal_length_with_dr2,
             swivels: list.swivels().map(Arc::new),
             tilting: list.operation_parameters().tilting,
-            modulo_deg: Axis::ALL.map(|axis| {
+            modulo_deg: PerAxis::from_fn(|axis| {
                 let index = list.axis_index(axis)?;
                 list.axis_parameters(index).travel.modulo_deg
             }),
@@ -323,7 +323,7 @@ impl Default for Rules {
             machine_datum: Position::ZERO,
             machine_zero: Position::ZERO,
             datums_from_machine: false,
-            acceleration_m_s2: [1.0; Axis::COUNT],
+            acceleration_m_s2: PerAxis::splat(1.0),
             radial_acceleration_m_s2: 1.0,
             probe: ProbeRules::default(),
             scan: ScanRules::default(),
@@ -335,7 +335,7 @@ impl Default for Rules {
             normal_length_with_dr2: false,
             swivels: None,
             tilting: false,
-            modulo_deg: [None; Axis::COUNT],
+            modulo_deg: PerAxis::splat(None),
             oem_cycles: OemCycleRules::default(),
         }
     }
@@ -506,6 +506,7 @@ impl Default for ProbeRules {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
     use super::*;
+    use bahn_path::Axis;
 
     #[test]
     fn rules_follow_the_list() {

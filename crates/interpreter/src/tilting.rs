@@ -24,7 +24,7 @@ pub(crate) fn working_plane(c: &mut Context<'_>, words: &[Resolved]) -> Result<(
     let tilting = &c.modal.tilting;
     let frame = &c.modal.frame;
     let shift = frame.shift.values();
-    let is_moved = |axis: Axis| !axis.is_rotary() && shift[axis.index()] != 0.0;
+    let is_moved = |axis: Axis| !axis.is_rotary() && shift[axis] != 0.0;
     let plain = Frame {
         shift: frame.shift,
         ..Frame::identity(frame.plane)
@@ -248,7 +248,7 @@ pub(crate) fn take_way(
     }
     let absolute = |axis: &Axis| !coordinates.incremental().contains(*axis);
     for axis in coordinates.axes().iter().filter(absolute) {
-        let modulo = settings.rules.modulo_deg.get(axis.index()).copied().flatten();
+        let modulo = settings.rules.modulo_deg[axis];
         let (Some(modulo), Some(from)) = (modulo, from.get(axis)) else {
             continue;
         };

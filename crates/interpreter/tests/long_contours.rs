@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use bahn_interpreter::{Interpreter, Message, NoLibrary, Settings};
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, ElementSource, Step};
+use bahn_path::{ElementSource, PerAxis, Step};
 use bahn_program::Program;
 
 /// A control reacts within 0.2 s; the rest is for a test machine that has other things to do.
@@ -126,7 +126,7 @@ fn a_computation_that_is_lost_is_handed_out_again() {
         let mut ends = Vec::new();
         loop {
             match run.next() {
-                Step::Element(element) => ends.push(Axis::ALL.map(|axis| element.end[axis].to_bits())),
+                Step::Element(element) => ends.push(PerAxis::from_fn(|axis| element.end[axis].to_bits())),
                 step => break (ends, step),
             }
         }
@@ -163,7 +163,7 @@ fn a_copy_computes_for_itself() {
         let mut ends = Vec::new();
         loop {
             match run.next() {
-                Step::Element(element) => ends.push(Axis::ALL.map(|axis| element.end[axis].to_bits())),
+                Step::Element(element) => ends.push(PerAxis::from_fn(|axis| element.end[axis].to_bits())),
                 step => break (ends, matches!(step, Step::End)),
             }
         }
@@ -211,7 +211,7 @@ fn repeats_of_a_contour_cost_no_more_than_the_contour() {
         let mut run = rough_out(&format!("{once}{repeated}"));
         let mut ends = Vec::new();
         while let Step::Element(element) = run.next() {
-            ends.push(Axis::ALL.map(|axis| element.end[axis].to_bits()));
+            ends.push(PerAxis::from_fn(|axis| element.end[axis].to_bits()));
         }
         ends
     };

@@ -134,7 +134,7 @@ fn tangential(a: &bahn_path::PathElement, b: &bahn_path::PathElement) {
     let from = a.curve.tangent(&a.start, &a.end, 1.0);
     let to = b.curve.tangent(&b.start, &b.end, 0.0);
     for axis in [Axis::X, Axis::Y] {
-        close(from[axis.index()], to[axis.index()], 1e-9);
+        close(from[axis], to[axis], 1e-9);
         close(a.end[axis], b.start[axis], 1e-9);
     }
 }

@@ -108,15 +108,15 @@ fn a_rounded_approach_from_nowhere() {
 
 /// No element has an end or a centre that is no number, but for axes that were never programmed.
 fn assert_sound(run: &Run) {
-    let mut known = [false; 9];
+    let mut known = bahn_path::PerAxis::splat(false);
     for element in &run.elements {
-        for (axis, known) in bahn_path::Axis::ALL.into_iter().zip(&mut known) {
+        for axis in bahn_path::Axis::ALL {
             let end = element.end[axis];
             assert!(
-                end.is_finite() || (end.is_nan() && !*known),
+                end.is_finite() || (end.is_nan() && !known[axis]),
                 "{axis}: {element:?}"
             );
-            *known |= end.is_finite();
+            known[axis] |= end.is_finite();
         }
         if let bahn_path::Curve::Arc(arc) = element.curve {
             assert!(arc.centre.iter().all(|value| value.is_finite()), "{element:?}");

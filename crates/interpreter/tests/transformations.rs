@@ -3,7 +3,7 @@
 mod support;
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Curve, Position};
+use bahn_path::{Axis, Curve, PerAxis, Position};
 use support::*;
 
 /// The contour of P33 to P36, from corner to corner, and its first and last point once more.
@@ -276,7 +276,7 @@ fn a_line_of_the_datum_table_shifts() {
                 settings.model = bahn_parameters::ControlModel::Tnc415b;
                 settings.datum_table = Some(std::sync::Arc::new(datum_table()));
                 settings.rules.datums_from_machine = from_machine;
-                settings.rules.machine_zero = [-200.0; Axis::COUNT].into();
+                settings.rules.machine_zero = PerAxis::splat(-200.0).into();
             })
             .run();
         run.assert_completed();

@@ -3,8 +3,8 @@
 
 use bahn_motion::{Drive, Interpolator, Limits, PointToPoint, Prepared, State};
 use bahn_path::{
-    Axis, AxisSet, BlockRef, Curve, ElementSource, FeedRate, LiveData, OverrideLaw, PathElement, Position,
-    Step,
+    Axis, AxisSet, BlockRef, Curve, ElementSource, FeedRate, LiveData, OverrideLaw, PathElement, PerAxis,
+    Position, Step,
 };
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -55,8 +55,8 @@ impl ElementSource for Lines {
 
 fn limits() -> Limits {
     Limits {
-        max_feed_mm_min: [30_000.0; Axis::COUNT],
-        acceleration_m_s2: [1.0; Axis::COUNT],
+        max_feed_mm_min: PerAxis::splat(30_000.0),
+        acceleration_m_s2: PerAxis::splat(1.0),
         radial_acceleration_m_s2: 0.5,
         corner_angle_deg: 10.0,
         servo_lag: true,

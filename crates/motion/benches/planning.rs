@@ -3,8 +3,8 @@
 
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_path::{
-    Arc, Axis, BlockRef, Curve, ElementSource, FeedRate, LiveData, OverrideLaw, PathElement, Plane, Position,
-    Step,
+    Arc, Axis, BlockRef, Curve, ElementSource, FeedRate, LiveData, OverrideLaw, PathElement, PerAxis, Plane,
+    Position, Step,
 };
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -68,8 +68,8 @@ fn source<F>(feed_mm_min: f64, point: F) -> Synthetic<F> {
 
 fn limits() -> Limits {
     Limits {
-        max_feed_mm_min: [300_000.0; Axis::COUNT],
-        acceleration_m_s2: [1.0; Axis::COUNT],
+        max_feed_mm_min: PerAxis::splat(300_000.0),
+        acceleration_m_s2: PerAxis::splat(1.0),
         radial_acceleration_m_s2: 0.5,
         corner_angle_deg: 10.0,
         servo_lag: true,

@@ -19,11 +19,9 @@
 //! - [`SHARE`] covers that a step acts at one instant of its own time, in the worst case the middle of
 //!   the triangle.
 
-use std::ops::Range;
+use bahn_path::{Axis, PerAxis};
 
-use bahn_path::Axis;
-
-use crate::limits::{Dynamics, MAIN, PerAxis};
+use crate::limits::{Dynamics, MAIN};
 use crate::motion::{Motion, ROTARY, product};
 
 /// The time over which the servo spreads a step of velocity, s *(inferred)*: 2.5 time constants of a loop
@@ -98,7 +96,7 @@ impl Joint {
         if turn < dynamics.corner_cosine {
             return Joint::Stop;
         }
-        let axes = if only_main { MAIN } else { 0..Axis::COUNT };
+        let axes = if only_main { &MAIN[..] } else { &Axis::ALL };
         let speed = last.speed.min(next.speed);
         match step_limit(last.end(), next.start(), axes, dynamics) {
             None => Joint::Smooth(speed),
@@ -139,17 +137,20 @@ fn beside(last: &Motion, next: &Motion, only_main: bool) -> f64 {
         return 0.0;
     }
     let (a, b) = (last.end(), next.start());
-    0.5 * ROTARY.map(|i| (b[i] - a[i]) * (b[i] - a[i])).sum::<f64>()
+    0.5 * ROTARY
+        .iter()
+        .map(|axis| (b[*axis] - a[*axis]) * (b[*axis] - a[*axis]))
+        .sum::<f64>()
 }
 
 /// The least `SHARE · bound / |Δt|`, mm/s²; `None` when no axis changes its velocity.
 #[inline]
-fn step_limit(from: &PerAxis, to: &PerAxis, axes: Range<usize>, dynamics: &Dynamics) -> Option<f64> {
+fn step_limit(from: &PerAxis<f64>, to: &PerAxis<f64>, axes: &[Axis], dynamics: &Dynamics) -> Option<f64> {
     let (mut limit, mut greatest) = (f64::INFINITY, 0.0);
-    for i in axes {
-        let change = (to[i] - from[i]).abs();
+    for axis in axes.iter().copied() {
+        let change = (to[axis] - from[axis]).abs();
         greatest = if change > greatest { change } else { greatest };
-        let own = SHARE * dynamics.bound[i] / change.max(NO_CHANGE);
+        let own = SHARE * dynamics.bound[axis] / change.max(NO_CHANGE);
         limit = if own < limit { own } else { limit };
     }
     (greatest > NO_CHANGE).then_some(limit)

@@ -151,7 +151,7 @@ impl Envelope {
 
 #[cfg(test)]
 mod tests {
-    use bahn_path::{BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Position};
+    use bahn_path::{BlockRef, Curve, FeedRate, OverrideLaw, PathElement, PerAxis, Position};
     use proptest::prelude::*;
 
     use super::*;
@@ -370,8 +370,8 @@ mod tests {
         #[test]
         fn it_is_as_good_as_a_pass_over_the_whole_path(deeds in prop::collection::vec(deed(), 1..200)) {
             let limits = Limits {
-                max_feed_mm_min: [30_000.0; 9],
-                acceleration_m_s2: [1.0; 9],
+                max_feed_mm_min: PerAxis::splat(30_000.0),
+                acceleration_m_s2: PerAxis::splat(1.0),
                 radial_acceleration_m_s2: 0.5,
                 corner_angle_deg: 10.0,
                 servo_lag: true,

@@ -44,8 +44,8 @@
 //! #     tangential_end: false, dwell_s: 0.0, placement: None, functions: None,
 //! # }));
 //! let limits = Limits {
-//!     max_feed_mm_min: [15_000.0; 9],
-//!     acceleration_m_s2: [1.0; 9],
+//!     max_feed_mm_min: PerAxis::splat(15_000.0),
+//!     acceleration_m_s2: PerAxis::splat(1.0),
 //!     radial_acceleration_m_s2: 0.5,
 //!     corner_angle_deg: 10.0,
 //!     servo_lag: true,

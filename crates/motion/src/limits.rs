@@ -1,19 +1,16 @@
 //! What the machine can do.
 
-use std::ops::Range;
-
-use bahn_path::{Axis, FeedRate, OverrideLaw, PathElement, Thread};
+use bahn_path::{Axis, FeedRate, OverrideLaw, PathElement, PerAxis, Thread};
 
 /// The limits that planning obeys, in the units of the machine parameters. Values that no machine can
 /// have (NaN, negative) count as the least one: nothing moves, or moves with the least acceleration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
-    /// Rapid traverse and greatest feed of each axis in the order of [`Axis::ALL`], mm/min or
-    /// degrees/min: MP1010 [000:4836-4841].
-    pub max_feed_mm_min: [f64; Axis::COUNT],
+    /// Rapid traverse and greatest feed of each axis, mm/min or degrees/min: MP1010 [000:4836-4841].
+    pub max_feed_mm_min: PerAxis<f64>,
     /// Acceleration of each axis, m/s²; 1000 degrees/s² per unit for rotary axes (inferred): MP1060
     /// [000:4790-4797].
-    pub acceleration_m_s2: [f64; Axis::COUNT],
+    pub acceleration_m_s2: PerAxis<f64>,
     /// Radial acceleration on circles, m/s²: MP1070 [000:5089-5092].
     pub radial_acceleration_m_s2: f64,
     /// Change of direction up to which a corner is passed without a stop, degrees: MP7460
@@ -76,11 +73,8 @@ const NO_FEED_MM_MIN: f64 = 1e-30;
 /// Greatest feed limit that counts, mm/min: far above MP1010's 300 000, without infinities.
 const FASTEST_MM_MIN: f64 = 1e9;
 
-/// One value per axis in the order of [`Axis::ALL`].
-pub(crate) type PerAxis = [f64; Axis::COUNT];
-
-/// Indices of the main axes X, Y, Z.
-pub(crate) const MAIN: Range<usize> = Axis::X as usize..Axis::Z as usize + 1;
+/// The main axes, the first ones in the order of axes.
+pub(crate) const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// What of a movement decides how fast its axes let it be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,13 +89,13 @@ pub(crate) struct Slowest {
 #[derive(Clone, Debug)]
 pub(crate) struct Dynamics {
     /// Seconds that a mm takes each axis at its rapid traverse MP1010.
-    pub(crate) slowness: [f64; Axis::COUNT],
+    pub(crate) slowness: PerAxis<f64>,
     /// Seconds that a mm takes any axis at least.
     least_slowness: f64,
     /// MP1060, mm/s².
-    pub(crate) acceleration: [f64; Axis::COUNT],
+    pub(crate) acceleration: PerAxis<f64>,
     /// `sqrt(MP1060² + MP1070²)` of each axis, mm/s².
-    pub(crate) bound: [f64; Axis::COUNT],
+    pub(crate) bound: PerAxis<f64>,
     /// MP1070, mm/s².
     pub(crate) radial: f64,
     /// Cosine of the greatest change of direction that is passed.

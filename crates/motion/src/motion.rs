@@ -1,16 +1,14 @@
 //! The geometry of an element as planning needs it.
 
-use std::ops::Range;
+use bahn_path::{Arc, Axis, Curve, PathElement, PerAxis, Placement, Point2, Position};
 
-use bahn_path::{Arc, Axis, Curve, PathElement, Placement, Point2, Position};
-
-use crate::limits::{Dynamics, MAIN, PerAxis, Slowest};
+use crate::limits::{Dynamics, MAIN, Slowest};
 use crate::placed::Placed;
 
-/// Indices of the rotary axes A, B, C.
-pub(crate) const ROTARY: Range<usize> = Axis::A as usize..Axis::C as usize + 1;
-/// Indices of the parallel axes U, V, W.
-const PARALLEL: Range<usize> = Axis::U as usize..Axis::W as usize + 1;
+/// The rotary axes.
+pub(crate) const ROTARY: [Axis; 3] = [Axis::A, Axis::B, Axis::C];
+/// The parallel axes.
+const PARALLEL: [Axis; 3] = [Axis::U, Axis::V, Axis::W];
 /// Shorter movements are none, mm or degrees: a thousandth of the finest resolution of any model.
 const NO_LENGTH: f64 = 1e-7;
 /// Longer movements count as this long, mm: no machine has them, and sums stay finite.
@@ -41,9 +39,9 @@ pub(crate) struct Motion {
     /// Swivel axes are compensated: the main axes go farther, or less far, than the path.
     pub(crate) swings: bool,
     /// Derivative of the axes by the path length at the start; of a line everywhere.
-    direction: PerAxis,
+    direction: PerAxis<f64>,
     /// That at the end of an arc.
-    end_direction: Option<PerAxis>,
+    end_direction: Option<PerAxis<f64>>,
 }
 
 impl Motion {
@@ -64,8 +62,12 @@ impl Motion {
         let per_length = 1.0 / length;
         let direction = delta.map(|d| d * per_length);
         let share = direction.map(f64::abs);
-        let main_axes = delta[MAIN.len()..].iter().all(|d| *d == 0.0);
-        let share = if main_axes { &share[MAIN] } else { &share[..] };
+        let main_axes = delta.values()[MAIN.len()..].iter().all(|d| *d == 0.0);
+        let share = if main_axes {
+            &share.values()[..MAIN.len()]
+        } else {
+            share.values()
+        };
         let slowest = slowest(share, dynamics);
         let motion = Motion {
             length: length.min(LONGEST),
@@ -96,7 +98,7 @@ impl Motion {
         let ends = [*self.start(), *self.end()];
         let placed = Placed::new(placement, element, ends, per_square, dynamics);
         let [direction, end_direction] = placed.directions;
-        let slowest = slowest(&placed.share, dynamics);
+        let slowest = slowest(placed.share.values(), dynamics);
         let radial_speed = self.radial_speed.min(placed.speed);
         Motion {
             speed: dynamics
@@ -104,7 +106,8 @@ impl Motion {
                 .min(radial_speed),
             slowest,
             radial_speed,
-            acceleration: acceleration(&placed.share, dynamics).min(dynamics.spindle_acceleration(element)),
+            acceleration: acceleration(placed.share.values(), dynamics)
+                .min(dynamics.spindle_acceleration(element)),
             direction,
             swings: placement.rotation().is_none(),
             // Straight lines behind swivel axes that turn are none; a direction is then not of length 1.
@@ -115,7 +118,7 @@ impl Motion {
     }
 
     fn arc(element: &PathElement, arc: &Arc, dynamics: &Dynamics) -> Option<Motion> {
-        let plane = [arc.plane.first.index(), arc.plane.second.index()];
+        let plane = [arc.plane.first, arc.plane.second];
         let (from, r0) = polar(arc.plane.point(&element.start), arc.centre);
         let (to, r1) = polar(arc.plane.point(&element.end), arc.centre);
         let sweep = arc.sweep_deg.to_radians();
@@ -158,14 +161,14 @@ impl Motion {
         } else {
             f64::INFINITY
         };
-        let slowest = slowest(&share, dynamics);
+        let slowest = slowest(share.values(), dynamics);
         let speed = dynamics.speed(element.feed, element.override_law, slowest);
         let motion = Motion {
             length: length.min(LONGEST),
             speed: speed.min(radial_speed),
             slowest,
             radial_speed,
-            acceleration: acceleration(&share, dynamics),
+            acceleration: acceleration(share.values(), dynamics),
             rotary,
             main_axes: false,
             swings: false,
@@ -177,13 +180,13 @@ impl Motion {
 
     /// Derivative of the axes by the path length at the start.
     #[inline]
-    pub(crate) fn start(&self) -> &PerAxis {
+    pub(crate) fn start(&self) -> &PerAxis<f64> {
         &self.direction
     }
 
     /// Derivative of the axes by the path length at the end.
     #[inline]
-    pub(crate) fn end(&self) -> &PerAxis {
+    pub(crate) fn end(&self) -> &PerAxis<f64> {
         self.end_direction.as_ref().unwrap_or(&self.direction)
     }
 
@@ -195,7 +198,7 @@ impl Motion {
 }
 
 /// The axes with other values in a plane.
-fn in_plane(axes: &PerAxis, plane: [usize; 2], values: Point2) -> PerAxis {
+fn in_plane(axes: &PerAxis<f64>, plane: [Axis; 2], values: Point2) -> PerAxis<f64> {
     let mut axes = *axes;
     axes[plane[0]] = values[0];
     axes[plane[1]] = values[1];
@@ -204,8 +207,8 @@ fn in_plane(axes: &PerAxis, plane: [usize; 2], values: Point2) -> PerAxis {
 
 /// Scalar product over the axes that the path length counts.
 #[inline]
-pub(crate) fn product(a: &PerAxis, b: &PerAxis, rotary: bool) -> f64 {
-    let sum = |axes: Range<usize>| axes.map(|i| a[i] * b[i]).sum::<f64>();
+pub(crate) fn product(a: &PerAxis<f64>, b: &PerAxis<f64>, rotary: bool) -> f64 {
+    let sum = |axes: [Axis; 3]| axes.iter().map(|axis| a[*axis] * b[*axis]).sum::<f64>();
     if rotary {
         sum(ROTARY)
     } else {
@@ -214,27 +217,24 @@ pub(crate) fn product(a: &PerAxis, b: &PerAxis, rotary: bool) -> f64 {
 }
 
 #[inline]
-fn known_delta(start: &Position, end: &Position) -> PerAxis {
-    let (start, end) = (start.values(), end.values());
-    let mut delta = [0.0; Axis::COUNT];
-    for i in 0..Axis::COUNT {
-        let d = end[i] - start[i];
-        delta[i] = if d.is_nan() { 0.0 } else { d };
-    }
-    delta
+fn known_delta(start: &Position, end: &Position) -> PerAxis<f64> {
+    PerAxis::from_fn(|axis| {
+        let d = end[axis] - start[axis];
+        if d.is_nan() { 0.0 } else { d }
+    })
 }
 
 /// Path length and whether it counts rotary axes: they do only when no linear axis moves
 /// [003:7424-7430].
 #[inline]
-fn path_length(delta: &PerAxis) -> Option<(f64, bool)> {
-    let square = |i: usize| delta[i] * delta[i];
-    let linear = (square(0) + square(1) + square(2)) + (square(6) + square(7) + square(8));
+fn path_length(delta: &PerAxis<f64>) -> Option<(f64, bool)> {
+    let squares = |[a, b, c]: [Axis; 3]| delta[a] * delta[a] + delta[b] * delta[b] + delta[c] * delta[c];
+    let linear = squares(MAIN) + squares(PARALLEL);
     let least = NO_LENGTH * NO_LENGTH;
     if linear > least {
         return linear.is_finite().then(|| (linear.sqrt(), false));
     }
-    let rotary = square(3) + square(4) + square(5);
+    let rotary = squares(ROTARY);
     (rotary > least && rotary.is_finite()).then(|| (rotary.sqrt(), true))
 }
 
@@ -242,7 +242,7 @@ fn path_length(delta: &PerAxis) -> Option<(f64, bool)> {
 #[inline]
 fn slowest(share: &[f64], dynamics: &Dynamics) -> Slowest {
     let mut slowest = Slowest::default();
-    for (share, slowness) in share.iter().zip(&dynamics.slowness) {
+    for (share, slowness) in share.iter().zip(dynamics.slowness.values()) {
         let share = if *share > MOVES { *share } else { 0.0 };
         let time = share * slowness;
         slowest.time = if time > slowest.time { time } else { slowest.time };
@@ -261,7 +261,7 @@ fn slowest(share: &[f64], dynamics: &Dynamics) -> Slowest {
 fn acceleration(share: &[f64], dynamics: &Dynamics) -> f64 {
     let mut least = f64::INFINITY;
     let mut farthest = 0.0f64;
-    for (share, acceleration) in share.iter().zip(&dynamics.acceleration) {
+    for (share, acceleration) in share.iter().zip(dynamics.acceleration.values()) {
         let a = if *share > MOVES {
             *acceleration
         } else {
@@ -271,7 +271,7 @@ fn acceleration(share: &[f64], dynamics: &Dynamics) -> f64 {
         farthest = if *share > farthest { *share } else { farthest };
     }
     if farthest > WHOLE {
-        for (share, acceleration) in share.iter().zip(&dynamics.acceleration) {
+        for (share, acceleration) in share.iter().zip(dynamics.acceleration.values()) {
             least = least.min(acceleration / share.max(MOVES));
         }
     }

@@ -1,15 +1,15 @@
 //! What a movement demands of the axes when its path does not stand upright: cycle 19 and M114.
 
-use bahn_path::{Axis, Curve, PathElement, Placement};
+use bahn_path::{Arc, Axis, Curve, PathElement, PerAxis, Placement};
 
-use crate::limits::{Dynamics, MAIN, PerAxis};
+use crate::limits::{Dynamics, MAIN};
 
 /// Derivatives of the axes by the path length, and what of it limits the path.
 pub(crate) struct Placed {
     /// At the start and at the end.
-    pub(crate) directions: [PerAxis; 2],
+    pub(crate) directions: [PerAxis<f64>; 2],
     /// Greatest share of each axis on the whole way, or an upper bound of it.
-    pub(crate) share: PerAxis,
+    pub(crate) share: PerAxis<f64>,
     /// Greatest path speed that the turning of swivel axes allows, mm/s; infinite where none turns.
     pub(crate) speed: f64,
 }
@@ -19,7 +19,7 @@ impl Placed {
     pub(crate) fn new(
         placement: &Placement,
         element: &PathElement,
-        directions: [PerAxis; 2],
+        directions: [PerAxis<f64>; 2],
         per_square: f64,
         dynamics: &Dynamics,
     ) -> Placed {
@@ -32,13 +32,10 @@ impl Placed {
         let mut share = start.map(f64::abs);
         match placement.rotation() {
             Some(rotation) => {
-                for (i, row) in rotation.iter().enumerate() {
-                    share[i] = match &element.curve {
-                        Curve::Arc(arc) => {
-                            let plane = [arc.plane.first.index(), arc.plane.second.index()];
-                            on_circle(row, plane, &directions)
-                        }
-                        _ => placed[0][i].abs(),
+                for (axis, row) in MAIN.into_iter().zip(rotation) {
+                    share[axis] = match &element.curve {
+                        Curve::Arc(arc) => on_circle(row, arc, &directions),
+                        _ => placed[0][axis].abs(),
                     };
                 }
                 Placed {
@@ -50,12 +47,12 @@ impl Placed {
             None => {
                 let rate = rate(&start);
                 let reach = placement.reach_mm();
-                for i in MAIN {
+                for axis in MAIN {
                     let own = match &element.curve {
                         Curve::Arc(_) => length(&start).max(length(&end)),
-                        _ => start[i].abs(),
+                        _ => start[axis].abs(),
                     };
-                    share[i] = own + reach * rate;
+                    share[axis] = own + reach * rate;
                 }
                 Placed {
                     directions: placed,
@@ -69,24 +66,29 @@ impl Placed {
 
 /// The greatest share of a main axis in a circle of a turned plane: that where it is tangential to the axis, whether the arc
 /// comes there or not, and its share in the straight part of a helix.
-fn on_circle(row: &[f64; 3], plane: [usize; 2], directions: &[PerAxis; 2]) -> f64 {
-    let of = |i: usize| row.get(i).copied().unwrap_or(0.0);
+fn on_circle(row: &[f64; 3], arc: &Arc, directions: &[PerAxis<f64>; 2]) -> f64 {
+    let of = |axis: Axis| row.get(axis.index()).copied().unwrap_or(0.0);
+    let plane = [arc.plane.first, arc.plane.second];
     let in_plane = directions.iter().map(|d| d[plane[0]].hypot(d[plane[1]]));
     let fastest = in_plane.fold(0.0, f64::max);
     let straight = MAIN
-        .filter(|i| !plane.contains(i))
-        .map(|i| of(i) * directions[0][i]);
+        .into_iter()
+        .filter(|axis| !plane.contains(axis))
+        .map(|axis| of(axis) * directions[0][axis]);
     of(plane[0]).hypot(of(plane[1])) * fastest + straight.sum::<f64>().abs()
 }
 
 /// Radians of the swivel axes by the path length.
-fn rate(direction: &PerAxis) -> f64 {
-    let turns = [Axis::A, Axis::B, Axis::C].map(|axis| direction[axis.index()].abs().to_radians());
+fn rate(direction: &PerAxis<f64>) -> f64 {
+    let turns = [Axis::A, Axis::B, Axis::C].map(|axis| direction[axis].abs().to_radians());
     turns.iter().sum()
 }
 
-fn length(direction: &PerAxis) -> f64 {
-    MAIN.map(|i| direction[i] * direction[i]).sum::<f64>().sqrt()
+fn length(direction: &PerAxis<f64>) -> f64 {
+    MAIN.iter()
+        .map(|axis| direction[*axis] * direction[*axis])
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// Turning at a constant rate accelerates the main axes across the path. That comes on top of what they accelerate along
@@ -95,6 +97,6 @@ fn swing_speed(per_square: f64, swing: f64, dynamics: &Dynamics) -> f64 {
     if swing <= 0.0 {
         return f64::INFINITY;
     }
-    let left = MAIN.map(|i| dynamics.bound[i] - dynamics.acceleration[i]);
-    (left.fold(f64::INFINITY, f64::min) / (per_square + swing)).sqrt()
+    let left = MAIN.map(|axis| dynamics.bound[axis] - dynamics.acceleration[axis]);
+    (left.into_iter().fold(f64::INFINITY, f64::min) / (per_square + swing)).sqrt()
 }

@@ -3,7 +3,7 @@
 mod common;
 
 use bahn_motion::Limits;
-use bahn_path::{Arc, Axis, Curve, FeedRate, OverrideLaw, Plane, Position};
+use bahn_path::{Arc, Axis, Curve, FeedRate, OverrideLaw, PerAxis, Plane, Position};
 use common::{Path, limits, plan, time_s};
 
 const X: Axis = Axis::X;
@@ -44,7 +44,7 @@ fn single_line() {
 #[test]
 fn path_acceleration_is_the_smallest_of_the_moving_axes() {
     let mut l = limits();
-    l.acceleration_m_s2[Z.index()] = 0.25;
+    l.acceleration_m_s2[Z] = 0.25;
     let mut path = Path::new(6000.0);
     path.line(&[(X, 30.0), (Y, 40.0)]);
     close(time(&path, &l), rest_to_rest(50.0, 100.0, 1000.0));
@@ -58,7 +58,7 @@ fn path_acceleration_is_the_smallest_of_the_moving_axes() {
 #[test]
 fn rapid_traverse_goes_by_the_slowest_axis_for_its_part() {
     let mut l = limits();
-    l.max_feed_mm_min[Z.index()] = 6000.0;
+    l.max_feed_mm_min[Z] = 6000.0;
     let mut path = Path::new(100.0);
     path.feed(FeedRate::Rapid).line(&[(X, 30.0), (Z, 40.0)]);
     close(plan(&path.elements, &l)[0].profile.peak_mm_s, 125.0);
@@ -72,7 +72,7 @@ fn rapid_traverse_goes_by_the_slowest_axis_for_its_part() {
 #[test]
 fn programmed_feed_keeps_the_axis_limits() {
     let mut l = limits();
-    l.max_feed_mm_min[Z.index()] = 6000.0;
+    l.max_feed_mm_min[Z] = 6000.0;
     let mut path = Path::new(6000.0);
     path.line(&[(X, 30.0), (Z, 40.0)]);
     let peak = |l: &Limits| plan(&path.elements, l)[0].profile.peak_mm_s;
@@ -118,7 +118,7 @@ fn helix_turns_as_fast_as_the_circle() {
 fn rapid_traverse_on_an_arc() {
     let mut l = limits();
     l.radial_acceleration_m_s2 = 5.0;
-    l.max_feed_mm_min[X.index()] = 3000.0;
+    l.max_feed_mm_min[X] = 3000.0;
     let peak = |heading: f64, sweep: f64| {
         let mut path = Path::new(1.0);
         path.feed(FeedRate::Rapid).turn(heading, 1000.0, sweep, 0.0);
@@ -240,7 +240,7 @@ fn corners_close_together_share_the_window() {
     path.by(&[(X, 2.0 * cos), (Y, 2.0 * sin)]).last().constant_speed = true;
     path.by(&[(Y, 150.0)]);
     let fast = Limits {
-        max_feed_mm_min: [30_000.0; Axis::COUNT],
+        max_feed_mm_min: PerAxis::splat(30_000.0),
         ..limits()
     };
     let planned = plan(&path.elements, &fast);
@@ -369,7 +369,7 @@ fn without_feed_nothing_moves() {
             .all(|p| p.profile.duration_s == f64::INFINITY)
     );
     let mut no_axis = limits();
-    no_axis.max_feed_mm_min[0] = 0.0;
+    no_axis.max_feed_mm_min[X] = 0.0;
     assert!(
         with(6000.0, &no_axis)
             .iter()
@@ -390,8 +390,8 @@ fn senseless_limits_are_survived() {
         f64::MAX,
     ] {
         let l = Limits {
-            max_feed_mm_min: [value; Axis::COUNT],
-            acceleration_m_s2: [value; Axis::COUNT],
+            max_feed_mm_min: PerAxis::splat(value),
+            acceleration_m_s2: PerAxis::splat(value),
             radial_acceleration_m_s2: value,
             corner_angle_deg: value,
             servo_lag: true,
@@ -409,7 +409,7 @@ fn senseless_limits_are_survived() {
         for l in [
             l.clone(),
             Limits {
-                max_feed_mm_min: [1000.0; 9],
+                max_feed_mm_min: PerAxis::splat(1000.0),
                 feed_override_percent: 100.0,
                 ..l
             },

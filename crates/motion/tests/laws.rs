@@ -4,7 +4,7 @@
 mod common;
 
 use bahn_motion::{Identity, Limits, Planned, Sample, Sampler};
-use bahn_path::{Axis, Curve, FeedRate, PathElement, Position};
+use bahn_path::{Axis, Curve, FeedRate, PathElement, PerAxis, Position};
 use common::random::{Block, Random, check_axes, polyline, random_path, regular_corners, window_cycles};
 use common::{plan, planner_of, reversed, time_s};
 use proptest::prelude::*;
@@ -82,8 +82,8 @@ fn an_arc_and_a_corner_within_one_cycle() {
         sweep_deg: -194.0,
         z: 0.0,
     };
-    let mut acceleration_m_s2 = [1.0; Axis::COUNT];
-    acceleration_m_s2[Axis::Y.index()] = 0.0875;
+    let mut acceleration_m_s2 = PerAxis::splat(1.0);
+    acceleration_m_s2[Axis::Y] = 0.0875;
     let random = Random {
         blocks: vec![
             (arc, None, false),
@@ -91,7 +91,7 @@ fn an_arc_and_a_corner_within_one_cycle() {
             (line(-5.8, 1.0), None, false),
         ],
         limits: Limits {
-            max_feed_mm_min: [500.0; Axis::COUNT],
+            max_feed_mm_min: PerAxis::splat(500.0),
             acceleration_m_s2,
             radial_acceleration_m_s2: 0.304,
             ..common::limits()

@@ -87,7 +87,7 @@ fn axes(elements: &[PathElement], limits: &Limits) -> Vec<Position> {
 #[test]
 fn the_slowest_axis_behind_the_plane_decides() {
     let mut slow = limits();
-    slow.max_feed_mm_min[Axis::Z.index()] = 3000.0;
+    slow.max_feed_mm_min[Axis::Z] = 3000.0;
     let mut path = Path::new(0.0);
     path.feed(FeedRate::Rapid).line(&[(Axis::X, 500.0)]);
     let planned = plan(&placed(path.clone(), &tilted(30.0, 0.0)), &slow);

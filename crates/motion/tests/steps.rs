@@ -91,7 +91,7 @@ fn look_ahead_is_bounded() {
         path.line(&[(X, 0.001 * i as f64)]);
     }
     let mut l = limits();
-    l.max_feed_mm_min[X.index()] = 300_000.0;
+    l.max_feed_mm_min[X] = 300_000.0;
     let steps = path.elements.into_iter().map(Step::Element).collect();
     let mut planner = Planner::new(list(steps), &l, &AuxiliaryTimes::default());
     let (mut handed_out, mut speed, mut greatest) = (0, 0.0, 0.0f64);

@@ -8,6 +8,7 @@
 //! - [`chapters`]: the chapters of the manuals that a citation means;
 //! - [`ParameterList`]: the machine parameters of one machine, with typed getters that answer for every
 //!   model, grouped by who reads them: [`axis`], [`spindle`], [`operation`], [`machining`], [`plc`];
+//! - [`PerPlcAxis`]: what there is of each axis of a list, by its index;
 //! - [`space`]: what machine parameters have in common with other kinds, as the system and channel parameters of a
 //!   System 900;
 //! - [`ListText`]: the text of a list, whose values change in their places;
@@ -50,6 +51,7 @@ mod meaning;
 mod message;
 mod model;
 pub mod own_functions;
+mod plc_axes;
 mod settings;
 pub mod space;
 pub mod technology;
@@ -66,6 +68,7 @@ pub use limits::{EmergencyStopTest, InchFeed, Limits, MachineZero, Numbering};
 pub use list::ParameterList;
 pub use message::{MessageCode, MessageId};
 pub use model::{ControlModel, UnknownModel};
+pub use plc_axes::{PLC_AXES, PLC_AXIS_NAMES, PerPlcAxis};
 pub use text::{Entry, ListText};
 
 /// Of an axis: [`ParameterList::axis_parameters`](crate::ParameterList::axis_parameters).

@@ -28,11 +28,12 @@ pub enum Axis {
     W,
 }
 
+/// Number of axes. Whoever has something of each axis has a [`PerAxis`] of it.
+const COUNT: usize = 9;
+
 impl Axis {
-    /// Number of axes.
-    pub const COUNT: usize = 9;
     /// All axes in the order of lists and reports: X Y Z A B C U V W.
-    pub const ALL: [Axis; Axis::COUNT] = [
+    pub const ALL: [Axis; COUNT] = [
         Axis::X,
         Axis::Y,
         Axis::Z,
@@ -90,7 +91,7 @@ impl Axis {
         }
     }
 
-    /// Index into arrays of [`Axis::COUNT`], in the order of [`Axis::ALL`].
+    /// Place in [`Axis::ALL`].
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -166,6 +167,67 @@ impl FromIterator<Axis> for AxisSet {
     }
 }
 
+/// A value for each axis that a path can have.
+///
+/// ```
+/// use bahn_path::{Axis, PerAxis};
+/// let mut feeds = PerAxis::splat(15_000.0);
+/// feeds[Axis::Z] = 6_000.0;
+/// let slowest = feeds.iter().copied().fold(f64::INFINITY, f64::min);
+/// assert_eq!((feeds[Axis::X], slowest), (15_000.0, 6_000.0));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PerAxis<T>([T; COUNT]);
+
+impl<T> PerAxis<T> {
+    /// What is said of each axis.
+    #[inline]
+    pub fn from_fn(value: impl FnMut(Axis) -> T) -> PerAxis<T> {
+        PerAxis(Axis::ALL.map(value))
+    }
+
+    /// What becomes of each value.
+    #[inline]
+    pub fn map<U>(self, value: impl FnMut(T) -> U) -> PerAxis<U> {
+        PerAxis(self.0.map(value))
+    }
+
+    /// The values in the order of [`Axis::ALL`].
+    #[inline]
+    pub const fn values(&self) -> &[T] {
+        &self.0
+    }
+
+    /// The values in the order of [`Axis::ALL`], one by one.
+    #[inline]
+    pub fn iter(&self) -> std::slice::Iter<'_, T> {
+        self.0.iter()
+    }
+}
+
+impl<T: Copy> PerAxis<T> {
+    /// The same value for each axis.
+    #[inline]
+    pub const fn splat(value: T) -> PerAxis<T> {
+        PerAxis([value; COUNT])
+    }
+}
+
+impl<T> Index<Axis> for PerAxis<T> {
+    type Output = T;
+    #[inline]
+    fn index(&self, axis: Axis) -> &T {
+        &self.0[axis.index()]
+    }
+}
+
+impl<T> IndexMut<Axis> for PerAxis<T> {
+    #[inline]
+    fn index_mut(&mut self, axis: Axis) -> &mut T {
+        &mut self.0[axis.index()]
+    }
+}
+
 /// A position of all axes: mm for linear, degrees for rotary axes. An axis that was never programmed
 /// and not given a start has no position; its value is NaN.
 ///
@@ -177,17 +239,17 @@ impl FromIterator<Axis> for AxisSet {
 /// assert_eq!(p.get(Axis::Y), None);
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Position([f64; Axis::COUNT]);
+pub struct Position(PerAxis<f64>);
 
 impl Position {
     /// No axis has a position.
-    pub const UNKNOWN: Position = Position([f64::NAN; Axis::COUNT]);
+    pub const UNKNOWN: Position = Position(PerAxis::splat(f64::NAN));
     /// Every axis at zero.
-    pub const ZERO: Position = Position([0.0; Axis::COUNT]);
+    pub const ZERO: Position = Position(PerAxis::splat(0.0));
 
     /// The position of an axis, `None` while it has none.
     pub fn get(&self, axis: Axis) -> Option<f64> {
-        let value = self.0[axis.index()];
+        let value = self.0[axis];
         if value.is_nan() { None } else { Some(value) }
     }
 
@@ -199,14 +261,15 @@ impl Position {
             .collect()
     }
 
-    /// The values in the order of [`Axis::ALL`]; NaN where the axis has no position.
-    pub const fn values(&self) -> &[f64; Axis::COUNT] {
+    /// The value of each axis; NaN where it has no position.
+    pub const fn values(&self) -> &PerAxis<f64> {
         &self.0
     }
 }
 
-impl From<[f64; Axis::COUNT]> for Position {
-    fn from(values: [f64; Axis::COUNT]) -> Self {
+impl From<PerAxis<f64>> for Position {
+    #[inline]
+    fn from(values: PerAxis<f64>) -> Self {
         Position(values)
     }
 }
@@ -215,14 +278,14 @@ impl Index<Axis> for Position {
     type Output = f64;
     #[inline]
     fn index(&self, axis: Axis) -> &f64 {
-        &self.0[axis.index()]
+        &self.0[axis]
     }
 }
 
 impl IndexMut<Axis> for Position {
     #[inline]
     fn index_mut(&mut self, axis: Axis) -> &mut f64 {
-        &mut self.0[axis.index()]
+        &mut self.0[axis]
     }
 }
 
@@ -231,7 +294,7 @@ impl PartialEq for Position {
     fn eq(&self, other: &Self) -> bool {
         self.0
             .iter()
-            .zip(&other.0)
+            .zip(other.0.iter())
             .all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
     }
 }

@@ -1,6 +1,6 @@
 //! Lines, arcs and helices between two positions.
 
-use crate::{Axis, Plane, Point2, Position};
+use crate::{Axis, PerAxis, Plane, Point2, Position};
 
 /// The shape of a path element between its start and end position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,8 +123,8 @@ impl Curve {
     /// with its end alone.
     pub fn bounds(&self, start: &Position, end: &Position) -> [Position; 2] {
         // `f64::min` and `max` pass over NaN.
-        let mut min: Position = Axis::ALL.map(|axis| start[axis].min(end[axis])).into();
-        let mut max: Position = Axis::ALL.map(|axis| start[axis].max(end[axis])).into();
+        let mut min: Position = PerAxis::from_fn(|axis| start[axis].min(end[axis])).into();
+        let mut max: Position = PerAxis::from_fn(|axis| start[axis].max(end[axis])).into();
         let Curve::Arc(arc) = self else {
             return [min, max];
         };
@@ -160,8 +160,8 @@ impl Curve {
 
     /// Derivative of the position by the path length at the fraction `t`: a vector over all axes that
     /// has length 1 over the axes that [`Curve::length`] counts. Zero when nothing moves.
-    pub fn tangent(&self, start: &Position, end: &Position, t: f64) -> [f64; Axis::COUNT] {
-        let mut result = [0.0; Axis::COUNT];
+    pub fn tangent(&self, start: &Position, end: &Position, t: f64) -> PerAxis<f64> {
+        let mut result = PerAxis::splat(0.0);
         let length = self.length(start, end);
         if length <= 0.0 {
             return result;
@@ -169,7 +169,7 @@ impl Curve {
         for axis in Axis::ALL {
             let delta = end[axis] - start[axis];
             if !delta.is_nan() {
-                result[axis.index()] = delta / length;
+                result[axis] = delta / length;
             }
         }
         if let Curve::Arc(arc) = self {
@@ -179,8 +179,8 @@ impl Curve {
             let radial = [(p[0] - arc.centre[0]) / radius, (p[1] - arc.centre[1]) / radius];
             let along = arc.sweep_deg.to_radians() * radius / length;
             let outward = (r1 - r0) / length;
-            result[arc.plane.first.index()] = -radial[1] * along + radial[0] * outward;
-            result[arc.plane.second.index()] = radial[0] * along + radial[1] * outward;
+            result[arc.plane.first] = -radial[1] * along + radial[0] * outward;
+            result[arc.plane.second] = radial[0] * along + radial[1] * outward;
         }
         result
     }

@@ -1,6 +1,6 @@
 //! Coordinate transformations of the program as one frame.
 
-use crate::{Axis, Plane, Position};
+use crate::{Axis, PerAxis, Plane, Position};
 
 /// Datum shift, mirror image, rotation and scaling combined in the recommended order
 /// (inferred) [003:6240] [003:6315]:
@@ -50,7 +50,7 @@ impl AxisScaling {
     /// Factors that change nothing.
     pub fn none() -> AxisScaling {
         AxisScaling {
-            factor: Position::from([1.0; Axis::COUNT]),
+            factor: PerAxis::splat(1.0).into(),
             centre: Position::ZERO,
         }
     }
@@ -64,7 +64,7 @@ impl Frame {
             shift: Position::ZERO,
             rotation_deg: 0.0,
             basic_rotation_deg: 0.0,
-            factor: Position::from([1.0; Axis::COUNT]),
+            factor: PerAxis::splat(1.0).into(),
             axis_scaling: None,
         }
     }

@@ -1,7 +1,7 @@
 //! Geometry of the tool path, the ground floor of the house.
 //!
 //! The face of this room is small:
-//! - [`Axis`], [`AxisSet`], [`Position`]: the nine programmable axes and a point of them;
+//! - [`Axis`], [`AxisSet`], [`PerAxis`], [`Position`]: the nine programmable axes, something of each, and a point of them;
 //! - [`Plane`]: a working plane, which is two axes and the tool axis that stands on it;
 //! - [`Curve`], [`Arc`]: line, circular arc and helix with length, tangent and splitting;
 //! - [`Frame`]: datum shift, mirror image, rotation and scaling as one transformation;
@@ -34,7 +34,7 @@ mod scan;
 mod source;
 mod swivel;
 
-pub use axis::{Axis, AxisSet, Position};
+pub use axis::{Axis, AxisSet, PerAxis, Position};
 pub use characteristic::Characteristic;
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use element::{

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::swivel::{Matrix, Swivels, Vector, turn, turn_back};
-use crate::{Axis, Curve, Position};
+use crate::{Axis, Curve, PerAxis, Position};
 
 /// Steps in which the way of the axes on a curved path is looked at, degrees.
 const STEP_DEG: f64 = 1.0;
@@ -126,15 +126,17 @@ impl Placement {
     }
 
     /// The derivative of the axes where that of the path is `direction`.
-    pub fn velocity(&self, at: &Position, direction: &[f64; Axis::COUNT]) -> [f64; Axis::COUNT] {
+    pub fn velocity(&self, at: &Position, direction: &PerAxis<f64>) -> PerAxis<f64> {
         /// So far on both sides the way of the axes is looked at, degrees: rounding and curvature count alike.
         const BESIDE_DEG: f64 = 1e-3;
         let mut axes = *direction;
-        let [x, y, z, a, b, c, ..] = *direction;
+        let [x, y, z] = [Axis::X, Axis::Y, Axis::Z].map(|axis| direction[axis]);
         let turned = match &self.kind {
             Kind::Tilted { rotation, .. } => turn(rotation, [x, y, z]),
             Kind::Compensated { .. } => {
-                let rate = a.hypot(b).hypot(c);
+                let rate = direction[Axis::A]
+                    .hypot(direction[Axis::B])
+                    .hypot(direction[Axis::C]);
                 if rate == 0.0 {
                     return axes;
                 }
@@ -142,7 +144,7 @@ impl Placement {
                 let beside = |h: f64| {
                     let mut beside = *at;
                     for axis in [Axis::A, Axis::B, Axis::C] {
-                        beside[axis] += h * direction.get(axis.index()).copied().unwrap_or(0.0);
+                        beside[axis] += h * direction[axis];
                     }
                     self.swing(&beside)
                 };
@@ -151,8 +153,8 @@ impl Placement {
                 sum([x, y, z], swing)
             }
         };
-        for (value, turned) in axes.iter_mut().zip(turned) {
-            *value = turned;
+        for (axis, turned) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(turned) {
+            axes[axis] = turned;
         }
         axes
     }
@@ -250,9 +252,15 @@ impl Placement {
         let Kind::Compensated { swivels, datum } = &self.kind else {
             return [0.0; 3];
         };
-        let angles: Position = Axis::ALL
-            .map(|axis| path[axis] + if datum[axis].is_nan() { 0.0 } else { datum[axis] })
-            .into();
+        let turned = |axis| {
+            path[axis]
+                + if f64::is_nan(datum[axis]) {
+                    0.0
+                } else {
+                    datum[axis]
+                }
+        };
+        let angles: Position = PerAxis::from_fn(turned).into();
         let tool = turn(&swivels.head_rotation(&angles), self.tool_vector());
         sum(tool, swivels.head_offset(&angles))
     }

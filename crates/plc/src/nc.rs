@@ -19,7 +19,7 @@ pub use test::{TestAxis, TestNc};
 pub use window::{Bar, Cell, PlcWindow, WindowView};
 
 use bahn_exchange::{Exchange, signal};
-use bahn_parameters::ParameterList;
+use bahn_parameters::{ParameterList, PerPlcAxis};
 
 /// The control as the PLC sees it beside the exchanged operands, by concern. Modules check arguments and machine
 /// parameters before they call; an implementation may rely on the ranges that are given here.
@@ -66,7 +66,7 @@ pub trait NcStatus {
 
     /// Coordinates of all axes in mm or degrees; those of axes that are not active or not referenced may
     /// be anything (9040, 9041).
-    fn coordinates(&self, kind: CoordinateKind) -> [f64; 5];
+    fn coordinates(&self, kind: CoordinateKind) -> PerPlcAxis<f64>;
 
     /// Where the spindle is (9042).
     fn spindle_position(&self) -> SpindlePosition;

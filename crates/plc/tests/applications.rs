@@ -2,6 +2,7 @@
 
 mod common;
 
+use bahn_parameters::PerPlcAxis;
 use bahn_plc::{CoordinateKind, PlcAxisCommand, StatusChange};
 use common::{Bench, lines};
 
@@ -319,7 +320,10 @@ mod hirth {
 
     /// Places the 4th axis, degrees.
     fn place(bench: &mut Bench, kind: CoordinateKind, degrees: f64) {
-        bench.nc.coordinates.insert(kind, [0.0, 0.0, 0.0, degrees, 0.0]);
+        bench
+            .nc
+            .coordinates
+            .insert(kind, PerPlcAxis([0.0, 0.0, 0.0, degrees, 0.0]));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The canonical operations that every part-program language lowers to.
 
 use bahn_parameters::InchFeed;
-use bahn_path::{Axis, AxisSet};
+use bahn_path::{Axis, AxisSet, PerAxis};
 
 use crate::BlockError;
 
@@ -258,7 +258,7 @@ pub struct Coordinates {
     incremental: AxisSet,
     /// Axes whose value is a Q parameter: `values` then holds its number, negative zero and below for `-Q`.
     parameters: AxisSet,
-    values: [f64; Axis::COUNT],
+    values: PerAxis<f64>,
 }
 
 impl Coordinates {
@@ -288,7 +288,7 @@ impl Coordinates {
 
     /// The literal numbers, for axes that are neither absent nor a Q parameter.
     #[inline]
-    pub fn numbers(&self) -> &[f64; Axis::COUNT] {
+    pub fn numbers(&self) -> &PerAxis<f64> {
         &self.values
     }
 
@@ -298,7 +298,7 @@ impl Coordinates {
         if !self.present.contains(axis) {
             return None;
         }
-        let raw = self.values[axis.index()];
+        let raw = self.values[axis];
         let value = if self.parameters.contains(axis) {
             Value::Q {
                 number: raw.abs() as u16,
@@ -325,12 +325,12 @@ impl Coordinates {
         match word.value {
             Value::Number(number) => {
                 self.parameters.remove(axis);
-                self.values[axis.index()] = number;
+                self.values[axis] = number;
             }
             Value::Q { number, negative } => {
                 self.parameters.insert(axis);
                 let magnitude = f64::from(number);
-                self.values[axis.index()] = if negative { -magnitude } else { magnitude };
+                self.values[axis] = if negative { -magnitude } else { magnitude };
             }
         }
     }

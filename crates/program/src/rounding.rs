@@ -115,7 +115,7 @@ impl InputSteps {
             .iter()
             .filter(|axis| !parameters.contains(*axis))
         {
-            let number = coordinates.numbers()[axis.index()];
+            let number = coordinates.numbers()[axis];
             if let Some(value) = rounded(number, self.of_axis(axis)) {
                 let incremental = coordinates.incremental().contains(axis);
                 let value = Value::Number(value);

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use bahn_control::Control;
 use bahn_exchange::signal;
 use bahn_machine::Machine;
-use bahn_path::{Axis, OverrideLaw, PathElement};
+use bahn_path::{OverrideLaw, PathElement, PerAxis};
 use bahn_servo::Rotation;
 
 use crate::cutting::Spindle;
@@ -17,7 +17,7 @@ const PASSED_OVER: usize = 8;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct ElementId {
     pub sequence: u64,
-    ends: [[u64; Axis::COUNT]; 2],
+    ends: [PerAxis<u64>; 2],
 }
 
 impl ElementId {

@@ -2,11 +2,8 @@
 
 use bahn_control::{AxisId, HandOver, Window};
 use bahn_machine::ChannelFolder;
-use bahn_parameters::ParameterList;
+use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
-
-/// Axes that a list of machine parameters has at most.
-pub(super) const AXES: usize = 5;
 
 /// A channel beside the first one.
 #[derive(Clone)]
@@ -16,7 +13,7 @@ pub struct LoadedChannel {
     /// Its machine parameters.
     pub parameters: ParameterList,
     /// The number on the machine of each of its axes, by their indices.
-    pub axes: [Option<AxisId>; AXES],
+    pub axes: PerPlcAxis<Option<AxisId>>,
     /// Where its markers and words stand in the memory of the PLC.
     pub window: Window,
 }

@@ -5,15 +5,15 @@ use std::collections::BTreeSet;
 use bahn_control::{AxisId, ChannelError, HandOver, Window};
 use bahn_exchange::{Bit, BitArea, Number};
 use bahn_machine::{ChannelFolder, HandOverFolder, Machine, MachineFolder};
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::{ControlModel, PLC_AXES, ParameterList, PerPlcAxis};
 use bahn_path::Axis;
 
-use super::channel::{AXES, Channels, LoadedChannel, letter_of};
+use super::channel::{Channels, LoadedChannel, letter_of};
 use super::load::Loader;
 
 /// The axes of a list by their indices: the letters of those that there are.
-fn letters(list: &ParameterList) -> [Option<Axis>; AXES] {
-    let mut letters = [None; AXES];
+fn letters(list: &ParameterList) -> PerPlcAxis<Option<Axis>> {
+    let mut letters = PerPlcAxis::splat(None);
     for (index, letter) in (0u8..).zip(&mut letters) {
         let axis = list.axis_parameters(index);
         *letter = axis.letter.filter(|_| axis.active);
@@ -25,8 +25,8 @@ fn letters(list: &ParameterList) -> [Option<Axis>; AXES] {
 type Owner = Option<(u8, Axis)>;
 
 /// What is at each index of a channel.
-fn owners(list: &ParameterList, ids: [Option<AxisId>; AXES]) -> [Owner; AXES] {
-    let mut owners = [None; AXES];
+fn owners(list: &ParameterList, ids: PerPlcAxis<Option<AxisId>>) -> PerPlcAxis<Owner> {
+    let mut owners = PerPlcAxis::splat(None);
     for ((owner, letter), id) in owners.iter_mut().zip(letters(list)).zip(ids) {
         *owner = id.map(AxisId::number).zip(letter);
     }
@@ -75,7 +75,7 @@ impl Loader<'_> {
             let message = "`program` is for machines with several channels: `bahn run` names it with one";
             self.fault_at_key("program", message);
         }
-        let mut owners = vec![self::owners(first, [0, 1, 2, 3, 4].map(AxisId::new))];
+        let mut owners = vec![self::owners(first, PerPlcAxis::from_fn(AxisId::new))];
         owners.extend(
             channels
                 .iter()
@@ -90,15 +90,19 @@ impl Loader<'_> {
     }
 
     /// The numbers of its axes: each axis of the machine has one, and belongs to one channel.
-    fn channel_axes(&mut self, channel: &ChannelFolder, taken: &mut BTreeSet<u8>) -> [Option<AxisId>; AXES] {
-        let mut axes = [None; AXES];
+    fn channel_axes(
+        &mut self,
+        channel: &ChannelFolder,
+        taken: &mut BTreeSet<u8>,
+    ) -> PerPlcAxis<Option<AxisId>> {
+        let mut axes = PerPlcAxis::splat(None);
         let line = line_of(channel, "axes");
-        if channel.axes.len() > AXES {
-            self.fault_at_line(line, format!("a channel has at most {AXES} axes"));
+        if channel.axes.len() > PLC_AXES {
+            self.fault_at_line(line, format!("a channel has at most {PLC_AXES} axes"));
         }
         for (number, place) in channel.axes.iter().zip(&mut axes) {
             // Those of the first channel are 0 to 4, whichever of them its list has.
-            let first = usize::from(*number) < AXES;
+            let first = usize::from(*number) < PLC_AXES;
             *place = AxisId::new(*number).filter(|_| !first);
             if place.is_none() {
                 let last = AxisId::COUNT - 1;
@@ -172,7 +176,7 @@ impl Loader<'_> {
         one: &HandOverFolder,
         channels: usize,
         axes: &BTreeSet<u8>,
-        owners: &[[Owner; AXES]],
+        owners: &[PerPlcAxis<Owner>],
     ) -> Option<HandOver> {
         let line = |key: &str| one.lines.1.get(key).copied().unwrap_or(one.lines.0);
         let before = self.faults.len();

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use bahn_control::NcFiles;
 use bahn_machine::MachineFolder;
-use bahn_parameters::ParameterList;
+use bahn_parameters::{PLC_AXIS_NAMES, ParameterList, PerPlcAxis};
 use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};
 
 use super::load::{Loader, decode, file_fault};
@@ -16,9 +16,6 @@ use crate::files;
 
 /// Lines that MP7226 gives a table at most [000:6892-6896].
 pub(super) const LINES_MAX: u16 = 255;
-
-/// Elements of a datum table by their columns [000:15414-15420].
-const DATUMS: [&str; 5] = ["X", "Y", "Z", "4", "5"];
 
 const WRONG: &str = "the table is wrong";
 
@@ -35,12 +32,17 @@ const PALLET_FILE: Form = Form {
 };
 
 /// Reads a datum table, with the elements that turn and so have no unit of length.
-pub(super) fn datum_table(text: &str, turns: [bool; 5], most: u16) -> Result<MemoryTable, Vec<TableFault>> {
-    let mut lines: BTreeMap<i32, [f64; 5]> = BTreeMap::new();
+pub(super) fn datum_table(
+    text: &str,
+    turns: PerPlcAxis<bool>,
+    most: u16,
+) -> Result<MemoryTable, Vec<TableFault>> {
+    let mut lines: BTreeMap<i32, PerPlcAxis<f64>> = BTreeMap::new();
     columns::read(text, &DATUM_TABLE, |row| {
-        let mut values = [0.0; 5];
+        let mut values = PerPlcAxis::splat(0.0);
         let columns = TableKind::Datum.columns().iter().flatten();
-        for (((value, name), turns), column) in values.iter_mut().zip(DATUMS).zip(turns).zip(columns) {
+        for (((value, name), turns), column) in values.iter_mut().zip(PLC_AXIS_NAMES).zip(turns).zip(columns)
+        {
             let unit = if turns { 1.0 } else { row.unit_mm };
             *value = row.number(name)? * unit;
             if !(column.min..=column.max).contains(value) {
@@ -103,7 +105,7 @@ impl Loader<'_> {
         let sizes = list.table_parameters();
         let [datum_lines, pallet_lines] =
             [sizes.datum_lines, sizes.pallet_lines].map(|lines| lines.unwrap_or(LINES_MAX));
-        let mut turns = [false; 5];
+        let mut turns = PerPlcAxis::splat(false);
         for axis in list.axes().iter().filter(|axis| axis.is_rotary()) {
             if let Some(turns) = list
                 .axis_index(axis)
@@ -186,12 +188,15 @@ impl Loader<'_> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may fail")]
     use super::*;
+    use bahn_parameters::PLC_AXES;
 
-    const LENGTHS: [bool; 5] = [false; 5];
+    const LENGTHS: PerPlcAxis<bool> = PerPlcAxis::splat(false);
 
     /// Values of a line of a datum table.
     fn line(table: &MemoryTable, number: i32) -> Option<Vec<f64>> {
-        (0..5).map(|element| table.value(number, element)).collect()
+        (0..PLC_AXES)
+            .map(|element| table.value(number, element))
+            .collect()
     }
 
     #[test]
@@ -199,10 +204,13 @@ mod tests {
         let text = "NR\tX\tY\tZ\t4\tDOC\n0\t0\t0\t0\t0\tvice\n12\t-1.5\t2,25\t\t90\t\n";
         let table = datum_table(text, LENGTHS, LINES_MAX).unwrap();
         assert_eq!(line(&table, 12), Some(vec![-1.5, 2.25, 0.0, 90.0, 0.0]));
-        assert_eq!((line(&table, 0), line(&table, 1)), (Some(vec![0.0; 5]), None));
+        assert_eq!(
+            (line(&table, 0), line(&table, 1)),
+            (Some(vec![0.0; PLC_AXES]), None)
+        );
         // As a control writes it, in inches: degrees stay.
         let text = "BEGIN ZERO .D INCH\nNR   X      4\n3    +1     -30\n[END]\n";
-        let table = datum_table(text, [false, false, false, true, false], LINES_MAX).unwrap();
+        let table = datum_table(text, PerPlcAxis([false, false, false, true, false]), LINES_MAX).unwrap();
         assert_eq!(line(&table, 3), Some(vec![25.4, 0.0, 0.0, -30.0, 0.0]));
     }
 

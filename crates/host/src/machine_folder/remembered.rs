@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use bahn_control::{
     Calibration, MovedTool, Position0, ProbeMemory, Remembered, ToolProbeCalibration, WrittenElement,
 };
+use bahn_parameters::{PLC_AXES, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::TableKind;
 use serde::Deserialize;
@@ -23,7 +24,7 @@ struct Form {
     program: Option<String>,
     pallet_line: Option<i32>,
     datum_table: Option<String>,
-    offsets_volts: [f64; 5],
+    offsets_volts: [f64; PLC_AXES],
     datum: [BTreeMap<char, f64>; 3],
     /// Pocket now and pocket in the tool table, by tool; -1 is none.
     #[serde(default)]
@@ -120,7 +121,7 @@ fn text(remembered: &Remembered) -> String {
     if remembered.probe.basic_rotation_deg != 0.0 {
         line("basic_rotation", number(remembered.probe.basic_rotation_deg));
     }
-    line("offsets_volts", list(remembered.offsets_volts.map(number)));
+    line("offsets_volts", list(remembered.offsets_volts.map(number).0));
     let datum = |Position0(datum): &Position0| {
         let known = Axis::ALL.into_iter().filter_map(|axis| {
             let value = datum.get(axis).filter(|value| value.is_finite())?;
@@ -270,7 +271,7 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         pockets,
         written,
         q,
-        offsets_volts: form.offsets_volts,
+        offsets_volts: PerPlcAxis(form.offsets_volts),
         parameter_list: form.parameter_list,
         program: form.program,
         pallet_line: form.pallet_line,
@@ -366,7 +367,7 @@ mod tests {
                 },
             ],
             q: vec![(1, 0.5), (107, -1e-4)],
-            offsets_volts: [0.0, 0.0015, 0.0, 0.0, 0.0],
+            offsets_volts: PerPlcAxis([0.0, 0.0015, 0.0, 0.0, 0.0]),
             probe: ProbeMemory {
                 calibration: Some(Calibration {
                     length_mm: 148.25,
@@ -405,7 +406,7 @@ mod tests {
         fn what_is_written_is_read(
             tool in 0..99u32,
             values in prop::array::uniform5(-1e5..1e5f64),
-            axis in prop::option::of(0..Axis::COUNT),
+            tool_axis in prop::option::of(prop::sample::select(Axis::ALL.to_vec())),
             program in prop::option::of(".{0,12}"),
             pockets in prop::collection::btree_map(0..300u32, any::<(Option<u16>, Option<u16>)>(), 0..5),
             q in prop::collection::btree_map(0..300u16, -1e9..1e9f64, 0..5),
@@ -414,10 +415,10 @@ mod tests {
             let remembered = Remembered {
                 tool,
                 tool_length: values[2],
-                tool_axis: axis.and_then(|axis| Axis::ALL.get(axis).copied()),
+                tool_axis,
                 pockets: pockets.into_iter().map(moved).collect(),
                 q: q.into_iter().collect(),
-                offsets_volts: values,
+                offsets_volts: PerPlcAxis(values),
                 program,
                 ..full()
             };

@@ -6,14 +6,14 @@ pub mod random;
 use bahn_motion::{AuxiliaryTimes, Limits, Planned, PlannedStep, Planner};
 use bahn_path::{
     Arc, At, Axis, BlockRef, Curve, ElementSource, FeedRate, Function, LiveData, OverrideLaw, PathElement,
-    Plane, Position, SpindleOrder, Step, Synchronisation, TechnologyFunction, sweep_deg,
+    PerAxis, Plane, Position, SpindleOrder, Step, Synchronisation, TechnologyFunction, sweep_deg,
 };
 
 /// 15 m/min, 1 m/s², radial 0.5 m/s², corners up to 10 degrees, servo lag.
 pub fn limits() -> Limits {
     Limits {
-        max_feed_mm_min: [15_000.0; Axis::COUNT],
-        acceleration_m_s2: [1.0; Axis::COUNT],
+        max_feed_mm_min: PerAxis::splat(15_000.0),
+        acceleration_m_s2: PerAxis::splat(1.0),
         radial_acceleration_m_s2: 0.5,
         corner_angle_deg: 10.0,
         servo_lag: true,

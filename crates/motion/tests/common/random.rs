@@ -1,7 +1,7 @@
 //! Random paths and machines for the laws.
 
 use bahn_motion::Limits;
-use bahn_path::{Axis, FeedRate, PathElement, Position};
+use bahn_path::{Axis, FeedRate, PathElement, PerAxis, Position};
 use proptest::prelude::*;
 
 use super::Path;
@@ -110,10 +110,15 @@ pub fn block() -> impl Strategy<Value = Block> {
     ]
 }
 
+fn per_axis(value: impl Strategy<Value = f64>) -> impl Strategy<Value = PerAxis<f64>> {
+    prop::collection::vec(value, Axis::ALL.len())
+        .prop_map(|values| PerAxis::from_fn(|axis| values[axis.index()]))
+}
+
 pub fn random_limits() -> impl Strategy<Value = Limits> {
     (
-        prop::array::uniform9(decades(500.0, 60_000.0)),
-        prop::array::uniform9(decades(0.05, 5.0)),
+        per_axis(decades(500.0, 60_000.0)),
+        per_axis(decades(0.05, 5.0)),
         decades(0.05, 5.0),
         prop_oneof![5.0..15.0f64, 0.0001..179.9f64],
         any::<bool>(),
@@ -163,9 +168,8 @@ pub fn check_axes(
 ) -> Result<(), TestCaseError> {
     let t = limits.cycle_s;
     for axis in Axis::ALL {
-        let i = axis.index();
-        let greatest = limits.max_feed_mm_min[i] / 60.0;
-        let bound = times * 1000.0 * limits.acceleration_m_s2[i].hypot(limits.radial_acceleration_m_s2);
+        let greatest = limits.max_feed_mm_min[axis] / 60.0;
+        let bound = times * 1000.0 * limits.acceleration_m_s2[axis].hypot(limits.radial_acceleration_m_s2);
         for (k, two) in positions.windows(2).enumerate() {
             let speed = (two[1][axis] - two[0][axis]).abs() / t;
             prop_assert!(

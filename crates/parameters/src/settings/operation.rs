@@ -1,7 +1,7 @@
 //! Settings of the operating modes: switch-on, overrides, handwheel, tools, restart, display.
 
 use super::{ToolProbeParameters, bit_of};
-use crate::{ControlModel, ParameterId, ParameterList};
+use crate::{ControlModel, ParameterId, ParameterList, PerPlcAxis};
 
 /// Settings of the operating modes. "old" are the numbers of the TNC 151/155.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +105,7 @@ pub struct RestartParameters {
     pub from_start: bool,
     /// Where a tool change leaves the axes whose movement by the scan is calculated, machine coordinates, mm or
     /// degrees: MP7450, MP951 [000:6783-6832].
-    pub tool_change: [Option<f64>; 5],
+    pub tool_change: PerPlcAxis<Option<f64>>,
 }
 
 /// When and how a tool is handed to the PLC: MP7480 (old MP61, MP157) [000:9231-9283].
@@ -242,7 +242,7 @@ impl ParameterList {
                 passes_stops: multi(3),
                 ignores_dwell: multi(4),
                 from_start: multi(5),
-                tool_change: [0, 1, 2, 3, 4].map(|axis| {
+                tool_change: PerPlcAxis::from_fn(|axis| {
                     let calculated = bit_of(self.get_new(7450, 0).unwrap_or_default(), axis.into());
                     self.get_new(951, axis).filter(|_| calculated)
                 }),

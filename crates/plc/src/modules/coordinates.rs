@@ -19,7 +19,7 @@ fn read(call: &mut Call<'_>, scale: f64) -> Result<Outcome, PlcError> {
         return Ok(Outcome::Failed);
     };
     let values = call.nc.coordinates(kind).map(|value| scaled(value, scale));
-    Ok(Outcome::of(call.set_doubles(target, &values)))
+    Ok(Outcome::of(call.set_doubles(target, &values.0)))
 }
 
 /// 9042: angles of the spindle in 1/1000 degree: actual, nominal, actual in the reference system, trailing

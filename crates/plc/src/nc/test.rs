@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use bahn_parameters::ParameterList;
+use bahn_parameters::{ParameterList, PerPlcAxis};
 
 use super::{
     CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, NcInterfaces, NcMemory, NcMotion,
@@ -40,7 +40,7 @@ pub struct TestNc {
     /// What 9036 changed, in this order.
     pub status_changes: Vec<StatusChange>,
     /// Coordinates in mm or degrees; those of [`TestNc::axes`] where nothing is set.
-    pub coordinates: BTreeMap<CoordinateKind, [f64; 5]>,
+    pub coordinates: BTreeMap<CoordinateKind, PerPlcAxis<f64>>,
     /// Angles of the spindle.
     pub spindle: SpindlePosition,
     /// The PLC window.
@@ -70,7 +70,7 @@ pub struct TestNc {
     /// The connection to a host.
     pub host: Option<HostLink>,
     /// The axes X, Y, Z, 4, 5.
-    pub axes: [TestAxis; 5],
+    pub axes: PerPlcAxis<TestAxis>,
     /// Output at the spindle's analogue output in V.
     pub spindle_voltage: f64,
     /// The TOOL CALL that was inserted last.
@@ -215,7 +215,7 @@ impl TestNc {
             geometry_initialised: 0,
             interfaces: Default::default(),
             host: None,
-            axes: [TestAxis::default(); 5],
+            axes: PerPlcAxis::splat(TestAxis::default()),
             spindle_voltage: 0.0,
             tool_call: None,
             orienting: false,
@@ -297,7 +297,7 @@ impl NcStatus for TestNc {
         self.status_changes.push(change);
     }
 
-    fn coordinates(&self, kind: CoordinateKind) -> [f64; 5] {
+    fn coordinates(&self, kind: CoordinateKind) -> PerPlcAxis<f64> {
         self.coordinates
             .get(&kind)
             .copied()
@@ -307,7 +307,7 @@ impl NcStatus for TestNc {
                 | CoordinateKind::Reference
                 | CoordinateKind::ShiftedDatum => self.axes.map(|axis| axis.position),
                 CoordinateKind::DistanceToGo => self.axes.map(|axis| axis.distance_to_go()),
-                CoordinateKind::TrailingError | CoordinateKind::Deflection => [0.0; 5],
+                CoordinateKind::TrailingError | CoordinateKind::Deflection => PerPlcAxis::splat(0.0),
             })
     }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bahn_exchange::{Exchange, signal};
+use bahn_parameters::PLC_AXES;
 
 use super::clock::Clock;
 use super::processor::{Jobs, Processor, Step};
@@ -22,8 +23,6 @@ const JOBS_TIME: u64 = 1_000_000;
 
 /// RS-232-C/V.24 and RS-422/V.11.
 const DATA_INTERFACES: usize = 2;
-/// X, Y, Z, 4, 5.
-const AXES: usize = 5;
 
 /// A time in percent as the PLC menu shows it.
 pub(crate) fn percent(time: u64) -> f64 {
@@ -156,7 +155,7 @@ impl Machine {
                 interface.release();
             }
         }
-        for axis in 0..AXES {
+        for axis in 0..PLC_AXES {
             nc.override_plc_axis(axis, 100.0);
         }
         *self = Machine {
