@@ -611,10 +611,8 @@ impl Kinematics for Leaning {
 
     fn bounds(&self, _: &Curve, start: &Position, end: &Position, offsets: &Offsets) -> [Position; 2] {
         // On a straight line the axes are farthest at its ends.
-        let ends = [start, end].map(|at| self.to_axes(at, offsets));
-        let bound =
-            |of: fn(f64, f64) -> f64| PerAxis::from_fn(|axis| of(ends[0][axis], ends[1][axis])).into();
-        [bound(f64::min), bound(f64::max)]
+        let [a, b] = [start, end].map(|at| self.to_axes(at, offsets));
+        [f64::min, f64::max].map(|bound| PerAxis::from_fn(|axis| bound(a[axis], b[axis])).into())
     }
 
     fn shares(&self) -> Shares {
