@@ -57,7 +57,7 @@ X.ref                               as REF shows it, rotary axes within their mo
 X.table                             where the table stands in truth, from the zero point of the plant
 X.lag X.distance                    servo lag, distance to go in the block
 X.n-actual X.n-nominal X.n-int      speeds of a digital speed controller (TNC 425, MP1900), their difference
-X.probed                            what the probe menu shows as datum
+X.probed                            what the probe menu shows as datum; NaN before
 probe.length probe.radius           calibrated, mm
 probe.angle probe.touches           basic rotation, degrees; touches of the function that is chosen
 probe.circle                        radius of the circle that was probed, mm
