@@ -414,11 +414,8 @@ fn compensation_tables_lie_in_the_folder() {
     let folder = Folder::with_mill("TOOL CALL 3 Z S1500\nL Z+50 R0 FMAX\nL X+100 Y+0 FMAX M2");
     let machine = folder.path("mill/machine.toml");
     let text = std::fs::read_to_string(&machine).unwrap();
-    std::fs::write(
-        &machine,
-        text.replace("plant =", "compensation = \"AXES.CMA\"\nplant ="),
-    )
-    .unwrap();
+    let with_tables = text.replace("plant =", "compensation = \"AXES.CMA\"\nplant =");
+    std::fs::write(&machine, &with_tables).unwrap();
     std::fs::write(folder.path("mill/AXES.CMA"), "0 X=SCREW\nACTIVE 0\n").unwrap();
     let run = |mp: &str| {
         folder.bahn(&format!(
@@ -441,8 +438,39 @@ fn compensation_tables_lie_in_the_folder() {
         "SCREW MM DATUM 0 DIST 16 X\n0 X=0\n1 X=0.05\n",
     )
     .unwrap();
+    // Without an assignment the axis would have no compensation at all.
+    let list = folder.read("mill/parameters.mp");
+    folder.write(
+        "mill/parameters.mp",
+        &list.replace("MP730    : %00000", "MP730    : %00001"),
+    );
+    let check = folder.bahn("machine check mill");
+    assert!(!check.err().contains("compensation tables"), "{}", check.err());
+    std::fs::write(&machine, &text).unwrap();
+    let check = folder.bahn("machine check mill");
+    let expected = "MP730 compensates X by tables; name their assignment (.CMA) as `compensation`";
+    assert!(check.err().contains(expected), "{}", check.err());
+    std::fs::write(&machine, &with_tables).unwrap();
     let right = run("--mp 730=%00001");
     assert_eq!(right.code(), 0, "{}", right.err());
+    // A line that is not there; three dependencies of 256 points.
+    let wide = "WIDE MM DATUM 0 DIST 16 X Y Z\n0 X=0 Y=0 Z=0\n255 X=0 Y=0 Z=0\n";
+    std::fs::write(folder.path("mill/WIDE.COM"), wide).unwrap();
+    for (assignment, expected) in [
+        ("0 X=SCREW\nACTIVE 1\n", "there is no line with this number"),
+        ("0 X=SCREW\n1 X=WIDE\nACTIVE 1\n", "more than 640 points"),
+    ] {
+        std::fs::write(folder.path("mill/AXES.CMA"), assignment).unwrap();
+        let wrong = run("--mp 730=%00001");
+        let line = assignment.lines().count();
+        assert_eq!(wrong.code(), 1);
+        assert!(
+            wrong.err().contains(&format!("AXES.CMA:{line}")),
+            "{}",
+            wrong.err()
+        );
+        assert!(wrong.err().contains(expected), "{}", wrong.err());
+    }
 }
 
 /// Each expectation of a script is a test case for a build server.

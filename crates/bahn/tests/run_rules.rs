@@ -150,6 +150,22 @@ fn the_handwheel_of_a_script() {
     }
 }
 
+/// A script probes by hand: the upper face of the mill's block at Z 40 gives the length of the probe, 120 mm, and becomes
+/// Z 0, 160 mm below the axis at 200.
+#[test]
+fn the_probe_menu_of_a_script() {
+    let folder = Folder::with_program("TOOL CALL 0 Z S0\nL X+250 Y+140 Z+200 R0 FMAX M91");
+    folder.write(
+        "s.txt",
+        "when run ended: mode manual\n+0.2: probe insert\n+0.1: datum Z 200\n+0.1: probe length 40\n\
+         +0.1: key NC_START tap\nwhen probe.touches=1: expect no message\n+1: expect probe.length=120±0.01\n\
+         +0: probe surface\n+0: probe direction Z-\n+0.1: key NC_START tap\nwhen probe.touches=1: expect no message\n\
+         +1: expect Z.probed=40±0.01\n+0: probe datum Z 0\n+0.1: expect Z.displayed=160±0.01\n+0: end\n",
+    );
+    let (code, json) = report(&folder, "--script s.txt");
+    assert_eq!((code, &json["failed_expectations"]), (0, &json!([])), "{json}");
+}
+
 /// TEST RUN while the program runs; what it came to is in the report.
 #[test]
 fn a_test_run_beside() {

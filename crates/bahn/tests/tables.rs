@@ -350,3 +350,25 @@ fn variable_coding_survives_power_off() {
     // The file is as it was.
     assert!(folder.read("mill/pockets.tsv").contains("\n2\t2\t"));
 }
+
+/// The tool probe finds tool 2 as it really is, 94.96 long instead of 95; the control counts how long it was in use. Both
+/// stand in the table, also in a column that its file does not have, in steps of 1/10 000 mm.
+#[test]
+fn what_the_control_has_written_is_shown() {
+    let folder = Folder::with_mill("");
+    let blocks = "TOOL CALL 2 Z S800\nL X+0 Y+0 Z+100 R0 FMAX\nTCH PROBE 31.0 MEASURE LENGTH\nTCH PROBE 31.1 CHECK: 0\n\
+                  TCH PROBE 31.2 HEIGHT: +100\nTCH PROBE 31.3 PROBING THE TEETH: 0\n";
+    let program = format!("BEGIN PGM TT MM\n{blocks}END PGM TT MM\n");
+    folder.write("mill/programs/TT.H", program);
+    let tool = |folder: &Folder| json(folder, "table show mill --format json")["rows"][1].clone();
+    let of = |row: &Value, name: &str| row[name].as_str().unwrap_or_default().to_owned();
+    assert_eq!(of(&tool(&folder), "L"), "95");
+    let run = folder.bahn("run TT.H --machine mill");
+    assert_eq!(run.code(), 0, "{}{}", run.out(), run.err());
+    let row = tool(&folder);
+    let length = of(&row, "L");
+    assert!((length.parse::<f64>().unwrap() - 94.96).abs() < 0.002, "{length}");
+    assert!(length.len() <= "94.9599".len(), "{length}");
+    assert!(of(&row, "CUR.TIME").parse::<f64>().unwrap() > 0.1, "{row}");
+    assert!(!folder.read("mill/tools.tsv").contains("CUR.TIME"));
+}

@@ -227,9 +227,10 @@ impl OwnAxes<'_> {
         machine_position(self.iter())
     }
 
-    /// The slots in which there are axes.
-    pub fn slots(&self) -> AxisSet {
+    /// The axes that programs move: neither slaves [000:4519] nor those of the PLC [000:4094-4116].
+    pub fn programmable(&self) -> AxisSet {
         self.iter()
+            .filter(|unit| unit.is_free())
             .fold(AxisSet::EMPTY, |slots, unit| slots.with(unit.axis))
     }
 

@@ -18,7 +18,7 @@ use crate::kinematics::{Chain, Kinematics};
 use crate::life::{self, LifeCount};
 use crate::loops::{self, Permission};
 use crate::machine::MachineSide;
-use crate::manual_probing::{Answer, ManualProbing};
+use crate::manual_probing::{Answer, ManualProbing, tilted};
 use crate::message::Message;
 use crate::now::Now;
 use crate::plc_link::PalletRequest;
@@ -313,15 +313,17 @@ impl Channel {
     /// A command of the TOUCH PROBE menu.
     fn probe_menu(&mut self, command: ProbeCommand, machine: &mut MachineSide) -> bool {
         let mut touch = self.touch;
-        let barred = self.run.source.bars_probing();
+        let (leans, barred) = (self.desk.leaning.is_on(), self.run.source.bars_probing());
         let (_, mut site, basis) = self.parts(machine);
+        let barred = barred.or_else(|| tilted(command, leans, basis.list, &site.axes));
         let answer = touch.execute(command, basis.list.probe().turn, barred, &mut site);
         self.touch = touch;
+        let axes = machine.axes.of(self.number);
         let [done, kept] = match answer {
             Answer::Refused => [false; 2],
             Answer::Done => [true, false],
             Answer::Kept => [true; 2],
-            Answer::Datum(datum) => [self.datums.set_at(datum, &machine.axes.of(self.number)); 2],
+            Answer::Datum(at) => [self.desk.set_probed(at, &mut self.datums, &axes); 2],
         };
         machine.unsaved |= kept;
         done
@@ -624,6 +626,7 @@ impl Channel {
             Command::Ce => machine.clear_message(),
             Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
             Command::WorkingPlane(on) => {
+                self.touch.leave();
                 let list = self.own_list.as_ref().unwrap_or(machine.link.list());
                 let (axes, chain) = (machine.axes.of(self.number), &mut self.datums.chain);
                 self.desk.switch_plane(on, list, &axes, chain)
@@ -663,11 +666,7 @@ impl Channel {
     /// DATUM SET: the actual position becomes a value.
     fn set_datum(&mut self, axis: Axis, value: f64, machine: &mut MachineSide) -> bool {
         let axes = machine.axes.of(self.number);
-        let shift = self
-            .desk
-            .leaning
-            .datum_shift(axis, value, &axes, &self.datums.chain);
-        let done = self.desk.is_by_hand() && self.datums.set_or_shift(axis, value, shift, &axes);
+        let done = self.desk.is_by_hand() && self.desk.set_datum(axis, value, &mut self.datums, &axes);
         machine.unsaved |= done;
         done
     }

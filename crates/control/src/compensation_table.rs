@@ -1,6 +1,9 @@
 //! Non-linear axis errors: compensation tables (.COM) and their assignment (.CMA) [000:3770-3865].
 
+use std::collections::BTreeMap;
+
 use bahn_parameters::{PLC_AXIS_NAMES, PerPlcAxis};
+use bahn_plc::{CompensationExcess, CompensationSize};
 use bahn_servo::ErrorTable;
 
 /// A compensation table: errors of several axes over the position of the axis that it is assigned to.
@@ -149,9 +152,12 @@ impl CompensationTable {
         self.columns.iter()
     }
 
-    /// Its points in all columns together, which module 9095 counts [000:15547-15580].
-    pub fn points(&self) -> usize {
-        self.points * self.columns.len()
+    /// How large it is.
+    pub fn size(&self) -> CompensationSize {
+        CompensationSize {
+            dependencies: self.columns.len(),
+            points: self.points,
+        }
     }
 }
 
@@ -187,5 +193,38 @@ impl CompensationAssignment {
             assignment.lines.push(tables);
         }
         Ok(assignment)
+    }
+
+    /// Whether the line that `ACTIVE` of its text names can be active with the tables that there are.
+    ///
+    /// # Errors
+    /// There is no such line, or too much in its tables.
+    pub fn check_active(
+        &self,
+        text: &str,
+        tables: &BTreeMap<String, CompensationTable>,
+    ) -> Result<(), CompensationError> {
+        let Some(active) = self.active else {
+            return Ok(());
+        };
+        let place = lines(text).find(|(_, words)| words.first() == Some(&"ACTIVE"));
+        let place = place.map_or(1, |(line, _)| line);
+        let Some(line) = self.lines.get(active) else {
+            return error(place, "there is no line with this number");
+        };
+        let sizes = line.iter().flatten().filter_map(|name| tables.get(name));
+        let sizes: Vec<CompensationSize> = sizes.map(CompensationTable::size).collect();
+        match CompensationExcess::of(&sizes) {
+            Some(CompensationExcess::PointsOfDependency) => {
+                error(place, "a dependency has more than 256 points")
+            }
+            Some(CompensationExcess::Dependencies) => {
+                error(place, "the tables of this line have more than ten dependencies")
+            }
+            Some(CompensationExcess::Points) => {
+                error(place, "the tables of this line have more than 640 points")
+            }
+            None => Ok(()),
+        }
     }
 }

@@ -82,7 +82,7 @@ impl Datums {
     }
 
     /// DATUM SET: the actual position becomes a value. `false` for an axis for which that is inhibited.
-    fn set(&mut self, axis: Axis, value: f64, axes: &OwnAxes) -> bool {
+    pub fn set(&mut self, axis: Axis, value: f64, axes: &OwnAxes) -> bool {
         let unit = axes.at(axis);
         let Some(unit) = unit.filter(|unit| !unit.parameters.travel.datum_inhibited) else {
             return false;
@@ -116,16 +116,8 @@ impl Datums {
         true
     }
 
-    /// DATUM SET, in a tilted plane by its shift.
-    pub fn set_or_shift(&mut self, axis: Axis, value: f64, shift: Option<[f64; 3]>, axes: &OwnAxes) -> bool {
-        match shift {
-            Some(ways) => self.shift(ways, axes),
-            None => self.set(axis, value, axes),
-        }
-    }
-
     /// DATUM SET in a tilted plane: the datum moves, mm of the machine. `false` where that is inhibited for an axis.
-    fn shift(&mut self, ways: [f64; 3], axes: &OwnAxes) -> bool {
+    pub fn shift(&mut self, ways: [f64; 3], axes: &OwnAxes) -> bool {
         let ways = || {
             MAIN.into_iter()
                 .zip(ways)

@@ -3,12 +3,13 @@
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_parameters::ParameterList;
 use bahn_parameters::operation::OperationParameters;
-use bahn_path::{Axis, BlockRef};
+use bahn_path::{Axis, BlockRef, Position};
 use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::OwnAxes;
 use crate::axis::Mover;
 use crate::command::{Command, Mode};
+use crate::datums::{Datums, NewDatum};
 use crate::kinematics::Chain;
 use crate::leaning::Leaning;
 use crate::manual::Manual;
@@ -272,6 +273,28 @@ impl Desk {
         }
         self.manual.leans = self.leaning.is_on();
         done
+    }
+
+    /// DATUM SET: the actual position becomes a value, in the plane of 3D ROT along it. `false` where that is inhibited.
+    pub fn set_datum(&self, axis: Axis, value: f64, datums: &mut Datums, axes: &OwnAxes) -> bool {
+        let mut actual = Position::UNKNOWN;
+        for unit in axes.iter() {
+            actual[unit.axis] = unit.servo.actual_mm();
+        }
+        let way = datums.chain.tip(&actual)[axis] - value;
+        match self.leaning.datum_shift(axis, way) {
+            Some(ways) => datums.shift(ways, axes),
+            None => datums.set(axis, value, axes),
+        }
+    }
+
+    /// What was probed becomes a value, in the plane of 3D ROT along it. `false` where that is inhibited.
+    pub fn set_probed(&self, datum: NewDatum, datums: &mut Datums, axes: &OwnAxes) -> bool {
+        let way = datum.at - datums.chain.offsets.datum[datum.axis] - datum.value;
+        match self.leaning.datum_shift(datum.axis, way) {
+            Some(ways) => datums.shift(ways, axes),
+            None => datums.set_at(datum, axes),
+        }
     }
 
     /// What is turned at the handwheel in another mode moves nothing later, but what M118 superimposes on a path.

@@ -13,6 +13,7 @@ use bahn_path::{
 use bahn_plc::ToolCallBlock;
 use bahn_program::Program;
 
+use crate::axis::AxisUnit;
 use crate::kinematics::{Box2, Chain};
 use crate::panel::Direction;
 use crate::programs::{Programs, Shelf};
@@ -37,7 +38,8 @@ pub(crate) enum RunFault {
         block: BlockRef,
         sequence: u64,
     },
-    /// A block would move an axis that the channel does not have: it has gone to another one, or never was there.
+    /// A block would move an axis that the channel does not have: it has gone to another one, or never was there, or a
+    /// master or the PLC moves it.
     Absent {
         axis: Axis,
         /// Which block, and its place in the order of execution.
@@ -46,14 +48,24 @@ pub(crate) enum RunFault {
     },
 }
 
-/// The error of a block that would move an axis that the channel does not have.
-pub(crate) fn absent(axis: Axis, block: BlockRef, run: Option<&Interpreter>) -> ProgramError {
+/// The error of a block that would move an axis that the channel does not have, or not for programs.
+pub(crate) fn absent(
+    axis: Axis,
+    unit: Option<&AxisUnit>,
+    block: BlockRef,
+    run: Option<&Interpreter>,
+) -> ProgramError {
     let program = run.and_then(|run| run.program(block.program));
+    let letter = axis.letter();
     ProgramError {
         message: Message::Control(MessageId::WrongAxisProgrammed),
         program: program.map_or_else(String::new, |program| program.name().to_owned()),
         block,
-        detail: format!("there is no axis {} here", axis.letter()),
+        detail: match unit {
+            None => format!("there is no axis {letter} here"),
+            Some(unit) if unit.is_plc_axis() => format!("the PLC alone moves {letter} (MP60)"),
+            Some(_) => format!("{letter} follows its master (MP850)"),
+        },
         cause: Cause::default(),
     }
 }

@@ -105,17 +105,12 @@ impl Leaning {
         chain.place(None);
     }
 
-    /// By how much the workpiece datum moves, mm of the machine, when the actual position in the plane becomes a value;
-    /// `None` where nothing is tilted.
-    pub fn datum_shift(&self, axis: Axis, value: f64, axes: &OwnAxes, chain: &Chain) -> Option<[f64; 3]> {
+    /// By how much the workpiece datum moves, mm of the machine, when it moves by a way along an axis of the plane; `None`
+    /// where nothing is tilted.
+    pub fn datum_shift(&self, axis: Axis, way: f64) -> Option<[f64; 3]> {
         let plane = self.plane.as_ref()?;
         let along = MAIN.iter().position(|main| *main == axis)?;
         let rotation = plane.placement.rotation()?;
-        let mut actual = Position::UNKNOWN;
-        for unit in axes.iter() {
-            actual[unit.axis] = unit.servo.actual_mm();
-        }
-        let way = chain.tip(&actual)[axis] - value;
         let wanted = rotation.map(|row| row.get(along).copied().unwrap_or(0.0) * way);
         // Where the table has turned the workpiece: back to its coordinates.
         let at = |point| plane.swivels.on_table(point, &plane.angles);

@@ -2,12 +2,13 @@
 //! datums. NC start probes in the chosen direction and goes back in rapid traverse to where it started.
 
 use bahn_interpreter::{BasicRotation, Rules};
-use bahn_parameters::MessageId;
 use bahn_parameters::machining::{ProbeSettings, ProbeTurn};
+use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::{Axis, PerAxis, Plane, Position};
 use bahn_plc::{OrientationDirection, SpindleOrientation};
 use bahn_servo::Measured;
 
+use crate::axes::OwnAxes;
 use crate::datums::NewDatum;
 use crate::handshake::Transfer;
 use crate::kinematics::Offsets;
@@ -498,6 +499,30 @@ impl Job {
         }
         self.count = place + 1;
     }
+}
+
+/// What the swivel axes bar: a basic rotation unless they stand at 0 [000:4269], and in the plane of 3D ROT (`leans`) the
+/// calibration (inferred). The manual names no message (inferred).
+pub(crate) fn tilted(
+    command: ProbeCommand,
+    leans: bool,
+    list: &ParameterList,
+    axes: &OwnAxes,
+) -> Option<MessageId> {
+    let is_at_0 = |axis| {
+        let unit = axes.at(axis);
+        unit.is_none_or(|unit| unit.servo.actual_mm().abs() <= unit.parameters.monitoring.window_mm)
+    };
+    let tilts = list.operation_parameters().tilting;
+    let swivels = || list.swivels().filter(|_| tilts);
+    let barred = match command {
+        ProbeCommand::Choose(ProbeFunction::Rotation) => {
+            leans || swivels().is_some_and(|swivels| !swivels.free_axes().all(is_at_0))
+        }
+        ProbeCommand::Choose(ProbeFunction::Length(_) | ProbeFunction::Radius(_)) => leans,
+        _ => false,
+    };
+    barred.then_some(MessageId::PlaneWronglyDefined)
 }
 
 fn plane_of(tool_axis: Axis) -> Plane {

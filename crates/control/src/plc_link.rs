@@ -10,10 +10,10 @@ use bahn_interpreter::{DatumTable, MachineTexts};
 use bahn_parameters::{ParameterId, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, Position};
 use bahn_plc::{
-    CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable, NcInterfaces, NcMemory,
-    NcMotion, NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault, ParameterFileFault,
-    PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition, StatusChange, StatusItem,
-    TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
+    CompensationSize, CoordinateKind, DataInterface, HostLink, JogLimit, LineFault, MemoryTable,
+    NcInterfaces, NcMemory, NcMotion, NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault,
+    ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition,
+    StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
 use crate::compensation_table::{CompensationAssignment, CompensationTable};
@@ -388,14 +388,14 @@ impl NcMemory for PlcLink {
         });
     }
 
-    fn compensation_line(&self, line: i32) -> Result<Vec<Option<usize>>, LineFault> {
+    fn compensation_line(&self, line: i32) -> Result<Vec<Option<CompensationSize>>, LineFault> {
         let file = self.files.compensation.as_ref().ok_or(LineFault::NoFile)?;
         let tables = nth(&file.lines, line).ok_or(LineFault::NoLine)?;
-        let points = |name| {
+        let size = |name| {
             let table = self.files.compensation_tables.get(name)?;
-            Some(table.points())
+            Some(table.size())
         };
-        Ok(tables.iter().flatten().map(points).collect())
+        Ok(tables.iter().flatten().map(size).collect())
     }
 
     fn activate_compensation(&mut self, line: i32) {

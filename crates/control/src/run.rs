@@ -280,7 +280,7 @@ impl ProgramRun {
             feeder.put_back(recalled.into_iter());
         }
         let zero = machine_zero(&site.axes, site.chain);
-        let limits = (site.axes.traverse_box(), site.axes.slots());
+        let limits = (site.axes.traverse_box(), site.axes.programmable());
         feeder.set_datum(site.chain.offsets.datum, zero, limits);
         if let Some(answer) = self.answer.take() {
             let probed = answer.touch.is_some();
@@ -607,7 +607,7 @@ impl ProgramRun {
                 site.messages.show(message, Some(block));
             }
             RunFault::Absent { axis, block, .. } => {
-                let error = feeder::absent(axis, block, self.source.interpreter());
+                let error = feeder::absent(axis, site.axes.at(axis), block, self.source.interpreter());
                 self.show(Message::Program(Box::new(error)), site);
             }
         }

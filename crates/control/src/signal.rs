@@ -357,7 +357,9 @@ impl AxisSignal {
             AxisSignal::Ref => unit.shown(unit.servo.actual_mm()),
             AxisSignal::Probed => {
                 let shown = channel.touch.shown(&channel.chain().offsets);
-                shown.and_then(|shown| shown.datum.get(unit.axis)).unwrap_or(0.0)
+                shown
+                    .and_then(|shown| shown.datum.get(unit.axis))
+                    .unwrap_or(f64::NAN)
             }
             AxisSignal::Distance => channel.run.distance_to_go(unit, channel.chain()),
         }

@@ -366,7 +366,7 @@ impl Source {
             ..Settings::default()
         };
         let programs = Arc::clone(&self.reading.programs);
-        let limits = (site.axes.traverse_box(), site.axes.slots());
+        let limits = (site.axes.traverse_box(), site.axes.programmable());
         let mut feeder = Feeder::new(program, settings, programs, site.chain.clone(), limits);
         if self.defers {
             feeder.interpreter_mut().defer_work();

@@ -9,7 +9,7 @@ use bahn_plc::{MemoryTable, TableFile, TableKind};
 use crate::kinematics::Offsets;
 use crate::magazine::Magazine;
 use crate::plc_link::{NcFiles, Pocket, WrittenElement, differences};
-use crate::tool::{Edges, MeasuredTool, Oversize, Tool, ToolCondition, ToolLife};
+use crate::tool::{Edges, MeasuredTool, Oversize, Tool, ToolCondition, ToolLife, in_table_steps};
 use crate::tools::Tools;
 
 /// Elements of the tool table [000:15431-15454].
@@ -255,11 +255,11 @@ pub(crate) fn take_measured(measured: &MeasuredTool, magazine: &mut Magazine, fi
     if measured.check {
         if measured.state != ToolCondition::Broken {
             let sum = value(table, oversize) + measured.difference;
-            table.set_value(line, oversize, sum);
+            table.set_value(line, oversize, in_table_steps(sum));
         }
     } else {
         let sum = value(table, data) + value(table, oversize) + measured.difference;
-        table.set_value(line, data, sum);
+        table.set_value(line, data, in_table_steps(sum));
         table.set_value(line, oversize, 0.0);
     }
     take_tables(magazine, files);

@@ -132,6 +132,9 @@ fn message<'a>(fault: RunFault, mut axes: impl Iterator<Item = &'a AxisUnit>) ->
             let unit = axes.find(|unit| unit.axis == axis);
             Message::limit(unit.map_or(AxisId::FIRST, |unit| unit.id), direction)
         }
-        RunFault::Absent { axis, block, .. } => Message::Program(Box::new(feeder::absent(axis, block, None))),
+        RunFault::Absent { axis, block, .. } => {
+            let unit = axes.find(|unit| unit.axis == axis);
+            Message::Program(Box::new(feeder::absent(axis, unit, block, None)))
+        }
     }
 }

@@ -81,6 +81,12 @@ impl Tool {
     }
 }
 
+/// A length as the tool table keeps it, in 1/10 000 mm, the unit of module 9093 (inferred for what is measured).
+pub(crate) fn in_table_steps(mm: f64) -> f64 {
+    const STEPS_IN_MM: f64 = 10_000.0;
+    (mm * STEPS_IN_MM).round() / STEPS_IN_MM
+}
+
 /// What was found of a tool, for the tool table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeasuredTool {

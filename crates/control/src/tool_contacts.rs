@@ -7,7 +7,7 @@
 use bahn_parameters::machining::ToolProbeParameters;
 use bahn_path::{Axis, MeasuredPart, Plane, Position, ToolMeasuring};
 
-use crate::tool::{Edges, Tool};
+use crate::tool::{Edges, Tool, in_table_steps};
 
 /// Touches of one measuring at most: the teeth of a tool table.
 const TOUCHES_MAX: usize = 20;
@@ -137,7 +137,7 @@ impl Contacts {
             0.0,
             |most: f64, one| if one.abs() > most.abs() { one } else { most },
         );
-        [longest, farthest]
+        [longest, farthest].map(in_table_steps)
     }
 
     /// What calibrating has found: the middle of the upper face (X, Y, Z), and the width of the contact, mm.

@@ -382,7 +382,7 @@ impl Sequence {
         let nominal = site.chain.to_axes(&PerAxis::from_fn(place).into());
         for unit in site.axes.iter_mut() {
             let value = nominal[unit.axis];
-            if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && !unit.is_plc_axis() {
+            if value.is_finite() && matches!(unit.mover, Mover::None | Mover::Path) && unit.is_free() {
                 unit.mover = Mover::Path;
                 unit.follow(value, time);
             }

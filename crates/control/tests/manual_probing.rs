@@ -148,6 +148,7 @@ fn the_datum_is_set_on_a_side() {
     let before = rig.machine_position('X');
     rig.command("datum X 50");
     rig.command("probe surface");
+    assert!(value(&rig, "X.probed").is_nan(), "nothing is probed yet");
     // Without a direction there is nothing to probe.
     rig.start();
     rig.seconds(0.2);
@@ -163,6 +164,37 @@ fn the_datum_is_set_on_a_side() {
     near(display(&rig, 'X'), before - 80.0 - 7.0);
     // No other axis was probed.
     assert!(!rig.control.command("probe datum Y 0".parse().unwrap()));
+}
+
+/// The 4th axis V is the slave of X: it goes along while X probes, and the way that finds nothing ends as without it.
+#[test]
+fn a_slave_goes_along() {
+    let slave = [
+        "10=%01111",
+        "50=%01111",
+        "410.3=4",
+        "850.3=1",
+        "855.3=0.5",
+        "860.3=0",
+        "1010.3=15000",
+    ];
+    let with_slave = |build: Build| {
+        let plant = "[axis.V]\noutput = \"4\"\nspeed = 15000\nvolts = 9\nstart = 50\n\
+                     [axis.V.encoder]\ninput = \"X4\"\nperiod_um = 20\nmark = 52\n[spindle]";
+        slave.into_iter().fold(build.plant("[spindle]", plant), Build::mp)
+    };
+    let mut rig = on(with_slave(bench_on(BLOCK, [0.0; 2])));
+    rig.command("probe surface");
+    rig.command("probe direction X+");
+    probe(&mut rig, 1.0);
+    let face = value(&rig, "X.probed") - value(&rig, "X.displayed") + rig.machine_position('X');
+    within(face, 80.0, 0.01);
+    assert_eq!(rig.messages(), [""; 0]);
+    rig.command("probe direction X-");
+    rig.start();
+    rig.until(60.0, "the message", |rig| !rig.messages().is_empty());
+    assert_eq!(rig.messages(), ["TOUCH POINT INACCESSIBLE"]);
+    within(rig.machine_position('V'), rig.machine_position('X'), 0.01);
 }
 
 /// Nothing there within MP6130; the stylus touches from the beginning; the probe is not ready; its battery is low.

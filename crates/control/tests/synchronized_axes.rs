@@ -45,6 +45,34 @@ fn the_slave_follows() {
     assert_eq!(rig.messages(), [""; 0]);
 }
 
+/// The slave cannot be moved independently [000:4519], by a program neither; nor can an axis of the PLC (MP60).
+#[test]
+fn no_program_moves_the_slave() {
+    for (build, reason) in [
+        (gantry(""), "V follows its master (MP850)"),
+        (
+            gantry("").mps("850.3=0 60=%01000"),
+            "the PLC alone moves V (MP60)",
+        ),
+    ] {
+        let program = "L X+60 Y+60 R0 F3000\nL X+70 V+80\nL X+90";
+        let mut rig = build.program("1.H", program).ready();
+        rig.command("mode full");
+        rig.command("select 1.H");
+        rig.start();
+        rig.until(20.0, "the message", |rig| !rig.messages().is_empty());
+        let message = &rig.messages()[0];
+        assert!(
+            message.starts_with("WRONG AXIS PROGRAMMED")
+                && message.contains("block 2")
+                && message.contains(reason),
+            "{message}"
+        );
+        rig.settle();
+        close(rig.axis('X').machine, 60.0, 0.005);
+    }
+}
+
 /// MP860 = 0: the positions at switch-on are synchronous, only the master has a mark [000:4492-4496].
 #[test]
 fn the_master_alone_passes_its_mark() {

@@ -3,6 +3,7 @@
 
 mod support;
 
+use bahn_control::RunState;
 use support::*;
 
 /// The mill with a swivel head in place of its table: B turns 150 mm above the tool datum.
@@ -419,5 +420,68 @@ fn the_wheel_in_the_plane() {
     rig.seconds(0.1);
     let z = way(-1.0, &mut rig);
     assert!((z + 1.25).abs() < 0.01, "{z}");
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// A block in MDI; then by hand again.
+fn go(rig: &mut Rig, block: &str) {
+    rig.command("mode mdi");
+    rig.command(&format!("mdi {block} R0 FMAX"));
+    rig.start();
+    let runs = |rig: &Rig| rig.control.snapshot().run == RunState::Running;
+    rig.until(1.0, "the block begins", runs);
+    rig.until(60.0, block, |rig| !runs(rig));
+    rig.command("mode manual");
+    rig.seconds(0.5);
+}
+
+/// Probing in the plane of 3D ROT: Z- from 40 mm above the contact leads 40 mm / cos 30° along the plane. What was touched
+/// becomes Z+7 of the plane, X and Y of the display stay. A basic rotation is measured with the swivel axes at 0 only
+/// [000:4269], the probe is calibrated upright.
+#[test]
+fn the_datum_is_probed_in_the_plane() {
+    let mut rig = by_hand(swivelling());
+    go(&mut rig, "L X+300 Y+150 Z+200");
+    rig.event("probe insert");
+    // The face of the block is at Z 40, the tip 120 mm below the axis.
+    let way = (200.0 - 40.0 - 120.0) / 30f64.to_radians().cos();
+    let before = shown(&rig);
+    rig.command("probe surface");
+    rig.command("probe direction Z-");
+    rig.start();
+    let probed = |rig: &Rig| {
+        let signal = "probe.touches".parse().expect("a signal");
+        rig.control.first().observe(&signal) == 1.0 && rig.bit("M2026")
+    };
+    rig.until(30.0, "the touch", probed);
+    rig.seconds(0.5);
+    assert_near(shown(&rig), before);
+    rig.command("probe datum Z 7");
+    rig.seconds(0.1);
+    assert_near(shown(&rig), [before[0], before[1], 7.0 + way]);
+    assert_eq!(rig.messages(), [""; 0]);
+    for (plane, function, barred) in [
+        ("3d-rot on", "probe rotation", true),
+        ("3d-rot on", "probe length 40", true),
+        ("3d-rot on", "probe corner", false),
+        ("3d-rot off", "probe rotation", true),
+        ("3d-rot off", "probe length 40", false),
+    ] {
+        rig.command("mode manual");
+        rig.command(plane);
+        rig.command(function);
+        let messages = rig.messages();
+        let expected = if barred {
+            vec!["PLANE WRONGLY DEFINED"]
+        } else {
+            vec![]
+        };
+        assert_eq!(messages, expected, "{plane} {function}");
+        if barred {
+            rig.command("ce");
+        }
+    }
+    go(&mut rig, "L B+0");
+    rig.command("probe rotation");
     assert_eq!(rig.messages(), [""; 0]);
 }

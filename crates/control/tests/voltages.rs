@@ -139,3 +139,21 @@ fn wrong_entries() {
     assert!(!rig.messages().is_empty(), "M200 without MP3011 = 3");
     is(&rig, 0.0, 0.0);
 }
+
+/// MP3011 = 2: module 9130 gives the voltage of output S, mV [000:16037-16061]. With another use of the output nothing comes
+/// out, and M3171 tells the PLC.
+#[test]
+fn module_9130() {
+    let plc = format!("{ACKNOWLEDGE}{}", call(&["K+0", "K-2500"], 9130, &[]));
+    let plc = format!("{plc}       L     M3171\n       = M900\n");
+    for (mp3011, expected, error) in [
+        ("3011=2", -2.5, false),
+        ("3011=1", 0.0, true),
+        ("3011=3", 0.0, true),
+    ] {
+        let mut rig = ready(bench(&plc).mp("3010=0").mp(mp3011));
+        rig.seconds(0.1);
+        is(&rig, expected, 1e-9);
+        assert_eq!(rig.bit("M900"), error, "{mp3011}");
+    }
+}

@@ -82,6 +82,8 @@ impl Deed {
                 let first = rest.split_whitespace().next().unwrap_or_default();
                 first.len() == 1 && first.starts_with(|first: char| first.is_ascii_alphabetic())
             }
+            // The probe is put into the spindle and taken out; what it does there are commands.
+            "probe" => !matches!(rest, "insert" | "remove"),
             _ => false,
         };
         if Event::WORDS.contains(&word) && !is_command {

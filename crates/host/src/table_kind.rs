@@ -225,16 +225,23 @@ impl PlainTable {
         }
     }
 
-    /// Sets a column of the row with this text in a key column; nothing when there is none.
+    /// Sets a column of the row with this text in a key column; nothing when there is no such row. A column that the table
+    /// does not have comes behind the others.
     pub fn set(&mut self, key: &str, line: &str, column: &str, value: &str) {
         let place = |name: &str| self.names.iter().position(|own| own == name);
-        let (Some(key), Some(column)) = (place(key), place(column)) else {
+        let Some(key) = place(key) else { return };
+        let is_meant = |row: &Vec<String>| row.get(key).is_some_and(|text| text == line);
+        let Some(row) = self.rows.iter().position(is_meant) else {
             return;
         };
-        let row = self
-            .rows
-            .iter_mut()
-            .find(|row| row.get(key).is_some_and(|text| text == line));
+        let column = place(column).unwrap_or_else(|| {
+            self.names.push(column.to_owned());
+            for row in &mut self.rows {
+                row.push(String::new());
+            }
+            self.names.len() - 1
+        });
+        let row = self.rows.get_mut(row);
         if let Some(field) = row.and_then(|row| row.get_mut(column)) {
             value.clone_into(field);
         }

@@ -45,6 +45,7 @@ impl ParameterList {
         assignment(&axes, &mut report);
         same_kv(&axes, &mut report);
         reference_run(&axes, &mut report);
+        synchronized(&axes, &mut report);
         spindle(&self.spindle_parameters(), &axes, &mut report);
         found
     }
@@ -227,7 +228,12 @@ fn same_kv(axes: &[AxisParameters], report: &mut Reporter) {
 }
 
 fn reference_run(axes: &[AxisParameters], report: &mut Reporter) {
-    for axis in axes.iter().filter(|axis| axis.controlled) {
+    // A slave whose relation is that at switch-on needs no mark [000:4492-4496].
+    let needs_mark = |axis: &&AxisParameters| {
+        let slave = axis.synchronization;
+        axis.controlled && (slave.master.is_none() || slave.from_reference_marks)
+    };
+    for axis in axes.iter().filter(needs_mark) {
         let rule = "the axis is not referenced automatically";
         report.check(
             axis.reference.place.is_some(),
@@ -236,6 +242,56 @@ fn reference_run(axes: &[AxisParameters], report: &mut Reporter) {
             "000:4649-4654",
             || format!("MP1340 does not name axis {}", axis.index + 1),
         );
+    }
+}
+
+/// Masters and slaves [000:4465] [000:4492-4539].
+fn synchronized(axes: &[AxisParameters], report: &mut Reporter) {
+    const PAIRS_MAX: usize = 2;
+    let slaves = || axes.iter().filter(|axis| axis.synchronization.master.is_some());
+    if let Some(third) = slaves().nth(PAIRS_MAX) {
+        let rule = "more than two pairs of axes are synchronized";
+        report.check(false, (850, Some(third.index), 0), rule, "000:4465", || {
+            format!("{} slaves", slaves().count())
+        });
+    }
+    for slave in slaves() {
+        let name = |number| (number, Some(slave.index), 0);
+        let master = axes
+            .iter()
+            .find(|axis| Some(axis.index) == slave.synchronization.master);
+        let Some(master) = master.filter(|master| master.index != slave.index && master.controlled) else {
+            let rule = "the axis follows one that does not exist, or itself";
+            report.check(false, name(850), rule, "000:4467-4486", String::new);
+            continue;
+        };
+        let pair = || format!("master is axis {}", master.index + 1);
+        let is_rotary = |axis: &AxisParameters| axis.letter.is_some_and(bahn_path::Axis::is_rotary);
+        let alone = master.synchronization.master.is_none();
+        let rule = "an axis is master and slave at the same time";
+        report.check(alone, name(850), rule, "000:4519-4539", pair);
+        let rule = "master and slave are to be linear axes";
+        let linear = !is_rotary(master) && !is_rotary(slave);
+        report.check(linear, name(850), rule, "000:4519-4539", pair);
+        let rule = "master and slave have different kv factors";
+        report.check(
+            slave.lag.kv == master.lag.kv,
+            name(1810),
+            rule,
+            "000:4519-4539",
+            pair,
+        );
+        let rule = "one of master and slave has a digital speed controller";
+        let alike = slave.digital.is_some() == master.digital.is_some();
+        report.check(alike, (1900, None, 0), rule, "000:4519-4539", pair);
+        if slave.synchronization.from_reference_marks {
+            let rule = "master and slave look for their reference marks in different ways";
+            let alike = slave.reference.kind == master.reference.kind;
+            report.check(alike, name(1350), rule, "000:4497-4504", pair);
+            let rule = "the slave comes before its master in the reference run";
+            let after = slave.reference.place.is_none() || slave.reference.place > master.reference.place;
+            report.check(after, (1340, Some(0), 0), rule, "000:4497-4504", pair);
+        }
     }
 }
 

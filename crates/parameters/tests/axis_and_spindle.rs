@@ -121,6 +121,10 @@ fn the_old_list_answers_under_its_own_numbers() {
     );
     assert_eq!(y.travel.ranges_mm, [[-10.0, 400.0]; 3]);
     assert_eq!((y.travel.m92_mm, y.travel.lubrication_mm), (12.0, Some(65_536.0)));
+    // 100 m are 100 000 / 65.536 = 1525.88 units: 1526 [000:3571].
+    let entry = (100_000.0f64 / 65.536).round();
+    let x = with(ControlModel::Tnc415b, &["4060.0=1526"]).axis_parameters(0);
+    assert_eq!(x.travel.lubrication_mm, Some(entry * 65.536));
     assert_eq!(
         (y.lag.kv, y.lag.kink_factor, y.lag.kink_percent),
         (1.5, 0.5, 60.0)

@@ -95,6 +95,56 @@ fn every_rule_finds_what_breaks_it() {
     assert_eq!(wrong(ControlModel::Tnc425, &["3310.0=50", "3310.1=60"]).len(), 1);
 }
 
+/// The 4th axis, V, is the slave of X; each rule of the manual is broken once [000:4465] [000:4492-4539].
+#[test]
+fn masters_and_slaves_go_together() {
+    let pair = ["410.3=4", "850.3=1", "860.3=0", "1340.3=0", "1900=0"];
+    let found = |model, assignments: &[&str]| wrong(model, &[&pair, assignments].concat());
+    let model = ControlModel::Tnc425;
+    assert_eq!(found(model, &[]), [""; 0], "no mark is needed");
+    for (assignments, expected) in [
+        (
+            &["860.3=1"][..],
+            "MP1340.0 the axis is not referenced automatically",
+        ),
+        (
+            &["850.1=1", "850.2=1"],
+            "MP850.3 more than two pairs of axes are synchronized",
+        ),
+        (
+            &["850.3=4"],
+            "MP850.3 the axis follows one that does not exist, or itself",
+        ),
+        (
+            &["850.0=2"],
+            "MP850.3 an axis is master and slave at the same time",
+        ),
+        (&["410.3=2"], "MP850.3 master and slave are to be linear axes"),
+        (
+            &["1810.3=0.7"],
+            "MP1810.3 master and slave have different kv factors",
+        ),
+        (
+            &["1900=%00001"],
+            "MP1900 one of master and slave has a digital speed controller",
+        ),
+        (
+            &["860.3=1", "1350.0=3", "1350.3=1"],
+            "MP1350.3 master and slave look for their reference marks in different ways",
+        ),
+        (
+            &["860.3=1", "1340.0=4", "1340.1=1", "1340.2=2", "1340.3=3"],
+            "MP1340.0 the slave comes before its master in the reference run",
+        ),
+    ] {
+        let found = found(model, assignments);
+        assert!(
+            found.iter().any(|text| text == expected),
+            "{assignments:?}: {found:?}"
+        );
+    }
+}
+
 #[test]
 fn the_kink_counts_in_the_lag() {
     // v/kv * (0.5 + 0.5/0.25) = 15 * 2.5 = 37.5 mm [000:4907].

@@ -49,11 +49,12 @@ pub use compile::{Compilation, Options};
 pub use error::{Detection, Diagnostic, PlcError};
 pub use modules::{Module, modules};
 pub use nc::{
-    Bar, Cell, Column, ControlledSpindle, CoordinateKind, DataInterface, HostLink, HostMessage,
-    InterfaceUser, JogLimit, LineFault, MemoryTable, Nc, NcInterfaces, NcMemory, NcMotion, NcParameters,
-    NcScreen, NcStatus, NotSaved, OrientationDirection, PalletLine, ParameterFault, ParameterFileFault,
-    PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition, StatusChange, StatusItem,
-    TableFile, TableKind, TextFile, ToolCallBlock, WindowView, mirror_parameters,
+    Bar, Cell, Column, CompensationExcess, CompensationSize, ControlledSpindle, CoordinateKind,
+    DataInterface, HostLink, HostMessage, InterfaceUser, JogLimit, LineFault, MemoryTable, Nc, NcInterfaces,
+    NcMemory, NcMotion, NcParameters, NcScreen, NcStatus, NotSaved, OrientationDirection, PalletLine,
+    ParameterFault, ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation,
+    SpindlePosition, StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
+    mirror_parameters,
 };
 #[cfg(feature = "desk")]
 pub use nc::{TestAxis, TestNc};

@@ -9,7 +9,10 @@ mod table;
 mod test;
 mod window;
 
-pub use files::{LineFault, NotSaved, PalletLine, ParameterFault, ParameterFileFault, TextFile};
+pub use files::{
+    CompensationExcess, CompensationSize, LineFault, NotSaved, PalletLine, ParameterFault,
+    ParameterFileFault, TextFile,
+};
 pub use interface::{DataInterface, HostLink, HostMessage, InterfaceUser};
 pub use motion::{OrientationDirection, PlcAxisCommand, PlcAxisStatus, SpindleOrientation, ToolCallBlock};
 pub use status::{ControlledSpindle, CoordinateKind, JogLimit, SpindlePosition, StatusChange, StatusItem};
@@ -99,12 +102,12 @@ pub trait NcMemory {
     /// pallet file says (9090).
     fn select_program(&mut self, line: i32, program: &str, datum_table: Option<&str>);
 
-    /// A line of the compensation assignment (.CMA): the points of each table that it names, `None` for a
+    /// A line of the compensation assignment (.CMA): the size of each table that it names, `None` for a
     /// table that does not exist (9095).
     ///
     /// # Errors
     /// When there is no such file or line.
-    fn compensation_line(&self, line: i32) -> Result<Vec<Option<usize>>, LineFault>;
+    fn compensation_line(&self, line: i32) -> Result<Vec<Option<CompensationSize>>, LineFault>;
 
     /// Makes an existing line of the compensation assignment the active one, also after a restart (9095).
     fn activate_compensation(&mut self, line: i32);

@@ -247,37 +247,59 @@ fn counter_1_counts_ten_released_cycles() {
     }
 }
 
-#[test]
-fn gear_change_swings_the_spindle_left_and_right() {
-    // Timers 13 and 14 start each other while the gear strobe stands [000:5658-5710].
+/// The gear change of the manual [000:5658-5710]: timers 13 and 14 start each other while the gear strobe stands. `freed` is
+/// what frees the second one. The swings of so many scans.
+fn gear_change(freed: &str, scans: usize) -> (Bench, String) {
     let idle = "AN T13\nAN T14\nAN T61\nAN T62\n";
     let program = format!(
         "L M2043\nAN M968\n{idle}= T13\nS M968
         L M2043\nAN M969\n{idle}= T14\nS M969
         L T61\n= M2490\nL T62\n= M2491
-        LN T13\nAN T61\nR M968\nLN T14\nAN T62\nR M969
+        LN T13\nAN T61\nR M968\n{freed}
         L M2043\nA I5\nS M2480\nL M2043\nCMT 50\nEM
         LBL50\nL M2043\nL W256\nB= O15\nEM\n"
     );
     let mut bench = Bench::new(&program);
     bench.set("M2043=1 W256=5 MP4110.13=3 MP4110.14=2");
-    let swing: String = (0..15)
-        .map(|_| {
-            bench.scan().unwrap();
-            match (bench.get("M2490"), bench.get("M2491")) {
-                (0, 0) => '-',
-                (1, 0) => 'L',
-                (0, 1) => 'R',
-                both => panic!("{both:?}"),
-            }
-        })
-        .collect();
+    let swing = (0..scans).map(|_| {
+        bench.scan().unwrap();
+        match (bench.get("M2490"), bench.get("M2491")) {
+            (0, 0) => '-',
+            (1, 0) => 'L',
+            (0, 1) => 'R',
+            both => panic!("{both:?}"),
+        }
+    });
+    let swing = swing.collect();
+    (bench, swing)
+}
+
+#[test]
+fn gear_change_swings_the_spindle_left_and_right() {
+    let (mut bench, swing) = gear_change("LN T14\nAN T62\nR M969", 15);
     // A start takes one scan; then the direction stands for the cycles of its parameter.
     assert_eq!(swing, "-LLL-RR-LLL-RR-");
     bench.expect("O15=1 O16=0 O17=1 M2480=0");
     bench.set("I5=1");
     bench.scan().unwrap();
     bench.expect("M2480=1");
+    // No timer is started any more when the strobe has gone, the running one ends.
+    bench.set("M2043=0 I5=0");
+    let left: Vec<i64> = (0..6)
+        .map(|_| {
+            bench.scan().unwrap();
+            bench.get("M2490")
+        })
+        .collect();
+    assert_eq!(left, [1, 1, 0, 0, 0, 0]);
+}
+
+/// As it is printed the program frees M968 twice and M969 never. T61 is not yet on in the scan that starts T13, so the second
+/// time frees M968 at once, and T13 goes before T14 whenever no timer runs: the spindle swings to the left only.
+#[test]
+fn gear_change_as_printed() {
+    let (_, swing) = gear_change("LN T14\nAN T61\nR M968", 13);
+    assert_eq!(swing, "-LLL-LLL-LLL-");
 }
 
 #[test]

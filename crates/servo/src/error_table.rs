@@ -120,6 +120,8 @@ mod tests {
         close(z_of_z.position_mm(12), -121.3568);
         // 500 mm need 500/6.5536 = 76.3, so 77 points.
         assert!(y_of_y.position_mm(76) < 410.0 && y_of_y.position_mm(77) > 410.0);
+        // 800 mm need 800/6.5536 = 122.1, so 123 points.
+        assert!(z_of_z.position_mm(122) < 600.0 && z_of_z.position_mm(123) > 600.0);
     }
 
     #[test]

@@ -57,7 +57,7 @@ X.ref                               as REF shows it, rotary axes within their mo
 X.table                             where the table stands in truth, from the zero point of the plant
 X.lag X.distance                    servo lag, distance to go in the block
 X.n-actual X.n-nominal X.n-int      speeds of a digital speed controller (TNC 425, MP1900), their difference
-X.probed                            what the probe menu shows as datum
+X.probed                            what the probe menu shows as datum; NaN before
 probe.length probe.radius           calibrated, mm
 probe.angle probe.touches           basic rotation, degrees; touches of the function that is chosen
 probe.circle                        radius of the circle that was probed, mm
@@ -117,4 +117,73 @@ pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     text += &format!("\nExpectations, and the end:\n{}end\n", Expectation::HELP);
     console::print(&text)?;
     Ok(Outcome::Fine)
+}
+
+#[cfg(test)]
+mod tests {
+    use bahn_host::Deed;
+
+    use super::*;
+
+    /// What stands for the words in capitals of the list.
+    const EXAMPLES: [(&str, &str); 15] = [
+        ("PROGRAM", "1.H"),
+        ("BLOCK", "L X+1"),
+        ("RPM", "100"),
+        ("AXIS", "X"),
+        ("VALUE", "5"),
+        ("HEIGHT", "0"),
+        ("DEGREES", "5"),
+        ("FACTOR", "3"),
+        ("FEED", "240"),
+        ("CODE", "107"),
+        ("MIN", "2"),
+        ("COMMAND", "mode full"),
+        ("MM", "1"),
+        ("N", "5"),
+        ("R", "20"),
+    ];
+
+    /// The commands that a form stands for: `probe surface|circle` are two.
+    fn given(form: &str) -> Vec<String> {
+        let mut commands = vec![String::new()];
+        for word in form.split(' ') {
+            let word = word.trim_matches(['[', ']']);
+            let choices = word.split('|').map(|choice| {
+                let example = EXAMPLES.iter().find(|(of, _)| *of == choice);
+                example.map_or(choice, |(_, example)| example)
+            });
+            let choices: Vec<&str> = choices.collect();
+            let longer = |command: String| {
+                choices
+                    .clone()
+                    .into_iter()
+                    .map(move |word| format!("{command} {word}"))
+            };
+            commands = commands.into_iter().flat_map(longer).collect();
+        }
+        commands
+    }
+
+    /// Each command can be given as the list says, also where an event of the machine begins with the same word, and a
+    /// log reads it again.
+    #[test]
+    fn every_command_of_the_list_can_be_given() {
+        let forms = COMMANDS.lines().filter(|line| !line.contains('='));
+        let forms = forms.map(|line| line.split("  ").next().unwrap_or(line));
+        let commands: Vec<String> = forms
+            .flat_map(|forms| forms.split(", "))
+            .flat_map(given)
+            .collect();
+        assert!(commands.len() > 45, "{commands:?}");
+        for command in commands {
+            match Deed::parse(&command) {
+                Ok(deed @ Deed::Command(..)) => {
+                    let written = deed.to_string();
+                    assert_eq!(Deed::parse(&written), Ok(deed), "{written}");
+                }
+                other => unreachable!("{command}: {other:?}"),
+            }
+        }
+    }
 }

@@ -269,7 +269,35 @@ impl Loader<'_> {
 
     fn parameters(&mut self, folder: &MachineFolder, model: ControlModel) -> Option<ParameterList> {
         let line = self.line_of("parameters").unwrap_or(1);
-        self.list_at(line, &folder.parameters, model)
+        let list = self.list_at(line, &folder.parameters, model)?;
+        self.tables_for(folder, &list, line);
+        Some(list)
+    }
+
+    /// MP730 takes MP720 away, and the tables of code number 105 296 that would act then are not there [000:3875-3887].
+    fn tables_for(&mut self, folder: &MachineFolder, list: &ParameterList, line: usize) {
+        let axes = (0..list.model().limits().axes_max).map(|index| list.axis_parameters(index));
+        let without = axes.filter(|axis| axis.active && axis.compensation.nonlinear);
+        let letters: Vec<String> = without
+            .filter_map(|axis| Some(axis.letter?.to_string()))
+            .collect();
+        if folder.compensation.is_some() || letters.is_empty() {
+            return;
+        }
+        let message = format!(
+            "MP730 compensates {} by tables; name their assignment (.CMA) as `compensation`",
+            letters.join(", ")
+        );
+        let (path, text) = &self.description;
+        let fault = file_fault(
+            path,
+            text,
+            (line, None),
+            "an axis has no compensation tables",
+            &message,
+        );
+        let severity = Severity::Warning;
+        self.warnings.push(FileFault { severity, ..fault });
     }
 
     /// A list of machine parameters that a line of `machine.toml` names.
@@ -417,6 +445,10 @@ impl Loader<'_> {
                 Some(read) => drop(files.compensation_tables.insert(table, read)),
                 None => complete = false,
             }
+        }
+        if complete {
+            let checked = assignment.check_active(&text, &files.compensation_tables);
+            self.compensation_read(&path, &text, checked)?;
         }
         files.compensation = Some(assignment);
         complete.then_some(files)

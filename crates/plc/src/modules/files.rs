@@ -3,7 +3,7 @@
 use bahn_exchange::signal;
 
 use super::{Call, Outcome};
-use crate::{LineFault, PlcError};
+use crate::{CompensationExcess, CompensationSize, LineFault, PlcError};
 
 /// 9090: selects NC program and datum table of a line of the pallet file.
 pub(super) fn execute_pallet_program(call: &mut Call<'_>) -> Result<Outcome, PlcError> {
@@ -112,10 +112,6 @@ fn compensation(call: &mut Call<'_>, line: i32) -> Result<(), i32> {
     const NO_FILE: i32 = 6;
     const NOT_FROM_SUBMIT: i32 = 7;
     const WITHOUT_STROBE: i32 = 8;
-    /// Compensation points of a table, of all tables, and tables [000:3770].
-    const POINTS_OF_TABLE_MAX: usize = 256;
-    const POINTS_MAX: usize = 640;
-    const TABLES_MAX: usize = 10;
     if !call.from_submit {
         return Err(NOT_FROM_SUBMIT);
     }
@@ -126,15 +122,12 @@ fn compensation(call: &mut Call<'_>, line: i32) -> Result<(), i32> {
         LineFault::NoFile => NO_FILE,
         LineFault::NoLine => NO_LINE,
     })?;
-    let points: Vec<usize> = tables.into_iter().collect::<Option<_>>().ok_or(NO_TABLE)?;
-    if points.iter().any(|points| *points > POINTS_OF_TABLE_MAX) {
-        return Err(TABLE_TOO_LONG);
-    }
-    if points.len() > TABLES_MAX {
-        return Err(TOO_MANY_TABLES);
-    }
-    if points.iter().sum::<usize>() > POINTS_MAX {
-        return Err(TOO_MANY_POINTS);
+    let tables: Vec<CompensationSize> = tables.into_iter().collect::<Option<_>>().ok_or(NO_TABLE)?;
+    match CompensationExcess::of(&tables) {
+        Some(CompensationExcess::PointsOfDependency) => return Err(TABLE_TOO_LONG),
+        Some(CompensationExcess::Dependencies) => return Err(TOO_MANY_TABLES),
+        Some(CompensationExcess::Points) => return Err(TOO_MANY_POINTS),
+        None => {}
     }
     call.nc.activate_compensation(line);
     Ok(())

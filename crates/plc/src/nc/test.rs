@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use bahn_parameters::{ParameterList, PerPlcAxis};
 
 use super::{
-    CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, NcInterfaces, NcMemory, NcMotion,
-    NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault, ParameterFileFault,
-    PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition, StatusChange, StatusItem,
-    TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
+    CompensationSize, CoordinateKind, DataInterface, HostLink, LineFault, MemoryTable, NcInterfaces,
+    NcMemory, NcMotion, NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault,
+    ParameterFileFault, PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition,
+    StatusChange, StatusItem, TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
 /// A stand-in for the control on a desk: what modules read is set in its fields, what they do is found
@@ -57,8 +57,8 @@ pub struct TestNc {
     pub datum_table: Option<String>,
     /// Lines of the compensation assignment: names of tables.
     pub compensation: Option<Vec<Vec<String>>>,
-    /// Points of the compensation tables.
-    pub compensation_tables: BTreeMap<String, usize>,
+    /// The compensation tables.
+    pub compensation_tables: BTreeMap<String, CompensationSize>,
     /// The active line of the compensation assignment.
     pub compensation_line: i32,
     /// Tables with M status.
@@ -351,11 +351,11 @@ impl NcMemory for TestNc {
         }
     }
 
-    fn compensation_line(&self, line: i32) -> Result<Vec<Option<usize>>, LineFault> {
+    fn compensation_line(&self, line: i32) -> Result<Vec<Option<CompensationSize>>, LineFault> {
         let lines = self.compensation.as_ref().ok_or(LineFault::NoFile)?;
         let tables = nth(lines, line).ok_or(LineFault::NoLine)?;
-        let points = |name| self.compensation_tables.get(name).copied();
-        Ok(tables.iter().map(points).collect())
+        let size = |name| self.compensation_tables.get(name).copied();
+        Ok(tables.iter().map(size).collect())
     }
 
     fn activate_compensation(&mut self, line: i32) {

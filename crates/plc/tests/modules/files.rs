@@ -1,4 +1,4 @@
-use bahn_plc::PalletLine;
+use bahn_plc::{CompensationSize, PalletLine};
 
 use crate::desk::{Desk, code};
 
@@ -85,15 +85,25 @@ fn m9095_activates_a_line() {
         tables(&["A", "GONE"]),
         tables(&["LONG"]),
         tables(&["A", "B", "B"]),
-        tables(&["C"; 11]),
+        tables(&["C"; 4]),
+        tables(&["WIDE", "A"]),
     ]);
-    for (name, points) in [("A", 256), ("B", 200), ("C", 1), ("LONG", 257)] {
-        desk.nc.compensation_tables.insert(name.to_owned(), points);
+    // Dependencies, and the points of each.
+    for (name, dependencies, points) in [
+        ("A", 1, 256),
+        ("B", 1, 200),
+        ("C", 3, 1),
+        ("WIDE", 2, 192),
+        ("LONG", 1, 257),
+    ] {
+        let size = CompensationSize { dependencies, points };
+        desk.nc.compensation_tables.insert(name.to_owned(), size);
     }
     assert_eq!(desk.submit(9095, &[1], 1), code(0));
     assert_eq!(desk.nc.compensation_line, 1);
-    // 256 + 200 + 200 points are more than 640; eleven tables more than ten [000:3770].
-    for (line, number) in [(6, 1), (-1, 1), (2, 2), (3, 3), (4, 4), (5, 5)] {
+    // 256 + 200 + 200 points are more than 640, 2 · 192 + 256 are as many; four tables with three dependencies each are more
+    // than ten [000:3770].
+    for (line, number) in [(6, 0), (1, 0), (7, 1), (-1, 1), (2, 2), (3, 3), (4, 4), (5, 5)] {
         assert_eq!(desk.submit(9095, &[line], 1), code(number), "line {line}");
     }
     assert_eq!(desk.cyclic(9095, &[1], 1), code(7));
