@@ -227,6 +227,11 @@ impl OwnAxes<'_> {
         machine_position(self.iter())
     }
 
+    /// Where the axes stand that programs move.
+    pub fn programmed_position(&self) -> Position {
+        machine_position(self.iter().filter(|unit| unit.is_free()))
+    }
+
     /// The slots in which there are axes.
     pub fn slots(&self) -> AxisSet {
         self.iter()

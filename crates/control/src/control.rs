@@ -19,6 +19,7 @@ use crate::handshake::Waiting;
 use crate::kernel::Kernel;
 use crate::markers::AXES;
 use crate::message::{Message, Shown};
+use crate::oscilloscope::OscilloscopeKeys;
 use crate::progress::RunState;
 use crate::sampling::{ServoSampler, ServoView};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
@@ -151,6 +152,11 @@ impl Control {
         sampler: Option<&mut (dyn ServoSampler + '_)>,
     ) {
         self.kernel.cycle(self.supply.off, plant, tracer, sampler);
+    }
+
+    /// What was pressed of the oscilloscope.
+    pub fn oscilloscope(&self) -> OscilloscopeKeys {
+        self.kernel.machine.oscilloscope
     }
 
     /// The axes as the last servo step left them.

@@ -1,13 +1,15 @@
 //! The commissioning assistant: circle tests and stops on the plant, parameter by parameter in the order of the manual
 //! [000:9549-9817] [000:18523-18607].
 
-use bahn_control::{Control, Signal};
-use bahn_machine::Machine;
+mod proof;
+
 use bahn_parameters::axis::AxisParameters;
-use bahn_parameters::{Adjustment, ParameterId, ParameterList};
+use bahn_parameters::{Adjustment, Definition, ParameterId, ParameterList};
+use bahn_servo::Characteristic;
 
 use crate::machine_folder::LoadedMachine;
-use crate::trial;
+use proof::Subject;
+pub use proof::{AxisTest, Circle};
 
 /// Overshoot of a stop that is never too much, mm.
 const OVERSHOOT_MM: f64 = 0.005;
@@ -15,39 +17,31 @@ const OVERSHOOT_MM: f64 = 0.005;
 const BETTER: f64 = 0.98;
 /// kv rises by this factor from trial to trial, as long as the contour gets better.
 const KV_FACTOR: f64 = 1.25;
+/// Factors of kv above a kink point that are tried where kv alone overshoots at rapid traverse *(inferred: the flow chart is
+/// lost)* [000:9700-9706].
+const KINK_FACTORS: [f64; 3] = [0.7, 0.5, 0.35];
 /// Backlash that is none, mm.
 const BACKLASH_MIN_MM: f64 = 0.001;
+/// Distance from the nominal value at rest that is none, mm.
+const STANDSTILL_MIN_MM: f64 = 0.0005;
+/// First integral factor, and what follows [000:9796].
+const INTEGRAL_STEP: f64 = 100.0;
+const INTEGRAL_STEPS: u8 = 10;
 /// Recommended monitoring, times the lag at rapid traverse [000:9806-9817].
 const MONITOR: f64 = 1.2;
 const EMERGENCY: f64 = 1.4;
-/// Blocks of the trial: the two circles, and the two movements with their stops.
-const CIRCLES: std::ops::RangeInclusive<u32> = 5..=6;
-const STOPS: [u32; 2] = [7, 10];
 
-/// The circle of a test.
+/// What is tuned, and with what.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
-    /// Radius, mm.
-    pub radius_mm: f64,
-    /// Feed, mm/min.
-    pub feed_mm_min: f64,
-}
-
-/// What a trial has shown of the tables, which no encoder sees.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CircleTest {
-    /// Greatest distance from the circle, mm.
-    pub contour_mm: f64,
-    /// Difference between the greatest and the least radius, mm.
-    pub roundness_mm: f64,
-    /// How far the first axis goes beyond a stop after rapid traverse, mm.
-    pub overshoot_mm: f64,
-    /// Angle, degrees, and distance from the circle, mm, in the order of time.
-    pub points: Vec<[f64; 2]>,
-    /// Time, s, and way that is left, mm, around the first stop: the step response of the position loop.
-    pub stop: Vec<[f64; 2]>,
-    /// Play between encoder and table of both axes, mm.
-    pub backlash_mm: [f64; 2],
+pub struct Task {
+    /// The axis.
+    pub axis: char,
+    /// Who describes the circle with it; `None` is its partner, where a linear axis has one: X and Y each other, Z has X.
+    pub partner: Option<char>,
+    /// The circle, or the way of an axis alone.
+    pub circle: Circle,
+    /// Greatest machining feed, mm/min, above which the kink point lies; `None` is half of rapid traverse *(inferred)*.
+    pub machining_mm_min: Option<f64>,
 }
 
 /// A parameter that the assistant would change.
@@ -64,14 +58,16 @@ pub struct Change {
 /// What the assistant found.
 #[derive(Clone, Debug)]
 pub struct Tuned {
-    /// The axes of the circle.
-    pub axes: [char; 2],
+    /// The axes of the circle, or the one axis.
+    pub axes: Vec<char>,
     /// With the list as it was.
-    pub before: CircleTest,
+    pub before: AxisTest,
     /// With what it proposes.
-    pub after: CircleTest,
+    pub after: AxisTest,
     /// What it proposes, in ascending order.
     pub changes: Vec<Change>,
+    /// kv with servo lag, MP1810, of all axes of the path as proposed: those that interpolate need the same [000:4780].
+    pub kv_lag: Vec<(char, f64)>,
     /// Trials that were run.
     pub trials: usize,
 }
@@ -80,48 +76,98 @@ pub struct Tuned {
 type Try = Vec<(Adjustment, u8, f64)>;
 
 struct Assistant<'a> {
-    machine: &'a LoadedMachine,
-    axes: [AxisParameters; 2],
-    circle: Circle,
+    subject: Subject<'a>,
     list: ParameterList,
-    best: CircleTest,
-    overshoot_mm: f64,
+    best: AxisTest,
+    machining_mm_min: Option<f64>,
     trials: usize,
 }
 
-/// Tunes two axes of a machine that describe a circle.
+/// The axes that a program moves.
+fn path_axes(list: &ParameterList) -> impl Iterator<Item = AxisParameters> + '_ {
+    let axes = (0..5).map(|index| list.axis_parameters(index));
+    axes.filter(|axis| axis.active && axis.controlled && !axis.plc_axis && axis.letter.is_some())
+}
+
+fn letter(axis: &AxisParameters) -> char {
+    axis.letter.map_or('?', |letter| letter.letter())
+}
+
+/// The axis, alone or with its partner.
+fn axes(list: &ParameterList, task: &Task) -> Result<Vec<AxisParameters>, String> {
+    let find = |name: char| path_axes(list).find(|axis| letter(axis) == name);
+    let named = |name: char| {
+        let axis = find(name).ok_or_else(|| {
+            let known: Vec<String> = path_axes(list).map(|axis| letter(&axis).to_string()).collect();
+            format!(
+                "programs move no axis {name} of this machine; there are {}",
+                known.join(", ")
+            )
+        })?;
+        if let Some(master) = axis.synchronization.master {
+            let master = letter(&list.axis_parameters(master));
+            return Err(format!(
+                "{name} goes where {master} goes (MP850): tune {master}, and {name} gets the same"
+            ));
+        }
+        Ok(axis)
+    };
+    let axis = named(task.axis)?;
+    let partner = match (task.partner, task.axis) {
+        (Some(partner), _) if partner == task.axis => {
+            return Err(format!("a circle needs two axes, not {partner} twice"));
+        }
+        (Some(partner), _) => Some(named(partner)?),
+        (None, 'X') => find('Y'),
+        (None, 'Y' | 'Z') => find('X'),
+        (None, _) => None,
+    };
+    let pair: Vec<AxisParameters> = std::iter::once(axis).chain(partner).collect();
+    let rotary = pair
+        .iter()
+        .find(|axis| axis.letter.is_some_and(|letter| letter.is_rotary()));
+    match rotary {
+        Some(rotary) if pair.len() > 1 => Err(format!(
+            "{} is a rotary axis: it is tuned alone, by stops and reversals",
+            letter(rotary)
+        )),
+        _ => Ok(pair),
+    }
+}
+
+/// Tunes an axis of a machine: with a partner by circles, alone by reversals; both by stops.
 ///
 /// # Errors
-/// When the machine has no such axes, or its list does not get it through the circle.
-pub fn tune(
-    machine: &LoadedMachine,
-    list: &ParameterList,
-    letters: [char; 2],
-    circle: Circle,
-) -> Result<Tuned, String> {
-    let axis = |letter: char| {
-        let mut axes = (0..5).map(|index| list.axis_parameters(index));
-        let found =
-            axes.find(|axis| axis.controlled && axis.letter.is_some_and(|own| own.letter() == letter));
-        found.ok_or_else(|| format!("the machine has no axis {letter}"))
-    };
-    let axes = [axis(letters[0])?, axis(letters[1])?];
-    let before = test(machine, list, &axes, circle)?;
-    let mut assistant = Assistant {
+/// When the machine has no such axes, or its list does not get it through the trial.
+pub fn tune(machine: &LoadedMachine, list: &ParameterList, task: &Task) -> Result<Tuned, String> {
+    if list.adjustment(Adjustment::KvLag, 0).is_none() {
+        return Err(format!(
+            "the control loops of the {} have machine parameters that this does not adjust",
+            list.model()
+        ));
+    }
+    let subject = Subject {
         machine,
-        axes,
-        circle,
+        axes: axes(list, task)?,
+        circle: task.circle,
+    };
+    let before = subject.prove(list)?;
+    let mut assistant = Assistant {
+        subject,
         list: list.clone(),
-        overshoot_mm: before.overshoot_mm.max(OVERSHOOT_MM),
         best: before.clone(),
+        machining_mm_min: task.machining_mm_min,
         trials: 1,
     };
     assistant.speed_controllers();
     assistant.position_loops();
     assistant.mechanics();
+    assistant.integral();
+    let masters = path_axes(&assistant.list).filter(|axis| axis.synchronization.master.is_none());
     Ok(Tuned {
-        axes: letters,
+        axes: assistant.subject.axes.iter().map(letter).collect(),
         changes: changes(list, &assistant.list),
+        kv_lag: masters.map(|axis| (letter(&axis), axis.lag.kv)).collect(),
         before,
         after: assistant.best,
         trials: assistant.trials,
@@ -130,7 +176,7 @@ pub fn tune(
 
 /// The entries in which two lists differ.
 fn changes(before: &ParameterList, after: &ParameterList) -> Vec<Change> {
-    let all = bahn_parameters::Definition::all(before.model());
+    let all = Definition::all(before.model());
     let differ = all.iter().filter_map(|definition| {
         let index = definition.id.index.unwrap_or(0);
         let value = |list: &ParameterList| list.get(definition.id.number, index);
@@ -144,27 +190,70 @@ fn changes(before: &ParameterList, after: &ParameterList) -> Vec<Change> {
     differ.collect()
 }
 
+/// MP1710 and MP1720 for the lag that an axis has at rapid traverse.
+fn monitor(list: &mut ParameterList, index: u8) {
+    let axis = list.axis_parameters(index);
+    let rapid = axis.motion.rapid_mm_min;
+    let lag_mm = Characteristic::with_kink(axis.lag.kv, &axis.lag, rapid).lag_mm(rapid);
+    list.adjust(Adjustment::LagMonitor, index, MONITOR * lag_mm);
+    list.adjust(Adjustment::LagEmergency, index, EMERGENCY * lag_mm);
+}
+
 impl Assistant<'_> {
-    /// Tries adjustments; keeps them when the contour gets better and stops do not overshoot. Whether it did.
-    fn attempt(&mut self, adjustments: &Try) -> bool {
+    fn indices(&self) -> Vec<u8> {
+        self.subject.axes.iter().map(|axis| axis.index).collect()
+    }
+
+    fn is_alone(&self) -> bool {
+        self.subject.axes.len() == 1
+    }
+
+    /// The list with adjustments; what belongs to the position loop of an axis its slaves get, too.
+    fn adjusted(&self, adjustments: &Try) -> ParameterList {
+        use Adjustment::{KinkFactor, KinkPoint, KvLag, KvPrecontrol};
         let mut list = self.list.clone();
         for (what, index, value) in adjustments {
             list.adjust(*what, *index, *value);
+            if !matches!(what, KvLag | KvPrecontrol | KinkFactor | KinkPoint) {
+                continue;
+            }
+            let slaves: Vec<u8> = path_axes(&self.list)
+                .filter(|axis| axis.synchronization.master == Some(*index))
+                .map(|axis| axis.index)
+                .collect();
+            for one in std::iter::once(*index).chain(slaves) {
+                list.adjust(*what, one, *value);
+                if *what != KvPrecontrol {
+                    monitor(&mut list, one);
+                }
+            }
         }
+        list
+    }
+
+    /// Tries adjustments; keeps them when the contour gets better and stops do not overshoot. Whether it did.
+    fn attempt(&mut self, adjustments: &Try) -> bool {
+        self.attempt_by(adjustments, |test, best| {
+            test.contour_mm < best.contour_mm * BETTER
+        })
+    }
+
+    fn attempt_by(&mut self, adjustments: &Try, better: impl Fn(&AxisTest, &AxisTest) -> bool) -> bool {
+        let list = self.adjusted(adjustments);
         if changes(&self.list, &list).is_empty() {
             return false;
         }
         self.trials += 1;
-        let Ok(test) = test(self.machine, &list, &self.axes, self.circle) else {
+        let Ok(test) = self.subject.prove(&list) else {
             return false;
         };
-        let better =
-            test.contour_mm < self.best.contour_mm * BETTER && test.overshoot_mm <= self.overshoot_mm;
-        if better {
+        let bearable_mm = self.best.overshoot_mm.max(OVERSHOOT_MM);
+        let taken = better(&test, &self.best) && test.overshoot_mm <= bearable_mm;
+        if taken {
             self.list = list;
             self.best = test;
         }
-        better
+        taken
     }
 
     fn value(&self, what: Adjustment, index: u8) -> Option<f64> {
@@ -191,7 +280,7 @@ impl Assistant<'_> {
 
     /// P, I with its monitoring, and acceleration pre-control of digital speed controllers [000:18552-18607].
     fn speed_controllers(&mut self) {
-        for axis in self.axes.map(|axis| axis.index) {
+        for axis in self.indices() {
             if self.list.axis_parameters(axis).digital.is_none() {
                 continue;
             }
@@ -210,46 +299,137 @@ impl Assistant<'_> {
         }
     }
 
-    /// Method and kv, the same for both axes [000:4780-4788], with the monitoring that goes with it.
+    /// kv and kink point, the same kv for axes that interpolate [000:4780-4788], with the monitoring that goes with it: first
+    /// with servo lag, then with pre-control [000:9667-9788]. Two axes that run with servo lag go over to pre-control when
+    /// that is better; one that is tuned alone leaves MP1390, which is common to all, and nothing goes back to servo lag.
     fn position_loops(&mut self) {
-        let first = self.axes[0].index;
-        self.attempt(&vec![(Adjustment::ServoLag, first, 0.0)]);
-        let mut misses = 0;
-        let mut factor = KV_FACTOR;
+        let first = self.subject.axes.first().map_or(0, |axis| axis.index);
+        let Some(method) = self.value(Adjustment::ServoLag, first) else {
+            self.servo_lag();
+            return;
+        };
+        let entry = (self.list.clone(), self.best.clone());
+        if self.takes_method(1.0) {
+            self.servo_lag();
+        }
+        let lag = (self.list.clone(), self.best.clone());
+        if !self.takes_method(0.0) {
+            (self.list, self.best) = if method == 0.0 { entry } else { lag };
+            return;
+        }
+        self.precontrol();
+        if method == 0.0 {
+            return;
+        }
+        let precontrol = (self.list.clone(), self.best.clone());
+        let back = self.takes_method(1.0);
+        let worse = precontrol.1.contour_mm > self.best.contour_mm * BETTER;
+        if !(back && (worse || self.is_alone())) {
+            (self.list, self.best) = precontrol;
+        }
+    }
+
+    /// Goes over to servo lag (1) or pre-control (0): what is better counts from there. Whether the machine bears it.
+    fn takes_method(&mut self, servo_lag: f64) -> bool {
+        let first = self.subject.axes.first().map_or(0, |axis| axis.index);
+        let mut entries = vec![(Adjustment::ServoLag, first, servo_lag)];
+        // The same kv as before, with its monitoring.
+        for axis in self.indices() {
+            entries.extend(
+                self.value(Adjustment::KvLag, axis)
+                    .map(|kv| (Adjustment::KvLag, axis, kv)),
+            );
+        }
+        let list = self.adjusted(&entries);
+        if changes(&self.list, &list).is_empty() {
+            return true;
+        }
+        self.trials += 1;
+        let Ok(test) = self.subject.prove(&list) else {
+            return false;
+        };
+        (self.list, self.best) = (list, test);
+        true
+    }
+
+    /// kv with servo lag [000:9667-9706]: as high as stops bear it, and where only those from rapid traverse do not, with a
+    /// kink point above the machining feeds.
+    fn servo_lag(&mut self) {
+        self.raise(|assistant, factor| {
+            let straight = assistant.kv(Adjustment::KvLag, factor);
+            if assistant.attempt(&straight) {
+                return true;
+            }
+            let points: Vec<(u8, f64)> = assistant.kink_points();
+            KINK_FACTORS.iter().any(|kink| {
+                let mut kinked = straight.clone();
+                for (axis, point) in &points {
+                    kinked.push((Adjustment::KinkPoint, *axis, *point));
+                    kinked.push((Adjustment::KinkFactor, *axis, *kink));
+                }
+                assistant.attempt(&kinked)
+            })
+        });
+    }
+
+    /// kv with pre-control, and the transient response, one for all axes, which no axis decides alone [000:9728-9788].
+    fn precontrol(&mut self) {
+        self.raise(|assistant, factor| {
+            let kv = assistant.kv(Adjustment::KvPrecontrol, factor);
+            assistant.attempt(&kv)
+        });
+        if self.is_alone() {
+            return;
+        }
+        let first = self.subject.axes.first().map_or(0, |axis| axis.index);
+        for transient in [1.0, 2.0] {
+            self.attempt(&vec![(Adjustment::Transient, first, transient)]);
+        }
+    }
+
+    /// Goes up by factors; one miss may lie between two hits.
+    fn raise(&mut self, mut hit: impl FnMut(&mut Self, f64) -> bool) {
+        let (mut misses, mut factor) = (0, KV_FACTOR);
         while misses < 2 {
-            if self.attempt(&self.kv(factor)) {
+            if hit(self, factor) {
                 (misses, factor) = (0, KV_FACTOR);
             } else {
                 misses += 1;
                 factor *= KV_FACTOR;
             }
         }
-        for transient in [1.0, 2.0] {
-            self.attempt(&vec![(Adjustment::Transient, first, transient)]);
-        }
     }
 
-    fn kv(&self, factor: f64) -> Try {
-        let mut all = Vec::new();
-        for axis in &self.axes {
-            let greatest = |what| {
-                let values = self.axes.iter().filter_map(|axis| self.value(what, axis.index));
-                values.fold(0.0, f64::max) * factor
-            };
-            let (precontrol, lag) = (greatest(Adjustment::KvPrecontrol), greatest(Adjustment::KvLag));
-            all.push((Adjustment::KvPrecontrol, axis.index, precontrol));
-            all.push((Adjustment::KvLag, axis.index, lag));
-            let at_rapid = axis.motion.rapid_mm_min * 1e-3 / lag;
-            all.push((Adjustment::LagMonitor, axis.index, MONITOR * at_rapid));
-            all.push((Adjustment::LagEmergency, axis.index, EMERGENCY * at_rapid));
+    /// The greatest kv of the axes times a factor. With servo lag an axis alone goes no higher than those with which it
+    /// interpolates: the worst one determines the entry [000:9696-9698].
+    fn kv(&self, what: Adjustment, factor: f64) -> Try {
+        let axes = self.indices();
+        let greatest = |axes: &[u8]| {
+            let values = axes.iter().filter_map(|axis| self.value(what, *axis));
+            values.fold(0.0, f64::max)
+        };
+        let mut kv = greatest(&axes) * factor;
+        if self.is_alone() && what == Adjustment::KvLag {
+            let others: Vec<u8> = path_axes(&self.list).map(|axis| axis.index).collect();
+            kv = kv.min(greatest(&others));
         }
-        all
+        axes.into_iter().map(|axis| (what, axis, kv)).collect()
+    }
+
+    /// MP1830: the greatest machining feed in percent of rapid traverse [000:9684-9688].
+    fn kink_points(&self) -> Vec<(u8, f64)> {
+        let points = self.subject.axes.iter().map(|axis| {
+            let rapid = axis.motion.rapid_mm_min;
+            let feed = self.machining_mm_min.unwrap_or(rapid / 2.0);
+            (axis.index, (100.0 * feed / rapid).min(100.0))
+        });
+        points.collect()
     }
 
     /// Backlash, reversal peaks and stiction.
     fn mechanics(&mut self) {
-        let play = self.best.backlash_mm;
-        let backlash: Try = std::iter::zip(&self.axes, play)
+        let play = self.best.backlash_mm.clone();
+        let backlash: Try = std::iter::zip(&self.subject.axes, play)
             .filter(|(_, play)| play.abs() > BACKLASH_MIN_MM)
             .map(|(axis, play)| {
                 (
@@ -262,7 +442,7 @@ impl Assistant<'_> {
         if !backlash.is_empty() {
             self.attempt(&backlash);
         }
-        for axis in self.axes.map(|axis| axis.index) {
+        for axis in self.indices() {
             if self.list.axis_parameters(axis).digital.is_some() {
                 for height in [0.002, 0.004, 0.006, 0.009, 0.013] {
                     self.attempt(&vec![(Adjustment::DigitalReversal, axis, height)]);
@@ -288,185 +468,40 @@ impl Assistant<'_> {
                 self.attempt(&stiction);
             }
         }
+        let first = self.subject.axes.first().map_or(0, |axis| axis.index);
         // Higher kv may bear what the mechanics spoiled before.
-        self.attempt(&self.kv(KV_FACTOR));
-    }
-}
-
-/// A circle in each direction, then rapid traverse to and fro with stops.
-fn blocks(
-    machine: &LoadedMachine,
-    axes: &[AxisParameters; 2],
-    circle: Circle,
-) -> Result<(String, [f64; 2]), String> {
-    let mut places = [0.0; 2];
-    let mut names = ['X'; 2];
-    let datum = machine.datum();
-    let mut centre = [0.0; 2];
-    for (place, axis) in axes.iter().enumerate() {
-        let letter = axis.letter.ok_or_else(|| "an axis without letter".to_owned())?;
-        let [least, greatest] = axis.travel.ranges_mm[0];
-        if greatest - least < 2.0 * circle.radius_mm + 2.0 {
-            return Err(format!(
-                "a circle of {} mm has no place in the travel of {}",
-                circle.radius_mm,
-                letter.letter()
-            ));
-        }
-        let middle = (least + greatest) / 2.0;
-        let zero = if datum[letter].is_finite() {
-            datum[letter]
-        } else {
-            0.0
+        let what = match self.list.axis_parameters(first).precontrol.in_automatic {
+            true => Adjustment::KvPrecontrol,
+            false => Adjustment::KvLag,
         };
-        (places[place], names[place], centre[place]) = (middle - zero, letter.letter(), middle);
+        let kv = self.kv(what, KV_FACTOR);
+        self.attempt(&kv);
     }
-    let ([a, b], [x, y], r) = (names, places, circle.radius_mm);
-    let dwell = "CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 0.4";
-    let text = format!(
-        "L {a}{:+.4} {b}{y:+.4} R0 FMAX\n{dwell}\nCC {a}{x:+.4} {b}{y:+.4}\n\
-         C {a}{:+.4} {b}{y:+.4} DR+ F{:.0}\nC {a}{:+.4} {b}{y:+.4} DR-\n\
-         L {a}{:+.4} FMAX\n{dwell}\nL {a}{:+.4} FMAX\n{dwell}\nL {a}{x:+.4} FMAX",
-        x + r,
-        x + r,
-        circle.feed_mm_min,
-        x + r,
-        x - r,
-        x + r
-    );
-    Ok((text, centre))
-}
 
-/// What is seen of the tables in a contour cycle.
-struct Sample {
-    time_us: u64,
-    block: u32,
-    table: [f64; 2],
-    nominal: [f64; 2],
-    actual: [f64; 2],
-}
-
-/// A trial with a list.
-fn test(
-    machine: &LoadedMachine,
-    list: &ParameterList,
-    axes: &[AxisParameters; 2],
-    circle: Circle,
-) -> Result<CircleTest, String> {
-    let (text, centre) = blocks(machine, axes, circle)?;
-    let letters = axes.map(|axis| axis.letter.map_or('X', |letter| letter.letter()));
-    let signals = |name: &str| letters.map(|letter| format!("{letter}.{name}").parse::<Signal>().ok());
-    let (nominal, actual) = (signals("nominal"), signals("actual"));
-    let mut samples: Vec<Sample> = Vec::new();
-    let mut block = 0;
-    trial::run(machine, list, &text, |control: &Control, plant: &Machine| {
-        if let Some(element) = control.element() {
-            block = element.block.block;
-        }
-        let observe = |signal: &Option<Signal>| signal.map_or(0.0, |signal| control.observe(&signal));
-        samples.push(Sample {
-            time_us: control.time_us(),
-            block,
-            table: letters.map(|letter| plant.axis(letter).map_or(0.0, |axis| axis.position)),
-            nominal: [observe(&nominal[0]), observe(&nominal[1])],
-            actual: [observe(&actual[0]), observe(&actual[1])],
-        });
-    })?;
-    evaluate(&samples, centre, circle)
-}
-
-fn evaluate(samples: &[Sample], centre: [f64; 2], circle: Circle) -> Result<CircleTest, String> {
-    let round: Vec<&Sample> = samples
-        .iter()
-        .filter(|sample| CIRCLES.contains(&sample.block))
-        .collect();
-    if round.len() < 10 {
-        return Err("the circle was not described".to_owned());
-    }
-    let count = round.len() as f64;
-    // Where the zero point of the plant lies from that of the control: lags of a whole circle have no mean.
-    let mean = |place: usize| {
-        round
-            .iter()
-            .map(|sample| sample.table[place] - sample.nominal[place])
-            .sum::<f64>()
-            / count
-    };
-    let at = [centre[0] + mean(0), centre[1] + mean(1)];
-    let points: Vec<[f64; 2]> = round
-        .iter()
-        .map(|sample| {
-            let (x, y) = (sample.table[0] - at[0], sample.table[1] - at[1]);
-            [
-                y.atan2(x).to_degrees().rem_euclid(360.0),
-                x.hypot(y) - circle.radius_mm,
-            ]
-        })
-        .collect();
-    let greatest = points
-        .iter()
-        .map(|point| point[1])
-        .fold(f64::NEG_INFINITY, f64::max);
-    let least = points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
-    let stops = STOPS.map(|block| stop(samples, block));
-    Ok(CircleTest {
-        contour_mm: greatest.abs().max(least.abs()),
-        roundness_mm: greatest - least,
-        overshoot_mm: stops.iter().map(|(overshoot, _)| *overshoot).fold(0.0, f64::max),
-        stop: stops
-            .into_iter()
-            .next()
-            .map(|(_, points)| points)
-            .unwrap_or_default(),
-        points,
-        backlash_mm: [play(&round, 0), play(&round, 1)],
-    })
-}
-
-/// How far a stop goes beyond where it ends, mm, and the way left over time, s.
-fn stop(samples: &[Sample], block: u32) -> (f64, Vec<[f64; 2]>) {
-    // It rests in the dwell behind the block.
-    let all = || {
-        samples
-            .iter()
-            .filter(|sample| (block..=block + 2).contains(&sample.block))
-    };
-    let (Some(first), Some(last)) = (all().next(), all().next_back()) else {
-        return (0.0, Vec::new());
-    };
-    let end = last.table[0];
-    let direction = (end - first.table[0]).signum();
-    let mut moves = all().filter(|sample| (sample.nominal[0] - last.nominal[0]).abs() > 1e-6);
-    let arrived_us = moves.next_back().map_or(first.time_us, |sample| sample.time_us);
-    let beyond = all()
-        .map(|sample| (sample.table[0] - end) * direction)
-        .fold(0.0, f64::max);
-    let from = arrived_us.saturating_sub(60_000);
-    let points = all().filter(|sample| sample.time_us >= from).map(|sample| {
-        [
-            (sample.time_us - from) as f64 * 1e-6,
-            (end - sample.table[0]) * direction,
-        ]
-    });
-    (beyond, points.collect())
-}
-
-/// The play between encoder and table: what the table lags behind its encoder when it goes one way and the other.
-fn play(round: &[&Sample], place: usize) -> f64 {
-    let mut sums = [(0.0, 0.0); 2];
-    for pair in round.windows(2) {
-        let [before, sample] = pair else { continue };
-        let way = sample.nominal[place] - before.nominal[place];
-        // Near the turning points the table may lie anywhere in its play.
-        if way.abs() > 1e-3 {
-            let (sum, count) = &mut sums[usize::from(way > 0.0)];
-            *sum += sample.table[place] - sample.actual[place];
-            *count += 1.0;
+    /// The integral factor at standstill: from 100 in steps of 100, for drives without play, and not beside the automatic
+    /// offset adjustment [000:9790-9798].
+    fn integral(&mut self) {
+        for (place, axis) in self.indices().into_iter().enumerate() {
+            let now = self.list.axis_parameters(axis);
+            let play = self.best.backlash_mm.get(place).map_or(0.0, |play| play.abs());
+            let has_play = play > BACKLASH_MIN_MM || now.compensation.backlash_mm != 0.0;
+            if now.digital.is_some() || has_play || now.output.offset_interval_s > 0.0 {
+                continue;
+            }
+            for step in 1..=INTEGRAL_STEPS {
+                let rest = |test: &AxisTest| test.standstill_mm.get(place).copied().unwrap_or(0.0);
+                if rest(&self.best) < STANDSTILL_MIN_MM {
+                    break;
+                }
+                let factor = INTEGRAL_STEP * f64::from(step);
+                let taken =
+                    self.attempt_by(&vec![(Adjustment::IntegralFactor, axis, factor)], |test, best| {
+                        rest(test) < rest(best) * BETTER && test.contour_mm * BETTER <= best.contour_mm
+                    });
+                if !taken {
+                    break;
+                }
+            }
         }
     }
-    let [(back, backs), (forth, forths)] = sums;
-    if backs == 0.0 || forths == 0.0 {
-        return 0.0;
-    }
-    back / backs - forth / forths
 }
