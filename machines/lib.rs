@@ -46,7 +46,7 @@ pub const MILL_TNC360: ShippedMachine = machine!("mill-tnc360" for "tnc360", "tn
 /// A mill with digital drives, whose speed loops the control closes; it is a TNC 425.
 pub const DIG425: ShippedMachine = machine!("dig425" for "tnc425":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "plc/MAIN.PLC", "plc/MAIN.ER1",
-    "plc/run.txt", "programs/CIRCLE.H", "programs/COVER.H",
+    "plc/run.txt", "programs/CIRCLE.H", "programs/COVER.H", "programs/PALLETS.H", "pallets.txt",
 );
 
 /// A portal mill with two channels; its control is a TNC 415 B. It is a start where it is asked for by its name.

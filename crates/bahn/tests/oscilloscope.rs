@@ -111,9 +111,41 @@ fn a_step_of_the_speed_controller() {
     assert!(speeds[trigger.unwrap() + 17] > 0.9 * 240.0);
 }
 
+/// Behind code number 688 379 START and STOP are the operator's: FREE RUN ends by hand, and a second START forgets the first
+/// recording [000:18691] [000:18776-18778].
+#[test]
+fn start_and_stop_by_hand() {
+    let folder = dig425(BLOCKS);
+    let recorded = |script: &str| {
+        folder.write("osci.txt", script);
+        let run = folder.bahn(
+            "run main.H --machine dig425 --fresh --no-graphics --script osci.txt --oscilloscope o.csv \
+             --channels X.s-nominal --trigger free",
+        );
+        assert_eq!(run.code(), 0, "{}", run.err());
+        memory(&folder.read("o.csv"))
+    };
+    // Half a second of 0.6 ms; a contour cycle may lie before and behind.
+    let by_hand = "start+1: code 688379\n+0: oscilloscope start\n+0.5: oscilloscope stop\n";
+    let (first, _, trigger) = recorded(by_hand);
+    assert_eq!(trigger, None);
+    assert!((828..=840).contains(&first.len()), "{}", first.len());
+    let (second, _, _) = recorded(&format!(
+        "{by_hand}+1: oscilloscope start\n+0.25: oscilloscope stop\n"
+    ));
+    assert!((411..=423).contains(&second.len()), "{}", second.len());
+    assert!((second[0] - first[0] - 1.5).abs() < 0.01);
+    // Without START nothing is recorded.
+    assert!(recorded("5: code 688379\n").0.is_empty());
+}
+
 #[test]
 fn wrong_use_says_what_is_right() {
     let folder = dig425(BLOCKS);
+    copy(&machines().join("mill-tnc360"), &folder.path("mill360"));
+    let run = folder.bahn("run main.H --machine mill360 --fresh --oscilloscope o.csv");
+    assert_eq!(run.code(), 2, "{}", run.err());
+    assert!(run.err().contains("the tnc360 has none"), "{}", run.err());
     for (arguments, expected) in [
         (
             "--channels X.w",

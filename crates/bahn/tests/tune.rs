@@ -6,30 +6,12 @@ mod support;
 use bahn_parameters::{Adjustment, ControlModel, ParameterList};
 use support::*;
 
-/// What the assistant adjusts, as the reference list of a model has it, for X and Y.
+/// What the assistant adjusts, as the reference list of a model has it, for X, Y and Z.
 fn reference(model: ControlModel) -> String {
-    use Adjustment::*;
     let list = ParameterList::reference(model);
-    let adjusted = [
-        ServoLag,
-        Transient,
-        KvPrecontrol,
-        KvLag,
-        LagMonitor,
-        LagEmergency,
-        Proportional,
-        Integral,
-        SpeedMonitor,
-        AccelerationPrecontrol,
-        DigitalReversal,
-        ReversalHeight,
-        ReversalStep,
-        StictionFactor,
-        Backlash,
-    ];
     let mut entries = Vec::new();
-    for what in adjusted {
-        for axis in [0, 1] {
+    for what in Adjustment::ALL {
+        for axis in [0, 1, 2] {
             if let Some(value) = list.adjustment(what, axis) {
                 let mut copy = list.clone();
                 let (id, value) = copy.adjust(what, axis, value).unwrap();
@@ -51,6 +33,43 @@ fn reference(model: ControlModel) -> String {
     entries.join(",")
 }
 
+/// A circle of another radius and feed than the one that was tuned with, run as a program and recorded at the tables: the
+/// greatest distance from the circle through their mean, mm.
+fn circle_error(folder: &Folder, as_reference: bool, model: ControlModel) -> f64 {
+    folder.write(
+        "RING.H",
+        program("L X+35 Y+20 R0 FMAX\nCC X+20 Y+20\nC X+35 Y+20 DR+ F1500\nL X+20 FMAX"),
+    );
+    let list = if as_reference {
+        format!("--mp {}", reference(model))
+    } else {
+        String::new()
+    };
+    let run = folder.bahn(&format!(
+        "run RING.H --machine m --fresh --no-graphics {list} --record ring.csv --signals X.table,Y.table,path.block"
+    ));
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let table = folder.read("ring.csv");
+    let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| head.iter().position(|cell| cell.starts_with(name)).unwrap();
+    let places = ["X.table", "Y.table", "path.block"].map(column);
+    let points: Vec<[f64; 2]> = rows(&table)
+        .iter()
+        .map(|row| places.map(|place| row[place].parse::<f64>().unwrap()))
+        .filter(|row| row[2] == 3.0)
+        .map(|[x, y, _]| [x, y])
+        .collect();
+    assert!(points.len() > 500, "{}", points.len());
+    let middle = [0, 1].map(|axis| {
+        let values = || points.iter().map(|point| point[axis]);
+        0.5 * (values().fold(f64::NEG_INFINITY, f64::max) + values().fold(f64::INFINITY, f64::min))
+    });
+    let errors = points
+        .iter()
+        .map(|[x, y]| (x - middle[0]).hypot(y - middle[1]) - 15.0);
+    errors.map(f64::abs).fold(0.0, f64::max)
+}
+
 /// The contour error of the circle test is at least halved against the reference list.
 #[test]
 fn the_contour_error_is_halved_on_three_plants() {
@@ -61,7 +80,10 @@ fn the_contour_error_is_halved_on_three_plants() {
     ] {
         let folder = Folder::new();
         copy(&machines().join(machine), &folder.path("m"));
-        let run = folder.bahn(&format!("tune m X,Y --format json --mp {}", reference(model)));
+        let run = folder.bahn(&format!(
+            "tune m X,Y --format json --write --mp {}",
+            reference(model)
+        ));
         assert_eq!(run.code(), 0, "{machine}: {}", run.err());
         let report = run.json();
         let (before, after) = (
@@ -72,12 +94,71 @@ fn the_contour_error_is_halved_on_three_plants() {
             after > 0.0 && after <= 0.5 * before,
             "{machine}: {before} {after}"
         );
+        let (before, after) = (
+            circle_error(&folder, true, model),
+            circle_error(&folder, false, model),
+        );
+        assert!(
+            after <= 0.5 * before,
+            "a circle of its own, {machine}: {before} {after}"
+        );
         let overshoot = number(&report, "/after/overshoot_mm");
         assert!(
             overshoot <= number(&report, "/before/overshoot_mm").max(0.005),
             "{machine}: {overshoot}"
         );
         assert!(report["trials"].as_u64().unwrap() < 150);
+    }
+}
+
+/// Every axis of a machine can be tuned: Z with a partner, a swivel head and a table alone, X of a gantry with its slave, the
+/// axes of the first channel of a twin. Nothing is proposed for others but what is common to all.
+#[test]
+fn every_axis_of_a_machine_is_tuned() {
+    for (machine, argument, axes, indices) in [
+        ("mill", "Z", "ZX", &[0, 2][..]),
+        ("mill", "C", "C", &[3]),
+        ("gantry", "X", "XY", &[0, 1, 4]),
+        ("gantry", "B", "B", &[3]),
+        ("dig425", "Y,Z", "YZ", &[1, 2]),
+        ("twin", "X", "XY", &[0, 1]),
+    ] {
+        let folder = Folder::new();
+        copy(&machines().join(machine), &folder.path("m"));
+        let kv: Vec<String> = indices.iter().map(|index| format!("1510.{index}=1")).collect();
+        let run = folder.bahn(&format!(
+            "tune m {argument} --format json --picture p.png --mp {}",
+            kv.join(",")
+        ));
+        assert_eq!(run.code(), 0, "{machine} {argument}: {}", run.err());
+        let report = run.json();
+        assert_eq!(report["axes"], axes, "{machine}");
+        let (before, after) = (
+            number(&report, "/before/contour_mm"),
+            number(&report, "/after/contour_mm"),
+        );
+        assert!(after < 0.7 * before, "{machine} {argument}: {before} {after}");
+        let mut tuned = Vec::new();
+        for change in report["changes"].as_array().unwrap() {
+            let name = change["parameter"].as_str().unwrap();
+            let index = name
+                .split_once('.')
+                .map(|(_, index)| index.parse::<u8>().unwrap());
+            assert!(
+                index.is_none_or(|index| indices.contains(&index)),
+                "{machine}: {name}"
+            );
+            if name.starts_with("MP1510") {
+                tuned.push((index, change["to"].as_f64().unwrap()));
+            }
+        }
+        // All of them have the same kv, the slave, too.
+        assert_eq!(tuned.len(), indices.len(), "{machine}: {tuned:?}");
+        assert!(
+            tuned.iter().all(|(_, kv)| *kv == tuned[0].1 && *kv > 1.0),
+            "{machine}: {tuned:?}"
+        );
+        assert!(folder.path("p.png").exists());
     }
 }
 
@@ -128,7 +209,14 @@ fn wrong_use_says_what_is_right() {
     let folder = Folder::new();
     copy(&machines().join("mill-tnc360"), &folder.path("m"));
     for (arguments, code, expected) in [
-        ("m Z", 2, "in the plane of X and Y"),
+        ("m X,Y,Z", 2, "an axis, or two that describe a circle"),
+        ("m X --machining-feed 0", 2, "greater than 0"),
+        ("m X,X", 1, "a circle needs two axes, not X twice"),
+        (
+            "m W",
+            1,
+            "programs move no axis W of this machine; there are X, Y, Z",
+        ),
         ("m X --radius 0", 2, "greater than 0"),
         ("m X --radius 500", 1, "has no place in the travel of X"),
         ("m X --picture a.gif", 2, ".svg or .png"),
@@ -139,6 +227,26 @@ fn wrong_use_says_what_is_right() {
     ] {
         let run = folder.bahn(&format!("tune {arguments}"));
         assert_eq!(run.code(), code, "{arguments}: {}", run.err());
+        assert!(run.err().contains(expected), "{arguments}: {}", run.err());
+    }
+}
+
+/// Axes that cannot be tuned say why.
+#[test]
+fn slaves_and_rotary_axes_have_no_circle() {
+    let folder = Folder::new();
+    copy(&machines().join("gantry"), &folder.path("m"));
+    copy(&machines().join("dig425"), &folder.path("d"));
+    for (arguments, expected) in [
+        ("m U", "U goes where X goes (MP850): tune X"),
+        ("m X,B", "B is a rotary axis"),
+        (
+            "d W",
+            "programs move no axis W of this machine; there are X, Y, Z",
+        ),
+    ] {
+        let run = folder.bahn(&format!("tune {arguments}"));
+        assert_eq!(run.code(), 1, "{arguments}: {}", run.err());
         assert!(run.err().contains(expected), "{arguments}: {}", run.err());
     }
 }

@@ -1,11 +1,12 @@
-//! The whole control in machine time: `machines/mill` with its PLC, four axes and the spindle, while a
-//! program runs. One iteration is a second of machine time: 500 times real time is 2 ms.
+//! The whole control in machine time: machines of `machines` with their PLC, axes and spindle, while a program
+//! runs. One iteration is a second of machine time: 500 times real time is 2 ms.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a bench may fail")]
 
 #[path = "../tests/support/mod.rs"]
 mod support;
 
 use bahn_control::Tool;
+use bahn_parameters::ControlModel;
 use bahn_path::ToolShape;
 use divan::Bencher;
 use support::{Build, Rig};
@@ -53,9 +54,13 @@ fn minute_with_magazine_and_tool_probe(bencher: Bencher) {
     assert!(rig.messages().is_empty(), "{:?}", rig.messages());
 }
 
+/// Five axes of the gantry at once: the head swivels, M114 leads the tip, the slave follows the portal.
+const SWIVELS: &str = "TOOL CALL 1 Z S1000\nL X+800 Y+400 Z+400 B+0 R0 FMAX M3\nLBL 1\nL IX+5 IY+1 IZ+1 IB+2 F3000 M114\n\
+                       L IX+5 IY+1 IZ-1 IB-1\nL IX-10 IY-2 IB-1\nCALL LBL 1 REP 65000";
+
 /// A mill that cuts.
-fn cutting(program: &str) -> Rig {
-    let mut rig = Build::mill().program("1.H", program).rig();
+fn cutting(build: Build, program: &str) -> Rig {
+    let mut rig = build.program("1.H", program).rig();
     rig.power_on();
     rig.command("mode full");
     rig.command("select 1.H");
@@ -70,15 +75,35 @@ fn cutting(program: &str) -> Rig {
     rig
 }
 
-#[divan::bench(args = [Case("zigzag", ZIGZAG), Case("short lines", SHORT)], sample_count = 20)]
-fn second_on_the_mill(bencher: Bencher, case: Case) {
-    let mut rig = cutting(case.1);
+/// The plain mill, with which the other machines are compared; the gantry with five axes; digital drives.
+#[divan::bench(args = [
+    Case("mill, zigzag", mill, ZIGZAG),
+    Case("mill, short lines", mill, SHORT),
+    Case("gantry, five axes", gantry, SWIVELS),
+    Case("digital drives, zigzag", digital, ZIGZAG),
+    Case("digital drives, short lines", digital, SHORT),
+], sample_count = 20)]
+fn second_of_machining(bencher: Bencher, case: Case) {
+    let mut rig = cutting((case.1)(), case.2);
     bencher.bench_local(|| rig.seconds(1.0));
+    assert!(rig.messages().is_empty(), "{:?}", rig.messages());
 }
 
-/// A name and a program.
+fn mill() -> Build {
+    Build::mill()
+}
+
+fn gantry() -> Build {
+    Build::of("gantry", ControlModel::Tnc415b)
+}
+
+fn digital() -> Build {
+    Build::of("dig425", ControlModel::Tnc425)
+}
+
+/// A name, a machine and a program.
 #[derive(Clone, Copy)]
-struct Case(&'static str, &'static str);
+struct Case(&'static str, fn() -> Build, &'static str);
 
 impl std::fmt::Display for Case {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

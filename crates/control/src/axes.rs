@@ -227,6 +227,11 @@ impl OwnAxes<'_> {
         machine_position(self.iter())
     }
 
+    /// Where the axes stand that programs move.
+    pub fn programmed_position(&self) -> Position {
+        machine_position(self.iter().filter(|unit| unit.is_free()))
+    }
+
     /// The axes that programs move: neither slaves [000:4519] nor those of the PLC [000:4094-4116].
     pub fn programmable(&self) -> AxisSet {
         self.iter()

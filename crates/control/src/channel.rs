@@ -638,10 +638,10 @@ impl Channel {
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
             Command::ToolLife(tool, minutes) => machine.set_tool_life(tool, minutes),
             Command::Code(code) => {
-                let exchange = machine.memory.of_mut(self.number);
-                machine.offsets.shown |= desk::enter_code(code, exchange);
-                true
+                machine.offsets.shown |= desk::enter_code(code, machine.memory.of_mut(self.number));
+                machine.oscilloscope.enter_code(code, machine.link.list().model())
             }
+            Command::Oscilloscope(start) => machine.oscilloscope.press(start),
             Command::Key(code) => desk::press_key(code, machine.memory.of_mut(self.number)),
             Command::Test(name) => {
                 let (run, site, basis) = self.parts(machine);

@@ -109,6 +109,9 @@ pub enum Command {
     /// `output step FEED`, `output ramp`: what direction keys put out in MANUAL OPERATION on axes with digital speed
     /// controller, as OUTPUT of the oscilloscope says; the feed in mm/min [000:18737-18756].
     Output(Option<f64>),
+    /// `oscilloscope start`, `oscilloscope stop`: the soft keys START and STOP behind code number 688 379
+    /// [000:18776-18778].
+    Oscilloscope(bool),
     /// `3d-rot on`, `3d-rot off`: by hand the axes move, are shown and get their datum in the plane of the swivel axes as
     /// they stand [000:4256].
     WorkingPlane(bool),
@@ -213,6 +216,12 @@ impl FromStr for Command {
             "key" => number(name, rest, 58, 127).map(Command::Key),
             "s" => value(name, rest, 0.0, 99_999.999).map(Command::Speed),
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
+            "oscilloscope" => match rest {
+                "start" | "stop" => Ok(Command::Oscilloscope(rest == "start")),
+                _ => Err(CommandError::Wrong(
+                    "`oscilloscope` takes `start` or `stop`".into(),
+                )),
+            },
             "output" if rest == "ramp" => Ok(Command::Output(None)),
             "output" => {
                 let feed = rest.strip_prefix("step ").map(str::trim);
@@ -322,6 +331,8 @@ impl fmt::Display for Command {
             Command::Probe(command) => write!(f, "probe {command}"),
             Command::ToolLife(tool, minutes) => write!(f, "tool-life {tool} {minutes}"),
             Command::JogIncrement(mm) => write!(f, "jog {mm}"),
+            Command::Oscilloscope(true) => write!(f, "oscilloscope start"),
+            Command::Oscilloscope(false) => write!(f, "oscilloscope stop"),
             Command::Output(Some(feed)) => write!(f, "output step {feed}"),
             Command::Output(None) => write!(f, "output ramp"),
             Command::WorkingPlane(on) => write!(f, "3d-rot {}", if *on { "on" } else { "off" }),
@@ -363,6 +374,8 @@ mod tests {
             "jog 0.5",
             "output step 250",
             "output ramp",
+            "oscilloscope start",
+            "oscilloscope stop",
             "handwheel C 3",
             "3d-rot on",
             "manual-operation",
@@ -398,6 +411,7 @@ mod tests {
             ("I4=1", "`fault input I4 1`"),
             ("M5=2", "takes 0 or 1"),
             ("output", "`step` and a feed"),
+            ("oscilloscope on", "`start` or `stop`"),
             ("3d-rot B", "`on` or `off`"),
             ("power up", "`on` or `off`"),
         ] {

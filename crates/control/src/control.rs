@@ -18,6 +18,7 @@ use crate::hand_over::{HandOver, Ordered};
 use crate::handshake::Waiting;
 use crate::kernel::Kernel;
 use crate::message::{Message, Shown};
+use crate::oscilloscope::OscilloscopeKeys;
 use crate::progress::RunState;
 use crate::sampling::{ServoSampler, ServoView};
 use crate::setup::{ChannelError, ChannelSetup, Remembered, Setup};
@@ -150,6 +151,11 @@ impl Control {
         sampler: Option<&mut (dyn ServoSampler + '_)>,
     ) {
         self.kernel.cycle(self.supply.off, plant, tracer, sampler);
+    }
+
+    /// What was pressed of the oscilloscope.
+    pub fn oscilloscope(&self) -> OscilloscopeKeys {
+        self.kernel.machine.oscilloscope
     }
 
     /// The axes as the last servo step left them.

@@ -29,6 +29,10 @@ pub(crate) struct Wish {
     pub key: Option<(Direction, f64)>,
     /// What the handwheel was turned, mm.
     pub wheel_mm: f64,
+    /// A jog increment that begins, with its sign, mm. Where something moves already it is none, as upright.
+    pub jog_mm: Option<f64>,
+    /// The feed of jog increments, mm/min.
+    pub jog_mm_min: f64,
 }
 
 /// The plane of 3D ROT, if it is on.
@@ -54,8 +58,12 @@ struct Moving {
     along: usize,
     /// Way since its begin, mm.
     way: PointToPoint,
-    /// Where the handwheel leads.
+    /// Where the handwheel or a jog increment leads.
     target: Option<f64>,
+    /// It is a jog increment.
+    jogs: bool,
+    /// Handwheel or jog increment would lead beyond a limit.
+    pushed: Option<Direction>,
 }
 
 impl Plane {
@@ -129,12 +137,18 @@ impl Leaning {
         let Some(rotation) = self.plane.as_ref().and_then(|plane| plane.placement.rotation()) else {
             return;
         };
-        let wanted = |wish: &Wish| !now.stop && (wish.key.is_some() || wish.wheel_mm != 0.0);
+        let wanted =
+            |wish: &Wish| !now.stop && (wish.key.is_some() || wish.wheel_mm != 0.0 || wish.jog_mm.is_some());
         let first = wishes.iter().position(wanted);
-        let begin = |along| Moving {
-            along,
-            way: PointToPoint::new(0.0),
-            target: None,
+        let begin = |along| {
+            let target = wishes.get(along).and_then(|wish: &Wish| wish.jog_mm);
+            Moving {
+                along,
+                way: PointToPoint::new(0.0),
+                target,
+                jogs: target.is_some(),
+                pushed: None,
+            }
         };
         let Some(mut moving) = self.moving.take().or(first.map(begin)) else {
             return;
@@ -159,13 +173,21 @@ impl Leaning {
         if wish.wheel_mm != 0.0 {
             moving.target = Some(moving.target.unwrap_or(at) + wish.wheel_mm);
         }
-        moving.target = moving.target.map(|target| target.clamp(at - back, at + on));
+        if let Some(target) = &mut moving.target {
+            moving.pushed = match *target {
+                target if target > at + on => Some(Direction::Plus),
+                target if target < at - back => Some(Direction::Minus),
+                _ => moving.pushed,
+            };
+            *target = target.clamp(at - back, at + on);
+        }
         let (aim, feed) = match (wish.key, moving.target) {
             _ if now.stop => (Aim::Feed(0.0), rapid),
             (Some((Direction::Plus, feed)), _) => (towards(at, on, Direction::Plus, feed), feed.min(rapid)),
             (Some((Direction::Minus, feed)), _) => {
                 (towards(at, back, Direction::Minus, feed), feed.min(rapid))
             }
+            (None, Some(target)) if moving.jogs => (Aim::Position(target), wish.jog_mm_min.min(rapid)),
             (None, Some(target)) => (Aim::Position(target), rapid),
             (None, None) => (Aim::Feed(0.0), rapid),
         };
@@ -178,8 +200,10 @@ impl Leaning {
             unit.mover = if over { Mover::None } else { Mover::Manual };
             unit.follow(unit.nominal + part(unit.axis) * way, now.time_s);
         }
-        if let Some((direction, _)) = wish.key {
-            moving.target = None;
+        if wish.key.is_some() {
+            (moving.target, moving.jogs, moving.pushed) = (None, false, None);
+        }
+        if let Some(direction) = wish.key.map(|(direction, _)| direction).or(moving.pushed) {
             let [(_, minus), (_, plus)] = ways;
             let limit = if direction == Direction::Plus { plus } else { minus };
             show_limit(limit.filter(|_| stands), reach);

@@ -20,6 +20,7 @@ use crate::life;
 use crate::magazine::Magazine;
 use crate::message::{Message, Messages};
 use crate::now::Facts;
+use crate::oscilloscope::OscilloscopeKeys;
 use crate::per_channel::PerChannel;
 use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
@@ -53,6 +54,7 @@ pub(crate) struct MachineSide {
     /// The loops were closed since the control voltage came on.
     pub loops_closed: bool,
     pub offsets: DriveOffsets,
+    pub oscilloscope: OscilloscopeKeys,
     pub compensation: Compensation,
     pub loaded_tables: LoadedTables,
     pub loaded_datums: LoadedDatums,
@@ -192,6 +194,7 @@ impl MachineSide {
             magazine,
             loops_closed: false,
             offsets: DriveOffsets::new(interval_s),
+            oscilloscope: OscilloscopeKeys::default(),
             loaded_tables,
             loaded_datums,
             unsaved: false,

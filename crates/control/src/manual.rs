@@ -159,7 +159,7 @@ impl Manual {
     }
 
     /// Moves the main axes along those of the plane of 3D ROT. A wheel that has a rotary axis leads it as ever; jog
-    /// increments are those of upright axes only.
+    /// increments lead along the axes of the plane, too.
     fn lean(
         &mut self,
         keys: &PerPlcAxis<Option<Direction>>,
@@ -180,15 +180,20 @@ impl Manual {
             self.handwheel.turn(handwheel, reach, now, &mut self.pushed);
         }
         let travels = self.handwheel.travels();
+        let increment = self.increment();
         let wishes = MAIN.map(|axis| {
             let Some(unit) = reach.axes.at(axis) else {
                 return Wish::default();
             };
             let key = keys.get(unit.index).copied().flatten();
             let wheel_mm = travels.get(unit.index).filter(|_| leads).copied();
+            let jog = reach.panel.jog_started.get_mut(unit.index).and_then(Option::take);
+            let jog = jog.filter(|_| now.mode == Mode::Handwheel);
             Wish {
                 key: key.map(|direction| (direction, self.key_feed(unit, reach, now))),
                 wheel_mm: wheel_mm.unwrap_or(0.0),
+                jog_mm: jog.map(|direction| direction.sign() * increment),
+                jog_mm_min: unit.parameters.motion.manual_mm_min * now.feed_percent / 100.0,
             }
         });
         leaning.moves(&wishes, reach, now);
@@ -342,6 +347,14 @@ impl Manual {
         }
     }
 
+    /// The jog increment within its limit, mm.
+    fn increment(&self) -> f64 {
+        match self.increment_limit {
+            Some(limit) => self.increment.min(limit),
+            None => self.increment,
+        }
+    }
+
     /// Where the jog increment leads the axis to.
     fn jog_target(&mut self, place: usize, index: usize, reach: &mut Reach, now: &Now) -> Option<f64> {
         let started = reach
@@ -351,10 +364,7 @@ impl Manual {
             .copied()
             .flatten()
             .filter(|_| now.mode == Mode::Handwheel);
-        let increment = match self.increment_limit {
-            Some(limit) => self.increment.min(limit),
-            None => self.increment,
-        };
+        let increment = self.increment();
         let unit = reach.axes.get(place)?;
         let (nominal, stands) = (unit.nominal, unit.stands());
         let target = self.jogging.get_mut(index)?;

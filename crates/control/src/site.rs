@@ -31,9 +31,10 @@ pub(crate) struct Site<'a> {
 }
 
 impl Site<'_> {
-    /// The path position at which the axes stand.
+    /// The path position at which the axes stand: no program knows the slave of a gantry or an axis of the PLC, which would
+    /// count as parallel axes.
     pub fn here(&self) -> Position {
-        self.chain.to_path(&self.axes.machine_position())
+        self.chain.to_path(&self.axes.programmed_position())
     }
 
     /// Outputs a function: its effect in the control, and what goes to the PLC. FN19 says whether its program is

@@ -8,15 +8,7 @@ use support::bench::*;
 use support::*;
 
 fn dig425() -> Build {
-    let folder = folder("dig425");
-    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap_or_default();
-    Build {
-        model: ControlModel::Tnc425,
-        plant: read("plant.toml"),
-        plc: read("plc/MAIN.PLC"),
-        list: Some(read("parameters.mp")),
-        ..Build::mill()
-    }
+    Build::of("dig425", ControlModel::Tnc425)
 }
 
 /// The axis X of the plant has its wires exchanged.

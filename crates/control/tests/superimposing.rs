@@ -72,6 +72,29 @@ fn the_handwheel_leads_beside_the_path() {
     close(rig.axis('Z').nominal - z, -2.0, 1e-9);
 }
 
+/// The wheel has a ramp of MP1060 of its own, whatever the path does: where both accelerate one way the axis has more than
+/// MP1060, but never more than twice of it. The path is none the worse for it.
+#[test]
+fn path_and_wheel_together_have_twice_mp1060_at_most() {
+    let mut rig =
+        wheel("L IZ+1 R0 F600 M118 Z5\nLBL 1\nL IZ+6 F6000\nL IZ-6\nCALL LBL 1 REP 5/5\nL IZ+0 M118");
+    let z = rig.axis('Z').nominal;
+    rig.start();
+    rig.seconds(0.4);
+    let turns = [3.0, -6.0, 6.0, -5.0, 6.0, -6.0, 4.0];
+    let greatest = turns
+        .into_iter()
+        .map(|mm| turn(&mut rig, mm, 0.29))
+        .fold(0.0, f64::max);
+    let most = 2.0 * 1000.0 * ACCELERATION * CYCLE_S * CYCLE_S;
+    assert!(greatest > 0.75 * most, "{greatest} of {most}");
+    assert!(greatest <= most * 1.001 + 1e-9, "{greatest} beyond {most}");
+    rig.until(20.0, "the run ends", |rig| rig.control.snapshot().ended);
+    rig.seconds(1.0);
+    close(rig.axis('Z').nominal - z, 1.0, 1e-9);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
 /// M118 without words: Z goes back to the path on its ramp, and the wheel moves nothing any more. Without M118 it
 /// never does.
 #[test]

@@ -268,6 +268,59 @@ fn a_rotary_axis_makes_no_step_at_a_straight_joint() {
     assert!(greatest <= 1000.0 * 0.003 * 0.003 * 1.001, "{greatest}");
 }
 
+/// Keys of jog increments with two contacts, in the mode Handwheel.
+const JOG: &str = "
+       L M2052
+       = M2498
+       R M2512
+       R M2517
+       S M2528
+       S M2533
+       L I133
+       S M2512
+       R M2528
+       L I130
+       S M2517
+       R M2533
+       EM
+";
+
+/// 3D ROT: a jog increment leads along the axis of the plane, once for each press, at manual feed; one that would lead beyond
+/// a software limit ends there with its message [000:8494-8556].
+#[test]
+fn jog_increments_lead_along_the_plane() {
+    let mut build = swivelling().mp("920.2=295");
+    build.plc = build.plc.replacen("       EM\n", JOG, 1);
+    let mut rig = by_hand(build);
+    rig.command("mode handwheel");
+    rig.command("jog 8");
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let start = machine(&rig);
+    let before = shown(&rig);
+    rig.event("key X+ press");
+    rig.seconds(0.08);
+    // Manual feed is 50 mm/s, at which the way takes twice this time.
+    let way = (machine(&rig)[0] - start[0]) / cos;
+    assert!(way > 0.5 && way < 50.0 * 0.08, "{way}");
+    rig.seconds(1.0);
+    let after = shown(&rig);
+    assert!((after[0] - before[0] - 8.0).abs() < 1e-6, "{before:?} {after:?}");
+    assert_near(
+        machine(&rig),
+        [start[0] + 8.0 * cos, start[1], start[2] - 8.0 * sin],
+    );
+    rig.event("key X+ release");
+    rig.seconds(0.2);
+    assert_eq!(rig.messages(), [""; 0]);
+    // Z of the machine stands at 296 and may go down to 295: 1 mm / cos 30 degrees along -Z of the plane.
+    rig.event("key Z- press");
+    rig.seconds(1.0);
+    rig.event("key Z- release");
+    rig.seconds(0.2);
+    assert_near(machine(&rig), [start[0] + 8.0 * cos - sin / cos, start[1], 295.0]);
+    assert_eq!(rig.messages(), ["LIMIT SWITCH Z-"]);
+}
+
 /// By hand in the plane of B+30, switched on there.
 fn by_hand(build: Build) -> Rig {
     let mut rig = build.rig();

@@ -48,7 +48,7 @@ impl FromStr for Curve {
 /// TRIGGER with its threshold and slope [000:18703-18726].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Trigger {
-    /// `free`: FREE RUN, ended by hand; the memory holds what came last.
+    /// `free`: FREE RUN, ended by hand, here by `oscilloscope stop` or the end of the run; the memory holds what came last.
     #[default]
     FreeRun,
     /// `single`: SINGLE SHOT, one memory from START on.
@@ -176,6 +176,18 @@ impl Oscilloscope {
     /// START; once it records, it goes on.
     pub fn start(&mut self) {
         self.started = true;
+    }
+
+    /// START after a STOP: what was in the memory goes.
+    pub fn start_anew(&mut self) {
+        (self.taken, self.due_us) = (0, 0);
+        (self.triggered, self.before, self.complete) = (None, None, false);
+        self.started = true;
+    }
+
+    /// STOP: the memory stays as it is [000:18776].
+    pub fn stop(&mut self) {
+        self.started = false;
     }
 
     /// The memory is full, and nothing more is recorded.

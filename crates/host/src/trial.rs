@@ -14,6 +14,8 @@ use crate::power_on::PowerOn;
 
 /// Time of the machine after which a trial is given up, µs.
 const TIME_MAX_US: u64 = 86_400_000_000;
+/// So long power-on and reference run may take, µs.
+const BEGIN_MAX_US: u64 = 1_200_000_000;
 /// Name of the program.
 const NAME: &str = "TRIAL.H";
 
@@ -42,7 +44,10 @@ pub(crate) fn run(
     let mut power_on = PowerOn::fresh(machine);
     power_on.parameters = parameters.clone();
     let keys = machine.folder.operator.clone();
-    let operator = Operator::new(Attendance::Full, keys, Some(Job::whole(NAME)));
+    let mut operator = Operator::new(Attendance::Full, keys, Some(Job::whole(NAME)));
+    for channel in &machine.channels {
+        operator = operator.with_channel(channel.folder.operator.clone(), None);
+    }
     let mut host = Host::new(machine, power_on, Arc::new(Alone(program)), operator);
     let mut begun = false;
     loop {
@@ -65,6 +70,9 @@ pub(crate) fn run(
         }
         if begun && control.has_ended() {
             return Ok(());
+        }
+        if !begun && control.time_us() > BEGIN_MAX_US {
+            return Err("the machine does not get as far as its program".to_owned());
         }
         if control.time_us() > TIME_MAX_US {
             return Err("the trial does not end".to_owned());

@@ -13,6 +13,12 @@ pub enum Adjustment {
     KvPrecontrol,
     /// MP1810, (m/min)/mm: kv with servo lag.
     KvLag,
+    /// MP1820: factor of kv above the kink point.
+    KinkFactor,
+    /// MP1830, % of rapid traverse: the kink point.
+    KinkPoint,
+    /// MP1080: integral factor at standstill.
+    IntegralFactor,
     /// MP1710, mm: lag at which POSITIONING ERROR comes, recommended 1.2 times that at rapid traverse.
     LagMonitor,
     /// MP1720, mm: lag at which the gross error comes, recommended 1.4 times it.
@@ -50,12 +56,41 @@ const MONITOR_VOLTS: f64 = 15.0;
 const STEP_VOLTS: f64 = 9.7e-6;
 
 impl Adjustment {
+    /// All of them.
+    pub const ALL: [Adjustment; 22] = [
+        Adjustment::ServoLag,
+        Adjustment::Transient,
+        Adjustment::KvPrecontrol,
+        Adjustment::KvLag,
+        Adjustment::KinkFactor,
+        Adjustment::KinkPoint,
+        Adjustment::IntegralFactor,
+        Adjustment::LagMonitor,
+        Adjustment::LagEmergency,
+        Adjustment::Proportional,
+        Adjustment::Integral,
+        Adjustment::SpeedMonitor,
+        Adjustment::AccelerationPrecontrol,
+        Adjustment::DigitalReversal,
+        Adjustment::ReversalHeight,
+        Adjustment::ReversalStep,
+        Adjustment::StictionFactor,
+        Adjustment::StictionLimit,
+        Adjustment::StictionFeed,
+        Adjustment::Backlash,
+        Adjustment::Linear,
+        Adjustment::Nonlinear,
+    ];
+
     fn number(self) -> u16 {
         match self {
             Adjustment::ServoLag => 1390,
             Adjustment::Transient => 1520,
             Adjustment::KvPrecontrol => 1510,
             Adjustment::KvLag => 1810,
+            Adjustment::KinkFactor => 1820,
+            Adjustment::KinkPoint => 1830,
+            Adjustment::IntegralFactor => 1080,
             Adjustment::LagMonitor => 1710,
             Adjustment::LagEmergency => 1720,
             Adjustment::Proportional => 1940,
@@ -141,6 +176,14 @@ mod tests {
         assert_eq!(list.adjustment(Adjustment::Nonlinear, 0), Some(0.0));
         assert_eq!(Adjustment::speed_monitor(5.0), 309_278.0);
         assert_eq!(Adjustment::speed_monitor(180.0), 8591.0);
+        // Every one is a parameter of its own of the TNC 425.
+        let mut ids: Vec<String> = Adjustment::ALL
+            .iter()
+            .map(|what| list.adjust(*what, 0, 1.0).unwrap().0.to_string())
+            .collect();
+        ids.sort();
+        ids.dedup();
+        assert_eq!(ids.len(), Adjustment::ALL.len());
         let mut old = ParameterList::reference(ControlModel::Tnc155);
         assert_eq!(old.adjust(Adjustment::KvLag, 0, 2.0), None);
     }

@@ -228,10 +228,11 @@ fn same_kv(axes: &[AxisParameters], report: &mut Reporter) {
 }
 
 fn reference_run(axes: &[AxisParameters], report: &mut Reporter) {
-    // A slave whose relation is that at switch-on needs no mark [000:4492-4496].
+    // A slave whose relation is that at switch-on needs no mark [000:4492-4496]; the PLC passes those of its own axes:
+    // module 9123.
     let needs_mark = |axis: &&AxisParameters| {
         let slave = axis.synchronization;
-        axis.controlled && (slave.master.is_none() || slave.from_reference_marks)
+        axis.controlled && !axis.plc_axis && (slave.master.is_none() || slave.from_reference_marks)
     };
     for axis in axes.iter().filter(needs_mark) {
         let rule = "the axis is not referenced automatically";

@@ -55,6 +55,14 @@ impl ControlModel {
             ControlModel::Tnc425 => "TNC 425",
         }
     }
+
+    /// Has an oscilloscope behind code number 688 379 [000:18640].
+    pub const fn has_oscilloscope(self) -> bool {
+        matches!(
+            self,
+            ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425
+        )
+    }
 }
 
 impl fmt::Display for ControlModel {

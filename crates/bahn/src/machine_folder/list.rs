@@ -33,6 +33,7 @@ probe end                           leaves the function
 tool-life T MIN                     current life of a tool (CUR.TIME), minutes
 jog MM                              jog increment
 output step FEED, output ramp       what direction keys put out on axes with digital speed controller
+oscilloscope start|stop             recording of --oscilloscope by hand, behind `code 688379`
 handwheel AXIS FACTOR               axis of the handwheel, interpolation factor 0 to 10
 3d-rot on, 3d-rot off               by hand the axes move in the plane of the swivel axes
 manual-operation                    axes may be moved while a run is interrupted

@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use bahn_control::{Control, ServoSampler, ServoSignal};
+use bahn_control::{Control, OscilloscopeKeys, ServoSampler, ServoSignal};
 use bahn_host::oscilloscope::{
     CHANNELS, Curve, Oscilloscope, OscilloscopeRecord, OscilloscopeSetup, Trigger,
 };
@@ -18,7 +18,8 @@ use crate::files::{self, NewFile};
 #[command(next_help_heading = "Oscilloscope")]
 pub(crate) struct OscilloscopeOptions {
     /// Write the memory of the control's oscilloscope, 4096 samples of up to four channels in servo steps; START is the
-    /// start of the program, without one the end of the reference run. `bahn scope` draws it.
+    /// start of the program, without one the end of the reference run; a script that has entered `code 688379` says
+    /// `oscilloscope start` and `oscilloscope stop`. `bahn scope` draws it.
     #[arg(long, value_name = "OUT.csv", value_hint = ValueHint::FilePath)]
     pub oscilloscope: Option<PathBuf>,
     /// What the channels record: v-actual, v-nominal, s-actual, s-nominal, diff, u of each axis, with digital speed
@@ -52,6 +53,8 @@ pub(super) struct Scoped {
     path: PathBuf,
     file: NewFile,
     scope: Oscilloscope,
+    /// How often START was pressed.
+    starts: u32,
 }
 
 impl Scoped {
@@ -60,6 +63,12 @@ impl Scoped {
         let Some(path) = &options.oscilloscope else {
             return Ok(None);
         };
+        if !control.model().has_oscilloscope() {
+            return Err(UsageError::new(format!(
+                "--oscilloscope: the {} has none; tnc407, tnc415b and tnc425 have",
+                control.model()
+            )));
+        }
         let step_us = Timing::of(control.model()).step_us();
         let sample_us = options
             .sample_time
@@ -104,13 +113,22 @@ impl Scoped {
             file: NewFile::create(path)?,
             path: path.clone(),
             scope,
+            starts: 0,
         }))
     }
 
-    /// Who looks at the servo steps, from START on.
-    pub fn sampler(&mut self, started: bool) -> &mut dyn ServoSampler {
-        if started {
-            self.scope.start();
+    /// Who looks at the servo steps, from START on: that of the operator once the code number was entered, else that of
+    /// the program.
+    pub fn sampler(&mut self, started: bool, keys: OscilloscopeKeys) -> &mut dyn ServoSampler {
+        if !keys.open {
+            if started {
+                self.scope.start();
+            }
+        } else if !keys.records {
+            self.scope.stop();
+        } else if keys.starts != self.starts {
+            self.starts = keys.starts;
+            self.scope.start_anew();
         }
         &mut self.scope
     }

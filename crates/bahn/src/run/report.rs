@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use bahn_control::{TestReport, TestState};
 use bahn_host::{FailedExpectation, Host, Lateness};
 use bahn_parameters::ControlModel;
+use bahn_path::Axis;
 use serde::Serialize;
 
 use super::beside::Beside;
@@ -27,7 +28,12 @@ struct AxisReport {
 
 impl AxisReport {
     fn text(&self, letter: char) -> String {
-        let unit = if self.max_deviation.is_some() { "mm" } else { "°" };
+        let axis = u8::try_from(letter).ok().and_then(Axis::from_letter);
+        let unit = if axis.is_some_and(Axis::is_rotary) {
+            "°"
+        } else {
+            "mm"
+        };
         let deviation = self.max_deviation.map(|deviation| {
             let block = at(self.deviation_block);
             format!(", off the contour {:.1} µm{block}", deviation * 1e3)

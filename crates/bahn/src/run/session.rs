@@ -116,8 +116,9 @@ impl Session {
             }
             let tracer = self.recording.as_mut().and_then(Recording::tracer);
             let started = self.start_us.is_some() || self.host.operator().phase() == Phase::Ready;
+            let keys = self.host.control().oscilloscope();
             let scope = self.oscilloscope.as_mut();
-            let sampler = scope.map(|scope| scope.sampler(started));
+            let sampler = scope.map(|scope| scope.sampler(started, keys));
             let stored = self.host.cycle_watched(tracer, sampler);
             self.watch()?;
             if let Some(list) = self.host.restart() {

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use bahn_host::tuning::{Circle, CircleTest, Tuned, tune};
+use bahn_host::tuning::{AxisTest, Circle, Task, Tuned, tune};
 use bahn_parameters::{Definition, ListText};
 use clap::{Args, ValueHint};
 use serde::Serialize;
@@ -19,21 +19,29 @@ use crate::{Outcome, UsageError, console, diagnostics, machine_folder, settings}
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   bahn tune machines/mill X
-      Circle tests and stops of X with its partner Y on the plant; proposes kv, pre-control, speed controller, backlash,
-      reversal peaks and stiction, and shows what they bring. Nothing is changed.
+      Circle tests and stops of X with its partner Y on the plant; proposes kv, kink point, pre-control, speed controller,
+      backlash, reversal peaks, stiction and integral factor, and shows what they bring. Nothing is changed.
   bahn tune mill X,Y --picture tuned.png --write
       The same with a picture of the circle and of a stop, before and after, and what it proposes in the list.
+  bahn tune mill Z --machining-feed 4000
+      Circles in the plane Z/X; a kink point lies above 4000 mm/min. Y,Z is the plane Y/Z.
+  bahn tune machines/gantry B --radius 30 --feed 3000
+      A rotary axis, or one without a partner, alone: 30 degrees to both sides at 3000 degrees/min, and stops.
   bahn tune mill X --radius 50 --feed 5000 --format json
 
 The machine is switched on for every trial, passes its reference marks and describes a circle in each direction in the
-middle of its travel; what counts is where the tables of the plant stand, which no encoder sees. The parameters are tried in
-the order of the manual: speed controller (MP1940, MP1920, MP1910, MP1945), MP1390, kv (MP1510, MP1810 with MP1710, MP1720;
-the same for both axes), MP1520, MP710, reversal peaks (MP711, MP712; MP1960), stiction (MP1511 to MP1513). A proposal is
-taken when the contour error falls by 2 % and stops overshoot no more than 5 µm, or than before.
+middle of its travel, or goes to and fro there; then each axis stops from rapid traverse and from the feed. What counts is
+where the tables of the plant stand, which no encoder sees. The parameters are tried in the order of the manual: speed
+controller (MP1940, MP1920, MP1910, MP1945); with servo lag kv (MP1810, with MP1710, MP1720) and, where only stops from
+rapid traverse overshoot, the kink point (MP1820, MP1830); with pre-control kv (MP1510) and MP1520; MP1390, the better of
+both; MP710, reversal peaks (MP711, MP712; MP1960), stiction (MP1511 to MP1513); MP1080. kv is the same for both axes, and a
+slave (MP850) gets what its master gets. A proposal is taken when the contour error falls by 2 % and stops overshoot no more
+than 5 µm, or than before. An axis alone leaves MP1390 and MP1520, which are common to all, and its MP1810 does not go above
+that of the others.
 
-JSON: axes, radius_mm, feed_mm_min, trials, written; before and after (contour_mm, roundness_mm, overshoot_mm); changes
-(parameter, name, from, to).
-Exit codes: 0 fine, also without a proposal; 1 the machine is wrong or does not get through the circle; 2 wrong use.";
+JSON: axes, radius_mm, feed_mm_min, trials, written; before and after (contour_mm, of an axis alone from its nominal value;
+roundness_mm, overshoot_mm, standstill_mm of each axis); changes (parameter, name, from, to); kv_lag, MP1810 of each axis.
+Exit codes: 0 fine, also without a proposal; 1 the machine is wrong or does not get through the trial; 2 wrong use.";
 
 /// Options of `bahn tune`.
 #[derive(Args, Debug)]
@@ -41,15 +49,19 @@ pub(crate) struct TuneOptions {
     /// Folder of the machine.
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
-    /// The axis, X or Y, or both as X,Y: the axes of the circle are tuned together, since their kv must be equal.
+    /// The axis, or the two of a circle as X,Y: they are tuned together, since their kv must be equal. X, Y and Z find a
+    /// partner by themselves.
     #[arg(value_name = "AXIS", value_parser = axes)]
-    pub axes: [char; 2],
-    /// Radius of the circle, mm.
+    pub axes: (char, Option<char>),
+    /// Radius of the circle, mm; an axis alone goes so far to both sides, mm or degrees.
     #[arg(long, value_name = "MM", default_value_t = 20.0)]
     pub radius: f64,
-    /// Feed on the circle, mm/min.
+    /// Feed on the path, mm/min or degrees/min.
     #[arg(long, value_name = "MM/MIN", default_value_t = 2000.0)]
     pub feed: f64,
+    /// Greatest machining feed, above which a kink point lies, mm/min; half of rapid traverse without it.
+    #[arg(long, value_name = "MM/MIN")]
+    pub machining_feed: Option<f64>,
     /// Put what is proposed into the list of machine parameters, crash-safe and with its comments.
     #[arg(long)]
     pub write: bool,
@@ -64,12 +76,19 @@ pub(crate) struct TuneOptions {
     pub format: Format,
 }
 
-/// X and Y in either order; one stands for both.
-fn axes(text: &str) -> Result<[char; 2], String> {
-    match text.to_ascii_uppercase().as_str() {
-        "X" | "X,Y" | "XY" => Ok(['X', 'Y']),
-        "Y" | "Y,X" | "YX" => Ok(['Y', 'X']),
-        _ => Err("the circle test runs in the plane of X and Y: X, Y or X,Y".to_owned()),
+/// A letter, or two with a comma.
+fn axes(text: &str) -> Result<(char, Option<char>), String> {
+    let letters: Vec<char> = text
+        .to_ascii_uppercase()
+        .chars()
+        .filter(|letter| *letter != ',')
+        .collect();
+    match letters.as_slice() {
+        &[axis] if axis.is_ascii_alphabetic() => Ok((axis, None)),
+        &[axis, partner] if axis.is_ascii_alphabetic() && partner.is_ascii_alphabetic() => {
+            Ok((axis, Some(partner)))
+        }
+        _ => Err("an axis, or two that describe a circle: X, B or X,Y".to_owned()),
     }
 }
 
@@ -83,6 +102,13 @@ struct Report {
     before: Figures,
     after: Figures,
     changes: Vec<ChangeRow>,
+    kv_lag: Vec<Kv>,
+}
+
+#[derive(Serialize)]
+struct Kv {
+    axis: char,
+    kv: f64,
 }
 
 #[derive(Serialize)]
@@ -90,6 +116,7 @@ struct Figures {
     contour_mm: f64,
     roundness_mm: f64,
     overshoot_mm: f64,
+    standstill_mm: Vec<f64>,
 }
 
 #[derive(Serialize)]
@@ -101,11 +128,12 @@ struct ChangeRow {
 }
 
 impl Figures {
-    fn of(test: &CircleTest) -> Figures {
+    fn of(test: &AxisTest) -> Figures {
         Figures {
             contour_mm: tidy(test.contour_mm),
             roundness_mm: tidy(test.roundness_mm),
             overshoot_mm: tidy(test.overshoot_mm),
+            standstill_mm: test.standstill_mm.iter().map(|rest| tidy(*rest)).collect(),
         }
     }
 }
@@ -115,6 +143,9 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
     let positive = |value: f64| value.is_finite() && value > 0.0;
     if !positive(options.radius) || !positive(options.feed) {
         return Err(UsageError::new("--radius and --feed are greater than 0"));
+    }
+    if options.machining_feed.is_some_and(|feed| !positive(feed)) {
+        return Err(UsageError::new("--machining-feed is greater than 0"));
     }
     if let Some(path) = &options.picture
         && !matches!(files::extension(path).as_str(), "png" | "svg")
@@ -134,10 +165,16 @@ pub(crate) fn command(options: &TuneOptions) -> Result<Outcome, UsageError> {
         radius_mm: options.radius,
         feed_mm_min: options.feed,
     };
-    let tuned = match tune(&machine, &list, options.axes, circle) {
+    let task = Task {
+        axis: options.axes.0,
+        partner: options.axes.1,
+        circle,
+        machining_mm_min: options.machining_feed,
+    };
+    let tuned = match tune(&machine, &list, &task) {
         Ok(tuned) => tuned,
         Err(what) => {
-            diagnostics::print_usage_error(&format!("the circle test cannot be run: {what}"));
+            diagnostics::print_usage_error(&format!("the trial cannot be run: {what}"));
             return Ok(Outcome::ProgramError);
         }
     };
@@ -197,36 +234,59 @@ fn report(tuned: &Tuned, circle: Circle, list: &bahn_parameters::ParameterList, 
                 to: change.to,
             })
             .collect(),
+        kv_lag: tuned
+            .kv_lag
+            .iter()
+            .map(|(axis, kv)| Kv { axis: *axis, kv: *kv })
+            .collect(),
     }
 }
 
 fn text(report: &Report) -> String {
     let mut text = String::new();
+    let alone = report.axes.chars().count() == 1;
     let um = |mm: f64| mm * 1e3;
+    let (unit, what) = match alone {
+        true => ("1/1000", "from the nominal value"),
+        false => ("µm", "contour error"),
+    };
+    let (
+        Report {
+            radius_mm,
+            feed_mm_min,
+            axes,
+            trials,
+            ..
+        },
+        heads,
+    ) = (report, ("before", "after"));
+    let path = match alone {
+        true => format!("{axes} by {radius_mm} to both sides at {feed_mm_min}/min"),
+        false => format!("circle of {radius_mm} mm at {feed_mm_min} mm/min in the plane {axes}"),
+    };
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "circle of {} mm at {} mm/min in the plane {}, {} trials\n\n{:<28}{:>10}{:>10}",
-        report.radius_mm, report.feed_mm_min, report.axes, report.trials, "", "before", "after"
+        "{path}, {trials} trials\n\n{:<34}{:>10}{:>10}",
+        "", heads.0, heads.1
     );
-    for (name, before, after) in [
-        (
-            "contour error, µm",
-            report.before.contour_mm,
-            report.after.contour_mm,
-        ),
-        (
-            "roundness, µm",
-            report.before.roundness_mm,
-            report.after.roundness_mm,
-        ),
-        (
-            "overshoot of a stop, µm",
-            report.before.overshoot_mm,
-            report.after.overshoot_mm,
-        ),
-    ] {
-        let _ = writeln!(text, "{name:<28}{:>10.2}{:>10.2}", um(before), um(after));
+    let (before, after) = (&report.before, &report.after);
+    let mut rows = vec![(what.to_owned(), before.contour_mm, after.contour_mm)];
+    if !alone {
+        rows.push(("roundness".to_owned(), before.roundness_mm, after.roundness_mm));
+    }
+    rows.push((
+        "overshoot of a stop".to_owned(),
+        before.overshoot_mm,
+        after.overshoot_mm,
+    ));
+    let rests = before.standstill_mm.iter().zip(&after.standstill_mm);
+    for (axis, (before, after)) in report.axes.chars().zip(rests) {
+        rows.push((format!("at rest, {axis}"), *before, *after));
+    }
+    for (name, before, after) in rows {
+        let name = format!("{name}, {unit}");
+        let _ = writeln!(text, "{name:<34}{:>10.2}{:>10.2}", um(before), um(after));
     }
     text.push('\n');
     for change in &report.changes {
@@ -243,5 +303,18 @@ fn text(report: &Report) -> String {
         (false, true) => "\nwritten into the list of machine parameters\n",
         (false, false) => "\nnothing is changed; --write puts it into the list\n",
     });
+    let first = report.kv_lag.first().map_or(0.0, |first| first.kv);
+    if report.kv_lag.iter().any(|other| other.kv != first) {
+        let each: Vec<String> = report
+            .kv_lag
+            .iter()
+            .map(|kv| format!("{} {}", kv.axis, kv.kv))
+            .collect();
+        let _ = writeln!(
+            text,
+            "kv with servo lag (MP1810) differs: {}; axes that interpolate need the same",
+            each.join(", ")
+        );
+    }
     text
 }

@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use bahn_host::tuning::{Circle, CircleTest, Tuned};
+use bahn_host::tuning::{AxisTest, Circle, Tuned};
 use bahn_picture::{Anchor, Colour};
 
 use crate::UsageError;
@@ -47,9 +47,14 @@ fn sheet(tuned: &Tuned, circle: Circle) -> Sheet {
         .contour_mm
         .max(tuned.after.contour_mm)
         .max(RANGE_MIN_MM);
-    let [a, b] = tuned.axes;
+    let axes: String = tuned.axes.iter().collect();
+    if tuned.axes.len() == 1 {
+        reversals(&mut sheet, tuned, circle, greatest);
+        stops(&mut sheet, tuned);
+        return sheet;
+    }
     let title = format!(
-        "circle {a}{b} of {} mm at {} mm/min, errors magnified {:.0} times",
+        "circle {axes} of {} mm at {} mm/min, errors magnified {:.0} times",
         circle.radius_mm,
         circle.feed_mm_min,
         ERROR / greatest / (RADIUS / circle.radius_mm)
@@ -67,7 +72,35 @@ fn sheet(tuned: &Tuned, circle: Circle) -> Sheet {
     sheet
 }
 
-fn round(sheet: &mut Sheet, test: &CircleTest, centre: [f64; 2], scale: f64, colour: Colour) {
+/// An axis alone: how far it is from its nominal value on its way to and fro, over time.
+fn reversals(sheet: &mut Sheet, tuned: &Tuned, circle: Circle, greatest: f64) {
+    let axes: String = tuned.axes.iter().collect();
+    let title = format!(
+        "{axes} by {} to both sides at {}/min: distance from the nominal value, ±{:.2}/1000",
+        circle.radius_mm,
+        circle.feed_mm_min,
+        greatest * 1e3
+    );
+    sheet.text([20.0, 24.0], Anchor::Left, 18.0, INK, &title);
+    for (test, middle, colour, name) in [
+        (&tuned.before, 170.0, BEFORE, "before"),
+        (&tuned.after, 450.0, AFTER, "after"),
+    ] {
+        let (min, max) = ([60.0, middle - 110.0], [1160.0, middle + 110.0]);
+        sheet.frame(min, max, NOMINAL);
+        sheet.line([min[0], middle], [max[0], middle], 1.0, GRID);
+        let end = test.points.last().map_or(1.0, |point| point[0]).max(1e-3);
+        let points = test.points.iter().map(|[time, way]| {
+            let along = min[0] + (max[0] - min[0]) * time / end;
+            [along, middle - 100.0 * way / greatest]
+        });
+        sheet.lines(points.collect(), 1.5, colour);
+        let text = format!("{name}: {:.2}/1000", test.contour_mm * 1e3);
+        sheet.text([610.0, middle + 132.0], Anchor::Centre, 16.0, INK, &text);
+    }
+}
+
+fn round(sheet: &mut Sheet, test: &AxisTest, centre: [f64; 2], scale: f64, colour: Colour) {
     let at = |angle_deg: f64, radius: f64| {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
         [centre[0] + radius * cos, centre[1] - radius * sin]
@@ -98,7 +131,10 @@ fn stops(sheet: &mut Sheet, tuned: &Tuned) {
     let end = all().map(|point| point[0]).fold(0.1, f64::max);
     let middle = 0.5 * (min[1] + max[1]);
     sheet.line([min[0], middle], [max[0], middle], 1.0, GRID);
-    let text = format!("way left at a stop of {}, ±20 µm over {end:.2} s", tuned.axes[0]);
+    let text = format!(
+        "way left at a stop of {}, ±20 µm over {end:.2} s",
+        tuned.axes.first().copied().unwrap_or('X')
+    );
     sheet.text([min[0], 622.0], Anchor::Left, 14.0, INK, &text);
     for (test, colour) in [(&tuned.before, BEFORE), (&tuned.after, AFTER)] {
         let points = test.stop.iter().map(|[time, way]| {

@@ -96,6 +96,18 @@ impl Build {
         }
     }
 
+    /// Another of `machines`, with the tools of the mill.
+    pub fn of(name: &str, model: ControlModel) -> Build {
+        let folder = folder(name);
+        Build {
+            model,
+            plant: read(folder.join("plant.toml")),
+            plc: read(folder.join("plc/MAIN.PLC")),
+            list: Some(read(folder.join("parameters.mp"))),
+            ..Build::mill()
+        }
+    }
+
     /// An M function is synchronised otherwise than the model does, so far ahead in mm.
     pub fn function(mut self, code: u16, synchronisation: &str, way_mm: Option<f64>) -> Build {
         let lead = Lead { way_mm, time_s: None };
