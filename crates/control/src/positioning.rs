@@ -20,6 +20,8 @@ pub(crate) const PER_MM: f64 = 10_000.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Positioning {
     targets: [Option<Target>; AXES],
+    /// Strobes of the marker form that were set in the last scan, taken or not.
+    ordered: [bool; AXES],
     /// What each PLC axis executes.
     plc_axes: [PlcAxis; AXES],
     /// Free rotation: feed with sign, by axis.
@@ -137,15 +139,16 @@ impl Positioning {
     /// The code of the first strobe that agrees with its complement.
     pub fn follow_strobes(&mut self, exchange: &mut Exchange) -> Result<bool, PlcFaultCode> {
         for (index, slot) in self.targets.iter_mut().enumerate() {
-            if let Some(target) = slot
-                && !target.form.positions(index, exchange.nc())
-            {
-                target.form.end_positioning(index, exchange);
-                *slot = None;
-            }
+            slot.take_if(|target| !target.form.positions(index, exchange.nc()));
         }
         let form = Form::of(exchange.nc());
         if form == Form::Markers {
+            for (pair, ordered) in strobe_form::POSITIONING.iter().zip(&mut self.ordered) {
+                if *ordered && pair.is_taken_back(exchange.nc()) {
+                    pair.end(exchange);
+                }
+                *ordered = pair.is_set(exchange.nc());
+            }
             for pair in &strobe_form::POSITIONING {
                 pair.check(exchange.nc())?;
             }

@@ -83,6 +83,8 @@ pub(crate) struct SpindleUnit {
     orienting: bool,
     /// The orientation was ordered by M2527: its strobe and complement are as at rest at the end.
     by_markers: bool,
+    /// M2527 was set in the last scan.
+    ordered: bool,
     /// The path of a thread leads it.
     led: bool,
     plc_volts: f64,
@@ -110,6 +112,7 @@ impl SpindleUnit {
             turning: false,
             orienting: false,
             by_markers: false,
+            ordered: false,
             led: false,
             plc_volts: 0.0,
             feed_volts: 0.0,
@@ -455,16 +458,17 @@ impl SpindleUnit {
             self.servo.forget_mark();
             exchange.nc_set(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN, false);
         }
-        if self.by_markers && ORIENTATION.is_taken_back(exchange.nc()) {
-            // The spindle goes on to its position, as when M2712 is reset.
-            self.by_markers = false;
-            ORIENTATION.end(exchange);
+        let form = Form::of(exchange.nc());
+        if form == Form::Markers {
+            if self.ordered && ORIENTATION.is_taken_back(exchange.nc()) {
+                // A spindle that is on its way goes on to its position, as when M2712 is reset.
+                self.by_markers = false;
+                ORIENTATION.end(exchange);
+            }
+            self.ordered = ORIENTATION.is_set(exchange.nc());
+            ORIENTATION.check(exchange.nc())?;
         }
         let nc = exchange.nc();
-        let form = Form::of(nc);
-        if form == Form::Markers {
-            ORIENTATION.check(nc)?;
-        }
         if self.orienting || !self.parameters.controlled {
             return Ok(());
         }

@@ -284,6 +284,24 @@ fn the_plc_aborts() {
     assert_eq!(rig.messages(), [""; 0]);
 }
 
+/// A strobe that waits for its axis may be taken back, too: the NC sets the complement, and nothing is a fault.
+#[test]
+fn the_plc_takes_a_strobe_back() {
+    for (strobe, complement) in [("M2455", "M2471"), ("M2527", "M2543")] {
+        let plc = format!(
+            "{ACKNOWLEDGE}{EDGE_OF_A}       L     M1\n       S     {strobe}\n       R     {complement}\n       L     I21\n       R     {strobe}\n"
+        );
+        // Without MP3010 = 6 to 8 the spindle cannot be oriented, and there is no fourth axis.
+        let mut rig = ready(old_form(&plc).mp("3010=3").program("1.H", "M0"));
+        tap(&mut rig);
+        assert!(rig.bit(strobe) && !rig.bit(complement));
+        rig.event("key B press");
+        rig.seconds(0.1);
+        assert!(!rig.bit(strobe) && rig.bit(complement));
+        assert_eq!(rig.messages(), [""; 0]);
+    }
+}
+
 /// A strobe that agrees with its complement is a fault of the PLC program, in M2719 = 0 only.
 #[test]
 fn strobes_need_their_complements() {

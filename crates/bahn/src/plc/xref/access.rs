@@ -235,6 +235,16 @@ fn is_in(range: BitRange, bit: Bit) -> bool {
 mod tests {
     use super::*;
 
+    /// M2510 had a function on the TNC 355 only; M2452 is read with M2719 = 0, M2657 has another function here.
+    #[test]
+    fn markers_of_the_tnc_355_are_read_where_they_act() {
+        let read = |text: &str| {
+            let bit = text.parse().unwrap();
+            is_read_outside(Subject::Bit { bit, indexed: false })
+        };
+        assert_eq!(["M2510", "M2452", "M2657"].map(read), [false, true, true]);
+    }
+
     #[test]
     fn operands_meet_where_they_share_memory() {
         let number = |text: &str, indexed| Subject::Number {
