@@ -133,7 +133,7 @@ fn operating_modes() {
     }
 }
 
-/// M2832 to M2839: the code 100 of an inhibited key, binary, as in W274.
+/// M2832-M2839: the code 100 of an inhibited key, binary, as in W274.
 #[test]
 fn code_of_an_inhibited_key() {
     let mut rig = ready(old_form("       LN    M2719\n       S     M2896\n").program("1.H", "M0"));
@@ -146,7 +146,7 @@ fn code_of_an_inhibited_key() {
     );
 }
 
-/// Z to MP4210.2 by M70: the code 2 in M2570 to M2574, the strobe M2454 with its complement M2470.
+/// Z to MP4210.2 by M70: the code 2 in M2570-M2574, the strobe M2454 with its complement M2470.
 fn m70(more: &str) -> String {
     format!(
         "{ACKNOWLEDGE_BUT_M}
@@ -167,8 +167,8 @@ fn m70(more: &str) -> String {
 }
 
 /// The order of edges: with the M function strobe and complement change together; the NC changes both back
-/// in position, and the M function is acknowledged. The position is MP4210.2, the feed MP4220.2 [000:16177]: 30 mm at
-/// 1800 mm/min take a second and the ramps.
+/// in position, and the M function is acknowledged. The position is MP4210.2 (code in M2570-M2574), the feed MP4220.2
+/// [000:16177]: 1800 mm/min are 30 mm a second.
 #[test]
 fn positioning_in_markers() {
     let build = old_form(&m70("")).mp("4210.2=80").mp("4220.2=1800");
@@ -193,7 +193,7 @@ fn positioning_in_markers() {
     );
 }
 
-/// Each axis has its own markers: M2452 with M2468 and M2560 to M2564 for X, M2453 with M2469 and M2565 to M2569 for Y.
+/// Each axis has its own markers: M2452 with M2468 and M2560-M2564 for X, M2453 with M2469 and M2565-M2569 for Y.
 /// Both go at once, to MP4210.31 and MP4210.16.
 #[test]
 fn two_axes_at_once() {
@@ -218,7 +218,7 @@ fn two_axes_at_once() {
     assert!(rig.bit("M2468") && rig.bit("M2469"));
 }
 
-/// Axes 4 and 5 have M2455 with M2471 and M2575 to M2579, M2522 with M2538 and M2580 to M2584. Where there is no such
+/// Axes 4 and 5 have M2455 with M2471 and M2575-M2579, M2522 with M2538 and M2580-M2584. Where there is no such
 /// axis the strobe waits, as that of words does.
 #[test]
 fn strobes_of_axes_that_are_not_there() {
@@ -234,7 +234,7 @@ fn strobes_of_axes_that_are_not_there() {
     }
 }
 
-/// The 4th axis of the mill goes to MP4210.5 by M2455 and the code in M2575 to M2579.
+/// The 4th axis of the mill goes to MP4210.5 by M2455 and the code in M2575-M2579.
 #[test]
 fn the_fourth_axis() {
     let mut build = Build::mill().mp("4210.5=90").mp("4220.3=3600");
@@ -302,7 +302,8 @@ fn the_plc_takes_a_strobe_back() {
     }
 }
 
-/// A strobe that agrees with its complement is a fault of the PLC program, in M2719 = 0 only.
+/// A strobe that agrees with its complement (M2452 with M2468 to M2455 with M2471, M2522 with M2538, M2527 with M2543)
+/// is a fault of the PLC program, in M2719 = 0 only.
 #[test]
 fn strobes_need_their_complements() {
     for (strobe, code) in [
@@ -378,7 +379,7 @@ fn two_uses_of_the_same_markers() {
     }
 }
 
-/// M2522 with the code in M2580 to M2584 positions the fifth axis, W, to MP4210.9.
+/// M2522 with the code in M2580-M2584 positions the fifth axis, W, to MP4210.9.
 #[test]
 fn the_fifth_axis() {
     let plc = format!(
@@ -441,7 +442,7 @@ fn datum_correction_of_parameters() {
 }
 
 /// The PLC gives -12 to Q102 during M50 (M2818 = 1, M2817 = 0; M2560 to M2563 are 2, M2564 to M2567 are 1, M2576 is the
-/// sign): it counts with the next strobe, as with words. The
+/// sign of M2560-M2576): it counts with the next strobe, as with words. The
 /// PLC resets M2809 itself; while it is set, one number is taken [000:16179] [000:16286-16288].
 #[test]
 fn q_parameters_in_markers() {
@@ -506,7 +507,7 @@ fn one_number_for_each_edge() {
     assert_eq!(q(&rig), Some(9.0));
 }
 
-/// M2808 presses the key whose code stands in M2800 to M2807; the NC resets it. Soft keys have no code there: 0 is not
+/// M2808 presses the key whose code stands in M2800-M2807; the NC resets it. Soft keys have no code there: 0 is not
 /// INTERNAL STOP but refused, M2187 = 1.
 #[test]
 fn simulated_keys_in_markers() {
@@ -522,7 +523,7 @@ fn simulated_keys_in_markers() {
     }
 }
 
-/// M2527 orients the spindle to MP4210.31, the code in M2585 to M2589; strobe and complement M2543 are as at rest
+/// M2527 orients the spindle to MP4210.31, the code in M2585-M2589; strobe and complement M2543 are as at rest
 /// when the spindle is in position [000:16183].
 #[test]
 fn orientation_in_markers() {
