@@ -33,8 +33,8 @@ pub const FOLDER: &str = include_str!("FOLDER.md");
 /// A mill with rotary table and two gear ranges; its control is a TNC 415 B.
 pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "pockets.tsv", "plc/MAIN.PLC",
-    "plc/MAIN.ER1", "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "programs/BRACKET.H",
-    "programs/CIRCLE.H", "programs/INDEX.H", "programs/SADDLE.H",
+    "plc/MAIN.ER1", "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "plc355/MAIN.PLC",
+    "programs/BRACKET.H", "programs/CIRCLE.H", "programs/INDEX.H", "programs/SADDLE.H",
 );
 
 /// A small mill of three axes; its control is a TNC 360.

@@ -43,6 +43,7 @@ pub(crate) struct Channel {
     own_list: Option<ParameterList>,
     desk: Desk,
     positioning: Positioning,
+    strobes: strobes::Strobes,
     pub handshakes: Handshakes,
     datums: Datums,
     pub tools: Tools,
@@ -81,6 +82,7 @@ impl Channel {
             number: parts.number,
             own_list: parts.own_list,
             positioning: Positioning::default(),
+            strobes: strobes::Strobes::default(),
             handshakes: Handshakes::default(),
             datums: Datums::new(
                 remembered,
@@ -448,29 +450,26 @@ impl Channel {
     pub fn take_strobes(&mut self, machine: &mut MachineSide) {
         let now = self.now(machine);
         let exchange = machine.memory.of_mut(self.number);
-        let wanted = self.positioning.is_wanted(exchange.nc());
-        if strobes::is_transfer_doubly_used(wanted, exchange.nc()) {
-            self.show(Message::PlcMarkers(*b"1R"), machine);
+        let wanted = self.positioning.follow_strobes(exchange);
+        if let Err(code) = wanted.and_then(|wanted| self.strobes.check(wanted, exchange.nc())) {
+            self.show(Message::PlcMarkers(code), machine);
             return;
         }
         let mut axes = machine.axes.of(self.number);
-        let running = self.run.progress().is_running();
-        let strobe = self.handshakes.strobe_is_set();
+        let may = !self.run.progress().is_running() || self.handshakes.strobe_is_set();
         let keys = now.axis_keys.iter().any(Option::is_some);
-        let free = (!running || strobe) && !keys && !now.stop;
+        let free = may && !keys && !now.stop;
         let most = usize::from(machine.model.limits().plc_positioning_axes_max);
-        self.positioning.take_strobes(exchange.nc(), free, most, &axes);
+        let (nc, numbers) = (exchange.nc(), &machine.plc_parameters);
+        self.positioning.take_strobes(nc, numbers, free, most, &axes);
         self.positioning.take_free_rotation(exchange);
-        if let Some(range) = strobes::range(exchange) {
-            if let Some(range) = range {
-                self.datums.select_range(range, &mut axes);
-            }
+        if strobes::take_range(&mut self.datums, &mut axes, exchange) {
             self.run.track.range_changed = self.run.is_active();
         }
-        if let Some(correction) = strobes::datum_correction(strobe || !running, exchange) {
-            self.datums.correct(correction, &axes);
+        if let Some(shift) = strobes::datum_correction(may, self.datums.range(), numbers, exchange) {
+            self.datums.correct(shift, &axes);
         }
-        if let Some((number, value)) = strobes::q_parameter(exchange) {
+        if let Some((number, value)) = self.strobes.q_parameter(exchange) {
             self.run.set_q(number, value);
         }
         strobes::take_actual_values(now.mode, &mut axes, exchange.nc());
@@ -487,7 +486,8 @@ impl Channel {
         let offsets = &mut self.datums.chain.offsets;
         self.tools
             .take_geometry_strobe(&machine.magazine, exchange, offsets);
-        if let Some(code) = machine.spindles.of_mut(self.number).take_markers(exchange) {
+        let spindle = machine.spindles.of_mut(self.number);
+        if let Some(code) = spindle.take_markers(exchange, &machine.plc_parameters) {
             self.show(Message::PlcMarkers(code), machine);
         }
     }

@@ -13,6 +13,7 @@ use crate::datums::{Datums, NewDatum};
 use crate::kinematics::Chain;
 use crate::leaning::Leaning;
 use crate::manual::Manual;
+use crate::marker_codes;
 use crate::message::Messages;
 use crate::now::{Facts, Now};
 use crate::overrides::Override;
@@ -355,11 +356,13 @@ pub(crate) fn enter_code(code: u32, exchange: &mut Exchange) -> bool {
     code == OFFSET_ADJUSTMENT
 }
 
-/// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319].
+/// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319], whose code is
+/// also in M2832 to M2839.
 pub(crate) fn press_key(code: u8, exchange: &mut Exchange) -> bool {
     let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + u16::from(code));
     if marker.is_some_and(|marker| exchange.nc().bit(marker)) {
         exchange.nc_put_number(signal::INHIBITED_KEY_CODE, code.into());
+        marker_codes::INHIBITED_KEY.put(code.into(), exchange);
         exchange.nc_set(signal::INHIBITED_KEY_PRESSED, true);
     }
     true

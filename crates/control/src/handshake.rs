@@ -6,7 +6,9 @@
 
 use std::collections::VecDeque;
 
-use bahn_exchange::{Bit, Exchange, Image, Number, signal};
+use bahn_exchange::{Bit, Exchange, Image, signal};
+
+use crate::marker_codes;
 
 /// Elements of the path that are prepared ahead at most.
 pub(crate) const LOOK_AHEAD: usize = 512;
@@ -83,32 +85,44 @@ impl Transfer {
         }
     }
 
-    /// Writes the data and sets the strobe.
-    fn send(self, exchange: &mut Exchange) {
-        let mut word = |number: Number, value: i32| exchange.nc_set_number(number, value);
+    /// Writes the data, in words and in the markers of the TNC 355.
+    fn write(self, exchange: &mut Exchange) {
         match self {
-            Transfer::M(code) => word(signal::M_CODE, code.into()),
+            Transfer::M(code) => {
+                exchange.nc_set_number(signal::M_CODE, code.into());
+                marker_codes::M_FUNCTION.put(code.into(), exchange);
+            }
             Transfer::ToolCall { w262, w264, .. } | Transfer::ToolDef { w262, w264 } => {
-                word(signal::T_CODE, w262.into());
-                word(signal::TOOL_NUMBER, w264.into());
+                exchange.nc_set_number(signal::T_CODE, w262.into());
+                exchange.nc_set_number(signal::TOOL_NUMBER, w264.into());
+                marker_codes::put_tool(w262, exchange);
             }
             Transfer::Gear { code, speed } => {
-                word(signal::GEAR_CODE, code.into());
-                word(signal::PROGRAMMED_SPINDLE_SPEED, speed);
-                word(signal::SPINDLE_SPEED_FROM_PLC, speed);
+                exchange.nc_set_number(signal::GEAR_CODE, code.into());
+                exchange.nc_set_number(signal::PROGRAMMED_SPINDLE_SPEED, speed);
+                exchange.nc_set_number(signal::SPINDLE_SPEED_FROM_PLC, speed);
+                marker_codes::GEAR.put(code.into(), exchange);
             }
-            Transfer::SCode(code) => word(signal::S_CODE, code.into()),
+            Transfer::SCode(code) => {
+                exchange.nc_set_number(signal::S_CODE, code.into());
+                marker_codes::SPEED.put(code.into(), exchange);
+            }
             Transfer::Plc { values, .. } => {
                 for (value, number) in values
                     .into_iter()
                     .zip([signal::FN19_FIRST_VALUE, signal::FN19_SECOND_VALUE])
                 {
                     if let Some(value) = value {
-                        word(number, value);
+                        exchange.nc_set_number(number, value);
                     }
                 }
             }
         }
+    }
+
+    /// Writes the data and sets the strobe.
+    fn send(self, exchange: &mut Exchange) {
+        self.write(exchange);
         match self {
             Transfer::M(code) if exchange.nc().bit(signal::ENABLE_DECODED_M) => {
                 if let Some(marker) = signal::DECODED_M_FUNCTIONS.get(code.into()) {

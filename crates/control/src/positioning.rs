@@ -3,13 +3,16 @@
 use bahn_exchange::{Exchange, Image, signal};
 use bahn_motion::Aim;
 use bahn_parameters::PerPlcAxis;
+use bahn_parameters::plc::PlcParameters;
 use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
-use crate::markers::{AXES, PLC_POSITIONING, POSITIONING_FEED, TRANSFER};
+use crate::markers::{AXES, POSITIONING_FEED, TRANSFER};
 use crate::now::Now;
+use crate::panel::PlcFaultCode;
 use crate::plc_link::Requests;
+use crate::strobe_form::{self, Form};
 
 /// Position words count in 1/10 000 mm [000:4026].
 pub(crate) const PER_MM: f64 = 10_000.0;
@@ -17,12 +20,53 @@ pub(crate) const PER_MM: f64 = 10_000.0;
 /// What the PLC commanded.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Positioning {
-    /// Targets of PLC positioning, machine coordinates, with their feed.
-    targets: PerPlcAxis<Option<(f64, f64)>>,
+    targets: PerPlcAxis<Option<Target>>,
+    /// Strobes of the marker form that were set in the last scan, taken or not.
+    ordered: PerPlcAxis<bool>,
     /// What each PLC axis executes.
     plc_axes: PerPlcAxis<PlcAxis>,
     /// Free rotation: feed with sign, by axis.
     rotation: PerPlcAxis<Option<f64>>,
+}
+
+/// Where the PLC positions an axis.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    /// Machine coordinate, mm.
+    position: f64,
+    feed_mm_min: f64,
+    /// In which form it was ordered: that strobe is reset at the end.
+    form: Form,
+}
+
+impl Target {
+    /// Target and feed of an axis as the PLC has written them: in words, or by the code of one of MP4210 with the feed
+    /// of MP4220 for the axis, as on the TNC 151/155 [001:3285-3289] *(inferred)*. `None` for a code that has none.
+    fn read(form: Form, unit: &AxisUnit, nc: &Image, numbers: &PlcParameters) -> Option<Target> {
+        let index = unit.index;
+        let (position, feed_mm_min) = match form {
+            Form::Words => {
+                let position = f64::from(nc.number(*TRANSFER.get(index)?)) / PER_MM;
+                // Feeds above 32 767 mm/min count on in the word.
+                (
+                    position,
+                    f64::from(nc.number(*POSITIONING_FEED.get(index)?) as u16),
+                )
+            }
+            Form::Markers => {
+                let code = strobe_form::POSITIONING.get(index)?.code.read(nc)?;
+                (
+                    numbers.coded_position_mm(code)?,
+                    unit.parameters.motion.plc_mm_min,
+                )
+            }
+        };
+        Some(Target {
+            position,
+            feed_mm_min,
+            form,
+        })
+    }
 }
 
 /// A PLC axis.
@@ -65,36 +109,53 @@ impl Positioning {
         self.rotation = PerPlcAxis::splat(None);
     }
 
-    /// PLC positioning: M2704 ff. with target and feed, relative to the machine datum, without software
+    /// PLC positioning: M2704 ff. (M2452 ff.) with target and feed, relative to the machine datum, without software
     /// limits. It starts only on referenced axes, when the NC is `free`: without a program or during a strobe of
-    /// it, in Manual without direction keys; the PLC aborts it by resetting the strobe [000:4005-4053].
-    pub fn take_strobes(&mut self, nc: &Image, free: bool, most: usize, axes: &OwnAxes) {
+    /// it, in Manual without direction keys [000:4005-4053].
+    pub fn take_strobes(
+        &mut self,
+        nc: &Image,
+        numbers: &PlcParameters,
+        free: bool,
+        most: usize,
+        axes: &OwnAxes,
+    ) {
         let mut running = self.targets.iter().flatten().count();
-        let words = PLC_POSITIONING.iter().zip(TRANSFER).zip(POSITIONING_FEED);
-        for (index, (slot, ((strobe, target), feed))) in self.targets.iter_mut().zip(words).enumerate() {
-            if !nc.bit(*strobe) {
-                *slot = None;
+        let form = Form::of(nc);
+        for (index, slot) in self.targets.iter_mut().enumerate() {
+            if slot.is_some() || !form.positions(index, nc) || !free || running >= most {
                 continue;
             }
-            let ready = axes
-                .with_index(index)
-                .is_some_and(|unit| unit.referenced && unit.is_free() && unit.parameters.controlled);
-            if slot.is_none() && ready && free && running < most {
-                running += 1;
-                let target = f64::from(nc.number(target)) / PER_MM;
-                // Feeds above 32 767 mm/min count on in the word.
-                let feed = f64::from(nc.number(feed) as u16);
-                *slot = Some((target, feed));
-            }
+            let unit = axes.with_index(index);
+            let ready = unit.filter(|unit| unit.referenced && unit.is_free() && unit.parameters.controlled);
+            *slot = ready.and_then(|unit| Target::read(form, unit, nc, numbers));
+            running += usize::from(slot.is_some());
         }
     }
 
-    /// The PLC wants an axis positioned that is not yet.
-    pub fn is_wanted(&self, nc: &Image) -> bool {
-        PLC_POSITIONING
-            .iter()
-            .zip(&self.targets)
-            .any(|(strobe, running)| nc.bit(*strobe) && running.is_none())
+    /// Whether the PLC wants an axis positioned that is not yet. It aborts one by resetting its strobe
+    /// [000:4009-4013].
+    ///
+    /// # Errors
+    /// The code of the first strobe that agrees with its complement.
+    pub fn follow_strobes(&mut self, exchange: &mut Exchange) -> Result<bool, PlcFaultCode> {
+        for (index, slot) in self.targets.iter_mut().enumerate() {
+            slot.take_if(|target| !target.form.positions(index, exchange.nc()));
+        }
+        let form = Form::of(exchange.nc());
+        if form == Form::Markers {
+            for (pair, ordered) in strobe_form::POSITIONING.iter().zip(&mut self.ordered) {
+                if *ordered && pair.is_taken_back(exchange.nc()) {
+                    pair.end(exchange);
+                }
+                *ordered = pair.is_set(exchange.nc());
+            }
+            for pair in &strobe_form::POSITIONING {
+                pair.check(exchange.nc())?;
+            }
+        }
+        let mut targets = self.targets.iter().enumerate();
+        Ok(targets.any(|(index, slot)| slot.is_none() && form.positions(index, exchange.nc())))
     }
 
     /// The PLC positions an axis.
@@ -109,7 +170,7 @@ impl Positioning {
         let broken_off = now.stop && !moving.active;
         let mut reached = PerPlcAxis::splat(false);
         for unit in axes.iter_mut() {
-            let Some((target, feed)) = self.targets.get(unit.index).copied().flatten() else {
+            let Some(target) = self.targets.get(unit.index).copied().flatten() else {
                 if unit.mover == Mover::Positioning && !moving.restores {
                     unit.drive(now.time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
                     if unit.stands() {
@@ -126,11 +187,11 @@ impl Positioning {
             let (aim, feed) = if now.stop {
                 (Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min)
             } else {
-                let feed = (feed * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
-                (Aim::Position(target), feed)
+                let feed = (target.feed_mm_min * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
+                (Aim::Position(target.position), feed)
             };
             unit.drive(now.time_s, aim, feed);
-            let there = unit.ptp.is_at(target) && unit.servo.in_position();
+            let there = unit.ptp.is_at(target.position) && unit.servo.in_position();
             if (there || broken_off)
                 && let Some(reached) = reached.get_mut(unit.index)
             {
@@ -146,11 +207,8 @@ impl Positioning {
 
     /// Resets the strobe of a PLC positioning.
     fn end(&mut self, index: usize, exchange: &mut Exchange) {
-        if let Some(target) = self.targets.get_mut(index)
-            && target.take().is_some()
-            && let Some(strobe) = PLC_POSITIONING.get(index)
-        {
-            exchange.nc_set(*strobe, false);
+        if let Some(target) = self.targets.get_mut(index).and_then(Option::take) {
+            target.form.end_positioning(index, exchange);
         }
     }
 

@@ -1,15 +1,18 @@
 //! The spindle as the kernel sees it: speed and gear towards the PLC, the PLC's markers towards the servo
 //! [000:5438-5945].
 
-use bahn_exchange::{Bit, Exchange, signal};
+use bahn_exchange::{Bit, Exchange, Image, signal};
+use bahn_parameters::plc::PlcParameters;
 use bahn_parameters::spindle::{FreeOutput, GearSignal, SpindleOutput, SpindleParameters};
 use bahn_path::Voltage;
 use bahn_plc::{ControlledSpindle, OrientationDirection, SpindleOrientation, SpindlePosition};
 use bahn_servo::{AxisCommand, Commands, Fault, Measured, Ramp, Rotation, SpeedCode, Spindle, Timing, Way};
 
 use crate::handshake::Transfer;
+use crate::marker_codes;
 use crate::panel::PlcFaultCode;
 use crate::plc_link::Requests;
+use crate::strobe_form::{Form, ORIENTATION};
 use crate::voltage::{Along, VoltageOutput};
 
 /// Range of the analogue outputs, V.
@@ -78,6 +81,10 @@ pub(crate) struct SpindleUnit {
     jogging: bool,
     turning: bool,
     orienting: bool,
+    /// The orientation was ordered by M2527: its strobe and complement are as at rest at the end.
+    by_markers: bool,
+    /// M2527 was set in the last scan.
+    ordered: bool,
     /// The path of a thread leads it.
     led: bool,
     plc_volts: f64,
@@ -104,6 +111,8 @@ impl SpindleUnit {
             jogging: false,
             turning: false,
             orienting: false,
+            by_markers: false,
+            ordered: false,
             led: false,
             plc_volts: 0.0,
             feed_volts: 0.0,
@@ -125,7 +134,10 @@ impl SpindleUnit {
     /// Markers and words at power-on.
     pub fn preset(&self, exchange: &mut Exchange) {
         exchange.nc_set(signal::SPINDLE_IS_ANALOGUE, self.is_analogue());
-        exchange.nc_set_number(signal::MINIMUM_S_CODE, self.parameters.codes.min.into());
+        let codes = self.parameters.codes;
+        exchange.nc_set_number(signal::MINIMUM_S_CODE, codes.min.into());
+        marker_codes::LOWEST_SPEED.put(codes.min.into(), exchange);
+        marker_codes::SPEED_STEP.put(codes.step.into(), exchange);
     }
 
     pub fn measure(&mut self, measured: &Measured) {
@@ -379,7 +391,7 @@ impl SpindleUnit {
 
     /// After a PLC scan: direction, jog, orientation, gear and speed by the PLC. The code of the fault when
     /// more than one direction is set [000:5492-5518].
-    pub fn take_markers(&mut self, exchange: &mut Exchange) -> Option<PlcFaultCode> {
+    pub fn take_markers(&mut self, exchange: &mut Exchange, numbers: &PlcParameters) -> Option<PlcFaultCode> {
         let nc = exchange.nc();
         let shown = [signal::M03_SHOWN, signal::M04_SHOWN, signal::M05_SHOWN].map(|marker| nc.bit(marker));
         if shown.iter().filter(|set| **set).count() > 1 {
@@ -416,9 +428,9 @@ impl SpindleUnit {
             };
             self.servo.turn(if turn { direction } else { Rotation::M5 });
         }
-        self.take_orientation(exchange);
+        let ordered = self.take_orientation(exchange, numbers);
         self.take_gear(exchange);
-        None
+        ordered.err()
     }
 
     /// M2490 and M2491: the spindle moves to and fro while the gear changes [000:5636-5641].
@@ -436,23 +448,32 @@ impl SpindleUnit {
         }
     }
 
-    /// M2712 with D592, and M2615 [000:5851-5881]. Not in the mode of the TNC 355 (M2719 = 0)
-    /// [000:16166-16190].
-    fn take_orientation(&mut self, exchange: &mut Exchange) {
+    /// M2712 with D592, or M2527 with M2585 to M2589, and M2615 [000:5851-5881] [000:16183].
+    fn take_orientation(
+        &mut self,
+        exchange: &mut Exchange,
+        numbers: &PlcParameters,
+    ) -> Result<(), PlcFaultCode> {
         if exchange.nc().bit(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN) {
             self.servo.forget_mark();
             exchange.nc_set(signal::EVALUATE_SPINDLE_REFERENCE_AGAIN, false);
         }
-        let nc = exchange.nc();
-        let wanted = nc.bit(signal::ORIENT_SPINDLE) && nc.bit(signal::WORD_PROCESSING);
-        if !wanted || self.orienting || !self.parameters.controlled {
-            return;
+        let form = Form::of(exchange.nc());
+        if form == Form::Markers {
+            if self.ordered && ORIENTATION.is_taken_back(exchange.nc()) {
+                // A spindle that is on its way goes on to its position, as when M2712 is reset.
+                self.by_markers = false;
+                ORIENTATION.end(exchange);
+            }
+            self.ordered = ORIENTATION.is_set(exchange.nc());
+            ORIENTATION.check(exchange.nc())?;
         }
-        let target = nc.number(signal::NOMINAL_SPINDLE_POSITION);
-        let angle = if target == ANGLE_OF_CYCLE {
-            self.cycle_deg
-        } else {
-            f64::from(target) / PER_DEGREE
+        let nc = exchange.nc();
+        if self.orienting || !self.parameters.controlled {
+            return Ok(());
+        }
+        let Some(angle) = self.ordered_angle(form, nc, numbers) else {
+            return Ok(());
         };
         let direction = if nc.bit(signal::ORIENTATION_DIRECTION) {
             Rotation::M4
@@ -461,6 +482,22 @@ impl SpindleUnit {
         };
         self.servo.orient(angle, 0.0, Way::In(direction));
         self.orienting = true;
+        self.by_markers = form == Form::Markers;
+        Ok(())
+    }
+
+    /// The angle of an orientation that is ordered, degrees.
+    fn ordered_angle(&self, form: Form, nc: &Image, numbers: &PlcParameters) -> Option<f64> {
+        match form {
+            Form::Words if nc.bit(signal::ORIENT_SPINDLE) => {
+                Some(match nc.number(signal::NOMINAL_SPINDLE_POSITION) {
+                    ANGLE_OF_CYCLE => self.cycle_deg,
+                    target => f64::from(target) / PER_DEGREE,
+                })
+            }
+            Form::Markers if ORIENTATION.is_set(nc) => numbers.coded_position_mm(ORIENTATION.code.read(nc)?),
+            _ => None,
+        }
     }
 
     /// M2814: gear range W256 and speed D756 of the PLC [000:5620-5624].
@@ -480,6 +517,9 @@ impl SpindleUnit {
         if self.orienting && self.servo.in_position() {
             self.orienting = false;
             exchange.nc_set(signal::ORIENT_SPINDLE, false);
+            if std::mem::take(&mut self.by_markers) {
+                ORIENTATION.end(exchange);
+            }
         }
     }
 

@@ -17,6 +17,7 @@ use crate::panel::Direction;
 use crate::plc_link::PlcLink;
 use crate::progress::RunState;
 use crate::run::ProgramRun;
+use crate::strobe_form;
 
 /// Mode markers of the TNC 355 kind that the later controls keep.
 const MODES: [(bahn_exchange::Bit, Mode); 6] = [
@@ -73,6 +74,7 @@ pub(crate) fn preset<'a>(axes: impl Iterator<Item = &'a AxisUnit>, english: bool
             exchange.nc_set(*marker, unit.parameters.controlled);
         }
     }
+    strobe_form::preset(exchange);
     exchange.nc_set_number(signal::RAPID_TRAVERSE_LIMIT, 300_000);
     exchange.nc_set(signal::ENGLISH_SELECTED, english);
 }

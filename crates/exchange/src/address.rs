@@ -289,6 +289,25 @@ impl BitRange {
         BitRange { first, count }
     }
 
+    /// So many consecutive markers, of which the first is given; none in another area.
+    ///
+    /// ```
+    /// use bahn_exchange::{BitRange, signal};
+    /// let codes = BitRange::from_marker(signal::GEAR_CODE_BIT_1, 3);
+    /// assert_eq!(codes.get(2), Some(signal::GEAR_CODE_BIT_3));
+    /// ```
+    pub const fn from_marker(first: Bit, count: u16) -> BitRange {
+        let count = if matches!(first.area(), BitArea::M) {
+            count
+        } else {
+            0
+        };
+        BitRange {
+            first: first.number(),
+            count,
+        }
+    }
+
     /// How many markers.
     pub const fn count(self) -> u16 {
         self.count

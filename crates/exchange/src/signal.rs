@@ -65,6 +65,16 @@ pub struct Signal {
     pub source: &'static str,
 }
 
+impl Signal {
+    /// Whether the NC sets or reads it: markers that only the TNC 355 has are listed to be known [000:16442-16500].
+    pub fn has_function(&self) -> bool {
+        self.role != TNC_355_ONLY
+    }
+}
+
+/// The role of a marker that the manual lists as not implemented.
+const TNC_355_ONLY: &str = "TNC 355 only";
+
 /// All signals: markers by number, then bytes and words by address.
 pub fn all() -> &'static [Signal] {
     TABLE

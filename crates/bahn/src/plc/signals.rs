@@ -52,15 +52,27 @@ fn text(signals: &[&Signal]) -> String {
     );
     for signal in signals {
         text += &format!(
-            "{:<12} {:<38} {:<8} {:<8} {}\n",
+            "{:<12} {:<38} {:<8} {:<8} {}{}\n",
             signal.operand.to_string(),
             signal.name,
             signal.set_by,
             signal.reset_by,
-            signal.function
+            signal.function,
+            aside(signal)
         );
     }
     text
+}
+
+/// What has to be known of a marker of the TNC 355: its other form, or that there is none.
+fn aside(signal: &Signal) -> String {
+    if !signal.has_function() {
+        return " (TNC 355 only, no function)".to_owned();
+    }
+    if signal.tnc355 && !signal.replaced_by.is_empty() {
+        return format!(" (in words: {})", signal.replaced_by);
+    }
+    String::new()
 }
 
 #[derive(Debug, serde::Serialize)]

@@ -166,6 +166,8 @@ MP7620   : %0000
 
 /// The PLC program: keys to markers, cams, acknowledgements.
 const PLC: &str = "
+       L     M2719
+       SN    M2719
        L     I146
        = M2448
        =N M2464

@@ -40,6 +40,17 @@ const fn jog(name: &'static str, cause: &'static str) -> MessageCode {
     code(name, cause, PAIR, "[000:8494-8525]")
 }
 
+/// The same for the strobes of the TNC 355. The manual prints no codes for them; these are left out in its series
+/// *(inferred)*.
+const fn old_strobe(name: &'static str, cause: &'static str) -> MessageCode {
+    code(
+        name,
+        cause,
+        "With M2719 = 0 the PLC program must set the strobe and reset its complement in one scan; set M2719 where strobes with words are used.",
+        "[000:10721-10740] [000:10789-10806]",
+    )
+}
+
 /// What every pair of command and complement needs.
 const PAIR: &str = "Check the key and its two contacts, and that the PLC program sets the marker and resets its complement together.";
 impl MessageId {
@@ -115,7 +126,7 @@ const MEASURING_SYSTEM: [MessageCode; 3] = [
 ];
 
 /// Marker pairs, spindle, transfers; the numbers are errors of the PLC program itself.
-const PLC_PROGRAM: [MessageCode; 26] = [
+const PLC_PROGRAM: [MessageCode; 32] = [
     panel("1A", "NC start, M2448, agrees with its complement M2464."),
     panel("1B", "Rapid traverse, M2449, agrees with its complement M2465."),
     panel(
@@ -173,6 +184,30 @@ const PLC_PROGRAM: [MessageCode; 26] = [
     jog("2H", "Jog 4-, M2519, agrees with its complement M2535."),
     jog("2I", "Jog 5+, M2520, agrees with its complement M2536."),
     jog("2J", "Jog 5-, M2521, agrees with its complement M2537."),
+    old_strobe(
+        "1E",
+        "PLC positioning X of the TNC 355, M2452, agrees with its complement M2468.",
+    ),
+    old_strobe(
+        "1F",
+        "PLC positioning Y of the TNC 355, M2453, agrees with its complement M2469.",
+    ),
+    old_strobe(
+        "1G",
+        "PLC positioning Z of the TNC 355, M2454, agrees with its complement M2470.",
+    ),
+    old_strobe(
+        "1H",
+        "PLC positioning 4 of the TNC 355, M2455, agrees with its complement M2471.",
+    ),
+    old_strobe(
+        "2K",
+        "PLC positioning 5 of the TNC 355, M2522, agrees with its complement M2538.",
+    ),
+    old_strobe(
+        "2P",
+        "Spindle orientation of the TNC 355, M2527, agrees with its complement M2543.",
+    ),
     code(
         "1Q",
         "More than one of the spindle markers M2485 (M3), M2486 (M4) and M2487 (M5) is set.",
@@ -181,7 +216,7 @@ const PLC_PROGRAM: [MessageCode; 26] = [
     ),
     code(
         "1R",
-        "PLC positioning (M2704 ff.), transfer of Q parameters (M2713) and datum correction (M2716) were asked for at once; they share their words.",
+        "PLC positioning (M2704 ff.), transfer of Q parameters (M2713) and datum correction (M2716) were asked for at once; they share their words. With M2719 = 0: M2452 ff., M2809 and M2819, which share their markers.",
         "Start one after the other: wait until the NC has reset the first marker.",
         "[000:631-633]",
     ),

@@ -8,6 +8,10 @@ const TIMERS: usize = 48;
 const COUNTERS: usize = 32;
 /// Positions of MP4210.
 const POSITIONS: usize = 48;
+/// The first of MP4210 that the marker form takes as a datum correction [000:16182].
+const CORRECTIONS_FROM: usize = 32;
+/// Traverse ranges [000:3510-3520].
+const RANGES: usize = 3;
 /// Words of MP4310.
 const WORDS: usize = 7;
 /// Axes of MP4220.
@@ -30,6 +34,9 @@ pub struct PlcParameters {
     /// Numbers in the doublewords D768 ff., mm or degrees; the PLC sees 10 000 times the value: MP4210
     /// (old MP126-156) [000:11670-11719].
     pub positions_mm: [f64; POSITIONS],
+    /// The code by which the marker form of PLC positioning names the first of these positions: MP4210.0 is 0, the
+    /// old ones are values 1 to 31 [001:1834] *(inferred)*.
+    pub first_code: usize,
     /// Numbers in the words W960 to W968, also the feed of the return to the contour, mm/min: MP4220 (old
     /// MP163-166) [000:11720-11724].
     pub feeds_mm_min: [f64; AXES],
@@ -68,6 +75,22 @@ pub struct StrobeTimes {
     pub test_s: f64,
 }
 
+impl PlcParameters {
+    /// The position that a code of the marker form names, mm or degrees: five markers choose one of MP4210.0 to
+    /// MP4210.31, in front of those of the datum correction (inferred) [000:16175-16183].
+    pub fn coded_position_mm(&self, code: u32) -> Option<f64> {
+        let index = usize::try_from(code).ok()?.checked_sub(self.first_code)?;
+        self.positions_mm.get(index).copied()
+    }
+
+    /// The datum correction of an axis in the marker form, mm or degrees: MP4210.32 to MP4210.46 [000:16182], which are
+    /// X, Y, Z, 4 and 5 for each of the three traverse ranges (inferred).
+    pub fn datum_correction_mm(&self, range: usize, axis: usize) -> f64 {
+        let index = CORRECTIONS_FROM + range.min(RANGES - 1) * AXES + axis;
+        self.positions_mm.get(index).copied().unwrap_or_default()
+    }
+}
+
 impl ParameterList {
     /// The parameters of the PLC.
     pub fn plc_parameters(&self) -> PlcParameters {
@@ -92,6 +115,7 @@ impl ParameterList {
                 .map(|value| value as u16),
             counters: self.run(4120, 94..110).map(|value| value as u16),
             positions_mm: self.run(4210, 126..157),
+            first_code: usize::from(old),
             feeds_mm_min: self.run(4220, 163..167),
             words: self.run(4310, [158, 249, 250]).map(|value| value as u16),
             tracking_step_mm: self.get_new(4070, 0).unwrap_or_default(),

@@ -184,7 +184,8 @@ fn bits(first: BitOperand, count: u8, access: Access) -> Vec<(Subject, Access)> 
 }
 
 /// Whether control or machine read what a program writes to an operand: outputs, starts of timers and
-/// counters, markers with a fixed meaning, the bytes from PLC to NC [000:11556-11584][000:10534-10968].
+/// counters, markers with a fixed meaning, the bytes from PLC to NC [000:11556-11584][000:10534-10968]. Markers that only
+/// the TNC 355 has are read by nobody [000:16442-16500].
 pub(super) fn is_read_outside(subject: Subject) -> bool {
     const PLC_TO_NC: std::ops::Range<u16> = 512..768;
     match subject {
@@ -192,11 +193,14 @@ pub(super) fn is_read_outside(subject: Subject) -> bool {
         Subject::Bit { bit, .. } => match bit.area() {
             BitArea::O | BitArea::T | BitArea::C => true,
             BitArea::I => false,
-            BitArea::M => signal::all().iter().any(|signal| match signal.operand {
-                SignalOperand::Bit(fixed) => fixed == bit,
-                SignalOperand::Bits(range) => is_in(range, bit),
-                SignalOperand::Number(_) | SignalOperand::Bytes(_) => false,
-            }),
+            BitArea::M => signal::all()
+                .iter()
+                .filter(|signal| signal.has_function())
+                .any(|signal| match signal.operand {
+                    SignalOperand::Bit(fixed) => fixed == bit,
+                    SignalOperand::Bits(range) => is_in(range, bit),
+                    SignalOperand::Number(_) | SignalOperand::Bytes(_) => false,
+                }),
         },
         Subject::Number { number, .. } => PLC_TO_NC.contains(&number.address()),
         Subject::Text { .. } => false,
@@ -230,6 +234,16 @@ fn is_in(range: BitRange, bit: Bit) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// M2510 had a function on the TNC 355 only; M2452 is read with M2719 = 0, M2657 has another function here.
+    #[test]
+    fn markers_of_the_tnc_355_are_read_where_they_act() {
+        let read = |text: &str| {
+            let bit = text.parse().unwrap();
+            is_read_outside(Subject::Bit { bit, indexed: false })
+        };
+        assert_eq!(["M2510", "M2452", "M2657"].map(read), [false, true, true]);
+    }
 
     #[test]
     fn operands_meet_where_they_share_memory() {
