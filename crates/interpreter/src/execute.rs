@@ -9,6 +9,7 @@ use crate::blank::{blank_max, blank_min};
 use crate::context::Context;
 use crate::contour::rounding::{Join, JoinKind};
 use crate::cycles::{call_cycle, define_cycle};
+use crate::unrolled::unrolled_words;
 use crate::error::{Cause, Fault, Message, WarningKind};
 use crate::flow::Flow;
 use crate::functions::take_m_functions;
@@ -70,7 +71,10 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
             return call_label(&c.numbers.q, *label, *repeats, settings);
         }
         Operation::CallProgram(name) => return Ok(Flow::CallProgram(name.clone())),
-        Operation::CircleCentre(coordinates) => circle_centre(c.modal, c.numbers, coordinates)?,
+        Operation::CircleCentre(coordinates) => {
+            let coordinates = unrolled_words(c, coordinates)?;
+            circle_centre(c.modal, c.numbers, &coordinates)?;
+        }
         Operation::Rounding { radius, feed } => rounding(c, *radius, *feed)?,
         Operation::Chamfer { length, feed } => chamfer(c, *length, *feed)?,
         Operation::BlankMin(coordinates, axis) => blank_min(c.modal, c.numbers, coordinates, *axis)?,

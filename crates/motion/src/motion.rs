@@ -40,6 +40,8 @@ pub(crate) struct Motion {
     pub(crate) main_axes: bool,
     /// Swivel axes are compensated: the main axes go farther, or less far, than the path.
     pub(crate) swings: bool,
+    /// Degrees of the rotary axis for a mm of the path around a cylinder, either sign; 0 where none is unrolled.
+    pub(crate) deg_per_mm: f64,
     /// Derivative of the axes by the path length at the start; of a line everywhere.
     direction: PerAxis,
     /// That at the end of an arc.
@@ -76,6 +78,7 @@ impl Motion {
             rotary,
             main_axes,
             swings: false,
+            deg_per_mm: 0.0,
             direction,
             end_direction: None,
         };
@@ -98,6 +101,8 @@ impl Motion {
         let [direction, end_direction] = placed.directions;
         let slowest = slowest(&placed.share, dynamics);
         let radial_speed = self.radial_speed.min(placed.speed);
+        let cylinder = placement.cylinder();
+        let swings = placement.rotation().is_none() && cylinder.is_none();
         Motion {
             speed: dynamics
                 .speed(element.feed, element.override_law, slowest)
@@ -106,10 +111,11 @@ impl Motion {
             radial_speed,
             acceleration: acceleration(&placed.share, dynamics).min(dynamics.spindle_acceleration(element)),
             direction,
-            swings: placement.rotation().is_none(),
+            swings,
+            deg_per_mm: cylinder.map_or(0.0, |cylinder| cylinder.deg_per_mm),
+            main_axes: self.main_axes && cylinder.is_none(),
             // Straight lines behind swivel axes that turn are none; a direction is then not of length 1.
-            end_direction: (self.end_direction.is_some() || placement.rotation().is_none())
-                .then_some(end_direction),
+            end_direction: (self.end_direction.is_some() || swings).then_some(end_direction),
             ..self
         }
     }
@@ -169,6 +175,7 @@ impl Motion {
             rotary,
             main_axes: false,
             swings: false,
+            deg_per_mm: 0.0,
             direction,
             end_direction: Some(in_plane(&direction, plane, end_direction)),
         };

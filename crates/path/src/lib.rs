@@ -25,6 +25,7 @@
 mod axis;
 mod characteristic;
 mod curve;
+mod cylinder;
 mod element;
 mod frame;
 mod placement;
@@ -37,6 +38,7 @@ mod swivel;
 pub use axis::{Axis, AxisSet, Position};
 pub use characteristic::Characteristic;
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
+pub use cylinder::Cylinder;
 pub use element::{
     Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
     Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
