@@ -40,7 +40,7 @@ pub use characteristic::Characteristic;
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use cylinder::Cylinder;
 pub use element::{
-    Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
+    Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, Oversize, PathElement, SpindleOrder,
     Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
 };
 pub use frame::{AxisScaling, Frame};
