@@ -160,12 +160,18 @@ impl Chain {
 
     /// The path position of axis positions.
     pub fn to_path(&self, axes: &Position) -> Position {
-        self.tip(&self.superimposed.added(*axes, -1.0))
+        self.placed(&self.superimposed.added(*axes, -1.0), self.placement.as_deref())
     }
 
-    /// Where the tool is in the coordinates of the path, beside which the handwheel may have led it.
+    /// Where the tool is in the coordinates that are shown, beside which the handwheel may have led it: those of the
+    /// path, but on a cylinder those of the axes (inferred).
     pub fn tip(&self, axes: &Position) -> Position {
-        match &self.placement {
+        let placement = self.placement.as_deref();
+        self.placed(axes, placement.filter(|placement| placement.cylinder().is_none()))
+    }
+
+    fn placed(&self, axes: &Position, placement: Option<&Placement>) -> Position {
+        match placement {
             None => self.kinematics.to_path(axes, &self.offsets),
             Some(placement) => placement.from_nose(&self.kinematics.to_path(axes, &self.behind())),
         }

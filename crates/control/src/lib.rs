@@ -165,7 +165,7 @@ pub use signal::{AxisSignal, ProbeSignal, Signal, SignalError, split_channel};
 pub use snapshot::{AxisState, Snapshot};
 pub use spindle::{SpindleState, SpindleWiring};
 pub use test_run::{TestReport, TestState};
-pub use tool::{Edges, MovedTool, Oversize, Tool, ToolLife};
+pub use tool::{Edges, MovedTool, Tool, ToolLife};
 pub use view::ChannelView;
 pub use watch::AxisWatch;
 pub use window::Window;

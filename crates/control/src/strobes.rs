@@ -112,7 +112,7 @@ pub(crate) fn datum_correction(
     let nc = exchange.nc();
     may.then(|| match form {
         Form::Words => PerPlcAxis(TRANSFER.map(|number| f64::from(nc.number(number)) / PER_MM)),
-        Form::Markers => PerPlcAxis::from_fn(|axis| numbers.datum_correction_mm(range, axis)),
+        Form::Markers => PerPlcAxis::from_fn(|axis| numbers.datum_correction_mm(range, usize::from(axis))),
     })
 }
 

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use bahn_path::ToolShape;
+use bahn_path::{Oversize, ToolShape};
 use bahn_plc::{MemoryTable, TableFile, TableKind};
 
 use crate::kinematics::Offsets;
 use crate::magazine::Magazine;
 use crate::plc_link::{NcFiles, Pocket, WrittenElement, differences};
-use crate::tool::{Edges, MeasuredTool, Oversize, Tool, ToolCondition, ToolLife, in_table_steps};
+use crate::tool::{Edges, MeasuredTool, Tool, ToolCondition, ToolLife, in_table_steps};
 use crate::tools::Tools;
 
 /// Elements of the tool table [000:15431-15454].
@@ -90,7 +90,7 @@ impl LoadedTables {
 
 /// A line of the tool table.
 fn elements(tool: &Tool) -> [(usize, f64); 20] {
-    let ([length, radius, corner_radius], oversize) = (tool.nominal(), tool.oversize);
+    let ([length, radius, corner_radius], oversize) = (tool.nominal(), tool.shape.oversize);
     let (life, edges) = (tool.life, tool.edges);
     [
         (L, length),
@@ -129,10 +129,9 @@ fn tool_of(value: impl Fn(usize) -> Option<f64>, loaded: Tool) -> Option<Tool> {
             length: value(L)? + oversize.length,
             radius: value(R)? + oversize.radius,
             corner_radius: value(R2)? + oversize.corner_radius,
-            oversize: [oversize.radius, oversize.corner_radius],
+            oversize,
             ..loaded.shape
         },
-        oversize,
         locked: value(TL)? != 0.0,
         left_hand: value(DIRECT)? != 0.0,
         life: ToolLife {

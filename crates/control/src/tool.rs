@@ -8,8 +8,6 @@ use bahn_path::ToolShape;
 pub struct Tool {
     /// Length, radius, corner radius, mm, with the oversizes.
     pub shape: ToolShape,
-    /// The oversizes that are in the shape.
-    pub oversize: Oversize,
     /// Its pocket in the magazine.
     pub pocket: Option<u16>,
     /// A special tool, which takes more than one pocket.
@@ -26,17 +24,6 @@ pub struct Tool {
     pub edges: Edges,
     /// PLC: eight bits for the PLC [000:9029].
     pub plc: u8,
-}
-
-/// DL, DR, DR2 of the tool table, mm [000:9014-9016].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Oversize {
-    /// DL: of the length.
-    pub length: f64,
-    /// DR: of the radius.
-    pub radius: f64,
-    /// DR2: of the corner radius.
-    pub corner_radius: f64,
 }
 
 /// The edges of a tool and their tolerances, as measuring it wants them [000:9025-9033]. Tolerances of 0 are none.
@@ -70,9 +57,9 @@ impl Tool {
     /// L, R and R2 of the tool table, without the oversizes, mm. A table has no finer step than a nanometre.
     pub(crate) fn nominal(&self) -> [f64; 3] {
         let parts = [
-            (self.shape.length, self.oversize.length),
-            (self.shape.radius, self.oversize.radius),
-            (self.shape.corner_radius, self.oversize.corner_radius),
+            (self.shape.length, self.shape.oversize.length),
+            (self.shape.radius, self.shape.oversize.radius),
+            (self.shape.corner_radius, self.shape.oversize.corner_radius),
         ];
         parts.map(|(whole, oversize)| match oversize {
             0.0 => whole,

@@ -265,7 +265,7 @@ fn tables_of_the_control() {
     let with_pocket = |length: f64| {
         let mut tool = bahn_control::Tool::default();
         tool.shape.length = length;
-        tool.oversize.length = 0.5;
+        tool.shape.oversize.length = 0.5;
         tool.edges.count = 4;
         tool.edges.length_wear = 0.1;
         tool.plc = 0b1010_0001;

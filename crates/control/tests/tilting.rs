@@ -106,6 +106,64 @@ fn limits_are_those_of_the_axes_behind_the_plane() {
     assert_near(at, [300.0, 200.0, 300.0]);
 }
 
+/// The mill with a table B whose centre is at X 300, Z 150 of the machine: cycle 27 turns it under the tool, which stays
+/// over it. On a radius of 50 mm a quarter takes 78.5 mm at 1000 mm/min; the axes are shown, not the surface.
+#[test]
+fn a_cylinder_surface() {
+    let table = [
+        "410.3=1",
+        "7500=1",
+        "7510=%000001",
+        "7511=%11",
+        "7512=300",
+        "7520=%000100",
+        "7521=%11",
+        "7522=150",
+        "7530=%010000",
+        "7531=%01",
+    ];
+    let mill = Build::mill()
+        .plant("[axis.C]", "[axis.B]")
+        .plant("[axis.C.encoder]", "[axis.B.encoder]")
+        .plant("clamps = \"C\"", "clamps = \"B\"");
+    let blocks = "L X+250 Y+200 Z+300 B+0 R0 FMAX\nCYCL DEF 14.0 CONTOUR GEOMETRY\nCYCL DEF 14.1 CONTOUR LABEL 1\n\
+                  CYCL DEF 27.0 CYLINDER SURFACE Q1=-5 Q3=+0 Q6=+2 Q10=+5 Q11=500 Q12=1000 Q16=50 Q17=0\nCYCL CALL\n\
+                  L Z+300 FMAX M2\nLBL 1\nL B+10 Y+200 R0\nL B+100\nL Y+230\nLBL 0";
+    let mut rig = table
+        .into_iter()
+        .fold(mill, Build::mp)
+        .program("ROLL.H", blocks)
+        .rig();
+    rig.power_on();
+    rig.command("mode full");
+    rig.command("select ROLL.H");
+    rig.start();
+    let (mut seconds, mut last) = (0.0, None);
+    for _ in 0..40_000 {
+        let before = rig.control.time_us();
+        rig.cycle();
+        let axes = rig.control.snapshot().axes;
+        let of = |letter: char| axes.iter().find(|axis| axis.letter == letter).expect("an axis");
+        // At its depth the tool is 5 mm below the surface, and over the centre.
+        if (of('Z').machine - 195.0).abs() < 0.01 && of('B').machine < 99.99 {
+            assert!((of('X').machine - 300.0).abs() < 0.01, "{}", of('X').machine);
+            assert!((of('X').nominal - 300.0).abs() < 1e-6, "{}", of('X').nominal);
+            // Behind it by the servo lag.
+            assert!((of('B').nominal - of('B').machine).abs() < 2.0);
+            seconds += (rig.control.time_us() - before) as f64 * 1e-6;
+            last = Some(of('B').machine);
+        }
+        if rig.control.snapshot().ended {
+            break;
+        }
+    }
+    assert_eq!(rig.messages(), [""; 0]);
+    assert!(last.is_some_and(|b| b > 99.0), "{last:?}");
+    let expected = 0.5 * std::f64::consts::PI * 50.0 / 1000.0 * 60.0;
+    assert!((seconds - expected).abs() < 0.15, "{seconds} s, not {expected}");
+    assert_near(machine(&rig), [300.0, 230.0, 300.0]);
+}
+
 /// M114: the head swivels by 90 degrees and the axes carry its centre around the tip, which is the tool datum here.
 #[test]
 fn m114_keeps_the_tip_where_it_is() {

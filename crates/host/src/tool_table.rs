@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use bahn_control::{Edges, Oversize, Tool, ToolLife};
+use bahn_control::{Edges, Tool, ToolLife};
 use bahn_interpreter::{ToolState, tool_key};
 use bahn_parameters::operation::ToolParameters;
-use bahn_path::ToolShape;
+use bahn_path::{Oversize, ToolShape};
 
 use crate::columns::{self, Form, Row, RowFault, TableFault};
 use crate::{HostError, files};
@@ -101,7 +101,7 @@ fn tool(row: &Row<'_>) -> Result<(u32, Tool), RowFault> {
         radius: length("R")? + oversize.radius,
         corner_radius: length("R2")? + oversize.corner_radius,
         point_angle_deg: point_angle_deg(row)?,
-        oversize: [oversize.radius, oversize.corner_radius],
+        oversize,
     };
     if shape.corner_radius < 0.0 || length("R")? < 0.0 {
         return Err("a radius is negative".to_owned().into());
@@ -125,7 +125,6 @@ fn tool(row: &Row<'_>) -> Result<(u32, Tool), RowFault> {
     };
     let tool_data = Tool {
         shape,
-        oversize,
         pocket,
         special: row.mark("ST")?,
         fixed: false,
@@ -234,8 +233,7 @@ mod tests {
         }
         let mut oversize = expected;
         if let Some(tool) = oversize.get_mut(&1) {
-            tool.shape.oversize = [0.5, 0.0];
-            tool.oversize = Oversize {
+            tool.shape.oversize = Oversize {
                 length: 0.5,
                 radius: 0.5,
                 corner_radius: 0.0,
@@ -256,7 +254,7 @@ mod tests {
         let table = parse(text).unwrap();
         assert_eq!(table.get(&0), Some(&shape(0.0, 0.0, 0.0)));
         assert_eq!(table[&5].shape, shape(127.0, 12.7, 0.0).shape);
-        assert_eq!(table[&5].oversize.length, 25.4);
+        assert_eq!(table[&5].shape.oversize.length, 25.4);
         assert_eq!(table.get(&6), Some(&shape(0.0, 6.35, 6.35)));
         assert_eq!(table.len(), 3);
     }
@@ -302,7 +300,10 @@ mod tests {
             R         +2.5      1      2      ROUGH\n\
             [END]\n";
         let tool = parse(text).unwrap()[&4];
-        assert_eq!((tool.oversize.length, tool.oversize.radius), (0.003, -0.02));
+        assert_eq!(
+            (tool.shape.oversize.length, tool.shape.oversize.radius),
+            (0.003, -0.02)
+        );
         assert_eq!(tool.shape.length, 80.1 + 0.003);
         let edges = Edges {
             count: 3,

@@ -126,6 +126,15 @@ impl Said {
     }
 }
 
+/// MP7245: refuses a cycle that the machine builder inhibits, be it one of the tool probe, 30 or 31 [000:6655-6699].
+pub(crate) fn not_inhibited(number: u16, settings: &Settings) -> Result<(), Fault> {
+    if number < 32 && settings.rules.inhibited_cycles >> number & 1 != 0 {
+        let detail = format!("MP7245 inhibits cycle {number}");
+        return Err(Fault::new(MessageId::BlockNotKnown, detail));
+    }
+    Ok(())
+}
+
 /// Whether the words of cycle 7 are a line of a datum table.
 pub(crate) fn names_datum_table(block: &CycleBlock) -> bool {
     let is_line = |word: &CycleWord| matches!(word, CycleWord::Text(text) if text.starts_with('#'));

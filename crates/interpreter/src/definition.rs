@@ -33,7 +33,7 @@ impl CycleData {
         self.machining
             .definition
             .as_ref()
-            .is_some_and(|definition| definition.number == 25)
+            .is_some_and(|definition| matches!(definition.number, 25 | 27))
     }
 }
 
@@ -306,5 +306,5 @@ fn in_range(length_mm: f64) -> Result<f64, Fault> {
 
 /// Cycles that machine the contours of cycle 14.
 pub(crate) fn is_contour_cycle(number: u16) -> bool {
-    matches!(number, 6 | 15 | 16 | 21..=25)
+    matches!(number, 6 | 15 | 16 | 21..=25 | 27)
 }

@@ -87,6 +87,17 @@ fn job(c: &Context<'_>) -> Result<(ScanJob, Box<str>), Fault> {
     if max.get(tool_axis.index()).is_none_or(|max| height < *max) {
         return Err(faulty("HEIGHT lies below MAX"));
     }
+    // The stylus stands on the height between its lines.
+    let mut highest = max;
+    if let Some(value) = highest.get_mut(tool_axis.index()) {
+        *value = height;
+    }
+    if let Some(axis) = [min, highest]
+        .iter()
+        .find_map(|at| beyond_limits(c, at, tool_axis))
+    {
+        return Err(faulty(&format!("the range leaves the traverse range of {axis}")));
+    }
     let (pattern, last) = match pattern.number {
         MEANDER => (meander(pattern, tool_axis)?, 2),
         _ => (contour_lines(pattern, c, tool_axis, [&min, &max], &shift)?, 3),
@@ -127,6 +138,20 @@ fn job(c: &Context<'_>) -> Result<(ScanJob, Box<str>), Fault> {
         rules: rules.scan,
     };
     Ok((job, file_name(range)?))
+}
+
+/// The first axis whose software limit lies before a point of the range [003:8050]; none where nobody knows the datum.
+fn beyond_limits(c: &Context<'_>, point: &ScanPoint, tool_axis: Axis) -> Option<Axis> {
+    let rules = &c.settings.rules;
+    let [least, greatest] = &rules.traverse;
+    let length = c.modal.tool.map_or(0.0, |tool| tool.shape.length);
+    let mut axes = [Axis::X, Axis::Y, Axis::Z].into_iter().zip(point);
+    let beyond = axes.find(|(axis, value)| {
+        let length = if *axis == tool_axis { length } else { 0.0 };
+        let machine = **value + length - rules.machine_zero[*axis];
+        machine < least[*axis] || machine > greatest[*axis]
+    });
+    beyond.map(|(axis, _)| axis)
 }
 
 fn meander(cycle: &Definition, tool_axis: Axis) -> Result<ScanPattern, Fault> {

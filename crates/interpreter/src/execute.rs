@@ -19,6 +19,7 @@ use crate::q_parameters::QTable;
 use crate::run::Run;
 use crate::settings::Settings;
 use crate::tool_measuring::{measure_tool, measures_tools};
+use crate::unrolled::unrolled_words;
 
 /// Executes what a block says. The caller has already passed over skipped blocks.
 #[inline]
@@ -70,7 +71,10 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
             return call_label(&c.numbers.q, *label, *repeats, settings);
         }
         Operation::CallProgram(name) => return Ok(Flow::CallProgram(name.clone())),
-        Operation::CircleCentre(coordinates) => circle_centre(c.modal, c.numbers, coordinates)?,
+        Operation::CircleCentre(coordinates) => {
+            let coordinates = unrolled_words(c, coordinates)?;
+            circle_centre(c.modal, c.numbers, &coordinates)?;
+        }
         Operation::Rounding { radius, feed } => rounding(c, *radius, *feed)?,
         Operation::Chamfer { length, feed } => chamfer(c, *length, *feed)?,
         Operation::BlankMin(coordinates, axis) => blank_min(c.modal, c.numbers, coordinates, *axis)?,

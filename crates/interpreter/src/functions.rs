@@ -2,9 +2,7 @@
 
 use bahn_parameters::own_functions::OwnFunction;
 use bahn_parameters::technology::{Deed, Output, Technology};
-use bahn_path::{
-    At, Axis, ControlFunction, Function, Plane, SpindleOrder, Synchronisation, TechnologyFunction,
-};
+use bahn_path::{At, Axis, ControlFunction, Function, SpindleOrder, Synchronisation, TechnologyFunction};
 use bahn_program::MFunctions;
 
 use crate::availability::Feature;
@@ -145,20 +143,19 @@ fn act_on_feed(
         Deed::FeedAtEdge => modal.feed_law = FeedLaw::Edge,
         Deed::FeedAtEdgeReduced => modal.feed_law = FeedLaw::EdgeReduced,
         Deed::FeedAtCentre => modal.feed_law = FeedLaw::Centre,
-        Deed::CornerArcs => modal.corner_arcs = Some(corner_arcs(modal.plane, numbers, settings, m)?),
-        Deed::SharpCorners => modal.corner_arcs = None,
+        Deed::CornerArcs => modal.corner_arcs = Some(corner_arcs(numbers, settings, m)?),
+        Deed::SharpCorners => (modal.corner_arcs, modal.point_spacing_mm) = (None, 0.0),
+        Deed::LeaveOutPoints => {
+            let spacing = m.argument(124, 'T').map(|value| numbers.length(value));
+            modal.point_spacing_mm = spacing.transpose()?.unwrap_or(0.0);
+        }
         _ => {}
     }
     Ok(())
 }
 
 /// M112 T A: tolerance and greatest angle of the arcs at corners.
-fn corner_arcs(
-    plane: Plane,
-    numbers: &Numbers,
-    settings: &Settings,
-    m: &MFunctions,
-) -> Result<CornerArcs, Fault> {
+fn corner_arcs(numbers: &Numbers, settings: &Settings, m: &MFunctions) -> Result<CornerArcs, Fault> {
     let value = |letter| -> Result<Option<f64>, Fault> {
         m.argument(112, letter)
             .map(|value| numbers.q.value(value))
@@ -169,10 +166,10 @@ fn corner_arcs(
     Ok(CornerArcs {
         tolerance_mm: tolerance.map_or(f64::INFINITY, |value| value * numbers.unit_mm),
         angle_deg: angle.unwrap_or(0.0),
-        acceleration_m_s2: [plane.first, plane.second]
-            .into_iter()
-            .map(|axis| rules.acceleration_m_s2[axis])
-            .fold(rules.radial_acceleration_m_s2, f64::min),
+        acceleration_m_s2: rules
+            .acceleration_m_s2
+            .map(|value| value.min(rules.radial_acceleration_m_s2)),
+        spacing_mm: 0.0,
     })
 }
 

@@ -70,6 +70,7 @@ mod tilting;
 mod told;
 mod tool_measuring;
 mod tools;
+mod unrolled;
 mod voltage;
 mod work;
 

@@ -1,7 +1,7 @@
 //! Modal data: what stays in force from block to block.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, AxisSet, Curve, Frame, Plane, Point2, Position};
+use bahn_path::{Axis, AxisSet, Curve, Cylinder, Frame, Plane, Point2, Position};
 use bahn_program::Compensation;
 
 use crate::contour::{CornerArcs, FeedLaw, Side};
@@ -47,6 +47,8 @@ pub(crate) struct Modal {
     pub feed_law: FeedLaw,
     /// M112: arcs at corners of uncompensated lines.
     pub corner_arcs: Option<CornerArcs>,
+    /// M124: points nearer to each other than this have no corners of M112, mm; 0: each counts.
+    pub point_spacing_mm: f64,
     /// M107: LN blocks take tools that are larger than the one that was computed with.
     pub takes_larger_tools: bool,
     /// M103: factor of the feed into the material.
@@ -63,6 +65,8 @@ pub(crate) struct Modal {
     pub contour_labels: Vec<u16>,
     /// Least corner of BLK FORM 0.1 waiting for 0.2.
     pub blank_min: Option<(Plane, [f64; 3])>,
+    /// The cylinder of cycle 27 while its contour is recorded.
+    pub surface: Option<Surface>,
     /// Swivel axes: cycle 19, M114, M116, M126.
     pub tilting: Tilting,
     /// Probe block 0.0 waiting for 0.1.
@@ -71,6 +75,17 @@ pub(crate) struct Modal {
     pub measuring: Option<MeasuringBlocks>,
     /// TCH PROBE 5 to 7.
     pub digitizing: Digitizing,
+}
+
+/// The surface of cycle 27 in which a contour is recorded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    /// Q16, mm.
+    pub radius_mm: f64,
+    /// Q17: the rotary axis is programmed in program units, not in degrees.
+    pub linear: bool,
+    /// The cylinder, and where its centre is along the tool axis, mm, from the first block on.
+    pub found: Option<(Cylinder, f64)>,
 }
 
 /// First block of TCH PROBE 0: result parameter, axis and direction [003:4414-4428].
@@ -127,6 +142,7 @@ impl Modal {
             spindle: Spindle::Undefined,
             feed_law: FeedLaw::Centre,
             corner_arcs: None,
+            point_spacing_mm: 0.0,
             takes_larger_tools: false,
             plunge_factor: None,
             last_move: None,
@@ -135,6 +151,7 @@ impl Modal {
             orientation_deg: None,
             contour_labels: Vec::new(),
             blank_min: None,
+            surface: None,
             tilting: Tilting::default(),
             probe: None,
             measuring: None,

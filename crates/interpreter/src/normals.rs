@@ -53,8 +53,8 @@ fn oversizes(modal: &Modal) -> Result<(f64, f64), Fault> {
     let Some(tool) = modal.tool else {
         return Ok((0.0, 0.0));
     };
-    let [table, dr2] = tool.shape.oversize;
-    let dr = table + tool.oversize[1];
+    let dr2 = tool.shape.oversize.corner_radius;
+    let dr = tool.shape.oversize.radius + tool.oversize[1];
     if (dr > 0.0 || dr2 > 0.0) && !modal.takes_larger_tools {
         let detail = format!(
             "tool {} is larger than the one that was computed with: DR {dr:+.4} DR2 {dr2:+.4} mm; M107 allows it",

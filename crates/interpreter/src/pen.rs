@@ -9,7 +9,7 @@ use bahn_path::{
 };
 
 use crate::block_functions::BlockFunctions;
-use crate::contour::{Contour, ContourMove, Side};
+use crate::contour::{Contour, ContourMove, CornerArcs, Side};
 use crate::error::Fault;
 use crate::flow::Flow;
 use crate::modal::Modal;
@@ -113,6 +113,15 @@ impl Pen {
         if self.machine && barrier.is_some() {
             self.note_time();
         }
+        let corner_arcs = modal.corner_arcs.map(|arcs| CornerArcs {
+            // A rounding refers to the point itself.
+            spacing_mm: if self.join_follows {
+                0.0
+            } else {
+                modal.point_spacing_mm
+            },
+            ..arcs
+        });
         let item = ContourMove {
             element,
             plane: modal.contour_plane,
@@ -123,7 +132,7 @@ impl Pen {
             in_plane,
             smooth: None,
             barrier,
-            corner_arcs: modal.corner_arcs,
+            corner_arcs,
         };
         let waits = item.barrier.is_some() && item.side == Side::Off;
         self.contour

@@ -20,6 +20,7 @@ use crate::settings::Settings;
 use crate::status::Way;
 use crate::surface_feed::surface_feed;
 use crate::tilting::take_way;
+use crate::unrolled::unrolled;
 
 /// L, C, CR, CT, LP, CP, CTP and paraxial blocks; with it whether the block calls the cycle behind its movement.
 #[inline]
@@ -114,6 +115,10 @@ fn record(c: &mut Context<'_>, motion: &Motion) -> Result<Flow, Fault> {
         && axes.is_empty()
     {
         *axes = motion.coordinates.axes();
+    }
+    if c.modal.surface.is_some() {
+        let motion = unrolled(c, motion)?;
+        return movement(c, &motion, BlockFunctions::default(), Some(ANY_FEED));
     }
     movement(c, motion, BlockFunctions::default(), Some(ANY_FEED))
 }

@@ -5,7 +5,7 @@ use bahn_path::{AxisSet, BlockRef};
 
 use crate::Interpreter;
 use crate::contour::Contour;
-use crate::cycles::{ContourJob, Halt, contour_plane, other_tool};
+use crate::cycles::{CYLINDER_SURFACE, ContourJob, Halt, contour_plane, other_tool, take_surface};
 use crate::error::Fault;
 use crate::output::Output;
 
@@ -22,7 +22,16 @@ impl Interpreter {
             Some(tool) => Some(tools.radius_of(&mut c, tool)?),
             None => None,
         };
+        let is_cylinder = c
+            .modal
+            .cycle
+            .machining
+            .ready()
+            .is_some_and(|d| d.number == CYLINDER_SURFACE);
         let mut recorder = self.run.clone();
+        if is_cylinder {
+            take_surface(&mut recorder.context(&self.settings))?;
+        }
         recorder.pen.contour = Contour::recorder();
         recorder.pen.out = Output::default();
         recorder.modal.compensation = bahn_program::Compensation::Off;
@@ -73,6 +82,7 @@ impl Interpreter {
             let moves = self.run.pen.contour.take_recorded(&mut self.run.pen.out)?;
             let axes = self.run.pen.recording.unwrap_or(AxisSet::EMPTY);
             let job = job.get_or_insert_with(|| ContourJob::new(contour_plane(self.run.modal.plane, axes)));
+            job.cylinder = self.run.modal.surface.and_then(|surface| surface.found);
             let added = if is_train {
                 job.add_train(&moves)
             } else {

@@ -190,6 +190,8 @@ pub struct Rules {
     /// MP960: machine zero of M91 from the workpiece datum of the run, mm or degrees [000:6244]. An axis
     /// whose machine zero is not known leaves the workpiece with M91 and M92 and has no position then.
     pub machine_zero: Position,
+    /// MP920 and MP910: the least and greatest machine positions of traverse range 1, mm or degrees.
+    pub traverse: [Position; 2],
     /// MP7475 = 1: datum tables count from the machine datum, not from the workpiece datum [000:6900-6902].
     pub datums_from_machine: bool,
     /// MP1060: acceleration of each axis, m/s²: limits the rounding arcs of M112 [000:5140-5152].
@@ -261,6 +263,7 @@ impl Rules {
             acceleration_m_s2: PerAxis::from_fn(|axis| list.acceleration_m_s2(axis)),
             radial_acceleration_m_s2: list.radial_acceleration_m_s2(),
             machine_datum: PerAxis::from_fn(|axis| list.m92_datum(axis)).into(),
+            traverse: [0, 1].map(|end: usize| PerAxis::from_fn(|axis| list.traverse_range(axis)[end]).into()),
             probe: ProbeRules {
                 feed_mm_min: probe.feed_mm_min,
                 range_mm: probe.range_mm,
@@ -333,6 +336,7 @@ impl Default for Rules {
             voltages: None,
             paraxial_inhibited: false,
             normal_length_with_dr2: false,
+            traverse: [f64::NEG_INFINITY, f64::INFINITY].map(|end| PerAxis::splat(end).into()),
             swivels: None,
             tilting: false,
             modulo_deg: PerAxis::splat(None),

@@ -115,7 +115,7 @@ fn swivel_angles(c: &mut Context<'_>, words: &[Resolved]) -> Result<Option<Posit
 }
 
 /// The swivel axes; `None` without them where their functions are passed over.
-fn geometry<'a>(c: &mut Context<'a>, what: &str) -> Result<Option<&'a Swivels>, Fault> {
+pub(crate) fn geometry<'a>(c: &mut Context<'a>, what: &str) -> Result<Option<&'a Swivels>, Fault> {
     let swivels = c.settings.rules.swivels.as_deref();
     if swivels.is_none() && !c.pen.rehearsal {
         pass_over(
@@ -213,10 +213,15 @@ pub(crate) fn change_tool(
 
 /// The placement of what is in force; `None` where all stands upright.
 fn placement(modal: &Modal, settings: &Settings) -> Option<Placement> {
+    placement_with(modal, settings, tool_of(modal))
+}
+
+/// Axis and length, mm, of the tool in the spindle.
+pub(crate) fn tool_of(modal: &Modal) -> (Axis, f64) {
     let length = modal
         .tool
         .map_or(modal.length_mm.unwrap_or(0.0), |tool| tool.shape.length);
-    placement_with(modal, settings, (modal.plane.normal, length))
+    (modal.plane.normal, length)
 }
 
 fn placement_with(modal: &Modal, settings: &Settings, tool: (Axis, f64)) -> Option<Placement> {

@@ -9,7 +9,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{Barrier, MeasuredPart, ToolMeasuring};
 use bahn_program::CycleBlock;
 
-use crate::availability::Feature;
+use crate::availability::{Feature, not_inhibited};
 use crate::context::Context;
 use crate::definition::{Resolved, resolve};
 use crate::error::Fault;
@@ -29,6 +29,9 @@ pub(crate) fn measures_tools(number: u16) -> bool {
 pub(crate) fn measure_tool(c: &mut Context<'_>, block: &CycleBlock) -> Result<(), Fault> {
     if !c.executes(Feature::Probe(block.number))? {
         return Ok(());
+    }
+    if block.sub == 0 {
+        not_inhibited(block.number, c.settings)?;
     }
     let words = resolve(block, c.numbers, c.settings)?;
     let number = words.iter().find_map(|word| match word {

@@ -48,6 +48,21 @@ fn part_of_a_function_is_said() {
     assert!(said[0].1.starts_with("M112 acts in part here"), "{said:?}");
 }
 
+/// Cycle 31 of the release notes measures tools [000:838]: it has the blocks of a probe function, and as CYCL DEF it is refused
+/// with a message that says so.
+#[test]
+fn cycle_31_is_a_probe_function() {
+    let run = Job::new(program(
+        "CYCL DEF 31.0 TOOL LENGTH\nCYCL DEF 31.1 CHECK: 0\nCYCL CALL",
+    ))
+    .run();
+    assert_eq!(run.message(), Some((BlockNotKnown, 3)));
+    let detail = run.error.map(|error| error.detail).unwrap_or_default();
+    assert!(detail.contains("TCH PROBE 31 measures the length"), "{detail}");
+    // Controls without a tool probe have none.
+    assert_eq!(on(Tnc360, "CYCL DEF 31.0 TOOL LENGTH"), Some((BlockNotKnown, 1)));
+}
+
 /// With strict checking either is an error.
 #[test]
 fn strict_checking_refuses_it() {
@@ -234,6 +249,10 @@ fn inhibited_by_the_machine_builder() {
     let rigid = "CYCL DEF 17.0 RIGID TAPPING";
     assert_eq!(with_list("7245.1=2", rigid), Some((BlockNotKnown, 1)));
     assert_eq!(with_list("7245.1=1", rigid), None);
+    // Bit 15: cycle 31 measures tools, by TCH PROBE 31.
+    let measuring = "TOOL CALL 1 Z S1\nTCH PROBE 31.0 TOOL LENGTH";
+    assert_eq!(with_list("7245.1=$8000", measuring), Some((BlockNotKnown, 2)));
+    assert_eq!(with_list("7245.1=$4000", measuring), None);
     let paraxial = "TOOL CALL 0 Z S100\nX+20 R+ F100";
     assert_eq!(with_list("7246=1", paraxial), Some((BlockNotKnown, 2)));
     assert_eq!(with_list("7246=0", paraxial), None);

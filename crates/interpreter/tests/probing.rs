@@ -5,7 +5,7 @@
 mod support;
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Barrier, MeasuredPart, ScanPattern};
+use bahn_path::{Axis, Barrier, MeasuredPart, Position, ScanPattern};
 use support::*;
 
 /// P17: the height of an island as the difference of two measured coordinates [003:4452-4487].
@@ -218,4 +218,52 @@ fn faults_of_tool_measuring() {
     assert_eq!(fault(&other), Some(MessageId::CyclIncomplete));
     let no_tool = "TOOL CALL 0 Z S0\n".to_owned() + &teeth.replace("TEETH: 2", "TEETH: 0");
     assert_eq!(fault(&no_tool), Some(MessageId::ToolNotDefined));
+}
+
+/// The range of a digitizing lies within the software limits [003:8047-8051], the stylus of 100 mm with it: here X may go to
+/// 500 of the machine, where the datum is at 400, and Z from -300 to 200 with the datum at -100.
+#[test]
+fn the_range_lies_within_the_limits() {
+    let message = |range: [f64; 6], height: f64, datum: f64| {
+        let [x0, y0, z0, x1, y1, z1] = range;
+        let blocks = format!(
+            "TOOL DEF 1 L+100 R+2\nTOOL CALL 1 Z\nTCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: DIG\n\
+             TCH PROBE 5.2 Z X{x0:+} Y{y0:+} Z{z0:+}\nTCH PROBE 5.3 X{x1:+} Y{y1:+} Z{z1:+}\nTCH PROBE 5.4 HEIGHT:{height:+}\n\
+             TCH PROBE 6.0 MEANDER\nTCH PROBE 6.1 DIRECTN: X\nTCH PROBE 6.2 TRAVEL: 0.5 L.SPAC: 0.2 P.P. INT: 0.8\nSTOP"
+        );
+        let run = Job::new(program(&blocks))
+            .with(|settings| {
+                settings.rules.machine_zero = Position::ZERO;
+                (
+                    settings.rules.machine_zero[Axis::X],
+                    settings.rules.machine_zero[Axis::Z],
+                ) = (-400.0, datum);
+                let [least, greatest] = &mut settings.rules.traverse;
+                (greatest[Axis::X], least[Axis::Z], greatest[Axis::Z]) = (500.0, -300.0, 200.0);
+            })
+            .run();
+        run.error.map(|error| (error.message, error.detail))
+    };
+    let faulty = |axis: char| {
+        Some((
+            bahn_interpreter::Message::Control(MessageId::FaultyRangeData),
+            format!("the range leaves the traverse range of {axis}"),
+        ))
+    };
+    let good = [0.0, 0.0, -10.0, 100.0, 10.0, 0.0];
+    assert_eq!(message(good, 20.0, 100.0), None);
+    assert_eq!(
+        message([0.0, 0.0, -10.0, 100.001, 10.0, 0.0], 20.0, 100.0),
+        faulty('X')
+    );
+    // The spindle nose is 100 above the tip: at 0 - 100 + 100 + 200 it is at the limit.
+    assert_eq!(message(good, 200.0, 100.0), None);
+    assert_eq!(message(good, 200.001, 100.0), faulty('Z'));
+    assert_eq!(message([0.0, 0.0, -300.0, 100.0, 10.0, 0.0], 20.0, 100.0), None);
+    assert_eq!(
+        message([0.0, 0.0, -300.001, 100.0, 10.0, 0.0], 20.0, 100.0),
+        faulty('Z')
+    );
+    // Nobody knows where the workpiece lies.
+    assert_eq!(message(good, 1000.0, f64::NAN), None);
 }

@@ -9,7 +9,7 @@ use bahn_parameters::MessageId::{
     BlockNotKnown, EntryValueIncorrect, PathOffsetWronglyStarted, ToolRadiusTooLarge,
 };
 use bahn_parameters::ParameterList;
-use bahn_path::{Axis, FeedRate, ToolShape};
+use bahn_path::{Axis, FeedRate, Oversize, ToolShape};
 use support::*;
 
 /// The tip of a tool of radius R and corner radius R2 that touches a point with this normal.
@@ -30,7 +30,11 @@ fn worn([r, r2]: [f64; 2], [dr, dr2]: [f64; 2]) -> impl FnOnce(&mut Settings) {
             length: 0.0,
             radius: r + dr,
             corner_radius: r2 + dr2,
-            oversize: [dr, dr2],
+            oversize: Oversize {
+                length: 0.0,
+                radius: dr,
+                corner_radius: dr2,
+            },
             ..ToolShape::default()
         };
         settings.tools = Some([(1, shape)].into());

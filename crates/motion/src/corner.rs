@@ -84,7 +84,8 @@ impl Joint {
         dynamics: &Dynamics,
     ) -> Joint {
         // From degrees of a rotary axis to mm there is no common speed.
-        if last.rotary != next.rotary {
+        // Nor from a surface to its cylinder.
+        if last.rotary != next.rotary || last.deg_per_mm != next.deg_per_mm {
             return Joint::Stop;
         }
         let only_main = last.main_axes && next.main_axes;
@@ -114,6 +115,15 @@ impl Joint {
 #[inline]
 fn cosine(last: &Motion, next: &Motion) -> f64 {
     let (a, b) = (last.end(), next.start());
+    let product = |a: &PerAxis<f64>, b: &PerAxis<f64>, rotary: bool| {
+        let linear = product(a, b, rotary);
+        if last.deg_per_mm == 0.0 {
+            return linear;
+        }
+        // What the rotary axis turns is the way around the cylinder.
+        let turned = ROTARY.iter().map(|i| a[*i] * b[*i]).sum::<f64>();
+        linear + turned / (last.deg_per_mm * last.deg_per_mm)
+    };
     let dot = product(a, b, last.rotary);
     if last.swings || next.swings {
         // The axes may change how far they go for the path as suddenly as where they go: both count as one change.
@@ -133,7 +143,7 @@ fn cosine(last: &Motion, next: &Motion) -> f64 {
 /// corner of MP7460 (inferred). A chord `|Δt|` stands for `1 - |Δt|² / 2`.
 #[inline]
 fn beside(last: &Motion, next: &Motion, only_main: bool) -> f64 {
-    if only_main || last.rotary {
+    if only_main || last.rotary || last.deg_per_mm != 0.0 {
         return 0.0;
     }
     let (a, b) = (last.end(), next.start());

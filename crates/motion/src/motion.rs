@@ -38,6 +38,8 @@ pub(crate) struct Motion {
     pub(crate) main_axes: bool,
     /// Swivel axes are compensated: the main axes go farther, or less far, than the path.
     pub(crate) swings: bool,
+    /// Degrees of the rotary axis for a mm of the path around a cylinder, either sign; 0 where none is unrolled.
+    pub(crate) deg_per_mm: f64,
     /// Derivative of the axes by the path length at the start; of a line everywhere.
     direction: PerAxis<f64>,
     /// That at the end of an arc.
@@ -78,6 +80,7 @@ impl Motion {
             rotary,
             main_axes,
             swings: false,
+            deg_per_mm: 0.0,
             direction,
             end_direction: None,
         };
@@ -100,6 +103,8 @@ impl Motion {
         let [direction, end_direction] = placed.directions;
         let slowest = slowest(placed.share.values(), dynamics);
         let radial_speed = self.radial_speed.min(placed.speed);
+        let cylinder = placement.cylinder();
+        let swings = placement.rotation().is_none() && cylinder.is_none();
         Motion {
             speed: dynamics
                 .speed(element.feed, element.override_law, slowest)
@@ -109,10 +114,11 @@ impl Motion {
             acceleration: acceleration(placed.share.values(), dynamics)
                 .min(dynamics.spindle_acceleration(element)),
             direction,
-            swings: placement.rotation().is_none(),
+            swings,
+            deg_per_mm: cylinder.map_or(0.0, |cylinder| cylinder.deg_per_mm),
+            main_axes: self.main_axes && cylinder.is_none(),
             // Straight lines behind swivel axes that turn are none; a direction is then not of length 1.
-            end_direction: (self.end_direction.is_some() || placement.rotation().is_none())
-                .then_some(end_direction),
+            end_direction: (self.end_direction.is_some() || swings).then_some(end_direction),
             ..self
         }
     }
@@ -172,6 +178,7 @@ impl Motion {
             rotary,
             main_axes: false,
             swings: false,
+            deg_per_mm: 0.0,
             direction,
             end_direction: Some(in_plane(&direction, plane, end_direction)),
         };

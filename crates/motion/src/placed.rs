@@ -1,6 +1,6 @@
-//! What a movement demands of the axes when its path does not stand upright: cycle 19 and M114.
+//! What a movement demands of the axes when its path does not stand upright: cycle 19, M114 and cycle 27.
 
-use bahn_path::{Arc, Axis, Curve, PathElement, PerAxis, Placement};
+use bahn_path::{Arc, Axis, Curve, Cylinder, PathElement, PerAxis, Placement};
 
 use crate::limits::{Dynamics, MAIN};
 
@@ -23,6 +23,9 @@ impl Placed {
         per_square: f64,
         dynamics: &Dynamics,
     ) -> Placed {
+        if let Some(cylinder) = placement.cylinder() {
+            return Placed::rolled(cylinder, element, directions, per_square, dynamics);
+        }
         let [start, end] = directions;
         let placed = [
             placement.velocity(&element.start, &start),
@@ -60,6 +63,37 @@ impl Placed {
                     speed: swing_speed(per_square, reach * rate * rate, dynamics),
                 }
             }
+        }
+    }
+
+    /// On the unrolled surface of a cylinder: the rotary axis goes in degrees what the path goes around it in mm.
+    fn rolled(
+        cylinder: &Cylinder,
+        element: &PathElement,
+        directions: [PerAxis<f64>; 2],
+        per_square: f64,
+        dynamics: &Dynamics,
+    ) -> Placed {
+        let [start, end] = directions;
+        let mut on_surface = PerAxis::from_fn(|axis| start[axis].abs().max(end[axis].abs()));
+        if let Curve::Arc(arc) = &element.curve {
+            let plane = [arc.plane.first, arc.plane.second];
+            let fastest = directions.map(|d| d[plane[0]].hypot(d[plane[1]]));
+            for i in plane {
+                on_surface[i] = fastest[0].max(fastest[1]);
+            }
+        }
+        let rotary = cylinder.rotary;
+        let across = per_square * cylinder.deg_per_mm.abs();
+        let left = dynamics.bound[rotary] - dynamics.acceleration[rotary];
+        Placed {
+            directions: directions.map(|direction| cylinder.velocity(&direction)),
+            share: cylinder.velocity(&on_surface).map(f64::abs),
+            speed: if across > 0.0 {
+                (left / across).sqrt()
+            } else {
+                f64::INFINITY
+            },
         }
     }
 }

@@ -6,7 +6,7 @@ mod common;
 use std::sync::Arc;
 
 use bahn_motion::{Drive, Interpolator, Limits, Prepared};
-use bahn_path::{Axis, FeedRate, Link, PathElement, Placement, Position, Step, Swivels};
+use bahn_path::{Axis, Cylinder, FeedRate, Link, PathElement, PerAxis, Placement, Position, Step, Swivels};
 use common::*;
 use proptest::prelude::*;
 
@@ -195,6 +195,69 @@ proptest! {
                     prop_assert!(speed.abs() <= 250.0 * (1.0 + 1e-6) + 1e-6, "{axis} {speed} mm/s");
                     let acceleration = (r - 2.0 * q + p) / limits.cycle_s.powi(2);
                     prop_assert!(acceleration.abs() <= bound * 1.001 + 1e-3, "{axis} {acceleration} mm/s²");
+                }
+            }
+        }
+    }
+}
+
+/// X of the path is the way around a cylinder of R20 about C.
+fn rolled() -> Arc<Placement> {
+    let cylinder = Cylinder {
+        rotary: Axis::C,
+        around: Axis::X,
+        deg_per_mm: -1.0 / 20f64.to_radians(),
+        zero_deg: 15.0,
+        centre_mm: 100.0,
+    };
+    Arc::new(Placement::rolled(cylinder, (Axis::Y, 100.0)))
+}
+
+/// On a cylinder a rapid way around is as fast as C turns: at 5000 degrees/min on R20 that are 20 · 5000 · π/180 mm/min.
+/// A corner of two lines is what it is on the surface: one of 5° is passed within MP7460 = 10°, one of 20° stops.
+#[test]
+fn on_a_cylinder() {
+    let mut limits = limits();
+    limits.max_feed_mm_min[Axis::C] = 5000.0;
+    let mut path = Path::new(0.0);
+    path.feed(FeedRate::Rapid).line(&[(Axis::X, 500.0)]);
+    let planned = plan(&placed(path, &rolled()), &limits);
+    let speed = planned[0].profile.peak_mm_s * 60.0;
+    assert!((speed - 5000f64.to_radians() * 20.0).abs() < 1e-6, "{speed}");
+    let passed = |turn_deg: f64, from_deg: f64| {
+        let mut path = Path::new(600.0);
+        for direction in [from_deg, from_deg + turn_deg] {
+            let (sin, cos) = direction.to_radians().sin_cos();
+            path.by(&[(Axis::X, 50.0 * cos), (Axis::Z, 50.0 * sin)]);
+        }
+        let planned = plan(&placed(path, &rolled()), &limits);
+        planned[0].profile.exit_mm_s > 0.0
+    };
+    for from_deg in [0.0, 45.0, 88.0] {
+        assert!(passed(5.0, from_deg), "{from_deg}");
+        assert!(!passed(20.0, from_deg), "{from_deg}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// On a cylinder no axis exceeds its limits either, be it C in degrees; lines and circles of the surface.
+    #[test]
+    fn a_cylinder_keeps_the_limits(path in blocks()) {
+        let limits = limits();
+        for element in placed(path, &rolled()) {
+            let positions = axes(std::slice::from_ref(&element), &limits);
+            for axis in [Axis::X, Axis::Y, Axis::Z, Axis::C] {
+                let of = |list: &PerAxis<f64>| list[axis];
+                let fastest = of(&limits.max_feed_mm_min) / 60.0;
+                let bound = 1000.0 * of(&limits.acceleration_m_s2).hypot(limits.radial_acceleration_m_s2);
+                for three in positions.windows(3) {
+                    let [p, q, r] = [three[0][axis], three[1][axis], three[2][axis]];
+                    let speed = (r - q) / limits.cycle_s;
+                    prop_assert!(speed.abs() <= fastest * (1.0 + 1e-6) + 1e-6, "{axis} {speed} of {fastest}");
+                    let acceleration = (r - 2.0 * q + p) / limits.cycle_s.powi(2);
+                    prop_assert!(acceleration.abs() <= bound * 1.001 + 1e-3, "{axis} {acceleration} of {bound}");
                 }
             }
         }

@@ -107,6 +107,8 @@ pub enum Deed {
     CornerArcs,
     /// M113.
     SharpCorners,
+    /// M124.
+    LeaveOutPoints,
     /// M118: the handwheel moves axes beside the path [000:742].
     Superimpose,
     /// M200 to M204: output S gives a voltage.
@@ -123,7 +125,7 @@ pub enum Deed {
 
 impl Deed {
     /// All deeds with their names in the table.
-    const NAMES: [(&'static str, Deed); 39] = [
+    const NAMES: [(&'static str, Deed); 40] = [
         ("program-stop", Deed::ProgramStop),
         ("program-end", Deed::ProgramEnd),
         ("tool-change", Deed::ToolChange),
@@ -158,6 +160,7 @@ impl Deed {
         ("way-beside-0", Deed::ShortestWay(false)),
         ("corner-arcs", Deed::CornerArcs),
         ("sharp-corners", Deed::SharpCorners),
+        ("leave-out-points", Deed::LeaveOutPoints),
         ("voltage", Deed::Voltage),
         ("superimpose", Deed::Superimpose),
         (

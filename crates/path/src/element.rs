@@ -306,8 +306,19 @@ pub struct ToolShape {
     pub corner_radius: f64,
     /// Angle of the point of a drill, degrees: 0 none. The length is that to the tip of the point.
     pub point_angle_deg: f64,
-    /// DR and DR2 of the tool table, which the radii contain, mm.
-    pub oversize: [f64; 2],
+    /// The oversizes that it contains.
+    pub oversize: Oversize,
+}
+
+/// DL, DR, DR2 of the tool table, mm [000:9014-9016].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Oversize {
+    /// DL: of the length.
+    pub length: f64,
+    /// DR: of the radius.
+    pub radius: f64,
+    /// DR2: of the corner radius.
+    pub corner_radius: f64,
 }
 
 impl ToolShape {

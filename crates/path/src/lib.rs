@@ -25,6 +25,7 @@
 mod axis;
 mod characteristic;
 mod curve;
+mod cylinder;
 mod element;
 mod frame;
 mod placement;
@@ -37,9 +38,10 @@ mod swivel;
 pub use axis::{Axis, AxisSet, PerAxis, Position};
 pub use characteristic::Characteristic;
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
+pub use cylinder::Cylinder;
 pub use element::{
-    Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, PathElement, SpindleOrder,
-    Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
+    Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, Oversize, PathElement,
+    SpindleOrder, Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
 };
 pub use frame::{AxisScaling, Frame};
 pub use placement::Placement;

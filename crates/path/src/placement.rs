@@ -1,9 +1,10 @@
-//! Between the path as it is programmed and the main axes: a tilted working plane, and the compensation of swivel axes.
+//! Between the path as it is programmed and the axes: a tilted working plane, the compensation of swivel axes, and an
+//! unrolled cylinder surface.
 
 use std::sync::Arc;
 
 use crate::swivel::{Matrix, Swivels, Vector, turn, turn_back};
-use crate::{Axis, Curve, PerAxis, Position};
+use crate::{Axis, Curve, Cylinder, PerAxis, Position};
 
 /// Steps in which the way of the axes on a curved path is looked at, degrees.
 const STEP_DEG: f64 = 1.0;
@@ -11,7 +12,8 @@ const STEP_DEG: f64 = 1.0;
 const STEPS_MAX: f64 = 720.0;
 
 /// How the path of an element stands in the machine, when not upright: where the tool datum (the spindle nose) is for each
-/// of its positions, seen from the workpiece datum. Rotary and parallel axes are those of the path.
+/// of its positions, seen from the workpiece datum. Rotary and parallel axes are those of the path, but for the rotary
+/// axis of a cylinder.
 ///
 /// It contains the tool, and for rotary axes the workpiece datum, that were in force when it was made; what makes another
 /// of them makes another placement.
@@ -32,6 +34,8 @@ enum Kind {
         /// Machine positions of the datums of the rotary axes, degrees.
         datum: Position,
     },
+    /// Cycle 27: the path lies on the unrolled surface of a cylinder [000:6759-6763].
+    Rolled(Cylinder),
 }
 
 impl Placement {
@@ -68,6 +72,22 @@ impl Placement {
         }
     }
 
+    /// The unrolled surface of a cylinder.
+    pub fn rolled(cylinder: Cylinder, tool: (Axis, f64)) -> Placement {
+        Placement {
+            kind: Kind::Rolled(cylinder),
+            tool,
+        }
+    }
+
+    /// The cylinder whose unrolled surface it is.
+    pub fn cylinder(&self) -> Option<&Cylinder> {
+        match &self.kind {
+            Kind::Rolled(cylinder) => Some(cylinder),
+            _ => None,
+        }
+    }
+
     /// Axis and length, mm, of the tool that it contains.
     pub fn tool(&self) -> (Axis, f64) {
         self.tool
@@ -83,6 +103,7 @@ impl Placement {
         let mut nose = *path;
         let tip = main(path);
         let at = match &self.kind {
+            Kind::Rolled(cylinder) => return self.add_tool(cylinder.roll(path), 1.0),
             Kind::Tilted { rotation, origin } => {
                 let at = turn(rotation, sum(tip, self.tool_vector()));
                 sum(*origin, at)
@@ -98,6 +119,7 @@ impl Placement {
         let mut path = *nose;
         let at = main(nose);
         let tip = match &self.kind {
+            Kind::Rolled(cylinder) => return cylinder.unroll(&self.add_tool(*nose, -1.0)),
             Kind::Tilted { rotation, origin } => {
                 let at = turn_back(rotation, sum(at, origin.map(|x| -x)));
                 sum(at, self.tool_vector().map(|x| -x))
@@ -132,6 +154,7 @@ impl Placement {
         let mut axes = *direction;
         let [x, y, z] = [Axis::X, Axis::Y, Axis::Z].map(|axis| direction[axis]);
         let turned = match &self.kind {
+            Kind::Rolled(cylinder) => return cylinder.velocity(direction),
             Kind::Tilted { rotation, .. } => turn(rotation, [x, y, z]),
             Kind::Compensated { .. } => {
                 let rate = direction[Axis::A]
@@ -163,12 +186,15 @@ impl Placement {
     pub fn rotation(&self) -> Option<&[[f64; 3]; 3]> {
         match &self.kind {
             Kind::Tilted { rotation, .. } => Some(rotation),
-            Kind::Compensated { .. } => None,
+            Kind::Compensated { .. } | Kind::Rolled(_) => None,
         }
     }
 
     /// Whether an axis moves behind a path on which these do.
     pub fn moves(&self, axis: Axis, on_path: impl Fn(Axis) -> bool) -> bool {
+        if let Kind::Rolled(cylinder) = &self.kind {
+            return on_path(cylinder.moved_by(axis));
+        }
         if axis.is_rotary() || axis.main() != Some(axis) {
             return on_path(axis);
         }
@@ -179,13 +205,14 @@ impl Placement {
                 main.any(|(own, share)| share != 0.0 && on_path(own))
             }
             Kind::Compensated { swivels, .. } => on_path(axis) || swivels.head_axes().any(on_path),
+            Kind::Rolled(_) => false,
         }
     }
 
     /// Upper bound of the way of a main axis by a radian of the swivel axes, mm.
     pub fn reach_mm(&self) -> f64 {
         match &self.kind {
-            Kind::Tilted { .. } => 0.0,
+            Kind::Tilted { .. } | Kind::Rolled(_) => 0.0,
             Kind::Compensated { swivels, .. } => swivels.reach_mm(self.tool.1),
         }
     }
@@ -193,13 +220,18 @@ impl Placement {
     /// The least and greatest positions of the tool datum on a curve; wider by what the way between two places looked at
     /// can bulge.
     pub fn bounds(&self, curve: &Curve, start: &Position, end: &Position) -> [Position; 2] {
+        if let Kind::Rolled(cylinder) = &self.kind {
+            return cylinder
+                .bounds(curve, start, end)
+                .map(|corner| self.add_tool(corner, 1.0));
+        }
         let turns = match curve {
             Curve::Hold => 0.0,
             Curve::Line => 0.0,
             Curve::Arc(arc) => arc.sweep_deg.abs(),
         };
         let (reach, swivels) = match &self.kind {
-            Kind::Tilted { .. } => (0.0, 0.0),
+            Kind::Tilted { .. } | Kind::Rolled(_) => (0.0, 0.0),
             // Around the path and back: both turn at once at worst.
             Kind::Compensated { .. } => (
                 self.reach_mm(),
@@ -263,6 +295,16 @@ impl Placement {
         let angles: Position = PerAxis::from_fn(turned).into();
         let tool = turn(&swivels.head_rotation(&angles), self.tool_vector());
         sum(tool, swivels.head_offset(&angles))
+    }
+
+    /// A position that is the tool's length away, `sign` times.
+    fn add_tool(&self, position: Position, sign: f64) -> Position {
+        let mut moved = position;
+        set_main(
+            &mut moved,
+            sum(main(&position), self.tool_vector().map(|x| sign * x)),
+        );
+        moved
     }
 
     fn tool_vector(&self) -> Vector {

@@ -142,6 +142,13 @@ impl Swivels {
         let nose = [Axis::X, Axis::Y, Axis::Z].map(|axis| axes[axis]);
         let datum = difference(nose, self.head_offset(axes));
         let tip = difference(datum, turn(&self.head_rotation(axes), tool));
+        let (point, direction) = self.table_axis(axis, axes)?;
+        Some(beside(difference(tip, point), direction))
+    }
+
+    /// A point on a rotary axis of the table, mm, and its direction, with the axes that carry it at `axes`: machine
+    /// coordinates and the sense of the tool's movement about the workpiece.
+    pub fn table_axis(&self, axis: Axis, axes: &Position) -> Option<([f64; 3], [f64; 3])> {
         let mut line: Option<(Vector, Vector)> = None;
         self.walk_table(|free, centre, basis| {
             if free == axis {
@@ -155,7 +162,7 @@ impl Swivels {
                 *direction = turn(&turned, *direction);
             }
         });
-        line.map(|(point, direction)| beside(difference(tip, point), direction))
+        line
     }
 
     /// Shows each free axis of the table, from the workpiece outwards: its centre and its directions with all axes at 0.

@@ -7,8 +7,8 @@ use Sign::{Signed, Unsigned, Working};
 /// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
 pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
 
-/// The SL cycles with contour data have them, too, in as many blocks as are written.
-const CONTOUR_DATA_CYCLES: std::ops::RangeInclusive<u16> = 20..=25;
+/// The SL cycles with contour data have them, too, in as many blocks as are written, and cycle 27.
+const CONTOUR_DATA_CYCLES: &[u16] = &[20, 21, 22, 23, 24, 25, 27];
 
 /// Whether `Qn=value` words may stand in block n.0, behind the name.
 pub(crate) fn takes_assignments(number: u16) -> bool {
@@ -262,6 +262,8 @@ pub const CYCLES: &[Cycle] = &[
     called(25, "CONTOUR TRAIN", &[]),
     // [000:6655-6699]
     defined(26, "AXIS-SPEC. SCALING", &[&[parameter("", Quantity::AxisFactors, Unsigned)]]),
+    // [000:735] [000:6759-6763]; words of later controls
+    called(27, "CYLINDER SURFACE", &[]),
     // [003:4414-4428]
     probe(0, "REF. PLANE", &[&[POINT]]),
     // [003:6617-6625]

@@ -1,6 +1,7 @@
-//! M112: rounding arcs at the corners of straight, uncompensated blocks [000:5128-5158].
+//! M112: rounding arcs at the corners of straight, uncompensated blocks [000:5128-5158]; M124: points that are left out for
+//! them.
 
-use bahn_path::{At, Axis, Curve, FeedRate, PathElement};
+use bahn_path::{At, Axis, Curve, FeedRate, PathElement, PerAxis, Placement, Plane};
 
 use super::{ContourMove, Side};
 
@@ -14,8 +15,10 @@ pub(crate) struct CornerArcs {
     pub tolerance_mm: f64,
     /// A: change of direction above which the arc is no larger than the feed needs, degrees.
     pub angle_deg: f64,
-    /// Smallest acceleration of the axes and radial acceleration, m/s².
-    pub acceleration_m_s2: f64,
+    /// Acceleration of each axis, m/s², where the radial acceleration does not allow less.
+    pub acceleration_m_s2: PerAxis<f64>,
+    /// M124 T: points that are nearer than this to the one before are left out, mm; 0 none.
+    pub spacing_mm: f64,
 }
 
 impl CornerArcs {
@@ -24,7 +27,13 @@ impl CornerArcs {
     /// larger than the feed needs.
     ///
     /// `included_deg` is the angle between the lines, `shorter_mm` the length of the shorter one.
-    pub fn radius_mm(&self, included_deg: f64, shorter_mm: f64, feed_mm_min: Option<f64>) -> f64 {
+    pub fn radius_mm(
+        &self,
+        plane: Plane,
+        included_deg: f64,
+        shorter_mm: f64,
+        feed_mm_min: Option<f64>,
+    ) -> f64 {
         let half = (0.5 * included_deg).to_radians();
         let by_tolerance = self.tolerance_mm * half.sin() / (1.0 - half.sin());
         let by_length = 0.5 * shorter_mm * half.tan();
@@ -32,32 +41,60 @@ impl CornerArcs {
         match feed_mm_min {
             Some(feed) if 180.0 - included_deg > self.angle_deg => {
                 let speed_m_s = feed * OVERRIDE / 60_000.0;
-                least.min(speed_m_s * speed_m_s / self.acceleration_m_s2 * 1000.0)
+                let [a, b] = [plane.first, plane.second].map(|axis| self.acceleration_m_s2[axis]);
+                least.min(speed_m_s * speed_m_s / a.min(b) * 1000.0)
             }
             _ => least,
         }
     }
 }
 
-/// The radius of the arc between two movements, mm; `None` where M112 makes none: elsewhere than between
-/// uncompensated lines in the working plane, and where the path stops for a function.
-pub(crate) fn radius_between(held: &ContourMove, held_length: f64, item: &ContourMove) -> Option<f64> {
+/// M124: whether the point at the end of a movement is left out, unless the path goes on otherwise than in a straight
+/// line behind it.
+pub(crate) fn is_left_out(item: &ContourMove) -> bool {
+    let spacing = item.corner_arcs.map_or(0.0, |arcs| arcs.spacing_mm);
+    let element = &item.element;
+    spacing > 0.0
+        && is_plain(item)
+        && element.functions().is_empty()
+        && element.dwell_s == 0.0
+        && item.barrier.is_none()
+        && element.start.known() == element.end.known()
+        && element.length() < spacing
+}
+
+/// Whether a movement may begin where one began whose end is left out.
+pub(crate) fn takes_over(left_out: &ContourMove, item: &ContourMove) -> bool {
+    item.corner_arcs.is_some()
+        && is_plain(item)
+        && item.element.functions().iter().all(|output| output.at == At::End)
+        && Placement::is_same(
+            left_out.element.placement.as_ref(),
+            item.element.placement.as_ref(),
+        )
+}
+
+/// An uncompensated line of linear axes.
+fn is_plain(item: &ContourMove) -> bool {
+    let turns = |axis: Axis| axis.is_rotary() && item.element.moves(axis);
+    item.side == Side::Off && item.element.curve == Curve::Line && !Axis::ALL.into_iter().any(turns)
+}
+
+/// The plane of the arc between two movements and its radius, mm; `None` where M112 makes none: elsewhere than between
+/// uncompensated lines in one main plane, and where the path stops for a function.
+pub(crate) fn arc_between(held: &ContourMove, held_length: f64, item: &ContourMove) -> Option<(Plane, f64)> {
     let arcs = held.corner_arcs.filter(|_| item.corner_arcs.is_some())?;
-    let flat = |movement: &ContourMove| {
-        let PathElement {
-            curve, start, end, ..
-        } = &movement.element;
-        let plane = movement.plane;
+    let lies_in = |movement: &ContourMove, plane: Plane| {
+        let element = &movement.element;
         movement.side == Side::Off
-            && movement.in_plane
-            && *curve == Curve::Line
-            && Axis::ALL.iter().all(|axis| {
-                plane.first == *axis
-                    || plane.second == *axis
-                    || start[*axis] == end[*axis]
-                    || end[*axis].is_nan()
-            })
+            && element.curve == Curve::Line
+            && Axis::ALL
+                .iter()
+                .all(|axis| plane.contains(*axis) || !element.moves(*axis))
     };
+    let plane = [held.plane, Plane::XY, Plane::YZ, Plane::ZX]
+        .into_iter()
+        .find(|plane| lies_in(held, *plane) && lies_in(item, *plane))?;
     let passes = held.barrier.is_none()
         && held.element.dwell_s == 0.0
         && !held.element.functions().iter().any(|output| output.at == At::End)
@@ -66,11 +103,11 @@ pub(crate) fn radius_between(held: &ContourMove, held_length: f64, item: &Contou
             .functions()
             .iter()
             .any(|output| output.at == At::Start);
-    if !(flat(held) && flat(item) && held.plane == item.plane && passes) {
+    if !passes {
         return None;
     }
     let direction = |element: &PathElement| {
-        let (a, b) = (held.plane.point(&element.start), held.plane.point(&element.end));
+        let (a, b) = (plane.point(&element.start), plane.point(&element.end));
         let (x, y) = (b[0] - a[0], b[1] - a[1]);
         let length = x.hypot(y);
         (length > 0.0).then(|| [x / length, y / length, length])
@@ -82,9 +119,9 @@ pub(crate) fn radius_between(held: &ContourMove, held_length: f64, item: &Contou
         FeedRate::Programmed(feed) => Some(feed),
         FeedRate::Rapid => None,
     };
-    let radius = arcs.radius_mm(included_deg, held_length.min(length), feed);
+    let radius = arcs.radius_mm(plane, included_deg, held_length.min(length), feed);
     // A line that turns back has no arc, and one that goes straight on needs none.
-    (radius.is_finite() && radius > 1e-4 && included_deg < 179.99).then_some(radius)
+    (radius.is_finite() && radius > 1e-4 && included_deg < 179.99).then_some((plane, radius))
 }
 
 #[cfg(test)]
@@ -98,23 +135,24 @@ mod tests {
         let arcs = CornerArcs {
             tolerance_mm: 0.05,
             angle_deg: 10.0,
-            acceleration_m_s2: 0.5,
+            acceleration_m_s2: PerAxis::splat(0.5),
+            spacing_mm: 0.0,
         };
         let close = |a: f64, b: f64| assert!((a - b).abs() < 5e-5, "{a} is not {b}");
-        close(arcs.radius_mm(90.0, 10.0, Some(6000.0)), 0.1207);
+        close(arcs.radius_mm(Plane::XY, 90.0, 10.0, Some(6000.0)), 0.1207);
         let free = CornerArcs {
             tolerance_mm: f64::INFINITY,
             ..arcs
         };
-        close(free.radius_mm(90.0, 10.0, Some(6000.0)), 5.0);
-        close(free.radius_mm(90.0, 1000.0, Some(6000.0)), 45.0);
+        close(free.radius_mm(Plane::XY, 90.0, 10.0, Some(6000.0)), 5.0);
+        close(free.radius_mm(Plane::XY, 90.0, 1000.0, Some(6000.0)), 45.0);
         // Up to the limit angle the size does not depend on the feed: l/2 · tan(87°).
         close(
-            free.radius_mm(174.0, 100.0, Some(1.0)),
+            free.radius_mm(Plane::XY, 174.0, 100.0, Some(1.0)),
             50.0 * 87f64.to_radians().tan(),
         );
         // The arc of r1 passes T from the corner: r · (1 / sin b - 1).
-        let r = arcs.radius_mm(90.0, 10.0, None);
+        let r = arcs.radius_mm(Plane::XY, 90.0, 10.0, None);
         close(r * (1.0 / 45f64.to_radians().sin() - 1.0), 0.05);
     }
 }

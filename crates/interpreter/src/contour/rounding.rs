@@ -39,6 +39,8 @@ pub(crate) struct RoundingStage {
     join: Option<Join>,
     /// Holds (functions without movement) that came after the join was asked for.
     after: Vec<ContourMove>,
+    /// M124: a movement whose end is left out if the next one takes over from its start.
+    left_out: Option<Box<ContourMove>>,
     /// Side of the plane movement before the held one: tells the first compensated block.
     side_before: Side,
 }
@@ -46,6 +48,27 @@ pub(crate) struct RoundingStage {
 impl RoundingStage {
     #[inline]
     pub fn push(
+        &mut self,
+        mut item: ContourMove,
+        next: &mut CompensationStage,
+        out: &mut Output,
+    ) -> Result<(), Fault> {
+        if let Some(left_out) = self.left_out.take() {
+            if corner_arc::takes_over(&left_out, &item) {
+                item.element.start = left_out.element.start;
+            } else {
+                self.take(*left_out, next, out)?;
+            }
+        }
+        if self.join.is_none() && corner_arc::is_left_out(&item) {
+            self.left_out = Some(Box::new(item));
+            return Ok(());
+        }
+        self.take(item, next, out)
+    }
+
+    #[inline]
+    fn take(
         &mut self,
         item: ContourMove,
         next: &mut CompensationStage,
@@ -81,14 +104,21 @@ impl RoundingStage {
                 self.side_before = held.side;
             }
             let mut arc = None;
-            if let Some(radius) = corner_arc::radius_between(&held, self.held_length, &item) {
+            if let Some((plane, radius)) = corner_arc::arc_between(&held, self.held_length, &item) {
                 let join = Join {
                     kind: JoinKind::Rounding(radius),
                     feed_mm_min: None,
                     block: held.element.block,
                     sequence: held.element.sequence,
                 };
+                // The arc lies in the plane of its lines, which need not be that of the contour.
+                let own = std::mem::replace(&mut held.plane, plane);
+                let items = std::mem::replace(&mut item.plane, plane);
                 arc = round(&mut held, &mut item, radius, join)?;
+                (held.plane, item.plane) = (own, items);
+                if let Some(arc) = &mut arc {
+                    arc.plane = own;
+                }
             }
             next.push(held, out)?;
             if let Some(arc) = arc {
@@ -101,7 +131,11 @@ impl RoundingStage {
     }
 
     pub fn holds_from(&self, sequence: u64) -> bool {
-        let held = self.held.iter().chain(self.after.last());
+        let held = self
+            .held
+            .iter()
+            .chain(self.after.last())
+            .chain(self.left_out.as_deref());
         held.map(|item| item.element.sequence)
             .chain(self.join.map(|join| join.sequence))
             .any(|of| of >= sequence)
@@ -113,7 +147,9 @@ impl RoundingStage {
 
     #[inline]
     pub fn has_no_join(&self) -> bool {
-        self.join.is_none() && self.held.as_ref().is_none_or(|held| held.side == Side::Off)
+        self.join.is_none()
+            && self.left_out.is_none()
+            && self.held.as_ref().is_none_or(|held| held.side == Side::Off)
     }
 
     /// The held movement, when an uncompensated one follows.
@@ -140,6 +176,9 @@ impl RoundingStage {
     }
 
     pub fn flush(&mut self, next: &mut CompensationStage, out: &mut Output) -> Result<(), Fault> {
+        if let Some(left_out) = self.left_out.take() {
+            self.take(*left_out, next, out)?;
+        }
         if let Some(join) = self.join.take() {
             return Err(not_between(join));
         }

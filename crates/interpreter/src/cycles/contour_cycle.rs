@@ -5,10 +5,11 @@ use bahn_parameters::MessageId;
 use super::contour_finish::contour_data_cycle;
 use super::contour_pocket::{ContourJob, Halt, Watch, contour_milling, pilot_drilling, rough_out};
 use super::contour_train::contour_train;
+use super::cylinder::{CYLINDER_SURFACE, cylinder_surface};
 use super::machining::Machining;
 use crate::context::Context;
 
-/// Runs cycle 6, 15, 16 or 21 to 25 on the contours of cycle 14.
+/// Runs cycle 6, 15, 16, 21 to 25 or 27 on the contours of cycle 14.
 pub(crate) fn contour_cycle(c: &mut Context<'_>, job: &ContourJob, watch: &Watch<'_>) -> Result<(), Halt> {
     let Some(definition) = c.modal.cycle.machining.ready().cloned() else {
         return Err(MessageId::CyclIncomplete.into());
@@ -19,6 +20,7 @@ pub(crate) fn contour_cycle(c: &mut Context<'_>, job: &ContourJob, watch: &Watch
         15 => pilot_drilling(&mut Machining::new(c), job, &definition, watch),
         16 => contour_milling(&mut Machining::new(c), job, &definition, watch),
         25 => contour_train(c, job, watch),
+        CYLINDER_SURFACE => cylinder_surface(c, job, watch),
         _ => contour_data_cycle(c, job, &definition, watch),
     };
     if let Err(Halt::Interrupted) = result {

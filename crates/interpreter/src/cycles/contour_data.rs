@@ -1,10 +1,11 @@
-//! Cycles with contour data: 20 names what 21 to 24 have in common, 25 brings its own. Their parameters are the Q
+//! Cycles with contour data: 20 names what 21 to 24 have in common, 25 and 27 bring their own. Their parameters are the Q
 //! parameters Q1 to Q18 themselves, which the definition assigns and the call reads (later controls; the manuals here
 //! name the cycles only [000:847] [000:652]).
 
 use bahn_parameters::MessageId;
 use bahn_path::Position;
 
+use super::cylinder::CYLINDER_SURFACE;
 use super::machining::Heights;
 use crate::definition::{Definition, Resolved};
 use crate::error::Fault;
@@ -74,6 +75,19 @@ const PARAMETERS: &[(u16, &[(u16, &str)])] = &[
             (15, "CLIMB OR UP-CUT"),
         ],
     ),
+    (
+        CYLINDER_SURFACE,
+        &[
+            (1, "MILLING DEPTH"),
+            (3, "ALLOWANCE FOR SIDE"),
+            (6, "SET-UP CLEARANCE"),
+            (10, "PLUNGING DEPTH"),
+            (11, "FEED RATE FOR PLUNGING"),
+            (12, "FEED RATE FOR MILLING"),
+            (16, "CYLINDER RADIUS"),
+            (17, "TYPE OF DIMENSION"),
+        ],
+    ),
 ];
 
 /// Whether the cycle takes its parameters from assignments to Q parameters.
@@ -91,7 +105,7 @@ pub(super) fn check(modal: &Modal, definition: &Definition) -> Result<(), Fault>
     if !is_assigned(definition.number) {
         return Ok(());
     }
-    if definition.number != 25 {
+    if !matches!(definition.number, 25 | CYLINDER_SURFACE) {
         let data = modal.cycle.contour_data.ready();
         let data = data.ok_or_else(|| {
             let detail = "cycle 20 CONTOUR DATA is not defined, or not completely";

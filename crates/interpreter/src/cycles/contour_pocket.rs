@@ -8,7 +8,7 @@ use bahn_path::region::{
     Contour as PlaneContour, Effort, HatchPattern, Merge, Outline, Pass, PocketArea, Segment, SubContour,
     Superposition,
 };
-use bahn_path::{Arc, Axis, AxisSet, Curve, FeedRate, Plane, Point2};
+use bahn_path::{Arc, Axis, AxisSet, Curve, Cylinder, FeedRate, Plane, Point2};
 
 use super::machining::{Heights, Machining, Tracer, infeeds, plane_direction};
 use crate::contour::flat::Flat;
@@ -23,9 +23,11 @@ use crate::status::Spindle;
 #[derive(Clone, Debug)]
 pub(crate) struct ContourJob {
     pub subcontours: Vec<SubContour>,
-    /// The contour of cycle 25.
+    /// The contour of cycle 25 or 27.
     pub train: Vec<ContourMove>,
     pub plane: Plane,
+    /// What cycle 27 machines, and where its centre is along the tool axis, mm.
+    pub cylinder: Option<(Cylinder, f64)>,
     /// Radius of the tool that machines before this one, or behind it, mm.
     pub other_radius: Option<f64>,
 }
@@ -88,6 +90,7 @@ impl ContourJob {
             subcontours: Vec::new(),
             train: Vec::new(),
             plane,
+            cylinder: None,
             other_radius: None,
         }
     }

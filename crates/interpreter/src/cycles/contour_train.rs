@@ -64,7 +64,7 @@ pub(super) fn contour_train(c: &mut Context<'_>, job: &ContourJob, watch: &Watch
 }
 
 /// The way of the tool centre beside a contour, from beside its first point to beside its last.
-fn beside(moves: &[ContourMove], plane: Plane, distance: f64) -> Result<PlaneContour, Fault> {
+pub(super) fn beside(moves: &[ContourMove], plane: Plane, distance: f64) -> Result<PlaneContour, Fault> {
     let side = moves.last().map_or(Side::Off, |last| last.side);
     let mut stages = Contour::default();
     let mut out = Output::default();

@@ -8,6 +8,7 @@ mod contour_data;
 mod contour_finish;
 mod contour_pocket;
 mod contour_train;
+mod cylinder;
 mod drilling;
 mod machining;
 mod pockets;
@@ -18,25 +19,25 @@ use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
 pub(crate) use self::contour_cycle::contour_cycle;
 pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
+pub(crate) use self::cylinder::{CYLINDER_SURFACE, take_surface};
 use self::drilling::{pecking, rigid_tapping, tapping, thread_cutting};
 use self::machining::Machining;
 use self::pockets::{circular_pocket, pocket_milling, slot_milling};
 use self::transformation::{
     axis_scaling, contour_geometry, datum_shift, dwell, mirror_image, rotation, scaling, spindle_orientation,
 };
-use crate::availability::{Feature, names_datum_table, words};
+use crate::availability::{Feature, names_datum_table, not_inhibited, words};
 use crate::context::Context;
 use crate::definition::{Definition, OEM_CYCLES, Resolved, is_contour_cycle, resolve};
 use crate::error::{Cause, Fault, WarningKind};
 use crate::flow::Flow;
 use crate::settings::Settings;
-use crate::tilting::working_plane;
+use crate::tilting::{geometry, working_plane};
 
 /// One block of a cycle definition.
 pub(crate) fn define_cycle(c: &mut Context<'_>, block: &CycleBlock) -> Result<Flow, Fault> {
-    if block.sub == 0 && is_inhibited(block.number, c.settings) {
-        let detail = format!("MP7245 inhibits cycle {}", block.number);
-        return Err(Fault::new(MessageId::BlockNotKnown, detail));
+    if block.sub == 0 {
+        not_inhibited(block.number, c.settings)?;
     }
     let feature = Feature::Cycle(block.number);
     if OEM_CYCLES.contains(&block.number) {
@@ -137,6 +138,9 @@ pub(crate) fn call_cycle(c: &mut Context<'_>) -> Result<Flow, Fault> {
     if definition.number == 12 {
         return called_program(&definition);
     }
+    if definition.number == CYLINDER_SURFACE && !c.pen.rehearsal && geometry(c, "CYCL DEF 27")?.is_none() {
+        return Ok(Flow::Next);
+    }
     c.pen.finish_contour()?;
     let mut m = Machining::new(c);
     match definition.number {
@@ -202,11 +206,6 @@ fn has_q_parameter(block: &CycleBlock) -> bool {
 
 fn is_known(number: u16, settings: &Settings) -> bool {
     settings.model.limits().has_cycle(u32::from(number))
-}
-
-/// MP7245: the machine builder inhibits the cycle [000:6655-6698].
-fn is_inhibited(number: u16, settings: &Settings) -> bool {
-    number < 32 && settings.rules.inhibited_cycles >> number & 1 != 0
 }
 
 fn is_effective_at_definition(number: u16) -> bool {

@@ -1,0 +1,176 @@
+//! What is put into an EPROM: the list of OUTPUT BINARY CODE 0001 and the image that it makes [000:11388-11412].
+//!
+//! How the control lays out its EPROM no manual says: here it is a directory in the words of the list, with the size of each
+//! file, an empty line, and the files one after the other (inferred).
+
+use crate::s_records::Image;
+
+/// Bytes of an EPROM without SIZE 2MB, and with it: 1 and 2 Mbit (inferred).
+const SIZES: [usize; 2] = [1 << 17, 1 << 18];
+/// Longest name of a file [000:6834-6905].
+const NAME_MAX: usize = 20;
+
+/// A list of files for an EPROM.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LoadList {
+    /// Id number of the EPROM: eight digits.
+    pub ident: String,
+    /// SIZE 2MB.
+    pub is_large: bool,
+    /// The files in their order.
+    pub files: Vec<ListedFile>,
+}
+
+/// A file of the list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ListedFile {
+    /// Its name, without blanks.
+    pub name: String,
+    /// It is the main file of the PLC program: /M.
+    pub is_main: bool,
+    /// Its line in the list, from 1.
+    pub line: u32,
+}
+
+/// What is wrong in a line of the list, from 1; 0 is the list as a whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ListFault {
+    /// The line.
+    pub line: u32,
+    /// First character that is meant, from 1.
+    pub column: u32,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl LoadList {
+    /// Reads a list: `IDENT 123 456 99` first, then `SIZE 2MB` and `LOAD name`.
+    ///
+    /// # Errors
+    /// All faults of all lines.
+    pub fn parse(text: &str) -> Result<LoadList, Vec<ListFault>> {
+        let mut list = LoadList::default();
+        let mut faults = Vec::new();
+        let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
+        for (place, (line, words)) in lines.enumerate() {
+            if let Err((column, message)) = list.take(place == 0, line, words) {
+                faults.push(ListFault { line, column, message });
+            }
+        }
+        if list.files.is_empty() && faults.is_empty() {
+            let message = "the list names no file: LOAD name".to_owned();
+            faults.push(ListFault { line: 0, column: 1, message });
+        }
+        if faults.is_empty() { Ok(list) } else { Err(faults) }
+    }
+
+    fn take(&mut self, is_first: bool, line: u32, text: &str) -> Result<(), (u32, String)> {
+        let begin = text.len() - text.trim_start().len();
+        let (word, rest) = text.trim().split_once(char::is_whitespace).unwrap_or((text.trim(), ""));
+        let at = |offset: usize| u32::try_from(begin + offset + 1).unwrap_or(1);
+        let behind = at(text.trim().len() - rest.trim_start().len());
+        let fault = |column: u32, message: &str| Err((column, message.to_owned()));
+        let name: String = rest.chars().filter(|c| !c.is_whitespace()).collect();
+        match word.to_ascii_uppercase().as_str() {
+            "IDENT" if !is_first => fault(at(0), "IDENT is the first line"),
+            "IDENT" if name.len() == 8 && name.bytes().all(|c| c.is_ascii_digit()) => {
+                self.ident = name;
+                Ok(())
+            }
+            "IDENT" => fault(behind, "the id number of an EPROM has eight digits: 123 456 99"),
+            _ if is_first => fault(at(0), "the first line is IDENT with the id number of the EPROM"),
+            "SIZE" if name.eq_ignore_ascii_case("2MB") => {
+                self.is_large = true;
+                Ok(())
+            }
+            "SIZE" => fault(behind, "the size is 2MB"),
+            "LOAD" => self.load(line, &name).map_err(|message| (behind, message)),
+            _ => fault(at(0), "a line is IDENT, SIZE or LOAD"),
+        }
+    }
+
+    fn load(&mut self, line: u32, name: &str) -> Result<(), String> {
+        let (name, is_main) = match name.strip_suffix("/M").or(name.strip_suffix("/m")) {
+            Some(name) => (name, true),
+            None => (name, false),
+        };
+        let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
+        if name.is_empty() || name.len() > NAME_MAX || !name.chars().all(fits) || name.starts_with('.') {
+            return Err("this is no name of a file of the control".into());
+        }
+        if self.files.iter().any(|file| file.name.eq_ignore_ascii_case(name)) {
+            return Err(format!("{name} is loaded twice"));
+        }
+        if is_main && self.files.iter().any(|file| file.is_main) {
+            return Err("there is one main file of the PLC program".into());
+        }
+        self.files.push(ListedFile {
+            name: name.to_owned(),
+            is_main,
+            line,
+        });
+        Ok(())
+    }
+
+    /// The image of the files, whose contents are in the order of the list.
+    ///
+    /// # Errors
+    /// When they do not fit into the EPROM.
+    pub fn image(&self, contents: &[Vec<u8>]) -> Result<Image, String> {
+        let mut bytes = format!("IDENT {}\n", self.ident).into_bytes();
+        if self.is_large {
+            bytes.extend_from_slice(b"SIZE 2MB\n");
+        }
+        for (file, content) in self.files.iter().zip(contents) {
+            let main = if file.is_main { "/M" } else { "" };
+            bytes.extend_from_slice(format!("LOAD {}{main} {}\n", file.name, content.len()).as_bytes());
+        }
+        bytes.push(b'\n');
+        contents.iter().for_each(|content| bytes.extend_from_slice(content));
+        let room = SIZES[usize::from(self.is_large)];
+        if bytes.len() > room {
+            let size = bytes.len();
+            return Err(match self.is_large {
+                false => format!("{size} bytes do not fit into {room}; SIZE 2MB takes an EPROM twice as large"),
+                true => format!("{size} bytes do not fit into {room}"),
+            });
+        }
+        Ok(Image {
+            title: self.ident.clone(),
+            bytes,
+        })
+    }
+
+    /// The list of an image, and what is in its files.
+    ///
+    /// # Errors
+    /// When the image is none of this kind, or not whole.
+    pub fn of_image(image: &Image) -> Result<(LoadList, Vec<Vec<u8>>), String> {
+        let end = image.bytes.windows(2).position(|two| two == b"\n\n");
+        let end = end.ok_or("the image has no directory")?;
+        let (directory, mut rest) = image.bytes.split_at(end + 2);
+        let directory = std::str::from_utf8(directory).map_err(|_| "the directory is no text")?;
+        let (mut text, mut contents) = (String::new(), Vec::new());
+        for line in directory.lines() {
+            let listed = match line.strip_prefix("LOAD ").and_then(|rest| rest.rsplit_once(' ')) {
+                Some((name, size)) => {
+                    let size = size.parse::<usize>().ok().filter(|size| *size <= rest.len());
+                    let (content, behind) = rest.split_at(size.ok_or_else(|| format!("{name} is not whole"))?);
+                    rest = behind;
+                    contents.push(content.to_vec());
+                    format!("LOAD {name}")
+                }
+                None => line.to_owned(),
+            };
+            text.push_str(&(listed + "\n"));
+        }
+        if !rest.is_empty() {
+            return Err(format!("{} bytes belong to no file", rest.len()));
+        }
+        let list = LoadList::parse(&text).map_err(|faults| {
+            let first = faults.into_iter().next();
+            first.map_or_else(String::new, |fault| fault.message)
+        })?;
+        Ok((list, contents))
+    }
+}

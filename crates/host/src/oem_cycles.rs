@@ -1,0 +1,137 @@
+//! The cycles of the machine builder that a machine has, with their dialogue texts [000:17691-17984].
+
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use bahn_parameters::ParameterList;
+use bahn_program::{Dialog, Operation, Program};
+
+use crate::{HostError, files};
+
+/// The numbers of the cycles: of their programs less 99999900 [000:17728-17730].
+pub const NUMBERS: RangeInclusive<u32> = 68..=99;
+/// Longest dialogue text; 20 characters of it are shown in the dialogue line [000:17861-17866].
+pub const TEXT_MAX: usize = 34;
+/// M2240 inhibits cycle 68 of the EPROM [000:10674-10705].
+const FIRST_INHIBIT: u32 = 2240;
+
+/// A cycle of the machine builder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OemCycle {
+    /// Its number, 68 to 99.
+    pub number: u32,
+    /// Its program.
+    pub path: PathBuf,
+    /// It is in the EPROM, not in the program memory.
+    pub in_eprom: bool,
+    /// A program of the same number goes before it [000:17757-17761].
+    pub is_hidden: bool,
+    /// Its dialogue block: DLG-CALL or DLG-DEF, and the dialogues of its name and its parameters; `None` when it has none.
+    pub dialog: Option<OemDialog>,
+}
+
+/// What a dialogue block says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OemDialog {
+    /// It runs at the cycle call, not at its definition.
+    pub at_call: bool,
+    /// Number and text of the dialogue of its name.
+    pub name: Text,
+    /// Its parameters: Q parameter, number and text of its dialogue.
+    pub parameters: Vec<(u32, Text)>,
+}
+
+/// A dialogue text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Text {
+    /// Number of the dialogue: the line of the file, from 0.
+    pub number: u32,
+    /// The text; empty where the file has none.
+    pub text: String,
+}
+
+impl OemCycle {
+    /// The marker with which the PLC inhibits it in the EPROM.
+    pub fn inhibit(&self) -> u32 {
+        FIRST_INHIBIT + self.number - NUMBERS.start()
+    }
+
+    /// What is wrong with it.
+    pub fn faults(&self) -> Vec<String> {
+        let Some(dialog) = &self.dialog else {
+            return vec!["no dialogue block DLG-DEF or DLG-CALL".into()];
+        };
+        let texts = std::iter::once(&dialog.name).chain(dialog.parameters.iter().map(|(_, text)| text));
+        let wrong = texts.filter_map(|Text { number, text }| match text.chars().count() {
+            0 => Some(format!("dialogue {number} has no text")),
+            length if length > TEXT_MAX => {
+                Some(format!("dialogue {number} has {length} characters, {TEXT_MAX} fit"))
+            }
+            _ => None,
+        });
+        wrong.collect()
+    }
+}
+
+/// The cycles of a folder of part programs and of the folder `eprom` in it, by number; those of the program memory first.
+///
+/// # Errors
+/// When the folders or programs cannot be read.
+pub fn find(
+    programs: &Path,
+    dialogues: &[String],
+    list: &ParameterList,
+) -> Result<Vec<OemCycle>, HostError> {
+    let rules = list.operation_parameters().oem_cycles;
+    let mut found: BTreeMap<(u32, bool), OemCycle> = BTreeMap::new();
+    for (in_eprom, folder) in [(false, programs.to_owned()), (true, programs.join("eprom"))] {
+        for number in NUMBERS {
+            let path = folder.join(format!("{}.H", 99_999_900 + number));
+            if !path.is_file() {
+                continue;
+            }
+            let program = files::load_program(&path)?.program;
+            let offset = rules.definition_offset;
+            let cycle = OemCycle {
+                number,
+                path,
+                in_eprom,
+                is_hidden: false,
+                dialog: dialog_block(&program).map(|dialog| read(&dialog, dialogues, offset)),
+            };
+            found.insert((number, in_eprom), cycle);
+        }
+    }
+    for number in NUMBERS {
+        let both = [false, true].map(|in_eprom| found.contains_key(&(number, in_eprom)));
+        if both == [true, true]
+            && let Some(hidden) = found.get_mut(&(number, rules.names_free))
+        {
+            hidden.is_hidden = true;
+        }
+    }
+    Ok(found.into_values().collect())
+}
+
+fn dialog_block(program: &Program) -> Option<Dialog> {
+    let mut blocks = program.blocks().take(16);
+    blocks.find_map(|block| match &block.block.operation {
+        Operation::Dialog(dialog) => Some((**dialog).clone()),
+        _ => None,
+    })
+}
+
+fn read(dialog: &Dialog, dialogues: &[String], definition_offset: u16) -> OemDialog {
+    let text = |number: &u8| Text {
+        number: u32::from(*number),
+        text: dialogues.get(usize::from(*number)).cloned().unwrap_or_default(),
+    };
+    let offset = if dialog.call { 0 } else { u32::from(definition_offset) };
+    let mut texts = dialog.texts.iter();
+    OemDialog {
+        at_call: dialog.call,
+        name: texts.next().map(text).unwrap_or_default(),
+        parameters: (offset + 1..).zip(texts.map(text)).collect(),
+    }
+}
