@@ -392,7 +392,7 @@ fn parameters_say_that_they_have_no_effect() {
     let folder = Folder::new();
     let explained = folder.bahn("mp explain 7350").out();
     assert!(
-        explained.contains("no effect here (colours of the screen)"),
+        explained.contains("no effect here (no screen has these colours)"),
         "{explained}"
     );
     assert!(
@@ -409,7 +409,7 @@ fn parameters_say_that_they_have_no_effect() {
     folder.write("a.mp", "MP7350 : 5\n").write("b.mp", "MP7350 : 6\n");
     let difference = folder.bahn("mp diff a.mp b.mp").out();
     assert!(
-        difference.contains("no effect here (colours of the screen)"),
+        difference.contains("no effect here (no screen has these colours)"),
         "{difference}"
     );
     folder.bahn("mp new -o mill.mp");

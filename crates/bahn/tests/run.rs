@@ -442,7 +442,7 @@ fn compensation_tables_lie_in_the_folder() {
     let list = folder.read("mill/parameters.mp");
     folder.write(
         "mill/parameters.mp",
-        &list.replace("MP730    : %00000", "MP730    : %00001"),
+        list.replace("MP730    : %00000", "MP730    : %00001"),
     );
     let check = folder.bahn("machine check mill");
     assert!(!check.err().contains("compensation tables"), "{}", check.err());

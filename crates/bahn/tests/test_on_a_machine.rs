@@ -76,7 +76,7 @@ fn parameters_of_the_command_line_say_what_they_do_not() {
         assert_eq!(run.code(), 0, "{command}: {}", run.err());
         let said = run.err();
         assert!(
-            said.contains("warning: --mp 7350=5: MP7350 has no effect here: colours of the screen"),
+            said.contains("warning: --mp 7350=5: MP7350 has no effect here: no screen has these colours"),
             "{command}: {said}"
         );
         assert!(

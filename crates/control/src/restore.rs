@@ -246,10 +246,10 @@ fn lead_to(target: &Position, site: &mut Site) -> bool {
         .any(|unit| unit.axis == tool_axis && target[unit.axis] > unit.nominal);
     let others_there = axes
         .iter()
-        .filter(|unit| unit.axis != tool_axis && !unit.is_plc_axis())
+        .filter(|unit| unit.axis != tool_axis && unit.is_free())
         .all(there);
     let tool_there = axes.iter().filter(|unit| unit.axis == tool_axis).all(there);
-    for unit in axes.iter_mut().filter(|unit| !unit.is_plc_axis()) {
+    for unit in axes.iter_mut().filter(|unit| unit.is_free()) {
         let turn = if unit.axis == tool_axis {
             raise || others_there
         } else {

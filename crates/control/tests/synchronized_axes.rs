@@ -73,6 +73,30 @@ fn no_program_moves_the_slave() {
     }
 }
 
+/// A block scan leads the master back to the contour, and the slave beside it.
+#[test]
+fn the_slave_returns_to_the_contour() {
+    let program = "L X+60 Y+60 R0 F3000\nL X+100\nL Y+80\nL X+120";
+    let mut rig = gantry("").mps("7680=6").program("1.H", program).ready();
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.command("restore-at 4");
+    rig.seconds(0.5);
+    rig.command("restore-position");
+    rig.seconds(0.1);
+    assert!(rig.bit("M2019"));
+    rig.start();
+    rig.until(10.0, "the contour", |rig| !rig.bit("M2019"));
+    close(rig.axis('X').machine, 100.0, 0.005);
+    close(rig.table('V'), rig.table('X'), 0.01);
+    rig.start();
+    rig.until(10.0, "the end", |rig| rig.control.snapshot().ended);
+    rig.settle();
+    close(rig.axis('X').machine, 120.0, 0.005);
+    close(rig.table('V'), rig.table('X'), 0.01);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
 /// MP860 = 0: the positions at switch-on are synchronous, only the master has a mark [000:4492-4496].
 #[test]
 fn the_master_alone_passes_its_mark() {
