@@ -4,7 +4,7 @@
 mod support;
 
 use serde_json::Value;
-use support::Folder;
+use support::{Folder, number};
 
 /// As a later control writes it: columns under their names, values of several kinds.
 const TOOL_T: &str = "\
@@ -371,4 +371,40 @@ fn what_the_control_has_written_is_shown() {
     assert_eq!(length, (length * 10_000.0).round() / 10_000.0);
     assert!(of(&row, "CUR.TIME") > 0.1, "{row}");
     assert!(!folder.read("mill/tools.tsv").contains("CUR.TIME"));
+}
+
+/// Several tool tables in the folder of a machine: a run takes another one than that of machine.toml, here one in which tool 2
+/// has a radius of 6 in place of 10 mm; it is checked as that is, and the folder stays as it was.
+#[test]
+fn a_run_takes_another_tool_table() {
+    let folder = Folder::with_mill(
+        "BLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+70 Z+0\nTOOL CALL 2 Z S2000\nL Z+80 R0 FMAX\n\
+         L X-20 Y+35 FMAX M3\nL Z-3 FMAX\nL X+120 F3000\nL Z+80 FMAX M30",
+    );
+    let table = folder.read("mill/tools.tsv");
+    let small = table.replacen("\n2\t95\t10\t", "\n2\t95\t6\t", 1);
+    assert_ne!(small, table);
+    folder.write("mill/small.tsv", small);
+    folder.write("mill/wrong.tsv", "T\tL\tR\n2\t95\twide\n");
+    let removed = |tools: &str| {
+        let run = folder.bahn(&format!(
+            "run main.H --machine mill --fresh --format json {tools}"
+        ));
+        assert_eq!(run.code(), 0, "{}", run.err());
+        number(&run.json(), "/removed_mm3")
+    };
+    for (tools, width) in [("", 20.0), ("--tools small.tsv", 12.0), ("", 20.0)] {
+        let removed = removed(tools);
+        assert!(
+            (removed / (width * 3.0 * 100.0) - 1.0).abs() < 0.02,
+            "{tools}: {removed}"
+        );
+    }
+    let wrong = folder.bahn("run main.H --machine mill --fresh --tools wrong.tsv");
+    assert_eq!(wrong.code(), 1, "{}", wrong.err());
+    assert!(wrong.err().contains("wrong.tsv:2"), "{}", wrong.err());
+    // What the control remembers belongs to the table of machine.toml.
+    let kept = folder.bahn("run main.H --machine mill --tools small.tsv");
+    assert_eq!(kept.code(), 2);
+    assert!(kept.err().contains("--fresh"), "{}", kept.err());
 }

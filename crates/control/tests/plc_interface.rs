@@ -6,6 +6,7 @@
 mod stand;
 mod support;
 
+use bahn_control::Signal;
 use stand::*;
 use support::*;
 
@@ -109,6 +110,28 @@ fn analogue_output_by_feed() {
     rig.until(5.0, "the end", |rig| rig.control.snapshot().ended);
     rig.cycle();
     assert_eq!(volts(&rig), 0.0);
+}
+
+/// Module 9130: the PLC gives output S a voltage in mV, limited to 10 V; the machine gets it, and it can be recorded. There is no
+/// other output that it may set [000:16037-16061].
+#[test]
+fn a_voltage_of_the_plc_at_output_s() {
+    let plc = format!(
+        "{ACKNOWLEDGE}\n       PS    W902\n       PS    W900\n       CM    9130\n       L     M3171\n       = M950\n"
+    );
+    let mut rig = ready(bench(&plc).mp("3010=2").mp("3011=2"));
+    let output: Signal = "output.S".parse().unwrap();
+    for (millivolts, wanted) in [(-2500, -2.5), (12_000, 10.0), (-12_000, -10.0), (0, 0.0)] {
+        rig.command(&format!("W900={millivolts}"));
+        rig.seconds(0.1);
+        assert!((volts(&rig) - wanted).abs() < 1e-9, "{wanted}: {}", volts(&rig));
+        assert!((rig.control.observe(&output) - wanted).abs() < 1e-9);
+        assert!(!rig.bit("M950"));
+    }
+    rig.command("W902=1");
+    rig.command("W900=5000");
+    rig.seconds(0.1);
+    assert!(rig.bit("M950") && volts(&rig) == 0.0, "output 1 is not the PLC's");
 }
 
 /// Several changes of one item by module 9036 in one scan: the last one holds. All factors, then X, then X

@@ -77,7 +77,7 @@ fn the_handwheel_leads_beside_the_path() {
 #[test]
 fn path_and_wheel_together_have_twice_mp1060_at_most() {
     let mut rig =
-        wheel("L IZ+1 R0 F600 M118 Z5\nLBL 1\nL IZ+6 F6000\nL IZ-6\nCALL LBL 1 REP 5/5\nL IZ+0 M118");
+        wheel("L IZ+1 R0 F600 M118 Z5\nLBL 1\nL IZ+6 F6000\nL IZ-6\nCALL LBL 1 REP 5/5\nL IX+20 F600 M118");
     let z = rig.axis('Z').nominal;
     rig.start();
     rig.seconds(0.4);

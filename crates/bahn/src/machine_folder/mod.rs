@@ -26,6 +26,18 @@ pub(crate) fn load(folder: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>
         .map_err(|error| UsageError::new(format!("{error}; `bahn machine new` makes one")))
 }
 
+/// The same with another tool table of the folder, when one is named.
+///
+/// # Errors
+/// As [`load`].
+pub(crate) fn load_with_tools(
+    folder: &Path,
+    tools: Option<&str>,
+) -> Result<Result<LoadedMachine, Vec<FileFault>>, UsageError> {
+    let Some(tools) = tools else { return load(folder) };
+    LoadedMachine::load_with_tools(folder, tools).map_err(|error| UsageError::new(error.to_string()))
+}
+
 /// Executes a subcommand of `bahn machine`.
 pub(crate) fn command(options: &MachineFolderOptions) -> Result<Outcome, UsageError> {
     match &options.command {

@@ -51,7 +51,7 @@ use session::{Ended, Patience, Session};
 /// Runs a program on a machine and reports.
 pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
     files::keep_inputs(&options.inputs(), &options.written())?;
-    let mut machine = match machine_folder::load(&options.machine)? {
+    let mut machine = match machine_folder::load_with_tools(&options.machine, options.run.tools.as_deref())? {
         Ok(machine) => machine,
         Err(faults) => return refused(&faults, options),
     };

@@ -153,6 +153,10 @@ pub(crate) struct RunControl {
     /// Begin without what survives power-off, and keep nothing.
     #[arg(long)]
     pub fresh: bool,
+    /// Another tool table of the machine's folder in place of that of machine.toml; nothing of what survives power-off
+    /// belongs to it.
+    #[arg(long, value_name = "NAME", requires = "fresh")]
+    pub tools: Option<String>,
     /// One machine parameter instead of that of the list, as 4310.0=0 (repeatable, or several with commas).
     #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
     pub mp: Vec<String>,

@@ -61,7 +61,19 @@ impl LoadedMachine {
     /// # Errors
     /// When there is no such folder or no `machine.toml` in it.
     pub fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
-        load(root)
+        load(root, None)
+    }
+
+    /// The same with another tool table of the folder than that of `machine.toml`: a control has several of them, of which
+    /// one is in use [000:180] [000:7968].
+    ///
+    /// # Errors
+    /// As [`LoadedMachine::load`].
+    pub fn load_with_tools(
+        root: &Path,
+        tools: &str,
+    ) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+        load(root, Some(tools))
     }
 
     /// The files that were read, and the lock of the state.
@@ -122,7 +134,7 @@ impl LoadedMachine {
 }
 
 /// See [`LoadedMachine::load`].
-fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+fn load(root: &Path, tools: Option<&str>) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
     let file = root.join(MachineFolder::FILE);
     let bytes = files::read_description(&file).map_err(|error| {
         HostError::new(format!(
@@ -131,7 +143,10 @@ fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError>
         ))
     })?;
     let text = decode(&bytes);
-    let (folder, faults) = MachineFolder::read(&text);
+    let (mut folder, faults) = MachineFolder::read(&text);
+    if let Some(tools) = tools {
+        folder.tools = Some(tools.to_owned());
+    }
     let mut loader = Loader {
         root,
         faults: Vec::new(),
