@@ -166,10 +166,7 @@ impl Chain {
 
     /// The path position of axis positions.
     pub fn to_path(&self, axes: &Position) -> Position {
-        self.placed(
-            &self.superimposed.added(*axes, -1.0),
-            self.placement.as_deref(),
-        )
+        self.placed(&self.superimposed.added(*axes, -1.0), self.placement.as_deref())
     }
 
     /// Where the tool is in the coordinates that are shown, beside which the handwheel may have led it: those of the

@@ -295,7 +295,10 @@ pub(crate) fn limit_message(axes: &mut OwnAxes, axis: Axis, direction: Direction
 
 /// Whether an axis moves on the circle of an element, where reversal peaks are compensated.
 fn is_circular(element: &PathElement, axis: Axis) -> bool {
-    let cylinder = element.placement.as_ref().and_then(|placement| placement.cylinder());
+    let cylinder = element
+        .placement
+        .as_ref()
+        .and_then(|placement| placement.cylinder());
     if let Some(cylinder) = cylinder {
         let own = cylinder.moved_by(axis);
         return matches!(&element.curve, Curve::Arc(arc) if arc.plane.contains(own));

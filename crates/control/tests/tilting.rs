@@ -110,8 +110,16 @@ fn limits_are_those_of_the_axes_behind_the_plane() {
 #[test]
 fn a_cylinder_surface() {
     let table = [
-        "410.3=1", "7500=1", "7510=%000001", "7511=%11", "7512=300", "7520=%000100", "7521=%11", "7522=150",
-        "7530=%010000", "7531=%01",
+        "410.3=1",
+        "7500=1",
+        "7510=%000001",
+        "7511=%11",
+        "7512=300",
+        "7520=%000100",
+        "7521=%11",
+        "7522=150",
+        "7530=%010000",
+        "7531=%01",
     ];
     let mill = Build::mill()
         .plant("[axis.C]", "[axis.B]")
@@ -120,7 +128,11 @@ fn a_cylinder_surface() {
     let blocks = "L X+250 Y+200 Z+300 B+0 R0 FMAX\nCYCL DEF 14.0 CONTOUR GEOMETRY\nCYCL DEF 14.1 CONTOUR LABEL 1\n\
                   CYCL DEF 27.0 CYLINDER SURFACE Q1=-5 Q3=+0 Q6=+2 Q10=+5 Q11=500 Q12=1000 Q16=50 Q17=0\nCYCL CALL\n\
                   L Z+300 FMAX M2\nLBL 1\nL B+10 Y+200 R0\nL B+100\nL Y+230\nLBL 0";
-    let mut rig = table.into_iter().fold(mill, Build::mp).program("ROLL.H", blocks).rig();
+    let mut rig = table
+        .into_iter()
+        .fold(mill, Build::mp)
+        .program("ROLL.H", blocks)
+        .rig();
     rig.power_on();
     rig.command("mode full");
     rig.command("select ROLL.H");

@@ -300,7 +300,10 @@ mod tests {
             R         +2.5      1      2      ROUGH\n\
             [END]\n";
         let tool = parse(text).unwrap()[&4];
-        assert_eq!((tool.shape.oversize.length, tool.shape.oversize.radius), (0.003, -0.02));
+        assert_eq!(
+            (tool.shape.oversize.length, tool.shape.oversize.radius),
+            (0.003, -0.02)
+        );
         assert_eq!(tool.shape.length, 80.1 + 0.003);
         let edges = Edges {
             count: 3,

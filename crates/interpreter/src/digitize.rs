@@ -92,7 +92,10 @@ fn job(c: &Context<'_>) -> Result<(ScanJob, Box<str>), Fault> {
     if let Some(value) = highest.get_mut(tool_axis.index()) {
         *value = height;
     }
-    if let Some(axis) = [min, highest].iter().find_map(|at| beyond_limits(c, at, tool_axis)) {
+    if let Some(axis) = [min, highest]
+        .iter()
+        .find_map(|at| beyond_limits(c, at, tool_axis))
+    {
         return Err(faulty(&format!("the range leaves the traverse range of {axis}")));
     }
     let (pattern, last) = match pattern.number {

@@ -9,7 +9,6 @@ use crate::blank::{blank_max, blank_min};
 use crate::context::Context;
 use crate::contour::rounding::{Join, JoinKind};
 use crate::cycles::{call_cycle, define_cycle};
-use crate::unrolled::unrolled_words;
 use crate::error::{Cause, Fault, Message, WarningKind};
 use crate::flow::Flow;
 use crate::functions::take_m_functions;
@@ -20,6 +19,7 @@ use crate::q_parameters::QTable;
 use crate::run::Run;
 use crate::settings::Settings;
 use crate::tool_measuring::{measure_tool, measures_tools};
+use crate::unrolled::unrolled_words;
 
 /// Executes what a block says. The caller has already passed over skipped blocks.
 #[inline]

@@ -2,9 +2,7 @@
 
 use bahn_parameters::own_functions::OwnFunction;
 use bahn_parameters::technology::{Deed, Output, Technology};
-use bahn_path::{
-    At, Axis, ControlFunction, Function, SpindleOrder, Synchronisation, TechnologyFunction,
-};
+use bahn_path::{At, Axis, ControlFunction, Function, SpindleOrder, Synchronisation, TechnologyFunction};
 use bahn_program::MFunctions;
 
 use crate::availability::Feature;
@@ -157,11 +155,7 @@ fn act_on_feed(
 }
 
 /// M112 T A: tolerance and greatest angle of the arcs at corners.
-fn corner_arcs(
-    numbers: &Numbers,
-    settings: &Settings,
-    m: &MFunctions,
-) -> Result<CornerArcs, Fault> {
+fn corner_arcs(numbers: &Numbers, settings: &Settings, m: &MFunctions) -> Result<CornerArcs, Fault> {
     let value = |letter| -> Result<Option<f64>, Fault> {
         m.argument(112, letter)
             .map(|value| numbers.q.value(value))

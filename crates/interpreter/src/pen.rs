@@ -115,7 +115,11 @@ impl Pen {
         }
         let corner_arcs = modal.corner_arcs.map(|arcs| CornerArcs {
             // A rounding refers to the point itself.
-            spacing_mm: if self.join_follows { 0.0 } else { modal.point_spacing_mm },
+            spacing_mm: if self.join_follows {
+                0.0
+            } else {
+                modal.point_spacing_mm
+            },
             ..arcs
         });
         let item = ContourMove {

@@ -22,7 +22,12 @@ impl Interpreter {
             Some(tool) => Some(tools.radius_of(&mut c, tool)?),
             None => None,
         };
-        let is_cylinder = c.modal.cycle.machining.ready().is_some_and(|d| d.number == CYLINDER_SURFACE);
+        let is_cylinder = c
+            .modal
+            .cycle
+            .machining
+            .ready()
+            .is_some_and(|d| d.number == CYLINDER_SURFACE);
         let mut recorder = self.run.clone();
         if is_cylinder {
             take_surface(&mut recorder.context(&self.settings))?;

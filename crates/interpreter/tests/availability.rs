@@ -52,7 +52,10 @@ fn part_of_a_function_is_said() {
 /// with a message that says so.
 #[test]
 fn cycle_31_is_a_probe_function() {
-    let run = Job::new(program("CYCL DEF 31.0 TOOL LENGTH\nCYCL DEF 31.1 CHECK: 0\nCYCL CALL")).run();
+    let run = Job::new(program(
+        "CYCL DEF 31.0 TOOL LENGTH\nCYCL DEF 31.1 CHECK: 0\nCYCL CALL",
+    ))
+    .run();
     assert_eq!(run.message(), Some((BlockNotKnown, 3)));
     let detail = run.error.map(|error| error.detail).unwrap_or_default();
     assert!(detail.contains("TCH PROBE 31 measures the length"), "{detail}");

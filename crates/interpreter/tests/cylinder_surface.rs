@@ -44,14 +44,7 @@ fn job(machine: &[&str], tool_axis: char, before: &str, cycle: &str, contour: &s
     in_unit("MM", machine, tool_axis, before, cycle, contour)
 }
 
-fn in_unit(
-    unit: &str,
-    machine: &[&str],
-    tool_axis: char,
-    before: &str,
-    cycle: &str,
-    contour: &str,
-) -> Job {
+fn in_unit(unit: &str, machine: &[&str], tool_axis: char, before: &str, cycle: &str, contour: &str) -> Job {
     let mut list = ParameterList::reference(ControlModel::Tnc415b);
     for assignment in machine {
         list.assign(assignment).expect(assignment);
@@ -146,7 +139,11 @@ fn a_contour_in_degrees() {
     let last = run.moves().last().expect("a movement");
     assert_eq!((last.start[Axis::X], last.start[Axis::C]), (10.0, 100.0));
     // The centre is at Y 30, its surface at Y 55.
-    assert!((last.start[Axis::Y] - 57.0).abs() < 1e-9, "{}", last.start[Axis::Y]);
+    assert!(
+        (last.start[Axis::Y] - 57.0).abs() < 1e-9,
+        "{}",
+        last.start[Axis::Y]
+    );
     assert!(last.placement.is_none());
 }
 
@@ -158,7 +155,11 @@ fn the_way_to_the_surface() {
         let run = job(TABLE, 'Y', before, &format!("{CYCLE} Q17=0"), contour).run();
         run.assert_completed();
         let rapid = |e: &&PathElement| e.placement.is_none() && e.feed == FeedRate::Rapid;
-        let moves: Vec<_> = run.moves().skip_while(|e| e.block.block < 8).filter(rapid).collect();
+        let moves: Vec<_> = run
+            .moves()
+            .skip_while(|e| e.block.block < 8)
+            .filter(rapid)
+            .collect();
         moves
             .iter()
             .flat_map(|e| [Axis::X, Axis::Y, Axis::Z, Axis::C].map(|axis| e.end[axis]))
@@ -167,7 +168,12 @@ fn the_way_to_the_surface() {
     };
     assert_eq!(
         way("L X+100 Y+20 R0 FMAX"),
-        [[100.0, 57.0, 0.0, 0.0], [10.0, 57.0, 30.0, 10.0], [10.0, 250.0, 30.0, 100.0]].concat()
+        [
+            [100.0, 57.0, 0.0, 0.0],
+            [10.0, 57.0, 30.0, 10.0],
+            [10.0, 250.0, 30.0, 100.0]
+        ]
+        .concat()
     );
     assert_eq!(
         way("L X+100 R0 FMAX"),
@@ -179,7 +185,8 @@ fn the_way_to_the_surface() {
 /// tool looks down on it. C is shifted by 30 degrees, the dimensions are mm.
 #[test]
 fn compensation_in_the_unrolled_surface() {
-    let contour = "L C+40 Z+20 RL\nL C+50\nRND R7.5\nL Z+60\nRND R7.5\nL IC-20\nRND R7.5\nL Z+20\nRND R7.5\nL C+40";
+    let contour =
+        "L C+40 Z+20 RL\nL C+50\nRND R7.5\nL Z+60\nRND R7.5\nL IC-20\nRND R7.5\nL Z+20\nRND R7.5\nL C+40";
     let cycle = CYCLE.replace("Q3=+0", "Q3=+0.5");
     let shift = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 C+30";
     let run = job(TABLE, 'Y', shift, &format!("{cycle} Q17=1"), contour).run();
@@ -211,7 +218,14 @@ fn compensation_in_the_unrolled_surface() {
 fn a_table_that_lies() {
     for b in [90.0, -90.0] {
         let before = format!("L B{b:+} FMAX");
-        let run = job(TABLE, 'Z', &before, &format!("{CYCLE} Q17=0"), "L C+0 X+30 R0\nL C+90\nL X+50").run();
+        let run = job(
+            TABLE,
+            'Z',
+            &before,
+            &format!("{CYCLE} Q17=0"),
+            "L C+0 X+30 R0\nL C+90\nL X+50",
+        )
+        .run();
         run.assert_completed();
         let cuts = cuts(&run);
         assert_eq!(cuts.len(), 4);
@@ -220,10 +234,16 @@ fn a_table_that_lies() {
         let from = y.atan2(x).to_degrees();
         let [start, corner, end] = [place(0, 0.0), place(0, 1.0), place(1, 1.0)].map(|at| rolled(at, from));
         // A positive turn of C leads the tool about the workpiece in positive direction.
-        assert!((start[0]).abs() < 1e-9 && (corner[0] - 90.0).abs() < 1e-9, "{start:?} {corner:?}");
+        assert!(
+            (start[0]).abs() < 1e-9 && (corner[0] - 90.0).abs() < 1e-9,
+            "{start:?} {corner:?}"
+        );
         // X of the machine is along the axis, by the sense of B.
         assert!((corner[1] - start[1]).abs() < 1e-9);
-        assert!(((end[1] - corner[1]).abs() - 20.0).abs() < 1e-9, "{corner:?} {end:?}");
+        assert!(
+            ((end[1] - corner[1]).abs() - 20.0).abs() < 1e-9,
+            "{corner:?} {end:?}"
+        );
         for at in [start, corner, end] {
             assert!((at[2] - (RADIUS - 4.0)).abs() < 1e-9, "{at:?}");
         }
@@ -240,13 +260,20 @@ fn inches_and_whole_turns() {
     let run = in_unit("INCH", TABLE, 'Y', "FN 4: Q50 = +25 DIV +25.4", cycle, &contour).run();
     run.assert_completed();
     let last = run.moves().last().expect("a movement");
-    assert!((last.start[Axis::C] - 360.0).abs() < 0.003, "{}", last.start[Axis::C]);
+    assert!(
+        (last.start[Axis::C] - 360.0).abs() < 0.003,
+        "{}",
+        last.start[Axis::C]
+    );
 }
 
 #[test]
 fn wrong_surfaces() {
     let message = |machine: &[&str], axis: char, before: &str, cycle: &str, contour: &str| {
-        job(machine, axis, before, cycle, contour).run().message().map(|(id, _)| id)
+        job(machine, axis, before, cycle, contour)
+            .run()
+            .message()
+            .map(|(id, _)| id)
     };
     let good = "L C+0 Z+0 R0\nL C+90";
     let with = |from: &str, to: &str| {
@@ -276,10 +303,24 @@ fn wrong_surfaces() {
         ('Y', "", "L A+0 Z+0 R0\nL A+90", WrongAxisProgrammed),
         // The table leans.
         ('Y', "L B+30 FMAX", good, PlaneWronglyDefined),
-        ('Y', "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30", good, PlaneWronglyDefined),
-        ('Y', "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+0", good, PlaneWronglyDefined),
+        (
+            'Y',
+            "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30",
+            good,
+            PlaneWronglyDefined,
+        ),
+        (
+            'Y',
+            "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+0",
+            good,
+            PlaneWronglyDefined,
+        ),
     ] {
-        assert_eq!(message(TABLE, axis, before, &cycle, contour), Some(id), "{axis} {before} {contour}");
+        assert_eq!(
+            message(TABLE, axis, before, &cycle, contour),
+            Some(id),
+            "{axis} {before} {contour}"
+        );
     }
     // Without a description of the machine nobody knows the centre.
     assert_eq!(message(&[], 'Y', "", &cycle, good), Some(BlockNotKnown));

@@ -234,7 +234,10 @@ fn the_range_lies_within_the_limits() {
         let run = Job::new(program(&blocks))
             .with(|settings| {
                 settings.rules.machine_zero = Position::ZERO;
-                (settings.rules.machine_zero[Axis::X], settings.rules.machine_zero[Axis::Z]) = (-400.0, datum);
+                (
+                    settings.rules.machine_zero[Axis::X],
+                    settings.rules.machine_zero[Axis::Z],
+                ) = (-400.0, datum);
                 let [least, greatest] = &mut settings.rules.traverse;
                 (greatest[Axis::X], least[Axis::Z], greatest[Axis::Z]) = (500.0, -300.0, 200.0);
             })
@@ -249,12 +252,18 @@ fn the_range_lies_within_the_limits() {
     };
     let good = [0.0, 0.0, -10.0, 100.0, 10.0, 0.0];
     assert_eq!(message(good, 20.0, 100.0), None);
-    assert_eq!(message([0.0, 0.0, -10.0, 100.001, 10.0, 0.0], 20.0, 100.0), faulty('X'));
+    assert_eq!(
+        message([0.0, 0.0, -10.0, 100.001, 10.0, 0.0], 20.0, 100.0),
+        faulty('X')
+    );
     // The spindle nose is 100 above the tip: at 0 - 100 + 100 + 200 it is at the limit.
     assert_eq!(message(good, 200.0, 100.0), None);
     assert_eq!(message(good, 200.001, 100.0), faulty('Z'));
     assert_eq!(message([0.0, 0.0, -300.0, 100.0, 10.0, 0.0], 20.0, 100.0), None);
-    assert_eq!(message([0.0, 0.0, -300.001, 100.0, 10.0, 0.0], 20.0, 100.0), faulty('Z'));
+    assert_eq!(
+        message([0.0, 0.0, -300.001, 100.0, 10.0, 0.0], 20.0, 100.0),
+        faulty('Z')
+    );
     // Nobody knows where the workpiece lies.
     assert_eq!(message(good, 1000.0, f64::NAN), None);
 }

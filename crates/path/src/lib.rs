@@ -40,8 +40,8 @@ pub use characteristic::Characteristic;
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use cylinder::Cylinder;
 pub use element::{
-    Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, Oversize, PathElement, SpindleOrder,
-    Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
+    Ahead, At, Blank, BlockRef, ControlFunction, FeedRate, Function, OverrideLaw, Oversize, PathElement,
+    SpindleOrder, Synchronisation, TechnologyFunction, Thread, ToolCall, ToolShape, Voltage,
 };
 pub use frame::{AxisScaling, Frame};
 pub use placement::Placement;

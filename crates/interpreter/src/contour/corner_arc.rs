@@ -68,7 +68,10 @@ pub(crate) fn takes_over(left_out: &ContourMove, item: &ContourMove) -> bool {
     item.corner_arcs.is_some()
         && is_plain(item)
         && item.element.functions().iter().all(|output| output.at == At::End)
-        && Placement::is_same(left_out.element.placement.as_ref(), item.element.placement.as_ref())
+        && Placement::is_same(
+            left_out.element.placement.as_ref(),
+            item.element.placement.as_ref(),
+        )
 }
 
 /// An uncompensated line of linear axes.
@@ -79,11 +82,7 @@ fn is_plain(item: &ContourMove) -> bool {
 
 /// The plane of the arc between two movements and its radius, mm; `None` where M112 makes none: elsewhere than between
 /// uncompensated lines in one main plane, and where the path stops for a function.
-pub(crate) fn arc_between(
-    held: &ContourMove,
-    held_length: f64,
-    item: &ContourMove,
-) -> Option<(Plane, f64)> {
+pub(crate) fn arc_between(held: &ContourMove, held_length: f64, item: &ContourMove) -> Option<(Plane, f64)> {
     let arcs = held.corner_arcs.filter(|_| item.corner_arcs.is_some())?;
     let lies_in = |movement: &ContourMove, plane: Plane| {
         let element = &movement.element;

@@ -147,7 +147,9 @@ impl RoundingStage {
 
     #[inline]
     pub fn has_no_join(&self) -> bool {
-        self.join.is_none() && self.left_out.is_none() && self.held.as_ref().is_none_or(|held| held.side == Side::Off)
+        self.join.is_none()
+            && self.left_out.is_none()
+            && self.held.as_ref().is_none_or(|held| held.side == Side::Off)
     }
 
     /// The held movement, when an uncompensated one follows.
