@@ -235,9 +235,9 @@ fn wrong_lists_are_refused() {
         assert!(err.contains(place) && err.contains(fault), "{list}: {err}");
     }
     // 1 Mbit are 131072 bytes: SIZE 2MB takes twice as many.
-    folder.write("m/plc/LARGE.A", &"x".repeat(140_000));
+    folder.write("m/plc/LARGE.A", "x".repeat(140_000));
     for (size, code) in [("", 1), ("SIZE 2MB\n", 0)] {
-        folder.write("LIST.TXT", &format!("IDENT 123 456 99\n{size}LOAD LARGE.A\n"));
+        folder.write("LIST.TXT", format!("IDENT 123 456 99\n{size}LOAD LARGE.A\n"));
         assert_eq!(
             folder.bahn("oem export m LIST.TXT --output LARGE.S3").code(),
             code,
