@@ -11,6 +11,7 @@ use crate::faults::FaultsOptions;
 use crate::machine_folder::MachineFolderOptions;
 use crate::manual::{CompletionsOptions, ManOptions};
 use crate::mp::MpOptions;
+use crate::oem::OemOptions;
 use crate::options::{
     CHECK_EXAMPLES, CheckOptions, EXPLAIN_EXAMPLES, ExplainOptions, FMT_EXAMPLES, FmtOptions,
 };
@@ -65,6 +66,8 @@ pub(crate) enum Command {
     Plc(Box<PlcOptions>),
     /// Check, explain, compare and write lists of machine parameters.
     Mp(Box<MpOptions>),
+    /// List the cycles of the machine builder, and write EPROMs with them.
+    Oem(OemOptions),
     /// Show, check, change and convert tables: tools, pockets, datums, pallets, points.
     Table(Box<TableOptions>),
     /// List what each function of a control does here: M functions, cycles, words, machine parameters and so on.

@@ -40,6 +40,7 @@ mod junit;
 mod machine_folder;
 mod manual;
 mod mp;
+mod oem;
 mod options;
 mod paragraph;
 mod path_csv;
@@ -87,6 +88,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli::Command::Fmt(options) => format::command(&options),
         cli::Command::Plc(options) => plc::command(&options),
         cli::Command::Mp(options) => mp::command(&options),
+        cli::Command::Oem(options) => oem::command(&options),
         cli::Command::Table(options) => table::command(&options),
         cli::Command::Conformance(options) => conformance::command(&options),
         cli::Command::Faults(options) => faults::command(&options),

@@ -207,7 +207,6 @@ const UNSAID: &[&str] = &[
     "interpreter::functions_calculate",
     "interpreter::functions_jump",
     // The function is reached by its own interface, or goes by another name: a chamfer is an L block.
-    "interpreter::m112_rounds_corners_of_uncompensated_lines",
     "interpreter::p02_chamfer",
     "plc::m9031_error_codes",
     "workpiece::another_tool_axis_is_not_shown",

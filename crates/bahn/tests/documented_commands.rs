@@ -70,6 +70,8 @@ fn desk() -> Folder {
     folder.write("changes.mp", "MP1010.0 : 12000\n");
     folder.write("tool.t", "T L R R2 NAME\n1 80.5 10 0 END MILL\n2 62 4 4 BALL\n");
     folder.write("MAIN.PLC", "       LN    I4\n       =     O2\n       EM\n");
+    folder.write("EPROM.TXT", "IDENT 123 456 99\nLOAD MAIN.PLC /M\nLOAD MAIN.ER1\n");
+    fs::create_dir(folder.path("eprom")).unwrap();
     folder.write("door.txt", "cycle 1: I4=1\ncycle 5: I4=0\n");
     folder.write(
         "stop.txt",

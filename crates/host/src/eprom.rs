@@ -51,22 +51,35 @@ impl LoadList {
     pub fn parse(text: &str) -> Result<LoadList, Vec<ListFault>> {
         let mut list = LoadList::default();
         let mut faults = Vec::new();
-        let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
+        let lines = (1..)
+            .zip(text.lines())
+            .filter(|(_, line)| !line.trim().is_empty());
         for (place, (line, words)) in lines.enumerate() {
             if let Err((column, message)) = list.take(place == 0, line, words) {
-                faults.push(ListFault { line, column, message });
+                faults.push(ListFault {
+                    line,
+                    column,
+                    message,
+                });
             }
         }
         if list.files.is_empty() && faults.is_empty() {
             let message = "the list names no file: LOAD name".to_owned();
-            faults.push(ListFault { line: 0, column: 1, message });
+            faults.push(ListFault {
+                line: 0,
+                column: 1,
+                message,
+            });
         }
         if faults.is_empty() { Ok(list) } else { Err(faults) }
     }
 
     fn take(&mut self, is_first: bool, line: u32, text: &str) -> Result<(), (u32, String)> {
         let begin = text.len() - text.trim_start().len();
-        let (word, rest) = text.trim().split_once(char::is_whitespace).unwrap_or((text.trim(), ""));
+        let (word, rest) = text
+            .trim()
+            .split_once(char::is_whitespace)
+            .unwrap_or((text.trim(), ""));
         let at = |offset: usize| u32::try_from(begin + offset + 1).unwrap_or(1);
         let behind = at(text.trim().len() - rest.trim_start().len());
         let fault = |column: u32, message: &str| Err((column, message.to_owned()));
@@ -126,12 +139,16 @@ impl LoadList {
             bytes.extend_from_slice(format!("LOAD {}{main} {}\n", file.name, content.len()).as_bytes());
         }
         bytes.push(b'\n');
-        contents.iter().for_each(|content| bytes.extend_from_slice(content));
+        contents
+            .iter()
+            .for_each(|content| bytes.extend_from_slice(content));
         let room = SIZES[usize::from(self.is_large)];
         if bytes.len() > room {
             let size = bytes.len();
             return Err(match self.is_large {
-                false => format!("{size} bytes do not fit into {room}; SIZE 2MB takes an EPROM twice as large"),
+                false => {
+                    format!("{size} bytes do not fit into {room}; SIZE 2MB takes an EPROM twice as large")
+                }
                 true => format!("{size} bytes do not fit into {room}"),
             });
         }
@@ -155,7 +172,8 @@ impl LoadList {
             let listed = match line.strip_prefix("LOAD ").and_then(|rest| rest.rsplit_once(' ')) {
                 Some((name, size)) => {
                     let size = size.parse::<usize>().ok().filter(|size| *size <= rest.len());
-                    let (content, behind) = rest.split_at(size.ok_or_else(|| format!("{name} is not whole"))?);
+                    let (content, behind) =
+                        rest.split_at(size.ok_or_else(|| format!("{name} is not whole"))?);
                     rest = behind;
                     contents.push(content.to_vec());
                     format!("LOAD {name}")

@@ -30,6 +30,8 @@
 //! - any number of [`Reader`]s follow [`Notice`]s and snapshots; who is slow is told how much he missed;
 //! - [`Saved`] is a moment to go back to, a [`Timeline`] many of them: [`Host::replay`] reaches any moment again;
 //! - [`State`] is what survives power-off: it is on the medium before the control goes on;
+//! - [`oem_cycles`] are the cycles of the machine builder, [`eprom`] what of them and of the PLC is put into an EPROM, as
+//!   [`s_records`];
 //! - [`files`] reads programs and tables and writes files that are whole or not there; [`lists`] and
 //!   [`PlcSource`] say where in a file of machine parameters or of a PLC program a fault is.
 //!
@@ -45,6 +47,7 @@ mod called;
 mod columns;
 mod deed;
 mod edges;
+pub mod eprom;
 mod error;
 mod expectation;
 mod fault;
@@ -59,6 +62,7 @@ mod log;
 mod machine_folder;
 mod notice;
 mod observable;
+pub mod oem_cycles;
 mod operator;
 mod orders;
 pub mod oscilloscope;
@@ -70,6 +74,7 @@ pub mod point_table;
 mod power_on;
 mod reading;
 mod retained;
+pub mod s_records;
 mod saved;
 mod script;
 mod table_kind;

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use bahn_parameters::ParameterList;
 use bahn_program::{Dialog, Operation, Program};
 
-use crate::{HostError, files};
+use crate::HostError;
+use crate::files::{self, Loaded};
 
 /// The numbers of the cycles: of their programs less 99999900 [000:17728-17730].
 pub const NUMBERS: RangeInclusive<u32> = 68..=99;
@@ -29,6 +30,8 @@ pub struct OemCycle {
     pub is_hidden: bool,
     /// Its dialogue block: DLG-CALL or DLG-DEF, and the dialogues of its name and its parameters; `None` when it has none.
     pub dialog: Option<OemDialog>,
+    /// Line of the first CALL LBL REP, which must not stand in the EPROM [000:17705-17724].
+    pub repeats_at: Option<u32>,
 }
 
 /// What a dialogue block says.
@@ -57,20 +60,22 @@ impl OemCycle {
         FIRST_INHIBIT + self.number - NUMBERS.start()
     }
 
-    /// What is wrong with it.
-    pub fn faults(&self) -> Vec<String> {
+    /// What is wrong with it where it is, or in the EPROM.
+    pub fn faults(&self, in_eprom: bool) -> Vec<String> {
         let Some(dialog) = &self.dialog else {
             return vec!["no dialogue block DLG-DEF or DLG-CALL".into()];
         };
+        let repeats = self.repeats_at.filter(|_| in_eprom || self.in_eprom);
+        let repeats = repeats.map(|line| format!("line {line}: CALL LBL REP must not stand in the EPROM"));
         let texts = std::iter::once(&dialog.name).chain(dialog.parameters.iter().map(|(_, text)| text));
         let wrong = texts.filter_map(|Text { number, text }| match text.chars().count() {
             0 => Some(format!("dialogue {number} has no text")),
-            length if length > TEXT_MAX => {
-                Some(format!("dialogue {number} has {length} characters, {TEXT_MAX} fit"))
-            }
+            length if length > TEXT_MAX => Some(format!(
+                "dialogue {number} has {length} characters, {TEXT_MAX} fit"
+            )),
             _ => None,
         });
-        wrong.collect()
+        wrong.chain(repeats).collect()
     }
 }
 
@@ -78,11 +83,7 @@ impl OemCycle {
 ///
 /// # Errors
 /// When the folders or programs cannot be read.
-pub fn find(
-    programs: &Path,
-    dialogues: &[String],
-    list: &ParameterList,
-) -> Result<Vec<OemCycle>, HostError> {
+pub fn find(programs: &Path, dialogues: &[String], list: &ParameterList) -> Result<Vec<OemCycle>, HostError> {
     let rules = list.operation_parameters().oem_cycles;
     let mut found: BTreeMap<(u32, bool), OemCycle> = BTreeMap::new();
     for (in_eprom, folder) in [(false, programs.to_owned()), (true, programs.join("eprom"))] {
@@ -91,14 +92,18 @@ pub fn find(
             if !path.is_file() {
                 continue;
             }
-            let program = files::load_program(&path)?.program;
+            let (dialog, repeats_at) = match files::load_program(&path)? {
+                Loaded::Program(program) => (dialog_block(&program), repeat(&program)),
+                Loaded::Empty(_) | Loaded::TooLarge => (None, None),
+            };
             let offset = rules.definition_offset;
             let cycle = OemCycle {
                 number,
                 path,
                 in_eprom,
                 is_hidden: false,
-                dialog: dialog_block(&program).map(|dialog| read(&dialog, dialogues, offset)),
+                dialog: dialog.map(|dialog| read(&dialog, dialogues, offset)),
+                repeats_at,
             };
             found.insert((number, in_eprom), cycle);
         }
@@ -122,12 +127,25 @@ fn dialog_block(program: &Program) -> Option<Dialog> {
     })
 }
 
-fn read(dialog: &Dialog, dialogues: &[String], definition_offset: u16) -> OemDialog {
-    let text = |number: &u8| Text {
+fn repeat(program: &Program) -> Option<u32> {
+    let is_repeat =
+        |operation: &Operation| matches!(operation, Operation::CallLabel { repeats: Some(_), .. });
+    let mut blocks = program.blocks();
+    blocks
+        .find(|block| is_repeat(&block.block.operation))
+        .map(|block| block.line)
+}
+
+fn read(dialog: &Dialog, dialogues: &[String], definition_offset: u8) -> OemDialog {
+    let text = |number: &u16| Text {
         number: u32::from(*number),
         text: dialogues.get(usize::from(*number)).cloned().unwrap_or_default(),
     };
-    let offset = if dialog.call { 0 } else { u32::from(definition_offset) };
+    let offset = if dialog.call {
+        0
+    } else {
+        u32::from(definition_offset)
+    };
     let mut texts = dialog.texts.iter();
     OemDialog {
         at_call: dialog.call,

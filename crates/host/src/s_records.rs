@@ -72,7 +72,9 @@ impl Image {
                     let address = u32::from_be_bytes([*a, *b, *c, *d]);
                     if address as usize != image.bytes.len() {
                         let expected = image.bytes.len();
-                        return Err(fault(format!("address {address:08X} where {expected:08X} follows")));
+                        return Err(fault(format!(
+                            "address {address:08X} where {expected:08X} follows"
+                        )));
                     }
                     image.bytes.extend_from_slice(data);
                 }
@@ -109,7 +111,10 @@ fn record(text: &mut String, kind: u8, address: &[u8], data: &[u8]) {
 fn checked(record: &str) -> Result<(u8, Vec<u8>), String> {
     let digits = record.strip_prefix(['S', 's']).ok_or("a record begins with S")?;
     let mut digits = digits.bytes();
-    let kind = digits.next().filter(u8::is_ascii_digit).ok_or("the kind of the record is missing")?;
+    let kind = digits
+        .next()
+        .filter(u8::is_ascii_digit)
+        .ok_or("the kind of the record is missing")?;
     let digits: Vec<u8> = digits.collect();
     let bytes: Option<Vec<u8>> = digits
         .chunks(2)
@@ -120,7 +125,10 @@ fn checked(record: &str) -> Result<(u8, Vec<u8>), String> {
         return Err("the record is too short".into());
     };
     if usize::from(*count) != rest.len() + 1 {
-        return Err(format!("the record has {} bytes and announces {count}", rest.len() + 1));
+        return Err(format!(
+            "the record has {} bytes and announces {count}",
+            rest.len() + 1
+        ));
     }
     let sum = bytes.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
     if sum != 0xFF {

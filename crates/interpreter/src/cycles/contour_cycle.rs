@@ -2,10 +2,11 @@
 
 use bahn_parameters::MessageId;
 
+use super::contour_data::CYLINDER_SURFACE;
 use super::contour_finish::contour_data_cycle;
 use super::contour_pocket::{ContourJob, Halt, Watch, contour_milling, pilot_drilling, rough_out};
 use super::contour_train::contour_train;
-use super::cylinder::{CYLINDER_SURFACE, cylinder_surface};
+use super::cylinder::cylinder_surface;
 use super::machining::Machining;
 use crate::context::Context;
 

@@ -5,7 +5,6 @@
 use bahn_parameters::MessageId;
 use bahn_path::Position;
 
-use super::cylinder::CYLINDER_SURFACE;
 use super::machining::Heights;
 use crate::definition::{Definition, Resolved};
 use crate::error::Fault;
@@ -15,6 +14,8 @@ use crate::settings::Settings;
 
 /// The cycle whose data 21 to 24 share.
 pub(super) const CONTOUR_DATA: u16 = 20;
+/// The cycle with a contour on a cylinder.
+pub(crate) const CYLINDER_SURFACE: u16 = 27;
 
 /// What each cycle must be given: number of the Q parameter and its name in the dialogue.
 const PARAMETERS: &[(u16, &[(u16, &str)])] = &[

@@ -20,9 +20,6 @@ use crate::error::Fault;
 use crate::modal::Surface;
 use crate::tilting::tool_of;
 
-/// The cycle.
-pub(crate) const CYLINDER_SURFACE: u16 = 27;
-
 /// Before the contour is recorded: Q16 and Q17, and what must not be in force.
 pub(crate) fn take_surface(c: &mut Context<'_>) -> Result<(), Fault> {
     let values = Values {

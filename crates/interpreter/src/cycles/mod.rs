@@ -18,8 +18,9 @@ use bahn_parameters::MessageId;
 use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
 pub(crate) use self::contour_cycle::contour_cycle;
+pub(crate) use self::contour_data::CYLINDER_SURFACE;
 pub(crate) use self::contour_pocket::{ContourJob, Halt, Watch, contour_plane};
-pub(crate) use self::cylinder::{CYLINDER_SURFACE, take_surface};
+pub(crate) use self::cylinder::take_surface;
 use self::drilling::{pecking, rigid_tapping, tapping, thread_cutting};
 use self::machining::Machining;
 use self::pockets::{circular_pocket, pocket_milling, slot_milling};
