@@ -44,6 +44,7 @@ mod background;
 mod called;
 mod columns;
 mod deed;
+mod digitizing;
 mod edges;
 mod error;
 mod expectation;

@@ -2,6 +2,8 @@
 
 use bahn_path::{ScanJob, ScanPoint};
 
+use super::glide::Glide;
+
 /// Part of an oscillation that the stylus leaves the surface (inferred): two fifths, so that points lie nearer than the
 /// interval also where the surface falls away.
 const AWAY: f64 = 0.4;
@@ -16,6 +18,7 @@ pub(super) struct Felt {
     pub at: ScanPoint,
     pub deflected: bool,
     pub touch: Option<ScanPoint>,
+    pub deflection: ScanPoint,
     pub time_s: f64,
 }
 
@@ -71,7 +74,8 @@ enum Phase {
 /// What a cycle of following comes to.
 pub(super) enum Followed {
     Moves(Wish),
-    Touched(ScanPoint),
+    /// A point, and how it goes on.
+    Touched(ScanPoint, Wish),
     /// It gets no farther.
     Stuck,
 }
@@ -98,6 +102,8 @@ pub(super) struct Follower {
     interval_mm: f64,
     deflection_mm: f64,
     up: ScanPoint,
+    /// Of a measuring probe.
+    glide: Option<Glide>,
 }
 
 fn dot(a: ScanPoint, b: ScanPoint) -> f64 {
@@ -129,7 +135,13 @@ impl Follower {
             interval_mm: job.interval_mm,
             deflection_mm: job.rules.deflection_mm,
             up,
+            glide: job.rules.measuring.map(Glide::new),
         }
+    }
+
+    /// Off the surface before the next touch.
+    pub fn retreat(&mut self) {
+        self.phase = Phase::Rise { for_s: 0.0 };
     }
 
     /// Begins at a point of the surface.
@@ -141,6 +153,9 @@ impl Follower {
         self.cap_mm = self.interval_mm;
         self.farthest = f64::NEG_INFINITY;
         self.stuck = 0;
+        if let Some(glide) = &mut self.glide {
+            glide.begin();
+        }
     }
 
     /// The last point of the surface.
@@ -169,6 +184,13 @@ impl Follower {
 
     /// Follows the surface for a cycle.
     pub fn cycle(&mut self, felt: &Felt) -> Followed {
+        if let Some(glide) = &mut self.glide {
+            let followed = glide.cycle(felt, &self.tracking, self.last, self.interval_mm);
+            if let Followed::Touched(point, _) = followed {
+                self.last = point;
+            }
+            return followed;
+        }
         if let Some(touch) = felt.touch.filter(|_| self.waits_for_touch()) {
             return self.touched(touch);
         }
@@ -256,6 +278,6 @@ impl Follower {
         if self.stuck > STUCK {
             return Followed::Stuck;
         }
-        Followed::Touched(touch)
+        Followed::Touched(touch, Wish::stand())
     }
 }
