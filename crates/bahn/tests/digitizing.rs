@@ -474,11 +474,11 @@ fn the_machine_digitizes_what_it_has_machined() {
     assert!(!folder.path("mill/programs/ROOF.H").exists());
 }
 
-/// `--compare`: a part that is its own model is off by nothing; one of a ball that is 0.1 mm too high has 0.1 mm left.
+/// `--compare`: a part that is its own model is off by nothing; one whose face is 0.1 mm higher has 0.1 mm left.
 #[test]
 fn a_part_is_compared_with_a_mesh() {
-    let cut = |depth: &str| format!("{BLANK}TOOL CALL 2 Z S1000\nL X+5 Y+15 Z{depth} R0 F500 M3\nL X+35\n");
-    let folder = folder(&cut("-3"));
+    let blank = |blank: &str| format!("{blank}TOOL CALL 2 Z S1000\nL X+5 Y+15 Z+50 R0 F500 M3\n");
+    let folder = folder(&blank(BLANK));
     let options = "--tools tools.txt --resolution 0.2";
     let (code, report) = folder.test(&format!("{options} --mesh model.stl"));
     assert_eq!(code, 0, "{report}");
@@ -492,7 +492,7 @@ fn a_part_is_compared_with_a_mesh() {
     ));
     assert!(same.contains("0.000 mm left and 0.000 mm missing"), "{same}");
     assert!(folder.path("off.png").exists());
-    folder.write("main.H", program(&cut("-2.9")));
+    folder.write("main.H", program(&blank(&BLANK.replace("Z+0", "Z+0.1"))));
     let left = said(&format!("{options} --compare model.stl"));
     assert!(left.contains("0.100 mm left and 0.000 mm missing"), "{left}");
     let run = folder.bahn(&format!(

@@ -7,11 +7,13 @@
 mod course;
 mod follow;
 mod glide;
+mod way;
 
 use bahn_path::{ScanFault, ScanJob, ScanPoint, Scanned};
 
 use course::Course;
-use follow::{Felt, Follower, Wish};
+use follow::Follower;
+use way::{Felt, Wish};
 
 /// Points of a scan at most; a program of more is refused by every control (inferred).
 const POINTS_MAX: u64 = 10_000_000;

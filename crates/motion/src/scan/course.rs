@@ -2,7 +2,8 @@
 
 use bahn_path::{Axis, ScanFault, ScanJob, ScanPattern, ScanPoint};
 
-use super::follow::{Felt, Followed, Follower, Tracking, Wish};
+use super::follow::Follower;
+use super::way::{Felt, Followed, Tracking, Wish};
 
 /// A line or level is reached within this, mm.
 const THERE_MM: f64 = 1e-3;
@@ -254,7 +255,10 @@ impl Course {
                 let (axis, sign, end) = self.line;
                 if (felt.at[axis] - end) * sign >= -THERE_MM {
                     self.stage = Stage::Rise;
-                    return Ok((Wish::stand(), None));
+                    // A stylus that is deflected touches beside the end of the line.
+                    let tip = std::array::from_fn(|k| felt.at[k] + felt.deflection[k]);
+                    let point = (job.rules.measuring.is_some() && felt.deflected).then_some(tip);
+                    return Ok((Wish::stand(), point));
                 }
                 Ok(match followed {
                     Followed::Moves(mut wish) => {

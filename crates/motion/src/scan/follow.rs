@@ -3,6 +3,7 @@
 use bahn_path::{ScanJob, ScanPoint};
 
 use super::glide::Glide;
+use super::way::{Felt, Followed, Tracking, Wish};
 
 /// Part of an oscillation that the stylus leaves the surface (inferred): two fifths, so that points lie nearer than the
 /// interval also where the surface falls away.
@@ -11,49 +12,6 @@ const AWAY: f64 = 0.4;
 const NEAR_MM: f64 = 1e-3;
 /// Touches without getting farther after which the stylus is stuck (inferred).
 const STUCK: u32 = 20_000;
-
-/// What the follower learns in a cycle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Felt {
-    pub at: ScanPoint,
-    pub deflected: bool,
-    pub touch: Option<ScanPoint>,
-    pub deflection: ScanPoint,
-    pub time_s: f64,
-}
-
-/// How the tip is to move.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Wish {
-    /// mm/s
-    pub velocity: ScanPoint,
-    /// Axis that must not go beyond a coordinate in a direction.
-    pub end: Option<(usize, f64, f64)>,
-}
-
-impl Wish {
-    pub fn stand() -> Wish {
-        Wish {
-            velocity: [0.0; 3],
-            end: None,
-        }
-    }
-
-    /// Along a direction, mm/s.
-    pub fn along(direction: ScanPoint, speed: f64) -> Wish {
-        Wish {
-            velocity: direction.map(|part| part * speed),
-            end: None,
-        }
-    }
-}
-
-/// The plane in which a surface is followed: the way along it and the way off it, unit vectors.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Tracking {
-    pub along: ScanPoint,
-    pub off: ScanPoint,
-}
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -69,15 +27,6 @@ enum Phase {
     Forth { from: ScanPoint },
     /// It does not become free: the axis of the probe retracts.
     Lift,
-}
-
-/// What a cycle of following comes to.
-pub(super) enum Followed {
-    Moves(Wish),
-    /// A point, and how it goes on.
-    Touched(ScanPoint, Wish),
-    /// It gets no farther.
-    Stuck,
 }
 
 /// The follower of a surface.

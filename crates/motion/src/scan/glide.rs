@@ -2,7 +2,7 @@
 
 use bahn_path::{MeasuringRules, ScanPoint};
 
-use super::follow::{Felt, Followed, Tracking, Wish};
+use super::way::{Felt, Followed, Tracking, Wish};
 
 /// How fast a wrong depth of deflection is put right, 1/s: slower than position loops are with a kv factor of 1
 /// (inferred).
