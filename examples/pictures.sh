@@ -30,3 +30,13 @@ echo "$out/scope.png"
 "$bahn" scope "$recording/circle.csv" --circle X,Y --title "CIRCLE.H: radius 40 mm at F3000 in both directions" \
     -o "$out/round.png" >/dev/null
 echo "$out/round.png"
+# A model is digitized, and machined again from the digitized program: both, and how far the copy is off.
+copy=$(mktemp -d)
+trap 'rm -rf "$recording" "$copy"' EXIT
+cp examples/digitizing/* "$copy"
+"$bahn" test "$copy/MODEL.H" --tools "$copy/tools.tsv" --resolution 0.1 --digitized "$copy" --mesh "$copy/model.stl" \
+    --view 3d --image "$out/digitized.png" >/dev/null
+"$bahn" test "$copy/AGAIN.H" --tools "$copy/tools.tsv" --resolution 0.1 --view 3d --image "$out/digitized-again.png" >/dev/null
+"$bahn" test "$copy/AGAIN.H" --tools "$copy/tools.tsv" --resolution 0.1 --compare "$copy/model.stl" --color deviation \
+    --view plan --image "$out/digitized-deviation.png" >/dev/null
+echo "$out/digitized-deviation.png"

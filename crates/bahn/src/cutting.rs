@@ -11,8 +11,8 @@ use bahn_path::{
 };
 use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{
-    Colouring, EventKind, MeshError, Page, Part, PlanView, Projection, Resolution, ThreePlanes, View3d,
-    Workpiece,
+    Colouring, Deviation, EventKind, MeshError, Page, Part, PlanView, Projection, Resolution, ThreePlanes,
+    View3d, Workpiece,
 };
 
 use crate::files::NewFile;
@@ -335,6 +335,9 @@ impl Cutting {
     }
 }
 
+/// A deviation that is shown in full colour, mm (inferred).
+const FULL_MM: f64 = 0.1;
+
 /// Whether all files were written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Written {
@@ -365,8 +368,21 @@ pub(crate) fn write(
             ))
         })
     };
+    let deviation = match &options.compare {
+        Some(path) => Some(compare(part_for("--compare")?, path, options)?),
+        None => None,
+    };
     if let Some(path) = &options.image {
-        let image = draw(part_for("--image")?, options, title, projection, stop)?;
+        let part = part_for("--image")?;
+        let image = match &deviation {
+            Some(deviation) if options.color == Some(ColorOption::Deviation) => {
+                draw_deviation(part, deviation, options, title, stop)?
+            }
+            None if options.color == Some(ColorOption::Deviation) => {
+                return Err(UsageError::new("--color deviation needs --compare".to_owned()));
+            }
+            _ => draw(part, options, title, projection, stop)?,
+        };
         if is_stopped(path) {
             return Ok(Written::Interrupted);
         }
@@ -394,6 +410,39 @@ pub(crate) fn write(
         }
     }
     Ok(Written::All)
+}
+
+/// Says how far the part is from a solid.
+fn compare(part: &Part, path: &Path, options: &OutputOptions) -> Result<Deviation, UsageError> {
+    let solid = crate::solid::read(path, options.resolution)?;
+    let deviation = part.deviation(&solid);
+    let Some(mean) = deviation.mean_mm() else {
+        return Err(UsageError::new(format!(
+            "--compare {}: the solid lies nowhere over the part",
+            path.display()
+        )));
+    };
+    let [left, missing] = deviation.greatest_mm();
+    diagnostics::print_line(&format!(
+        "compared with {}: {mean:.4} mm off in the mean, {left:.3} mm left and {missing:.3} mm missing at most, \
+         {:.1} % of the surface within {FULL_MM} mm",
+        path.display(),
+        100.0 * deviation.share_within(FULL_MM)
+    ));
+    Ok(deviation)
+}
+
+fn draw_deviation(
+    part: &Part,
+    deviation: &Deviation,
+    options: &OutputOptions,
+    title: &str,
+    stop: &Arc<AtomicBool>,
+) -> Result<Image, UsageError> {
+    let (width, height) = options.size;
+    let page = Page::new(width, height, title, "deviation")
+        .map_err(|error| UsageError::new(format!("--size: {error}")))?;
+    Ok(part.deviation_view(&page.stopped_by(stop.clone()), deviation, FULL_MM))
 }
 
 fn draw(

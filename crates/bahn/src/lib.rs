@@ -53,6 +53,7 @@ mod run;
 mod scope;
 mod settings;
 mod shelf;
+mod solid;
 mod table;
 mod test_run;
 mod torture;

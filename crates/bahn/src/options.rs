@@ -147,8 +147,17 @@ pub(crate) struct OutputOptions {
     #[arg(long, value_name = "OUT.txt", value_hint = ValueHint::FilePath)]
     pub print: Option<PathBuf>,
     /// Write the programs that TCH PROBE 5 to 7 digitize into this folder; a program of that name is replaced.
+    /// `bahn run` without this writes them beside the programs of the machine and replaces none.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub digitized: Option<PathBuf>,
+    /// What TCH PROBE 5 to 7 digitize: a solid (STL, mm, workpiece coordinates) instead of the part that the program
+    /// machines.
+    #[arg(long, value_name = "SOLID.stl", value_hint = ValueHint::FilePath)]
+    pub solid: Option<PathBuf>,
+    /// Compare the finished part with a solid (STL, mm, workpiece coordinates): says how far it is off; a picture with
+    /// `--color deviation` shows where.
+    #[arg(long, value_name = "SOLID.stl", value_hint = ValueHint::FilePath)]
+    pub compare: Option<PathBuf>,
     /// Write a picture of the finished part (PNG).
     #[arg(long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
     pub image: Option<PathBuf>,
@@ -291,6 +300,8 @@ pub(crate) enum ColorOption {
     Depth,
     /// The tool that cut last; cuts in rapid traverse are red.
     Tool,
+    /// How far the part is from that of --compare, from above: red where material is left, blue where it is missing.
+    Deviation,
 }
 
 impl From<ColorOption> for Colouring {
@@ -299,6 +310,8 @@ impl From<ColorOption> for Colouring {
             ColorOption::Part => Colouring::Part,
             ColorOption::Depth => Colouring::Depth,
             ColorOption::Tool => Colouring::Tool,
+            // Drawn by itself.
+            ColorOption::Deviation => Colouring::Part,
         }
     }
 }

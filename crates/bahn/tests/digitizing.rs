@@ -339,3 +339,168 @@ fn the_parameters_of_digitizing_act() {
     assert_ne!(digitized("--mp 6230=10").1, text);
     assert_ne!(digitized("--mp 6240=0.2").1, text);
 }
+
+/// A roof as a mesh: X 0 to 20, Y 0 to 10, its ridge at X 10 and Z -1, its eaves at Z -5.
+const ROOF: &str = "solid roof\nvertex 0 0 -5\nvertex 10 0 -1\nvertex 10 10 -1\nvertex 0 0 -5\nvertex 10 10 -1\n\
+    vertex 0 10 -5\nvertex 10 0 -1\nvertex 20 0 -5\nvertex 10 10 -1\nvertex 10 10 -1\nvertex 20 0 -5\nvertex 20 10 -5\n\
+    endsolid\n";
+
+const ROOF_RANGE: &str = "TCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: ROOF\nTCH PROBE 5.2 Z X+4 Y+3 Z-6
+TCH PROBE 5.3 X+16 Y+5 Z+1\nTCH PROBE 5.4 HEIGHT: +5\nTCH PROBE 6.0 MEANDER\nTCH PROBE 6.1 DIRECTN: X
+TCH PROBE 6.2 TRAVEL: 0.5 L.SPAC: 1 P.P. INT: 0.5\n";
+
+/// The points of a digitized program lie where a ball of this radius touches the roof.
+fn assert_roof(text: &str, radius: f64) {
+    let mut at = [0.0_f64; 3];
+    let mut points = 0;
+    let cos = 1.0 / (1.0_f64 + 0.4 * 0.4).sqrt();
+    for line in text.lines().filter(|line| line.contains(" L ")) {
+        for word in line.split_whitespace().skip(2) {
+            if let Some(axis) = ["X", "Y", "Z"].iter().position(|axis| word.starts_with(axis)) {
+                at[axis] = word[1..].parse().unwrap();
+            }
+        }
+        let from_ridge = (at[0] - 10.0).abs();
+        // Near the ridge the ball touches its edge.
+        if line.contains("FMAX") || from_ridge < radius {
+            continue;
+        }
+        let tip = -1.0 - 0.4 * from_ridge + radius * (1.0 / cos - 1.0);
+        assert!((at[2] - tip).abs() < 0.06, "{line}: {tip}");
+        points += 1;
+    }
+    assert!(points > 3 * 16, "{points} points: {text}");
+}
+
+/// `--solid`: a mesh is digitized instead of the part, in a test run without a blank, too.
+#[test]
+fn a_mesh_is_digitized() {
+    let folder = folder(&format!("TOOL CALL 2 Z S1000\n{ROOF_RANGE}"));
+    folder.write("roof.stl", ROOF);
+    let (code, report) = folder.test("--tools tools.txt --digitized . --solid roof.stl --resolution 0.05");
+    assert_eq!(code, 0, "{report}");
+    assert_roof(&folder.read("ROOF.H"), 3.0);
+    let run = folder.bahn("test main.H --tools tools.txt --solid main.H");
+    assert_eq!(run.code(), 2);
+    assert!(
+        run.err().contains("main.H: the file is no STL mesh"),
+        "{}",
+        run.err()
+    );
+}
+
+/// MP6200 = 1: the same with a TM 110, which stays deflected by MP6310 and is much faster.
+#[test]
+fn a_mesh_is_digitized_with_a_measuring_probe() {
+    let folder = folder(&format!("TOOL CALL 2 Z S1000\n{ROOF_RANGE}"));
+    folder.write("roof.stl", ROOF);
+    let options =
+        "--tools tools.txt --digitized . --solid roof.stl --resolution 0.05 --mp 6120=200,6150=2000";
+    let (code, tapping) = folder.test(options);
+    assert_eq!(code, 0, "{tapping}");
+    let (code, report) = folder.test(&format!(
+        "{options},6200=1,6310=0.5,6330=2,6350=200,6360=1000,6361=2000"
+    ));
+    assert_eq!(code, 0, "{report}");
+    assert_roof(&folder.read("ROOF.H"), 3.0);
+    let time = |report: &serde_json::Value| number(report, "/machining_time_s");
+    assert!(time(&report) < 0.5 * time(&tapping), "{report} {tapping}");
+}
+
+/// The mill digitizes with its axes what lies on its table, and writes the program into its folder of programs; a second
+/// time it refuses, since a program is not overwritten.
+#[test]
+fn the_machine_digitizes_into_its_program_memory() {
+    let folder = Folder::new();
+    copy(&machines().join("mill"), &folder.path("mill"));
+    let plant = folder.read("mill/plant.toml");
+    // The end of the ball is the reference point of the spindle, so that no tool has a length.
+    let probe = plant.replace("length = 120 ", "inserted = true\nlength = 0 ");
+    assert_ne!(plant, probe);
+    folder.write("mill/plant.toml", probe);
+    folder.write("roof.stl", ROOF);
+    folder.write(
+        "main.H",
+        program(&format!(
+            "TOOL CALL 0 Z S0\nL Z+20 R0 FMAX\n{ROOF_RANGE}L Z+50 R0 FMAX"
+        )),
+    );
+    let command = "run main.H --machine mill --fresh --solid roof.stl --resolution 0.05";
+    let run = folder.bahn(command);
+    assert_eq!(run.code(), 0, "{} {}", run.out(), run.err());
+    assert!(
+        run.err().contains("points are digitized: PGM ROOF"),
+        "{}",
+        run.err()
+    );
+    let text = folder.read("mill/programs/ROOF.H");
+    assert!(
+        text.starts_with("0 BEGIN PGM ROOF MM\n1 L Z+5 FMAX\n2 L X+4 Y+3 FMAX\n"),
+        "{text}"
+    );
+    assert_roof(&text, 2.0);
+    let again = folder.bahn(command);
+    assert_eq!(again.code(), 1, "{} {}", again.out(), again.err());
+    assert!(again.err().contains("ENTRY VALUE INCORRECT"), "{}", again.err());
+    assert_eq!(folder.read("mill/programs/ROOF.H"), text);
+}
+
+/// Without a solid the machine digitizes the part as it has machined it so far.
+#[test]
+fn the_machine_digitizes_what_it_has_machined() {
+    let folder = Folder::new();
+    copy(&machines().join("mill"), &folder.path("mill"));
+    let plant = folder.read("mill/plant.toml");
+    folder.write(
+        "mill/plant.toml",
+        plant.replace("length = 120 ", "inserted = true\nlength = 0 "),
+    );
+    // A blank of which nothing is removed: its upper face is at Z 0.
+    let blank = "BLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+40 Y+30 Z+0\nTOOL CALL 0 Z S0\nL Z+20 R0 FMAX\n";
+    folder.write("main.H", program(&format!("{blank}{ROOF_RANGE}")));
+    let run = folder.bahn("run main.H --machine mill --fresh --digitized .");
+    assert_eq!(run.code(), 0, "{} {}", run.out(), run.err());
+    let text = folder.read("ROOF.H");
+    let heights: Vec<f64> = text
+        .lines()
+        .filter(|line| !line.contains("FMAX"))
+        .filter_map(|line| line.split_whitespace().find(|word| word.starts_with('Z')))
+        .map(|word| word[1..].parse().unwrap())
+        .collect();
+    assert!(
+        !heights.is_empty() && heights.iter().all(|height| height.abs() < 0.02),
+        "{heights:?}"
+    );
+    assert!(!folder.path("mill/programs/ROOF.H").exists());
+}
+
+/// `--compare`: a part that is its own model is off by nothing; one whose face is 0.1 mm higher has 0.1 mm left.
+#[test]
+fn a_part_is_compared_with_a_mesh() {
+    let blank = |blank: &str| format!("{blank}TOOL CALL 2 Z S1000\nL X+5 Y+15 Z+50 R0 F500 M3\n");
+    let folder = folder(&blank(BLANK));
+    let options = "--tools tools.txt --resolution 0.2";
+    let (code, report) = folder.test(&format!("{options} --mesh model.stl"));
+    assert_eq!(code, 0, "{report}");
+    let said = |options: &str| {
+        let run = folder.bahn(&format!("test main.H {options}"));
+        assert_eq!(run.code(), 0, "{}", run.err());
+        run.err()
+    };
+    let same = said(&format!(
+        "{options} --compare model.stl --image off.png --color deviation"
+    ));
+    assert!(same.contains("0.000 mm left and 0.000 mm missing"), "{same}");
+    assert!(folder.path("off.png").exists());
+    folder.write("main.H", program(&blank(&BLANK.replace("Z+0", "Z+0.1"))));
+    let left = said(&format!("{options} --compare model.stl"));
+    assert!(left.contains("0.100 mm left and 0.000 mm missing"), "{left}");
+    let run = folder.bahn(&format!(
+        "test main.H {options} --image off.png --color deviation"
+    ));
+    assert!(
+        run.code() == 2 && run.err().contains("--color deviation needs --compare"),
+        "{}",
+        run.err()
+    );
+}

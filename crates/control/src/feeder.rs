@@ -329,15 +329,20 @@ impl Feeder {
         };
         let element = match step {
             Step::Element(element) => element,
-            Step::Barrier(barrier) => return Step::Barrier(barrier),
+            Step::Barrier(barrier) => {
+                let Barrier::Scan { block, .. } = barrier else {
+                    return Step::Barrier(barrier);
+                };
+                let fault = self.range_fault(block);
+                return fault.map_or(Step::Barrier(barrier), |error| self.fail(error));
+            }
             Step::Starved => return Step::Starved,
             Step::End => return Step::End,
-            Step::Error(error) => {
-                let fault = RunFault::Program(error);
-                self.fault = Some(fault.clone());
-                return Step::Error(fault);
-            }
+            Step::Error(error) => return self.fail(error),
         };
+        if let Some(error) = self.range_fault(element.block) {
+            return self.fail(error);
+        }
         self.read += 1;
         for output in element.functions() {
             self.chain.offsets.take(&output.function);
@@ -346,6 +351,38 @@ impl Feeder {
             tap.push(element.clone());
         }
         Step::Element(element)
+    }
+
+    fn fail(&mut self, error: Box<ProgramError>) -> Step<RunFault> {
+        let fault = RunFault::Program(error);
+        self.fault = Some(fault.clone());
+        Step::Error(fault)
+    }
+
+    /// A block that digitizes a range which reaches beyond the software limits [003:8047-8051].
+    fn range_fault(&self, block: BlockRef) -> Option<Box<ProgramError>> {
+        let (_, job) = self.interpreter.scan().filter(|(by, _)| *by == block)?;
+        let [least, greatest] = &self.limits;
+        let axes = [Axis::X, Axis::Y, Axis::Z].into_iter().enumerate();
+        let outside = |(place, axis): &(usize, Axis)| {
+            let offset = self.chain.offsets.of(*axis) - job.beside.get(*place).copied().unwrap_or(0.0);
+            let of = |point: &[f64; 3]| point.get(*place).map_or(f64::NAN, |at| at + offset);
+            let high = of(&job.max).max(if *axis == job.tool_axis {
+                job.clearance_mm + offset
+            } else {
+                f64::NEG_INFINITY
+            });
+            of(&job.min) < least[*axis] || high > greatest[*axis]
+        };
+        let (_, axis) = axes.into_iter().find(outside)?;
+        let program = self.interpreter.program(block.program);
+        Some(Box::new(ProgramError {
+            message: Message::Control(MessageId::FaultyRangeData),
+            program: program.map_or_else(String::new, |program| program.name().to_owned()),
+            block,
+            detail: format!("the range leaves the traverse range of {}", axis.letter()),
+            cause: Cause::default(),
+        }))
     }
 
     /// Behind a barrier or the end the interpreter says the same again; what is not read yet is waited for.

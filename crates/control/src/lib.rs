@@ -113,6 +113,7 @@ mod restore;
 mod run;
 mod run_command;
 mod sampling;
+mod scanning;
 mod seam;
 mod setup;
 mod signal;
@@ -157,6 +158,7 @@ pub use probe_command::{ProbeCommand, ProbeFunction};
 pub use programs::Programs;
 pub use progress::RunState;
 pub use sampling::{ServoSampler, ServoSignal, ServoView};
+pub use scanning::{Digitized, DigitizedNews};
 pub use setup::{
     Calibration, ChannelError, ChannelSetup, Checking, Position0, ProbeMemory, Remembered, Setup,
     ToolProbeCalibration,

@@ -315,8 +315,8 @@ impl ManualProbing {
                 self.give_up(probe, site);
                 false
             }
-            // Tools are measured in programs only.
-            Probed::Measured(_) => false,
+            // Tools are measured and surfaces digitized in programs only.
+            Probed::Found(_) => false,
             Probed::Over(Some(touch)) => self.take(&touch.position, probe, settings, site),
         };
         (true, kept)

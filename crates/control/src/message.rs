@@ -182,6 +182,7 @@ impl Message {
 /// The row of a message that needs nothing else.
 fn of_plain(id: MessageId) -> FaultId {
     let of_machine = [
+        FaultId::StylusDeflection,
         FaultId::PowerInterrupted,
         FaultId::VoltageMissing,
         FaultId::EmergencyStopDefective,

@@ -4,7 +4,9 @@ use bahn_exchange::signal;
 use bahn_motion::{Aim, PointToPoint};
 use bahn_parameters::MessageId;
 use bahn_parameters::machining::ProbeSettings;
-use bahn_path::{Axis, Barrier, BlockRef, PerAxis, Position, ToolMeasuring, Touch};
+use bahn_path::{
+    Axis, Barrier, BlockRef, LiveData, PerAxis, Position, ScanFault, ScanJob, Scanned, ToolMeasuring, Touch,
+};
 use bahn_servo::Measured;
 
 use crate::axes::OwnAxes;
@@ -12,6 +14,7 @@ use crate::axis::{AxisUnit, Mover};
 use crate::kinematics::Chain;
 use crate::message::Message;
 use crate::panel::Direction;
+use crate::scanning::{Digitized, DigitizedNews, ScanCycle, Scanning};
 use crate::site::Site;
 use crate::tool_measuring::{Measuring, ToolMeasurement};
 use crate::track::{are_in_position, limit_message};
@@ -69,8 +72,8 @@ pub(crate) enum Probed {
     Moves,
     /// It is over: the program learns of the touch, or that there was none.
     Over(Option<Touch>),
-    /// A tool was measured: Q parameters with their values.
-    Measured(Vec<(u16, f64)>),
+    /// A tool was measured or a surface digitized: the program learns of it.
+    Found(LiveData),
     /// It is refused, with a message at its block.
     Refused(Message, Option<BlockRef>),
 }
@@ -81,7 +84,7 @@ impl Probed {
         let (Barrier::Probe { block, .. }
         | Barrier::Stop { block }
         | Barrier::Acknowledge { block }
-        | Barrier::Scan { block }
+        | Barrier::Scan { block, .. }
         | Barrier::MeasureTool(ToolMeasuring { block, .. })) = barrier;
         Probed::Refused(Message::Plain(MessageId::ProbeSystemNotReady), Some(*block))
     }
@@ -128,12 +131,21 @@ pub(crate) struct Probe {
     /// The block that measures a tool.
     block: Option<BlockRef>,
     tool: ToolMeasurement,
+    scanning: Option<Scanning>,
+    /// What was digitized last.
+    pub digitized: DigitizedNews,
 }
 
 impl Probe {
     /// A probing movement is on its way.
     pub fn is_on(&self) -> bool {
-        self.probing.is_some() || self.tool.is_on()
+        self.probing.is_some() || self.tool.is_on() || self.scanning.is_some()
+    }
+
+    /// The path came to a digitizing cycle.
+    pub fn scan(&mut self, block: BlockRef, job: ScanJob, site: &mut Site) {
+        self.scanning = Some(Scanning::begin(block, job, site));
+        self.digitized.tell(Digitized::Begins(job));
     }
 
     /// The path came to a cycle that measures tools.
@@ -148,6 +160,7 @@ impl Probe {
     /// The stylus may touch the workpiece.
     fn touches(&self) -> bool {
         self.probing.is_some_and(|probing| probing.phase != Phase::Enable)
+            || self.scanning.as_ref().is_some_and(Scanning::touches)
     }
 
     /// The path came to a probe block: asks the PLC to enable it [000:7682-7690].
@@ -202,6 +215,9 @@ impl Probe {
         chain: &Chain,
     ) {
         self.tool.watch(measured, axes.clone(), chain);
+        if let Some(scanning) = &mut self.scanning {
+            scanning.watch(measured, axes.clone(), chain);
+        }
         let Some(probing) = &mut self.probing else { return };
         if probing.phase != Phase::Search || probing.touch.is_some() || !measured.probe.deflected {
             return;
@@ -228,6 +244,9 @@ impl Probe {
     pub fn moves(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Probed {
         if self.tool.is_on() {
             return self.measures(running, site, measured);
+        }
+        if self.scanning.is_some() {
+            return self.scans(running, site, measured);
         }
         let percent = site.now.feed_percent.min(100.0);
         let Some(probing) = &mut self.probing else {
@@ -304,9 +323,35 @@ impl Probe {
     /// Moves the axes of a tool measuring for a cycle.
     fn measures(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Probed {
         match (self.tool.moves(running, site, measured), self.block) {
-            (Measuring::Over(values), _) => Probed::Measured(values.into_iter().flatten().collect()),
+            (Measuring::Over(values), _) => Probed::Found(LiveData {
+                q_values: values.into_iter().flatten().collect(),
+                ..LiveData::default()
+            }),
             (Measuring::Refused(message), block @ Some(_)) => Probed::Refused(message, block),
             _ => Probed::Moves,
+        }
+    }
+
+    /// Moves the axes of a digitizing for a cycle.
+    fn scans(&mut self, running: bool, site: &mut Site, measured: &Measured) -> Probed {
+        let Some(scanning) = &mut self.scanning else {
+            return Probed::Moves;
+        };
+        let block = Some(scanning.block());
+        match scanning.moves(running, site, measured, &mut self.digitized) {
+            ScanCycle::Moves => Probed::Moves,
+            ScanCycle::Over(Scanned {
+                fault: Some(ScanFault::DeflectionExceedsMax),
+                ..
+            }) => Probed::Refused(Message::Plain(MessageId::StylusDeflectionExceedsMax), block),
+            ScanCycle::Over(scanned) => {
+                self.end(site);
+                Probed::Found(LiveData {
+                    scan: Some(scanned),
+                    ..LiveData::default()
+                })
+            }
+            ScanCycle::Refused(message) => Probed::Refused(message, block),
         }
     }
 
@@ -350,7 +395,16 @@ impl Probe {
     /// Nothing is probed any more.
     pub fn end(&mut self, site: &mut Site) {
         self.tool.end(site);
-        if self.probing.take().is_some() {
+        let scanned = self.scanning.take();
+        if scanned.is_some()
+            && matches!(
+                self.digitized.what,
+                Some(Digitized::Begins(_) | Digitized::Point(_))
+            )
+        {
+            self.digitized.tell(Digitized::BrokenOff);
+        }
+        if self.probing.take().is_some() || scanned.is_some() {
             site.exchange.nc_put(signal::PROBING_ENABLE, false);
             site.exchange.nc_put(signal::PROBING_ENDED, true);
         }

@@ -23,6 +23,15 @@ pub trait Programs: Send + Sync {
     fn open_in_eprom(&self, _name: &str, _caller: &str) -> Result<Option<Arc<Program>>, String> {
         Ok(None)
     }
+
+    /// Keeps a program that was digitized, whole or not at all; the control itself calls this never, whoever drives it
+    /// does.
+    ///
+    /// # Errors
+    /// Why it cannot be kept.
+    fn store(&self, name: &str, _pieces: &[Arc<[u8]>]) -> Result<(), String> {
+        Err(format!("{name}: these programs cannot be added to"))
+    }
 }
 
 /// Programs as a library for the interpreter.

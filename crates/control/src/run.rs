@@ -554,7 +554,7 @@ impl ProgramRun {
                 let probed = self.probe.measure(order, site);
                 self.take_probed(probed, site);
             }
-            Some(Stop::Barrier(Barrier::Scan { .. })) => self.answer = Some(LiveData::default()),
+            Some(Stop::Barrier(Barrier::Scan { block, job })) => self.probe.scan(block, job, site),
             Some(Stop::End) => self.end(site),
             Some(Stop::Error(fault)) => {
                 self.show_fault(fault, site);
@@ -577,13 +577,10 @@ impl ProgramRun {
                     ..LiveData::default()
                 });
             }
-            Probed::Measured(q_values) => {
+            Probed::Found(live) => {
                 self.track.path.set_position(site.here());
                 self.track.forget_position();
-                self.answer = Some(LiveData {
-                    q_values,
-                    ..LiveData::default()
-                });
+                self.answer = Some(live);
             }
             Probed::Refused(message, block) => {
                 let sequence = self.source.interpreter().map_or(0, Interpreter::blocks_executed);

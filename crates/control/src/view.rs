@@ -10,6 +10,7 @@ use crate::command::Mode;
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
 use crate::progress::RunState;
+use crate::scanning::DigitizedNews;
 use crate::seam::Seam;
 use crate::setup::Remembered;
 use crate::signal::Signal;
@@ -72,6 +73,16 @@ impl<'a> ChannelView<'a> {
     /// The interpreter of the program that runs, or ran last.
     pub fn interpreter(&self) -> Option<&'a Interpreter> {
         self.channel.run.source.interpreter()
+    }
+
+    /// Where the workpiece datum of its axes is on the machine, mm or degrees.
+    pub fn datum(&self) -> Position {
+        self.channel.chain().offsets.datum
+    }
+
+    /// What was digitized last: to be looked at behind every cycle.
+    pub fn digitized(&self) -> DigitizedNews {
+        self.channel.run.probe.digitized
     }
 
     /// Handshake that the run waits for.

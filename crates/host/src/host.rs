@@ -14,6 +14,7 @@ use bahn_plc::Tracer;
 
 use crate::background::Background;
 use crate::deed::{Answer, Deed, Operable, Source};
+use crate::digitizing::Digitizing;
 use crate::error::HostError;
 use crate::feed::{Feed, Reader};
 use crate::journal::{Given, Journal};
@@ -44,6 +45,9 @@ pub struct Host<P = Machine> {
     pub(crate) restart: Option<String>,
     pub(crate) journal: Journal,
     pub(crate) background: Background,
+    /// What each channel digitizes, and where its programs are.
+    pub(crate) digitizing: Vec<Digitizing>,
+    programs: Vec<Arc<dyn Programs>>,
     /// Whoever follows looks at what programs have read, in every cycle.
     watched: bool,
     /// What was is repeated: nobody is told, and nothing is stored but in the end.
@@ -93,6 +97,11 @@ impl<P: Operable> Host<P> {
         programs: Arc<dyn Programs>,
         operator: Operator,
     ) -> Host<P> {
+        let others = power_on
+            .channels
+            .iter()
+            .map(|channel| Arc::clone(&channel.programs));
+        let all_programs: Vec<_> = std::iter::once(Arc::clone(&programs)).chain(others).collect();
         let block_time_ms = power_on.parameters.model().limits().block_time_ms;
         let setup = Setup {
             parameters: power_on.parameters,
@@ -129,6 +138,8 @@ impl<P: Operable> Host<P> {
             restart: None,
             journal: Journal::default(),
             background: Background::default(),
+            digitizing: vec![Digitizing::default(); all_programs.len()],
+            programs: all_programs,
             watched: false,
             repeats: false,
             desk: Desk::default(),
@@ -215,7 +226,7 @@ impl<P: Operable> Host<P> {
             self.tell(Notice::Restart(list.clone()));
             self.restart = Some(list);
         }
-        let kept = self.keep();
+        let kept = self.keep().and(self.keep_digitized());
         self.look();
         if let Some(pace) = self.pace.as_mut().filter(|_| !self.repeats) {
             pace.cycle(self.control.time_us());
@@ -321,6 +332,31 @@ impl<P: Operable> Host<P> {
         Ok(())
     }
 
+    /// Takes the points of channels that digitize, and stores a program whose range is scanned.
+    fn keep_digitized(&mut self) -> Result<(), HostError> {
+        let mut kept = Ok(());
+        for number in 0..self.digitizing.len() {
+            let news = self.control.channel(number).map(|channel| channel.digitized());
+            let (Some(digitizing), Some(news)) = (self.digitizing.get_mut(number), news) else {
+                continue;
+            };
+            let Some(complete) = digitizing.follow(news).filter(|_| !self.repeats) else {
+                continue;
+            };
+            let stored = self.programs.get(number).map_or(Ok(()), |programs| {
+                programs.store(&complete.name, &complete.pieces)
+            });
+            match stored {
+                Ok(()) => self.tell_in(number, Notice::Digitized(complete.name, complete.points)),
+                Err(error) => {
+                    self.tell(Notice::Fault(error.clone()));
+                    kept = Err(HostError::NotStored(error));
+                }
+            }
+        }
+        kept
+    }
+
     /// Tells what has changed, and takes a snapshot when one is due.
     fn look(&mut self) {
         let time_us = self.control.time_us();
@@ -387,6 +423,11 @@ impl<P: Operable> Host<P> {
     /// The plant.
     pub fn plant(&self) -> &P {
         &self.plant
+    }
+
+    /// The plant, to be changed between two cycles: no log notes that.
+    pub fn plant_mut(&mut self) -> &mut P {
+        &mut self.plant
     }
 
     /// The operator who stands by.

@@ -46,6 +46,7 @@ mod background;
 mod called;
 mod columns;
 mod deed;
+mod digitizing;
 mod edges;
 pub mod eprom;
 mod error;

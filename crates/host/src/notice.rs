@@ -33,6 +33,8 @@ pub enum Notice {
     Restart(String),
     /// What a tool change, a datum or the PLC changed is on the medium.
     Stored,
+    /// A program was digitized and stored: its name and its points.
+    Digitized(String, u64),
     /// Something keeps the machine from going on; in words.
     Fault(String),
     /// An earlier moment was gone back to: what comes now follows from it.

@@ -4,6 +4,7 @@ use bahn_control::Control;
 
 use crate::background::Background;
 use crate::deed::Operable;
+use crate::digitizing::Digitizing;
 use crate::error::HostError;
 use crate::host::Host;
 use crate::journal::Given;
@@ -20,6 +21,7 @@ pub struct Saved<P> {
     waiting: Waiting,
     before: Before,
     restart: Option<String>,
+    digitizing: Vec<Digitizing>,
     /// The first entry of the journal behind it.
     entry: u64,
 }
@@ -42,6 +44,7 @@ impl<P: Operable + Clone> Host<P> {
             waiting: self.waiting.clone(),
             before: self.before.clone(),
             restart: self.restart.clone(),
+            digitizing: self.digitizing.clone(),
             entry: self.journal.end(),
         }
     }
@@ -107,6 +110,7 @@ impl<P: Operable + Clone> Host<P> {
         self.waiting = saved.waiting.clone();
         self.before = saved.before.clone();
         self.restart = saved.restart.clone();
+        self.digitizing.clone_from(&saved.digitizing);
         // A computation that is on its way belongs to the control that is left.
         self.background = Background::default();
     }

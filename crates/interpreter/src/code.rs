@@ -141,7 +141,7 @@ impl Code {
         Ok(found.map(|program| self.index_of(program)))
     }
 
-    fn name_of(&self, program: u16) -> String {
+    pub fn name_of(&self, program: u16) -> String {
         self.program(program)
             .map(|p| p.name().to_owned())
             .unwrap_or_default()

@@ -59,8 +59,10 @@ pub(crate) struct RunningOem {
 pub(crate) struct Digitizing {
     pub range: Collector,
     pub pattern: Collector,
-    /// What is scanned, and the name of its program.
-    pub scan: Option<(ScanJob, Box<str>)>,
+    /// What the block that is executed wants to be scanned.
+    pub wanted: Option<ScanJob>,
+    /// The block that scans, and what.
+    pub scan: Option<(BlockRef, ScanJob)>,
 }
 
 /// Collects the blocks n.0, n.1, ... of a definition.

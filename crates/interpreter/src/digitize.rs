@@ -2,7 +2,8 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::{
-    Axis, Barrier, Curve, FeedRate, Plane, Position, ScanFault, ScanJob, ScanPattern, ScanPoint, Scanned,
+    Axis, Barrier, Curve, FeedRate, Plane, Position, ScanFault, ScanJob, ScanName, ScanPattern, ScanPoint,
+    Scanned,
 };
 use bahn_program::{CycleBlock, Direction};
 
@@ -19,10 +20,8 @@ const MEANDER: u16 = 6;
 const SPACING_MAX_MM: f64 = 5.0;
 /// Least TRAVEL, mm [000:7811].
 const TRAVEL_MIN_MM: f64 = 0.1;
-/// Longest name of a file (inferred).
-const NAME_MAX: usize = 16;
 
-/// A block of TCH PROBE 5, 6 or 7. The last one of 6 and 7 scans.
+/// A block of TCH PROBE 5, 6 or 7. The last one of 6 and 7 scans: see [`begin_scan`].
 pub(crate) fn digitize(c: &mut Context<'_>, block: &CycleBlock) -> Result<(), Fault> {
     let words = resolve(block, c.numbers, c.settings)?;
     let (unit, at) = (c.numbers.unit_mm, c.pen.block);
@@ -33,10 +32,11 @@ pub(crate) fn digitize(c: &mut Context<'_>, block: &CycleBlock) -> Result<(), Fa
     }
     digitizing.pattern.take(block.number, block.sub, words, unit, at);
     let last = if block.number == MEANDER { 2 } else { 3 };
-    if block.sub == last { begin(c) } else { Ok(()) }
+    if block.sub == last { define(c) } else { Ok(()) }
 }
 
-fn begin(c: &mut Context<'_>) -> Result<(), Fault> {
+/// All blocks are there: what is to be scanned.
+fn define(c: &mut Context<'_>) -> Result<(), Fault> {
     if let Some(message) = bars_probing(&c.modal.frame) {
         return Err(Fault::new(message, "transformations are reset before digitizing"));
     }
@@ -46,24 +46,22 @@ fn begin(c: &mut Context<'_>) -> Result<(), Fault> {
             "a basic rotation is active",
         ));
     }
-    if c.settings.rules.measuring_probe {
-        let detail = "digitizing with a measuring probe (MP6200 = 1)";
-        return Err(Fault::new(MessageId::BlockNotKnown, detail));
-    }
-    if c.settings.machine {
-        let detail = "digitizing on a machine; `bahn test` digitizes the part that the program machines";
-        return Err(Fault::new(MessageId::BlockNotKnown, detail));
-    }
-    let (job, name) = job(c)?;
+    c.modal.digitizing.wanted = Some(job(c)?);
+    Ok(())
+}
+
+/// The scan that a block has defined, if it has.
+pub(crate) fn begin_scan(c: &mut Context<'_>, job: ScanJob) -> Result<(), Fault> {
     c.pen.finish_contour()?;
     approach(c, &job);
-    c.modal.digitizing.scan = Some((job, name));
-    c.pen.out.barrier(Barrier::Scan { block: c.pen.block });
+    let block = c.pen.block;
+    c.modal.digitizing.scan = Some((block, job));
+    c.pen.out.barrier(Barrier::Scan { block, job });
     Ok(())
 }
 
 /// What the blocks say.
-fn job(c: &Context<'_>) -> Result<(ScanJob, Box<str>), Fault> {
+fn job(c: &Context<'_>) -> Result<ScanJob, Fault> {
     let digitizing = &c.modal.digitizing;
     let faulty = |what: &str| Fault::new(MessageId::FaultyRangeData, what);
     let incomplete = || Fault::new(MessageId::CyclIncomplete, "blocks of the cycle are missing");
@@ -123,7 +121,7 @@ fn job(c: &Context<'_>) -> Result<(ScanJob, Box<str>), Fault> {
     // A test run knows of no calibration: the probe is the tool that was called (inferred).
     let keeps = rules.probe_keeps_tool || !c.settings.machine;
     let tool = c.modal.tool.filter(|tool| keeps && tool.radius > 0.0);
-    let job = ScanJob {
+    Ok(ScanJob {
         tool_axis,
         min,
         max,
@@ -134,10 +132,20 @@ fn job(c: &Context<'_>) -> Result<(ScanJob, Box<str>), Fault> {
         spacing_mm: spacing,
         interval_mm: interval,
         stylus_radius_mm: tool.map_or(rules.probe.radius_mm, |tool| tool.radius),
+        beside: beside(c),
         inch: c.numbers.unit_mm != 1.0,
+        program: file_name(range)?,
         rules: rules.scan,
-    };
-    Ok((job, file_name(range)?))
+    })
+}
+
+/// How far the ball stands beside the spindle; a test run has its tools in the middle.
+fn beside(c: &Context<'_>) -> ScanPoint {
+    let mut beside = Position::ZERO;
+    if c.settings.machine {
+        c.modal.plane.set(&mut beside, c.settings.rules.probe.offset_mm);
+    }
+    [Axis::X, Axis::Y, Axis::Z].map(|axis| beside[axis])
 }
 
 /// The first axis whose software limit lies before a point of the range [003:8050]; none where nobody knows the datum.
@@ -262,23 +270,18 @@ fn point(cycle: &Definition, sub: u16, c: &Context<'_>, shift: &ScanPoint) -> Op
 }
 
 /// The name of the program: letters, digits and what else stands in names of files on every medium.
-fn file_name(range: &Definition) -> Result<Box<str>, Fault> {
+fn file_name(range: &Definition) -> Result<ScanName, Fault> {
     let name: String = range.block(1).iter().filter_map(Resolved::as_name).collect();
-    let fits = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-');
-    let stem = name.strip_suffix(".H").unwrap_or(&name);
-    if stem.is_empty() || stem.len() > NAME_MAX || !stem.chars().all(fits) {
-        return Err(Fault::new(
-            MessageId::EntryValueIncorrect,
-            "PGM NAME is no name of a program",
-        ));
-    }
-    Ok(stem.into())
+    ScanName::new(&name)
+        .ok_or_else(|| Fault::new(MessageId::EntryValueIncorrect, "PGM NAME is no name of a program"))
 }
 
 /// First in the axis of the probe to clearance height, then above where the scan begins [003:6640] [003:6716].
 fn approach(c: &mut Context<'_>, job: &ScanJob) {
     let feed = FeedRate::Programmed(job.rules.rapid_mm_min);
-    let begin = at(c.modal, &job.begin());
+    let tip = job.begin();
+    let begin = std::array::from_fn(|k| tip[k] - job.beside[k]);
+    let begin = at(c.modal, &begin);
     let mut above = c.modal.actual;
     above[job.tool_axis] = begin[job.tool_axis];
     travel(c, &[above, begin], feed);
@@ -309,10 +312,11 @@ fn at(modal: &Modal, point: &ScanPoint) -> Position {
 /// The scan is over: it ends at clearance height, contour lines above their starting point [003:6675] [003:6744].
 pub(crate) fn finish_scan(c: &mut Context<'_>, scanned: Option<Scanned>) -> Result<(), Fault> {
     let scan = c.modal.digitizing.scan.take();
-    let (Some(_), Some(scanned)) = (scan, scanned) else {
+    let (Some(scan), Some(scanned)) = (scan, scanned) else {
         return Ok(());
     };
-    let here = at(c.modal, &scanned.at);
+    let (tip, beside) = (scanned.at, scan.1.beside);
+    let here = at(c.modal, &std::array::from_fn(|k| tip[k] - beside[k]));
     c.modal.actual = here;
     c.modal.nominal = here;
     if let Some(fault) = scanned.fault {
@@ -327,6 +331,7 @@ fn message(fault: ScanFault) -> MessageId {
         ScanFault::Inaccessible => MessageId::TouchPointInaccessible,
         ScanFault::RangeExceeded => MessageId::RangeExceeded,
         ScanFault::TimeLimit => MessageId::TimeLimitExceeded,
+        ScanFault::DeflectionExceedsMax => MessageId::StylusDeflectionExceedsMax,
         ScanFault::CannotRetract | ScanFault::NotReady => MessageId::ProbeSystemNotReady,
         ScanFault::MemoryFull => MessageId::FurtherProgramEntryImpossible,
     }

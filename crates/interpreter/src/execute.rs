@@ -120,6 +120,9 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
             if let Some(probing) = probe(c, block)? {
                 run.probing = Some(probing);
             }
+            if run.modal.digitizing.wanted.is_some() {
+                return Ok(Flow::Scan);
+            }
         }
         Operation::Dialog(dialog) => {
             let name = if dialog.call {

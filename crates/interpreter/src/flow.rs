@@ -29,6 +29,8 @@ pub(crate) enum Flow {
     OemCall(u16),
     /// The dialogue block of such a cycle.
     Dialog,
+    /// A surface is to be digitized.
+    Scan,
     /// A cycle is called that needs the contour subprograms.
     ContourCycle,
 }

@@ -214,10 +214,10 @@ impl Interpreter {
         self.run.pen.sequence
     }
 
-    /// What is to be scanned, and the name of the program that takes it, while the interpreter waits for it.
-    pub fn scan(&self) -> Option<(&ScanJob, &str)> {
+    /// What is to be scanned, and the block that wants it, until it is.
+    pub fn scan(&self) -> Option<(BlockRef, &ScanJob)> {
         let scan = self.run.modal.digitizing.scan.as_ref();
-        scan.map(|(job, name)| (job, &**name))
+        scan.map(|(block, job)| (*block, job))
     }
 
     /// What is in force behind the last block that was read.
@@ -458,6 +458,7 @@ impl Interpreter {
             Flow::OemDefinition(number, sub) => self.oem_definition(number, sub)?,
             Flow::OemCall(number) => self.oem_call(number)?,
             Flow::Dialog => self.dialog()?,
+            Flow::Scan => self.begin_scan()?,
             Flow::EndOfProgram => return self.end_of_program(),
             Flow::EndOfRun => return self.end_of_run(),
             Flow::ContourCycle if self.run.pen.rehearsal => self.rehearse_contours()?,
@@ -523,6 +524,26 @@ impl Interpreter {
             ));
         };
         self.enter_program(index)
+    }
+
+    /// On a machine no program is overwritten (inferred: no manual says what becomes of one that has the name).
+    fn begin_scan(&mut self) -> Result<(), Fault> {
+        self.run.at.block += 1;
+        let Some(job) = self.run.modal.digitizing.wanted.take() else {
+            return Ok(());
+        };
+        if self.settings.machine {
+            let (name, caller) = (
+                job.program.as_str(),
+                self.code.name_of(self.run.pen.block.program),
+            );
+            let mut library = self.library.lock().unwrap_or_else(PoisonError::into_inner);
+            if !matches!(library.find(name, &caller), Ok(None)) {
+                let detail = format!("PGM NAME: there is a program {name} already");
+                return Err(Fault::new(MessageId::EntryValueIncorrect, detail));
+            }
+        }
+        self.run.begin_scan(job, &self.settings)
     }
 
     pub(crate) fn enter_program(&mut self, index: u16) -> Result<(), Fault> {

@@ -1,7 +1,7 @@
 //! The state of a run: its parts.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Blank, LiveData, Scanned};
+use bahn_path::{Axis, Blank, LiveData, ScanJob, Scanned};
 use bahn_program::{Compensation, InputSteps, Unit, Value};
 
 use crate::context::Context;
@@ -172,6 +172,11 @@ impl Run {
     /// See [`Tools::come_back`].
     pub fn come_back(&mut self) {
         self.tools.come_back(&mut self.modal, &mut self.pen);
+    }
+
+    /// See [`digitize::begin_scan`].
+    pub fn begin_scan(&mut self, job: ScanJob, settings: &Settings) -> Result<(), Fault> {
+        digitize::begin_scan(&mut self.context(settings), job)
     }
 
     /// See [`digitize::finish_scan`].

@@ -8,7 +8,9 @@ use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::spindle::{Characteristics, FreeOutput, SpindleParameters};
 use bahn_parameters::technology::{AxisHalts, Technology};
 use bahn_parameters::{ControlModel, InchFeed, ParameterList};
-use bahn_path::{Function, PerAxis, Plane, Position, ScanRules, Swivels, TechnologyFunction, ToolShape};
+use bahn_path::{
+    Function, MeasuringRules, PerAxis, Plane, Position, ScanRules, Swivels, TechnologyFunction, ToolShape,
+};
 
 use crate::status::Status;
 
@@ -202,8 +204,6 @@ pub struct Rules {
     pub probe: ProbeRules,
     /// Digitizing: MP6120 to MP6270.
     pub scan: ScanRules,
-    /// MP6200 = 1: the probe measures and does not trigger.
-    pub measuring_probe: bool,
     /// Highest spindle speed that can be programmed, rpm [003:2180-2182].
     pub speed_max_rpm: f64,
     /// MP7245: bit n inhibits cycle n [000:6655-6698].
@@ -272,7 +272,6 @@ impl Rules {
                 ..ProbeRules::default()
             },
             scan: scan_rules(list),
-            measuring_probe: list.digitizing().measuring,
             speed_max_rpm: list.spindle_speed_max_rpm(),
             inhibited_cycles: (1..=31)
                 .filter(|cycle| list.cycle_inhibited(*cycle))
@@ -298,10 +297,23 @@ impl Rules {
 /// Digitizing; what the list leaves at 0 has the value with which optimizing begins (inferred) [000:7835-7839].
 fn scan_rules(list: &ParameterList) -> ScanRules {
     let (probe, scan, initial) = (list.probe(), list.digitizing(), ScanRules::default());
+    let measuring = list.measuring_probe();
     let or = |value: f64, initial: f64| if value > 0.0 { value } else { initial };
     ScanRules {
-        probing_mm_min: or(probe.feed_mm_min, initial.probing_mm_min),
+        probing_mm_min: measuring.map_or_else(
+            || or(probe.feed_mm_min, initial.probing_mm_min),
+            |probe| probe.approach_mm_min,
+        ),
         rapid_mm_min: or(probe.rapid_mm_min, initial.rapid_mm_min),
+        measuring: measuring.map(|probe| MeasuringRules {
+            depth_mm: probe.depth_mm,
+            reversed: probe.reversed,
+            axes: probe.axes,
+            limit_mm: probe.limit_mm,
+            feed_mm_min: probe.feed_mm_min,
+            slows: probe.slows,
+            window_mm: probe.window_mm,
+        }),
         oscillations_hz: or(scan.oscillations_hz, initial.oscillations_hz),
         lubrication_mm: scan.lubrication_mm,
         lubrication_min: scan.lubrication_min,
@@ -330,7 +342,6 @@ impl Default for Rules {
             radial_acceleration_m_s2: 1.0,
             probe: ProbeRules::default(),
             scan: ScanRules::default(),
-            measuring_probe: false,
             speed_max_rpm: 99_999.0,
             inhibited_cycles: 0,
             voltages: None,

@@ -32,6 +32,8 @@ pub struct MachineFolder {
     pub compensation: Option<String>,
     /// Description of the simulated machine.
     pub plant: String,
+    /// A solid on the table that the touch probe touches, a mesh (STL) in workpiece coordinates.
+    pub solid: Option<String>,
     /// Tool table.
     pub tools: Option<String>,
     /// Pocket table: which tool is in which pocket of the magazine.
@@ -177,6 +179,7 @@ impl MachineFolder {
             plc_dialogues: optional("plc_dialogues"),
             compensation: optional("compensation"),
             plant: needed("plant"),
+            solid: optional("solid"),
             tools: optional("tools"),
             pockets: optional("pockets"),
             programs: optional("programs").unwrap_or_else(|| "programs".to_owned()),

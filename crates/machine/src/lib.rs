@@ -63,5 +63,6 @@ pub use event::{Event, EventError, Fault, KeyAction};
 pub use folder::{ChannelFolder, FunctionFolder, HandOverFolder, MachineFolder, OperatorKeys};
 pub use machine::Machine;
 pub use magazine::MagazineState;
+pub use probe::Solid;
 pub use reader::{PlantError, Wire};
 pub use spindle::SpindleState;

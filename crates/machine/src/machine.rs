@@ -1,5 +1,7 @@
 //! The whole machine.
 
+use std::sync::Arc;
+
 use bahn_servo::{
     ANALOGUE_INPUTS, Commands, Encoder, INPUTS, Measured, OUTPUTS, Plant, Probe as Touch, Step,
 };
@@ -10,7 +12,7 @@ use crate::chain::{Chain, ContactFault};
 use crate::device::{Device, DeviceState};
 use crate::magazine::{Magazine, MagazineState};
 use crate::panel::Panel;
-use crate::probe::Probe;
+use crate::probe::{Probe, Solid};
 use crate::reader::{PlantError, Reader, Section, Wire};
 use crate::spindle::{Spindle, SpindleState};
 use crate::tool_probe::ToolProbe;
@@ -500,6 +502,7 @@ impl Machine {
         Touch {
             deflected,
             ready: probe.ready,
+            deflection_mm: [0.0; 3],
             battery_low: false,
         }
     }
@@ -526,6 +529,22 @@ impl Machine {
             deflected,
             ready: probe.inserted && probe.ready,
             battery_low: probe.battery_low,
+            deflection_mm: match place {
+                [Some(x), Some(y), Some(z)] => probe.deflection([x, y, z], self.spindle_deg()),
+                _ => [0.0; 3],
+            },
+        }
+    }
+
+    /// The radius of the ball of the touch probe, mm; `None` without one.
+    pub fn probe_radius_mm(&self) -> Option<f64> {
+        self.probe.as_ref().map(Probe::radius_mm)
+    }
+
+    /// Puts a solid on the table that the touch probe can touch, in place of the last one, or takes it away.
+    pub fn put_on_table(&mut self, solid: Option<Arc<dyn Solid>>) {
+        if let Some(probe) = &mut self.probe {
+            probe.put(solid);
         }
     }
 }

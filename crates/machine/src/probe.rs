@@ -1,17 +1,57 @@
 //! A touch probe in the spindle and the solids that it can touch.
 
+use std::sync::Arc;
+
 use crate::reader::Section;
+
+/// A solid on the table that is more than boxes and rings: whoever has the workpiece gives it to the machine.
+pub trait Solid: Send + Sync + std::fmt::Debug {
+    /// Whether the ball with its end at a position of the axes X, Y and Z, mm, touches it.
+    fn touches(&self, end: [f64; 3]) -> bool;
+
+    /// How far the ball is pushed out of it there, mm.
+    fn deflection(&self, end: [f64; 3]) -> [f64; 3];
+}
 
 /// A box in positions of the axes X, Y and Z; it is turned about the edge at its least X and Y.
 #[derive(Clone, Copy, Debug)]
-struct Solid {
+struct Cuboid {
     min: [f64; 3],
     max: [f64; 3],
     /// Sine and cosine of the angle.
     turned: Option<[f64; 2]>,
 }
 
-impl Solid {
+impl Cuboid {
+    /// How far a ball is pushed out of it, mm: off its nearest face, never down.
+    fn pushes(&self, [x, y, z]: [f64; 3], radius: f64) -> [f64; 3] {
+        let [sin, cos] = self.turned.unwrap_or([0.0, 1.0]);
+        let [left, front, _] = self.min;
+        let (dx, dy) = (x - left, y - front);
+        let at = [left + dx * cos + dy * sin, front - dx * sin + dy * cos, z];
+        let off: [f64; 3] = std::array::from_fn(|k| at[k] - at[k].clamp(self.min[k], self.max[k]));
+        let outside = off.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let pushed = if outside > radius {
+            [0.0; 3]
+        } else if outside > 0.0 {
+            off.map(|part| part / outside * (radius - outside))
+        } else {
+            let faces = [
+                (0, self.min[0] - at[0]),
+                (0, self.max[0] - at[0]),
+                (1, self.min[1] - at[1]),
+                (1, self.max[1] - at[1]),
+                (2, self.max[2] - at[2]),
+            ];
+            let nearest = faces.into_iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+            let (axis, way) = nearest.unwrap_or((2, 0.0));
+            let sign = if way < 0.0 { -1.0 } else { 1.0 };
+            std::array::from_fn(|k| if k == axis { way + sign * radius } else { 0.0 })
+        };
+        let [x, y, z] = pushed;
+        [x * cos - y * sin, x * sin + y * cos, z]
+    }
+
     /// Square of the distance of a point, mm².
     fn distance_squared(&self, [x, y, z]: [f64; 3]) -> f64 {
         let at = match self.turned {
@@ -57,8 +97,12 @@ pub(crate) struct Probe {
     offset: [f64; 2],
     /// The angle of the spindle when it was inserted, degrees.
     inserted_at_deg: f64,
-    solids: Vec<Solid>,
+    solids: Vec<Cuboid>,
     rings: Vec<Ring>,
+    workpiece: Option<Arc<dyn Solid>>,
+    /// A measuring probe, TM 110: the axis of the machine, from 1, along which each of its own lies, negative when it
+    /// counts the other way.
+    mounting: Option<[f64; 3]>,
     pub inserted: bool,
     pub ready: bool,
     pub battery_low: bool,
@@ -81,7 +125,7 @@ impl Probe {
             }
             let angle = section.number("angle", -180.0..=180.0).map(f64::to_radians);
             section.finish();
-            Solid {
+            Cuboid {
                 turned: angle.map(|angle| [angle.sin(), angle.cos()]),
                 min: min.unwrap_or_default(),
                 max: max.unwrap_or_default(),
@@ -109,6 +153,8 @@ impl Probe {
         let probe = Probe {
             rings: rings.flatten().collect(),
             solids: solids.collect(),
+            workpiece: None,
+            mounting: measuring(&section),
             length: section.needed_number("length", 0.0..=1000.0),
             radius: section.needed_number("radius", 0.0..=100.0),
             inserted_at_deg: 0.0,
@@ -139,19 +185,80 @@ impl Probe {
         [x * cos - y * sin, x * sin + y * cos]
     }
 
-    /// Whether the ball touches a solid with the axes X, Y, Z at a position and the spindle at an angle, degrees.
-    pub fn deflected(&self, [x, y, z]: [f64; 3], spindle_deg: f64) -> bool {
+    /// The radius of the ball, mm.
+    pub fn radius_mm(&self) -> f64 {
+        self.radius
+    }
+
+    /// What lies on the table beside boxes and rings.
+    pub fn put(&mut self, workpiece: Option<Arc<dyn Solid>>) {
+        self.workpiece = workpiece;
+    }
+
+    /// The end of the ball with the axes X, Y, Z at a position and the spindle at an angle, degrees.
+    fn end(&self, [x, y, z]: [f64; 3], spindle_deg: f64) -> [f64; 3] {
         let beside = self.beside(spindle_deg);
-        let centre = [x + beside[0], y + beside[1], z - self.length + self.radius];
+        [x + beside[0], y + beside[1], z - self.length]
+    }
+
+    /// Whether the ball touches a solid with the axes X, Y, Z at a position and the spindle at an angle, degrees.
+    pub fn deflected(&self, axes: [f64; 3], spindle_deg: f64) -> bool {
+        if !self.inserted {
+            return false;
+        }
+        let [x, y, z] = self.end(axes, spindle_deg);
+        let centre = [x, y, z + self.radius];
         let touches = self.radius * self.radius;
-        self.inserted
-            && (self
-                .solids
+        self.solids
+            .iter()
+            .any(|solid| solid.distance_squared(centre) <= touches)
+            || self
+                .rings
                 .iter()
-                .any(|solid| solid.distance_squared(centre) <= touches)
-                || self
-                    .rings
-                    .iter()
-                    .any(|ring| ring.distance_squared(centre) <= touches))
+                .any(|ring| ring.distance_squared(centre) <= touches)
+            || self
+                .workpiece
+                .as_ref()
+                .is_some_and(|solid| solid.touches([x, y, z]))
+    }
+
+    /// How far a measuring probe is deflected along its own axes, mm. Boxes and rings deflect it as the workpiece does.
+    pub fn deflection(&self, axes: [f64; 3], spindle_deg: f64) -> [f64; 3] {
+        let Some(mounting) = self.mounting.filter(|_| self.inserted) else {
+            return [0.0; 3];
+        };
+        let end = self.end(axes, spindle_deg);
+        let centre = [end[0], end[1], end[2] + self.radius];
+        let mut pushed = [0.0; 3];
+        let boxes = self.solids.iter().map(|solid| solid.pushes(centre, self.radius));
+        let workpiece = self.workpiece.iter().map(|solid| solid.deflection(end));
+        for other in boxes.chain(workpiece) {
+            let length = |of: &[f64; 3]| of.iter().map(|part| part * part).sum::<f64>();
+            if length(&other) > length(&pushed) {
+                pushed = other;
+            }
+        }
+        mounting.map(|axis| {
+            let along = pushed.get(axis.abs() as usize - 1).copied().unwrap_or(0.0);
+            along * axis.signum()
+        })
+    }
+}
+
+/// `measuring` and `mounting` of a TM 110.
+fn measuring(section: &Section) -> Option<[f64; 3]> {
+    let mounting = section.numbers::<3>("mounting");
+    let fits = |mounting: &[f64; 3]| {
+        let mut axes = mounting.map(f64::abs);
+        axes.sort_by(f64::total_cmp);
+        axes == [1.0, 2.0, 3.0]
+    };
+    if mounting.is_some_and(|mounting| !fits(&mounting)) {
+        section.fault("mounting names the axes 1, 2 and 3 once each".to_owned());
+        return None;
+    }
+    match section.flag("measuring").unwrap_or(false) {
+        true => Some(mounting.unwrap_or([1.0, 2.0, 3.0])),
+        false => None,
     }
 }

@@ -1,15 +1,19 @@
-//! Digitizing with a triggering probe: the stylus taps along the surface, in lines or in levels [000:7722-7880].
+//! Digitizing: the stylus of a triggering probe taps along the surface, in lines or in levels [000:7722-7880]; that of a
+//! measuring one stays deflected [000:7882-7958].
 //!
 //! A [`Scan`] wants a velocity in every cycle and is told what the stylus feels; how far the axes have come and where the
 //! stylus was deflected it learns, too. So it is the same on a machine and on a height map.
 
 mod course;
 mod follow;
+mod glide;
+mod way;
 
 use bahn_path::{ScanFault, ScanJob, ScanPoint, Scanned};
 
 use course::Course;
-use follow::{Felt, Follower, Wish};
+use follow::Follower;
+use way::{Felt, Wish};
 
 /// Points of a scan at most; a program of more is refused by every control (inferred).
 const POINTS_MAX: u64 = 10_000_000;
@@ -25,6 +29,8 @@ pub struct Sense {
     pub at: ScanPoint,
     /// Where the tip was when it was deflected within the cycle.
     pub touch: Option<ScanPoint>,
+    /// How far a measuring probe is deflected: the tip is there beside `at`, mm.
+    pub deflection: ScanPoint,
 }
 
 /// What a cycle of a scan comes to.
@@ -75,6 +81,18 @@ impl Scan {
         self.position
     }
 
+    /// Nominal speed of the tip, mm/s.
+    pub fn velocity_mm_s(&self) -> ScanPoint {
+        self.velocity
+    }
+
+    /// The axes stand somewhere else: it goes on from there, off the surface first.
+    pub fn stand_at(&mut self, at: ScanPoint) {
+        self.position = at;
+        self.velocity = [0.0; 3];
+        self.follower.retreat();
+    }
+
     /// Points so far.
     pub fn points(&self) -> u64 {
         self.points
@@ -91,6 +109,7 @@ impl Scan {
             at: sense.at,
             deflected: sense.deflected,
             touch: sense.touch,
+            deflection: sense.deflection,
             time_s,
         };
         let (mut wish, mut point) = (Wish::stand(), None);
@@ -119,9 +138,20 @@ impl Scan {
     /// What ends every scan.
     fn guard(&mut self, felt: &Felt) {
         let place = self.job.tool_place();
-        let [low, high, at] = [&self.job.min, &self.job.max, &felt.at].map(|of| of.get(place).copied());
+        let tip: ScanPoint = std::array::from_fn(|k| felt.at[k] + felt.deflection[k]);
+        let [low, high, at] = [&self.job.min, &self.job.max, &tip].map(|of| of.get(place).copied());
         let (low, high, at) = (low.unwrap_or(0.0), high.unwrap_or(0.0), at.unwrap_or(0.0));
-        if at < low - BELOW_MM {
+        let depth = felt.deflection.iter().map(|part| part * part).sum::<f64>().sqrt();
+        if self
+            .job
+            .rules
+            .measuring
+            .is_some_and(|rules| depth > rules.limit_mm)
+        {
+            self.break_off(ScanFault::DeflectionExceedsMax);
+        } else if self.has_left_range(&tip) {
+            self.break_off(ScanFault::RangeExceeded);
+        } else if at < low - BELOW_MM {
             self.break_off(match self.points {
                 0 => ScanFault::Inaccessible,
                 _ => ScanFault::RangeExceeded,
@@ -136,6 +166,25 @@ impl Scan {
         } else if self.points >= POINTS_MAX {
             self.break_off(ScanFault::MemoryFull);
         }
+    }
+
+    /// A measuring probe that has lost the surface, or counts the wrong way, is led off: it must not leave the range by
+    /// more than it may be deflected (inferred).
+    fn has_left_range(&self, tip: &ScanPoint) -> bool {
+        let Some(rules) = &self.job.rules.measuring else {
+            return false;
+        };
+        let up = self.job.tool_place();
+        (0..3).any(|k| {
+            let (low, high) = (self.job.min[k] - rules.limit_mm, self.job.max[k] + rules.limit_mm);
+            // At the start it stands at clearance height.
+            let high = if k == up {
+                high.max(self.job.clearance_mm + BELOW_MM)
+            } else {
+                high
+            };
+            tip[k] < low && k != up || tip[k] > high
+        })
     }
 
     /// The speed goes over to the one that is wanted as fast as the axes can.

@@ -2,7 +2,7 @@
 #![allow(clippy::panic, clippy::type_complexity, reason = "a test may fail")]
 
 use bahn_motion::{Scan, ScanStep, Sense};
-use bahn_path::{Axis, ScanFault, ScanJob, ScanPattern, ScanPoint, ScanRules, Scanned};
+use bahn_path::{Axis, ScanFault, ScanJob, ScanName, ScanPattern, ScanPoint, ScanRules, Scanned};
 
 const CYCLE_S: f64 = 3e-3;
 
@@ -19,7 +19,9 @@ fn job() -> ScanJob {
         spacing_mm: 1.0,
         interval_mm: 1.0,
         stylus_radius_mm: 0.0,
+        beside: [0.0; 3],
         inch: false,
+        program: ScanName::default(),
         rules: ScanRules::default(),
     }
 }
@@ -47,6 +49,7 @@ fn scan(job: ScanJob, height: impl Fn(f64, f64) -> f64) -> (Vec<ScanPoint>, Scan
             touch: (deflected && !sense.deflected).then_some(at),
             deflected,
             at,
+            deflection: [0.0; 3],
         };
     }
     panic!("it never ends: {} points, at {:?}", points.len(), scan.position());

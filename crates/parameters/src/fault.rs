@@ -236,6 +236,8 @@ faults! {
         ServoStep, ControlReadyOff, Brake, PowerOff, "[000:3290-3328] (inferred)";
     EncoderMarks: "distance-coded marks contradict the position (MP30)", Some(M::MeasuringSystemDefective), "C",
         ServoStep, ControlReadyOff, Brake, PowerOff, "[000:3290-3308] (inferred)";
+    StylusDeflection: "the stylus of a measuring probe is deflected farther than MP6330",
+        Some(M::StylusDeflectionExceedsMax), "", ContourCycle, ControlReadyOff, Brake, PowerOff, "[000:7917]";
     // The control voltage.
     PowerInterrupted: "the supply was off (MP7212 = 0)", Some(M::PowerInterrupted), "",
         Asked, NotStarted, None, Ce, "[000:7033-7040]";

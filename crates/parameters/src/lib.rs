@@ -83,8 +83,9 @@ pub mod axis {
 /// Of part programs: cycles, M functions, probing, graphics.
 pub mod machining {
     pub use crate::settings::{
-        ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, ProbeOrientation,
-        ProbeSettings, ProbeTurn, ProgramEndClearing, ScaledAxes, ToolProbeParameters, ToolProbeTolerance,
+        ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, MeasuringProbe,
+        ProbeOrientation, ProbeSettings, ProbeTurn, ProgramEndClearing, ScaledAxes, ToolProbeParameters,
+        ToolProbeTolerance,
     };
 }
 

@@ -25,8 +25,8 @@ pub use axis_parameters::{
 };
 pub use characteristics::Characteristics;
 pub use machining::{
-    ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, ProbeSettings, ProbeTurn,
-    ProgramEndClearing, ScaledAxes,
+    ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, MeasuringProbe, ProbeSettings,
+    ProbeTurn, ProgramEndClearing, ScaledAxes,
 };
 pub use operation::{
     DatumParameters, Handwheel, HandwheelParameters, OperationParameters, OverrideParameters, OverrideSteps,

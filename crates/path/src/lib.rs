@@ -46,6 +46,6 @@ pub use element::{
 pub use frame::{AxisScaling, Frame};
 pub use placement::Placement;
 pub use plane::{Plane, Point2};
-pub use scan::{ScanFault, ScanJob, ScanPattern, ScanPoint, ScanRules, Scanned};
+pub use scan::{MeasuringRules, ScanFault, ScanJob, ScanName, ScanPattern, ScanPoint, ScanRules, Scanned};
 pub use source::{Barrier, ElementSource, LiveData, MeasuredPart, Step, ToolMeasuring, Touch};
 pub use swivel::{Link, Swivels};

@@ -28,10 +28,48 @@ pub struct ScanJob {
     pub interval_mm: f64,
     /// Radius of the ball of the stylus, mm.
     pub stylus_radius_mm: f64,
+    /// How far the ball of the stylus stands beside the axis of the spindle: the tip is the axes and this.
+    pub beside: ScanPoint,
     /// The program is in inches.
     pub inch: bool,
+    /// The program that takes the points.
+    pub program: ScanName,
     /// Machine parameters.
     pub rules: ScanRules,
+}
+
+/// The name of a digitized program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ScanName {
+    text: [u8; ScanName::MAX],
+    length: u8,
+}
+
+impl ScanName {
+    /// Longest name of a digitized program (inferred).
+    pub const MAX: usize = 16;
+
+    /// A name of ASCII letters, digits, `_` and `-`, as it fits on every medium; with or without `.H`.
+    pub fn new(name: &str) -> Option<ScanName> {
+        let stem = name.strip_suffix(".H").unwrap_or(name);
+        let fits = |letter: u8| letter.is_ascii_alphanumeric() || matches!(letter, b'_' | b'-');
+        if stem.is_empty() || stem.len() > ScanName::MAX || !stem.bytes().all(fits) {
+            return None;
+        }
+        let mut made = ScanName::default();
+        for (to, from) in made.text.iter_mut().zip(stem.bytes()) {
+            *to = from;
+        }
+        made.length = stem.len() as u8;
+        Some(made)
+    }
+
+    /// The name.
+    pub fn as_str(&self) -> &str {
+        let used = self.text.get(..usize::from(self.length));
+        used.and_then(|text| std::str::from_utf8(text).ok())
+            .unwrap_or_default()
+    }
 }
 
 /// How a range is scanned.
@@ -76,6 +114,43 @@ pub struct ScanRules {
     pub m90: bool,
     /// MP6270: step of the output, mm.
     pub step_mm: f64,
+    /// A probe that measures how far it is deflected (MP6200 = 1); then the feeds of positioning and of the first
+    /// contact are MP6361 and MP6350.
+    pub measuring: Option<MeasuringRules>,
+}
+
+/// A measuring probe: MP6310 to MP6390 [000:7882-7958].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuringRules {
+    /// MP6310: how far the stylus is deflected while it scans, mm.
+    pub depth_mm: f64,
+    /// MP6320: whether the probe counts against the machine axes X, Y, Z.
+    pub reversed: [bool; 3],
+    /// MP6322: which axis of the probe belongs to the machine axes X, Y, Z.
+    pub axes: [usize; 3],
+    /// MP6330: how far it may be deflected, mm.
+    pub limit_mm: f64,
+    /// MP6360: along the surface, mm/min (inferred: no manual says with which feed it scans).
+    pub feed_mm_min: f64,
+    /// MP6362: the feed falls where the deflection is not what it is to be.
+    pub slows: bool,
+    /// MP6390: half of the side of the square in which a contour line ends, mm.
+    pub window_mm: f64,
+}
+
+impl MeasuringRules {
+    /// A deflection along the axes of the machine.
+    pub fn along_axes(&self, probe: &ScanPoint) -> ScanPoint {
+        std::array::from_fn(|k| {
+            let place = self.axes.get(k).copied().unwrap_or(k);
+            let value = probe.get(place).copied().unwrap_or(0.0);
+            if self.reversed.get(k) == Some(&true) {
+                -value
+            } else {
+                value
+            }
+        })
+    }
 }
 
 impl Default for ScanRules {
@@ -91,6 +166,7 @@ impl Default for ScanRules {
             deflection_mm: 5.0,
             m90: false,
             step_mm: 0.001,
+            measuring: None,
         }
     }
 }
@@ -141,6 +217,8 @@ pub enum ScanFault {
     TimeLimit,
     /// The stylus did not become free.
     CannotRetract,
+    /// A measuring probe was deflected farther than MP6330.
+    DeflectionExceedsMax,
     /// The probe is not ready.
     NotReady,
     /// There is no room for more points.

@@ -1,6 +1,6 @@
 //! How every stage pulls path elements from the stage before it.
 
-use crate::{BlockRef, PathElement, Position, Scanned};
+use crate::{BlockRef, PathElement, Position, ScanJob, Scanned};
 
 /// A stage that yields path elements. Everything is pulled: a stage asks for the next element only
 /// when it has room, so programs of any length run in constant memory. Stages that split, join or
@@ -52,10 +52,12 @@ pub enum Barrier {
     /// A tool is measured with the tool probe; the answer is [`LiveData::touch`], where the axes stand then, with the
     /// results in [`LiveData::q_values`] [000:7960-8058].
     MeasureTool(ToolMeasuring),
-    /// A surface is digitized; the source knows what is scanned, and the answer is [`LiveData::scan`].
+    /// A surface is digitized; the answer is [`LiveData::scan`].
     Scan {
         /// The last block of the cycle.
         block: BlockRef,
+        /// What is scanned, and how.
+        job: ScanJob,
     },
     /// A programmed stop (STOP, M0, M1): the operator or the driver lets it go on.
     Stop {

@@ -14,7 +14,6 @@ const NUMBERS: u32 = 65_536;
 #[derive(Clone, Debug)]
 pub struct DigitizedText {
     job: ScanJob,
-    name: Box<str>,
     number: u32,
     /// Coordinates in output steps as they were written last.
     last: [Option<i64>; 3],
@@ -22,13 +21,12 @@ pub struct DigitizedText {
 }
 
 impl DigitizedText {
-    /// A program of this name.
-    pub fn new(name: &str, job: ScanJob) -> DigitizedText {
+    /// The program of a scan.
+    pub fn new(job: ScanJob) -> DigitizedText {
         let step = job.rules.step_mm;
         let decimals = if job.inch || step < 0.001 { 4 } else { 3 };
         DigitizedText {
             job,
-            name: name.into(),
             number: 0,
             last: [None; 3],
             decimals: if !job.inch && step > 0.001 { 2 } else { decimals },
@@ -39,12 +37,39 @@ impl DigitizedText {
     pub fn begin(&mut self) -> String {
         let mut text = String::new();
         let unit = self.unit();
-        self.block(&mut text, &format!("BEGIN PGM {} {unit}", self.name));
+        self.block(
+            &mut text,
+            &format!("BEGIN PGM {} {unit}", self.job.program.as_str()),
+        );
+        self.blank(&mut text);
         let begin = self.job.begin();
         let up = self.job.tool_place();
         self.line(&mut text, &begin, |axis| axis == up, " FMAX");
         self.line(&mut text, &begin, |axis| axis != up, " FMAX");
         text
+    }
+
+    /// With a TM 110 the range as a blank, in the working plane greater by twice the depth of deflection, half of that on
+    /// each side (inferred) [000:821].
+    fn blank(&mut self, text: &mut String) {
+        let Some(measuring) = self.job.rules.measuring else {
+            return;
+        };
+        let (job, up) = (self.job, self.job.tool_place());
+        let unit_mm = if job.inch { 25.4 } else { 1.0 };
+        let scale = 10f64.powi(i32::try_from(self.decimals).unwrap_or(3));
+        let corner = |point: &ScanPoint, side: f64| {
+            let mut words = String::new();
+            for (k, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
+                let more = if k == up { 0.0 } else { side * measuring.depth_mm };
+                let at = (point[k] - job.shift[k] + more) / unit_mm;
+                let _ = write!(words, " {letter}{:+}", (at * scale).round() / scale + 0.0);
+            }
+            words
+        };
+        let (least, greatest) = (corner(&job.min, -1.0), corner(&job.max, 1.0));
+        self.block(text, &format!("BLK FORM 0.1 {}{least}", job.tool_axis));
+        self.block(text, &format!("BLK FORM 0.2{greatest}"));
     }
 
     /// A point; nothing when it is the last one.
@@ -63,7 +88,10 @@ impl DigitizedText {
         }
         self.line(&mut text, &begin, |axis| axis == up, " FMAX");
         let unit = self.unit();
-        self.block(&mut text, &format!("END PGM {} {unit}", self.name));
+        self.block(
+            &mut text,
+            &format!("END PGM {} {unit}", self.job.program.as_str()),
+        );
         text
     }
 
@@ -108,13 +136,12 @@ impl DigitizedText {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
     use super::*;
-    use bahn_path::{Axis, ScanRules};
+    use bahn_path::{Axis, MeasuringRules, ScanName, ScanRules};
 
-    /// The shape of the manual's example [003:6844-6851].
-    #[test]
-    fn the_program_of_the_manual() {
-        let job = ScanJob {
+    fn contour_lines() -> ScanJob {
+        ScanJob {
             tool_axis: Axis::Z,
             min: [-50.0, -50.0, 0.0],
             max: [50.0, 50.0, 1.0],
@@ -130,10 +157,39 @@ mod tests {
             spacing_mm: 0.5,
             interval_mm: 0.2,
             stylus_radius_mm: 2.0,
+            beside: [0.0; 3],
             inch: false,
+            program: ScanName::new("DATA").unwrap(),
             rules: ScanRules::default(),
+        }
+    }
+
+    /// With a TM 110 the blank is the range and the depth of deflection more on each side of the plane.
+    #[test]
+    fn the_blank_of_a_measuring_probe() {
+        let measuring = MeasuringRules {
+            depth_mm: 0.5,
+            reversed: [false; 3],
+            axes: [0, 1, 2],
+            limit_mm: 2.0,
+            feed_mm_min: 600.0,
+            slows: false,
+            window_mm: 0.4,
         };
-        let mut program = DigitizedText::new("DATA", job);
+        let mut job = contour_lines();
+        job.rules.measuring = Some(measuring);
+        assert_eq!(
+            DigitizedText::new(job).begin(),
+            "0 BEGIN PGM DATA MM\n1 BLK FORM 0.1 Z X-50.5 Y-50.5 Z+0\n2 BLK FORM 0.2 X+50.5 Y+50.5 Z+1\n\
+             3 L Z+40 FMAX\n4 L X+0 Y-25 FMAX\n"
+        );
+    }
+
+    /// The shape of the manual's example [003:6844-6851].
+    #[test]
+    fn the_program_of_the_manual() {
+        let job = contour_lines();
+        let mut program = DigitizedText::new(job);
         let mut text = program.begin();
         for point in [
             [2.005, -12.561, 0.0],
@@ -149,17 +205,14 @@ mod tests {
             "0 BEGIN PGM DATA MM\n1 L Z+40 FMAX\n2 L X+0 Y-25 FMAX\n3 L X+2.005 Y-12.561 Z+0\n4 L X+2.025 Y-12.375\n\
              5 L X+0 Y-10.423 Z+0.5\n6 L Y-25 FMAX\n7 L Z+40 FMAX\n8 END PGM DATA MM\n"
         );
-        program = DigitizedText::new(
-            "D",
-            ScanJob {
-                inch: true,
-                rules: ScanRules {
-                    m90: true,
-                    ..job.rules
-                },
-                ..job
+        program = DigitizedText::new(ScanJob {
+            inch: true,
+            rules: ScanRules {
+                m90: true,
+                ..job.rules
             },
-        );
+            ..job
+        });
         text.clear();
         program.begin();
         program.point(&mut text, &[25.4, 0.0, 0.0]);

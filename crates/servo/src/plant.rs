@@ -181,7 +181,7 @@ pub struct Drive {
 }
 
 /// The touch probe.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Probe {
     /// The stylus is deflected.
     pub deflected: bool,
@@ -189,6 +189,9 @@ pub struct Probe {
     pub ready: bool,
     /// Its battery is low (X12/7).
     pub battery_low: bool,
+    /// How far the stylus of a measuring probe (TM 110) is deflected along its own axes X, Y, Z, mm, as its measuring
+    /// systems count [000:7895-7905]; a triggering one leaves 0.
+    pub deflection_mm: [f64; 3],
 }
 
 /// The state of the controls that the NC reads without the PLC.

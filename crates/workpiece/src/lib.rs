@@ -6,7 +6,9 @@
 //! - [`Part`]: the material as it is now ([`Workpiece::part`]): removed volume, heights, probing;
 //! - views of it as an [`Image`]: [`Part::plan_view`], [`Part::three_planes`], [`Part::view_3d`], each
 //!   on a [`Page`] with a title line;
-//! - [`Part::write_stl`]: the finished part as a closed mesh.
+//! - [`Part::deviation`] from another part, as numbers and [`Part::deviation_view`];
+//! - [`Part::write_stl`]: the finished part as a closed mesh; [`Part::from_stl`]: a solid from one;
+//! - [`Feeler`]: a ball that feels its way over a part.
 //!
 //! The material is a height map over the working plane of the blank: square columns of equal size
 //! that tile the blank exactly, each with one height along the tool axis. Everything that a tool in
@@ -28,6 +30,7 @@ mod batch;
 mod chords;
 mod coarsen;
 mod cutters;
+mod deviation;
 mod event;
 mod feeler;
 mod grid;
@@ -36,6 +39,7 @@ mod part;
 mod raster;
 mod round;
 mod setup;
+mod solid;
 mod stl;
 mod strip;
 mod sweep;
@@ -46,10 +50,12 @@ mod trail;
 mod view;
 mod workpiece;
 
+pub use deviation::Deviation;
 pub use event::{Event, EventKind};
 pub use feeler::Feeler;
 pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
+pub use solid::SolidError;
 pub use stl::{MAX_TRIANGLES, MeshError};
 pub use view::{Colouring, Page, PageError, PlanView, Projection, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};

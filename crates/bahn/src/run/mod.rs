@@ -17,6 +17,7 @@ mod oscilloscope;
 mod recording;
 mod report;
 mod session;
+mod table;
 mod times;
 mod turning;
 
@@ -41,12 +42,13 @@ use crate::options::Format;
 use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Place, Record};
 use crate::test_run::{Outputs, print_error};
-use crate::{Outcome, UsageError, console, files, report_text, settings};
+use crate::{Outcome, UsageError, console, files, report_text, settings, solid};
 use executed::Executed;
 use oscilloscope::Scoped;
 use recording::Recording;
 use report::{ChannelReport, ProgramReport, Refusal, RunReport};
 use session::{Ended, Patience, Session};
+use table::Table;
 
 /// Runs a program on a machine and reports.
 pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
@@ -76,6 +78,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     };
     let shared = Arc::clone(&programs) as Arc<dyn bahn_control::Programs>;
     let mut host = Host::new(&machine, power_on, shared, operator);
+    let table = table(options, &machine, &mut host)?;
     if let Some(path) = &options.run.log {
         let program = programs.main_name().unwrap_or("no program");
         let title = format!("{}, {program}; bahn run --replay repeats it", machine.folder.name);
@@ -115,6 +118,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     }
     let mut session = Session::new(host, Play::new(script), executed, recording, patience);
     session.oscilloscope = oscilloscope;
+    session.table = table;
     let blocks = programs.main().map_or(0, |main| main.block_count());
     let mut progress = Progress::new(blocks);
     // A file that cannot be written loses no report.
@@ -126,6 +130,26 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let outcome = finish(session, ended, &machine, &programs, options, &interrupt)?;
     switched_off?;
     Ok(outcome)
+}
+
+/// What lies on the table: the solid of the command or of machine.toml, at the datum of machine.toml.
+fn table(options: &RunMachineOptions, machine: &LoadedMachine, host: &mut Host) -> Result<Table, UsageError> {
+    let own = machine
+        .folder
+        .solid
+        .as_ref()
+        .map(|solid| machine.root.join(solid));
+    let solid = match options.output.solid.clone().or(own) {
+        Some(path) => Some(solid::read(&path, options.output.resolution)?),
+        None => None,
+    };
+    if solid.is_some() && host.plant().probe_radius_mm().is_none() {
+        return Err(UsageError::new(format!(
+            "a solid lies on the table, and {} has no touch probe: [probe] in {}",
+            machine.folder.name, machine.folder.plant
+        )));
+    }
+    Ok(Table::with(solid, &machine.datum(), host))
 }
 
 /// Prints the faults of files that keep a machine from being switched on.
@@ -193,7 +217,10 @@ fn all_programs(
             true => machine.usual_program(channel).map(Path::new),
             false => options.files.get(channel).map(PathBuf::as_path),
         };
-        programs.push(Arc::new(FolderPrograms::new(&machine.programs(channel), main)?));
+        let programs_of = FolderPrograms::new(&machine.programs(channel), main)?;
+        programs.push(Arc::new(
+            programs_of.with_digitized(options.output.digitized.as_deref()),
+        ));
     }
     Ok(programs)
 }

@@ -96,7 +96,12 @@ pub(crate) struct RunMachineOptions {
 impl RunMachineOptions {
     /// Files that are read.
     pub fn inputs(&self) -> Vec<&Path> {
-        let further = [&self.run.script, &self.run.replay];
+        let further = [
+            &self.run.script,
+            &self.run.replay,
+            &self.output.solid,
+            &self.output.compare,
+        ];
         let all = self.files.iter().chain(further.into_iter().flatten());
         all.map(PathBuf::as_path).collect()
     }

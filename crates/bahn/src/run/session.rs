@@ -13,9 +13,10 @@ use super::listed::Listed;
 use super::measured::Measured;
 use super::oscilloscope::Scoped;
 use super::recording::Recording;
-use crate::UsageError;
+use super::table::Table;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
+use crate::{UsageError, diagnostics};
 
 /// How a session ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +61,7 @@ pub(super) struct Session {
     pub listed: Listed,
     pub recording: Option<Recording>,
     pub oscilloscope: Option<Scoped>,
+    pub table: Table,
     patience: Patience,
     notices: Reader<Stamped>,
     /// When the program was started.
@@ -89,6 +91,7 @@ impl Session {
             listed: Listed::default(),
             recording,
             oscilloscope: None,
+            table: Table::default(),
             patience,
             notices: host.notices(),
             start_us: None,
@@ -190,6 +193,9 @@ impl Session {
                         self.listed.confirm(channel, control.time_us(), key, why);
                     }
                 }
+                Notice::Digitized(name, points) => {
+                    diagnostics::print_line(&format!("{points} points are digitized: PGM {name}"));
+                }
                 Notice::Given(Source::Operator, deed, answer) => self.follow_operator(deed, answer)?,
                 _ => {}
             }
@@ -228,6 +234,7 @@ impl Session {
         }
         self.measured.cycle(self.host.control(), phase, running);
         self.executed.cycle(&mut self.host, running)?;
+        self.table.cycle(&mut self.host, self.executed.cutting.as_mut());
         for channel in &mut self.beside {
             channel.cycle(&mut self.host)?;
         }

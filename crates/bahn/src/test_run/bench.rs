@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bahn_interpreter::{Interpreter, ProgramError};
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
-use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanFault, Scanned};
+use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanFault, ScanJob, Scanned};
 use bahn_program::{Operation, Program};
 use bahn_workpiece::Part;
 
@@ -38,6 +38,8 @@ pub(crate) struct Bench {
     ends_at_stop: bool,
     /// Where digitized programs go.
     digitized: Option<PathBuf>,
+    /// What is digitized instead of the part.
+    solid: Option<Arc<Part>>,
     /// Simulate the block processing time of the model.
     block_time: bool,
 }
@@ -81,6 +83,10 @@ impl Bench {
             columns: (!options.output.no_graphics).then_some(wanted),
             ends_at_stop: options.run.stop,
             digitized: options.output.digitized.clone(),
+            solid: match &options.output.solid {
+                Some(path) => Some(crate::solid::read(path, options.output.resolution)?),
+                None => None,
+            },
             block_time: machine.block_time,
             list: equipment.list,
         })
@@ -122,6 +128,7 @@ impl Bench {
             unwritten: None,
             ends_at_stop: self.ends_at_stop,
             digitized: self.digitized.clone(),
+            solid: self.solid.clone(),
             block_time: self.block_time.then(|| BlockTime::of(self.list.model())),
             last_stop: None,
             model: self.list.model(),
@@ -145,6 +152,7 @@ struct TestRun {
     progress: Option<Progress>,
     ends_at_stop: bool,
     digitized: Option<PathBuf>,
+    solid: Option<Arc<Part>>,
     block_time: Option<BlockTime>,
     /// The block of the last stop and its function: in a loop it is the same again and again.
     last_stop: Option<(BlockRef, Option<&'static str>)>,
@@ -170,7 +178,7 @@ impl TestRun {
                         return Ok(End::Stopped);
                     }
                     let live = match barrier {
-                        Barrier::Scan { block } => match self.digitize(block)? {
+                        Barrier::Scan { block, job } => match self.digitize(block, &job)? {
                             Some(live) => live,
                             None => return Ok(self.broken_off()),
                         },
@@ -281,12 +289,15 @@ impl TestRun {
     }
 
     /// Scans the part as it is; `None` when the run is interrupted.
-    fn digitize(&mut self, block: BlockRef) -> Result<Option<LiveData>, UsageError> {
-        let Some((job, name)) = self.planner.source().scan() else {
-            return Ok(Some(LiveData::default()));
+    fn digitize(&mut self, block: BlockRef, job: &ScanJob) -> Result<Option<LiveData>, UsageError> {
+        let part = || {
+            self.cutting
+                .as_mut()
+                .and_then(Cutting::part)
+                .cloned()
+                .map(Arc::new)
         };
-        let (job, name) = (*job, name.to_owned());
-        let Some(part) = self.cutting.as_mut().and_then(Cutting::part) else {
+        let Some(part) = self.solid.clone().or_else(part) else {
             self.record.warn(block, Notice::NothingToProbe, 1);
             let at = job.begin();
             let fault = Some(ScanFault::Inaccessible);
@@ -295,7 +306,7 @@ impl TestRun {
                 ..LiveData::default()
             }));
         };
-        let done = digitize(&job, &name, part, self.digitized.as_deref(), &self.company.stop)?;
+        let done = digitize(job, part, self.digitized.as_deref(), &self.company.stop)?;
         self.record.machining_time_s += done.time_s;
         if self.digitized.is_none() {
             self.record

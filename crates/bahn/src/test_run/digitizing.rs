@@ -2,6 +2,7 @@
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use bahn_motion::{Scan, ScanStep, Sense};
 use bahn_path::{ScanFault, ScanJob, ScanPoint, Scanned};
@@ -35,17 +36,16 @@ pub(super) struct Digitized {
 /// When the program cannot be written.
 pub(super) fn digitize(
     job: &ScanJob,
-    name: &str,
-    part: &Part,
+    part: Arc<Part>,
     folder: Option<&Path>,
     stop: &Stop,
 ) -> Result<Digitized, UsageError> {
     let mut file = match folder {
-        Some(folder) => Some(Program::create(folder, name, job)?),
+        Some(folder) => Some(Program::create(folder, job)?),
         None => None,
     };
     let mut scan = Scan::new(*job, ACCELERATION_M_S2);
-    let mut feeler = Feeler::new(part, job.stylus_radius_mm);
+    let feeler = Feeler::new(part, job.stylus_radius_mm);
     let mut sense = Sense {
         at: scan.position(),
         ..Sense::default()
@@ -83,12 +83,15 @@ pub(super) fn digitize(
                 time_s: cycles as f64 * CYCLE_S,
             });
         }
-        sense = feel(&mut feeler, &sense, scan.position());
+        sense = feel(&feeler, &sense, scan.position());
+        if job.rules.measuring.is_some() {
+            sense.deflection = feeler.deflection(&sense.at);
+        }
     }
 }
 
 /// What the stylus feels when its tip has gone on.
-fn feel(feeler: &mut Feeler, before: &Sense, at: ScanPoint) -> Sense {
+fn feel(feeler: &Feeler, before: &Sense, at: ScanPoint) -> Sense {
     let deflected = feeler.touches(&at);
     let touch = (deflected && !before.deflected).then(|| {
         let (mut free, mut touches) = (before.at, at);
@@ -102,7 +105,12 @@ fn feel(feeler: &mut Feeler, before: &Sense, at: ScanPoint) -> Sense {
         }
         touches
     });
-    Sense { deflected, at, touch }
+    Sense {
+        deflected,
+        at,
+        touch,
+        deflection: [0.0; 3],
+    }
 }
 
 /// The program that takes the points.
@@ -114,10 +122,10 @@ struct Program {
 }
 
 impl Program {
-    fn create(folder: &Path, name: &str, job: &ScanJob) -> Result<Program, UsageError> {
-        let path = folder.join(format!("{name}.H"));
+    fn create(folder: &Path, job: &ScanJob) -> Result<Program, UsageError> {
+        let path = folder.join(format!("{}.H", job.program.as_str()));
         let mut program = Program {
-            text: DigitizedText::new(name, *job),
+            text: DigitizedText::new(*job),
             file: NewFile::create(&path)?,
             path,
             line: String::new(),

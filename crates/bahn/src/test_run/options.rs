@@ -144,7 +144,13 @@ impl TestOptions {
 
     /// Files that are read.
     pub fn inputs(&self) -> Vec<&Path> {
-        let machine = [&self.machine.tools, &self.machine.parameters, &self.table.against];
+        let machine = [
+            &self.machine.tools,
+            &self.machine.parameters,
+            &self.table.against,
+            &self.output.solid,
+            &self.output.compare,
+        ];
         let machine = machine.into_iter().flatten();
         self.files.iter().chain(machine).map(PathBuf::as_path).collect()
     }

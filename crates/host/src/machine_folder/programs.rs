@@ -1,5 +1,6 @@
 //! The part programs of a machine.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -8,13 +9,16 @@ use bahn_interpreter::Library;
 use bahn_program::Program;
 
 use crate::HostError;
-use crate::files::{self, FileLibrary, Loaded};
+use crate::files::{self, FileLibrary, Loaded, NewFile};
 
 /// The folder of programs, and the program that was given by its path, with those that lie beside it.
 pub struct FolderPrograms {
     /// A name in the folder: programs lie beside their caller.
     caller: String,
     main: Option<Arc<Program>>,
+    /// Where digitized programs go, when they do not go into the folder.
+    digitized: Option<PathBuf>,
+    folder: PathBuf,
     library: Mutex<FileLibrary>,
 }
 
@@ -42,8 +46,16 @@ impl FolderPrograms {
         FolderPrograms {
             caller: absolute(folder).join("operator").to_string_lossy().into_owned(),
             main: None,
+            digitized: None,
+            folder: absolute(folder),
             library: Mutex::default(),
         }
+    }
+
+    /// The same with another folder for digitized programs; a program of the same name there is replaced.
+    pub fn with_digitized(mut self, folder: Option<&Path>) -> FolderPrograms {
+        self.digitized = folder.map(Path::to_owned);
+        self
     }
 
     /// The name by which the operator selects the main program.
@@ -105,5 +117,22 @@ impl Programs for FolderPrograms {
             return Ok(Some(program));
         }
         library.find_in_eprom(name, &self.caller)
+    }
+
+    fn store(&self, name: &str, pieces: &[Arc<[u8]>]) -> Result<(), String> {
+        let folder = self.digitized.as_ref().unwrap_or(&self.folder);
+        let path = folder.join(format!("{name}.H"));
+        if self.digitized.is_none() && path.exists() {
+            return Err(format!("{} is there already", path.display()));
+        }
+        let write = || {
+            let mut file = NewFile::create(&path)?;
+            for piece in pieces {
+                file.write_all(piece)
+                    .map_err(|error| files::cannot("write", &path, &error))?;
+            }
+            file.finish()
+        };
+        write().map_err(|error: HostError| error.to_string())
     }
 }

@@ -142,7 +142,7 @@ impl Job {
                 Step::Element(element) => run.elements.push(element),
                 Step::Barrier(barrier) => {
                     run.barriers.push(barrier);
-                    run.scans.extend(interpreter.scan().map(|(job, _)| *job));
+                    run.scans.extend(interpreter.scan().map(|(_, job)| *job));
                     interpreter.resume(LiveData {
                         touch: touch(&barrier, &mut surfaces),
                         ..LiveData::default()

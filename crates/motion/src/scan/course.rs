@@ -2,7 +2,8 @@
 
 use bahn_path::{Axis, ScanFault, ScanJob, ScanPattern, ScanPoint};
 
-use super::follow::{Felt, Followed, Follower, Tracking, Wish};
+use super::follow::Follower;
+use super::way::{Felt, Followed, Tracking, Wish};
 
 /// A line or level is reached within this, mm.
 const THERE_MM: f64 = 1e-3;
@@ -254,37 +255,52 @@ impl Course {
                 let (axis, sign, end) = self.line;
                 if (felt.at[axis] - end) * sign >= -THERE_MM {
                     self.stage = Stage::Rise;
-                    return Ok((Wish::stand(), None));
+                    // A stylus that is deflected touches beside the end of the line.
+                    let tip = std::array::from_fn(|k| felt.at[k] + felt.deflection[k]);
+                    let point = (job.rules.measuring.is_some() && felt.deflected).then_some(tip);
+                    return Ok((Wish::stand(), point));
                 }
                 Ok(match followed {
                     Followed::Moves(mut wish) => {
                         wish.end = Some((axis, sign, end));
                         (wish, None)
                     }
-                    Followed::Touched(point) => (Wish::stand(), Some(point)),
+                    Followed::Touched(point, mut wish) => {
+                        wish.end = Some((axis, sign, end));
+                        (wish, Some(point))
+                    }
                     Followed::Stuck => (Wish::stand(), None),
                 })
             }
-            (ScanPattern::ContourLines { time_limit_s, .. }, Followed::Touched(point)) => {
+            (ScanPattern::ContourLines { time_limit_s, .. }, Followed::Touched(point, wish)) => {
                 self.since.0 += 1;
                 let (points, time) = self.since;
                 if time_limit_s > 0.0 && time > time_limit_s {
                     return Err(Some(ScanFault::TimeLimit));
                 }
-                let away: f64 = (0..3)
-                    .map(|k| (point[k] - self.first[k]).powi(2))
-                    .sum::<f64>()
-                    .sqrt();
-                if points >= ORBIT_MIN && away <= CLOSED * job.interval_mm {
+                if points >= ORBIT_MIN && self.is_closed(point, job) {
                     self.next_level(job);
                     return Ok((Wish::stand(), Some(point)));
                 }
                 follower.cap_mm = self.cap(follower, job);
-                Ok((Wish::stand(), Some(point)))
+                Ok((wish, Some(point)))
             }
             (_, Followed::Moves(wish)) => {
                 self.within(job, felt)?;
                 Ok((wish, None))
+            }
+        }
+    }
+
+    /// The orbit has come back to its first point: within a quarter of the point interval [003:6754], with a measuring
+    /// probe within the window of MP6390 [000:7930].
+    fn is_closed(&self, point: ScanPoint, job: &ScanJob) -> bool {
+        let off: ScanPoint = std::array::from_fn(|k| point[k] - self.first[k]);
+        match &job.rules.measuring {
+            Some(rules) => off.iter().all(|part| part.abs() <= rules.window_mm),
+            None => {
+                let square: f64 = off.iter().map(|part| part * part).sum();
+                square.sqrt() <= CLOSED * job.interval_mm
             }
         }
     }

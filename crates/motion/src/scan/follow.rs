@@ -2,6 +2,9 @@
 
 use bahn_path::{ScanJob, ScanPoint};
 
+use super::glide::Glide;
+use super::way::{Felt, Followed, Tracking, Wish};
+
 /// Part of an oscillation that the stylus leaves the surface (inferred): two fifths, so that points lie nearer than the
 /// interval also where the surface falls away.
 const AWAY: f64 = 0.4;
@@ -9,48 +12,6 @@ const AWAY: f64 = 0.4;
 const NEAR_MM: f64 = 1e-3;
 /// Touches without getting farther after which the stylus is stuck (inferred).
 const STUCK: u32 = 20_000;
-
-/// What the follower learns in a cycle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Felt {
-    pub at: ScanPoint,
-    pub deflected: bool,
-    pub touch: Option<ScanPoint>,
-    pub time_s: f64,
-}
-
-/// How the tip is to move.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Wish {
-    /// mm/s
-    pub velocity: ScanPoint,
-    /// Axis that must not go beyond a coordinate in a direction.
-    pub end: Option<(usize, f64, f64)>,
-}
-
-impl Wish {
-    pub fn stand() -> Wish {
-        Wish {
-            velocity: [0.0; 3],
-            end: None,
-        }
-    }
-
-    /// Along a direction, mm/s.
-    pub fn along(direction: ScanPoint, speed: f64) -> Wish {
-        Wish {
-            velocity: direction.map(|part| part * speed),
-            end: None,
-        }
-    }
-}
-
-/// The plane in which a surface is followed: the way along it and the way off it, unit vectors.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Tracking {
-    pub along: ScanPoint,
-    pub off: ScanPoint,
-}
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -66,14 +27,6 @@ enum Phase {
     Forth { from: ScanPoint },
     /// It does not become free: the axis of the probe retracts.
     Lift,
-}
-
-/// What a cycle of following comes to.
-pub(super) enum Followed {
-    Moves(Wish),
-    Touched(ScanPoint),
-    /// It gets no farther.
-    Stuck,
 }
 
 /// The follower of a surface.
@@ -98,6 +51,8 @@ pub(super) struct Follower {
     interval_mm: f64,
     deflection_mm: f64,
     up: ScanPoint,
+    /// Of a measuring probe.
+    glide: Option<Glide>,
 }
 
 fn dot(a: ScanPoint, b: ScanPoint) -> f64 {
@@ -129,7 +84,13 @@ impl Follower {
             interval_mm: job.interval_mm,
             deflection_mm: job.rules.deflection_mm,
             up,
+            glide: job.rules.measuring.map(Glide::new),
         }
+    }
+
+    /// Off the surface before the next touch.
+    pub fn retreat(&mut self) {
+        self.phase = Phase::Rise { for_s: 0.0 };
     }
 
     /// Begins at a point of the surface.
@@ -141,6 +102,9 @@ impl Follower {
         self.cap_mm = self.interval_mm;
         self.farthest = f64::NEG_INFINITY;
         self.stuck = 0;
+        if let Some(glide) = &mut self.glide {
+            glide.begin();
+        }
     }
 
     /// The last point of the surface.
@@ -169,6 +133,13 @@ impl Follower {
 
     /// Follows the surface for a cycle.
     pub fn cycle(&mut self, felt: &Felt) -> Followed {
+        if let Some(glide) = &mut self.glide {
+            let followed = glide.cycle(felt, &self.tracking, self.last, self.interval_mm);
+            if let Followed::Touched(point, _) = followed {
+                self.last = point;
+            }
+            return followed;
+        }
         if let Some(touch) = felt.touch.filter(|_| self.waits_for_touch()) {
             return self.touched(touch);
         }
@@ -256,6 +227,6 @@ impl Follower {
         if self.stuck > STUCK {
             return Followed::Stuck;
         }
-        Followed::Touched(touch)
+        Followed::Touched(touch, Wish::stand())
     }
 }

@@ -216,6 +216,10 @@ messages! {
         cause "The start point of CONTOUR LINES lies outside the range.";
         remedy "Program a start point inside the range.";
         source "[003:8079-8081]";
+    StylusDeflectionExceedsMax: "STYLUS DEFLECTION EXCEEDS MAX";
+        cause "The stylus of the measuring probe is deflected farther than MP6330.";
+        remedy "Free the stylus; scan more slowly, or with a smaller depth (MP6310).";
+        source "[000:7917]";
     TimeLimitExceeded: "TIME LIMIT EXCEEDED";
         cause "The orbit of a contour line took longer than its time limit.";
         remedy "Enter a longer time limit, or 0 for none.";

@@ -114,6 +114,29 @@ pub struct DigitizingSettings {
     pub measuring: bool,
 }
 
+/// A measuring probe, TM 110: MP6310 to MP6390 [000:7882-7958].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuringProbe {
+    /// How far it is deflected while it scans, mm: MP6310.
+    pub depth_mm: f64,
+    /// Whether it counts against the machine axes X, Y, Z: MP6320.
+    pub reversed: [bool; 3],
+    /// Which of its axes belongs to the machine axes X, Y, Z, from 0: MP6322.
+    pub axes: [usize; 3],
+    /// How far it may be deflected, mm: MP6330.
+    pub limit_mm: f64,
+    /// To the MIN point and to the contour, mm/min: MP6350.
+    pub approach_mm_min: f64,
+    /// Probing feed, mm/min: MP6360.
+    pub feed_mm_min: f64,
+    /// Rapid traverse, mm/min: MP6361.
+    pub rapid_mm_min: f64,
+    /// The feed falls where the ball leaves its path: MP6362.
+    pub slows: bool,
+    /// Half of the side of the window in which a contour line ends, mm: MP6390.
+    pub window_mm: f64,
+}
+
 /// Settings of the graphics: MP7310 (old MP236) [000:6368-6409] [001:1654].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GraphicsSettings {
@@ -245,11 +268,13 @@ impl ParameterList {
 
     /// Settings of the touch probe.
     pub fn probe(&self) -> ProbeSettings {
+        // A measuring probe has feeds of its own [000:7640].
+        let measuring = self.measuring_probe();
         ProbeSettings {
-            feed_mm_min: self.value((6120, 0), (215, 0)),
+            feed_mm_min: measuring.map_or_else(|| self.value((6120, 0), (215, 0)), |of| of.feed_mm_min),
             range_mm: self.value((6130, 0), (216, 0)),
             clearance_mm: self.value((6140, 0), (235, 0)),
-            rapid_mm_min: self.value((6150, 0), (251, 0)),
+            rapid_mm_min: measuring.map_or_else(|| self.value((6150, 0), (251, 0)), |of| of.rapid_mm_min),
             keeps_tool_data: self.get(7411, 0) == Some(1.0),
             on_standby: self.get_new(6010, 0) == Some(1.0),
             turn: match self.get_new(6160, 0) {
@@ -276,6 +301,32 @@ impl ParameterList {
             },
             measuring: self.get_new(6200, 0) == Some(1.0),
         }
+    }
+
+    /// The measuring probe; `None` for a triggering one (MP6200 = 0). What the list leaves at 0 has the least value that
+    /// may be entered, the depth 1 mm, which is usual; MP6322 that is 0 for all axes leaves each its own (inferred)
+    /// [000:7907-7958].
+    pub fn measuring_probe(&self) -> Option<MeasuringProbe> {
+        if self.get_new(6200, 0) != Some(1.0) {
+            return None;
+        }
+        let or = |number, otherwise: f64| {
+            let value = self.get_new(number, 0).unwrap_or(0.0);
+            if value > 0.0 { value } else { otherwise }
+        };
+        let reversed = self.get_new(6320, 0).unwrap_or(0.0) as u32;
+        let axes = [0, 1, 2].map(|index| self.get_new(6322, index).unwrap_or(0.0) as usize);
+        Some(MeasuringProbe {
+            depth_mm: or(6310, 1.0),
+            reversed: [0, 1, 2].map(|bit| reversed >> bit & 1 == 1),
+            axes: if axes == [0; 3] { [0, 1, 2] } else { axes },
+            limit_mm: or(6330, 4.0),
+            approach_mm_min: or(6350, 10.0),
+            feed_mm_min: or(6360, 10.0),
+            rapid_mm_min: or(6361, 10.0),
+            slows: self.get_new(6362, 0) == Some(1.0),
+            window_mm: or(6390, 0.1),
+        })
     }
 
     /// Settings of the graphics. Blank and cursor settings are those of the TNC 407/415/425; elsewhere the

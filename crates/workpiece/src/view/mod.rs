@@ -2,6 +2,7 @@
 
 mod camera;
 mod colouring;
+mod deviation;
 mod edges;
 mod legend;
 mod light;

@@ -126,7 +126,7 @@ pub(super) fn frame(image: &mut Image, drawing: &Area, page: &Page) {
     image.outline(&corners, page.line_width(), INK);
 }
 
-fn rulers(image: &mut Image, part: &Part, drawing: &Area, size: f64) {
+pub(super) fn rulers(image: &mut Image, part: &Part, drawing: &Area, size: f64) {
     let [first, second, _] = part.axes();
     let (min, max) = (part.min(), part.max());
     Ruler {

@@ -1,0 +1,47 @@
+//! What lies on the table of the machine while the touch probe digitizes.
+
+use std::sync::Arc;
+
+use bahn_control::Digitized;
+use bahn_host::Host;
+use bahn_path::Position;
+use bahn_workpiece::Part;
+
+use crate::cutting::Cutting;
+use crate::solid;
+
+/// The table: a solid that was given, or the part as far as it is machined.
+#[derive(Default)]
+pub(super) struct Table {
+    given: bool,
+    /// The news of the digitizing that were looked at.
+    seen: u64,
+}
+
+impl Table {
+    /// With a solid that lies there from the start, its datum at a position of the axes.
+    pub fn with(solid: Option<Arc<Part>>, datum: &Position, host: &mut Host) -> Table {
+        let given = solid.is_some();
+        if let (Some(part), Some(radius)) = (solid, host.plant().probe_radius_mm()) {
+            let solid = solid::on_table(part, radius, datum);
+            host.plant_mut().put_on_table(Some(solid));
+        }
+        Table { given, seen: 0 }
+    }
+
+    /// When a scan begins the part lies on the table as it is then, at the datum of the program.
+    pub fn cycle(&mut self, host: &mut Host, cutting: Option<&mut Cutting>) {
+        let channel = host.control().first();
+        let news = channel.digitized();
+        if std::mem::replace(&mut self.seen, news.number) == news.number || self.given {
+            return;
+        }
+        let datum = channel.datum();
+        let (Some(Digitized::Begins(_)), Some(radius)) = (news.what, host.plant().probe_radius_mm()) else {
+            return;
+        };
+        let part = cutting.and_then(Cutting::part).cloned();
+        let solid = part.map(|part| solid::on_table(Arc::new(part), radius, &datum));
+        host.plant_mut().put_on_table(solid);
+    }
+}

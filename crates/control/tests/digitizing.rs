@@ -1,0 +1,405 @@
+//! TCH PROBE 5 to 7 on the machine: the axes scan what the probe touches [003:6532-6882] [000:7722-7958].
+
+#[path = "support/stand.rs"]
+mod stand;
+mod support;
+
+use bahn_control::{Digitized, RunState};
+use bahn_servo::Plant;
+use stand::*;
+use support::*;
+
+/// PLC: the probing is enabled while contact A is open.
+fn plc() -> String {
+    format!("{ACKNOWLEDGE}       L     M2503\n       AN    I20\n       R     M2503")
+}
+
+/// The upper face of the box from X 80 to 120 and Y 0 to 100 is at Z 0. Three lines of 10 mm, 1 mm apart.
+const FACE: &str = "TOOL CALL 0 Z S0
+TCH PROBE 5.0 RANGE
+TCH PROBE 5.1 PGM NAME: FACE
+TCH PROBE 5.2 Z X+85 Y+20 Z-5
+TCH PROBE 5.3 X+95 Y+22 Z+5
+TCH PROBE 5.4 HEIGHT: +10
+TCH PROBE 6.0 MEANDER
+TCH PROBE 6.1 DIRECTN: X
+TCH PROBE 6.2 TRAVEL: 0.5 L.SPAC: 1 P.P. INT: 1
+L X+50 R0 F6000";
+
+/// The block that scans.
+const SCANS: u32 = 9;
+
+fn rig_of_bench(build: Build, program: &str) -> Rig {
+    let mut rig = build.program("1.H", program).rig();
+    rig.power_on();
+    rig.seconds(0.3);
+    // The spindle is 100 above the end of the ball.
+    let z = rig.machine_position('Z');
+    rig.command(&format!("datum Z {}", z - 100.0));
+    for axis in ['X', 'Y'] {
+        let at = rig.machine_position(axis);
+        rig.command(&format!("datum {axis} {at}"));
+    }
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.event("probe insert");
+    rig
+}
+
+fn rig(program: &str) -> Rig {
+    rig_of_bench(bench(&plc()), program)
+}
+
+/// What was digitized.
+#[derive(Default)]
+struct Kept {
+    seen: u64,
+    begun: u32,
+    broken: u32,
+    complete: u32,
+    points: Vec<[f64; 3]>,
+}
+
+impl Kept {
+    fn look(&mut self, rig: &Rig) {
+        let news = rig.control.first().digitized();
+        if news.number == self.seen {
+            return;
+        }
+        assert_eq!(news.number, self.seen + 1, "a cycle says one thing at most");
+        self.seen = news.number;
+        match news.what.unwrap() {
+            Digitized::Begins(job) => {
+                assert_eq!(job.program.as_str(), "FACE");
+                self.points.clear();
+                self.begun += 1;
+            }
+            Digitized::Point(point) => self.points.push(point),
+            Digitized::BrokenOff => self.broken += 1,
+            Digitized::Complete => self.complete += 1,
+        }
+    }
+
+    fn until(&mut self, rig: &mut Rig, seconds: f64, so: impl Fn(&Rig, &Kept) -> bool) {
+        let end = rig.control.time_us() + (seconds * 1e6) as u64;
+        while !so(rig, self) {
+            assert!(
+                rig.control.time_us() < end,
+                "{:?} {:?}",
+                rig.messages(),
+                rig.control.snapshot()
+            );
+            rig.cycle();
+            self.look(rig);
+        }
+    }
+
+    fn to_the_end(&mut self, rig: &mut Rig) {
+        self.until(rig, 300.0, |rig, _| rig.control.snapshot().ended);
+    }
+
+    /// All points lie on the face, no two of a line farther apart than the interval, and they cover the lines.
+    fn covers_the_face(&self) {
+        for point in &self.points {
+            assert!(point[2].abs() < 0.005, "{point:?}");
+            assert!((84.99..=95.01).contains(&point[0]), "{point:?}");
+        }
+        for pair in self.points.windows(2) {
+            let way = (pair[0][0] - pair[1][0]).hypot(pair[0][1] - pair[1][1]);
+            assert!(way <= 1.05, "{pair:?}");
+        }
+        for line in [20.0, 21.0, 22.0] {
+            let on = self.points.iter().filter(|point| (point[1] - line).abs() < 0.01);
+            let (low, high) = on.fold((f64::MAX, f64::MIN), |(low, high), point| {
+                (low.min(point[0]), high.max(point[0]))
+            });
+            assert!(low < 86.0 && high > 94.0, "Y {line}: {low} to {high}");
+        }
+        assert!(self.points.len() >= 33, "{}", self.points.len());
+    }
+}
+
+/// M2503 waits for the PLC; then the stylus scans line by line. At the end it stands at clearance height, and the program
+/// goes on.
+#[test]
+fn a_face_is_digitized() {
+    let mut rig = rig(FACE);
+    let mut kept = Kept::default();
+    rig.event("key A press");
+    rig.start();
+    kept.until(&mut rig, 20.0, |rig, _| rig.bit("M2503"));
+    rig.seconds(1.0);
+    assert!(rig.bit("M2503") && kept.points.is_empty());
+    near(display(&rig, 'Z'), 10.0);
+    rig.event("key A release");
+    kept.until(&mut rig, 20.0, |rig, _| rig.bit("M2025"));
+    kept.to_the_end(&mut rig);
+    assert!(rig.bit("M2026"));
+    assert_eq!((kept.begun, kept.complete, kept.broken), (1, 1, 0));
+    kept.covers_the_face();
+    near(display(&rig, 'Z'), 10.0);
+    near(display(&rig, 'X'), 50.0);
+    assert_eq!(rig.messages(), [""; 0]);
+}
+
+/// NC stop holds the stylus where it is, NC start goes on; with half the override it takes longer.
+#[test]
+fn a_scan_is_stopped_and_slowed_down() {
+    let time = |percent: u32| {
+        let mut rig = rig(FACE);
+        rig.event(&format!("override feed {percent}"));
+        let mut kept = Kept::default();
+        rig.start();
+        kept.until(&mut rig, 60.0, |_, kept| kept.points.len() == 5);
+        let begun = rig.control.time_us();
+        rig.event("key NC_STOP tap");
+        rig.seconds(0.4);
+        let at = ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis));
+        rig.seconds(0.5);
+        assert_eq!(at, ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis)));
+        assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
+        rig.start();
+        kept.to_the_end(&mut rig);
+        assert_eq!((kept.begun, kept.complete), (1, 1));
+        kept.covers_the_face();
+        rig.control.time_us() - begun
+    };
+    let (full, half) = (time(100), time(50));
+    assert!(half as f64 > 1.5 * full as f64, "{half} {full}");
+}
+
+/// A probe that is not ready any more ends the scan with its message; a repaired one begins anew with the next start. A
+/// low battery is said once and scanned with.
+#[test]
+fn the_probe_fails_in_the_middle() {
+    let mut rig = rig(FACE);
+    let mut kept = Kept::default();
+    rig.event("fault probe battery");
+    rig.start();
+    kept.until(&mut rig, 60.0, |_, kept| kept.points.len() == 5);
+    assert!(rig.bit("M2027"));
+    assert_eq!(rig.messages(), ["EXCHANGE TOUCH PROBE BATTERY"]);
+    rig.event("fault probe not-ready");
+    kept.until(&mut rig, 10.0, |rig, _| rig.messages().len() == 2);
+    assert!(
+        rig.messages()[1].starts_with("PROBE SYSTEM NOT READY"),
+        "{:?}",
+        rig.messages()
+    );
+    let block = rig.control.shown()[1].block.map(|block| block.block);
+    assert_eq!((kept.broken, kept.complete, block), (1, 0, Some(SCANS)));
+    rig.seconds(0.1);
+    assert!(rig.bit("M2022") && rig.bit("M2026") && !rig.bit("M2503"));
+    rig.event("repair probe");
+    rig.command("ce");
+    rig.command("ce");
+    rig.start();
+    kept.to_the_end(&mut rig);
+    assert_eq!((kept.begun, kept.complete), (2, 1));
+    kept.covers_the_face();
+}
+
+/// The clearance height lies in the box: the stylus is deflected before it may be.
+#[test]
+fn the_stylus_is_deflected_at_the_start() {
+    let deep = FACE
+        .replace("Z-5", "Z-20")
+        .replace("Z+5", "Z-10")
+        .replace("+10", "-5");
+    let mut rig = rig(&deep);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |rig, _| !rig.messages().is_empty());
+    assert!(
+        rig.messages()[0].starts_with("STYLUS ALREADY IN CONTACT"),
+        "{:?}",
+        rig.messages()
+    );
+    rig.seconds(0.1);
+    assert!(rig.bit("M2023"));
+    kept.look(&rig);
+    assert_eq!((kept.complete, kept.points.len()), (0, 0));
+}
+
+/// The greatest point of the range lies behind the software limit of X: FAULTY RANGE DATA at the block, and no axis moves
+/// [003:8049].
+#[test]
+fn the_range_leaves_the_software_limits() {
+    let mut rig = rig_of_bench(bench(&plc()).mp("910.0=94"), FACE);
+    let before = ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis));
+    rig.start();
+    rig.until(20.0, "the message", |rig| !rig.messages().is_empty());
+    let message =
+        format!("FAULTY RANGE DATA program 1.H block {SCANS}: the range leaves the traverse range of X");
+    assert_eq!(rig.messages(), [message]);
+    assert_eq!(before, ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis)));
+}
+
+/// Nothing lies below the range of X-70: the stylus ends at MIN. A wall beside the face leaves the range.
+#[test]
+fn the_surface_is_not_where_it_is_to_be() {
+    for (program, message) in [
+        (
+            FACE.replace("X+85", "X+40").replace("X+95", "X+60"),
+            "TOUCH POINT INACCESSIBLE",
+        ),
+        (FACE.replace("X+95", "X+130"), "RANGE EXCEEDED"),
+    ] {
+        let mut rig = rig(&program);
+        let mut kept = Kept::default();
+        rig.start();
+        kept.until(&mut rig, 120.0, |rig, _| !rig.messages().is_empty());
+        assert_eq!(rig.messages(), [format!("{message} program 1.H block {SCANS}")]);
+        assert_eq!((kept.broken, kept.complete), (1, 0));
+    }
+}
+
+/// EMERGENCY STOP in the middle: the axes stand, and behind it the scan goes on without a point that is off the face.
+#[test]
+fn emergency_stop_in_the_middle() {
+    let mut rig = rig(FACE);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |_, kept| kept.points.len() == 8);
+    rig.event("emergency press");
+    rig.seconds(0.5);
+    kept.look(&rig);
+    let points = kept.points.len();
+    rig.seconds(1.0);
+    kept.look(&rig);
+    assert_eq!(kept.points.len(), points, "nothing is scanned");
+    assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
+    rig.event("emergency release");
+    rig.seconds(0.5);
+    for _ in 0..3 {
+        rig.control.command("ce".parse().unwrap());
+        rig.seconds(0.2);
+    }
+    rig.start();
+    kept.to_the_end(&mut rig);
+    assert_eq!(kept.complete, 1);
+    kept.covers_the_face();
+}
+
+/// A TM 110 on the bench: it stays deflected by MP6310 and scans with MP6360 along the face.
+fn measuring(mounting: &str, parameters: &[&str]) -> Rig {
+    let build = bench(&plc()).plant(
+        "radius = 2\n",
+        &format!("radius = 2\nmeasuring = true\n{mounting}\n"),
+    );
+    let usual = [
+        "6200=1",
+        "6310=0.5",
+        "6330=2",
+        "6350=200",
+        "6360=600",
+        "6361=3000",
+        "6390=0.2",
+    ];
+    let build = usual
+        .iter()
+        .chain(parameters)
+        .fold(build, |build, mp| build.mp(mp));
+    rig_of_bench(build, FACE)
+}
+
+/// MP6310 depth, MP6320 and MP6322 mounting, MP6350, MP6360 and MP6361 feeds: 32 mm of surface at 600 mm/min are scanned
+/// in less than 10 s, with the stylus 0.5 mm deep; the points are those of the face.
+#[test]
+fn a_measuring_probe_stays_deflected() {
+    for (mounting, parameters) in [
+        ("", &[][..]),
+        // Its X counts along -Y of the machine, its Y along Z, its Z along X.
+        (
+            "mounting = [-2, 3, 1]",
+            &["6320=%010", "6322.0=2", "6322.1=0", "6322.2=1"],
+        ),
+    ] {
+        let mut rig = measuring(mounting, parameters);
+        let mut kept = Kept::default();
+        rig.start();
+        kept.until(&mut rig, 60.0, |_, kept| kept.points.len() == 3);
+        let begun = rig.control.time_us();
+        let mut depth = Vec::new();
+        let end = begun + 60_000_000;
+        while kept.points.len() < 10 {
+            assert!(rig.control.time_us() < end, "{:?}", rig.messages());
+            rig.cycle();
+            kept.look(&rig);
+            depth.push(-display(&rig, 'Z'));
+        }
+        let least = depth.iter().copied().fold(f64::MAX, f64::min);
+        assert!(
+            least > 0.3 && depth.iter().all(|depth| *depth < 0.6),
+            "{least} {depth:?}"
+        );
+        // 7 mm at 10 mm/s.
+        let time_s = (rig.control.time_us() - begun) as f64 * 1e-6;
+        assert!((time_s - 0.7).abs() < 0.1, "{time_s}");
+        kept.to_the_end(&mut rig);
+        assert_eq!((kept.begun, kept.complete), (1, 1));
+        kept.covers_the_face();
+        assert_eq!(rig.messages(), [""; 0]);
+    }
+}
+
+/// Deflected farther than MP6330: a flashing message, and the axes stand [000:7917].
+#[test]
+fn a_stylus_that_is_deflected_too_far_stops_the_machine() {
+    let mut rig = measuring("", &["6330=0.4"]);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |rig, _| !rig.messages().is_empty());
+    assert!(
+        rig.messages()[0].starts_with("STYLUS DEFLECTION EXCEEDS MAX"),
+        "{:?}",
+        rig.messages()
+    );
+    assert!(rig.control.shown()[0].flashing);
+    rig.seconds(1.0);
+    let deepest = -display(&rig, 'Z');
+    assert!((0.38..0.6).contains(&deepest), "{deepest}");
+    kept.look(&rig);
+    assert_eq!(kept.complete, 0);
+}
+
+/// With the wrong counting direction (MP6320) the stylus is led off the face: it gets no farther than MP6330 beside the
+/// range.
+#[test]
+fn a_probe_that_counts_the_wrong_way_is_stopped() {
+    let mut rig = measuring("", &["6320=%100"]);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |rig, _| !rig.messages().is_empty());
+    assert_eq!(
+        rig.messages(),
+        [format!("RANGE EXCEEDED program 1.H block {SCANS}")]
+    );
+    assert!(display(&rig, 'X') > 85.0 - 2.0 - 0.5, "{}", display(&rig, 'X'));
+    assert_eq!(kept.complete, 0);
+}
+
+/// Once the run is on its way no cycle of a scan allocates.
+#[test]
+fn no_cycle_of_a_scan_allocates() {
+    let mut rig = rig(FACE);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |_, kept| kept.begun == 1);
+    let mut cycles = 0u32;
+    while kept.complete == 0 {
+        rig.control.prepare();
+        let (control, machine) = (&mut rig.control, &mut rig.machine);
+        let allocated = allocation_counter::measure(|| control.cycle(machine as &mut dyn Plant));
+        assert_eq!(
+            allocated.count_total,
+            0,
+            "cycle {cycles}: {:?}",
+            rig.control.snapshot()
+        );
+        kept.look(&rig);
+        cycles += 1;
+        assert!(cycles < 100_000, "{:?}", rig.messages());
+    }
+    kept.covers_the_face();
+}
