@@ -197,8 +197,15 @@ impl Restoration {
     }
 
     /// Moves the axes to the contour: those of the working plane first, the tool axis last, unless it has
-    /// to be raised (inferred). The feed is MP4220 of each axis [000:6785].
-    pub fn moves(&mut self, feeder: Option<&mut Feeder>, q_transfer: &mut QTransfer, site: &mut Site) {
+    /// to be raised (inferred). The feed is MP4220 of each axis [000:6785]. The path
+    /// goes on from where they stand then: one that another channel gave back meanwhile stays where that has left it.
+    pub fn moves(
+        &mut self,
+        feeder: Option<&mut Feeder>,
+        q_transfer: &mut QTransfer,
+        track: &mut Track,
+        site: &mut Site,
+    ) {
         let now = site.now;
         let start = now.start && !now.stop;
         match &self.0 {
@@ -222,6 +229,7 @@ impl Restoration {
             site.axes.release(|mover| mover == Mover::Positioning);
             self.0 = None;
             site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, false);
+            track.regain(site);
         }
     }
 }

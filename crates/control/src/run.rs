@@ -415,8 +415,8 @@ impl ProgramRun {
 
     /// Moves the axes back to the contour for a cycle, when that is what is to be done.
     pub fn move_back(&mut self, site: &mut Site) {
-        self.restoration
-            .moves(self.source.feeder_mut(), &mut self.q_transfer, site);
+        let (q, track) = (&mut self.q_transfer, &mut self.track);
+        self.restoration.moves(self.source.feeder_mut(), q, track, site);
     }
 
     /// Moves the axes along the path for a cycle.
@@ -426,7 +426,7 @@ impl ProgramRun {
         }
         if !self.track.is_able(&site.axes) {
             // Without feed enable the axes stand at once [000:5352].
-            self.track.path.halt();
+            self.track.halt();
             self.track.hold(&mut site.axes, site.now.time_s);
             return;
         }

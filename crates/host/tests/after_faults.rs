@@ -3,7 +3,7 @@
 
 mod support;
 
-use bahn_control::{Control, RunState};
+use bahn_control::{Control, RunState, Signal};
 use bahn_host::{Deed, Host, PowerOn, Source};
 use bahn_parameters::fault::FaultId;
 use bahn_path::Axis;
@@ -292,4 +292,61 @@ fn a_magazine_that_is_stuck_goes_on_when_it_is_repaired() {
         );
         assert_eq!(host.control().remember().tool, 5, "{part} {how}");
     }
+}
+
+/// Z of the digital mill weighs. Its brake closes before the torque ends (MP1980 = 0.3 s, the drive goes on for 0.28 s), and
+/// at once when the control itself is off, for then nobody gives torque: it never sinks farther than the play of its brake.
+/// 100 ms of free fall with (2000 - 150) N on the moved mass would be centimetres.
+#[test]
+fn no_axis_sinks_between_torque_and_brake() {
+    for (away, back) in [
+        (&["voltage off"][..], "voltage on"),
+        (&["emergency press"], "emergency release"),
+        (&["power off"], "power on"),
+    ] {
+        let machine = machine("dig425");
+        let mut host = host(&machine, PowerOn::fresh(&machine), "L Z+100 R0 F2000\nL X+80 F50");
+        until(&mut host, "the slow block", |control| {
+            control.element().is_some_and(|element| element.block.block == 2)
+        });
+        seconds(&mut host, 0.5);
+        let z = |host: &Host| host.plant().axis('Z').unwrap().position;
+        let from = z(&host);
+        for what in away {
+            give(&mut host, what);
+        }
+        let mut sunk = 0.0_f64;
+        for _ in 0..400 {
+            host.step().unwrap();
+            sunk = sunk.max((z(&host) - from).abs());
+        }
+        assert!(sunk < 0.1, "{away:?}: {sunk}");
+        give(&mut host, back);
+        seconds(&mut host, 0.1);
+        assert!((z(&host) - from).abs() < 0.1, "{back}");
+    }
+}
+
+/// The door takes the feed enable away while X moves with 50 mm/s: its axes stand, and so does the path, whose speed was
+/// said to be what it had been.
+#[test]
+fn a_path_without_feed_enable_has_no_speed() {
+    let mut host = mill("L Z+100 R0 FMAX\nL X-80 F3000\nL X+80");
+    let speed = |control: &Control| control.first().observe(&Signal::PathSpeed);
+    until(&mut host, "full speed", |control| {
+        control.element().is_some_and(|element| element.block.block == 3) && speed(control) > 2999.0
+    });
+    give(&mut host, "switch door open");
+    until(&mut host, "the loss of the enable", |control| {
+        control
+            .first()
+            .watch()
+            .any(|axis| axis.axis == Axis::X && axis.halted)
+    });
+    host.step().unwrap();
+    assert_eq!(speed(host.control()), 0.0);
+    give(&mut host, "switch door closed");
+    seconds(&mut host, 1.0);
+    give(&mut host, "key NC_START tap");
+    until(&mut host, "the end", |control| control.first().has_ended());
 }

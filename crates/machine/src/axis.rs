@@ -50,6 +50,8 @@ pub struct AxisState {
     pub braking: f64,
     /// So much at most the motor accelerates it, mm/s² or degrees/s².
     pub motor: f64,
+    /// So much its weight, and what pushes it, accelerate it, mm/s² or degrees/s².
+    pub weight: f64,
 }
 
 /// A switch that is closed within a range of the travel.
@@ -312,12 +314,14 @@ impl Axis {
         }
     }
 
-    /// Lets the drive have voltage or not, as enable output and control voltage say.
-    pub fn set_power(&mut self, voltage: bool, outputs: &[bool; OUTPUTS]) {
+    /// Lets the drive have voltage or not, as enable output and control voltage say. A drive that goes on without them
+    /// brakes on order of the control; when that is not ready there is none, and its brake must hold it (inferred)
+    /// [000:18508-18521].
+    pub fn set_power(&mut self, voltage: bool, control_ready: bool, outputs: &[bool; OUTPUTS]) {
         let enabled = self.enable.is_none_or(|enable| enable.is_on(outputs));
         let mut on = voltage && enabled;
         if let Some(drive) = &mut self.current {
-            on = drive.holds(on);
+            on = drive.holds(on, control_ready);
         }
         self.powered = on && self.fault != Some(DriveFault::Dead);
         if !self.powered {
@@ -508,6 +512,7 @@ impl Axis {
             output: self.output,
             braking: self.friction + self.held() - self.weight.abs() - self.push.abs(),
             motor: self.motor_max,
+            weight: self.weight.abs() + self.push.abs(),
         }
     }
 }

@@ -58,11 +58,12 @@ impl CurrentDrive {
         }
     }
 
-    /// Whether it has power in this millisecond.
-    pub fn holds(&mut self, powered: bool) -> bool {
-        self.left_ms = match powered {
-            true => self.off_delay_ms,
-            false => self.left_ms.saturating_sub(1),
+    /// Whether it has power in this millisecond: for a while without control voltage, as long as the control is ready.
+    pub fn holds(&mut self, powered: bool, control_ready: bool) -> bool {
+        self.left_ms = match (powered, control_ready) {
+            (true, _) => self.off_delay_ms,
+            (false, true) => self.left_ms.saturating_sub(1),
+            (false, false) => 0,
         };
         powered || self.left_ms > 0
     }

@@ -291,7 +291,7 @@ impl Machine {
         }
         let voltage = self.chain.voltage();
         for axis in &mut self.axes {
-            axis.set_power(voltage, &self.live);
+            axis.set_power(voltage, self.chain.control_ready, &self.live);
             axis.clamped = self
                 .devices
                 .iter()

@@ -16,6 +16,7 @@ mod tool_files;
 pub use channel::LoadedChannel;
 pub use load::{LoadedMachine, decode};
 pub use programs::FolderPrograms;
+pub(crate) use remembered::{read as read_remembered, write as write_remembered};
 pub use state::{Found, State};
 
 use bahn_parameters::PerPlcAxis;

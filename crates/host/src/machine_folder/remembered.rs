@@ -44,7 +44,7 @@ struct Form {
 }
 
 /// What the control remembers as a file, with its end mark.
-pub(super) fn write(remembered: &Remembered) -> String {
+pub(crate) fn write(remembered: &Remembered) -> String {
     let text = text(remembered);
     let end = end_mark(text.as_bytes());
     text + &end
@@ -54,7 +54,7 @@ pub(super) fn write(remembered: &Remembered) -> String {
 ///
 /// # Errors
 /// What of it is damaged.
-pub(super) fn read(file: &[u8]) -> Result<Remembered, String> {
+pub(crate) fn read(file: &[u8]) -> Result<Remembered, String> {
     let whole = file.strip_suffix(b"\n").unwrap_or(file);
     let end = whole
         .iter()

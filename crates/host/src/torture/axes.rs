@@ -31,7 +31,7 @@ struct Before {
 
 /// Where an axis of the machine was when its power was taken.
 #[derive(Clone, Copy, Debug)]
-struct Braking {
+pub(super) struct Braking {
     output: usize,
     position: f64,
     bound: f64,
@@ -113,7 +113,8 @@ impl Axes {
             watch,
             channel,
             back_mm_s: before
-                .filter(|before| before.watch.beside != 0.0 && watch.beside != 0.0 && !watch.halted)
+                .filter(|before| before.watch.beside != 0.0 && watch.beside != 0.0)
+                .filter(|before| !before.watch.halted && !watch.halted)
                 .map(|before| (watch.beside - before.watch.beside) / moment.cycle_s),
             open_s: match before.filter(|_| !watch.closed) {
                 Some(before) => before.open_s + moment.cycle_s,
@@ -140,14 +141,8 @@ impl Axes {
         }
         for axis in plant.axes() {
             let braking = self.braking.iter().find(|braking| braking.output == axis.output);
-            let Some(braking) = braking else { continue };
-            let way = (axis.position - braking.position).abs();
-            if way > braking.bound {
-                let values = format!(
-                    "{} travels {way:.3} behind the reaction, {:.3} are left to it",
-                    axis.letter, braking.bound
-                );
-                return Err(Violation::new(Rule::Distance, moment.time_us, values));
+            if let Some(braking) = braking {
+                braking.check(&axis, "the reaction", moment)?;
             }
         }
         Ok(())
@@ -155,16 +150,39 @@ impl Axes {
 }
 
 impl Braking {
-    /// `None` where nothing brakes it.
-    fn of(axis: &AxisState) -> Option<Braking> {
-        let braking = axis.braking.min(axis.motor);
+    /// Friction and brake of the machine; `None` where nothing brakes it.
+    pub fn of(axis: &AxisState) -> Option<Braking> {
         // Until its power is off the motor may still accelerate it.
         let speed = axis.speed_per_min.abs() / 60.0 + axis.motor.min(20_000.0) * POWER_OFF_S;
+        Braking::from(axis, speed, axis.braking.min(axis.motor))
+    }
+
+    /// The drive brakes with 0 V as well as it can, or on a ramp where it is held.
+    pub fn by_drive(axis: &AxisState, ramp: Option<f64>) -> Option<Braking> {
+        let least = axis.motor - axis.weight;
+        let speed = axis.speed_per_min.abs() / 60.0;
+        Braking::from(axis, speed, ramp.map_or(least, |ramp| ramp.min(least)))
+    }
+
+    fn from(axis: &AxisState, speed: f64, braking: f64) -> Option<Braking> {
         (braking > 0.0).then(|| Braking {
             output: axis.output,
             position: axis.position,
             bound: speed * POWER_OFF_S + speed * speed / (2.0 * braking) + REST,
         })
+    }
+
+    /// The axis is within the way that is left to it.
+    pub fn check(&self, axis: &AxisState, behind: &str, moment: &Moment) -> Result<(), Violation> {
+        let way = (axis.position - self.position).abs();
+        if way <= self.bound {
+            return Ok(());
+        }
+        let values = format!(
+            "{} travels {way:.3} behind {behind}, {:.3} are left to it",
+            axis.letter, self.bound
+        );
+        Err(Violation::new(Rule::Distance, moment.time_us, values))
     }
 }
 
@@ -276,10 +294,6 @@ impl Judge<'_> {
 
     /// Back from where it ran on without feed enable it goes with no more than MP1060, MP1010.
     fn way_back(&self, before: &Before) -> Result<(), Violation> {
-        // A contact that chatters lets it begin anew between two looks.
-        if self.moment.broken {
-            return Ok(());
-        }
         let (watch, was) = (self.watch, &before.watch);
         let Some(speed) = before
             .back_mm_s

@@ -29,6 +29,8 @@ pub(super) struct Bench {
     pub contours: Vec<Contour>,
     /// What the undisturbed run says.
     pub usual: Vec<Message>,
+    /// The program of each channel, where it has one.
+    pub programs: Vec<Option<String>>,
 }
 
 impl Bench {
@@ -46,6 +48,12 @@ impl Bench {
             host,
             moments: Vec::new(),
             usual: Vec::new(),
+            programs: std::iter::once(Some(program.to_owned()))
+                .chain(
+                    (1..=machine.channels.len())
+                        .map(|number| machine.usual_program(number).map(str::to_owned)),
+                )
+                .collect(),
         };
         let mut notices = bench.host.notices();
         let (mut every_us, mut due_us) = (EVERY_US, 0);

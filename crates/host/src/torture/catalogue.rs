@@ -222,12 +222,16 @@ impl Finder<'_> {
         for probe in ["not-ready", "battery", "early"] {
             self.event(Kind::Fault, &format!("fault probe {probe}"), Some("repair probe"));
         }
-        // Both senses of rotation at once; a message that flashes; markers of a key against its complement.
+        // Both senses of rotation at once; a message that flashes; markers of a key against its complement; M and T
+        // functions that are acknowledged early, and an acknowledgement that is taken back.
         for markers in [
             "M2485=1, M2486=1",
             "M2924=1, M2815=1",
             "M2924=1",
             "M2451=1, M2467=1",
+            "M2482=1",
+            "M2483=1",
+            "M2482=0, M2483=0",
         ] {
             self.command(Kind::Plc, markers, Some("M2815=0, M2924=0"));
         }

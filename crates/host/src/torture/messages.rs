@@ -167,7 +167,9 @@ impl Messages {
                 | FaultId::PlcStopped => any(&[Kind::Plc]),
                 FaultId::Key | FaultId::Other => any(&[Kind::Use, Kind::AxisKey]) || stopped,
                 FaultId::Limit => any(&[Kind::AxisKey]) || stopped,
-                FaultId::Program | FaultId::SpindleSpeed => any(&[Kind::Power, Kind::Use]),
+                // A function that is acknowledged before it is done: what follows it may not be possible yet.
+                FaultId::Program | FaultId::SpindleSpeed => any(&[Kind::Power, Kind::Use, Kind::Plc]),
+                FaultId::HandOver => any(&[Kind::Plc]),
                 _ => false,
             }
     }

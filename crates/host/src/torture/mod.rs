@@ -10,11 +10,14 @@ mod bench;
 mod catalogue;
 mod contour;
 mod dice;
+mod medium;
 mod messages;
 mod plan;
+mod recovery;
 mod rule;
 mod shrink;
 mod trial;
+mod ways;
 
 use std::fmt::Write as _;
 use std::path::Path;

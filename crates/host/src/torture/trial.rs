@@ -1,33 +1,24 @@
 //! One seed: a window of a program in which things happen, then everything is put back, and the run goes on.
 
-use bahn_control::{Command, Control, Mode, Remembered, RunState, Signal};
-use bahn_exchange::{Bit, BitArea, signal};
+use bahn_control::{Command, Control, Mode, Remembered, RunState};
+use bahn_exchange::{Bit, BitArea};
+use bahn_parameters::fault::Reaction;
 use bahn_servo::OUTPUTS;
 
 use super::axes::{Axes, Moment};
 use super::bench::Bench;
 use super::catalogue::{Catalogue, Kind};
+use super::medium::Medium;
 use super::messages::{Messages, is_fatal};
 use super::plan::{Happening, Plan};
 use super::rule::{Rule, Violation};
+use super::ways::Ways;
 use crate::deed::{Answer, Deed, Source};
 use crate::feed::{Next, Reader};
 use crate::notice::{Notice, Stamped};
 
 /// The path of a disturbed run may be so far from that of the undisturbed one, mm or degrees.
 const CONTOUR: f64 = 1e-4;
-/// Behind the repairs until messages are looked at, µs.
-const SETTLE_US: u64 = 400_000;
-/// Between two keys of the operator who puts everything back, µs.
-const KEY_US: u64 = 250_000;
-/// Messages that are cleared at most, and power-offs.
-const ROUNDS: usize = 16;
-/// So long a control may take from power-on to the end of the reference run, µs.
-const REFERENCE_US: u64 = 240_000_000;
-/// So long a run may take to go on, µs.
-const GO_ON_US: u64 = 15_000_000;
-/// So long a run that goes on is watched, µs.
-const WATCH_US: u64 = 700_000;
 /// Cycles between two looks at all outputs.
 const OUTPUTS_EVERY: u32 = 7;
 
@@ -47,16 +38,23 @@ pub struct Trial {
 }
 
 /// A trial on its way.
-struct Course<'a> {
-    bench: &'a mut Bench,
-    catalogue: &'a Catalogue,
+pub(super) struct Course<'a> {
+    pub bench: &'a mut Bench,
+    pub catalogue: &'a Catalogue,
     notices: Reader<Stamped>,
     axes: Axes,
+    ways: Ways,
     messages: Messages,
-    trial: Trial,
+    pub trial: Trial,
+    /// What was written before.
+    medium: Medium,
     /// What was remembered when the supply went.
     remembered: Option<(Vec<Remembered>, Vec<u8>)>,
     starts: u32,
+    /// The supply of the control was off: there is no run any more.
+    pub anew: bool,
+    /// Messages that the undisturbed run does not say.
+    pub unusual: usize,
     cycles: u32,
     /// The contour of each channel is that of the undisturbed run, and where it was last.
     contours: Vec<(bool, usize)>,
@@ -79,10 +77,14 @@ pub(super) fn run(bench: &mut Bench, catalogue: &Catalogue, plan: &Plan, happeni
     let mut course = Course {
         notices: bench.host.notices(),
         axes: Axes::default(),
+        ways: Ways::default(),
         messages: Messages::default(),
         trial: Trial::default(),
+        medium: Medium::of(control),
         remembered: None,
         starts: control.starts(),
+        anew: false,
+        unusual: 0,
         cycles: 0,
         contours: vec![(true, 0); control.channels()],
         owners: count_axes(control),
@@ -105,15 +107,15 @@ fn count_axes(control: &Control) -> usize {
 }
 
 impl Course<'_> {
-    fn control(&self) -> &Control {
+    pub(super) fn control(&self) -> &Control {
         self.bench.host.control()
     }
 
-    fn now(&self) -> u64 {
+    pub(super) fn now(&self) -> u64 {
         self.control().time_us()
     }
 
-    fn breaks(&self, rule: Rule, values: impl Into<String>) -> Violation {
+    pub(super) fn breaks(&self, rule: Rule, values: impl Into<String>) -> Violation {
         Violation::new(rule, self.now(), values.into())
     }
 
@@ -133,7 +135,7 @@ impl Course<'_> {
     }
 
     /// Does something between two cycles.
-    fn give(&mut self, kind: Kind, what: &str) -> Result<(), Violation> {
+    pub(super) fn give(&mut self, kind: Kind, what: &str) -> Result<(), Violation> {
         let happening = Happening {
             time_us: self.now(),
             kind,
@@ -149,6 +151,8 @@ impl Course<'_> {
             let powers = matches!(deed, Deed::Command(_, Command::Power(_)));
             if powers && !self.control().is_off() {
                 self.remembered = Some(self.remember());
+                let failed = self.medium.fails(self.control(), self.now());
+                failed.map_err(|values| self.breaks(Rule::Retained, values))?;
             }
             let answer = self.bench.host.act(Source::Script, deed);
             match answer {
@@ -158,6 +162,7 @@ impl Course<'_> {
             }
             if powers && !self.control().is_off() {
                 self.axes.restart();
+                self.ways.restart();
                 if let Some(before) = self.remembered.take()
                     && before != self.remember()
                 {
@@ -185,7 +190,7 @@ impl Course<'_> {
     }
 
     /// A contour cycle, and what must be so behind it.
-    fn cycle(&mut self) -> Result<(), Violation> {
+    pub(super) fn cycle(&mut self) -> Result<(), Violation> {
         if let Err(error) = self.bench.host.step() {
             return Err(self.breaks(Rule::Alive, error.to_string()));
         }
@@ -205,11 +210,13 @@ impl Course<'_> {
             for number in 0..control.channels() {
                 if let Some(channel) = control.channel(number) {
                     self.axes.channel(channel, &moment)?;
+                    self.ways.channel(channel, plant, &moment)?;
                 }
             }
             self.axes.distance(plant, &moment)?;
         } else {
             self.axes.restart();
+            self.ways.restart();
         }
         self.follow_contours()?;
         if self.cycles.is_multiple_of(OUTPUTS_EVERY) {
@@ -221,6 +228,7 @@ impl Course<'_> {
     fn moment(&mut self) -> Moment {
         let control = self.bench.host.control();
         let anew = std::mem::replace(&mut self.starts, control.starts()) != control.starts();
+        self.anew |= anew;
         Moment {
             time_us: control.time_us(),
             cycle_s: f64::from(control.cycle_us()) * 1e-6,
@@ -242,7 +250,12 @@ impl Course<'_> {
                 let control = self.bench.host.control();
                 self.trial.messages.push(control.shown_text(&shown));
                 let usual = self.bench.usual.contains(&shown.message);
+                self.unusual += usize::from(!usual);
                 self.messages.shown(&shown, usual, control)?;
+                let reaction = shown.fault().row().reaction;
+                if matches!(reaction, Reaction::Ramp | Reaction::RampThenOpen) {
+                    self.ways.stops(shown.channel, control.channels());
+                }
             }
         }
         Ok(())
@@ -311,193 +324,11 @@ impl Course<'_> {
         Ok(())
     }
 
-    fn wait(&mut self, time_us: u64) -> Result<(), Violation> {
+    pub(super) fn wait(&mut self, time_us: u64) -> Result<(), Violation> {
         let end_us = self.now() + time_us;
         while self.now() < end_us {
             self.cycle()?;
         }
         Ok(())
-    }
-
-    /// Everything is repaired and released; messages are cleared, and what flashes is switched off.
-    fn put_back(&mut self) -> Result<(), Violation> {
-        for repair in self.catalogue.repairs.clone() {
-            if repair != "power on" || self.control().is_off() {
-                self.give(Kind::Use, &repair)?;
-            }
-        }
-        self.wait(SETTLE_US)?;
-        for _ in 0..ROUNDS {
-            if is_fatal(self.control()) {
-                self.give(Kind::Power, "power off")?;
-                self.wait(KEY_US)?;
-                // What was pushed coasts: nobody switches on before it stands.
-                let until_us = self.now() + REFERENCE_US;
-                while self.now() < until_us
-                    && self
-                        .bench
-                        .host
-                        .plant()
-                        .axes()
-                        .any(|axis| axis.speed_per_min != 0.0)
-                {
-                    self.cycle()?;
-                }
-                self.give(Kind::Power, "power on")?;
-                self.wait(KEY_US)?;
-            }
-            if !self.bench.host.plant().limit_switches_clear() {
-                // On a limit switch only a key of the machine builder helps.
-                return Ok(());
-            }
-            if !self.comes_up()? {
-                continue;
-            }
-            if self.control().shown().is_empty() {
-                return Ok(());
-            }
-            self.give(Kind::Use, "ce")?;
-            self.wait(KEY_US)?;
-        }
-        let shown: Vec<String> = self
-            .control()
-            .shown()
-            .iter()
-            .map(|shown| self.control().shown_text(shown))
-            .collect();
-        Err(self.breaks(Rule::Recovery, format!("cannot be cleared: {}", shown.join(", "))))
-    }
-
-    /// Waits for loops and reference run; `false` when a flashing message is in the way.
-    fn comes_up(&mut self) -> Result<bool, Violation> {
-        let until_us = self.now() + REFERENCE_US;
-        let clear = |course: &Self| course.bench.host.plant().limit_switches_clear();
-        while clear(self) && (!self.control().loops_closed() || self.mode() == Mode::Reference) {
-            if is_fatal(self.control()) {
-                return Ok(false);
-            }
-            if !self.control().shown().is_empty() {
-                // EMERGENCY STOP, which CE clears now, or what stops the reference run.
-                self.give(Kind::Use, "ce")?;
-                self.wait(KEY_US)?;
-            }
-            if self.now() > until_us {
-                let waits = match self.control().loops_closed() {
-                    true => "the reference run does not end",
-                    false => "the loops are not closed",
-                };
-                return Err(self.breaks(Rule::Recovery, waits));
-            }
-            self.cycle()?;
-        }
-        Ok(true)
-    }
-
-    fn mode(&self) -> Mode {
-        let control = self.control();
-        let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
-        match channels.any(|channel| channel.mode() == Mode::Reference) {
-            true => Mode::Reference,
-            false => control.mode(),
-        }
-    }
-
-    /// NC start: the runs go on, or a message says why they do not.
-    fn go_on(&mut self) -> Result<(), Violation> {
-        if is_fatal(self.control()) || !self.bench.host.plant().limit_switches_clear() {
-            return Ok(());
-        }
-        let channels: Vec<usize> = (0..self.control().channels())
-            .filter(|number| self.is_interrupted(*number))
-            .collect();
-        for number in &channels {
-            if self
-                .channel(*number)
-                .is_some_and(|channel| channel.mode() != Mode::FullSequence)
-            {
-                self.give(Kind::Use, &format!("{}mode full", prefix(*number)))?;
-                self.wait(KEY_US)?;
-            }
-            if *number == 0 && self.control().memory().bit(signal::MANUAL_OPERATION_PRESSED) {
-                self.give(Kind::Use, "restore-position")?;
-                self.wait(KEY_US)?;
-            }
-        }
-        if channels.is_empty() {
-            return self.wait(KEY_US);
-        }
-        let told = self.trial.messages.len();
-        let (mut until_us, mut due_us) = (self.now() + GO_ON_US, self.now());
-        while !self.goes_on() {
-            if self.trial.messages.len() > told {
-                // It is refused, and the control says so.
-                return Ok(());
-            }
-            if self.now() > until_us {
-                let control = self.control();
-                let waits = control
-                    .waiting()
-                    .map_or_else(String::new, |waiting| format!(", waits for {waiting}"));
-                let values = format!("{:?} behind NC start{waits}", control.run_state());
-                return Err(self.breaks(Rule::Recovery, values));
-            }
-            if self.now() >= due_us {
-                for number in &channels {
-                    let key = self
-                        .catalogue
-                        .start_keys
-                        .get(*number)
-                        .cloned()
-                        .unwrap_or_default();
-                    if self.is_interrupted(*number) {
-                        self.give(Kind::Use, &format!("key {key} tap"))?;
-                    }
-                }
-                due_us = self.now() + 8 * KEY_US;
-            }
-            self.cycle()?;
-            if self.returns() {
-                // The way back to the contour takes its time.
-                until_us = until_us.max(self.now() + GO_ON_US);
-            }
-        }
-        self.trial.went_on = true;
-        self.wait(WATCH_US)
-    }
-
-    fn channel(&self, number: usize) -> Option<bahn_control::ChannelView<'_>> {
-        self.control().channel(number)
-    }
-
-    fn is_interrupted(&self, number: usize) -> bool {
-        let state = self.channel(number).map(|channel| channel.run_state());
-        matches!(
-            state,
-            Some(RunState::Interrupted | RunState::Stopped | RunState::BlockEnd)
-        )
-    }
-
-    /// A path moves, or has come to its end.
-    fn goes_on(&self) -> bool {
-        let control = self.control();
-        let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
-        channels.any(|channel| {
-            channel.has_ended() || channel.observe(&Signal::PathSpeed) != 0.0 && !channel.restores()
-        })
-    }
-
-    /// Axes are on their way back to the contour.
-    fn returns(&self) -> bool {
-        let control = self.control();
-        let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
-        channels.any(|channel| channel.restores() && channel.watch().any(|axis| axis.speed_mm_s != 0.0))
-    }
-}
-
-/// A command to a channel begins so.
-fn prefix(channel: usize) -> String {
-    match channel {
-        0 => String::new(),
-        number => format!("{}: ", number + 1),
     }
 }
