@@ -13,6 +13,7 @@ use crate::monitor::{Monitor, Sample};
 use crate::offset::Offset;
 use crate::plant::{AxisCommand, Encoder};
 use crate::reversal::{ReversalPeak, Travel};
+use crate::run_up::RunUp;
 use crate::speed_loop::SpeedLoop;
 use crate::timing::{OUTPUT_VOLTS, Timing};
 
@@ -48,6 +49,7 @@ pub struct Axis {
     measuring: MeasuringSystem,
     interpolation: FineInterpolation,
     transient: Transient,
+    run_up: RunUp,
     travel: Travel,
     reversal: ReversalPeak,
     characteristic: Characteristic,
@@ -102,6 +104,7 @@ impl Axis {
             measuring: MeasuringSystem::new(&parameters),
             interpolation: FineInterpolation::new(timing.steps()),
             transient: Transient::new(timing.steps(), parameters.precontrol.transient_m_min),
+            run_up: RunUp::default(),
             travel: Travel::default(),
             reversal: ReversalPeak::default(),
             characteristic: Characteristic::straight(1.0),
@@ -316,8 +319,14 @@ impl Axis {
         self.profile_mm_min = way_mm / self.timing.step_min();
         let control = self.characteristic.velocity_mm_min(self.lag_mm());
         let velocity = match self.method {
-            Method::Lag => control,
-            Method::Precontrol => control + self.profile_mm_min + self.stiction_mm_min,
+            Method::Lag => {
+                self.run_up.follow(self.profile_mm_min);
+                control
+            }
+            Method::Precontrol => {
+                let damping = self.parameters.precontrol.damping;
+                control + self.run_up.advance(self.profile_mm_min, damping) + self.stiction_mm_min
+            }
         };
         let decay = (1.0 - slope * self.timing.step_min()).max(0.0);
         self.bias_mm_min *= decay;

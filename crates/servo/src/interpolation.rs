@@ -70,8 +70,7 @@ const TRANSIENT_M_MIN: f64 = 0.5;
 /// of time that falls with the entry, the same for all axes (inferred; the manual only says that smaller
 /// entries arrive more slowly and larger ones tend to oscillate [000:4965]).
 ///
-/// The separate response on accelerating, MP1530, belongs to older software than these models have
-/// [000:4969-4979] and has no effect.
+/// The separate response on accelerating, MP1530, is that of the velocity: [`RunUp`](crate::run_up::RunUp).
 ///
 /// On a circle the mean over one contour cycle lies inside by radial acceleration · T² / 8 everywhere, the
 /// chord error that the contour cycle has anyway: so an entry from 0.5 m/min on does not cost accuracy.
