@@ -4,7 +4,7 @@
 mod proof;
 
 use bahn_parameters::axis::AxisParameters;
-use bahn_parameters::{Adjustment, Definition, PLC_AXES, ParameterId, ParameterList};
+use bahn_parameters::{Adjustment, Definition, ParameterId, ParameterList, PerPlcAxis};
 use bahn_servo::Characteristic;
 
 use crate::machine_folder::LoadedMachine;
@@ -85,7 +85,7 @@ struct Assistant<'a> {
 
 /// The axes that a program moves.
 fn path_axes(list: &ParameterList) -> impl Iterator<Item = AxisParameters> + '_ {
-    let axes = (0..PLC_AXES).map(|index| list.axis_parameters(index));
+    let axes = PerPlcAxis::from_fn(|index| list.axis_parameters(index)).into_iter();
     axes.filter(|axis| axis.active && axis.controlled && !axis.plc_axis && axis.letter.is_some())
 }
 
