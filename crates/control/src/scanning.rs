@@ -18,6 +18,7 @@ const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 const ELSEWHERE_MM: f64 = 1e-6;
 
 /// What a digitizing has come to: the control knows no files, so whoever drives it keeps the points.
+#[allow(clippy::large_enum_variant, reason = "one at a time, and no cycle allocates")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Digitized {
     /// A scan is wanted; the PLC may still have to enable it.

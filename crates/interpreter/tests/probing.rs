@@ -151,13 +151,18 @@ fn digitizing() {
     assert_eq!(job.begin(), [3.0, 0.0, 20.0]);
 }
 
-/// On a machine nothing digitizes: the block is refused. So is a measuring probe (MP6200 = 1) everywhere.
+/// On a machine a digitized program replaces none: the block is refused before an axis moves. A test run writes elsewhere.
 #[test]
-fn digitizing_is_refused_on_a_machine() {
-    let machine = Job::new(program(DIGITIZING)).with(|settings| settings.machine = true);
-    assert_eq!(machine.run().message(), Some((MessageId::BlockNotKnown, 8)));
-    let measuring = Job::new(program(DIGITIZING)).with(|settings| settings.rules.measuring_probe = true);
-    assert_eq!(measuring.run().message(), Some((MessageId::BlockNotKnown, 8)));
+fn on_a_machine_no_program_is_replaced() {
+    let job = |machine: bool, there: &str| {
+        let job = Job::new(program(DIGITIZING)).with(|settings| settings.machine = machine);
+        job.library(there, program("L X+0")).run()
+    };
+    let refused = job(true, "5007");
+    assert_eq!(refused.message(), Some((MessageId::EntryValueIncorrect, 8)));
+    assert!(refused.elements.is_empty() && refused.scans.is_empty());
+    job(true, "5008").assert_completed();
+    job(false, "5007").assert_completed();
 }
 
 /// TCH PROBE 31 and 32 wait until the control has measured; the height is one of the program, the tool that of the

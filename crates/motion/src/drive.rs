@@ -147,6 +147,10 @@ pub enum Place {
 }
 
 /// Why no more elements come, once all before are executed.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one at a time, and no cycle allocates: a scan goes with its barrier"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stop<E> {
     /// The source waits for live data: [`Interpolator::resume`](crate::Interpolator::resume).

@@ -60,6 +60,10 @@ pub struct Interpolator<E> {
     recalled: Option<Executed>,
 }
 
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one at a time, and no cycle allocates: a scan goes with its barrier"
+)]
 #[derive(Clone, Debug)]
 enum After<E> {
     Open,

@@ -37,6 +37,10 @@ pub struct Sampler<S: ElementSource, K: Kinematics> {
 }
 
 /// An answer of a [`Sampler`].
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one at a time, and no cycle allocates: a scan goes with its barrier"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample<E> {
     /// The axis positions one cycle later.
