@@ -183,6 +183,7 @@ impl Message {
 fn of_plain(id: MessageId) -> FaultId {
     let of_machine = [
         FaultId::PowerInterrupted,
+        FaultId::BufferBattery,
         FaultId::VoltageMissing,
         FaultId::EmergencyStopDefective,
         FaultId::ExternalEmergencyStop,
