@@ -1,5 +1,5 @@
 //! Any text is a tool table, a datum table, a pallet file, or faults with their lines; any text is a compensation
-//! table, an assignment, or an error with its line.
+//! table, an assignment, correction tables, or an error with its line.
 //!
 //! ```text
 //! cargo +nightly fuzz run read_tables
@@ -8,7 +8,7 @@
 #![no_main]
 
 use bahn_fuzz as _;
-use bahn_control::{CompensationAssignment, CompensationTable};
+use bahn_control::{CompensationAssignment, CompensationTable, CorrectionTables};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
@@ -21,6 +21,7 @@ fuzz_target!(|text: &str| {
     let errors = [
         CompensationTable::read(text).err(),
         CompensationAssignment::read(text).err(),
+        CorrectionTables::read(text).err(),
     ];
     assert!(errors.into_iter().flatten().all(|error| error.line <= lines.max(1)));
 });

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
 
-use bahn_control::{CompensationAssignment, CompensationTable};
+use bahn_control::{CompensationAssignment, CompensationTable, CorrectionTables};
 use bahn_machine::{Machine, MachineFolder};
 use proptest::prelude::*;
 
@@ -64,6 +64,8 @@ proptest! {
         for line in [
             CompensationTable::read(&text).err().map(|error| error.line),
             CompensationAssignment::read(&text).err().map(|error| error.line),
+            CorrectionTables::read(&text).err().map(|error| error.line),
+            CorrectionTables::read(&format!("X OVER X MM DATUM 0 DIST 16\n0 0\n{text}")).err().map(|error| error.line.saturating_sub(2)),
         ].into_iter().flatten() {
             prop_assert!(line <= lines.max(1), "{}", line);
         }

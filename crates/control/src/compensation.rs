@@ -1,4 +1,4 @@
-//! Non-linear axis errors are compensated over the positions of their driving axes [000:3770-3865].
+//! Non-linear axis errors are compensated over the positions of their driving axes [000:3770-3887].
 
 use std::collections::BTreeMap;
 
@@ -6,6 +6,7 @@ use bahn_servo::ErrorTable;
 
 use crate::axes::Axes;
 use crate::compensation_table::{CompensationAssignment, CompensationTable};
+use crate::correction_tables::CorrectionTables;
 use crate::plc_link::NcFiles;
 
 /// A column that is active: which axis it corrects, and over which one.
@@ -40,6 +41,18 @@ fn corrections(
         .collect()
 }
 
+/// The tables of code number 105 296.
+fn old(tables: &CorrectionTables) -> Vec<Correction> {
+    let columns = tables.columns();
+    columns
+        .map(|(corrected, driving, table)| Correction {
+            driving,
+            corrected,
+            table: table.clone(),
+        })
+        .collect()
+}
+
 /// The axis errors that are compensated.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Compensation {
@@ -50,11 +63,13 @@ pub(crate) struct Compensation {
 }
 
 impl Compensation {
-    /// A line of the assignment, or none.
+    /// A line of the assignment, or none; without any assignment the correction tables of code number 105 296
+    /// [000:3887].
     pub fn of(files: &NcFiles, line: Option<usize>) -> Compensation {
         let corrections = match (&files.compensation, line) {
             (Some(assignment), Some(line)) => corrections(assignment, &files.compensation_tables, line),
-            _ => Vec::new(),
+            (Some(_), None) => Vec::new(),
+            (None, _) => files.correction_tables.as_ref().map_or_else(Vec::new, old),
         };
         Compensation { corrections, line }
     }

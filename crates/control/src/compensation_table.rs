@@ -57,26 +57,30 @@ pub struct CompensationError {
     pub what: &'static str,
 }
 
-fn error<T>(line: usize, what: &'static str) -> Result<T, CompensationError> {
+pub(crate) fn error<T>(line: usize, what: &'static str) -> Result<T, CompensationError> {
     Err(CompensationError { line, what })
 }
 
 /// Words of each line that is not empty, with its number.
-fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
     let lines = (1..).zip(text.lines());
     lines
         .map(|(number, line)| (number, line.split_whitespace().collect::<Vec<_>>()))
         .filter(|(_, words)| !words.is_empty())
 }
 
+/// The index of an axis in the lists of the control.
+pub(crate) fn axis_named(name: &str) -> Option<usize> {
+    PLC_AXIS_NAMES
+        .iter()
+        .position(|known| known.eq_ignore_ascii_case(name))
+}
+
 /// `Y=VALUE`: axis index and value.
 fn cell(line: usize, word: &str) -> Result<(usize, &str), CompensationError> {
-    let found = word.split_once('=').and_then(|(name, value)| {
-        let axis = PLC_AXIS_NAMES
-            .iter()
-            .position(|known| known.eq_ignore_ascii_case(name))?;
-        Some((axis, value))
-    });
+    let found = word
+        .split_once('=')
+        .and_then(|(name, value)| Some((axis_named(name)?, value)));
     found.map_or_else(|| error(line, "a cell is written axis=value, as Y=0.005"), Ok)
 }
 
@@ -100,10 +104,7 @@ impl CompensationTable {
         };
         let mut columns = Vec::new();
         for name in axes {
-            match PLC_AXIS_NAMES
-                .iter()
-                .position(|known| known.eq_ignore_ascii_case(name))
-            {
+            match axis_named(name) {
                 Some(axis) => columns.push((axis, Vec::new())),
                 None => return error(line, "the axes are X, Y, Z, 4 and 5"),
             }

@@ -284,7 +284,7 @@ impl Kernel {
         for unit in machine.axes.iter_mut() {
             unit.count();
         }
-        machine.look_after();
+        machine.look_after(&self.seam.measured);
     }
 
     /// Follows the "control is ready" circuit.

@@ -26,7 +26,7 @@ use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
 use crate::status;
 use crate::tables::LoadedTables;
-use crate::upkeep::{self, DriveOffsets};
+use crate::upkeep::{self, BufferBattery, DriveOffsets};
 use crate::window::Window;
 
 const VOLTAGE_MISSING: Message = Message::Plain(MessageId::RelayExtDcVoltageMissing);
@@ -56,6 +56,7 @@ pub(crate) struct MachineSide {
     pub offsets: DriveOffsets,
     pub oscilloscope: OscilloscopeKeys,
     pub compensation: Compensation,
+    battery: BufferBattery,
     pub loaded_tables: LoadedTables,
     pub loaded_datums: LoadedDatums,
     /// What is to be stored has changed since it was stored.
@@ -183,6 +184,7 @@ impl MachineSide {
             plc_parameters: parameters.plc_parameters(),
             handwheel: operation.handwheel,
             compensation: Compensation::of(&link.files, line),
+            battery: BufferBattery::default(),
             memory,
             windows,
             link,
@@ -432,7 +434,9 @@ impl MachineSide {
     }
 
     /// Once in each contour cycle, behind all movements.
-    pub fn look_after(&mut self) {
+    pub fn look_after(&mut self, measured: &Measured) {
+        self.battery
+            .watch(measured.buffer_battery_low, &mut self.messages);
         let off = self.spindles.iter().all(|spindle| spindle.state().volts == 0.0);
         self.offsets
             .adjust_cyclically(self.timing.contour_us(), off, &mut self.axes);

@@ -184,6 +184,7 @@ fn of_plain(id: MessageId) -> FaultId {
     let of_machine = [
         FaultId::StylusDeflection,
         FaultId::PowerInterrupted,
+        FaultId::BufferBattery,
         FaultId::VoltageMissing,
         FaultId::EmergencyStopDefective,
         FaultId::ExternalEmergencyStop,

@@ -17,6 +17,7 @@ use bahn_plc::{
 };
 
 use crate::compensation_table::{CompensationAssignment, CompensationTable};
+use crate::correction_tables::CorrectionTables;
 use crate::markers::AXES;
 
 /// Files and tables of the NC memory that modules read.
@@ -40,6 +41,8 @@ pub struct NcFiles {
     pub compensation: Option<CompensationAssignment>,
     /// The compensation tables (.COM) by name.
     pub compensation_tables: BTreeMap<String, CompensationTable>,
+    /// The correction tables of code number 105 296: they apply where there is no assignment.
+    pub correction_tables: Option<CorrectionTables>,
 }
 
 /// A pocket of the magazine as the pocket table has it, beside the tool in it [000:9076-9082].

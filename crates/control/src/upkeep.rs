@@ -1,8 +1,8 @@
 //! What the control looks after beside the movements: offsets of the drives, lubrication, limits that axes
-//! have left.
+//! have left, the buffer battery.
 
 use bahn_exchange::Exchange;
-use bahn_parameters::PerPlcAxis;
+use bahn_parameters::{MessageId, PerPlcAxis};
 use bahn_servo::OffsetInterval;
 
 use crate::axes::{Axes, OwnAxes};
@@ -10,6 +10,25 @@ use crate::axis::AxisUnit;
 use crate::markers::LUBRICATION_PULSE;
 use crate::message::{Message, Messages};
 use crate::panel::Direction;
+
+/// The buffer battery of the memory. A low one is said once since power-on, so that CE clears the message until the
+/// control is switched on again; when it is looked at, and that it is at all while the control is on, no manual says
+/// (inferred) [000:1385-1400].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct BufferBattery {
+    said: bool,
+}
+
+impl BufferBattery {
+    /// Once in each contour cycle. One that was exchanged may be low again.
+    pub fn watch(&mut self, low: bool, messages: &mut Messages) {
+        if low && !self.said {
+            let message = Message::Plain(MessageId::ExchangeBufferBattery);
+            messages.of_machine().show(message, None);
+        }
+        self.said = low;
+    }
+}
 
 /// The offsets of the drives.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 
 mod support;
 
-use bahn_control::{CompensationAssignment, CompensationTable, Control};
+use bahn_control::{CompensationAssignment, CompensationTable, Control, CorrectionTables};
 use support::bench::*;
 use support::*;
 
@@ -12,12 +12,18 @@ const Y: &str = "ACHSE-Y MM DATUM 0 DIST 16 Y Z\n0 Y=0 Z=-0.01\n2 Y=0.005 Z=-0.0
 const Z: &str = "ACHSE-Z MM DATUM 0 DIST 16 Z\n0 Z=0\n5 Z=0.005\n20 Z=0.005\n";
 
 fn rig(mp730: u8, assignment: &str) -> Rig {
+    let read = CompensationAssignment::read(assignment).unwrap();
+    rig_with(mp730, Some(read), None)
+}
+
+fn rig_with(mp730: u8, assignment: Option<CompensationAssignment>, old: Option<CorrectionTables>) -> Rig {
     let (mut setup, machine) = bench(
         "       L I28\n       AN M80\n       CMT 50\n       L I28\n       = M80\nLBL 50\n       SUBM 60\n       = B200\n       EM\nLBL 60\n       PS K+1\n       CM 9095\n       PL B201\n       EM\n",
     )
     .mp(&format!("730={mp730}"))
     .setup();
-    setup.files.compensation = Some(CompensationAssignment::read(assignment).unwrap());
+    setup.files.compensation = assignment;
+    setup.files.correction_tables = old;
     for text in [Y, Z] {
         let name = text.split(' ').next().unwrap().to_owned();
         setup
@@ -77,4 +83,85 @@ fn module_9095_selects_a_line() {
     let [y, z] = errors(&mut rig);
     close(y, 0.0, 0.001);
     close(z, -0.005, 0.001);
+}
+
+/// Correction tables of code number 105 296 with spacing 6.5536 mm: Y over itself 0.002 mm at point 2 (13.1072 mm), Z over
+/// Y -0.001 mm for each point up to 10.
+fn old_tables() -> CorrectionTables {
+    let mut text = String::new();
+    for (head, slope) in [("Y OVER Y", 0.001), ("Z OVER Y", -0.001)] {
+        text += &format!("{head} MM DATUM 0 DIST 16\n");
+        for point in 0..64 {
+            text += &format!("{point} {}\n", slope * f64::from(point.min(10)));
+        }
+    }
+    CorrectionTables::read(&text).unwrap()
+}
+
+/// They apply where MP730 selects them and there is no assignment; with one, even one without an active line, they do
+/// not [000:3887].
+#[test]
+fn correction_tables_apply_without_an_assignment() {
+    let [y, z] = errors(&mut rig_with(0b110, None, Some(old_tables())));
+    close(y, -0.002, 0.0008);
+    close(z, 0.002, 0.0008);
+    let [y, z] = errors(&mut rig_with(0b100, None, Some(old_tables())));
+    close(y, 0.0, 0.0008);
+    close(z, 0.002, 0.0008);
+    let none_active = CompensationAssignment::read("0 Y=ACHSE-Y\n").unwrap();
+    let [y, z] = errors(&mut rig_with(0b110, Some(none_active), Some(old_tables())));
+    close(y, 0.0, 0.0008);
+    close(z, 0.0, 0.0008);
+}
+
+/// Module 9095 finds no assignment, so no line: the tables stay (error 2, no .CMA file [000:15547-15580]).
+#[test]
+fn module_9095_has_no_say_in_correction_tables() {
+    let mut rig = rig_with(0b110, None, Some(old_tables()));
+    rig.input("I28", true);
+    rig.seconds(0.2);
+    assert_ne!(rig.number("B201"), 0);
+    let [y, _] = errors(&mut rig);
+    close(y, -0.002, 0.0008);
+}
+
+#[test]
+fn faulty_correction_tables_are_refused_at_their_line() {
+    let points = |count: usize| (0..count).map(|point| format!("{point} 0\n")).collect::<String>();
+    let head = "X OVER X MM DATUM 0 DIST 16\n";
+    for (text, line, what) in [
+        ("0 0\n".to_owned(), 1, "a table begins with AXIS OVER AXIS"),
+        (
+            "\nX OVER W MM DATUM 0 DIST 16\n".to_owned(),
+            2,
+            "a table begins with AXIS OVER AXIS",
+        ),
+        (head.replace("16", "24") + &points(64), 1, "DIST is 0 to 23"),
+        (
+            head.replace("16", "4000000000") + &points(64),
+            1,
+            "DIST is 0 to 23",
+        ),
+        (head.to_owned() + &points(63), 1, "a table has 64 points"),
+        (head.to_owned() + &points(65), 66, "the points are 0 to 63"),
+        (head.to_owned() + "1 0\n", 2, "the points are 0 to 63"),
+        (head.to_owned() + "0 nan\n", 2, "the value is no number"),
+        (head.to_owned() + "0 0 0\n", 2, "a point is its number"),
+        // A 64th of 6.5536 mm is 0.1024 mm.
+        (
+            head.to_owned() + "0 0\n1 0.1024\n2 -0.0001\n",
+            4,
+            "a 64th of the spacing",
+        ),
+        (
+            (head.to_owned() + &points(64)).repeat(2),
+            66,
+            "an axis has one table only",
+        ),
+    ] {
+        let fault = CorrectionTables::read(&text).unwrap_err();
+        assert_eq!(fault.line, line, "{text}: {fault}");
+        assert!(fault.what.contains(what), "{fault}");
+    }
+    assert_eq!(CorrectionTables::read("").unwrap(), CorrectionTables::default());
 }

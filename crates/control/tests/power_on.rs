@@ -101,3 +101,41 @@ fn markers_of_the_nc_are_not_kept() {
     let bits = ["M1503", "M1703", "M1913", "M1100"].map(|marker| plc.bit(marker.parse().unwrap()));
     assert_eq!(bits, [false, false, false, true]);
 }
+
+/// A low battery is said at once, and the run of the machine goes on; CE clears the message until the next power-on. It can
+/// be exchanged with the supply off: what is remembered is kept, and nothing is said any more.
+#[test]
+fn a_low_buffer_battery_is_said_until_it_is_exchanged() {
+    const LOW: &str = "EXCHANGE BUFFER BATTERY";
+    let mut rig = Build::mill().rig();
+    rig.power_on();
+    rig.command("B126=7");
+    rig.event("fault battery");
+    rig.seconds(0.1);
+    assert_eq!(rig.messages(), [LOW]);
+    assert!(
+        rig.bit("M2190") && rig.bit("M2000"),
+        "it is said, and the loops stay closed"
+    );
+    rig.command("ce");
+    rig.seconds(0.5);
+    assert_eq!(rig.messages(), [""; 0], "it is said once");
+
+    rig.command("power off");
+    rig.seconds(1.0);
+    assert_eq!(rig.messages(), [""; 0]);
+    rig.command("power on");
+    rig.seconds(0.1);
+    assert!(rig.messages().contains(&LOW.to_owned()));
+    rig.command("power off");
+    rig.event("repair battery");
+    rig.seconds(1.0);
+    rig.command("power on");
+    rig.seconds(0.1);
+    assert!(!rig.messages().contains(&LOW.to_owned()));
+    assert_eq!(rig.number("B126"), 7);
+    // The next one may be low, too.
+    rig.event("fault battery");
+    rig.seconds(0.1);
+    assert!(rig.messages().contains(&LOW.to_owned()));
+}

@@ -153,6 +153,7 @@ impl Machine {
             Fault::ProbeNotReady => self.probe()?.ready = false,
             Fault::ProbeBattery => self.probe()?.battery_low = true,
             Fault::ProbeEarly => self.probe()?.early = true,
+            Fault::BufferBattery => self.buffer_battery_low = true,
         }
         Ok(())
     }
@@ -226,6 +227,7 @@ impl Machine {
             }
             self.stuck.clear();
             self.chain.fault = None;
+            self.buffer_battery_low = false;
             if self.probe.is_some() {
                 self.repair("probe")?;
             }
@@ -237,6 +239,7 @@ impl Machine {
         }
         match what {
             "relay" => self.chain.fault = None,
+            "battery" => self.buffer_battery_low = false,
             "probe" => {
                 let probe = self.probe()?;
                 probe.ready = true;

@@ -43,7 +43,7 @@ pub enum Event {
     Force(char, f64),
     /// Something fails.
     Fault(Fault),
-    /// Something is repaired: an axis letter, `S`, the name of a thing, an input, `relay`, or `all`.
+    /// Something is repaired: an axis letter, `S`, the name of a thing, an input, `relay`, `battery`, or `all`.
     Repair(String),
 }
 
@@ -92,6 +92,8 @@ pub enum Fault {
     ToolLost,
     /// The touch probe says that it is deflected whatever it touches.
     ProbeEarly,
+    /// The buffer battery of the control's memory is low.
+    BufferBattery,
 }
 
 /// Why an event was refused.
@@ -166,7 +168,8 @@ fault device THING|gear|magazine jammed|no-feedback|permanent|slow
 fault magazine lost                 the arm, or the shuttle, drops its tools
 fault relay slow MS | welded | open
 fault probe not-ready|battery|early
-repair AXIS|S|THING|gear|magazine|I12|relay|probe|all
+fault battery                       the buffer battery of the control's memory is low
+repair AXIS|S|THING|gear|magazine|I12|relay|probe|battery|all
 ";
 
     /// Reads an event from its text form. Whether the machine has what it names shows when it is
@@ -347,12 +350,14 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
         ["probe", "not-ready"] => Ok(Fault::ProbeNotReady),
         ["probe", "battery"] => Ok(Fault::ProbeBattery),
         ["probe", "early"] => Ok(Fault::ProbeEarly),
+        ["battery"] => Ok(Fault::BufferBattery),
+        ["battery", ..] => Err(EventError::Form("fault battery")),
         ["device", ..] => Err(EventError::Form(
             "fault device THING|gear|magazine jammed|no-feedback|permanent|slow",
         )),
         ["relay", ..] => Err(EventError::Form("fault relay slow MS | welded | open")),
         _ => Err(EventError::Form(
-            "fault encoder|drive|motor|brake|clamp|offset|input|device|magazine|relay|probe ..",
+            "fault encoder|drive|motor|brake|clamp|offset|input|device|magazine|relay|probe|battery ..",
         )),
     }
 }

@@ -30,6 +30,8 @@ pub struct MachineFolder {
     /// Assignment of the axis-error compensation (.CMA); its tables NAME.COM lie beside it
     /// [000:3770-3869].
     pub compensation: Option<String>,
+    /// Correction tables of code number 105 296, for controls without an assignment [000:3875-3887].
+    pub correction_tables: Option<String>,
     /// Description of the simulated machine.
     pub plant: String,
     /// A solid on the table that the touch probe touches, a mesh (STL) in workpiece coordinates.
@@ -178,6 +180,7 @@ impl MachineFolder {
             plc_messages: optional("plc_messages"),
             plc_dialogues: optional("plc_dialogues"),
             compensation: optional("compensation"),
+            correction_tables: optional("correction_tables"),
             plant: needed("plant"),
             solid: optional("solid"),
             tools: optional("tools"),

@@ -73,6 +73,8 @@ pub struct Machine {
     outputs: [bool; OUTPUTS],
     live: [bool; OUTPUTS],
     pub(crate) stuck: Vec<(usize, ContactFault)>,
+    /// Of the logic unit.
+    pub(crate) buffer_battery_low: bool,
     wires: Vec<Wire>,
 }
 
@@ -140,6 +142,7 @@ impl Machine {
             outputs: [false; OUTPUTS],
             live: [false; OUTPUTS],
             stuck: Vec::new(),
+            buffer_battery_low: false,
             wires: Vec::new(),
             axes,
         };
@@ -318,6 +321,7 @@ impl Plant for Machine {
         measured.operator = self.panel.operator;
         measured.probe = self.touch_probe();
         measured.tool_probe = self.tool_probe();
+        measured.buffer_battery_low = self.buffer_battery_low;
         measured.volts = self.volts;
         measured.temperatures = self.temperatures;
     }

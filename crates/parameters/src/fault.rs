@@ -241,6 +241,8 @@ faults! {
     // The control voltage.
     PowerInterrupted: "the supply was off (MP7212 = 0)", Some(M::PowerInterrupted), "",
         Asked, NotStarted, None, Ce, "[000:7033-7040]";
+    BufferBattery: "the buffer battery is low", Some(M::ExchangeBufferBattery), "",
+        ContourCycle, Said, None, Ce, "[000:1385-1400] (inferred)";
     VoltageMissing: "the control voltage does not come", Some(M::RelayExtDcVoltageMissing), "",
         ContourCycle, NotStarted, None, Itself, "[000:6184]";
     EmergencyStopDefective: "the acknowledgement X42/4 does not fall in the test", Some(M::EmergencyStopDefective), "",

@@ -172,6 +172,7 @@ Software limit switch *+ | axis.*.travel.ranges_mm.0.1
 Software limit switch *- | axis.*.travel.ranges_mm.0.0
 Analogue voltage at rapid traverse | axis.0.output.rapid_volts
 Approach speed 1 um before nominal position (square-root characteristic) | axis.0.precontrol.transient_m_min
+Oscillation (transient) behaviour when accelerating (square-root characteristic) | axis.0.precontrol.damping
 Acceleration | axis.0.motion.acceleration_m_s2
 Circular (radial) acceleration | radial_acceleration
 Position supervision, erasable (square-root characteristic) | axis.0.precontrol.monitoring_mm
@@ -283,6 +284,7 @@ Feed rate for traversing reference marks, * axis | axis.*.reference.feed_mm_min
 Type of reference-mark approach, * axis | axis.*.reference.kind
 Position monitoring with feed precontrol, cancellable, * axis | axis.*.precontrol.monitoring_mm
 Position monitoring with feed precontrol, EMERGENCY STOP, * axis | axis.*.precontrol.emergency_mm
+Damping factor for transient response when accelerating | axis.0.precontrol.damping
 kv factor with feed precontrol, * axis | axis.*.precontrol.kv
 kv factor with feed precontrol, active after M105, * axis | axis.*.precontrol.kv_m105
 Stiction compensation factor, * axis | axis.*.compensation.stiction_us

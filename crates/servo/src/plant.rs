@@ -108,6 +108,8 @@ pub struct Measured {
     pub probe: Probe,
     /// The tool probe.
     pub tool_probe: Probe,
+    /// The buffer battery of the control's memory is low [000:1385-1400].
+    pub buffer_battery_low: bool,
     /// Analogue inputs of the PLC, V.
     pub volts: [f64; ANALOGUE_INPUTS],
     /// Pt 100 inputs of the PLC, degrees Celsius.
@@ -126,6 +128,7 @@ impl Default for Measured {
             operator: OperatorInputs::default(),
             probe: Probe::default(),
             tool_probe: Probe::default(),
+            buffer_battery_low: false,
             volts: [0.0; ANALOGUE_INPUTS],
             temperatures: [0.0; ANALOGUE_INPUTS],
         }

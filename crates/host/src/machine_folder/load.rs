@@ -1,12 +1,10 @@
 //! Everything that belongs to a machine, from its folder; all faults of all files at once.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::{
-    CompensationAssignment, CompensationError, CompensationTable, HandOver, NcFiles, Remembered, Tool,
-};
+use bahn_control::{HandOver, NcFiles, Remembered, Tool};
 use bahn_exchange::{Bit, BitArea};
 use bahn_machine::{Machine, MachineFolder};
 use bahn_parameters::own_functions::OwnFunctions;
@@ -84,6 +82,7 @@ impl LoadedMachine {
             &folder.plc_messages,
             &folder.plc_dialogues,
             &folder.compensation,
+            &folder.correction_tables,
             &folder.tools,
             &folder.pockets,
         ];
@@ -174,7 +173,7 @@ fn load(root: &Path, tools: Option<&str>) -> Result<Result<LoadedMachine, Vec<Fi
 pub(super) struct Loader<'a> {
     pub root: &'a Path,
     pub faults: Vec<FileFault>,
-    warnings: Vec<FileFault>,
+    pub warnings: Vec<FileFault>,
     /// `machine.toml`: its path and text.
     description: (PathBuf, String),
 }
@@ -194,12 +193,21 @@ impl Loader<'_> {
         let plc = self.plc(&folder, model?, parameters.as_ref());
         let (parameters, plant) = (parameters?, plant?);
         let mut files = files?;
+        self.nonlinear(&folder.parameters, &parameters, &files);
         let tables = self.nc_memory(&folder, &parameters, &mut files);
         self.further_lists(&mut files, model?);
         self.agree(&folder, &plant);
         let functions = self.functions(&folder, model?);
         let channels = self.channels(&folder, model?, &parameters, &plant);
         let Channels { channels, hand_overs } = channels?;
+        for channel in &channels {
+            // Tables are those of the axes of the first channel.
+            self.nonlinear(
+                &channel.folder.parameters,
+                &channel.parameters,
+                &NcFiles::default(),
+            );
+        }
         Some(LoadedMachine {
             root: self.root.to_owned(),
             parameters,
@@ -234,7 +242,7 @@ impl Loader<'_> {
     }
 
     /// A name that leads out of the folder is a fault: what belongs to a machine lies in it.
-    fn stays_inside(&mut self, key: &str, name: &str) -> bool {
+    pub(super) fn stays_inside(&mut self, key: &str, name: &str) -> bool {
         let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
         let stays = Path::new(name).components().all(inside) && !name.contains('\\');
         if !stays {
@@ -249,7 +257,7 @@ impl Loader<'_> {
     }
 
     /// The bytes of a file that `machine.toml` names.
-    fn read(&mut self, key: &str, name: &str) -> Option<(PathBuf, Vec<u8>)> {
+    pub(super) fn read(&mut self, key: &str, name: &str) -> Option<(PathBuf, Vec<u8>)> {
         self.read_with(key, name, files::read_table)
     }
 
@@ -284,35 +292,7 @@ impl Loader<'_> {
 
     fn parameters(&mut self, folder: &MachineFolder, model: ControlModel) -> Option<ParameterList> {
         let line = self.line_of("parameters").unwrap_or(1);
-        let list = self.list_at(line, &folder.parameters, model)?;
-        self.tables_for(folder, &list, line);
-        Some(list)
-    }
-
-    /// MP730 takes MP720 away, and the tables of code number 105 296 that would act then are not there [000:3875-3887].
-    fn tables_for(&mut self, folder: &MachineFolder, list: &ParameterList, line: usize) {
-        let axes = (0..list.model().limits().axes_max).map(|index| list.axis_parameters(index));
-        let without = axes.filter(|axis| axis.active && axis.compensation.nonlinear);
-        let letters: Vec<String> = without
-            .filter_map(|axis| Some(axis.letter?.to_string()))
-            .collect();
-        if folder.compensation.is_some() || letters.is_empty() {
-            return;
-        }
-        let message = format!(
-            "MP730 compensates {} by tables; name their assignment (.CMA) as `compensation`",
-            letters.join(", ")
-        );
-        let (path, text) = &self.description;
-        let fault = file_fault(
-            path,
-            text,
-            (line, None),
-            "an axis has no compensation tables",
-            &message,
-        );
-        let severity = Severity::Warning;
-        self.warnings.push(FileFault { severity, ..fault });
+        self.list_at(line, &folder.parameters, model)
     }
 
     /// A list of machine parameters that a line of `machine.toml` names.
@@ -426,68 +406,6 @@ impl Loader<'_> {
             self.faults
                 .push(file_fault(path, text, place, "the wiring is wrong", &message));
         }
-    }
-
-    /// The assignment of the axis-error compensation with its tables.
-    fn compensation(&mut self, folder: &MachineFolder) -> Option<NcFiles> {
-        let mut files = NcFiles::default();
-        let Some(name) = &folder.compensation else {
-            return Some(files);
-        };
-        if !self.stays_inside("compensation", name) {
-            return None;
-        }
-        let (path, bytes) = self.read("compensation", name)?;
-        let text = decode(&bytes);
-        let assignment = CompensationAssignment::read(&text);
-        let assignment = self.compensation_read(&path, &text, assignment)?;
-        let names: BTreeSet<String> = assignment.lines.iter().flatten().flatten().cloned().collect();
-        let beside = Path::new(name).parent().unwrap_or(Path::new(""));
-        let mut complete = true;
-        for table in names {
-            if !self.stays_inside("compensation", &table) {
-                complete = false;
-                continue;
-            }
-            let file = beside.join(format!("{table}.COM"));
-            let table_read = self.read("compensation", &file.display().to_string());
-            let table_read = table_read.and_then(|(path, bytes)| {
-                let text = decode(&bytes);
-                let read = CompensationTable::read(&text);
-                self.compensation_read(&path, &text, read)
-            });
-            match table_read {
-                Some(read) => drop(files.compensation_tables.insert(table, read)),
-                None => complete = false,
-            }
-        }
-        if complete {
-            let checked = assignment.check_active(&text, &files.compensation_tables);
-            self.compensation_read(&path, &text, checked)?;
-        }
-        files.compensation = Some(assignment);
-        complete.then_some(files)
-    }
-
-    fn compensation_read<T>(
-        &mut self,
-        path: &Path,
-        text: &str,
-        read: Result<T, CompensationError>,
-    ) -> Option<T> {
-        let fault = match read {
-            Ok(read) => return Some(read),
-            Err(fault) => fault,
-        };
-        let place = (fault.line, None);
-        self.faults.push(file_fault(
-            path,
-            text,
-            place,
-            "the compensation is wrong",
-            fault.what,
-        ));
-        None
     }
 
     fn texts(&mut self, key: &str, name: Option<&str>, most: usize) -> Option<Vec<String>> {

@@ -1,10 +1,11 @@
 //! The folder of a machine.
 //!
-//! `load`: everything in it, all faults at once, with its `channels`; `nc_memory` and `tool_files`: its tables; `programs`: its part programs; `state`:
+//! `load`: everything in it, all faults at once, with its `channels`; `compensation`: the tables of axis errors; `nc_memory` and `tool_files`: its tables; `programs`: its part programs; `state`:
 //! what survives power-off, `remembered` as a file.
 
 mod channel;
 mod channels;
+mod compensation;
 mod functions;
 mod load;
 mod nc_memory;

@@ -222,6 +222,7 @@ impl Finder<'_> {
         for probe in ["not-ready", "battery", "early"] {
             self.event(Kind::Fault, &format!("fault probe {probe}"), Some("repair probe"));
         }
+        self.event(Kind::Fault, "fault battery", Some("repair battery"));
         // Both senses of rotation at once; a message that flashes; markers of a key against its complement; M and T
         // functions that are acknowledged early, and an acknowledgement that is taken back.
         for markers in [

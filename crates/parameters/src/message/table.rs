@@ -232,6 +232,10 @@ messages! {
         cause "The control voltage was off.";
         remedy "Clear the message with CE; the PLC program runs from then on.";
         source "[000:7033-7037]";
+    ExchangeBufferBattery: "EXCHANGE BUFFER BATTERY";
+        cause "The batteries that keep the memory while the control is off are low: part programs, PLC program, machine parameters.";
+        remedy "Exchange the three batteries in the power supply of the logic unit; the memory is kept meanwhile, also with the mains off.";
+        source "[000:1385-1400]";
     RelayExtDcVoltageMissing: "RELAY EXT. DC VOLTAGE MISSING";
         cause "The control waits for the control voltage of the machine.";
         remedy "Switch the control voltage on.";
