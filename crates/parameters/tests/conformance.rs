@@ -46,12 +46,16 @@ fn every_row_is_read() {
     }
 }
 
+/// Markers with a second use: for M2809 those of the positions carry a number [000:16175-16179].
+const USED_TWICE: &[&str] = &["M2560-M2576"];
+
 /// Rows of a kind that are about the same function of the same model.
 #[test]
 fn no_function_has_two_rows() {
-    for (at, entry) in all().iter().enumerate() {
+    let rows = || all().iter().filter(|entry| !USED_TWICE.contains(&entry.name));
+    for (at, entry) in rows().enumerate() {
         let is_like = |other: &&Entry| other.kind == entry.kind && other.covers(entry.name);
-        for other in all().iter().skip(at + 1).filter(is_like) {
+        for other in rows().skip(at + 1).filter(is_like) {
             let both = entry.models().find(|model| other.is_of(*model));
             assert_eq!(both, None, "{} and {}", entry.name, other.name);
         }
