@@ -1,5 +1,7 @@
 //! TCH PROBE 5 to 7 on the machine: the axes scan what the probe touches [003:6532-6882] [000:7722-7958].
 
+#![allow(clippy::expect_used, reason = "a test may fail")]
+
 #[path = "support/stand.rs"]
 mod stand;
 mod support;
@@ -68,7 +70,7 @@ impl Kept {
         }
         assert_eq!(news.number, self.seen + 1, "a cycle says one thing at most");
         self.seen = news.number;
-        match news.what.unwrap() {
+        match news.what.expect("news say something") {
             Digitized::Begins(job) => {
                 assert_eq!(job.program.as_str(), "FACE");
                 self.points.clear();
@@ -94,7 +96,7 @@ impl Kept {
         }
     }
 
-    fn to_the_end(&mut self, rig: &mut Rig) {
+    fn until_the_end(&mut self, rig: &mut Rig) {
         self.until(rig, 300.0, |rig, _| rig.control.snapshot().ended);
     }
 
@@ -133,7 +135,7 @@ fn a_face_is_digitized() {
     near(display(&rig, 'Z'), 10.0);
     rig.event("key A release");
     kept.until(&mut rig, 20.0, |rig, _| rig.bit("M2025"));
-    kept.to_the_end(&mut rig);
+    kept.until_the_end(&mut rig);
     assert!(rig.bit("M2026"));
     assert_eq!((kept.begun, kept.complete, kept.broken), (1, 1, 0));
     kept.covers_the_face();
@@ -159,7 +161,7 @@ fn a_scan_is_stopped_and_slowed_down() {
         assert_eq!(at, ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis)));
         assert_eq!(rig.control.snapshot().run, RunState::Interrupted);
         rig.start();
-        kept.to_the_end(&mut rig);
+        kept.until_the_end(&mut rig);
         assert_eq!((kept.begun, kept.complete), (1, 1));
         kept.covers_the_face();
         rig.control.time_us() - begun
@@ -194,7 +196,7 @@ fn the_probe_fails_in_the_middle() {
     rig.command("ce");
     rig.command("ce");
     rig.start();
-    kept.to_the_end(&mut rig);
+    kept.until_the_end(&mut rig);
     assert_eq!((kept.begun, kept.complete), (2, 1));
     kept.covers_the_face();
 }
@@ -276,7 +278,7 @@ fn emergency_stop_in_the_middle() {
         rig.seconds(0.2);
     }
     rig.start();
-    kept.to_the_end(&mut rig);
+    kept.until_the_end(&mut rig);
     assert_eq!(kept.complete, 1);
     kept.covers_the_face();
 }
@@ -336,7 +338,7 @@ fn a_measuring_probe_stays_deflected() {
         // 7 mm at 10 mm/s.
         let time_s = (rig.control.time_us() - begun) as f64 * 1e-6;
         assert!((time_s - 0.7).abs() < 0.1, "{time_s}");
-        kept.to_the_end(&mut rig);
+        kept.until_the_end(&mut rig);
         assert_eq!((kept.begun, kept.complete), (1, 1));
         kept.covers_the_face();
         assert_eq!(rig.messages(), [""; 0]);

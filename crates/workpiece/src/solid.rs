@@ -57,9 +57,10 @@ impl Part {
                 if !point.iter().all(|value| value.is_finite()) {
                     return Err(SolidError::Coordinate(number + 1));
                 }
-                for k in 0..3 {
-                    blank.min[k] = blank.min[k].min(point[k]);
-                    blank.max[k] = blank.max[k].max(point[k]);
+                let corners = blank.min.iter_mut().zip(&mut blank.max);
+                for ((min, max), value) in corners.zip(point) {
+                    *min = min.min(*value);
+                    *max = max.max(*value);
                 }
             }
         }
