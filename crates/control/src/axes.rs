@@ -227,9 +227,9 @@ impl OwnAxes<'_> {
         machine_position(self.iter())
     }
 
-    /// Where the axes stand that programs move.
+    /// Where the axes stand that programs move, and their slaves, which the way back to a contour looks for.
     pub fn programmed_position(&self) -> Position {
-        machine_position(self.iter().filter(|unit| unit.is_free()))
+        machine_position(self.iter().filter(|unit| !unit.is_plc_axis()))
     }
 
     /// The slots in which there are axes.
