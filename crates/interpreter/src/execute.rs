@@ -2,7 +2,7 @@
 
 use bahn_parameters::{MessageId, technology};
 use bahn_path::Function;
-use bahn_program::{Expression, InvalidBlock, Operation, Value};
+use bahn_program::{Dialog, Expression, InvalidBlock, Operation, Value};
 
 use crate::availability::{Feature, words};
 use crate::blank::{blank_max, blank_min};
@@ -124,16 +124,8 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
                 return Ok(Flow::Scan);
             }
         }
-        Operation::Dialog(dialog) => {
-            let name = if dialog.call {
-                words::DIALOG_CALL
-            } else {
-                words::DIALOG_DEFINITION
-            };
-            if c.executes(Feature::Word(name))? {
-                return Ok(Flow::Dialog);
-            }
-        }
+        Operation::Dialog(dialog) if is_dialog(c, dialog)? => return Ok(Flow::Dialog),
+        Operation::Dialog(_) => {}
         Operation::Invalid(invalid) => return unreadable(run, invalid, settings),
         Operation::Motion(_)
         | Operation::Calculate { .. }
@@ -143,6 +135,15 @@ fn execute_rare(run: &mut Run, operation: &Operation, settings: &Settings) -> Re
         | Operation::Begin(_) => {}
     }
     Ok(Flow::Next)
+}
+
+/// Whether a block DLG-DEF or DLG-CALL is executed here.
+fn is_dialog(c: &mut Context<'_>, dialog: &Dialog) -> Result<bool, Fault> {
+    c.executes(Feature::Word(if dialog.call {
+        words::DIALOG_CALL
+    } else {
+        words::DIALOG_DEFINITION
+    }))
 }
 
 fn formula(q: &mut QTable, target: u16, expression: &Expression, settings: &Settings) -> Result<(), Fault> {
