@@ -14,8 +14,8 @@ fn dig425() -> Build {
 /// The axis X of the plant has its wires exchanged.
 fn reversed() -> Build {
     dig425().plant(
-        "current_drive = { pitch = 10, inertia = 0.0004, torque_constant = 0.7, current = 12, time_constant_ms = 0.1, lines = 4000, off_delay_ms = 400 }\nencoder = { input = \"X1\"",
-        "current_drive = { pitch = 10, inertia = 0.0004, torque_constant = 0.7, current = 12, time_constant_ms = 0.1, lines = 4000, off_delay_ms = 400, reversed = true }\nencoder = { input = \"X1\"",
+        "current_drive = { pitch = 10, inertia = 0.0004, torque_constant = 0.7, current = 12, time_constant_ms = 0.1, lines = 4000, off_delay_ms = 280 }\nencoder = { input = \"X1\"",
+        "current_drive = { pitch = 10, inertia = 0.0004, torque_constant = 0.7, current = 12, time_constant_ms = 0.1, lines = 4000, off_delay_ms = 280, reversed = true }\nencoder = { input = \"X1\"",
     )
 }
 

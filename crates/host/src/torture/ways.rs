@@ -12,8 +12,6 @@ use super::rule::{Rule, Violation};
 /// Contour cycles at full speed that are left to a ramp beside its own way: the one in which it is wanted, the one that is
 /// interpolated already, and that of the table.
 const RAMP_CYCLES: f64 = 3.0;
-/// What is left of MP1060 to a path whose coordinates each move more than one axis, as where a head is swivelled.
-const PLACED: f64 = 0.4;
 /// What rounding adds to a ramp, mm or degrees.
 const ROUNDING: f64 = 1e-3;
 
@@ -88,15 +86,16 @@ impl Ways {
         let runs = view.run_state() == RunState::Running;
         let stopped = self.stopped.contains(&number);
         self.stopped.retain(|stopped| *stopped != number);
-        // In a thread the spindle leads the path, and both run down together.
-        let threaded = view
-            .element()
-            .is_some_and(|element| !matches!(element.override_law, OverrideLaw::Free));
+        // In a thread the spindle leads the path, and both run down together; where a head is swivelled the ramp of the path
+        // is that of the axis that has most to do for it.
+        let otherwise = view.element().is_some_and(|element| {
+            !matches!(element.override_law, OverrideLaw::Free) || element.placement.is_some()
+        });
         let Some((ran, ramp)) = self.ramps.get_mut(number) else {
             return Ok(());
         };
         let ended = std::mem::replace(ran, runs) && !runs;
-        if speed == 0.0 || threaded || runs && !stopped && ended {
+        if speed == 0.0 || otherwise || runs && !stopped && ended {
             *ramp = None;
             return Ok(());
         }
@@ -119,8 +118,6 @@ impl Ways {
                 let least = axes
                     .map(|watch| watch.acceleration_mm_s2)
                     .fold(f64::INFINITY, f64::min);
-                let placed = view.element().is_some_and(|element| element.placement.is_some());
-                let least = if placed { least * PLACED } else { least };
                 let bound = speed * speed / (2.0 * least) + RAMP_CYCLES * speed * moment.cycle_s + ROUNDING;
                 *ramp = Some(Ramp { way: 0.0, bound });
             }
