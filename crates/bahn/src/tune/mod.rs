@@ -83,9 +83,9 @@ fn axes(text: &str) -> Result<(char, Option<char>), String> {
         .chars()
         .filter(|letter| *letter != ',')
         .collect();
-    match letters.as_slice() {
-        &[axis] if axis.is_ascii_alphabetic() => Ok((axis, None)),
-        &[axis, partner] if axis.is_ascii_alphabetic() && partner.is_ascii_alphabetic() => {
+    match *letters {
+        [axis] if axis.is_ascii_alphabetic() => Ok((axis, None)),
+        [axis, partner] if axis.is_ascii_alphabetic() && partner.is_ascii_alphabetic() => {
             Ok((axis, Some(partner)))
         }
         _ => Err("an axis, or two that describe a circle: X, B or X,Y".to_owned()),
