@@ -473,24 +473,6 @@ fn compensation_tables_lie_in_the_folder() {
     }
 }
 
-/// How far the control shows X beside where the table stands in truth, mm, at the end of main.H on the mill.
-fn beside_table(folder: &Folder, mp: &str) -> f64 {
-    let run = folder.bahn(&format!(
-        "run main.H --machine mill --fresh {mp} --no-graphics --record o.csv --signals X.actual,X.table"
-    ));
-    assert_eq!(run.code(), 0, "{}", run.err());
-    let record = folder.read("o.csv");
-    let last = record.lines().last().unwrap();
-    let values: Vec<f64> = last
-        .split(',')
-        .map(|value| value.trim().parse().unwrap_or(0.0))
-        .collect();
-    let [.., actual, table] = values[..] else {
-        panic!("{last}")
-    };
-    actual - table
-}
-
 /// By how much X is shown farther than its table stands at the end of the program, mm.
 fn ahead_of_table(folder: &Folder, mp: &str) -> f64 {
     let run = folder.bahn(&format!(

@@ -292,7 +292,8 @@ impl Judge<'_> {
         Ok(())
     }
 
-    /// Back from where it ran on without feed enable it goes with no more than MP1060, MP1010.
+    /// Back from where it ran on without feed enable it goes with no more than MP1060, MP1010; what a drive that ran away
+    /// has gathered above that is braked.
     fn way_back(&self, before: &Before) -> Result<(), Violation> {
         let (watch, was) = (self.watch, &before.watch);
         let Some(speed) = before
@@ -304,7 +305,9 @@ impl Judge<'_> {
         let now = (watch.beside - was.beside) / self.moment.cycle_s;
         // Mean speeds of two cycles differ by no more than that of their ends.
         let most = watch.acceleration_mm_s2 * self.moment.cycle_s;
-        if (now - speed).abs() > most * (1.0 + 1e-3) + 1e-4 || now.abs() > watch.rapid_mm_s + 1e-4 {
+        if (now - speed).abs() > most * (1.0 + 1e-3) + 1e-4
+            || now.abs() > watch.rapid_mm_s.max(speed.abs()) + 1e-4
+        {
             let values = format!("{now:.4} mm/s behind {speed:.4} on the way back, at most {most:.4} more");
             return self.breaks(Rule::Acceleration, values);
         }
