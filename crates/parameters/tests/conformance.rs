@@ -131,7 +131,7 @@ fn has_word(text: &str, before: &str, word: &str) -> bool {
 }
 
 /// Settings under which some parameters act at all: axis-error compensation of either kind, a rotary axis, a
-/// position for tool changes in the block scan, the output S by feed, a Hirth coupling, a machine geometry of nine links.
+/// position for tool changes in the block scan, the output S by feed, a Hirth coupling, a measuring probe, a machine geometry of nine links.
 const CIRCUMSTANCES: &[&[&str]] = &[
     &[],
     &[
@@ -143,7 +143,7 @@ const CIRCUMSTANCES: &[&[&str]] = &[
         "420.3=1",
         "430.3=2.5",
     ],
-    &["730=%11111", "410.3=2", "410.4=0", "90=5"],
+    &["730=%11111", "410.3=2", "410.4=0", "90=5", "6200=1"],
     &[
         "7510=1", "7520=1", "7530=1", "7540=1", "7550=1", "7560=1", "7570=1", "7580=1", "7590=1",
     ],

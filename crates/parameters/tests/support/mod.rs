@@ -68,6 +68,7 @@ pub fn readings(list: &ParameterList) -> Readings {
     note(&mut all, "spindle_parameters", &list.spindle_parameters());
     note(&mut all, "characteristics", &list.characteristics());
     note(&mut all, "digitizing", &list.digitizing());
+    note(&mut all, "measuring_probe", &list.measuring_probe());
     note(&mut all, "contour_pocket", &list.contour_pocket());
     note(&mut all, "pocket_overlap", &list.pocket_overlap());
     note(&mut all, "arc_tolerance_mm", &list.arc_tolerance_mm());
