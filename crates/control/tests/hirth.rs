@@ -6,7 +6,7 @@ use bahn_control::RunState;
 use support::bench::*;
 use support::*;
 
-/// The coupling: O3 releases it, I61 says that it is released, I62 that it is locked.
+/// The coupling: O3 releases it, I10 says that it is released, I11 that it is locked.
 const COUPLING: &str = r#"
 [device.coupling]
 states = ["released", "locked"]
@@ -14,8 +14,8 @@ output = "not O3"
 start = "locked"
 forth_ms = 250
 back_ms = 300
-input_first = "I61"
-input_second = "I62"
+input_first = "I10"
+input_second = "I11"
 clamps = "C"
 "#;
 
@@ -109,17 +109,17 @@ LBL 300
        A     M2011
        R     O3
        LN    M2011
-       A     I61
-       AN    I62
+       A     I10
+       AN    I11
        R     M2547
        L     M2
        A     M2011
-       A     I62
-       AN    I61
+       A     I11
+       AN    I10
        S     M2547
        R     M300
-       LN    I61         ; neither released nor locked: no loop
-       AN    I62
+       LN    I10         ; neither released nor locked: no loop
+       AN    I11
        AN    M2011
        AN    M2547
        S     M2547
@@ -297,7 +297,7 @@ const NEAREST: &str = "4310.1=%1";
 /// C is locked, its loop open, and nothing is at work.
 #[track_caller]
 fn rests(rig: &Rig) {
-    let locked = rig.bit("I62") && !rig.bit("I61") && !rig.bit("O3");
+    let locked = rig.bit("I11") && !rig.bit("I10") && !rig.bit("O3");
     assert!(
         locked && rig.bit("M2547") && !rig.bit("M300") && rig.bit("M2011"),
         "{:?}",
@@ -375,7 +375,7 @@ fn a_target_off_the_grid_is_refused_in_a_program() {
     let at = rig.table('C');
     rig.seconds(3.0);
     close(rig.table('C'), at, 0.001);
-    assert!(rig.bit("I62") && !rig.bit("O3") && rig.bit("M2547"));
+    assert!(rig.bit("I11") && !rig.bit("O3") && rig.bit("M2547"));
     assert_ne!(rig.control.snapshot().run, RunState::Idle);
 }
 
