@@ -92,9 +92,9 @@ fn digitizing(folder: &Folder) {
         "tools.tsv",
         "T\tL\tR\tR2\tNAME\n1\t100\t4\t4\tBALL 8\n2\t100\t3\t3\tBALL 6\n",
     );
-    let scan = |lowest: i32, highest: i32, clearance: i32| {
+    let scan = |name: &str, [lowest, highest, clearance]: [i32; 3]| {
         format!(
-            "TCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: SURFACE\nTCH PROBE 5.2 Z X+4 Y+3 Z{lowest:+}\n\
+            "TCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: {name}\nTCH PROBE 5.2 Z X+4 Y+3 Z{lowest:+}\n\
              TCH PROBE 5.3 X+16 Y+5 Z{highest:+}\nTCH PROBE 5.4 HEIGHT: {clearance:+}\nTCH PROBE 6.0 MEANDER\n\
              TCH PROBE 6.1 DIRECTN: X\nTCH PROBE 6.2 TRAVEL: 0.5 L.SPAC: 1 P.P. INT: 1\n"
         )
@@ -103,12 +103,15 @@ fn digitizing(folder: &Folder) {
     let model = format!(
         "{blank}TOOL CALL 1 Z S1000\nL X+5 Y+5 Z+10 R0 FMAX M3\nL Z-2 F500\nL X+15\nL Z+20 FMAX M5\n\
          TOOL CALL 2 Z S1000\n{}",
-        scan(-6, 1, 10)
+        scan("SURFACE", [-6, 1, 10])
     );
     folder.write("MODEL.H", support::program(&model));
     let again = "TOOL CALL 2 Z S1000\nL Z+50 R0 FMAX M3\nL X+4 Y+3 F500\nCALL PGM SURFACE\n";
     folder.write("AGAIN.H", support::program(&format!("{blank}{again}")));
-    let on_machine = format!("TOOL CALL 0 Z S0\nL Z+140 R0 FMAX\n{}", scan(114, 121, 125));
+    let on_machine = format!(
+        "TOOL CALL 0 Z S0\nL Z+140 R0 FMAX\n{}",
+        scan("MESH", [114, 121, 125])
+    );
     folder.write("SCAN.H", support::program(&on_machine));
     folder.write("probe.txt", "0: probe insert\n");
     folder.write(

@@ -246,7 +246,10 @@ fn bench_on(solid: &str) -> Build {
 /// ball from the model, and the orbit ends within the window of its first point.
 fn orbits(points: &[[f64; 3]], distance: impl Fn(f64, f64) -> f64, orbit_mm: f64, closed_mm: f64) {
     for level in [-6.0, -5.0, -4.0] {
-        let on: Vec<_> = points.iter().filter(|point| (point[2] - level).abs() < 0.02).collect();
+        let on: Vec<_> = points
+            .iter()
+            .filter(|point| (point[2] - level).abs() < 0.02)
+            .collect();
         let (Some(first), Some(last)) = (on.first(), on.last()) else {
             panic!("no point at Z {level}: {points:?}")
         };
@@ -264,7 +267,11 @@ fn orbits(points: &[[f64; 3]], distance: impl Fn(f64, f64) -> f64, orbit_mm: f64
             assert!((from - 2.0).abs() < 0.03, "{point:?}: {from}");
         }
     }
-    let stray = |point: &&[f64; 3]| [-6.0, -5.0, -4.0].iter().all(|level| (point[2] - level).abs() >= 0.02);
+    let stray = |point: &&[f64; 3]| {
+        [-6.0, -5.0, -4.0]
+            .iter()
+            .all(|level| (point[2] - level).abs() >= 0.02)
+    };
     assert_eq!(points.iter().find(stray), None);
 }
 
@@ -278,7 +285,11 @@ fn a_box_is_digitized_in_contour_lines() {
     kept.until_the_end(&mut rig);
     assert_eq!(rig.messages(), [""; 0]);
     assert_eq!((kept.begun, kept.complete, kept.broken), (1, 1, 0));
-    let beside = |x: f64, y: f64| ((x - 100.0).abs() - 5.0).max(0.0).hypot(((y - 50.0).abs() - 5.0).max(0.0));
+    let beside = |x: f64, y: f64| {
+        ((x - 100.0).abs() - 5.0)
+            .max(0.0)
+            .hypot(((y - 50.0).abs() - 5.0).max(0.0))
+    };
     orbits(&kept.points, beside, 40.0 + 4.0 * std::f64::consts::PI, 0.25);
     near(display(&rig, 'X'), 90.0);
     near(display(&rig, 'Y'), 38.0);
@@ -316,7 +327,10 @@ fn an_orbit_that_takes_too_long_or_begins_outside() {
     let before = ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis));
     rig.start();
     rig.until(20.0, "the message", |rig| !rig.messages().is_empty());
-    assert_eq!(rig.messages(), ["START POSITION INCORRECT program 1.H block 10: the starting point lies outside of the range"]);
+    assert_eq!(
+        rig.messages(),
+        ["START POSITION INCORRECT program 1.H block 10: the starting point lies outside of the range"]
+    );
     assert_eq!(before, ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis)));
     assert_eq!(rig.control.first().digitized().number, 0);
 }

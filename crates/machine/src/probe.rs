@@ -99,7 +99,11 @@ impl Ring {
             (beside * part, above * part)
         } else {
             let (out, lift) = (outer - from_centre, high - z);
-            let inwards = if inner > 0.0 { from_centre - inner } else { f64::INFINITY };
+            let inwards = if inner > 0.0 {
+                from_centre - inner
+            } else {
+                f64::INFINITY
+            };
             if lift <= out.min(inwards) {
                 (0.0, lift + radius)
             } else if out <= inwards {
