@@ -474,6 +474,37 @@ fn the_machine_digitizes_what_it_has_machined() {
     assert!(!folder.path("mill/programs/ROOF.H").exists());
 }
 
+/// On the machine TCH PROBE 0 touches the part as it was machined: the bottom of a slot at Z -5; beside the part it touches
+/// the block of the plant, whose face is at Z 40 of the machine, 80 below the datum. By hand it touches the same, and a datum
+/// that is set on the bottom moves no part.
+#[test]
+fn the_machine_probes_what_it_has_machined() {
+    let folder = Folder::new();
+    copy(&machines().join("mill"), &folder.path("mill"));
+    let plant = folder.read("mill/plant.toml");
+    folder.write(
+        "mill/plant.toml",
+        plant.replace("length = 120 ", "inserted = true\nlength = 0 "),
+    );
+    let blocks = "BLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+40 Y+30 Z+0\nTOOL CALL 3 Z S1000
+L X+20 Y+15 Z+20 R0 FMAX M3\nL Z-5 F500\nL Y+16\nL Z+20 FMAX M5\nTOOL CALL 0 Z S0\nL Z+20 R0 FMAX
+TCH PROBE 0.0 REF. PLANE Q11 Z-\nTCH PROBE 0.1 X+60 Y+15 Z-78\nL Z+20 R0 FMAX
+TCH PROBE 0.0 REF. PLANE Q10 Z-\nTCH PROBE 0.1 X+20 Y+15 Z-4\nL X+20 Y+15 Z+3 R0 FMAX";
+    folder.write("main.H", program(blocks));
+    folder.write(
+        "s.txt",
+        "when run ended: mode manual\n+0.2: probe surface\n+0: probe direction Z-\n+0.1: key NC_START tap\n\
+         when probe.touches=1: expect Z.probed=-5±0.01\n+1: probe datum Z 0\n+0.1: expect Z.displayed=8±0.01\n\
+         +0.1: probe surface\n+0: probe direction Z-\n+0.1: key NC_START tap\n\
+         when probe.touches=1: expect Z.probed=0±0.01\n+1: end\n",
+    );
+    let run = folder.bahn("run main.H --machine mill --fresh --operator full --script s.txt --format json");
+    let report = run.json();
+    assert_eq!(run.code(), 0, "{report} {}", run.err());
+    assert!((number(&report, "/q/10") + 5.0).abs() < 0.02, "{report}");
+    assert!((number(&report, "/q/11") + 80.0).abs() < 0.02, "{report}");
+}
+
 /// `--compare`: a part that is its own model is off by nothing; one whose face is 0.1 mm higher has 0.1 mm left.
 #[test]
 fn a_part_is_compared_with_a_mesh() {

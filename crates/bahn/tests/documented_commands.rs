@@ -81,7 +81,45 @@ fn desk() -> Folder {
         folder.write(name, "time [s],X.lag [mm],event\n1,0.5,start\n2,0.25,\n");
     }
     folder.write("jog.txt", "30: end\n");
+    digitizing(&folder);
     folder
+}
+
+/// What is digitized: a part and the program that machines it again, and a mesh with the program that scans it on the
+/// machine. The ball of its probe is 120 mm below the spindle, and nothing is calibrated.
+fn digitizing(folder: &Folder) {
+    folder.write(
+        "tools.tsv",
+        "T\tL\tR\tR2\tNAME\n1\t100\t4\t4\tBALL 8\n2\t100\t3\t3\tBALL 6\n",
+    );
+    let scan = |name: &str, [lowest, highest, clearance]: [i32; 3]| {
+        format!(
+            "TCH PROBE 5.0 RANGE\nTCH PROBE 5.1 PGM NAME: {name}\nTCH PROBE 5.2 Z X+4 Y+3 Z{lowest:+}\n\
+             TCH PROBE 5.3 X+16 Y+5 Z{highest:+}\nTCH PROBE 5.4 HEIGHT: {clearance:+}\nTCH PROBE 6.0 MEANDER\n\
+             TCH PROBE 6.1 DIRECTN: X\nTCH PROBE 6.2 TRAVEL: 0.5 L.SPAC: 1 P.P. INT: 1\n"
+        )
+    };
+    let blank = "BLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+20 Y+10 Z+0\n";
+    let model = format!(
+        "{blank}TOOL CALL 1 Z S1000\nL X+5 Y+5 Z+10 R0 FMAX M3\nL Z-2 F500\nL X+15\nL Z+20 FMAX M5\n\
+         TOOL CALL 2 Z S1000\n{}",
+        scan("SURFACE", [-6, 1, 10])
+    );
+    folder.write("MODEL.H", support::program(&model));
+    let again = "TOOL CALL 2 Z S1000\nL Z+50 R0 FMAX M3\nL X+4 Y+3 F500\nCALL PGM SURFACE\n";
+    folder.write("AGAIN.H", support::program(&format!("{blank}{again}")));
+    let on_machine = format!(
+        "TOOL CALL 0 Z S0\nL Z+140 R0 FMAX\n{}",
+        scan("MESH", [114, 121, 125])
+    );
+    folder.write("SCAN.H", support::program(&on_machine));
+    folder.write("probe.txt", "0: probe insert\n");
+    folder.write(
+        "model.stl",
+        "solid roof\nvertex 0 0 -5\nvertex 10 0 -1\nvertex 10 10 -1\nvertex 0 0 -5\nvertex 10 10 -1\n\
+         vertex 0 10 -5\nvertex 10 0 -1\nvertex 20 0 -5\nvertex 10 10 -1\nvertex 10 10 -1\nvertex 20 0 -5\n\
+         vertex 20 10 -5\nendsolid\n",
+    );
 }
 
 /// Runs each command in a shell, in this order.

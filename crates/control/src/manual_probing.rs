@@ -49,6 +49,8 @@ struct Job {
     angle_deg: f64,
     /// The centre of the ring before the probe was turned by 180°, and whether it is turned.
     before_turn: Option<touched::Point>,
+    /// A measuring probe turns by itself: as soon as it is turned the ring is probed again without NC start.
+    again: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -198,6 +200,7 @@ impl ManualProbing {
             surface: None,
             angle_deg: self.memory.basic_rotation_deg,
             before_turn: None,
+            again: false,
         };
         if function == (ProbeFunction::Corner { reuse: true }) {
             let Some(side) = self.side else {
@@ -282,9 +285,12 @@ impl ManualProbing {
         };
         if !probe.is_on() {
             let turns = site.spindle.is_orienting() || !site.handshakes.is_idle();
-            if !site.now.start || site.now.stop || turns || !site.axes.rest() {
+            job.again &= !site.now.stop;
+            let starts = site.now.start || job.again;
+            if !starts || site.now.stop || turns || !site.axes.rest() {
                 return (false, false);
             }
+            job.again = false;
             if job.begin(probe, settings, site) {
                 return (true, false);
             }
@@ -348,7 +354,7 @@ impl ManualProbing {
             job.probe_next(probe, settings, site);
             return false;
         }
-        match self.evaluate(touch, settings.turn, site) {
+        match self.evaluate(touch, settings, site) {
             Ok(kept) => kept,
             Err(message) => {
                 site.messages.show(Message::Plain(message), None);
@@ -361,7 +367,12 @@ impl ManualProbing {
     }
 
     /// What the touches come to, as soon as there are enough.
-    fn evaluate(&mut self, touch: &Position, turn: ProbeTurn, site: &mut Site) -> Result<bool, MessageId> {
+    fn evaluate(
+        &mut self,
+        touch: &Position,
+        settings: &ProbeSettings,
+        site: &mut Site,
+    ) -> Result<bool, MessageId> {
         let Some(job) = &mut self.job else {
             return Ok(false);
         };
@@ -386,7 +397,9 @@ impl ManualProbing {
                         let (one, two) = (before[k] - *offset, circle.centre[k] - *offset);
                         *offset = (two - one) / 2.0;
                     }
-                    turn_by_180(turn, site);
+                    turn_by_180(settings.turn, site);
+                } else if settings.turns_itself && settings.turn != ProbeTurn::Off {
+                    job.turn_by_itself(circle.centre, settings.turn, site);
                 }
                 self.memory.calibration = Some(calibration);
                 Ok(true)
@@ -490,6 +503,19 @@ impl Job {
             centre,
             towards: plane.point(&towards),
         });
+    }
+
+    /// A measuring probe is turned as soon as the ring is probed [000:7654]; a spindle that cannot be turned is said, and
+    /// leaves the offset as it was (inferred).
+    fn turn_by_itself(&mut self, centre: touched::Point, turn: ProbeTurn, site: &mut Site) {
+        if turn_by_180(turn, site) {
+            self.before_turn = Some(centre);
+            self.count = 0;
+            self.again = true;
+        } else {
+            site.messages
+                .show(Message::Plain(MessageId::KeyNonFunctional), None);
+        }
     }
 
     fn add(&mut self, contact: Contact) {

@@ -142,6 +142,11 @@ impl Probe {
         self.probing.is_some() || self.tool.is_on() || self.scanning.is_some()
     }
 
+    /// The stylus is on its way to a surface, or is about to be. Measuring of tools is something else.
+    pub fn seeks_surface(&self) -> bool {
+        self.probing.is_some() || self.scanning.is_some()
+    }
+
     /// The path came to a digitizing cycle.
     pub fn scan(&mut self, block: BlockRef, job: ScanJob, site: &mut Site) {
         self.scanning = Some(Scanning::begin(block, job, site));

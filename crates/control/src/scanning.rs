@@ -61,6 +61,8 @@ pub(crate) struct Scanning {
     /// Where the tip is, nominal for the axes without an encoder.
     tip: ScanPoint,
     battery_told: bool,
+    /// Lines that had ended when the battery was looked at.
+    lines: u32,
     /// The cycle that moved it last, µs.
     moved_us: u64,
 }
@@ -95,6 +97,7 @@ impl Scanning {
             deflected: false,
             touch: None,
             battery_told: false,
+            lines: 0,
             moved_us: site.now.us,
         }
     }
@@ -195,7 +198,8 @@ impl Scanning {
         Ok(())
     }
 
-    /// A probe that is not ready any more ends the scan; a battery that is low is told once [003:8043-8045].
+    /// A probe that is not ready any more ends the scan; a battery that is low is told when the end of a line is reached
+    /// [003:8043-8045], once (inferred).
     fn look_after_probe(&mut self, site: &mut Site, measured: &Measured) {
         let probe = measured.probe;
         site.exchange.nc_put(signal::PROBE_NOT_READY, !probe.ready);
@@ -203,7 +207,9 @@ impl Scanning {
         if !probe.ready {
             self.scan.break_off(ScanFault::NotReady);
         }
-        if probe.battery_low && !self.battery_told {
+        let ended = self.scan.lines_ended();
+        let at_line_end = std::mem::replace(&mut self.lines, ended) != ended;
+        if probe.battery_low && at_line_end && !self.battery_told {
             self.battery_told = true;
             let message = Message::Plain(MessageId::ExchangeTouchProbeBattery);
             site.messages.show(message, Some(self.block));

@@ -85,6 +85,11 @@ impl<'a> ChannelView<'a> {
         self.channel.run.probe.digitized
     }
 
+    /// The stylus is on its way to a surface, or is about to be: a probing, by program or by hand, or a scan.
+    pub fn probes(&self) -> bool {
+        self.channel.run.probe.seeks_surface()
+    }
+
     /// Handshake that the run waits for.
     pub fn waiting(&self) -> Option<Waiting> {
         let nc = self.machine.memory.of(self.number()).nc();

@@ -1,6 +1,6 @@
 //! TCH PROBE 5 to 7 on the machine: the axes scan what the probe touches [003:6532-6882] [000:7722-7958].
 
-#![allow(clippy::expect_used, reason = "a test may fail")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test may fail")]
 
 #[path = "support/stand.rs"]
 mod stand;
@@ -170,35 +170,169 @@ fn a_scan_is_stopped_and_slowed_down() {
     assert!(half as f64 > 1.5 * full as f64, "{half} {full}");
 }
 
-/// A probe that is not ready any more ends the scan with its message; a repaired one begins anew with the next start. A
-/// low battery is said once and scanned with.
+/// A probe that is not ready any more ends the scan with its message; a repaired one begins anew with the next start.
 #[test]
 fn the_probe_fails_in_the_middle() {
+    let mut rig = rig(FACE);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |_, kept| kept.points.len() == 5);
+    rig.event("fault probe not-ready");
+    kept.until(&mut rig, 10.0, |rig, _| !rig.messages().is_empty());
+    assert!(
+        rig.messages()[0].starts_with("PROBE SYSTEM NOT READY"),
+        "{:?}",
+        rig.messages()
+    );
+    let block = rig.control.shown()[0].block.map(|block| block.block);
+    assert_eq!((kept.broken, kept.complete, block), (1, 0, Some(SCANS)));
+    rig.seconds(0.1);
+    assert!(rig.bit("M2022") && rig.bit("M2026") && !rig.bit("M2503"));
+    rig.event("repair probe");
+    rig.command("ce");
+    rig.start();
+    kept.until_the_end(&mut rig);
+    assert_eq!((kept.begun, kept.complete), (2, 1));
+    kept.covers_the_face();
+}
+
+/// A battery that is low shows in M2027 at once, in the message when the probe reaches the end of a line, at X 95
+/// [003:8043-8045]; it is said once, and scanned with.
+#[test]
+fn a_low_battery_is_said_at_the_end_of_a_line() {
     let mut rig = rig(FACE);
     let mut kept = Kept::default();
     rig.event("fault probe battery");
     rig.start();
     kept.until(&mut rig, 60.0, |_, kept| kept.points.len() == 5);
     assert!(rig.bit("M2027"));
+    assert_eq!(rig.messages(), [""; 0]);
+    kept.until(&mut rig, 60.0, |rig, _| !rig.messages().is_empty());
     assert_eq!(rig.messages(), ["EXCHANGE TOUCH PROBE BATTERY"]);
-    rig.event("fault probe not-ready");
-    kept.until(&mut rig, 10.0, |rig, _| rig.messages().len() == 2);
-    assert!(
-        rig.messages()[1].starts_with("PROBE SYSTEM NOT READY"),
-        "{:?}",
-        rig.messages()
-    );
-    let block = rig.control.shown()[1].block.map(|block| block.block);
-    assert_eq!((kept.broken, kept.complete, block), (1, 0, Some(SCANS)));
-    rig.seconds(0.1);
-    assert!(rig.bit("M2022") && rig.bit("M2026") && !rig.bit("M2503"));
-    rig.event("repair probe");
+    within(display(&rig, 'X'), 95.0, 0.05);
+    within(display(&rig, 'Y'), 20.0, 0.01);
     rig.command("ce");
-    rig.command("ce");
+    kept.until_the_end(&mut rig);
+    assert_eq!((rig.messages().len(), kept.complete), (0, 1));
+    kept.covers_the_face();
+}
+
+/// A box of 10 by 10 mm, and a round stud of 5 mm radius, both about X 100 and Y 50 with the upper face at Z 0.
+const BOX: &str = "[[probe.solid]]\nmin = [95, 45, -50]\nmax = [105, 55, 0]\n";
+const STUD: &str = "[[probe.ring]]\ncentre = [100, 50]\nradii = [0, 5]\nz = [-50, 0]\n";
+
+/// Three levels at Z -6, -5 and -4: the ball of 2 mm stands below the upper edge.
+const LEVELS: &str = "TOOL CALL 0 Z S0
+TCH PROBE 5.0 RANGE
+TCH PROBE 5.1 PGM NAME: FACE
+TCH PROBE 5.2 Z X+85 Y+35 Z-6
+TCH PROBE 5.3 X+115 Y+65 Z-4
+TCH PROBE 5.4 HEIGHT: +10
+TCH PROBE 7.0 CONTOUR LINES
+TCH PROBE 7.1 TIME: 0 X+100 Y+38
+TCH PROBE 7.2 ORDER Y+/X+
+TCH PROBE 7.3 TRAVEL: 0.5 L.SPAC: +1 P.P. INT: 1
+L X+90 R0 F6000";
+
+/// The bench with something else on its table.
+fn bench_on(solid: &str) -> Build {
+    bench(&plc()).plant(
+        "[[probe.solid]]\nmin = [80, 0, -50]\nmax = [120, 100, 0]\n",
+        solid,
+    )
+}
+
+/// Each level is orbited once, with points that lie no farther apart than the interval; the tip keeps the radius of the
+/// ball from the model, and the orbit ends within the window of its first point.
+fn orbits(points: &[[f64; 3]], distance: impl Fn(f64, f64) -> f64, orbit_mm: f64, closed_mm: f64) {
+    for level in [-6.0, -5.0, -4.0] {
+        let on: Vec<_> = points
+            .iter()
+            .filter(|point| (point[2] - level).abs() < 0.02)
+            .collect();
+        let (Some(first), Some(last)) = (on.first(), on.last()) else {
+            panic!("no point at Z {level}: {points:?}")
+        };
+        let apart = |a: &[f64; 3], b: &[f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        assert!(apart(first, last) <= closed_mm, "Z {level}: {first:?} {last:?}");
+        let mut way = 0.0;
+        for pair in on.windows(2) {
+            let step = apart(pair[0], pair[1]);
+            assert!(step <= 1.05, "{pair:?}");
+            way += step;
+        }
+        assert!((way - orbit_mm).abs() < 0.05 * orbit_mm, "Z {level}: {way} mm");
+        for point in on {
+            let from = distance(point[0], point[1]);
+            assert!((from - 2.0).abs() < 0.03, "{point:?}: {from}");
+        }
+    }
+    let stray = |point: &&[f64; 3]| {
+        [-6.0, -5.0, -4.0]
+            .iter()
+            .all(|level| (point[2] - level).abs() >= 0.02)
+    };
+    assert_eq!(points.iter().find(stray), None);
+}
+
+/// TCH PROBE 7 with a TS 120 around a box: four sides of 10 mm and four quarters of a circle of 2 mm. It ends at the starting
+/// point, at clearance height, and the program goes on.
+#[test]
+fn a_box_is_digitized_in_contour_lines() {
+    let mut rig = rig_of_bench(bench_on(BOX), LEVELS);
+    let mut kept = Kept::default();
     rig.start();
     kept.until_the_end(&mut rig);
-    assert_eq!((kept.begun, kept.complete), (2, 1));
-    kept.covers_the_face();
+    assert_eq!(rig.messages(), [""; 0]);
+    assert_eq!((kept.begun, kept.complete, kept.broken), (1, 1, 0));
+    let beside = |x: f64, y: f64| {
+        ((x - 100.0).abs() - 5.0)
+            .max(0.0)
+            .hypot(((y - 50.0).abs() - 5.0).max(0.0))
+    };
+    orbits(&kept.points, beside, 40.0 + 4.0 * std::f64::consts::PI, 0.25);
+    near(display(&rig, 'X'), 90.0);
+    near(display(&rig, 'Y'), 38.0);
+    near(display(&rig, 'Z'), 10.0);
+}
+
+/// TCH PROBE 7 with a TM 110 around a round stud: the tip orbits at 7 mm and ends within MP6390 of its first point.
+#[test]
+fn a_stud_is_digitized_in_contour_lines_with_a_measuring_probe() {
+    let mut rig = measuring_with(bench_on(STUD), LEVELS, "", &[]);
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until_the_end(&mut rig);
+    assert_eq!(rig.messages(), [""; 0]);
+    assert_eq!((kept.begun, kept.complete, kept.broken), (1, 1, 0));
+    let beside = |x: f64, y: f64| (x - 100.0).hypot(y - 50.0) - 5.0;
+    orbits(&kept.points, beside, 14.0 * std::f64::consts::PI, 0.3);
+    near(display(&rig, 'X'), 90.0);
+    near(display(&rig, 'Z'), 10.0);
+}
+
+/// An orbit of 53 mm takes longer than 4 s: TIME LIMIT EXCEEDED, and the cycle is broken off. A starting point outside the
+/// range is said before an axis moves: START POSITION INCORRECT.
+#[test]
+fn an_orbit_that_takes_too_long_or_begins_outside() {
+    let mut rig = rig_of_bench(bench_on(BOX), &LEVELS.replace("TIME: 0", "TIME: 4"));
+    let mut kept = Kept::default();
+    rig.start();
+    kept.until(&mut rig, 60.0, |rig, _| !rig.messages().is_empty());
+    assert_eq!(rig.messages(), ["TIME LIMIT EXCEEDED program 1.H block 10"]);
+    assert_eq!((kept.broken, kept.complete), (1, 0));
+    assert!(kept.points.len() > 5, "{:?}", kept.points);
+
+    let mut rig = rig_of_bench(bench_on(BOX), &LEVELS.replace("X+100 Y+38", "X+120 Y+38"));
+    let before = ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis));
+    rig.start();
+    rig.until(20.0, "the message", |rig| !rig.messages().is_empty());
+    assert_eq!(
+        rig.messages(),
+        ["START POSITION INCORRECT program 1.H block 10: the starting point lies outside of the range"]
+    );
+    assert_eq!(before, ['X', 'Y', 'Z'].map(|axis| nominal(&rig, axis)));
+    assert_eq!(rig.control.first().digitized().number, 0);
 }
 
 /// The clearance height lies in the box: the stylus is deflected before it may be.
@@ -285,7 +419,11 @@ fn emergency_stop_in_the_middle() {
 
 /// A TM 110 on the bench: it stays deflected by MP6310 and scans with MP6360 along the face.
 fn measuring(mounting: &str, parameters: &[&str]) -> Rig {
-    let build = bench(&plc()).plant(
+    measuring_with(bench(&plc()), FACE, mounting, parameters)
+}
+
+fn measuring_with(build: Build, program: &str, mounting: &str, parameters: &[&str]) -> Rig {
+    let build = build.plant(
         "radius = 2\n",
         &format!("radius = 2\nmeasuring = true\n{mounting}\n"),
     );
@@ -302,7 +440,7 @@ fn measuring(mounting: &str, parameters: &[&str]) -> Rig {
         .iter()
         .chain(parameters)
         .fold(build, |build, mp| build.mp(mp));
-    rig_of_bench(build, FACE)
+    rig_of_bench(build, program)
 }
 
 /// MP6200 = 1: MP6310 depth, MP6320 and MP6322 mounting, MP6350, MP6360 and MP6361 feeds: 32 mm of surface at 600 mm/min are scanned
@@ -404,4 +542,8 @@ fn no_cycle_of_a_scan_allocates() {
         assert!(cycles < 100_000, "{:?}", rig.messages());
     }
     kept.covers_the_face();
+}
+
+fn within(actual: f64, expected: f64, window: f64) {
+    assert!((actual - expected).abs() <= window, "{actual} is not {expected}");
 }

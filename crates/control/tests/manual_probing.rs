@@ -365,44 +365,96 @@ fn the_datum_is_set_at_the_centre_of_a_stud() {
     near(value(&rig, "Y.probed"), 60.0 - datum[Axis::Y]);
 }
 
+/// A probe whose ball stands 0.3 and -0.2 mm beside the spindle, near the middle of the ring of 25 mm; the spindle knows its
+/// angle.
+fn in_the_ring(parameters: &[&str]) -> Rig {
+    let mut build = bench_on(RING, [0.0; 2]).plant("radius = 2\n", "radius = 2\noffset = [0.3, -0.2]\n");
+    let spindle = [
+        "3510.0=1500",
+        "3210.0=6",
+        "3515.0=1875",
+        "3440.0=5",
+        "3520.1=60",
+        "3410.1=0.05",
+    ];
+    for parameter in spindle.iter().chain(parameters) {
+        build = build.mp(parameter);
+    }
+    build.plc = build.plc.replacen(
+        "       L     M2503\n",
+        &format!("{SPINDLE}       L     M2503\n"),
+        1,
+    );
+    let mut rig = on(build);
+    go(&mut rig, "L Z+130");
+    go(&mut rig, "L X+91");
+    go(&mut rig, "L Y+60.5");
+    go(&mut rig, "L Z+80");
+    // The spindle finds its reference mark.
+    rig.command("s 500");
+    rig.command("m 3");
+    rig.start();
+    rig.seconds(2.0);
+    rig.command("m 5");
+    rig.start();
+    rig.seconds(2.0);
+    rig.event("probe remove");
+    rig.event("probe insert");
+    rig
+}
+
+/// MP6321 = 0: a measuring probe is turned by itself when the ring is probed, probes it again with no other start, and is
+/// turned back; with 1 its radius alone is calibrated, and the spindle stays as it is [000:7654]. Without MP6160 it is not
+/// turned either.
+#[test]
+fn a_measuring_probe_finds_its_centre_offset_by_itself() {
+    let tm110 = [
+        "6200=1",
+        "6310=0.5",
+        "6330=2",
+        "6350=250",
+        "6360=250",
+        "6361=3000",
+    ];
+    let cases = [
+        (["6321=0", "6160=-1"], true),
+        (["6321=1", "6160=-1"], false),
+        (["6321=0", "6160=0"], false),
+    ];
+    for (parameters, turns) in cases {
+        let all: Vec<&str> = tm110.into_iter().chain(parameters).collect();
+        let mut rig = in_the_ring(&all);
+        let before = value(&rig, "S.angle");
+        rig.command("probe radius 25");
+        rig.start();
+        let turned = |rig: &Rig| (value(rig, "S.angle") - before + 180.0).rem_euclid(360.0) - 180.0;
+        let mut farthest = 0.0_f64;
+        for _ in 0..1000 {
+            rig.seconds(0.1);
+            farthest = farthest.max(turned(&rig).abs());
+        }
+        assert_eq!(rig.messages(), [""; 0]);
+        let calibration = rig.control.remember().probe.calibration.unwrap();
+        let (x, y, angle) = if turns {
+            (0.3, -0.2, 180.0)
+        } else {
+            (0.0, 0.0, 0.0)
+        };
+        within(calibration.radius_mm, 2.0, 0.01);
+        within(calibration.offset_mm[0], x, 0.01);
+        within(calibration.offset_mm[1], y, 0.01);
+        within(value(&rig, "probe.touches"), 4.0, 0.0);
+        within(farthest, angle, 0.5);
+        within(turned(&rig), 0.0, 0.5);
+    }
+}
+
 /// In the ring of 25 mm the ball is found to have 2 mm, and with the probe turned by 180° to stand 0.3 and -0.2 mm
 /// beside the spindle; afterwards it stands as before. Without MP6160 it is not turned.
 #[test]
 fn radius_and_centre_offset_are_calibrated() {
     for parameter in ["6160=-1", "6160=0"] {
-        let mut build = bench_on(RING, [0.0; 2])
-            .mp(parameter)
-            .plant("radius = 2\n", "radius = 2\noffset = [0.3, -0.2]\n");
-        for parameter in [
-            "3510.0=1500",
-            "3210.0=6",
-            "3515.0=1875",
-            "3440.0=5",
-            "3520.1=60",
-            "3410.1=0.05",
-        ] {
-            build = build.mp(parameter);
-        }
-        build.plc = build.plc.replacen(
-            "       L     M2503\n",
-            &format!("{SPINDLE}       L     M2503\n"),
-            1,
-        );
-        let mut rig = on(build);
-        go(&mut rig, "L Z+130");
-        go(&mut rig, "L X+91");
-        go(&mut rig, "L Y+60.5");
-        go(&mut rig, "L Z+80");
-        // The spindle finds its reference mark.
-        rig.command("s 500");
-        rig.command("m 3");
-        rig.start();
-        rig.seconds(2.0);
-        rig.command("m 5");
-        rig.start();
-        rig.seconds(2.0);
-        rig.event("probe remove");
-        rig.event("probe insert");
+        let mut rig = in_the_ring(&[parameter]);
         rig.command("probe radius 25");
         probe(&mut rig, 4.0);
         let calibration = |rig: &Rig| rig.control.remember().probe.calibration.unwrap();

@@ -344,3 +344,41 @@ fn m126_takes_the_shortest_way() {
     );
     assert_eq!(run.moves().last().expect("a movement").end[Axis::C], 10.0);
 }
+
+/// Radius compensation in five-axis blocks: RL and RR act in the plane of the tool axis while Z and the swivel axes go to
+/// their ends. The tool of 5 mm, to the right into the second line and left of the first one: on the left of the contour it
+/// goes around the outer corner (0,50) on an arc, during which nothing swivels; on the right of it the parallels meet at
+/// (5,45). A block stands for its whole way: both axes come to their angles where the line ends.
+#[test]
+fn radius_compensation_in_five_axis_blocks() {
+    let contour = |side: &str| {
+        format!(
+            "L X+0 Y-20 Z+0 A+0 B+0 R0 FMAX\nL X+0 Y+0 {side} F500\nL Y+50 Z-4 A+10 B+20\nL X+50 Z-6 A-5 B+30\n\
+             L X+80 R0"
+        )
+    };
+    let ends = |side: &str| -> Vec<[f64; 5]> {
+        let run = on(&[], &contour(side));
+        run.assert_completed();
+        let five = [Axis::X, Axis::Y, Axis::Z, Axis::A, Axis::B];
+        run.moves()
+            .skip(1)
+            .map(|element| five.map(|axis| element.end[axis]))
+            .collect()
+    };
+    let left = [
+        [-5.0, 0.0, 0.0, 0.0, 0.0],
+        [-5.0, 50.0, -4.0, 10.0, 20.0],
+        [0.0, 55.0, -4.0, 10.0, 20.0],
+        [50.0, 55.0, -6.0, -5.0, 30.0],
+        [80.0, 50.0, -6.0, -5.0, 30.0],
+    ];
+    let right = [
+        [5.0, 0.0, 0.0, 0.0, 0.0],
+        [5.0, 45.0, -4.0, 10.0, 20.0],
+        [50.0, 45.0, -6.0, -5.0, 30.0],
+        [80.0, 50.0, -6.0, -5.0, 30.0],
+    ];
+    close_points(&ends("RL"), &left, 1e-9);
+    close_points(&ends("RR"), &right, 1e-9);
+}

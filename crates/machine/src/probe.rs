@@ -79,6 +79,42 @@ struct Ring {
 }
 
 impl Ring {
+    /// How far a ball is pushed out of it, mm: off its nearest face, never down.
+    fn pushes(&self, [x, y, z]: [f64; 3], radius: f64) -> [f64; 3] {
+        let (dx, dy) = (x - self.centre[0], y - self.centre[1]);
+        let from_centre = dx.hypot(dy);
+        let outwards = if from_centre > 0.0 {
+            [dx / from_centre, dy / from_centre]
+        } else {
+            [1.0, 0.0]
+        };
+        let ([inner, outer], [low, high]) = (self.radii, self.z);
+        let beside = from_centre - from_centre.clamp(inner, outer);
+        let above = z - z.clamp(low, high);
+        let outside = beside.hypot(above);
+        let (along, up) = if outside > radius {
+            (0.0, 0.0)
+        } else if outside > 0.0 {
+            let part = (radius - outside) / outside;
+            (beside * part, above * part)
+        } else {
+            let (out, lift) = (outer - from_centre, high - z);
+            let inwards = if inner > 0.0 {
+                from_centre - inner
+            } else {
+                f64::INFINITY
+            };
+            if lift <= out.min(inwards) {
+                (0.0, lift + radius)
+            } else if out <= inwards {
+                (out + radius, 0.0)
+            } else {
+                (-inwards - radius, 0.0)
+            }
+        };
+        [outwards[0] * along, outwards[1] * along, up]
+    }
+
     fn distance_squared(&self, [x, y, z]: [f64; 3]) -> f64 {
         let from_centre = (x - self.centre[0]).hypot(y - self.centre[1]);
         let [inner, outer] = self.radii;
@@ -231,8 +267,9 @@ impl Probe {
         let centre = [end[0], end[1], end[2] + self.radius];
         let mut pushed = [0.0; 3];
         let boxes = self.solids.iter().map(|solid| solid.pushes(centre, self.radius));
+        let rings = self.rings.iter().map(|ring| ring.pushes(centre, self.radius));
         let workpiece = self.workpiece.iter().map(|solid| solid.deflection(end));
-        for other in boxes.chain(workpiece) {
+        for other in boxes.chain(rings).chain(workpiece) {
             let length = |of: &[f64; 3]| of.iter().map(|part| part * part).sum::<f64>();
             if length(&other) > length(&pushed) {
                 pushed = other;

@@ -98,6 +98,11 @@ impl Scan {
         self.points
     }
 
+    /// Lines that were scanned to their end, or levels that were orbited.
+    pub fn lines_ended(&self) -> u32 {
+        self.course.ended()
+    }
+
     /// Breaks it off with a message; the axes come to a standstill.
     pub fn break_off(&mut self, fault: ScanFault) {
         self.over.get_or_insert(Some(fault));

@@ -24,6 +24,9 @@ Examples:
       The second run repeats the first one, bit by bit, when both have --fresh and the same --mp.
   bahn run --machine mill --script jog.txt
       Without a program: power-up, reference run, then the script.
+  bahn run SCAN.H --machine mill --fresh --script probe.txt --solid model.stl --digitized .
+      TCH PROBE 5 to 7 scan a mesh with the axes and write their program here; without --solid, the part as machined.
+      `probe insert` in the script puts the touch probe into the spindle.
   bahn run --machine machines/twin --record twin.csv --signals X.actual,2:X.actual
       Two channels, each with the program that machine.toml names; LEFT.H RIGHT.H before --machine would name them.
 

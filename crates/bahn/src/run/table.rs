@@ -1,8 +1,8 @@
-//! What lies on the table of the machine while the touch probe digitizes.
+//! What lies on the table of the machine while the touch probe probes or digitizes.
 
 use std::sync::Arc;
 
-use bahn_control::Digitized;
+use bahn_control::{Mode, RunState};
 use bahn_host::Host;
 use bahn_path::Position;
 use bahn_workpiece::Part;
@@ -14,8 +14,10 @@ use crate::solid;
 #[derive(Default)]
 pub(super) struct Table {
     given: bool,
-    /// The news of the digitizing that were looked at.
-    seen: u64,
+    /// The stylus was on its way to a surface.
+    probed: bool,
+    /// Where the datum of the program was that machined the part: a datum that is set later moves no part.
+    datum: Option<Position>,
 }
 
 impl Table {
@@ -26,22 +28,28 @@ impl Table {
             let solid = solid::on_table(part, radius, datum);
             host.plant_mut().put_on_table(Some(solid));
         }
-        Table { given, seen: 0 }
+        Table {
+            given,
+            ..Table::default()
+        }
     }
 
-    /// When a scan begins the part lies on the table as it is then, at the datum of the program.
+    /// When a probing or a scan begins the part lies on the table as it is then, at the datum of the program.
     pub fn cycle(&mut self, host: &mut Host, cutting: Option<&mut Cutting>) {
         let channel = host.control().first();
-        let news = channel.digitized();
-        if std::mem::replace(&mut self.seen, news.number) == news.number || self.given {
-            return;
+        if channel.run_state() == RunState::Running && channel.mode() != Mode::Mdi {
+            self.datum = Some(channel.datum());
         }
-        let datum = channel.datum();
-        let (Some(Digitized::Begins(_)), Some(radius)) = (news.what, host.plant().probe_radius_mm()) else {
+        let probes = channel.probes();
+        let begins = !std::mem::replace(&mut self.probed, probes) && probes;
+        let (true, false, Some(datum)) = (begins, self.given, &self.datum) else {
+            return;
+        };
+        let Some(radius) = host.plant().probe_radius_mm() else {
             return;
         };
         let part = cutting.and_then(Cutting::part).cloned();
-        let solid = part.map(|part| solid::on_table(Arc::new(part), radius, &datum));
+        let solid = part.map(|part| solid::on_table(Arc::new(part), radius, datum));
         host.plant_mut().put_on_table(solid);
     }
 }

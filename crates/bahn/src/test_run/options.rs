@@ -24,6 +24,9 @@ Examples:
       All programs of a folder and the folders in it on all cores: a table, and a page with the pictures.
   bahn test parts/ --report shelf.csv --comma --density 7.85
       For a German spreadsheet, with the weights of the steel.
+  bahn test MODEL.H --tools tools.tsv --digitized . --mesh model.stl
+  bahn test AGAIN.H --tools tools.tsv --compare model.stl --color deviation --image off.png
+      Digitize the part; then compare what the digitized program makes with it.
   find . -name '*.H' | bahn test - --against machines/mill
       What is different from a run with parameters and tools of a machine.
 

@@ -53,6 +53,8 @@ pub(super) struct Course {
     first: ScanPoint,
     since: (u32, f64),
     lubricated_s: f64,
+    /// Lines scanned to their end, or levels orbited.
+    ended: u32,
 }
 
 fn unit(axis: usize, sign: f64) -> ScanPoint {
@@ -85,7 +87,13 @@ impl Course {
             first: [0.0; 3],
             since: (0, 0.0),
             lubricated_s: 0.0,
+            ended: 0,
         }
+    }
+
+    /// Lines scanned to their end, or levels orbited.
+    pub fn ended(&self) -> u32 {
+        self.ended
     }
 
     pub fn cycle(&mut self, follower: &mut Follower, job: &ScanJob, felt: &Felt) -> Step {
@@ -255,6 +263,7 @@ impl Course {
                 let (axis, sign, end) = self.line;
                 if (felt.at[axis] - end) * sign >= -THERE_MM {
                     self.stage = Stage::Rise;
+                    self.ended += u32::from(!self.shifts);
                     // A stylus that is deflected touches beside the end of the line.
                     let tip = std::array::from_fn(|k| felt.at[k] + felt.deflection[k]);
                     let point = (job.rules.measuring.is_some() && felt.deflected).then_some(tip);
@@ -323,6 +332,7 @@ impl Course {
     /// The level is orbited: on to the next one, or the range is done.
     fn next_level(&mut self, job: &ScanJob) {
         let up = job.tool_place();
+        self.ended += 1;
         self.level += job.spacing_mm;
         if self.level > job.max[up] + THERE_MM || self.level < job.min[up] - THERE_MM {
             self.stage = Stage::Home;

@@ -80,6 +80,9 @@ pub struct ProbeSettings {
     pub on_standby: bool,
     /// How the spindle turns the probe by 180°: MP6160.
     pub turn: ProbeTurn,
+    /// A measuring probe (MP6200 = 1) is turned by itself when its radius is calibrated, so that its centre offset is found,
+    /// too: MP6321 = 0 [000:7654].
+    pub turns_itself: bool,
 }
 
 /// How the probe is turned by 180° when its centre offset is calibrated: MP6160 [000:7654] [000:10311].
@@ -282,6 +285,7 @@ impl ParameterList {
                 Some(code) if code >= 1.0 => ProbeTurn::ByPlc(code as u8),
                 _ => ProbeTurn::Off,
             },
+            turns_itself: measuring.is_some() && self.get_new(6321, 0) != Some(1.0),
         }
     }
 
