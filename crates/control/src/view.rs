@@ -16,6 +16,7 @@ use crate::setup::Remembered;
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::upkeep::by_index;
+use crate::reference;
 use crate::watch::AxisWatch;
 
 /// A channel of a control as of now.
@@ -107,6 +108,11 @@ impl<'a> ChannelView<'a> {
             .axes
             .owned(self.channel.number())
             .map(|unit| unit.axis.letter())
+    }
+
+    /// Axes whose reference marks are evaluated have not passed them: until then no program starts.
+    pub fn lacks_reference(&self) -> bool {
+        reference::is_due(self.machine.axes.owned(self.channel.number()))
     }
 
     /// The axes that it has now, as the kernel moves them.
