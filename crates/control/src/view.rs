@@ -10,13 +10,13 @@ use crate::command::Mode;
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
 use crate::progress::RunState;
+use crate::reference;
 use crate::scanning::DigitizedNews;
 use crate::seam::Seam;
 use crate::setup::Remembered;
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::upkeep::by_index;
-use crate::reference;
 use crate::watch::AxisWatch;
 
 /// A channel of a control as of now.

@@ -349,7 +349,11 @@ fn no_program_starts_before_the_marks_are_passed() {
     rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
     assert_eq!(rig.messages(), [""; 0]);
 
-    let mut rig = asked(bench("").mps("1340.0=1 1340.1=2 1340.2=0").program("1.H", program));
+    let mut rig = asked(
+        bench("")
+            .mps("1340.0=1 1340.1=2 1340.2=0")
+            .program("1.H", program),
+    );
     rig.start();
     done(&mut rig);
     rig.command("mode full");

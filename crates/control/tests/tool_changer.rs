@@ -214,7 +214,8 @@ fn a_change_that_power_off_breaks_off() {
         begun.start();
         for step in (10..=130).step_by(10) {
             begun.until(60.0, &format!("step {step}"), |rig| rig.number("W112") == step);
-            for depth_s in depths {
+            // Whether the control has taken an acknowledgement in the cycle in which it is given the PLC cannot know.
+            for depth_s in depths.iter().filter(|depth_s| step < 130 || **depth_s > 0.0) {
                 let mut rig = begun.clone();
                 rig.seconds(*depth_s);
                 let at = format!("MP7480.0 = {mp}, step {step} and {depth_s} s");
@@ -247,13 +248,19 @@ fn agree(rig: &Rig, at: &str) {
     let remembered = rig.control.remember();
     let mut pockets = [1, 2, 0, 4, 0, 6];
     for moved in &remembered.pockets {
-        pockets.iter_mut().filter(|tool| **tool == moved.tool).for_each(|tool| *tool = 0);
+        pockets
+            .iter_mut()
+            .filter(|tool| **tool == moved.tool)
+            .for_each(|tool| *tool = 0);
     }
     for moved in &remembered.pockets {
         if let Some(pocket) = moved.pocket {
             pockets[usize::from(pocket) - 1] = moved.tool;
         }
     }
-    pockets.iter_mut().filter(|tool| **tool == remembered.tool).for_each(|tool| *tool = 0);
+    pockets
+        .iter_mut()
+        .filter(|tool| **tool == remembered.tool)
+        .for_each(|tool| *tool = 0);
     assert_eq!(places(rig), (pockets, remembered.tool), "{at}");
 }

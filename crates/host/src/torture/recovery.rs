@@ -103,14 +103,20 @@ impl Course<'_> {
     /// message is in the way.
     fn pass_marks(&mut self) -> Result<bool, Violation> {
         for number in 0..self.control().channels() {
-            if !self.channel(number).is_some_and(|channel| channel.lacks_reference()) {
+            if !self
+                .channel(number)
+                .is_some_and(|channel| channel.lacks_reference())
+            {
                 continue;
             }
             self.give(Kind::Use, &format!("{}mode reference", prefix(number)))?;
             self.wait(KEY_US)?;
             self.press_start(number)?;
             let until_us = self.now() + REFERENCE_US;
-            while self.channel(number).is_some_and(|channel| channel.mode() == Mode::Reference) {
+            while self
+                .channel(number)
+                .is_some_and(|channel| channel.mode() == Mode::Reference)
+            {
                 let stopped = is_fatal(self.control()) || !self.bench.host.plant().limit_switches_clear();
                 if stopped || !self.control().shown().is_empty() {
                     return Ok(!is_fatal(self.control()));
