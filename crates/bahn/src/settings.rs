@@ -5,7 +5,7 @@ use std::path::Path;
 
 use bahn_control::{Tool, datum_shifts};
 use bahn_host::tool_table;
-use bahn_interpreter::{MachineTexts, Q_VALUE_MAX, Rules};
+use bahn_interpreter::{AbsentAxes, MachineTexts, Q_VALUE_MAX, Rules};
 use bahn_motion::{AuxiliaryTimes, Limits};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, ParameterList, conformance};
@@ -26,6 +26,8 @@ pub(crate) struct Equipment {
     pub functions: OwnFunctions,
     /// The datum table of the machine with M status.
     pub datum_table: Option<MemoryTable>,
+    /// The other channels of the machine, whose axes a program may get; `None` without a machine.
+    pub others: Option<Vec<ParameterList>>,
     /// Where the workpiece lies unless the options say it.
     pub datum: Position,
 }
@@ -41,6 +43,7 @@ impl Equipment {
                 texts: MachineTexts::default(),
                 functions: OwnFunctions::default(),
                 datum_table: None,
+                others: None,
                 datum: Position::UNKNOWN,
             },
         };
@@ -72,6 +75,13 @@ impl Equipment {
             datum: machine.datum(),
             functions: machine.functions.clone(),
             datum_table: machine.datum_table().cloned(),
+            others: Some(
+                machine
+                    .channels
+                    .iter()
+                    .map(|channel| channel.parameters.clone())
+                    .collect(),
+            ),
             list: machine.parameters,
             tools: machine.tools,
         })
@@ -171,6 +181,12 @@ pub(crate) fn interpreter(
         point_angles_deg: BTreeMap::new(),
         status: bahn_interpreter::Status::default(),
         tool_change: position("--tool-change", &run.tool_change, model)?,
+        absent: equipment
+            .others
+            .as_ref()
+            .map_or_else(AbsentAxes::default, |others| {
+                AbsentAxes::of(std::iter::once(list).chain(others))
+            }),
         machine: false,
         skip_blocks: run.skip_blocks,
         inch_feed: run.inch_feed.map(Into::into),

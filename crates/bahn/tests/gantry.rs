@@ -88,19 +88,23 @@ fn the_report_has_the_unit_of_each_axis() {
     assert_eq!(units, ["mm", "mm", "°"], "{}", run.out());
 }
 
-/// A groove of 3 mm depth along 100 mm of the blank: an axis of the PLC, which has the letter of a parallel axis, leads the tool
-/// nowhere else.
+/// A groove of 3 mm depth along 100 mm of the blank: neither the slave U nor an axis of the PLC, both of which have the letter of
+/// a parallel axis, leads the tool elsewhere, and neither has a place in the program at its end.
 #[test]
-fn an_axis_of_the_plc_is_no_parallel_axis() {
-    let folder = Folder::with_program(
-        "BLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+70 Z+0\nTOOL CALL 2 Z S3000\nL Z+80 R0 FMAX\n\
-         L X-20 Y+35 FMAX M3\nL Z-3 FMAX\nL X+120 F2000\nL Z+80 FMAX M30",
-    );
-    let report = run_of(&folder, "main.H", "dig425");
-    let removed = number(&report, "/removed_mm3");
-    assert!((removed / (8.0 * 3.0 * 100.0) - 1.0).abs() < 0.02, "{removed}");
-    let places = report["final_position"].as_object().unwrap();
-    assert!(!places.contains_key("W"), "{places:?}");
+fn slave_and_plc_axis_are_no_parallel_axes() {
+    for (machine, width) in [("gantry", 20.0), ("dig425", 8.0)] {
+        let folder = Folder::with_program(
+            "BLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+70 Z+0\nTOOL CALL 2 Z S3000\nL Z+80 R0 FMAX\n\
+             L X-20 Y+35 FMAX M3\nL Z-3 FMAX\nL X+120 F2000\nL Z+80 FMAX M30",
+        );
+        let report = run_of(&folder, "main.H", machine);
+        let removed = number(&report, "/removed_mm3");
+        let expected = width * 3.0 * 100.0;
+        assert!((removed / expected - 1.0).abs() < 0.02, "{machine}: {removed}");
+        let places = report["final_position"].as_object().unwrap();
+        let foreign = places.contains_key("U") || places.contains_key("W");
+        assert!(!foreign, "{machine}: {places:?}");
+    }
 }
 
 /// M61 and M62 bring the pallets to the front: the block behind waits until the shuttle, an axis of the PLC, has arrived

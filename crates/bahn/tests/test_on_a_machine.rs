@@ -86,3 +86,37 @@ fn parameters_of_the_command_line_say_what_they_do_not() {
         assert!(!said.contains("MP1060"), "{command}: {said}");
     }
 }
+
+/// A program that moves an axis which the machine lacks, a slave or an axis of the PLC is WRONG AXIS PROGRAMMED in the test run and
+/// for `machine check`, as on the running control; so is one axis too many in a block that also moves others. Without a machine
+/// there is nothing that lacks.
+#[test]
+fn axes_that_the_machine_has_not_for_programs() {
+    for (name, block, reason) in [
+        ("mill", "L X+10 V+5 R0 F500", "there is no axis V here"),
+        ("gantry", "L U+5 R0 F500", "U follows its master (MP850)"),
+        ("dig425", "L W+5 R0 F500", "the PLC alone moves W (MP60)"),
+    ] {
+        let folder = Folder::with_program(&format!("L X+0 R0 F500\n{block}"));
+        let made = folder.bahn(&format!("machine new m --from {name}"));
+        assert_eq!(made.code(), 0, "{}", made.err());
+        let run = folder.bahn("test main.H --machine m --no-graphics --format json");
+        assert_eq!(run.code(), 1, "{name}: {}", run.err());
+        let error = &run.json()["error"];
+        assert_eq!(error["message"], "WRONG AXIS PROGRAMMED", "{name}");
+        assert_eq!(
+            (error["block"].as_u64(), error["detail"].as_str()),
+            (Some(2), Some(reason))
+        );
+        let alone = folder.bahn("test main.H --model tnc415b --no-graphics");
+        assert_eq!(alone.code(), 0, "{name}: {}", alone.err());
+        folder.write("m/programs/BAD.H", &folder.read("main.H"));
+        let check = folder.bahn("machine check m");
+        assert_eq!(check.code(), 1, "{name}: {}", check.err());
+        let said = check.out().to_owned() + check.err();
+        assert!(
+            said.contains("WRONG AXIS PROGRAMMED") && said.contains(reason),
+            "{name}: {said}"
+        );
+    }
+}

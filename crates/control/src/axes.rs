@@ -227,9 +227,9 @@ impl OwnAxes<'_> {
         machine_position(self.iter())
     }
 
-    /// Where the axes stand that programs move, and their slaves, which the way back to a contour looks for.
+    /// Where the axes stand that programs move.
     pub fn programmed_position(&self) -> Position {
-        machine_position(self.iter().filter(|unit| !unit.is_plc_axis()))
+        machine_position(self.iter().filter(|unit| unit.is_free()))
     }
 
     /// The axes that programs move: neither slaves [000:4519] nor those of the PLC [000:4094-4116].

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use bahn_interpreter::{Cause, Interpreter, Message, ProgramError, Settings};
+use bahn_interpreter::{AbsentAxes, Cause, Interpreter, Message, ProgramError, Settings};
 use bahn_parameters::MessageId;
 use bahn_path::{
     Axis, AxisSet, Barrier, BlockRef, Curve, ElementSource, Function, LiveData, PathElement, PerAxis,
@@ -56,16 +56,18 @@ pub(crate) fn absent(
     run: Option<&Interpreter>,
 ) -> ProgramError {
     let program = run.and_then(|run| run.program(block.program));
-    let letter = axis.letter();
+    let only = AxisSet::EMPTY.with(axis);
+    let mut reasons = AbsentAxes::default();
+    match unit {
+        None => reasons.missing = only,
+        Some(unit) if unit.is_plc_axis() => reasons.plc = only,
+        Some(_) => reasons.slaves = only,
+    }
     ProgramError {
         message: Message::Control(MessageId::WrongAxisProgrammed),
         program: program.map_or_else(String::new, |program| program.name().to_owned()),
         block,
-        detail: match unit {
-            None => format!("there is no axis {letter} here"),
-            Some(unit) if unit.is_plc_axis() => format!("the PLC alone moves {letter} (MP60)"),
-            Some(_) => format!("{letter} follows its master (MP850)"),
-        },
+        detail: reasons.reason(only).unwrap_or_default(),
         cause: Cause::default(),
     }
 }

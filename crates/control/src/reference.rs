@@ -123,10 +123,17 @@ fn key_of(place: usize, axes: &OwnAxes, now: &Now) -> bool {
         .is_some_and(Option::is_some)
 }
 
+/// An axis whose mark is evaluated (MP1340) has not passed it.
+pub(crate) fn is_due<'a>(mut axes: impl Iterator<Item = &'a AxisUnit>) -> bool {
+    axes.any(|unit| waits(unit) && unit.parameters.reference.place.is_some())
+}
+
 /// An axis has not passed its reference mark: any one, or one of those that MP1340 names.
 fn is_missing(axes: &OwnAxes, named: bool) -> bool {
-    axes.iter()
-        .any(|unit| waits(unit) && (!named || unit.parameters.reference.place.is_some()))
+    match named {
+        true => is_due(axes.iter()),
+        false => axes.iter().any(waits),
+    }
 }
 
 /// The cam of an axis is closed.

@@ -18,6 +18,7 @@ use crate::probing::{Probe, Probed};
 use crate::programs::Selection;
 use crate::progress::{Progress, RunState};
 use crate::q_transfer::QTransfer;
+use crate::reference;
 use crate::replacement::{Replacement, Wear};
 use crate::restore::{Restoration, ScanEnd};
 use crate::site::Site;
@@ -125,7 +126,7 @@ impl ProgramRun {
         if self.restoration.is_on() || site.positioning.is_on() {
             return;
         }
-        if self.tapping.has_lost_spindle() {
+        if self.tapping.has_lost_spindle() || self.lacks_reference(site) {
             self.show(Message::Plain(MessageId::KeyNonFunctional), site);
             return;
         }
@@ -151,6 +152,14 @@ impl ProgramRun {
                 }
             }
         }
+    }
+
+    /// No program is begun, nor goes on, before the axes that MP1340 names have passed their reference marks: until then no
+    /// software limit holds and no datum is known [000:4563-4575] [001:953]. What MDI positions may do without, but for M91
+    /// and M92. What the control says then no manual prints (inferred).
+    fn lacks_reference(&self, site: &Site) -> bool {
+        let of_a_program = site.now.mode != Mode::Mdi && !self.progress.is_running();
+        of_a_program && reference::is_due(site.axes.iter())
     }
 
     /// NC stop, or anything that stops like it.
@@ -352,7 +361,7 @@ impl ProgramRun {
         site: &mut Site,
         basis: &Basis,
     ) -> bool {
-        if self.is_active() || !rules.block_scan {
+        if self.is_active() || !rules.block_scan || self.lacks_reference(site) {
             return false;
         }
         let mdi = site.now.mode == Mode::Mdi;

@@ -31,8 +31,8 @@ pub(crate) struct Site<'a> {
 }
 
 impl Site<'_> {
-    /// The path position at which the axes stand: no program knows an axis of the PLC, which would count as a
-    /// parallel axis.
+    /// The path position at which the axes stand: no program knows the slave of a gantry or an axis of the PLC, which would
+    /// count as parallel axes.
     pub fn here(&self) -> Position {
         self.chain.to_path(&self.axes.programmed_position())
     }

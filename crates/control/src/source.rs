@@ -207,7 +207,7 @@ impl Source {
         let (Some(resume), Some(feeder)) = (self.resume_from.take(), &mut self.feeder) else {
             return false;
         };
-        let (machine, limits) = (site.axes.machine_position(), site.axes.traverse_box());
+        let (machine, limits) = (site.axes.programmed_position(), site.axes.traverse_box());
         match resume {
             Resume::Block(sequence) => feeder.return_to(sequence, &machine, site.chain, limits),
             Resume::Fault => feeder.retry(&machine, site.chain, limits),

@@ -10,6 +10,7 @@ use crate::command::Mode;
 use crate::handshake::Waiting;
 use crate::machine::MachineSide;
 use crate::progress::RunState;
+use crate::reference;
 use crate::scanning::DigitizedNews;
 use crate::seam::Seam;
 use crate::setup::Remembered;
@@ -112,6 +113,11 @@ impl<'a> ChannelView<'a> {
             .axes
             .owned(self.channel.number())
             .map(|unit| unit.axis.letter())
+    }
+
+    /// Axes whose reference marks are evaluated have not passed them: until then no program starts.
+    pub fn lacks_reference(&self) -> bool {
+        reference::is_due(self.machine.axes.owned(self.channel.number()))
     }
 
     /// The axes that it has now, as the kernel moves them.

@@ -318,6 +318,51 @@ fn an_axis_without_place_in_mp1340() {
     assert!(rig.axis('Y').referenced && !rig.axis('Z').referenced);
 }
 
+/// Another mode is chosen before the marks are passed [000:4581]: no program starts, in full sequence, in single block or
+/// behind a block scan; what MP1340 does not name is not waited for.
+#[test]
+fn no_program_starts_before_the_marks_are_passed() {
+    let program = "L X+60 Y+60 R0 F3000\nL X+70";
+    let mut rig = asked(bench("").program("1.H", program));
+    let before = ['X', 'Y', 'Z'].map(|axis| rig.table(axis));
+    for mode in ["full", "single"] {
+        rig.command(&format!("mode {mode}"));
+        rig.command("select 1.H");
+        rig.start();
+        rig.seconds(1.0);
+        assert_eq!(rig.messages(), ["KEY NON-FUNCTIONAL"], "{mode}");
+        assert_eq!(rig.control.run_state(), bahn_control::RunState::Idle);
+        rig.command("ce");
+    }
+    assert!(!rig.control.command("restore-at 2".parse().unwrap()));
+    assert_eq!(rig.messages(), ["KEY NON-FUNCTIONAL"]);
+    rig.command("ce");
+    for (axis, place) in ['X', 'Y', 'Z'].into_iter().zip(before) {
+        close(rig.table(axis), place, 0.01);
+    }
+    rig.command("mode reference");
+    rig.start();
+    done(&mut rig);
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
+    assert_eq!(rig.messages(), [""; 0]);
+
+    let mut rig = asked(
+        bench("")
+            .mps("1340.0=1 1340.1=2 1340.2=0")
+            .program("1.H", program),
+    );
+    rig.start();
+    done(&mut rig);
+    rig.command("mode full");
+    rig.command("select 1.H");
+    rig.start();
+    rig.until(20.0, "the end", |rig| rig.control.snapshot().ended);
+    assert!(!rig.axis('Z').referenced);
+}
+
 /// Leaving the mode early stops the axis on its ramp; PASS OVER REFERENCE goes on later [000:4581].
 #[test]
 fn leaving_the_run_early() {

@@ -202,28 +202,65 @@ fn an_arm_that_is_stuck() {
     assert_eq!(places(&rig), ([0, 1, 0, 4, 0, 6], 2));
 }
 
-/// The supply goes while the arm is on its way with both tools. The change did not happen for the control, and nothing
-/// moves by itself at power-on; when the tool is called again the PLC finishes what its arm has begun.
+/// The supply goes in each step of the change (W112), and at any place in it. For the control the change did not happen until it
+/// has taken the acknowledgement: behind power-on shuttle and arm bring the tools back to where it has them, and then another
+/// tool is called: it is in the spindle, and all others are where the control has them, in any pocket or fixed ones.
 #[test]
-fn a_change_that_power_off_interrupts() {
-    let mut rig = mill(3, MAGAZINE);
-    rig.command("mode full");
-    rig.command("select 12.H");
-    rig.start();
-    rig.until(60.0, "the arm holds both tools", |rig| {
-        rig.machine
-            .magazine()
-            .is_some_and(|state| !state.arm.contains(&0))
-    });
-    assert_eq!(rig.control.tool(), 1);
-    rig.command("power off");
-    rig.seconds(1.0);
-    rig.command("power on");
-    rig.power_on();
-    assert_eq!(rig.control.tool(), 1);
-    rig.run("12.H", 120.0);
-    rig.seconds(0.2);
-    assert_eq!(rig.messages(), [""; 0]);
-    assert_eq!(rig.control.tool(), 2);
-    assert_eq!(places(&rig), ([0, 1, 0, 4, 0, 6], 2));
+fn a_change_that_power_off_breaks_off() {
+    for (mp, kind, depths) in [(3, MAGAZINE, [0.0, 0.15].as_slice()), (5, FIXED, &[0.1])] {
+        let mut begun = mill(mp, kind);
+        begun.run("11.H", 60.0);
+        begun.command("select 12.H");
+        begun.start();
+        for step in (10..=130).step_by(10) {
+            begun.until(60.0, &format!("step {step}"), |rig| rig.number("W112") == step);
+            // Whether the control has taken an acknowledgement in the cycle in which it is given the PLC cannot know.
+            for depth_s in depths.iter().filter(|depth_s| step < 130 || **depth_s > 0.0) {
+                let mut rig = begun.clone();
+                rig.seconds(*depth_s);
+                let at = format!("MP7480.0 = {mp}, step {step} and {depth_s} s");
+                let remembered = rig.control.tool();
+                rig.command("power off");
+                rig.seconds(0.2);
+                rig.command("power on");
+                rig.command("ce");
+                // Arm and shuttle wait for the control voltage; no axis moves before they are back.
+                rig.until(60.0, &format!("{at}: the way back"), |rig| {
+                    rig.number("W112") == 0 && rig.control.mode() == bahn_control::Mode::Reference
+                });
+                rig.seconds(0.1);
+                assert_eq!(rig.control.tool(), remembered, "{at}");
+                agree(&rig, &at);
+                rig.power_on();
+                // Of the normal tools the other one, then a special one: two codes.
+                rig.run(if remembered == 1 { "26.H" } else { "16.H" }, 120.0);
+                rig.seconds(0.2);
+                assert_eq!(rig.messages(), [""; 0], "{at}");
+                assert_eq!(rig.control.tool(), 6, "{at}");
+                agree(&rig, &at);
+            }
+        }
+    }
+}
+
+/// Every tool is where the control has it: one in the spindle, the others in their pockets of the table as it is now.
+fn agree(rig: &Rig, at: &str) {
+    let remembered = rig.control.remember();
+    let mut pockets = [1, 2, 0, 4, 0, 6];
+    for moved in &remembered.pockets {
+        pockets
+            .iter_mut()
+            .filter(|tool| **tool == moved.tool)
+            .for_each(|tool| *tool = 0);
+    }
+    for moved in &remembered.pockets {
+        if let Some(pocket) = moved.pocket {
+            pockets[usize::from(pocket) - 1] = moved.tool;
+        }
+    }
+    pockets
+        .iter_mut()
+        .filter(|tool| **tool == remembered.tool)
+        .for_each(|tool| *tool = 0);
+    assert_eq!(places(rig), (pockets, remembered.tool), "{at}");
 }

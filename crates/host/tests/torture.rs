@@ -153,6 +153,18 @@ fn what_was_found_stays_mended() {
     }
 }
 
+/// Another mode is chosen before the reference run: no program starts unreferenced, whose Z ran onto its limit switch or to the
+/// end of its travel.
+#[test]
+fn no_program_runs_without_its_reference_marks() {
+    let campaign = campaign("dig425");
+    let mut worker = campaign.worker().unwrap();
+    for seed in [100_389, 100_396, 100_858] {
+        let plan = worker.plan(seed);
+        assert_eq!(worker.run(&plan).violation, None, "seed {seed}: {plan:#?}");
+    }
+}
+
 /// A seed is the same run every time, and whatever came before it.
 #[test]
 fn a_seed_says_everything() {

@@ -32,6 +32,7 @@
 //! `execute` sees the whole.
 //! Nothing here knows of time or of the machine's axes.
 
+mod absent;
 mod arc;
 mod availability;
 mod blank;
@@ -82,6 +83,7 @@ use bahn_parameters::MessageId;
 use bahn_path::{Axis, Barrier, BlockRef, ElementSource, LiveData, Position, ScanJob, Step};
 use bahn_program::{Block, MotionKind, Operation, Program};
 
+pub use absent::AbsentAxes;
 pub use checkpoints::Checkpoint;
 pub use code::{Library, NoLibrary};
 pub use error::{Cause, Message, ProgramError, Warning, WarningKind};

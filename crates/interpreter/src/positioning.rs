@@ -92,7 +92,7 @@ fn short_line(c: &mut Context<'_>, motion: &Motion) -> Result<Flow, Fault> {
         c.modal.nominal[axis] = value;
         c.modal.actual[axis] = value;
     }
-    check_count(c, axes)?;
+    check_axes(c, axes)?;
     check_range(c.settings, &c.modal.actual, axes)?;
     if c.modal.contour_plane != c.modal.plane || !axes.intersection(PARALLEL_AXES).is_empty() {
         c.modal.take_contour_axes(axes);
@@ -149,7 +149,7 @@ fn movement(
     let Some(feed) = feed else {
         return Err(MessageId::FeedRateIsMissing.into());
     };
-    check_count(c, programmed.axes)?;
+    check_axes(c, programmed.axes)?;
     check_range(c.settings, &programmed.to, programmed.axes)?;
     c.modal.last_move = Some(LastMove {
         curve: programmed.curve,
@@ -242,7 +242,7 @@ fn referenced_line(
     let Some(feed) = feed else {
         return Err(MessageId::FeedRateIsMissing.into());
     };
-    check_count(c, axes)?;
+    check_axes(c, axes)?;
     c.modal.last_move = None;
     let placed = nominal.known().intersection(axes);
     check_range(c.settings, &nominal, placed)?;
@@ -464,10 +464,13 @@ fn take_feed(
     }))
 }
 
-/// Refuses more axes than the control moves together [001:167-173] [003:7761-7763] [000:139]. No manual
-/// prints the message *(inferred)*.
+/// Refuses axes that the machine does not have for programs, and more than the control moves together [001:167-173]
+/// [003:7761-7763] [000:139]. No manual prints the message *(inferred)*.
 #[inline]
-fn check_count(c: &mut Context<'_>, axes: AxisSet) -> Result<(), Fault> {
+fn check_axes(c: &mut Context<'_>, axes: AxisSet) -> Result<(), Fault> {
+    if let Some(reason) = c.settings.absent.reason(axes) {
+        return Err(Fault::new(MessageId::WrongAxisProgrammed, reason));
+    }
     let max = usize::from(c.settings.model.limits().line_axes_max);
     if axes.len() <= max {
         return Ok(());

@@ -12,6 +12,7 @@ use bahn_path::{
     Function, MeasuringRules, PerAxis, Plane, Position, ScanRules, Swivels, TechnologyFunction, ToolShape,
 };
 
+use crate::absent::AbsentAxes;
 use crate::status::Status;
 
 /// Everything a run depends on beside the program.
@@ -59,6 +60,8 @@ pub struct Settings {
     /// Pass over words and blocks that nothing here knows, and functions without which the control would move
     /// differently, each with a warning, instead of refusing them.
     pub skip_unknown: bool,
+    /// Axes that the machine does not have for programs. A control that runs one on a machine knows that itself.
+    pub absent: AbsentAxes,
     /// A control runs the program on a machine: it waits for the PLC, which may write what the next block
     /// reads, and probing movements are executed outside.
     pub machine: bool,
@@ -88,6 +91,7 @@ impl Default for Settings {
             inch_feed: None,
             strict: false,
             skip_unknown: false,
+            absent: AbsentAxes::default(),
             machine: false,
             max_blocks_without_motion: 10_000_000,
         }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use bahn_control::datum_shifts;
 use bahn_host::{LoadedMachine, tool_table};
-use bahn_interpreter::{Rules, Settings};
+use bahn_interpreter::{AbsentAxes, Rules, Settings};
 use bahn_parameters::ParameterList;
 
 use super::load;
@@ -114,8 +114,7 @@ fn check_programs(
 ) -> Result<Vec<CheckReport>, UsageError> {
     let mut reports = Vec::new();
     let mut folders = Vec::new();
-    let others = machine.channels.iter().map(|channel| &channel.parameters);
-    for (channel, list) in [&machine.parameters].into_iter().chain(others).enumerate() {
+    for (channel, list) in lists(machine).enumerate() {
         let folder = machine.programs(channel);
         // Channels may share a folder; the first of them says how its programs are read.
         if folders.contains(&folder) {
@@ -133,6 +132,12 @@ fn check_programs(
     Ok(reports)
 }
 
+/// The machine parameters of all channels.
+fn lists(machine: &LoadedMachine) -> impl Iterator<Item = &ParameterList> + Clone {
+    let others = machine.channels.iter().map(|channel| &channel.parameters);
+    std::iter::once(&machine.parameters).chain(others)
+}
+
 /// How the programs of a channel with these machine parameters are checked.
 fn how(machine: &LoadedMachine, list: &ParameterList, format: Format) -> Check {
     let tools = machine.tools.as_ref();
@@ -142,6 +147,7 @@ fn how(machine: &LoadedMachine, list: &ParameterList, format: Format) -> Check {
             rules: Rules::of(list),
             barred_tools: tool_table::barred(tools.into_iter().flatten()),
             functions: machine.functions.clone(),
+            absent: AbsentAxes::of(std::iter::once(list).chain(lists(machine))),
             datum_table: machine
                 .datum_table()
                 .map(|table| datum_shifts(table, list).into()),

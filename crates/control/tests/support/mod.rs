@@ -40,6 +40,7 @@ impl Programs for Shelf {
 }
 
 /// Control and machine, and what goes by in the meantime.
+#[derive(Clone)]
 pub struct Rig {
     pub control: Control,
     pub machine: Machine,

@@ -96,7 +96,44 @@ impl Course<'_> {
             }
             self.cycle()?;
         }
+        self.pass_marks()
+    }
+
+    /// Where another mode was chosen before the reference marks were passed, they are passed now; `false` when a flashing
+    /// message is in the way.
+    fn pass_marks(&mut self) -> Result<bool, Violation> {
+        for number in 0..self.control().channels() {
+            if !self
+                .channel(number)
+                .is_some_and(|channel| channel.lacks_reference())
+            {
+                continue;
+            }
+            self.give(Kind::Use, &format!("{}mode reference", prefix(number)))?;
+            self.wait(KEY_US)?;
+            self.press_start(number)?;
+            let until_us = self.now() + REFERENCE_US;
+            while self
+                .channel(number)
+                .is_some_and(|channel| channel.mode() == Mode::Reference)
+            {
+                let stopped = is_fatal(self.control()) || !self.bench.host.plant().limit_switches_clear();
+                if stopped || !self.control().shown().is_empty() {
+                    return Ok(!is_fatal(self.control()));
+                }
+                if self.now() > until_us {
+                    return Err(self.breaks(Rule::Recovery, "the reference run does not end"));
+                }
+                self.cycle()?;
+            }
+        }
         Ok(true)
+    }
+
+    fn press_start(&mut self, number: usize) -> Result<(), Violation> {
+        let keys = &self.catalogue.start_keys;
+        let key = keys.get(number).cloned().unwrap_or_default();
+        self.give(Kind::Use, &format!("key {key} tap"))
     }
 
     fn mode(&self) -> Mode {
@@ -173,14 +210,8 @@ impl Course<'_> {
             }
             if self.now() >= due_us {
                 for number in channels {
-                    let key = self
-                        .catalogue
-                        .start_keys
-                        .get(*number)
-                        .cloned()
-                        .unwrap_or_default();
                     if self.is_interrupted(*number) || self.begins(*number) {
-                        self.give(Kind::Use, &format!("key {key} tap"))?;
+                        self.press_start(*number)?;
                     }
                 }
                 due_us = self.now() + 8 * KEY_US;

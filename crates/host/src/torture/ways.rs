@@ -69,7 +69,10 @@ impl Ways {
     pub fn channel(&mut self, view: ChannelView, plant: &Machine, moment: &Moment) -> Result<(), Violation> {
         self.path(&view, moment)?;
         for watch in view.watch() {
-            if let Some(axis) = plant.axes().find(|axis| axis.output == watch.output) {
+            // An axis that follows its loop is left to nobody: what the machine knows of it need not be asked.
+            if watch.closed && !watch.halted || moment.fatal || moment.unbraked {
+                self.left.retain(|left| left.output != watch.output);
+            } else if let Some(axis) = plant.axes().find(|axis| axis.output == watch.output) {
                 self.axis(&watch, &axis, moment)?;
             }
         }
@@ -129,18 +132,10 @@ impl Ways {
     /// An axis whose loop is open, or whose feed is not enabled.
     fn axis(&mut self, watch: &AxisWatch, axis: &AxisState, moment: &Moment) -> Result<(), Violation> {
         let place = self.left.iter().position(|left| left.output == watch.output);
-        let cause = match (watch.closed, watch.halted) {
-            _ if moment.fatal || moment.unbraked => None,
-            (false, _) => Some(Cause::Open),
-            (true, true) if axis.powered => Some(Cause::Halted),
-            (true, true) => Some(Cause::Dead),
-            (true, false) => None,
-        };
-        let Some(cause) = cause else {
-            if let Some(place) = place {
-                self.left.swap_remove(place);
-            }
-            return Ok(());
+        let cause = match watch.closed {
+            false => Cause::Open,
+            true if axis.powered => Cause::Halted,
+            true => Cause::Dead,
         };
         match place.and_then(|place| self.left.get_mut(place)) {
             Some(left) if left.cause == cause => {
