@@ -26,11 +26,16 @@ impl PathTable {
 
     /// Writes the row of an element of a program; an element that holds still has none.
     pub fn element(&mut self, element: &PathElement, program: &str) -> io::Result<()> {
+        let mut corner = None;
         let (kind, arc) = match (&element.curve, element.feed) {
             (Curve::Hold, _) => return Ok(()),
             (Curve::Line, FeedRate::Rapid) => ("rapid", None),
             (Curve::Line, FeedRate::Programmed(_)) => ("line", None),
             (Curve::Arc(arc), _) => ("arc", Some(arc)),
+            (Curve::Corner(arc), _) => {
+                corner = Some(arc.circle(&element.start, &element.end));
+                ("arc", None)
+            }
         };
         self.row.clear();
         push_text(&mut self.row, program);
@@ -43,6 +48,9 @@ impl PathTable {
             push_number(&mut self.row, element.end[axis]);
         }
         let centre = |axis: Axis| {
+            if let Some(circle) = &corner {
+                return circle.centre()?.get(axis.index()).copied();
+            }
             let arc = arc?;
             let [first, second] = arc.centre;
             let lies_on = |of: Axis| of.main() == Some(axis);
@@ -57,7 +65,11 @@ impl PathTable {
         let values = [Axis::X, Axis::Y, Axis::Z]
             .map(centre)
             .into_iter()
-            .chain([arc.map(|arc| arc.sweep_deg)]);
+            .chain([match &corner {
+                // In no plane of two axes there is a sense; start, centre and end tell the way: the shorter one.
+                Some(circle) => Some(circle.sweep_rad.to_degrees()),
+                None => arc.map(|arc| arc.sweep_deg),
+            }]);
         for value in values {
             self.row.push(b',');
             push_number(&mut self.row, value.unwrap_or(f64::NAN));

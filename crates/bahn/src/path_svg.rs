@@ -154,10 +154,13 @@ impl PathDrawing {
                     self.include(point);
                 }
             }
-            Curve::Arc(arc) => {
-                let count = (arc.sweep_deg.abs() / 360.0 * LINES_PER_TURN)
-                    .ceil()
-                    .clamp(1.0, 10_000.0);
+            Curve::Arc(_) | Curve::Corner(_) => {
+                let sweep_deg = match &element.curve {
+                    Curve::Arc(arc) => arc.sweep_deg.abs(),
+                    Curve::Corner(arc) => arc.circle(&element.start, &element.end).sweep_rad.to_degrees(),
+                    Curve::Hold | Curve::Line => 0.0,
+                };
+                let count = (sweep_deg / 360.0 * LINES_PER_TURN).ceil().clamp(1.0, 10_000.0);
                 for step in 1..=count as u32 {
                     let at = element
                         .curve

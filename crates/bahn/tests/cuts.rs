@@ -150,6 +150,46 @@ fn a_run_broken_off_keeps_the_last_element() {
     );
 }
 
+/// M112 between skew lines: the table has the arc with its centre in X, Y and Z, the machine drives the same one, the drawing
+/// follows it with lines. T is 0.1 mm; directions u = (12, 0, 5) / 13 and v = (0, 8, 6) / 10 enclose acos(3/13)
+/// [000:5140-5152].
+#[test]
+fn an_arc_in_space_in_the_table() {
+    let folder = Folder::with_program(&format!(
+        "{BLANK}TOOL CALL 1 Z S1000\nL X+10 Y+10 Z-8 R0 F3000 M3\nL X+22 Z-3 M112 T0.1 A10\nL Y+18 Z+3\nL M113"
+    ));
+    let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/mill");
+    let cosine = 3.0f64 / 13.0;
+    let sine = (0.5 * (1.0 + cosine)).sqrt();
+    let radius = 0.1 * sine / (1.0 - sine);
+    let from_corner = radius / sine / (2.0 - 2.0 * cosine).sqrt();
+    let centre = [(22.0, -12.0 / 13.0), (10.0, 0.8), (-3.0, 0.6 - 5.0 / 13.0)];
+    for command in [
+        "test main.H".to_owned(),
+        format!("run main.H --machine {machine} --fresh"),
+    ] {
+        let run = folder.bahn(&format!("{command} --path path.csv"));
+        assert_eq!(run.code(), 0, "{}", run.err());
+        let table = folder.read("path.csv");
+        let rows = support::rows(&table);
+        let arcs: Vec<_> = rows.iter().filter(|row| row[2] == "arc").collect();
+        assert_eq!(arcs.len(), 1, "{table}");
+        let number = |column: usize| arcs[0][column].parse::<f64>().unwrap();
+        for (column, (corner, inward)) in (13..).zip(centre) {
+            let expected = corner + inward * from_corner;
+            assert!((number(column) - expected).abs() < 1e-6, "{table}");
+        }
+        assert!((number(16) - cosine.acos().to_degrees()).abs() < 1e-6, "{table}");
+    }
+    let run = folder.bahn("test main.H --path path.svg");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let drawing = folder.read("path.svg");
+    assert!(
+        drawing.contains("M10 10L2") && !drawing.contains("A0"),
+        "{drawing}"
+    );
+}
+
 /// In the drawing the way to a place that nobody knows leads out of the blank, at its nearest side.
 #[test]
 fn the_drawing_shows_a_path_that_leaves() {

@@ -301,11 +301,16 @@ fn is_circular(element: &PathElement, axis: Axis) -> bool {
         .and_then(|placement| placement.cylinder());
     if let Some(cylinder) = cylinder {
         let own = cylinder.moved_by(axis);
-        return matches!(&element.curve, Curve::Arc(arc) if arc.plane.contains(own));
+        return match &element.curve {
+            Curve::Arc(arc) => arc.plane.contains(own),
+            Curve::Corner(_) => element.moves(own) && own.main() == Some(own),
+            Curve::Line | Curve::Hold => false,
+        };
     }
     match &element.curve {
-        Curve::Arc(_) if element.placement.is_some() => !axis.is_rotary(),
+        Curve::Arc(_) | Curve::Corner(_) if element.placement.is_some() => !axis.is_rotary(),
         Curve::Arc(arc) => axis == arc.plane.first || axis == arc.plane.second,
+        Curve::Corner(_) => element.moves(axis) && axis.main() == Some(axis),
         Curve::Line | Curve::Hold => false,
     }
 }

@@ -25,6 +25,7 @@ fn main() -> std::io::Result<()> {
                     Curve::Hold => "hold".to_owned(),
                     Curve::Line => "line".to_owned(),
                     Curve::Arc(arc) => format!("arc {:.4?} {:.3}", arc.centre, arc.sweep_deg),
+                    Curve::Corner(arc) => format!("corner arc {:.4?}", arc.corner),
                 };
                 println!(
                     "{:5} {:?}{known} {shape} {:.4}",

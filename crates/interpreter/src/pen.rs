@@ -154,7 +154,7 @@ impl Pen {
         let moved = match curve {
             Curve::Hold => false,
             Curve::Line => Axis::ALL.into_iter().any(moves),
-            Curve::Arc(_) => curve.length(start, end) > 0.0,
+            Curve::Arc(_) | Curve::Corner(_) => curve.length(start, end) > 0.0,
         };
         if moved {
             self.since_motion = 0;

@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use bahn_path::{Curve, Function, PathElement, Placement, Position};
+use bahn_path::{Axis, Curve, Function, PathElement, Placement, Position};
 
 /// An element whose arc starts farther than this from where the path is gets a line to its start, mm.
 const GAP: f64 = 1e-6;
+
+/// The axes of an arc at a corner in space.
+const CORNER: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// Lets an element start where the path is, axis by axis where that is known. An arc must start where
 /// it was programmed; when that is elsewhere the answer is a line to there.
@@ -41,17 +44,20 @@ pub(crate) fn connect(
         // What the element does not move stays where it is.
         let stays = match &element.curve {
             Curve::Arc(arc) if axis == arc.plane.first || axis == arc.plane.second => false,
+            Curve::Corner(_) if CORNER.contains(&axis) => false,
             _ => element.end[axis] == from_source[axis],
         };
         if stays || element.end[axis].is_nan() || matches!(element.curve, Curve::Hold) {
             element.end[axis] = at[axis];
         }
     }
-    let Curve::Arc(arc) = &element.curve else {
-        return None;
+    let fixed: &[Axis] = match &element.curve {
+        Curve::Arc(arc) => &[arc.plane.first, arc.plane.second],
+        Curve::Corner(_) => &CORNER,
+        Curve::Hold | Curve::Line => return None,
     };
     let mut gap = false;
-    for axis in [arc.plane.first, arc.plane.second] {
+    for axis in fixed.iter().copied() {
         if !from_source[axis].is_nan() {
             gap |= (from_source[axis] - element.start[axis]).abs() > GAP;
         }
@@ -60,7 +66,7 @@ pub(crate) fn connect(
         return None;
     }
     let start = element.start;
-    for axis in [arc.plane.first, arc.plane.second] {
+    for axis in fixed.iter().copied() {
         if !from_source[axis].is_nan() {
             element.start[axis] = from_source[axis];
         }

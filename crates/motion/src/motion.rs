@@ -1,6 +1,6 @@
 //! The geometry of an element as planning needs it.
 
-use bahn_path::{Arc, Axis, Curve, PathElement, PerAxis, Placement, Point2, Position};
+use bahn_path::{Arc, Axis, CornerArc, Curve, PathElement, PerAxis, Placement, Point2, Position};
 
 use crate::limits::{Dynamics, MAIN, Slowest};
 use crate::placed::Placed;
@@ -55,6 +55,7 @@ impl Motion {
             Curve::Hold => None,
             Curve::Line => Motion::line(element, dynamics),
             Curve::Arc(arc) => Motion::arc(element, arc, dynamics),
+            Curve::Corner(arc) => Motion::corner(element, arc, dynamics),
         }
     }
 
@@ -167,9 +168,63 @@ impl Motion {
         } else {
             f64::INFINITY
         };
+        let directions = [direction, in_plane(&direction, plane, end_direction)];
+        let motion = Motion::curved(
+            (length, rotary),
+            radial_speed,
+            share,
+            directions,
+            element,
+            dynamics,
+        );
+        Some(motion.placed(element, dynamics))
+    }
+
+    /// The arc at a corner in space: a circle of any plane, beside which other axes may move.
+    fn corner(element: &PathElement, arc: &CornerArc, dynamics: &Dynamics) -> Option<Motion> {
+        let circle = arc.circle(&element.start, &element.end);
+        let mut delta = known_delta(&element.start, &element.end);
+        for (axis, way) in MAIN.into_iter().zip([circle.length_mm, 0.0, 0.0]) {
+            delta[axis] = way;
+        }
+        let (length, rotary) = path_length(&delta)?;
+        let around = circle.length_mm / length;
+        let mut directions = [delta.map(|d| d / length); 2];
+        let mut share = directions[0].map(f64::abs);
+        for (i, axis) in MAIN.into_iter().enumerate() {
+            let along = [0, 1, 2].map(|k| f64::from(u8::from(k == i)));
+            share[axis] = circle.greatest_share(along) * around;
+        }
+        for (directions, t) in directions.iter_mut().zip([0.0, 1.0]) {
+            for (axis, share) in MAIN.into_iter().zip(circle.direction(t)) {
+                directions[axis] = share * around;
+            }
+        }
+        // v = sqrt(r · MP1070), as on every circle [000:5080-5086].
+        let radial_speed = (dynamics.radial * circle.radius_mm).sqrt() / around;
+        let motion = Motion::curved(
+            (length, rotary),
+            radial_speed,
+            share,
+            directions,
+            element,
+            dynamics,
+        );
+        Some(motion.placed(element, dynamics))
+    }
+
+    /// The motion on an arc of a length, which counts rotary axes or not.
+    fn curved(
+        (length, rotary): (f64, bool),
+        radial_speed: f64,
+        share: PerAxis<f64>,
+        [direction, end_direction]: [PerAxis<f64>; 2],
+        element: &PathElement,
+        dynamics: &Dynamics,
+    ) -> Motion {
         let slowest = slowest(share.values(), dynamics);
         let speed = dynamics.speed(element.feed, element.override_law, slowest);
-        let motion = Motion {
+        Motion {
             length: length.min(LONGEST),
             speed: speed.min(radial_speed),
             slowest,
@@ -180,9 +235,8 @@ impl Motion {
             swings: false,
             deg_per_mm: 0.0,
             direction,
-            end_direction: Some(in_plane(&direction, plane, end_direction)),
-        };
-        Some(motion.placed(element, dynamics))
+            end_direction: Some(end_direction),
+        }
     }
 
     /// Derivative of the axes by the path length at the start.

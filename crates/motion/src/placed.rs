@@ -38,6 +38,10 @@ impl Placed {
                 for (axis, row) in MAIN.into_iter().zip(rotation) {
                     share[axis] = match &element.curve {
                         Curve::Arc(arc) => on_circle(row, arc, &directions),
+                        Curve::Corner(arc) => {
+                            let circle = arc.circle(&element.start, &element.end);
+                            circle.greatest_share(*row) * length(&start)
+                        }
                         _ => placed[0][axis].abs(),
                     };
                 }
@@ -52,7 +56,7 @@ impl Placed {
                 let reach = placement.reach_mm();
                 for axis in MAIN {
                     let own = match &element.curve {
-                        Curve::Arc(_) => length(&start).max(length(&end)),
+                        Curve::Arc(_) | Curve::Corner(_) => length(&start).max(length(&end)),
                         _ => start[axis].abs(),
                     };
                     share[axis] = own + reach * rate;
@@ -81,6 +85,11 @@ impl Placed {
             let fastest = directions.map(|d| d[plane[0]].hypot(d[plane[1]]));
             for i in plane {
                 on_surface[i] = fastest[0].max(fastest[1]);
+            }
+        }
+        if let Curve::Corner(_) = &element.curve {
+            for axis in MAIN {
+                on_surface[axis] = length(&start);
             }
         }
         let rotary = cylinder.rotary;

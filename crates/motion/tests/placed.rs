@@ -162,6 +162,7 @@ fn blocks() -> impl Strategy<Value = Path> {
         for (x, y, z, b, c, arc) in blocks {
             if arc {
                 path.turn(x, 5.0 + y.abs(), 3.0 * z, b);
+                path.corner([x, y, z], [z, b + 0.1, x], 5.0 + y.abs());
             } else {
                 path.by(&[
                     (Axis::X, x),

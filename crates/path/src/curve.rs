@@ -1,6 +1,6 @@
-//! Lines, arcs and helices between two positions.
+//! Lines, arcs, helices and corner arcs between two positions.
 
-use crate::{Axis, PerAxis, Plane, Point2, Position};
+use crate::{Axis, CornerArc, PerAxis, Plane, Point2, Position};
 
 /// The shape of a path element between its start and end position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,12 @@ pub enum Curve {
     /// A circular arc in a plane; axes outside the plane move linearly with the angle, which makes a
     /// helix of it [003:3243-3247].
     Arc(Arc),
+    /// A circular arc in any plane of X, Y and Z, between two lines that meet in a corner.
+    Corner(CornerArc),
 }
+
+/// The main axes.
+const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// A circular arc: about `centre`, from the angle of the start point through `sweep_deg`.
 ///
@@ -89,6 +94,10 @@ impl Curve {
                     .sum();
                 in_plane.hypot(outside.sqrt())
             }
+            Curve::Corner(corner) => [Axis::U, Axis::V, Axis::W]
+                .map(|axis| square_or_zero(end[axis] - start[axis]).sqrt())
+                .into_iter()
+                .fold(corner.circle(start, end).length_mm, f64::hypot),
         }
     }
 
@@ -113,8 +122,14 @@ impl Curve {
                 result[axis] = start[axis] + (end[axis] - start[axis]) * t;
             }
         }
-        if let Curve::Arc(arc) = self {
-            arc.plane.set(&mut result, arc.at(start, end, t));
+        match self {
+            Curve::Arc(arc) => arc.plane.set(&mut result, arc.at(start, end, t)),
+            Curve::Corner(corner) => {
+                for (axis, value) in MAIN.into_iter().zip(corner.circle(start, end).place(t)) {
+                    result[axis] = value;
+                }
+            }
+            Curve::Hold | Curve::Line => {}
         }
         result
     }
@@ -125,8 +140,22 @@ impl Curve {
         // `f64::min` and `max` pass over NaN.
         let mut min: Position = PerAxis::from_fn(|axis| start[axis].min(end[axis])).into();
         let mut max: Position = PerAxis::from_fn(|axis| start[axis].max(end[axis])).into();
-        let Curve::Arc(arc) = self else {
-            return [min, max];
+        let arc = match self {
+            Curve::Hold | Curve::Line => return [min, max],
+            Curve::Corner(corner) => {
+                let circle = corner.circle(start, end);
+                for (i, axis) in MAIN.into_iter().enumerate() {
+                    if let Some(value) = circle
+                        .turning_point(i)
+                        .and_then(|t| circle.place(t).get(i).copied())
+                    {
+                        min[axis] = min[axis].min(value);
+                        max[axis] = max[axis].max(value);
+                    }
+                }
+                return [min, max];
+            }
+            Curve::Arc(arc) => arc,
         };
         let s = arc.plane.point(start);
         let (r0, r1) = arc.radii(start, end);
@@ -172,6 +201,12 @@ impl Curve {
                 result[axis] = delta / length;
             }
         }
+        if let Curve::Corner(corner) = self {
+            let circle = corner.circle(start, end);
+            for (axis, share) in MAIN.into_iter().zip(circle.direction(t)) {
+                result[axis] = share * circle.length_mm / length;
+            }
+        }
         if let Curve::Arc(arc) = self {
             let (r0, r1) = arc.radii(start, end);
             let p = arc.at(start, end, t);
@@ -193,7 +228,8 @@ impl Curve {
                 sweep_deg: arc.sweep_deg * (to - from),
                 ..*arc
             }),
-            other => *other,
+            Curve::Corner(corner) => Curve::Corner(corner.part(start, end, from, to)),
+            Curve::Hold | Curve::Line => *self,
         };
         (
             curve,

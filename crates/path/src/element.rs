@@ -103,6 +103,11 @@ impl PathElement {
             Curve::Arc(arc) => {
                 to.is_finite() && (from != to || axis == arc.plane.first || axis == arc.plane.second)
             }
+            // Where an axis stands at the corner as at both ends, it stands on the whole way.
+            Curve::Corner(arc) => {
+                let at_corner = arc.corner.get(axis.index()).copied();
+                to.is_finite() && (from != to || at_corner.is_some_and(|corner| corner != from))
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 //! The face of this room is small:
 //! - [`Axis`], [`AxisSet`], [`PerAxis`], [`Position`]: the nine programmable axes, something of each, and a point of them;
 //! - [`Plane`]: a working plane, which is two axes and the tool axis that stands on it;
-//! - [`Curve`], [`Arc`]: line, circular arc and helix with length, tangent and splitting;
+//! - [`Curve`], [`Arc`], [`CornerArc`]: line, circular arc, helix and corner arc with length, tangent and splitting;
 //! - [`Frame`]: datum shift, mirror image, rotation and scaling as one transformation;
 //! - [`Swivels`], [`Placement`]: the swivel axes of a machine, and how a tilted or compensated path stands in it;
 //! - [`region`]: areas of a plane with holes and true arcs, for the SL cycles;
@@ -24,6 +24,7 @@
 
 mod axis;
 mod characteristic;
+mod corner_arc;
 mod curve;
 mod cylinder;
 mod element;
@@ -37,6 +38,7 @@ mod swivel;
 
 pub use axis::{Axis, AxisSet, PerAxis, Position};
 pub use characteristic::Characteristic;
+pub use corner_arc::{Circle, CornerArc};
 pub use curve::{Arc, Curve, angle_deg, sweep_deg};
 pub use cylinder::Cylinder;
 pub use element::{

@@ -229,6 +229,7 @@ impl Placement {
             Curve::Hold => 0.0,
             Curve::Line => 0.0,
             Curve::Arc(arc) => arc.sweep_deg.abs(),
+            Curve::Corner(corner) => corner.circle(start, end).sweep_rad.to_degrees(),
         };
         let (reach, swivels) = match &self.kind {
             Kind::Tilted { .. } | Kind::Rolled(_) => (0.0, 0.0),
@@ -248,7 +249,15 @@ impl Placement {
                 let (r0, r1) = arc.radii(start, end);
                 r0.max(r1)
             }
-            _ => 0.0,
+            Curve::Corner(corner) => {
+                let circle = corner.circle(start, end);
+                if circle.sweep_rad > 0.0 {
+                    circle.radius_mm
+                } else {
+                    0.0
+                }
+            }
+            Curve::Hold | Curve::Line => 0.0,
         };
         // A chord of an angle lies r · angle² / 8 inside its arc at most.
         let bulge = |r: f64, deg: f64| r * (deg / steps).to_radians().powi(2) / 8.0;

@@ -1,6 +1,6 @@
 //! The box around an element.
 
-use bahn_path::{Arc, Axis, Curve, Plane, Position};
+use bahn_path::{Arc, Axis, CornerArc, Curve, Plane, Position};
 use proptest::prelude::*;
 
 fn at(x: f64, y: f64, z: f64) -> Position {
@@ -52,4 +52,57 @@ proptest! {
             prop_assert!(max[axis] - seen[1][axis] < 1e-3 * radius);
         }
     }
+}
+
+proptest! {
+    /// Every point of an arc between skew lines lies in its box, the box is reached, and its parts are the arc itself.
+    #[test]
+    fn box_holds_a_corner_arc(
+        corner in prop::array::uniform3(-50.0f64..50.0),
+        a in prop::array::uniform3(-1.0f64..1.0),
+        b in prop::array::uniform3(-1.0f64..1.0),
+        leg in 0.1f64..100.0,
+        cut in 0.01f64..0.99,
+    ) {
+        let unit = |v: [f64; 3]| v.map(|x| x / v.iter().map(|x| x * x).sum::<f64>().sqrt());
+        let (a, b) = (unit(a), unit(b));
+        let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+        prop_assume!(dot.abs() < 0.999);
+        let place = |towards: [f64; 3]| at(corner[0] + leg * towards[0], corner[1] + leg * towards[1], corner[2] + leg * towards[2]);
+        let (start, end) = (place(a), place(b));
+        let curve = Curve::Corner(CornerArc { corner });
+        let [min, max] = curve.bounds(&start, &end);
+        let mut seen = [start, start];
+        for step in 0..=1000 {
+            let p = curve.position(&start, &end, f64::from(step) / 1000.0);
+            for axis in [Axis::X, Axis::Y, Axis::Z] {
+                prop_assert!(p[axis] >= min[axis] - 1e-9 && p[axis] <= max[axis] + 1e-9);
+                seen[0][axis] = seen[0][axis].min(p[axis]);
+                seen[1][axis] = seen[1][axis].max(p[axis]);
+            }
+        }
+        for axis in [Axis::X, Axis::Y, Axis::Z] {
+            prop_assert!(seen[0][axis] - min[axis] < 1e-3 * leg && max[axis] - seen[1][axis] < 1e-3 * leg);
+        }
+        let mut length = 0.0;
+        for (from, to) in [(0.0, cut), (cut, 1.0)] {
+            let (part, first, last) = curve.part(&start, &end, from, to);
+            length += part.length(&first, &last);
+            for step in 0..=10 {
+                let t = f64::from(step) / 10.0;
+                let (own, whole) = (part.position(&first, &last, t), curve.position(&start, &end, from + (to - from) * t));
+                for axis in [Axis::X, Axis::Y, Axis::Z] {
+                    prop_assert!((own[axis] - whole[axis]).abs() < 1e-8, "{axis} {} {}", own[axis], whole[axis]);
+                }
+            }
+        }
+        prop_assert!((length - curve.length(&start, &end)).abs() < 1e-8);
+    }
+}
+
+/// An arc in space takes no more room than one in a main plane.
+#[test]
+fn a_corner_arc_is_no_larger_than_an_arc() {
+    assert!(size_of::<CornerArc>() <= size_of::<Arc>());
+    assert!(size_of::<Curve>() <= size_of::<Arc>() + 8);
 }

@@ -24,10 +24,23 @@ pub(crate) fn chop(
     match element.curve {
         Curve::Hold => {}
         Curve::Line => emit(from, to),
-        Curve::Arc(arc) => {
-            let (r0, r1) = arc.radii(&start, &element.end);
-            let count = chord_count(r0.max(r1), arc.sweep_deg, tolerance_mm);
-            let length = element.curve.linear_length(&start, &element.end) + (r1 - r0).abs();
+        Curve::Arc(_) | Curve::Corner(_) => {
+            let (radius, sweep_deg, outward) = match element.curve {
+                Curve::Corner(corner) => {
+                    let circle = corner.circle(&start, &element.end);
+                    if circle.sweep_rad == 0.0 {
+                        return emit(from, to);
+                    }
+                    (circle.radius_mm, circle.sweep_rad.to_degrees(), 0.0)
+                }
+                Curve::Arc(arc) => {
+                    let (r0, r1) = arc.radii(&start, &element.end);
+                    (r0.max(r1), arc.sweep_deg, (r1 - r0).abs())
+                }
+                Curve::Hold | Curve::Line => return,
+            };
+            let count = chord_count(radius, sweep_deg, tolerance_mm);
+            let length = element.curve.linear_length(&start, &element.end) + outward;
             if !length.is_finite() || count == 0 {
                 return;
             }

@@ -94,6 +94,11 @@ fn from_element(place: &Position, element: &PathElement) -> f64 {
             }
             nearest
         }
+        Curve::Corner(corner) => {
+            let circle = corner.circle(start, end);
+            let at = circle.nearest([Axis::X, Axis::Y, Axis::Z].map(|axis| place[axis]));
+            apart(place, &element.curve.position(start, end, at))
+        }
     }
 }
 
@@ -137,6 +142,18 @@ mod tests {
         let half = element(Curve::Arc(arc), at(5.0, 0.0), at(-5.0, 0.0));
         assert!((from_element(&at(0.0, 4.0), &half) - 1.0).abs() < 1e-12);
         assert!((from_element(&at(5.0, -3.0), &half) - 3.0).abs() < 1e-12);
+        // A quarter of radius 5 about (0, 0), touching x = 5 and y = 5.
+        let corner = bahn_path::CornerArc {
+            corner: [5.0, 5.0, 0.0],
+        };
+        let level = |mut place: Position| {
+            place[Axis::Z] = 0.0;
+            place
+        };
+        let quarter = element(Curve::Corner(corner), level(at(5.0, 0.0)), level(at(0.0, 5.0)));
+        assert!((from_element(&level(at(3.0, 4.0)), &quarter)).abs() < 1e-12);
+        assert!((from_element(&level(at(6.0, 8.0)), &quarter) - 5.0).abs() < 1e-12);
+        assert!((from_element(&level(at(8.0, -4.0)), &quarter) - 5.0).abs() < 1e-12);
     }
 
     fn element(curve: Curve, start: Position, end: Position) -> PathElement {

@@ -1,11 +1,12 @@
 //! Roundings and chamfers between two contour elements.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Arc, BlockRef, Curve, FeedRate, PathElement, Point2};
+use bahn_path::{Arc, Axis, BlockRef, CornerArc, Curve, FeedRate, PathElement, Plane, Point2, Position};
 
 use super::compensation::CompensationStage;
+use super::corner_arc::{self, Lies};
 use super::flat::{self, Flat, SAME_POINT_MM};
-use super::{ContourMove, Side, Smooth, corner_arc};
+use super::{ContourMove, Side, Smooth};
 use crate::error::Fault;
 use crate::output::Output;
 
@@ -104,21 +105,17 @@ impl RoundingStage {
                 self.side_before = held.side;
             }
             let mut arc = None;
-            if let Some((plane, radius)) = corner_arc::arc_between(&held, self.held_length, &item) {
+            if let Some((lies, radius)) = corner_arc::arc_between(&held, self.held_length, &item) {
                 let join = Join {
                     kind: JoinKind::Rounding(radius),
                     feed_mm_min: None,
                     block: held.element.block,
                     sequence: held.element.sequence,
                 };
-                // The arc lies in the plane of its lines, which need not be that of the contour.
-                let own = std::mem::replace(&mut held.plane, plane);
-                let items = std::mem::replace(&mut item.plane, plane);
-                arc = round(&mut held, &mut item, radius, join)?;
-                (held.plane, item.plane) = (own, items);
-                if let Some(arc) = &mut arc {
-                    arc.plane = own;
-                }
+                arc = match lies {
+                    Lies::In(plane) => round_in(plane, &mut held, &mut item, radius, join)?,
+                    Lies::InSpace => round_in_space(&mut held, &mut item, radius, join),
+                };
             }
             next.push(held, out)?;
             if let Some(arc) = arc {
@@ -314,6 +311,54 @@ fn round(
     Ok(Some(joint))
 }
 
+/// Arc in the plane of its lines, which need not be that of the contour.
+fn round_in(
+    plane: Plane,
+    held: &mut ContourMove,
+    item: &mut ContourMove,
+    radius: f64,
+    join: Join,
+) -> Result<Option<ContourMove>, Fault> {
+    let own = std::mem::replace(&mut held.plane, plane);
+    let items = std::mem::replace(&mut item.plane, plane);
+    let mut arc = round(held, item, radius, join)?;
+    (held.plane, item.plane) = (own, items);
+    if let Some(arc) = &mut arc {
+        arc.plane = own;
+    }
+    Ok(arc)
+}
+
+/// Arc tangent to two lines of X, Y and Z that lie in no main plane.
+fn round_in_space(
+    held: &mut ContourMove,
+    item: &mut ContourMove,
+    radius: f64,
+    join: Join,
+) -> Option<ContourMove> {
+    const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+    let ([a, b], _) = corner_arc::directions_in_space(&held.element, &item.element)?;
+    // Half of the change of direction, by what the directions differ by and by what they have in common.
+    let length = |vector: [f64; 3]| vector.iter().map(|d| d * d).sum::<f64>().sqrt();
+    let half_tangent = length([0, 1, 2].map(|i| b[i] - a[i])) / length([0, 1, 2].map(|i| b[i] + a[i]));
+    let leg = radius * half_tangent;
+    let corner = held.element.end;
+    let (mut from, mut to) = (corner, corner);
+    for (i, axis) in MAIN.into_iter().enumerate() {
+        from[axis] -= leg * a[i];
+        to[axis] += leg * b[i];
+    }
+    let mut joint = joint_between(held, join, from, to);
+    joint.element.curve = Curve::Corner(CornerArc {
+        corner: MAIN.map(|axis| corner[axis]),
+    });
+    joint.element.tangential_end = true;
+    held.element.tangential_end = true;
+    held.element.end = from;
+    item.element.start = to;
+    Some(joint)
+}
+
 /// Straight cut between two straight lines [003:2664-2680].
 fn chamfer(
     held: &mut ContourMove,
@@ -357,8 +402,16 @@ fn nearest_on(curve: &Flat, centre: Point2) -> Point2 {
     }
 }
 
-/// The joint takes compensation and (unless it has its own) feed of the element before it.
+/// A joint in the plane of the element before it.
 fn joint_element(held: &ContourMove, join: Join, from: Point2, to: Point2) -> ContourMove {
+    let (mut start, mut end) = (held.element.end, held.element.end);
+    held.plane.set(&mut start, from);
+    held.plane.set(&mut end, to);
+    joint_between(held, join, start, end)
+}
+
+/// The joint takes compensation and (unless it has its own) feed of the element before it.
+fn joint_between(held: &ContourMove, join: Join, start: Position, end: Position) -> ContourMove {
     let mut joint = held.clone();
     joint.smooth = None;
     joint.corner = Default::default();
@@ -369,14 +422,13 @@ fn joint_element(held: &ContourMove, join: Join, from: Point2, to: Point2) -> Co
         curve: Curve::Line,
         functions: None,
         dwell_s: 0.0,
-        start: held.element.end,
+        start,
+        end,
         ..joint.element
     };
     if let Some(feed) = join.feed_mm_min {
         joint.element.feed = FeedRate::Programmed(feed);
     }
-    held.plane.set(&mut joint.element.start, from);
-    held.plane.set(&mut joint.element.end, to);
     joint
 }
 

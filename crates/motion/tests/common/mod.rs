@@ -5,8 +5,9 @@ pub mod random;
 
 use bahn_motion::{AuxiliaryTimes, Limits, Planned, PlannedStep, Planner};
 use bahn_path::{
-    Arc, At, Axis, BlockRef, Curve, ElementSource, FeedRate, Function, LiveData, OverrideLaw, PathElement,
-    PerAxis, Plane, Position, SpindleOrder, Step, Synchronisation, TechnologyFunction, sweep_deg,
+    Arc, At, Axis, BlockRef, CornerArc, Curve, ElementSource, FeedRate, Function, LiveData, OverrideLaw,
+    PathElement, PerAxis, Plane, Position, SpindleOrder, Step, Synchronisation, TechnologyFunction,
+    sweep_deg,
 };
 
 /// 15 m/min, 1 m/s², radial 0.5 m/s², corners up to 10 degrees, servo lag.
@@ -152,6 +153,22 @@ impl Path {
             }),
             end,
         )
+    }
+
+    /// An arc in space from one direction into another, neither of length 1 nor perpendicular.
+    pub fn corner(&mut self, from: [f64; 3], to: [f64; 3], radius: f64) -> &mut Path {
+        let unit = |v: [f64; 3]| v.map(|x| x / (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt());
+        let (a, b) = (unit(from), unit(to));
+        let dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        // tan of half the angle between two directions.
+        let leg = radius * ((1.0 - dot) / (1.0 + dot)).sqrt();
+        let mut end = self.at;
+        let mut corner = [self.at[Axis::X], self.at[Axis::Y], self.at[Axis::Z]];
+        for (i, axis) in [Axis::X, Axis::Y, Axis::Z].into_iter().enumerate() {
+            corner[i] += leg * a[i];
+            end[axis] = corner[i] + leg * b[i];
+        }
+        self.to(Curve::Corner(CornerArc { corner }), end)
     }
 
     /// A block without movement.

@@ -24,6 +24,8 @@ pub enum Block {
         sweep_deg: f64,
         z: f64,
     },
+    /// A line, and an arc at its corner to another direction in space: `by` is X, Y and Z of that direction.
+    Corner { radius: f64, by: [f64; 3] },
     /// Only the rotary axis.
     Rotary { c: f64 },
     /// To the same point.
@@ -69,6 +71,11 @@ impl Random {
                     path.spiral(heading + turn_deg, radii, sweep_deg, radius * z);
                     heading += turn_deg + sweep_deg;
                 }
+                Block::Corner { radius, by } => {
+                    let (sin, cos) = heading.to_radians().sin_cos();
+                    path.corner([cos, sin, 0.0], by, radius);
+                    heading = by[1].atan2(by[0]).to_degrees();
+                }
                 Block::Rotary { c } => {
                     path.by(&[(Axis::C, c)]);
                 }
@@ -105,6 +112,8 @@ pub fn block() -> impl Strategy<Value = Block> {
             .prop_map(|(turn_deg, length, z, c)| Block::Line { turn_deg, length, z, c }),
         4 => (turn(), decades(0.01, 20.0), growth, -400.0..400.0f64, share)
             .prop_map(|(turn_deg, radius, growth, sweep_deg, z)| Block::Arc { turn_deg, radius, growth, sweep_deg, z }),
+        2 => (decades(0.01, 20.0), prop::array::uniform3(-1.0..1.0f64))
+            .prop_map(|(radius, by)| Block::Corner { radius, by }),
         1 => (-90.0..90.0f64).prop_map(|c| Block::Rotary { c }),
         1 => Just(Block::Nothing),
     ]
