@@ -113,7 +113,7 @@ fn axes_that_the_machine_has_not_for_programs() {
         folder.write("m/programs/BAD.H", &folder.read("main.H"));
         let check = folder.bahn("machine check m");
         assert_eq!(check.code(), 1, "{name}: {}", check.err());
-        let said = check.out().to_owned() + check.err();
+        let said = check.out().to_owned() + &check.err();
         assert!(
             said.contains("WRONG AXIS PROGRAMMED") && said.contains(reason),
             "{name}: {said}"
