@@ -98,7 +98,8 @@ fn axes_that_the_machine_has_not_for_programs() {
         ("dig425", "L W+5 R0 F500", "the PLC alone moves W (MP60)"),
     ] {
         let folder = Folder::with_program(&format!("L X+0 R0 F500\n{block}"));
-        let made = folder.bahn(&format!("machine new m --from {name}"));
+        let model = if name == "dig425" { "tnc425" } else { "tnc415b" };
+        let made = folder.bahn(&format!("machine new m --from {name} --model {model}"));
         assert_eq!(made.code(), 0, "{}", made.err());
         let run = folder.bahn("test main.H --machine m --no-graphics --format json");
         assert_eq!(run.code(), 1, "{name}: {}", run.err());
@@ -113,7 +114,7 @@ fn axes_that_the_machine_has_not_for_programs() {
         folder.write("m/programs/BAD.H", &folder.read("main.H"));
         let check = folder.bahn("machine check m");
         assert_eq!(check.code(), 1, "{name}: {}", check.err());
-        let said = check.out().to_owned() + check.err();
+        let said = check.out().to_owned() + &check.err();
         assert!(
             said.contains("WRONG AXIS PROGRAMMED") && said.contains(reason),
             "{name}: {said}"

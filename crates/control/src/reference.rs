@@ -10,9 +10,12 @@ use bahn_parameters::axis::ReferenceType;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
+use crate::command::Mode;
 use crate::gantry;
 use crate::markers::REFERENCE_CAM;
 use crate::now::Now;
+use crate::progress::Progress;
+use crate::site::Site;
 
 /// The reference run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -121,6 +124,13 @@ fn key_of(place: usize, axes: &OwnAxes, now: &Now) -> bool {
     axes.get(place)
         .and_then(|unit| now.axis_keys.get(unit.index))
         .is_some_and(Option::is_some)
+}
+
+/// No program is begun, nor goes on, before the axes that MP1340 names have passed their reference marks: until then no
+/// software limit holds and no datum is known [000:4563-4575] [001:953]. What MDI positions may do without, but for M91 and
+/// M92. What the control says then no manual prints (inferred).
+pub(crate) fn bars(progress: &Progress, site: &Site) -> bool {
+    site.now.mode != Mode::Mdi && !progress.is_running() && is_due(site.axes.iter())
 }
 
 /// An axis whose mark is evaluated (MP1340) has not passed it.

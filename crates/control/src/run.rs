@@ -126,7 +126,7 @@ impl ProgramRun {
         if self.restoration.is_on() || site.positioning.is_on() {
             return;
         }
-        if self.tapping.has_lost_spindle() || self.lacks_reference(site) {
+        if self.tapping.has_lost_spindle() || reference::bars(&self.progress, site) {
             self.show(Message::Plain(MessageId::KeyNonFunctional), site);
             return;
         }
@@ -152,14 +152,6 @@ impl ProgramRun {
                 }
             }
         }
-    }
-
-    /// No program is begun, nor goes on, before the axes that MP1340 names have passed their reference marks: until then no
-    /// software limit holds and no datum is known [000:4563-4575] [001:953]. What MDI positions may do without, but for M91
-    /// and M92. What the control says then no manual prints (inferred).
-    fn lacks_reference(&self, site: &Site) -> bool {
-        let of_a_program = site.now.mode != Mode::Mdi && !self.progress.is_running();
-        of_a_program && reference::is_due(site.axes.iter())
     }
 
     /// NC stop, or anything that stops like it.
@@ -361,7 +353,7 @@ impl ProgramRun {
         site: &mut Site,
         basis: &Basis,
     ) -> bool {
-        if self.is_active() || !rules.block_scan || self.lacks_reference(site) {
+        if self.is_active() || !rules.block_scan || reference::bars(&self.progress, site) {
             return false;
         }
         let mdi = site.now.mode == Mode::Mdi;
