@@ -1,5 +1,9 @@
 //! How fast a part is digitized in a test run: from the program that machines it to the program of its points.
-#![allow(clippy::panic, clippy::expect_used, reason = "a wrong program would measure nothing")]
+#![allow(
+    clippy::panic,
+    clippy::expect_used,
+    reason = "a wrong program would measure nothing"
+)]
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};

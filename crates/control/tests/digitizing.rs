@@ -443,8 +443,8 @@ fn measuring_with(build: Build, program: &str, mounting: &str, parameters: &[&st
     rig_of_bench(build, program)
 }
 
-/// MP6200 = 1: MP6310 depth, MP6320 and MP6322 mounting, MP6350, MP6360 and MP6361 feeds: 32 mm of surface at 600 mm/min are scanned
-/// in less than 10 s, with the stylus 0.5 mm deep; the points are those of the face.
+/// MP6200 = 1; MP6310 depth, MP6320 and MP6322 mounting, MP6350, MP6360 and MP6361 feeds: 32 mm of surface at
+/// 600 mm/min are scanned in less than 10 s, with the stylus 0.5 mm deep; the points are those of the face.
 #[test]
 fn a_measuring_probe_stays_deflected() {
     for (mounting, parameters) in [

@@ -357,7 +357,7 @@ fn radius_compensation_in_five_axis_blocks() {
              L X+80 R0"
         )
     };
-    let ends = |side: &str| -> Vec<[f64; 5]> {
+    let ends = |side: &str| -> Vec<_> {
         let run = on(&[], &contour(side));
         run.assert_completed();
         let five = [Axis::X, Axis::Y, Axis::Z, Axis::A, Axis::B];
