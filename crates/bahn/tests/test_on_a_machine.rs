@@ -111,7 +111,7 @@ fn axes_that_the_machine_has_not_for_programs() {
         );
         let alone = folder.bahn("test main.H --model tnc415b --no-graphics");
         assert_eq!(alone.code(), 0, "{name}: {}", alone.err());
-        folder.write("m/programs/BAD.H", &folder.read("main.H"));
+        folder.write("m/programs/BAD.H", folder.read("main.H"));
         let check = folder.bahn("machine check m");
         assert_eq!(check.code(), 1, "{name}: {}", check.err());
         let said = check.out().to_owned() + &check.err();
