@@ -315,3 +315,38 @@ fn chains_are_closed_to_the_last_bit() {
     }
     assert_eq!(area.locate([0.0, 1.5]), Location::Inside);
 }
+
+/// Two arcs that end in a corner just behind where they cross: between crossing and corner lies a lens, which
+/// the contour goes around twice. However thin, it is inside, and no boundary of its own.
+#[test]
+fn arcs_that_cross_just_before_their_corner_leave_no_loop_in_the_lens() {
+    const R: f64 = 1.0;
+    // The square 6 x 6 below a notch between two discs; its tip is where the arcs cross.
+    let below = |contour: Contour, top: f64| {
+        let corners = [[-3.0, top], [-3.0, top - 6.0], [3.0, top - 6.0], [3.0, top]];
+        corners.into_iter().fold(contour, Contour::line_to).closed()
+    };
+    for thickness in (1..=200).map(|k| f64::from(k) * 1e-7) {
+        // The discs overlap by the thickness, and on the common chord the arcs turn by twice phi.
+        let aside = R - 0.5 * thickness;
+        let half_chord = (R * R - aside * aside).sqrt();
+        let phi = half_chord.atan2(aside);
+        let lens = R * R * (2.0 * phi - (2.0 * phi).sin());
+        let (right, left) = ([aside, half_chord], [-aside, half_chord]);
+        let top = half_chord + R;
+        let through = |tip: [f64; 2]| {
+            let arc = Contour::start_at([aside, top]).arc_to(right, tip, true);
+            below(arc.arc_to(left, [-aside, top], true), top)
+        };
+        let (to_crossing, to_corner) = (through([0.0, 2.0 * half_chord]), through([0.0, 0.0]));
+        // What the tool's centre may sweep is that of the contour without the lens.
+        let shrunk = Region::from_contour(&to_crossing).offset(-0.05);
+        assert!(shrunk.area() > 25.0);
+        for contour in [to_corner.reversed(), to_corner] {
+            let region = Region::from_contour(&contour);
+            assert_eq!(region.contours().len(), 1, "lens of {thickness} mm");
+            assert_near(region.area(), contour.area() - lens);
+            assert_near(region.offset(-0.05).area(), shrunk.area());
+        }
+    }
+}

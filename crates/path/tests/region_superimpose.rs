@@ -1,7 +1,10 @@
 //! SL contours in the manual's sense: the six cases of overlapping contours and programs with several.
 
 use bahn_path::Point2;
-use bahn_path::region::{Contour, Location, Merge, PocketArea, Region, SubContour, superimpose};
+use bahn_path::region::{
+    Contour, Kind, Location, Merge, PocketArea, Region, Segment, SubContour, Superposition, Unlimited,
+    superimpose,
+};
 use std::f64::consts::PI;
 
 const BOTH: [Merge; 2] = [Merge::CentrePaths, Merge::ProgrammedContours];
@@ -358,4 +361,54 @@ fn tool_keeps_its_distance() {
             }
         }
     }
+}
+
+/// A triangle and a contour whose two arcs cross 4 µm before the corner they end in. The lens between is
+/// 4e-6 mm thick, and neither it nor anything else makes the second pocket too narrow for the tool.
+#[test]
+fn pocket_whose_arcs_cross_just_before_their_corner_is_machined() {
+    let triangle = Contour::polygon(&[
+        [1.0, 0.0],
+        [-0.4999999999999998, 0.8660254037844387],
+        [-0.5000000000000004, -0.8660254037844384],
+    ]);
+    let mut arcs = Contour::start_at([1.0, 1.067])
+        .line_to([0.623, 0.28500000000000003])
+        .line_to([-0.223, 0.092])
+        .line_to([-0.901, 0.633])
+        .line_to([-1.961, 2.012]);
+    arcs.push(Segment::Arc {
+        from: [-1.961, 2.012],
+        to: [-0.467, 3.114],
+        centre: [-1.2140000000000002, 2.563],
+        sweep_deg: -180.00000000000003,
+    });
+    arcs.push(Segment::Arc {
+        from: [-0.467, 3.114],
+        to: [1.8960000000000001, 3.444],
+        centre: [0.62422776987385, 3.9254038781457345],
+        sweep_deg: -237.36652867379064,
+    });
+    let arcs = arcs.line_to([1.0, 1.067]);
+    assert_eq!(Region::from_contour(&arcs).contours().len(), 1);
+    let pocket = |contour: Contour| SubContour {
+        contour,
+        kind: Kind::Pocket,
+    };
+    let distance = 0.05;
+    let list = [pocket(triangle), pocket(arcs)];
+    let found = Superposition::new(&list, distance, Merge::CentrePaths, &Unlimited);
+    let Ok(Superposition { areas, too_narrow }) = found;
+    assert!(too_narrow.is_empty());
+    // Neither starts in the other: one area, of the paths of both.
+    assert_eq!(areas.len(), 1);
+    assert_eq!(areas[0].outlines[0].members, [0, 1]);
+    // The point lies above the second contour's line (-0.223, 0.092) to (0.623, 0.285) by more than the
+    // distance, and outside of the triangle's path: that side is x + √3 y = 1.
+    let [x, y] = [0.4035000000000001, 0.2935826118829248];
+    let (dx, dy) = (0.623 + 0.223, 0.285 - 0.092);
+    let above = (dx * (y - 0.092) - dy * (x + 0.223)) / f64::hypot(dx, dy);
+    assert!(above > distance + 0.007);
+    assert!((1.0 - x - 3f64.sqrt() * y) / 2.0 < distance - 0.005);
+    assert_eq!(areas[0].region.locate([x, y]), Location::Inside);
 }

@@ -15,8 +15,9 @@ use crate::Point2;
 pub(super) struct Edge {
     pub ends: [usize; 2],
     pub segment: Segment,
-    /// The segment as it counts for directions and winding numbers: arcs flatter than what vertices
-    /// are moved by are their chords, as moved ends may turn a short chord any way.
+    /// The segment as it counts for directions and winding numbers: arcs no higher than what vertices
+    /// are moved by are their chords, as moved ends may turn a short chord any way. No two edges have the
+    /// same course: arcs that flat and with the same ends are one, see [`flatness`].
     pub course: Segment,
     pub weights: Vec<(usize, i32)>,
     /// Whether anything runs along it backwards.
@@ -185,7 +186,7 @@ impl Piece {
 
     fn edge(self, tolerance: f64) -> Edge {
         let chord = Segment::line(self.segment.from(), self.segment.to());
-        let flat = distance(chord.point(0.5), self.segment.point(0.5)) <= coincidence(tolerance);
+        let flat = distance(chord.point(0.5), self.segment.point(0.5)) <= flatness(tolerance);
         Edge {
             ends: self.ends,
             course: if flat { chord } else { self.segment },
@@ -199,6 +200,13 @@ impl Piece {
 /// Pieces with the same ends that bulge less than this apart are one, mm.
 fn coincidence(tolerance: f64) -> f64 {
     4.0 * tolerance
+}
+
+/// Arcs that rise no higher than this above their chord count as it, mm. That is half of what coincides:
+/// two such arcs on both sides of one chord are one, as nothing would tell which of them is on which side,
+/// and the lens between them could be turned inside out.
+fn flatness(tolerance: f64) -> f64 {
+    0.5 * coincidence(tolerance)
 }
 
 /// The pieces with coincident ones united, in the order of the first of each.
