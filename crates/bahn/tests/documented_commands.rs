@@ -81,7 +81,6 @@ fn desk() -> Folder {
         folder.write(name, "time [s],X.lag [mm],event\n1,0.5,start\n2,0.25,\n");
     }
     folder.write("jog.txt", "30: end\n");
-    digitizing(&folder);
     folder
 }
 
@@ -174,6 +173,16 @@ fn of_the_readmes() {
     }
 }
 
+#[test]
+fn of_the_documents() {
+    for file in ["docs/digitizing.md", "docs/torture.md"] {
+        let folder = desk();
+        digitizing(&folder);
+        let text = fs::read_to_string(root().join(file)).unwrap();
+        run_all(&folder, folder.as_ref(), &commands(&text));
+    }
+}
+
 /// Help texts of a command and of all below it.
 fn helps(folder: &Folder, command: &str, found: &mut Vec<String>) {
     let help = folder.bahn(&format!("{command} --help")).out();
@@ -191,6 +200,7 @@ fn helps(folder: &Folder, command: &str, found: &mut Vec<String>) {
 #[test]
 fn of_the_help_texts() {
     let folder = desk();
+    digitizing(&folder);
     let mut shown = Vec::new();
     helps(&folder, "", &mut shown);
     assert!(shown.len() > 50, "{}", shown.len());
