@@ -73,10 +73,11 @@ fn circle_error(folder: &Folder, as_reference: bool, model: ControlModel) -> f64
 /// The contour error of the circle test is at least halved against the reference list.
 #[test]
 fn the_contour_error_is_halved_on_three_plants() {
-    for (machine, model) in [
-        ("mill", ControlModel::Tnc415b),
-        ("mill-tnc360", ControlModel::Tnc360),
-        ("dig425", ControlModel::Tnc425),
+    // What was found for one circle holds for another one, too: with digital drives not to the last tenth.
+    for (machine, model, other) in [
+        ("mill", ControlModel::Tnc415b, 0.5),
+        ("mill-tnc360", ControlModel::Tnc360, 0.5),
+        ("dig425", ControlModel::Tnc425, 0.6),
     ] {
         let folder = Folder::new();
         copy(&machines().join(machine), &folder.path("m"));
@@ -98,9 +99,8 @@ fn the_contour_error_is_halved_on_three_plants() {
             circle_error(&folder, true, model),
             circle_error(&folder, false, model),
         );
-        // What was found for one circle holds for another one, too, if not to the last tenth.
         assert!(
-            after <= 0.6 * before,
+            after <= other * before,
             "a circle of its own, {machine}: {before} {after}"
         );
         let overshoot = number(&report, "/after/overshoot_mm");

@@ -496,12 +496,7 @@ fn programs_measure_with_the_calibrated_probe() {
              CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT +5",
         );
     let mut rig = on(build);
-    let z = rig.machine_position('Z');
-    rig.command(&format!("datum Z {}", z - 100.0));
-    for axis in ['X', 'Y'] {
-        let at = rig.machine_position(axis);
-        rig.command(&format!("datum {axis} {at}"));
-    }
+    rig.datum_at_machine(100.0);
     rig.command("mode full");
     rig.command("select 2.H");
     run(&mut rig, 60.0);

@@ -26,12 +26,7 @@ fn rig_of(build: Build, program: &str) -> Rig {
     rig.power_on();
     rig.seconds(0.3);
     // The spindle is 100 above the end of the ball: with the tip at Z -20 the nose is at machine Z 80.
-    let z = rig.machine_position('Z');
-    rig.command(&format!("datum Z {}", z - 100.0));
-    for axis in ['X', 'Y'] {
-        let at = rig.machine_position(axis);
-        rig.command(&format!("datum {axis} {at}"));
-    }
+    rig.datum_at_machine(100.0);
     rig.command("mode full");
     rig.command("select 1.H");
     rig.event("probe insert");

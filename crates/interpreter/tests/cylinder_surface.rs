@@ -12,26 +12,6 @@ use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, Curve, FeedRate, PathElement, PerAxis, Position};
 use support::*;
 
-/// A rotary table C with its centre at X 400, Y 150 of the machine, on a table B that swivels about X 400, Z -500.
-const TABLE: &[&str] = &[
-    "7500=1",
-    "7510=%000001",
-    "7511=%11",
-    "7512=400",
-    "7520=%000010",
-    "7521=%11",
-    "7522=150",
-    "7530=%000100",
-    "7531=%11",
-    "7532=-300",
-    "7540=%100000",
-    "7541=%01",
-    "7550=%000100",
-    "7551=%01",
-    "7552=-200",
-    "7560=%010000",
-    "7561=%01",
-];
 const CENTRE: [f64; 3] = [400.0, 150.0, -300.0];
 /// The workpiece datum of the tests lies here in the machine.
 const DATUM: [f64; 3] = [390.0, 120.0, -280.0];
@@ -115,7 +95,14 @@ fn cuts(run: &Run) -> Vec<PathElement> {
 #[test]
 fn a_contour_in_degrees() {
     let contour = "L C+10 Z+30 R0\nL C+100\nL Z+50";
-    let run = job(TABLE, 'Y', "L X+10 R0 FMAX", &format!("{CYCLE} Q17=0"), contour).run();
+    let run = job(
+        ROTARY_TABLE,
+        'Y',
+        "L X+10 R0 FMAX",
+        &format!("{CYCLE} Q17=0"),
+        contour,
+    )
+    .run();
     run.assert_completed();
     let cuts = cuts(&run);
     assert_eq!(cuts.len(), 4);
@@ -150,7 +137,7 @@ fn a_contour_in_degrees() {
 fn the_way_to_the_surface() {
     let way = |before: &str| {
         let contour = "L C+10 Z+30 R0\nL C+100";
-        let run = job(TABLE, 'Y', before, &format!("{CYCLE} Q17=0"), contour).run();
+        let run = job(ROTARY_TABLE, 'Y', before, &format!("{CYCLE} Q17=0"), contour).run();
         run.assert_completed();
         let rapid = |e: &&PathElement| e.placement.is_none() && e.feed == FeedRate::Rapid;
         let moves: Vec<_> = run
@@ -187,7 +174,7 @@ fn compensation_in_the_unrolled_surface() {
         "L C+40 Z+20 RL\nL C+50\nRND R7.5\nL Z+60\nRND R7.5\nL IC-20\nRND R7.5\nL Z+20\nRND R7.5\nL C+40";
     let cycle = CYCLE.replace("Q3=+0", "Q3=+0.5");
     let shift = "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 C+30";
-    let run = job(TABLE, 'Y', shift, &format!("{cycle} Q17=1"), contour).run();
+    let run = job(ROTARY_TABLE, 'Y', shift, &format!("{cycle} Q17=1"), contour).run();
     run.assert_completed();
     let cuts = cuts(&run);
     let arcs = cuts.iter().filter(|e| matches!(e.curve, Curve::Arc(_))).count();
@@ -217,7 +204,7 @@ fn a_table_that_lies() {
     for b in [90.0, -90.0] {
         let before = format!("L B{b:+} FMAX");
         let run = job(
-            TABLE,
+            ROTARY_TABLE,
             'Z',
             &before,
             &format!("{CYCLE} Q17=0"),
@@ -255,7 +242,15 @@ fn inches_and_whole_turns() {
     let circumference = 2.0 * std::f64::consts::PI * RADIUS / 25.4;
     let contour = format!("L C+0 Z+0 R0\nL C+{circumference:.4}");
     let cycle = "CYCL DEF 27.0 CYLINDER SURFACE Q1=-0.1 Q3=+0 Q6=+0.1 Q10=+0.1 Q11=100 Q12=250 Q16=Q50 Q17=1";
-    let run = in_unit("INCH", TABLE, 'Y', "FN 4: Q50 = +25 DIV +25.4", cycle, &contour).run();
+    let run = in_unit(
+        "INCH",
+        ROTARY_TABLE,
+        'Y',
+        "FN 4: Q50 = +25 DIV +25.4",
+        cycle,
+        &contour,
+    )
+    .run();
     run.assert_completed();
     let last = run.moves().last().expect("a movement");
     assert!(
@@ -276,7 +271,7 @@ fn wrong_surfaces() {
     let good = "L C+0 Z+0 R0\nL C+90";
     let with = |from: &str, to: &str| {
         let cycle = format!("{CYCLE} Q17=0").replace(from, to);
-        message(TABLE, 'Y', "", &cycle, good)
+        message(ROTARY_TABLE, 'Y', "", &cycle, good)
     };
     assert_eq!(with("", ""), None);
     let cases: &[(&str, &str, MessageId)] = &[
@@ -315,7 +310,7 @@ fn wrong_surfaces() {
         ),
     ] {
         assert_eq!(
-            message(TABLE, axis, before, &cycle, contour),
+            message(ROTARY_TABLE, axis, before, &cycle, contour),
             Some(id),
             "{axis} {before} {contour}"
         );

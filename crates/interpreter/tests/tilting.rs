@@ -27,27 +27,6 @@ const HEAD: &[&str] = &[
     "7560=%010000",
 ];
 
-/// A rotary table C with its centre at (400,150,-300) of the machine, under a table B that swivels about (400,150,-500).
-const TABLE: &[&str] = &[
-    "7500=1",
-    "7510=%000001",
-    "7511=%11",
-    "7512=400",
-    "7520=%000010",
-    "7521=%11",
-    "7522=150",
-    "7530=%000100",
-    "7531=%11",
-    "7532=-300",
-    "7540=%100000",
-    "7541=%01",
-    "7550=%000100",
-    "7551=%01",
-    "7552=-200",
-    "7560=%010000",
-    "7561=%01",
-];
-
 const TOOL: &str = "TOOL DEF 1 L+100 R+5\nTOOL CALL 1 Z S1000\n";
 
 fn on(machine: &[&str], blocks: &str) -> Run {
@@ -159,7 +138,7 @@ fn shifts_before_and_behind_cycle_19() {
 fn a_tilting_table_carries_the_datum() {
     let blocks = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 C+90 B+0\nL X+1 Y+2 Z+3 R0 FMAX";
     // The datum lies 60 in X beside the centre of C: with C+90 it lies 60 in -Y from it.
-    let run = on_datum(TABLE, at(460.0, 150.0, -250.0), blocks);
+    let run = on_datum(ROTARY_TABLE, at(460.0, 150.0, -250.0), blocks);
     run.assert_completed();
     let gone = [400.0 - 460.0, 90.0 - 150.0, 0.0];
     assert_near(noses(&run, 0)[0], [1.0 + gone[0], 2.0 + gone[1], 103.0 + gone[2]]);
@@ -302,7 +281,7 @@ fn m114_keeps_the_tip_on_the_path() {
 fn m116_feeds_the_tool_over_the_workpiece() {
     let datum = at(460.0, 150.0, -250.0);
     let run = on_datum(
-        TABLE,
+        ROTARY_TABLE,
         datum,
         "L X+0 Y+0 R0 FMAX\nL C+90 F600 M116\nL X-60 FMAX\nL C+180 F600\nL C+0 F600 M117",
     );
@@ -316,7 +295,7 @@ fn m116_feeds_the_tool_over_the_workpiece() {
     // In the centre nothing goes over the workpiece; without M116 the feed is that of the axis.
     assert_eq!(feeds[3..], [FeedRate::Programmed(600.0); 2]);
     // With X along: 60 mm along the axis while the radius falls from 60 to 0, 30 in the middle.
-    let run = on_datum(TABLE, datum, "L X+0 Y+0 R0 FMAX\nL X-60 C+90 F600 M116");
+    let run = on_datum(ROTARY_TABLE, datum, "L X+0 Y+0 R0 FMAX\nL X-60 C+90 F600 M116");
     let FeedRate::Programmed(feed) = run.moves().last().expect("a movement").feed else {
         panic!("a feed")
     };

@@ -169,15 +169,15 @@ impl Motion {
             f64::INFINITY
         };
         let directions = [direction, in_plane(&direction, plane, end_direction)];
-        let motion = Motion::curved(
-            (length, rotary),
+        let along = (length, rotary);
+        Some(Motion::curved(
+            along,
             radial_speed,
             share,
             directions,
             element,
             dynamics,
-        );
-        Some(motion.placed(element, dynamics))
+        ))
     }
 
     /// The arc at a corner in space: a circle of any plane, beside which other axes may move.
@@ -202,15 +202,15 @@ impl Motion {
         }
         // v = sqrt(r · MP1070), as on every circle [000:5080-5086].
         let radial_speed = (dynamics.radial * circle.radius_mm).sqrt() / around;
-        let motion = Motion::curved(
-            (length, rotary),
+        let along = (length, rotary);
+        Some(Motion::curved(
+            along,
             radial_speed,
             share,
             directions,
             element,
             dynamics,
-        );
-        Some(motion.placed(element, dynamics))
+        ))
     }
 
     /// The motion on an arc of a length, which counts rotary axes or not.
@@ -224,7 +224,7 @@ impl Motion {
     ) -> Motion {
         let slowest = slowest(share.values(), dynamics);
         let speed = dynamics.speed(element.feed, element.override_law, slowest);
-        Motion {
+        let motion = Motion {
             length: length.min(LONGEST),
             speed: speed.min(radial_speed),
             slowest,
@@ -236,7 +236,8 @@ impl Motion {
             deg_per_mm: 0.0,
             direction,
             end_direction: Some(end_direction),
-        }
+        };
+        motion.placed(element, dynamics)
     }
 
     /// Derivative of the axes by the path length at the start.

@@ -260,6 +260,14 @@ impl Rig {
         axes.iter().find(|axis| axis.letter == letter).unwrap().machine
     }
 
+    /// The datum of the machine becomes that of the workpiece, for a probe whose end is so far below the spindle, mm.
+    pub fn datum_at_machine(&mut self, probe_mm: f64) {
+        for (axis, below) in [('X', 0.0), ('Y', 0.0), ('Z', probe_mm)] {
+            let at = self.machine_position(axis) - below;
+            self.command(&format!("datum {axis} {at}"));
+        }
+    }
+
     /// Control voltage, EMERGENCY STOP test, reference run.
     pub fn power_on(&mut self) {
         if self.messages() == ["POWER INTERRUPTED"] {

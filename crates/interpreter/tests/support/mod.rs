@@ -19,6 +19,27 @@ use bahn_path::{
 use bahn_program::Program;
 use bahn_workpiece::{Event, Resolution, Workpiece};
 
+/// A rotary table C with its centre at (400,150,-300) of the machine, under a table B that swivels about (400,150,-500).
+pub const ROTARY_TABLE: &[&str] = &[
+    "7500=1",
+    "7510=%000001",
+    "7511=%11",
+    "7512=400",
+    "7520=%000010",
+    "7521=%11",
+    "7522=150",
+    "7530=%000100",
+    "7531=%11",
+    "7532=-300",
+    "7540=%100000",
+    "7541=%01",
+    "7550=%000100",
+    "7551=%01",
+    "7552=-200",
+    "7560=%010000",
+    "7561=%01",
+];
+
 /// The text of a program of the manual, from the folder `tests/programs`.
 pub fn manual(name: &str) -> String {
     let path = format!("{}/tests/programs/{name}.H", env!("CARGO_MANIFEST_DIR"));
