@@ -41,7 +41,7 @@ pub(crate) struct Channel {
     number: usize,
     /// Its own list of machine parameters; `None` for that of the machine.
     own_list: Option<ParameterList>,
-    desk: Desk,
+    pub desk: Desk,
     positioning: Positioning,
     strobes: strobes::Strobes,
     pub handshakes: Handshakes,
@@ -642,7 +642,7 @@ impl Channel {
                 machine.oscilloscope.enter_code(code, machine.link.list().model())
             }
             Command::Oscilloscope(start) => machine.oscilloscope.press(start),
-            Command::Key(code) => desk::press_key(code, machine.memory.of_mut(self.number)),
+            Command::Key(code) => self.desk.press_key(code, machine.memory.of_mut(self.number)),
             Command::Test(name) => {
                 let (run, site, basis) = self.parts(machine);
                 let feeder = run.test_feeder(&name, &site, &basis);

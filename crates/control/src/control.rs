@@ -579,4 +579,20 @@ impl Control {
     pub fn plc(&self) -> &bahn_plc::Machine {
         &self.kernel.machine.plc.machine
     }
+
+    /// Takes the key of the keyboard, by its code 58 to 127, that the PLC has simulated and nobody inhibits: it is for
+    /// whoever has the keyboard [000:7406-7440].
+    pub fn take_key(&mut self) -> Option<u8> {
+        self.kernel.channels.first_mut().desk.take_key()
+    }
+
+    /// The window of the PLC on the screen [000:6603-6617].
+    pub fn plc_window(&self) -> &bahn_plc::PlcWindow {
+        &self.kernel.machine.link.window
+    }
+
+    /// Whether that window is to be seen, as module 9081 tells the PLC [000:15262-15275].
+    pub fn show_plc_window(&mut self, view: bahn_plc::WindowView) {
+        self.kernel.machine.link.window_view = view;
+    }
 }
