@@ -12,6 +12,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("picture", &[]),
     ("parameters", &["path"]),
     ("program", &["path", "parameters"]),
+    ("dialogue", &["path", "parameters", "program"]),
     ("interpreter", &["path", "parameters", "program"]),
     ("motion", &["path"]),
     ("workpiece", &["path", "picture"]),
