@@ -595,4 +595,14 @@ impl Control {
     pub fn show_plc_window(&mut self, view: bahn_plc::WindowView) {
         self.kernel.machine.link.window_view = view;
     }
+
+    /// The program that is selected for single block and full sequence.
+    pub fn selected_program(&self) -> Option<&str> {
+        self.kernel.channels.first().run.selection.program.as_deref()
+    }
+
+    /// The block at which its next run starts.
+    pub fn start_block(&self) -> u32 {
+        self.kernel.channels.first().run.selection.start_block
+    }
 }

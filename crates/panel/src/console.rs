@@ -264,7 +264,10 @@ impl Console {
     pub fn view(&self, side: Side, site: &Site, lines: usize) -> Option<View> {
         match side {
             Side::Machine => Some(self.machine.view(site, lines)),
-            Side::Programming => self.programming.as_ref().map(|(_, stack)| stack.view(site, lines)),
+            Side::Programming => self
+                .programming
+                .as_ref()
+                .map(|(_, stack)| stack.view(site, lines)),
         }
     }
 

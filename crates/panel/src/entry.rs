@@ -56,7 +56,11 @@ impl Entry {
 
     /// A whole number that is not negative.
     pub fn whole(&self) -> Option<u32> {
-        if self.negative { None } else { self.text.parse().ok() }
+        if self.negative {
+            None
+        } else {
+            self.text.parse().ok()
+        }
     }
 }
 

@@ -48,10 +48,16 @@ pub(crate) fn is_inhibited(key: Key, site: &mut Site) -> bool {
 /// The key that the PLC has simulated in this cycle.
 pub(crate) fn simulated(site: &mut Site) -> Option<Key> {
     let code = site.host.take_key()?;
-    CODES.iter().find(|(known, _)| *known == code).map(|(_, key)| *key)
+    CODES
+        .iter()
+        .find(|(known, _)| *known == code)
+        .map(|(_, key)| *key)
 }
 
 /// The code of a key, where one is known.
 fn code(key: Key) -> Option<u8> {
-    CODES.iter().find(|(_, known)| *known == key).map(|(code, _)| *code)
+    CODES
+        .iter()
+        .find(|(_, known)| *known == key)
+        .map(|(code, _)| *code)
 }

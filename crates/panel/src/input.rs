@@ -108,7 +108,9 @@ impl TryFrom<InputText> for Input {
         let mut found = found.into_iter().flatten();
         match (found.next(), found.next()) {
             (Some(input), None) => Ok(input),
-            _ => Err(Refusal("an input has exactly one field, as {\"key\":\"ENT\"}".into())),
+            _ => Err(Refusal(
+                "an input has exactly one field, as {\"key\":\"ENT\"}".into(),
+            )),
         }
     }
 }

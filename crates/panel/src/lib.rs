@@ -37,8 +37,8 @@ pub use bahn_dialogue::{Key, KeyGroup};
 pub use input::{Input, InputText, Refusal};
 pub use live::{Link, Live, Seen};
 pub use screen::{
-    AxisLine, Dialogue, Heading, Line, MachineState, Mark, MessageLine, PlcLine, Screen, SoftKeys, Star, Status,
-    Window, WindowKind,
+    AxisLine, Dialogue, Heading, Line, MachineState, Mark, MessageLine, PlcLine, Screen, SoftKeys, Star,
+    Status, Window, WindowKind,
 };
 pub use settings::PositionType;
 pub use station::{EMERGENCY_STOP, Station, load};

@@ -72,9 +72,7 @@ impl View {
 /// Lines of which a window shows a part, so that the current one is in sight and does not move more than it must:
 /// the place of the first.
 pub(crate) fn first_in_sight(current: usize, total: usize, lines: usize) -> usize {
-    current
-        .saturating_sub(lines / 2)
-        .min(total.saturating_sub(lines))
+    current.saturating_sub(lines / 2).min(total.saturating_sub(lines))
 }
 
 #[cfg(test)]

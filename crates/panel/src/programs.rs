@@ -165,7 +165,9 @@ mod tests {
         for name in ["1.H", "BRACKET.H", "T_1-A.TCH", "$MDI.H"] {
             assert!(is_name(name), "{name}");
         }
-        for name in ["", ".H", "..", "../1.H", "a/b.H", "C:1.H", "a\\b", "a b.H", "ä.H", "1.H\0"] {
+        for name in [
+            "", ".H", "..", "../1.H", "a/b.H", "C:1.H", "a\\b", "a b.H", "ä.H", "1.H\0",
+        ] {
             assert!(!is_name(name), "{name}");
         }
     }

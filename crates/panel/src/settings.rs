@@ -98,6 +98,10 @@ impl Settings {
     /// The language of the dialogue.
     pub fn language(&self, english: bool) -> Language {
         let chosen = self.language.as_deref().and_then(texts::from_code);
-        chosen.unwrap_or(if english { Language::English } else { Language::German })
+        chosen.unwrap_or(if english {
+            Language::English
+        } else {
+            Language::German
+        })
     }
 }

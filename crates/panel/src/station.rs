@@ -6,16 +6,14 @@ use std::sync::Arc;
 
 use bahn_control::{Command, Control, Programs};
 use bahn_dialogue::Key;
-use bahn_host::{
-    Answer, Attendance, Clock, Deed, Host, HostError, LoadedMachine, Operator, PowerOn, Source,
-};
+use bahn_host::{Answer, Attendance, Clock, Deed, Host, HostError, LoadedMachine, Operator, PowerOn, Source};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
 
 use crate::console::{Console, Side};
-use crate::input::{Input, Refusal};
 use crate::inhibit;
+use crate::input::{Input, Refusal};
 use crate::programs::ProgramMemory;
 use crate::screen::{MachineState, MessageLine, PlcLine, Screen};
 use crate::settings::Settings;
@@ -137,7 +135,7 @@ impl Station {
         self.is_on = is_on;
         if is_on {
             let (console, mut site) = self.parts();
-            for key in std::iter::from_fn(|| inhibit::simulated(&mut site)).take(1) {
+            if let Some(key) = inhibit::simulated(&mut site) {
                 console.key(key, &mut site);
             }
             console.tick(&mut site);
@@ -213,12 +211,7 @@ impl Station {
     fn make_screen(&mut self) -> Screen {
         let messages = self.messages();
         let snapshot = self.host.control().snapshot();
-        let status = status::of(
-            &snapshot,
-            self.host.control(),
-            self.parameters(),
-            &self.settings,
-        );
+        let status = status::of(&snapshot, self.host.control(), self.parameters(), &self.settings);
         let plc_window = self.plc_window();
         let (console, site) = self.parts();
         let front = console.front();
@@ -292,7 +285,9 @@ impl Station {
     fn lamps(&self) -> BTreeMap<String, bool> {
         let plant = self.host.plant();
         let names = plant.lamps().map(str::to_owned);
-        names.map(|name| (name.clone(), plant.lamp(&name).unwrap_or(false))).collect()
+        names
+            .map(|name| (name.clone(), plant.lamp(&name).unwrap_or(false)))
+            .collect()
     }
 
     fn machine_state(&self) -> MachineState {
@@ -326,7 +321,11 @@ impl Station {
                 KeyAction::Tap => !self.emergency_stop,
             };
             self.emergency_stop = pressed;
-            return self.deed(if pressed { "emergency press" } else { "emergency release" });
+            return self.deed(if pressed {
+                "emergency press"
+            } else {
+                "emergency release"
+            });
         }
         let verb = match action {
             KeyAction::Press => "press",
@@ -377,7 +376,9 @@ impl Station {
         let answer = self.host.act(Source::Client("panel".to_owned()), deed);
         match answer.map_err(|error| Refusal(error.to_string()))? {
             Answer::Done => Ok(()),
-            Answer::Refused => Err(Refusal(MessageId::KeyNonFunctional.text(self.control().model()).into())),
+            Answer::Refused => Err(Refusal(
+                MessageId::KeyNonFunctional.text(self.control().model()).into(),
+            )),
             Answer::Impossible(why) => Err(Refusal(why)),
         }
     }

@@ -106,10 +106,7 @@ pub(crate) fn of(
             .map(|marker| control.memory().bit(marker)),
         star: star(snapshot),
         flags: Vec::new(),
-        overrides: [
-            snapshot.feed_override_percent,
-            snapshot.spindle_override_percent,
-        ],
+        overrides: [snapshot.feed_override_percent, snapshot.spindle_override_percent],
         waiting: snapshot
             .waiting
             .map_or_else(String::new, |waiting| waiting.to_string()),
@@ -132,7 +129,7 @@ fn axis_line(
         PositionType::Ref => axis.machine,
     };
     let index = u8::try_from(axis.index).unwrap_or_default();
-    let step = parameters.axis_parameters(index).display_step_mm;
+    let step = parameters.axis_parameters(index).travel.display_step_mm;
     AxisLine {
         letter: axis.letter,
         value: notation.position(value, step, degrees),
@@ -201,6 +198,9 @@ mod tests {
         let inch = notation(true, Decimal::Point);
         assert_eq!(inch.position(25.4, 0.001, false), "+1.0000");
         assert_eq!(inch.position(90.0, 0.001, true), "+90.000");
-        assert_eq!((inch.feed(254.0), point.feed(254.4)), ("10.0".into(), "254".into()));
+        assert_eq!(
+            (inch.feed(254.0), point.feed(254.4)),
+            ("10.0".into(), "254".into())
+        );
     }
 }

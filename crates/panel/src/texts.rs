@@ -77,8 +77,11 @@ mod tests {
     #[test]
     fn every_text_of_the_panel_is_translated() {
         let used = used();
-        assert!(used.len() > 20, "{}", used.len());
-        let missing: Vec<_> = used.iter().filter(|text| find(Language::German, text).is_none()).collect();
+        assert!(used.len() > 15, "{}", used.len());
+        let missing: Vec<_> = used
+            .iter()
+            .filter(|text| find(Language::German, text).is_none())
+            .collect();
         assert!(missing.is_empty(), "{missing:#?}");
         assert!(GERMAN.iter().flat_map(|table| table.lines()).all(|line| {
             line.starts_with('#') || line.split('\t').filter(|cell| !cell.is_empty()).count() == 2

@@ -47,10 +47,14 @@ impl Page for ByHand {
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
         match place {
-            0 => Turn::Open(Number::ask(site.words("MISCELLANEOUS FUNCTION M ="), |value, site| {
-                let whole = (value.fract() == 0.0 && (0.0..=999.0).contains(&value)).then_some(value as u16);
-                whole.is_some_and(|m| site.command(Command::MFunction(m)))
-            })),
+            0 => Turn::Open(Number::ask(
+                site.words("MISCELLANEOUS FUNCTION M ="),
+                |value, site| {
+                    let whole =
+                        (value.fract() == 0.0 && (0.0..=999.0).contains(&value)).then_some(value as u16);
+                    whole.is_some_and(|m| site.command(Command::MFunction(m)))
+                },
+            )),
             1 => Turn::Open(Number::ask(site.words("SPINDLE SPEED S ="), |value, site| {
                 site.command(Command::Speed(value))
             })),
@@ -84,6 +88,8 @@ impl Page for ByHand {
 fn missing_references(site: &Site) -> String {
     let snapshot = site.control().snapshot();
     let missing = snapshot.axes.iter().filter(|axis| !axis.referenced);
-    let letters = missing.map(|axis| format!(" {}", axis.letter)).collect::<String>();
+    let letters = missing
+        .map(|axis| format!(" {}", axis.letter))
+        .collect::<String>();
     format!("{}{letters}", site.words("PASS OVER REFERENCE MARK"))
 }

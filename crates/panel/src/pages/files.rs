@@ -47,7 +47,11 @@ impl Directory {
             (true, None) => return Turn::Refused,
             (false, _) => {
                 let name = self.typed.clone();
-                if name.contains('.') { name } else { format!("{name}.H") }
+                if name.contains('.') {
+                    name
+                } else {
+                    format!("{name}.H")
+                }
             }
         };
         let there = site.programs.has(&name);

@@ -22,7 +22,10 @@ pub(crate) struct ProgramRun {
 
 impl ProgramRun {
     fn move_cursor(&mut self, down: bool, site: &mut Site) -> Turn {
-        let last = self.shown.as_ref().map_or(0, |(_, program)| program.block_count().saturating_sub(1));
+        let last = self
+            .shown
+            .as_ref()
+            .map_or(0, |(_, program)| program.block_count().saturating_sub(1));
         let next = match down {
             true => self.cursor.saturating_add(1).min(last),
             false => self.cursor.saturating_sub(1),
@@ -68,9 +71,12 @@ impl Page for ProgramRun {
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
         let done = match (site.control().run_state(), place) {
             (RunState::Idle, 0) => {
-                return Turn::Open(Number::ask(site.words("RESTORE POSITION AT N ="), |value, site| {
-                    value >= 0.0 && value.fract() == 0.0 && site.command(Command::RestoreAt(value as u32))
-                }));
+                return Turn::Open(Number::ask(
+                    site.words("RESTORE POSITION AT N ="),
+                    |value, site| {
+                        value >= 0.0 && value.fract() == 0.0 && site.command(Command::RestoreAt(value as u32))
+                    },
+                ));
             }
             (_, 0) => site.command(Command::ManualOperation),
             (_, 1) => site.command(Command::RestorePosition),
