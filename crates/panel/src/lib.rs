@@ -23,6 +23,7 @@ mod entry;
 mod inhibit;
 mod input;
 mod live;
+mod numbers;
 mod page;
 mod pages;
 mod programs;
