@@ -26,7 +26,7 @@ struct Viewer {
 const REMEMBERED: usize = 64;
 
 impl Crew {
-    /// Somebody has come; the first one operates. The number of his last input that was taken.
+    /// Somebody has come; he operates when nobody else is there who does. The number of his last input that was taken.
     pub fn come(&mut self, name: &str) -> u64 {
         if self.viewers.len() >= REMEMBERED {
             self.viewers.retain(|_, viewer| viewer.connections > 0);
@@ -34,13 +34,14 @@ impl Crew {
         let viewer = self.viewers.entry(name.to_owned()).or_default();
         viewer.connections += 1;
         let taken = viewer.taken;
-        if self.operator.is_none() {
+        let operator = self.operator.as_deref();
+        if !operator.is_some_and(|operator| self.is_there(operator)) {
             self.operator = Some(name.to_owned());
         }
         taken
     }
 
-    /// A connection has gone. Whoever operates keeps the keys until somebody else wants them.
+    /// A connection has gone. Whoever operates keeps the keys until somebody else comes or wants them.
     pub fn go(&mut self, name: &str) {
         if let Some(viewer) = self.viewers.get_mut(name) {
             viewer.connections = viewer.connections.saturating_sub(1);
@@ -139,10 +140,13 @@ mod tests {
         assert_eq!(crew.come("anna"), 1);
         assert_eq!(crew.takes("anna", 1), Taking::Twice);
         assert_eq!(crew.takes("anna", 2), Taking::New);
-        // While she is away somebody else may operate.
-        crew.go("anna");
+        // Who looks on while she loads the page anew does not get the keys; who comes when she is away does.
         crew.come("ben");
-        crew.ask("ben");
-        assert_eq!(crew.roles().0, Some("ben"));
+        crew.go("anna");
+        crew.come("anna");
+        assert_eq!(crew.roles().0, Some("anna"));
+        crew.go("anna");
+        crew.come("carl");
+        assert_eq!(crew.roles().0, Some("carl"));
     }
 }
