@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 const ROOMS: &[(&str, &[&str])] = &[
     ("path", &[]),
     ("picture", &[]),
+    ("browser", &[]),
     ("parameters", &["path"]),
     ("program", &["path", "parameters"]),
     ("interpreter", &["path", "parameters", "program"]),
