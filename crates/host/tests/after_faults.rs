@@ -433,3 +433,63 @@ fn shuttle(assignments: &[&str]) -> Host {
 fn place(host: &Host) -> f64 {
     host.plant().axis('W').unwrap().position
 }
+
+/// EMERGENCY STOP for 20 ms while the spindle starts up for M13, which no scan need see at I3: the PLC program sees that the
+/// control holds no axis, takes its order back, and gives it anew. Its M13 is acknowledged, and the run goes on.
+#[test]
+fn a_short_emergency_stop_does_not_leave_the_spindle_standing() {
+    for name in ["mill", "mill-tnc360", "dig425"] {
+        let machine = machine(name);
+        let blocks = "TOOL CALL 1 Z S3000\nL Z+100 R0 FMAX\nL X+10 FMAX M13\nL X+20 F1000";
+        let mut host = host(&machine, PowerOn::fresh(&machine), blocks);
+        until(&mut host, "M13", |control| {
+            let third = control.element().is_some_and(|element| element.block.block == 3);
+            third && control.waiting().is_some()
+        });
+        seconds(&mut host, 0.1);
+        let begun = host.save();
+        // Scans are 20 ms apart, contour cycles 3 or 6 ms; relays take 20 ms to drop out and 10 ms to pull in.
+        let cycle_s = f64::from(host.control().cycle_us()) * 1e-6;
+        for (cycles, more) in (0..7).flat_map(|cycles| [(cycles, 0.0), (cycles, 1.0)]) {
+            host.restore(&begun).unwrap();
+            for _ in 0..cycles {
+                host.step().unwrap();
+            }
+            give(&mut host, "emergency press");
+            seconds(&mut host, 0.019 + more * cycle_s);
+            give(&mut host, "emergency release");
+            seconds(&mut host, 1.0);
+            give(&mut host, "ce");
+            seconds(&mut host, 0.3);
+            give(&mut host, "key NC_START tap");
+            until(&mut host, name, Control::has_ended);
+        }
+    }
+}
+
+/// NC start in the same cycle in which CE closes the loops: the drives of the digital mill have no power yet, and Z would be
+/// GROSS POSITIONING ERROR 3F. Its PLC program waits with the start.
+#[test]
+fn a_start_waits_for_the_drives() {
+    let digital = machine("dig425");
+    let mut host = host(&digital, PowerOn::fresh(&digital), "L Z+100 R0 FMAX");
+    until(&mut host, "the loops", Control::loops_closed);
+    give(&mut host, "voltage off");
+    seconds(&mut host, 0.5);
+    give(&mut host, "voltage on");
+    seconds(&mut host, 0.3);
+    let begun = host.save();
+    for cycles in 0..16 {
+        host.restore(&begun).unwrap();
+        give(&mut host, "key NC_START press");
+        for _ in 0..cycles {
+            host.step().unwrap();
+        }
+        give(&mut host, "ce");
+        seconds(&mut host, 0.5);
+        let shown = host.control().shown();
+        assert!(shown.iter().all(|shown| !shown.flashing), "{shown:?}");
+        give(&mut host, "key NC_START release");
+        until(&mut host, "the end", Control::has_ended);
+    }
+}
