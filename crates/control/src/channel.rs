@@ -380,8 +380,9 @@ impl Channel {
             runs,
         };
         let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
-        let (life, tools) = (&mut self.life, &mut self.tools);
-        let changed = life.follow(counting, tools, magazine, &self.handshakes, exchange, files);
+        let changed = self
+            .life
+            .follow(counting, &mut self.tools, magazine, exchange, files);
         machine.unsaved |= changed;
         let waits = keeps && machine.unsaved;
         if !waits {
@@ -444,6 +445,9 @@ impl Channel {
         if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
             self.show(Message::PlcMarkers(code), machine);
         }
+        let exchange = machine.memory.of(self.number);
+        self.tools
+            .take_end(&mut machine.magazine, &self.handshakes, exchange);
     }
 
     /// Takes the strobes that the PLC set in a scan, and resets them.
