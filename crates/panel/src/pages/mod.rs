@@ -2,6 +2,7 @@
 
 mod by_hand;
 mod datum;
+mod editing;
 mod files;
 mod mdi;
 mod number;

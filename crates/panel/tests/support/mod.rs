@@ -124,6 +124,11 @@ impl Trainee {
         self
     }
 
+    /// Somebody puts a file into his machine's folder.
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.folder.join(name), text).unwrap();
+    }
+
     /// A file of his machine's folder.
     pub fn file(&self, name: &str) -> String {
         std::fs::read_to_string(self.folder.join(name)).unwrap()
