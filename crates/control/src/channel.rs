@@ -379,10 +379,8 @@ impl Channel {
             cycle_us: machine.timing.contour_us(),
             runs,
         };
-        let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
-        let changed = self
-            .life
-            .follow(counting, &mut self.tools, magazine, exchange, files);
+        let (magazine, files, tools) = (&mut machine.magazine, &mut machine.link.files, &mut self.tools);
+        let changed = self.life.follow(counting, tools, magazine, exchange, files);
         machine.unsaved |= changed;
         let waits = keeps && machine.unsaved;
         if !waits {
@@ -445,9 +443,8 @@ impl Channel {
         if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
             self.show(Message::PlcMarkers(code), machine);
         }
-        let exchange = machine.memory.of(self.number);
-        self.tools
-            .take_end(&mut machine.magazine, &self.handshakes, exchange);
+        let (magazine, exchange) = (&mut machine.magazine, machine.memory.of(self.number));
+        self.tools.take_end(magazine, &self.handshakes, exchange);
     }
 
     /// Takes the strobes that the PLC set in a scan, and resets them.
