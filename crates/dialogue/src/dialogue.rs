@@ -224,11 +224,7 @@ impl Dialogue {
         }
         let word = field.words.get_mut(index).ok_or(KeyNonFunctional)?;
         (word.value, word.incremental) = (value, false);
-        *typing = Typing {
-            word: Some(index),
-            fresh: true,
-            incremental: false,
-        };
+        *typing = Typing::over(index);
         Ok(())
     }
 
@@ -275,11 +271,12 @@ impl Dialogue {
     }
 
     fn skip(&mut self, context: Context<'_>) -> Result<Step, MessageId> {
-        let (field, _) = self.parts().ok_or(KeyNonFunctional)?;
+        let (field, typing) = self.parts().ok_or(KeyNonFunctional)?;
         match field.slot.need {
             Need::Required => Err(KeyNonFunctional),
             _ => {
                 field.words.clear();
+                *typing = Typing::default();
                 self.next(context)
             }
         }

@@ -440,10 +440,12 @@ impl Editor {
 
     pub(crate) fn highlight(&mut self, block: u32, place: WordPlace) -> Result<Reaction, MessageId> {
         let line = self.line_of(block).ok_or(KeyNonFunctional)?;
-        let place = match (place, line.is_text()) {
+        let places = line.places();
+        let place = match place {
             // A line of text is entered as a whole.
-            (None, true) => Some((0, 0)),
-            (place, _) => place,
+            None if line.is_text() => Some((0, 0)),
+            None => places.first().copied().flatten(),
+            place => place,
         };
         self.cursor = block;
         self.show(Open::Highlight(Box::new(Highlight::new(block, line, place))))

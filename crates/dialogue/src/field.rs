@@ -193,6 +193,11 @@ impl Ask {
         )
     }
 
+    /// Whether its values are numbers.
+    pub(crate) fn is_number(self) -> bool {
+        self.has_decimals() || matches!(self, Ask::Integer { .. } | Ask::Repeat | Ask::Labels | Ask::M)
+    }
+
     /// Whether digits write a value without an axis before.
     pub(crate) fn begins_with_value(self) -> bool {
         !matches!(

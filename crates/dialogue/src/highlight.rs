@@ -5,7 +5,7 @@ use bahn_parameters::MessageId::{self, KeyNonFunctional};
 use crate::check::Context;
 use crate::field::{Ask, Need};
 use crate::line::{Line, WordPlace};
-use crate::typing::Typing;
+use crate::typing::{Fresh, Typing};
 use crate::{Key, Setting};
 
 /// A highlighted word.
@@ -53,11 +53,11 @@ impl Highlight {
         let (index, _) = self.place.ok_or(KeyNonFunctional)?;
         let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;
         match key {
-            Key::Ce if !field.slot.ask.is_text() && field.slot.ask.has_decimals() => {
+            Key::Ce if field.slot.ask.is_number() => {
                 let word = self.typing.word.and_then(|word| field.words.get_mut(word));
                 let word = word.ok_or(KeyNonFunctional)?;
                 word.value = "0".to_owned();
-                self.typing.fresh = true;
+                self.typing.fresh = Fresh::Yes;
             }
             Key::Ce if field.slot.ask.is_text() => self.typing.clear(field),
             Key::Ce => return Err(KeyNonFunctional),

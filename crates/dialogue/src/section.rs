@@ -78,8 +78,9 @@ impl Editor {
             }
             Key::NoEnt => {
                 let line = self.line_of(block).ok_or(KeyNonFunctional)?;
-                let last = line.places().into_iter().rfind(|place| *place <= highlight.place);
-                self.highlight(block, last.flatten())?;
+                let places = line.places();
+                let behind = places.iter().find(|place| **place >= highlight.place);
+                self.highlight(block, behind.or(places.last()).copied().flatten())?;
             }
             Key::Up | Key::Down => self.same_word(&highlight, key == Key::Down)?,
             Key::Ent => {
