@@ -102,6 +102,7 @@ fn m() -> impl Strategy<Value = (String, MFunctions)> {
 }
 
 /// Positioning blocks with their keys.
+#[expect(clippy::too_many_lines, reason = "one step for each word")]
 fn motion() -> impl Strategy<Value = (String, Motion)> {
     use MotionKind::{
         Circle, CirclePolar, CircleRadius, CircleTangential, CircleTangentialPolar, Line, LinePolar,
