@@ -70,9 +70,7 @@ impl Editor {
             block: self.cursor,
             source: match dialogue.source {
                 _ if dialogue.replaces.is_some() => String::new(),
-                Source::Row(row) => row.id.to_owned(),
-                Source::Cycle(CycleFunction::Definition, number) => format!("CYCL DEF {number}"),
-                Source::Cycle(CycleFunction::Probe, number) => format!("TCH PROBE {number}"),
+                source => source.name(),
             },
             question: (dialogue.line, dialogue.field),
             reached: dialogue.reached,

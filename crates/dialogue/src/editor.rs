@@ -350,10 +350,7 @@ impl Editor {
         if key == Key::Capture {
             let wanted = dialogue.wants_position();
             self.open = Open::Dialogue(dialogue);
-            return match wanted.ok_or(KeyNonFunctional)? {
-                Some(axis) => Ok(Reaction::Position(Wanted::Axis(axis))),
-                None => Ok(Reaction::Position(Wanted::ToolAxis)),
-            };
+            return wanted.map(Reaction::Position).ok_or(KeyNonFunctional);
         }
         let step = dialogue.key(key, self.context(dialogue.replaces));
         let done = match step {

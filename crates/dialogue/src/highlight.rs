@@ -6,7 +6,7 @@ use crate::check::Context;
 use crate::field::{Ask, Need};
 use crate::line::{Line, WordPlace};
 use crate::typing::{Fresh, Typing};
-use crate::{Key, Setting};
+use crate::{Key, Setting, Wanted};
 
 /// A highlighted word.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +79,22 @@ impl Highlight {
             self.typing.take(field, value);
         }
         self.follow(index);
+        Ok(())
+    }
+
+    /// The position that may be captured for the word.
+    pub(crate) fn wants_position(&self) -> Option<Wanted> {
+        let (field, word) = self.place?;
+        self.line.field(field)?.wants_position(word)
+    }
+
+    /// Takes the value of a position.
+    pub(crate) fn capture(&mut self, value: String) -> Result<(), MessageId> {
+        let (field, index) = self.place.ok_or(KeyNonFunctional)?;
+        let field = self.line.field_mut(field).ok_or(KeyNonFunctional)?;
+        let word = field.words.get_mut(index).ok_or(KeyNonFunctional)?;
+        (word.value, word.incremental) = (value, false);
+        self.typing = Typing::over(index);
         Ok(())
     }
 

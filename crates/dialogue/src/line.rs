@@ -89,7 +89,6 @@ impl Line {
         read.faults.is_empty().then(|| written(&read.block, language))
     }
 
-    #[cfg(test)]
     pub(crate) fn head(&self) -> &str {
         &self.head
     }
