@@ -350,10 +350,7 @@ impl Editor {
         if key == Key::Capture {
             let wanted = dialogue.wants_position();
             self.open = Open::Dialogue(dialogue);
-            return match wanted.ok_or(KeyNonFunctional)? {
-                Some(axis) => Ok(Reaction::Position(Wanted::Axis(axis))),
-                None => Ok(Reaction::Position(Wanted::ToolAxis)),
-            };
+            return wanted.map(Reaction::Position).ok_or(KeyNonFunctional);
         }
         let step = dialogue.key(key, self.context(dialogue.replaces));
         let done = match step {
@@ -440,10 +437,12 @@ impl Editor {
 
     pub(crate) fn highlight(&mut self, block: u32, place: WordPlace) -> Result<Reaction, MessageId> {
         let line = self.line_of(block).ok_or(KeyNonFunctional)?;
-        let place = match (place, line.is_text()) {
+        let places = line.places();
+        let place = match place {
             // A line of text is entered as a whole.
-            (None, true) => Some((0, 0)),
-            (place, _) => place,
+            None if line.is_text() => Some((0, 0)),
+            None => places.first().copied().flatten(),
+            place => place,
         };
         self.cursor = block;
         self.show(Open::Highlight(Box::new(Highlight::new(block, line, place))))

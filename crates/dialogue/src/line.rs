@@ -89,7 +89,6 @@ impl Line {
         read.faults.is_empty().then(|| written(&read.block, language))
     }
 
-    #[cfg(test)]
     pub(crate) fn head(&self) -> &str {
         &self.head
     }
@@ -185,11 +184,13 @@ impl Line {
         }
     }
 
-    /// Places of the head and all words, in order.
+    /// Places of the head, where there is one, and all words, in order.
     pub(crate) fn places(&self) -> Vec<WordPlace> {
         let words = self.fields.iter().enumerate();
         let words = words.flat_map(|(field, it)| (0..it.words.len()).map(move |word| Some((field, word))));
-        std::iter::once(None).chain(words).collect()
+        // A block that opens with a word has no head to highlight.
+        let head = (!self.head.is_empty() || self.is_empty()).then_some(None);
+        head.into_iter().chain(words).collect()
     }
 
     pub(crate) fn word(&self, place: WordPlace) -> Option<&Word> {
