@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     tab.viewport(width.parse()?, height.parse()?, is("phone"))?;
     tab.dark(is("dark"))?;
     tab.open_file(Path::new(page))?;
-    let settled = "!globalThis.bahn || (bahn.view.frames > 0 && !bahn.view.asked)";
+    let settled = "!document.querySelector('#data') || globalThis.bahn.view.settled";
     tab.wait_until(settled, Duration::from_secs(60))?;
     for script in further.iter().filter_map(|word| word.strip_prefix("js:")) {
         println!("{}", tab.evaluate(script)?);
