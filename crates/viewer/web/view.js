@@ -31,6 +31,8 @@ export class PartView {
     this.toolAt = null;
     this.listeners = [];
     this.coarse = 1;
+    // The picture at rest is no coarser, however slow the graphics are.
+    this.floor = 0.5;
     this.frames = 0;
     this.blank = blank;
     this.build();
@@ -193,7 +195,7 @@ export class PartView {
   finest() {
     const area = Math.max(1, this.canvas.clientWidth * this.canvas.clientHeight);
     const most = Math.min(Math.max(FINEST, devicePixelRatio), Math.sqrt(MOST_PIXELS / area));
-    return Math.min(most, Math.max(1, this.ratioFor(RESTING)));
+    return Math.min(most, Math.max(this.floor, this.ratioFor(RESTING)));
   }
 
   // Nothing is left to be drawn.
