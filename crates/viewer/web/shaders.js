@@ -25,7 +25,7 @@ uniform ivec2 cells;
 uniform vec3 scale;         // mm to cells and steps
 uniform vec3 clipMin, clipMax, whole;
 uniform int colouring;      // 0 material, 1 tool, 2 depth
-uniform float pixel;        // mm
+uniform float pixel, hatch;  // mm: a pixel of the picture, one of CSS
 
 const int TOP_LEVEL = 6;
 const float WHOLE = 65535.0;
@@ -213,7 +213,7 @@ void main() {
     }
   }
   if (section) {
-    vec2 dots = corner * extent / pixel;
+    vec2 dots = corner * extent / hatch;
     base *= mod(dots.x + dots.y, 9.0) < 1.3 ? 0.72 : 1.0;
   }
 
