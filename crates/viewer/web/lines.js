@@ -84,7 +84,7 @@ export class Lines {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.depthMask(false);
-    for (const [name, width, strength, behind] of [['box', 1, 0.55, 0.12], ['path', 1.5, 1, 0.16]]) {
+    for (const [name, width, strength, behind] of [['box', 1, 0.55, 0.12], ['path', 1.5, 0.85, 0.12]]) {
       if (!show[name]) continue;
       const set = this.sets[name];
       gl.bindVertexArray(set.array);

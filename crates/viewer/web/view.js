@@ -31,6 +31,8 @@ export class PartView {
     this.toolAt = null;
     this.listeners = [];
     this.coarse = 1;
+    // The picture at rest is no coarser, however slow the graphics are.
+    this.floor = 0.5;
     this.frames = 0;
     this.blank = blank;
     this.build();
@@ -119,7 +121,11 @@ export class PartView {
 
   frame(time) {
     this.asked = null;
-    if (this.cost === undefined) this.calibrate();
+    if (this.cost === undefined) {
+      this.cost = null;
+      this.calibrate();
+    }
+    if (this.cost === null) return;
     const quiet = performance.now() - this.touched > REST || this.frames === 0;
     if (this.dirty && this.steady) this.judge(time - this.last);
     this.steady = this.dirty && !quiet;
@@ -132,19 +138,38 @@ export class PartView {
     if (!quiet) this.asked ??= requestAnimationFrame(next => this.frame(next));
   }
 
-  // How long a picture takes, by two of the very first: ms for a pixel. The first one compiles shaders.
-  calibrate() {
-    const { gl, canvas } = this;
-    const one = new Uint8Array(4);
-    for (const ratio of [0.1, 0.5]) {
+  // How long a picture takes, by a small one: ms for a pixel. One before it compiles the shaders.
+  async calibrate() {
+    const { canvas } = this;
+    let cost = 0;
+    canvas.style.visibility = 'hidden';
+    for (const ratio of [0.05, 0.3]) {
       this.fitCanvas(ratio);
       const start = performance.now();
       this.draw(ratio);
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, one);
-      this.cost = (performance.now() - start) / (canvas.width * canvas.height);
+      await this.drawnNow();
+      cost = (performance.now() - start) / (canvas.width * canvas.height);
     }
-    this.frames = 0;
+    this.cost = cost;
     this.coarse = Math.min(1, Math.max(COARSEST, this.ratioFor(0.7 * FRAME) / devicePixelRatio));
+    this.frames = 0;
+    canvas.style.visibility = '';
+    this.changed();
+  }
+
+  // Resolves when the graphics card has drawn everything. It is not waited for with the page standing still.
+  drawnNow() {
+    const { gl } = this;
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    return new Promise(resolve => {
+      const look = () => {
+        if (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) return setTimeout(look, 1);
+        gl.deleteSync(fence);
+        resolve();
+      };
+      look();
+    });
   }
 
   // Pixels for a CSS pixel of a picture that takes so long.
@@ -170,7 +195,12 @@ export class PartView {
   finest() {
     const area = Math.max(1, this.canvas.clientWidth * this.canvas.clientHeight);
     const most = Math.min(Math.max(FINEST, devicePixelRatio), Math.sqrt(MOST_PIXELS / area));
-    return Math.min(most, Math.max(1, this.ratioFor(RESTING)));
+    return Math.min(most, Math.max(this.floor, this.ratioFor(RESTING)));
+  }
+
+  // Nothing is left to be drawn.
+  get settled() {
+    return this.cost > 0 && !this.dirty && !this.asked && this.drawn === this.finest();
   }
 
   fitCanvas(ratio) {
