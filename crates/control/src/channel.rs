@@ -380,10 +380,8 @@ impl Channel {
             runs,
         };
         let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
-        let changed = self
-            .life
-            .follow(counting, &mut self.tools, magazine, exchange, files);
-        machine.unsaved |= changed;
+        let (life, tools) = (&mut self.life, &mut self.tools);
+        machine.unsaved |= life.follow(counting, tools, magazine, exchange, files);
         let waits = keeps && machine.unsaved;
         if !waits {
             self.tools.end_geometry_strobe(exchange);
@@ -445,9 +443,8 @@ impl Channel {
         if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
             self.show(Message::PlcMarkers(code), machine);
         }
-        let exchange = machine.memory.of(self.number);
-        self.tools
-            .take_end(&mut machine.magazine, &self.handshakes, exchange);
+        let (exchange, magazine) = (machine.memory.of(self.number), &mut machine.magazine);
+        self.tools.take_end(magazine, &self.handshakes, exchange);
     }
 
     /// Takes the strobes that the PLC set in a scan, and resets them.
