@@ -260,9 +260,11 @@ fn two_codes_that_power_off_breaks_off() {
                 rig.seconds(depth_s);
                 let at = format!("{kind:b}, W112 M2046 M2093 {now:?} and {depth_s} s");
                 switch_off_and_on(&mut rig, &at);
-                rig.power_on();
-                let next = if rig.control.tool() == 4 { "26.H" } else { "16.H" };
-                change_to_6(&mut rig, next, &at);
+                if now != before && depth_s == 0.0 {
+                    rig.power_on();
+                    let next = if rig.control.tool() == 4 { "26.H" } else { "16.H" };
+                    change_to_6(&mut rig, next, &at);
+                }
             }
             before = now;
             begun.cycle();
