@@ -379,9 +379,9 @@ impl Channel {
             cycle_us: machine.timing.contour_us(),
             runs,
         };
-        let (magazine, files, tools) = (&mut machine.magazine, &mut machine.link.files, &mut self.tools);
-        let changed = self.life.follow(counting, tools, magazine, exchange, files);
-        machine.unsaved |= changed;
+        let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
+        let (life, tools) = (&mut self.life, &mut self.tools);
+        machine.unsaved |= life.follow(counting, tools, magazine, exchange, files);
         let waits = keeps && machine.unsaved;
         if !waits {
             self.tools.end_geometry_strobe(exchange);
@@ -443,7 +443,7 @@ impl Channel {
         if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
             self.show(Message::PlcMarkers(code), machine);
         }
-        let (magazine, exchange) = (&mut machine.magazine, machine.memory.of(self.number));
+        let (exchange, magazine) = (machine.memory.of(self.number), &mut machine.magazine);
         self.tools.take_end(magazine, &self.handshakes, exchange);
     }
 
