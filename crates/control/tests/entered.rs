@@ -1,6 +1,8 @@
 //! What the operator enters beside a run: AXIS LIMIT, Q parameters, elements of tables; and what the status display shows
 //! of transformations.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 #[path = "support/stand.rs"]
 mod stand;
 mod support;
@@ -150,9 +152,7 @@ fn transformations_in_force() {
     rig.until(5.0, "block 2", |rig| nominal(rig, 'X') > 60.2);
     let second = shown(&rig);
     assert_eq!((second.shifted, second.mirrored), (vec![Axis::Y], vec![]));
-    rig.until(5.0, "block 3", |rig| {
-        shown(rig).scaled
-    });
+    rig.until(5.0, "block 3", |rig| shown(rig).scaled);
     let last = shown(&rig);
     assert_eq!((last.shifted, last.mirrored), (vec![Axis::Y], vec![Axis::X]));
     assert!(last.scaled && last.rotated);

@@ -20,6 +20,7 @@
 
 mod console;
 mod entry;
+mod frames;
 mod inhibit;
 mod input;
 mod live;

@@ -21,7 +21,11 @@ impl LoadedMachine {
     /// What does not fit.
     pub fn fits(&self, form: TableForm, text: &str, parameters: &ParameterList) -> Result<(), String> {
         let sizes = parameters.operation_parameters().tools;
-        let first = |faults: Vec<TableFault>| faults.first().map_or_else(String::new, |fault| fault.message.clone());
+        let first = |faults: Vec<TableFault>| {
+            faults
+                .first()
+                .map_or_else(String::new, |fault| fault.message.clone())
+        };
         let read = |name: &Option<String>| {
             let bytes = files::read_table(&self.root.join(name.as_ref()?)).ok()?;
             Some(decode(&bytes))

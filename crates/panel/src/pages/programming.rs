@@ -29,6 +29,7 @@ impl Programming {
 impl Page for Programming {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
+            Key::ClPgm => Turn::Open(Box::new(Directory::new(Purpose::Erase, site))),
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Edit, site))),
             _ => Turn::Refused,
         }
