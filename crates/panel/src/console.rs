@@ -80,6 +80,10 @@ impl Stack {
             }
             Turn::Refused => return Err(Said::KeyNonFunctional),
             Turn::Say(text) => return Err(Said::Text(text)),
+            Turn::CloseSaying(text) => {
+                self.opened.pop();
+                return Err(Said::Text(text));
+            }
         }
         Ok(())
     }
@@ -158,11 +162,19 @@ impl Console {
             site.command(Command::Ce);
             return;
         }
+        // MOD and HELP are there wherever the page itself does not take them.
+        let turn = match turn {
+            Turn::Refused => pages::everywhere(key, self.front(), site),
+            turn => turn,
+        };
         self.went(turn, site);
     }
 
     fn went(&mut self, turn: Turn, site: &Site) {
-        let changes = matches!(turn, Turn::Close | Turn::Open(_) | Turn::Replace(_));
+        let changes = matches!(
+            turn,
+            Turn::Close | Turn::CloseSaying(_) | Turn::Open(_) | Turn::Replace(_)
+        );
         let stack = self.stack();
         if changes {
             stack.row = 0;

@@ -32,6 +32,7 @@
 
 mod console;
 mod entry;
+mod frames;
 mod inhibit;
 mod input;
 mod live;

@@ -19,6 +19,8 @@ pub(crate) enum Turn {
     Refused,
     /// A message, in words of the control.
     Say(String),
+    /// The page is through, with a message.
+    CloseSaying(String),
 }
 
 /// Something that takes the keys. Pages stand on each other: the topmost one has the keys.

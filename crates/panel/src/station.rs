@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::{Command, Control, Programs};
+use bahn_control::{Command, Control, Programs, RunState};
 use bahn_dialogue::Key;
 use bahn_host::{Answer, Attendance, Clock, Deed, Host, HostError, LoadedMachine, Operator, PowerOn, Source};
 use bahn_machine::KeyAction;
@@ -24,6 +24,8 @@ use crate::{numbers, status, texts};
 const LINES: usize = 16;
 /// Lines of a window beside another one.
 const LINES_BESIDE: usize = 16;
+/// A minute, µs.
+const MINUTE_US: u64 = 60_000_000;
 /// Factors by which time may pass.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.1..=100.0;
 
@@ -40,10 +42,11 @@ pub struct Station {
     knobs: [f64; 2],
     emergency_stop: bool,
     held: Vec<String>,
-    handwheel: (char, u8),
     speed: f64,
     paused: bool,
     is_on: bool,
+    /// Less than a minute of each machine time, µs.
+    timers_us: [u64; 3],
     shown: Screen,
 }
 
@@ -65,17 +68,16 @@ impl Station {
         let host = Host::new(&machine, power_on, shared, operator);
         let state_folder = machine.root.join(&machine.folder.state);
         let settings = Settings::read(&state_folder);
-        let axis = host.control().axis_letters().next().unwrap_or('X');
         Station {
             console: Console::new(host.control().mode()),
             stored: settings.clone(),
             knobs: [100.0; 2],
             emergency_stop: false,
             held: Vec::new(),
-            handwheel: (axis, 3),
             speed: 1.0,
             paused: false,
             is_on: true,
+            timers_us: [0; 3],
             shown: Screen::default(),
             host,
             machine,
@@ -107,7 +109,6 @@ impl Station {
             Input::Handwheel(steps) => self.deed(&format!("handwheel {steps}"))?,
             Input::HandwheelAxis(axis, factor) => {
                 self.deed(&format!("handwheel {axis} {factor}"))?;
-                self.handwheel = (*axis, *factor);
             }
             Input::Power(on) => self.power(*on),
             Input::Speed(factor) => self.set_speed(*factor)?,
@@ -134,6 +135,7 @@ impl Station {
         }
         self.is_on = is_on;
         if is_on {
+            self.count_time();
             let (console, mut site) = self.parts();
             if let Some(key) = inhibit::simulated(&mut site) {
                 console.key(key, &mut site);
@@ -216,7 +218,13 @@ impl Station {
     fn make_screen(&mut self) -> Screen {
         let messages = self.messages();
         let snapshot = self.host.control().snapshot();
-        let status = status::of(&snapshot, self.host.control(), self.parameters(), &self.settings);
+        let status = status::of(
+            &snapshot,
+            self.host.control(),
+            self.parameters(),
+            &self.settings,
+            &self.shown.status,
+        );
         let plc_window = self.plc_window();
         let (console, site) = self.parts();
         let front = console.front();
@@ -245,13 +253,29 @@ impl Station {
         }
     }
 
+    /// Counts the machine times, which are kept in whole minutes.
+    fn count_time(&mut self) {
+        let control = self.host.control();
+        let runs = control.run_state() == RunState::Running;
+        let turns = control.spindle().actual_rpm.abs() >= 1.0;
+        let cycle_us = u64::from(control.cycle_us());
+        let counters = self.timers_us.iter_mut().zip(&mut self.settings.timers_min);
+        for ((us, minutes), counts) in counters.zip([true, runs, turns]) {
+            *us += if counts { cycle_us } else { 0 };
+            if *us >= MINUTE_US {
+                *us -= MINUTE_US;
+                *minutes += 1;
+            }
+        }
+    }
+
     fn parameters(&self) -> &ParameterList {
-        &self.machine.parameters
+        self.host.control().first().edited_list()
     }
 
     /// Messages of the control, and those of the panel behind them.
     fn messages(&mut self) -> Vec<MessageLine> {
-        let english = self.machine.parameters.operation_parameters().english;
+        let english = self.parameters().operation_parameters().english;
         let language = self.settings.language(english);
         let control = self.host.control();
         let line = |shown: &bahn_control::Shown| MessageLine {
@@ -301,10 +325,19 @@ impl Station {
             emergency_stop: self.emergency_stop,
             knobs: self.knobs,
             held: self.held.clone(),
-            handwheel: self.handwheel,
+            handwheel: self.handwheel(),
             speed: self.speed,
             paused: self.paused,
         }
+    }
+
+    /// Axis and interpolation factor of the handwheel.
+    fn handwheel(&self) -> (char, u8) {
+        let control = self.host.control();
+        let (index, factor) = control.first().handwheel();
+        let snapshot = control.snapshot();
+        let axis = snapshot.axes.iter().find(|axis| axis.index == index);
+        (axis.map_or('X', |axis| axis.letter), factor)
     }
 
     /// A key of the keyboard: the PLC may inhibit it, and is told then [000:7319].

@@ -87,6 +87,7 @@ impl Open {
 impl Page for Programming {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
+            Key::ClPgm => Turn::Open(Box::new(Directory::new(Purpose::Erase, site))),
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Edit, site))),
             _ => self.with(site, |editor, site| editing::key(editor, key, site)),
         }

@@ -124,7 +124,12 @@ impl Trainee {
         self
     }
 
-    /// Somebody puts a file into his machine's folder.
+    /// Whether there is a file in his machine's folder.
+    pub fn has(&self, name: &str) -> bool {
+        self.folder.join(name).exists()
+    }
+
+    /// Writes a file of his machine's folder.
     pub fn write(&self, name: &str, text: &str) {
         std::fs::write(self.folder.join(name), text).unwrap();
     }
