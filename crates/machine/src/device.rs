@@ -31,6 +31,10 @@ pub struct DeviceState<'a> {
     pub position: f64,
     /// The name of the state that it has reached.
     pub state: Option<&'a str>,
+    /// The names of both.
+    pub states: [&'a str; 2],
+    /// It is moved by hand, not by the PLC.
+    pub by_hand: bool,
 }
 
 /// See the module.
@@ -153,6 +157,8 @@ impl Device {
             name: &self.name,
             position: self.position,
             state,
+            states: [&self.states[0], &self.states[1]],
+            by_hand: self.by_hand(),
         }
     }
 }

@@ -207,6 +207,28 @@ impl Machine {
         self.panel.keys.iter().map(|key| key.name.as_str())
     }
 
+    /// The keys that are held; one that is tapped is let go by itself.
+    pub fn held_keys(&self) -> impl Iterator<Item = &str> {
+        let held = self.panel.keys.iter().filter(|key| key.is_held());
+        held.map(|key| key.name.as_str())
+    }
+
+    /// The potentiometers of feed and spindle, %.
+    pub fn knobs(&self) -> [f64; 2] {
+        let operator = &self.panel.operator;
+        [operator.feed_override_percent, operator.spindle_override_percent]
+    }
+
+    /// The EMERGENCY STOP button is in.
+    pub fn emergency_stop_is_pressed(&self) -> bool {
+        self.chain.button
+    }
+
+    /// The supply of the control voltage is there.
+    pub fn has_supply(&self) -> bool {
+        self.chain.supply
+    }
+
     /// The names of the lamps.
     pub fn lamps(&self) -> impl Iterator<Item = &str> {
         self.panel.lamps.iter().map(|(name, _)| name.as_str())

@@ -15,6 +15,13 @@ pub(crate) struct Key {
     tapped_ms: u32,
 }
 
+impl Key {
+    /// It is pressed until it is released.
+    pub fn is_held(&self) -> bool {
+        self.pressed && self.tapped_ms == 0
+    }
+}
+
 /// See the module.
 #[derive(Clone, Debug)]
 pub(crate) struct Panel {

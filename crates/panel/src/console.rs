@@ -230,6 +230,14 @@ impl Console {
         self.notes.clear();
     }
 
+    /// The machine was brought to another moment: its mode has a page as it is then. What is programmed beside it is of
+    /// now.
+    pub fn machine_is_elsewhere(&mut self, mode: Mode) {
+        self.mode = mode;
+        self.machine = Stack::new(pages::of_mode(mode));
+        self.notes.clear();
+    }
+
     fn choose(&mut self, mode: Mode, site: &mut Site) {
         let there = self.mode == mode && self.front == Side::Machine;
         if there {

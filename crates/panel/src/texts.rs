@@ -8,7 +8,10 @@ use std::sync::OnceLock;
 
 pub use bahn_dialogue::Tongue as Language;
 
-const GERMAN: &[&str] = &[include_str!("../texts/de.tsv")];
+const GERMAN: &[&str] = &[
+    include_str!("../texts/de.tsv"),
+    include_str!("../texts/de-teaching.tsv"),
+];
 
 /// The code of a language: `en`, `de`.
 pub(crate) fn code(language: Language) -> &'static str {
@@ -66,8 +69,10 @@ mod tests {
                     folders.push(path);
                 } else if !path.ends_with("texts.rs") {
                     let source = std::fs::read_to_string(&path).unwrap();
-                    let places = source.split("words(\"").skip(1);
-                    found.extend(places.map(|rest| rest.split('"').next().unwrap().to_owned()));
+                    // A long text stands on a line of its own.
+                    let places = source.split("words(").skip(1).map(str::trim_start);
+                    let texts = places.filter_map(|rest| rest.strip_prefix('"')?.split('"').next());
+                    found.extend(texts.map(str::to_owned));
                 }
             }
         }
