@@ -6,11 +6,12 @@ use bahn_parameters::MessageId::{self, KeyNonFunctional};
 use bahn_program::{Block, Chunk, Edit, Operation, Program};
 
 use crate::dialogue::Dialogue;
-use crate::editor::{Editor, Open, Reaction};
+use crate::editor::{Editor, Open};
 use crate::highlight::Highlight;
 use crate::line::{Line, written};
+use crate::reading::line_of_block;
 use crate::soft_keys::Function;
-use crate::{Key, KeyGroup};
+use crate::{Key, KeyGroup, Reaction};
 
 /// Most characters of a text to find.
 const FIND_MAX: usize = 80;
@@ -125,7 +126,7 @@ impl Editor {
             let address = name.split(' ').next().unwrap_or_default();
             let line = written(block, language)
                 .contains(address)
-                .then(|| Line::of_block(block, language))??;
+                .then(|| line_of_block(block, language))??;
             line.places()
                 .into_iter()
                 .find(|place| line.name_of(*place) == name)

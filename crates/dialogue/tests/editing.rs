@@ -445,6 +445,15 @@ fn comments_and_optional_blocks_stay_what_they_are() {
 }
 
 #[test]
+fn f_max_is_offered_where_it_is_a_word() {
+    let mut desk = Desk::with("", Tnc155);
+    desk.enter("L X 1 ENT ENT");
+    assert_eq!(desk.prompt(), "FEED RATE F = ?");
+    desk.enter("ENT NO_ENT L X 2 ENT ENT SK1 ENT NO_ENT");
+    assert_eq!(desk.blocks(), ["L X+1 R0", "L X+2 R0 F15999"]);
+}
+
+#[test]
 fn keys_of_the_panel_pass() {
     let mut desk = desk("");
     desk.enter("L X 5");
