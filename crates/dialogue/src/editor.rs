@@ -98,6 +98,20 @@ impl Editor {
         &self.program
     }
 
+    /// The program as its file is to be: where the file has block numbers they are written anew, since the control
+    /// generates them [003:1774].
+    pub fn numbered(&self) -> Arc<Program> {
+        let has_numbers = self
+            .program
+            .text_of(0)
+            .starts_with(|first: char| first.is_ascii_digit());
+        let new = match has_numbers {
+            true => self.program.edit(&Edit::Renumber).ok(),
+            false => None,
+        };
+        new.map_or_else(|| Arc::clone(&self.program), Arc::new)
+    }
+
     /// The block at the cursor.
     pub fn cursor(&self) -> u32 {
         self.cursor
