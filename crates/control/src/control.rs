@@ -307,7 +307,7 @@ impl Control {
 
     /// A command is not possible now.
     fn refuse(&mut self, channel: usize) -> bool {
-        let block = self.kernel.channels.of(channel).running_block();
+        let block = self.kernel.channels.of(channel).run.running_block();
         let refused = Message::Plain(MessageId::KeyNonFunctional);
         self.kernel
             .machine
@@ -578,5 +578,31 @@ impl Control {
     /// The PLC: its program, accumulators, processing times, and the error that stopped it.
     pub fn plc(&self) -> &bahn_plc::Machine {
         &self.kernel.machine.plc.machine
+    }
+
+    /// Takes the key of the keyboard, by its code 58 to 127, that the PLC has simulated and nobody inhibits: it is for
+    /// whoever has the keyboard [000:7406-7440].
+    pub fn take_key(&mut self) -> Option<u8> {
+        self.kernel.channels.first_mut().desk.take_key()
+    }
+
+    /// The window of the PLC on the screen [000:6603-6617].
+    pub fn plc_window(&self) -> &bahn_plc::PlcWindow {
+        &self.kernel.machine.link.window
+    }
+
+    /// Whether that window is to be seen, as module 9081 tells the PLC [000:15262-15275].
+    pub fn show_plc_window(&mut self, view: bahn_plc::WindowView) {
+        self.kernel.machine.link.window_view = view;
+    }
+
+    /// The program that is selected for single block and full sequence.
+    pub fn selected_program(&self) -> Option<&str> {
+        self.kernel.channels.first().run.selection.program.as_deref()
+    }
+
+    /// The block at which its next run starts.
+    pub fn start_block(&self) -> u32 {
+        self.kernel.channels.first().run.selection.start_block
     }
 }

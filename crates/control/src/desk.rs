@@ -46,6 +46,8 @@ pub(crate) struct Desk {
     pub leaning: Leaning,
     reference: ReferenceRun,
     stylus: Stylus,
+    /// The key that was pressed or simulated last, for whoever has the keyboard.
+    key: Option<u8>,
 }
 
 impl Desk {
@@ -60,6 +62,7 @@ impl Desk {
             leaning: Leaning::default(),
             reference: ReferenceRun::default(),
             stylus: Stylus::default(),
+            key: None,
             rules,
         }
     }
@@ -298,6 +301,26 @@ impl Desk {
         }
     }
 
+    /// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319], whose code is also in
+    /// M2832 to M2839; any other is left for whoever has the keyboard.
+    pub fn press_key(&mut self, code: u8, exchange: &mut Exchange) -> bool {
+        let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + u16::from(code));
+        let inhibited = marker.is_some_and(|marker| exchange.nc().bit(marker));
+        if inhibited {
+            exchange.nc_put_number(signal::INHIBITED_KEY_CODE, code.into());
+            marker_codes::INHIBITED_KEY.put(code.into(), exchange);
+            exchange.nc_set(signal::INHIBITED_KEY_PRESSED, true);
+        } else {
+            self.key = Some(code);
+        }
+        true
+    }
+
+    /// Takes the key that is left.
+    pub fn take_key(&mut self) -> Option<u8> {
+        self.key.take()
+    }
+
     /// What is turned at the handwheel in another mode moves nothing later, but what M118 superimposes on a path.
     pub fn count_handwheel(
         &mut self,
@@ -354,16 +377,4 @@ pub(crate) fn enter_code(code: u32, exchange: &mut Exchange) -> bool {
         _ => {}
     }
     code == OFFSET_ADJUSTMENT
-}
-
-/// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319], whose code is
-/// also in M2832 to M2839.
-pub(crate) fn press_key(code: u8, exchange: &mut Exchange) -> bool {
-    let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + u16::from(code));
-    if marker.is_some_and(|marker| exchange.nc().bit(marker)) {
-        exchange.nc_put_number(signal::INHIBITED_KEY_CODE, code.into());
-        marker_codes::INHIBITED_KEY.put(code.into(), exchange);
-        exchange.nc_set(signal::INHIBITED_KEY_PRESSED, true);
-    }
-    true
 }

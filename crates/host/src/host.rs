@@ -420,6 +420,16 @@ impl<P: Operable> Host<P> {
         &self.control
     }
 
+    /// Takes the key that the PLC has simulated, by its code; see [`Control::take_key`].
+    pub fn take_key(&mut self) -> Option<u8> {
+        self.control.take_key()
+    }
+
+    /// Tells the PLC whether its window is to be seen; see [`Control::show_plc_window`].
+    pub fn show_plc_window(&mut self, view: bahn_plc::WindowView) {
+        self.control.show_plc_window(view);
+    }
+
     /// The plant.
     pub fn plant(&self) -> &P {
         &self.plant

@@ -1,0 +1,354 @@
+//! Who has the keys: the machine side with its operating mode, or programming beside it, and the pages that stand on
+//! them.
+
+use bahn_control::{Command, Mode};
+use bahn_dialogue::Key;
+use bahn_parameters::MessageId;
+
+use crate::page::{Page, Turn, View};
+use crate::pages;
+use crate::screen::{Heading, SoftKeys};
+use crate::site::Site;
+
+/// Messages of the panel itself that are kept at most.
+const NOTES: usize = 8;
+
+/// The two sides of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// The machine operating mode.
+    Machine,
+    /// PROGRAMMING AND EDITING or TEST RUN.
+    Programming,
+}
+
+/// Modes of the programming side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Programming {
+    /// PROGRAMMING AND EDITING.
+    Edit,
+    /// TEST RUN.
+    Test,
+}
+
+/// The pages of a side: the mode below, what was opened on it above.
+struct Stack {
+    base: Box<dyn Page>,
+    opened: Vec<Box<dyn Page>>,
+    /// The soft-key row that is shown.
+    row: usize,
+}
+
+impl Stack {
+    fn new(base: Box<dyn Page>) -> Stack {
+        Stack {
+            base,
+            opened: Vec::new(),
+            row: 0,
+        }
+    }
+
+    fn top(&mut self) -> &mut dyn Page {
+        self.opened.last_mut().unwrap_or(&mut self.base).as_mut()
+    }
+
+    fn shown(&self) -> &dyn Page {
+        self.opened.last().unwrap_or(&self.base).as_ref()
+    }
+
+    /// What a page that lies open shows, with the window of the one below where it has none.
+    fn view(&self, site: &Site, lines: usize) -> View {
+        let mut view = self.shown().show(site, lines);
+        let mut below = self.opened.iter().rev().skip(1).chain([&self.base]);
+        while view.window.is_none()
+            && let Some(page) = below.next()
+        {
+            view.window = page.show(site, lines).window;
+        }
+        view
+    }
+
+    /// Goes on with what came of a key; what is to be said.
+    fn turn(&mut self, turn: Turn) -> Result<(), Said> {
+        match turn {
+            Turn::Done => {}
+            Turn::Close => drop(self.opened.pop()),
+            Turn::Open(page) => self.opened.push(page),
+            Turn::Replace(page) => {
+                self.opened.pop();
+                self.opened.push(page);
+            }
+            Turn::Refused => return Err(Said::KeyNonFunctional),
+            Turn::Say(text) => return Err(Said::Text(text)),
+            Turn::CloseSaying(text) => {
+                self.opened.pop();
+                return Err(Said::Text(text));
+            }
+        }
+        Ok(())
+    }
+}
+
+enum Said {
+    KeyNonFunctional,
+    Text(String),
+}
+
+/// Who has the keys.
+pub(crate) struct Console {
+    front: Side,
+    /// The machine operating mode to which the base of the machine side belongs.
+    mode: Mode,
+    machine: Stack,
+    programming: Option<(Programming, Stack)>,
+    /// The screen is split [000:2784].
+    pub split: bool,
+    /// Messages of the panel, the oldest first.
+    notes: Vec<String>,
+}
+
+impl Console {
+    /// The console at power-on.
+    pub fn new(mode: Mode) -> Console {
+        Console {
+            front: Side::Machine,
+            mode,
+            machine: Stack::new(pages::of_mode(mode)),
+            programming: None,
+            split: false,
+            notes: Vec::new(),
+        }
+    }
+
+    /// Takes a key of the keyboard.
+    pub fn key(&mut self, key: Key, site: &mut Site) {
+        if let Some(mode) = machine_mode(key) {
+            return self.choose(mode, site);
+        }
+        match key {
+            Key::Program => self.program(Programming::Edit, site),
+            Key::Test => self.program(Programming::Test, site),
+            Key::Ce if !self.notes.is_empty() => drop(self.notes.pop()),
+            Key::Screen => self.split = !self.split,
+            Key::SkLeft | Key::SkRight => self.turn_row(key, site),
+            _ => self.pass_on(key, site),
+        }
+    }
+
+    /// A line of text as a whole.
+    pub fn text(&mut self, text: &str, site: &mut Site) {
+        let stack = self.stack();
+        let turn = stack.top().text(text, site);
+        self.went(turn, site);
+    }
+
+    fn pass_on(&mut self, key: Key, site: &mut Site) {
+        let stack = self.stack();
+        let own = stack.shown().own_soft_keys().is_some();
+        let turn = match key.soft_key() {
+            Some(place) if !own => {
+                let rows = stack.shown().soft_keys(site);
+                let row = stack.row.min(rows.len().saturating_sub(1));
+                let text = rows.get(row).and_then(|row| row.get(place));
+                match text.is_some_and(|text| !text.is_empty()) {
+                    true => stack.top().soft_key(row, place, site),
+                    false => Turn::Refused,
+                }
+            }
+            _ => stack.top().key(key, site),
+        };
+        // CE that nobody wants clears the message of the control.
+        if key == Key::Ce && matches!(turn, Turn::Refused) {
+            site.command(Command::Ce);
+            return;
+        }
+        // MOD and HELP are there wherever the page itself does not take them.
+        let turn = match turn {
+            Turn::Refused => pages::everywhere(key, self.front(), site),
+            turn => turn,
+        };
+        self.went(turn, site);
+    }
+
+    fn went(&mut self, turn: Turn, site: &Site) {
+        let changes = matches!(
+            turn,
+            Turn::Close | Turn::CloseSaying(_) | Turn::Open(_) | Turn::Replace(_)
+        );
+        let stack = self.stack();
+        if changes {
+            stack.row = 0;
+        }
+        match stack.turn(turn) {
+            Ok(()) => {}
+            Err(Said::KeyNonFunctional) => self.say(site.message(MessageId::KeyNonFunctional)),
+            Err(Said::Text(text)) => self.say(text),
+        }
+    }
+
+    /// Shows a message of the panel.
+    pub fn say(&mut self, text: String) {
+        self.notes.retain(|note| *note != text);
+        if self.notes.len() == NOTES {
+            self.notes.remove(0);
+        }
+        self.notes.push(text);
+    }
+
+    /// Messages of the panel.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Once in every contour cycle.
+    pub fn tick(&mut self, site: &mut Site) {
+        // The PLC, an error or power-off may have chosen another mode.
+        if site.mode() != self.mode {
+            self.mode = site.mode();
+            self.machine = Stack::new(pages::of_mode(self.mode));
+        }
+        let front = self.front;
+        for side in [Side::Machine, Side::Programming] {
+            self.front = side;
+            let stack = match (side, &mut self.programming) {
+                (Side::Machine, _) => &mut self.machine,
+                (Side::Programming, Some((_, stack))) => stack,
+                (Side::Programming, None) => continue,
+            };
+            let turn = stack.top().tick(site);
+            if !matches!(turn, Turn::Done) {
+                self.went(turn, site);
+            }
+        }
+        self.front = front;
+    }
+
+    /// The control was switched off: nothing of what was open is left but the program that is being written.
+    pub fn power_off(&mut self) {
+        self.machine.opened.clear();
+        self.front = Side::Machine;
+        self.notes.clear();
+    }
+
+    fn choose(&mut self, mode: Mode, site: &mut Site) {
+        let there = self.mode == mode && self.front == Side::Machine;
+        if there {
+            self.machine.opened.clear();
+        } else if site.command(Command::Mode(mode)) {
+            self.front = Side::Machine;
+        } else {
+            self.say(site.message(MessageId::KeyNonFunctional));
+        }
+    }
+
+    fn program(&mut self, mode: Programming, site: &mut Site) {
+        if self.programming.as_ref().is_none_or(|(is, _)| *is != mode) {
+            let base = match mode {
+                Programming::Edit => pages::editing(site),
+                Programming::Test => pages::test_run(site),
+            };
+            self.programming = Some((mode, Stack::new(base)));
+        }
+        self.front = Side::Programming;
+    }
+
+    fn turn_row(&mut self, key: Key, site: &mut Site) {
+        let stack = self.stack();
+        if stack.shown().own_soft_keys().is_some() {
+            let turn = stack.top().key(key, site);
+            return self.went(turn, site);
+        }
+        let (right, rows) = (key == Key::SkRight, stack.shown().soft_keys(site).len().max(1));
+        stack.row = (stack.row + if right { 1 } else { rows - 1 }) % rows;
+    }
+
+    fn stack(&mut self) -> &mut Stack {
+        match (self.front, &mut self.programming) {
+            (Side::Programming, Some((_, stack))) => stack,
+            _ => &mut self.machine,
+        }
+    }
+
+    /// Which side has the keys.
+    pub fn front(&self) -> Side {
+        match self.programming {
+            Some(_) => self.front,
+            None => Side::Machine,
+        }
+    }
+
+    /// What a side shows, in so many lines.
+    pub fn view(&self, side: Side, site: &Site, lines: usize) -> Option<View> {
+        match side {
+            Side::Machine => Some(self.machine.view(site, lines)),
+            Side::Programming => self
+                .programming
+                .as_ref()
+                .map(|(_, stack)| stack.view(site, lines)),
+        }
+    }
+
+    /// The soft-key row of the side that has the keys.
+    pub fn soft_keys(&self, site: &Site) -> SoftKeys {
+        let stack = match (self.front(), &self.programming) {
+            (Side::Programming, Some((_, stack))) => stack,
+            _ => &self.machine,
+        };
+        if let Some(own) = stack.shown().own_soft_keys() {
+            return own;
+        }
+        let rows = stack.shown().soft_keys(site);
+        let row = stack.row.min(rows.len().saturating_sub(1));
+        SoftKeys {
+            keys: rows.get(row).cloned().unwrap_or_default(),
+            row,
+            rows: rows.len(),
+        }
+    }
+
+    /// The headings of both sides.
+    pub fn headings(&self, site: &Site) -> Vec<Heading> {
+        let (key, title) = heading(site.mode());
+        let machine = Heading {
+            key: key.name().to_owned(),
+            title: site.words(title),
+            active: self.front() == Side::Machine,
+        };
+        let programming = self.programming.as_ref().map(|(mode, _)| {
+            let (key, title) = match mode {
+                Programming::Edit => (Key::Program, site.words("PROGRAMMING AND EDITING")),
+                Programming::Test => (Key::Test, site.words("TEST RUN")),
+            };
+            Heading {
+                key: key.name().to_owned(),
+                title,
+                active: self.front() == Side::Programming,
+            }
+        });
+        std::iter::once(machine).chain(programming).collect()
+    }
+}
+
+/// The machine operating mode of a key.
+fn machine_mode(key: Key) -> Option<Mode> {
+    Some(match key {
+        Key::Manual => Mode::Manual,
+        Key::Handwheel => Mode::Handwheel,
+        Key::Mdi => Mode::Mdi,
+        Key::Single => Mode::SingleBlock,
+        Key::Full => Mode::FullSequence,
+        _ => return None,
+    })
+}
+
+/// Key and heading of a machine operating mode; the reference run belongs to MANUAL OPERATION.
+fn heading(mode: Mode) -> (Key, &'static str) {
+    match mode {
+        Mode::Manual => (Key::Manual, "MANUAL OPERATION"),
+        Mode::Handwheel => (Key::Handwheel, "ELECTRONIC HANDWHEEL"),
+        Mode::Mdi => (Key::Mdi, "POSITIONING WITH MANUAL DATA INPUT"),
+        Mode::SingleBlock => (Key::Single, "PROGRAM RUN, SINGLE BLOCK"),
+        Mode::FullSequence => (Key::Full, "PROGRAM RUN, FULL SEQUENCE"),
+        Mode::Reference => (Key::Manual, "PASS OVER REFERENCE MARKS"),
+    }
+}

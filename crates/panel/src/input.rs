@@ -1,0 +1,190 @@
+//! What an operator does at the station, and how it is written: `{"key":"ENT"}`, `{"feed_override":80}`.
+
+use bahn_dialogue::Key;
+use bahn_machine::KeyAction;
+use serde::{Deserialize, Serialize};
+
+/// Something that the operator does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// A key of the keyboard.
+    Key(Key),
+    /// A key of the machine operating panel, or `EMERGENCY_STOP`.
+    Machine(String, KeyAction),
+    /// A line of text at once: what was pasted, or typed on a real keyboard.
+    Text(String),
+    /// The feed override knob, %.
+    FeedOverride(f64),
+    /// The spindle override knob, %.
+    SpindleOverride(f64),
+    /// The handwheel is turned by so many counting steps.
+    Handwheel(i64),
+    /// Axis and factor 0 to 10 of the handwheel.
+    HandwheelAxis(char, u8),
+    /// The supply of the control.
+    Power(bool),
+    /// So many times as fast as the clock on the wall, 0.1 to 100.
+    Speed(f64),
+    /// Time stands, or goes on.
+    Pause(bool),
+    /// So many contour cycles, while time stands.
+    Cycles(u32),
+    /// What a script does: a command of the control or an event of the machine (docs/scripts.md).
+    Deed(String),
+}
+
+/// Why an input was refused, in words.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refusal(pub String);
+
+/// Contour cycles that one input asks for at most: 30 s of a TNC 415.
+const CYCLES_MAX: u32 = 10_000;
+
+/// An input as JSON. Exactly one of its fields is set, beside `down` and `factor`.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct InputText {
+    /// A key of the keyboard or of the machine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
+    /// The key of the machine is pressed, or released; without it, tapped.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub down: Option<bool>,
+    /// A line of text.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+    /// Feed override, %.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feed_override: Option<f64>,
+    /// Spindle override, %.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spindle_override: Option<f64>,
+    /// Counting steps of the handwheel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub handwheel: Option<i64>,
+    /// Axis of the handwheel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub handwheel_axis: Option<char>,
+    /// Its factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub factor: Option<u8>,
+    /// The supply of the control.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub power: Option<bool>,
+    /// How fast time passes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    /// Time stands.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pause: Option<bool>,
+    /// Contour cycles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cycles: Option<u32>,
+    /// A deed of a script.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deed: Option<String>,
+}
+
+impl TryFrom<InputText> for Input {
+    type Error = Refusal;
+
+    fn try_from(text: InputText) -> Result<Input, Refusal> {
+        let factor = text.factor.unwrap_or(3);
+        let cycles = |cycles: u32| Input::Cycles(cycles.min(CYCLES_MAX));
+        let found = [
+            text.key.map(|name| key(name, text.down)),
+            text.text.map(Input::Text),
+            text.feed_override.map(Input::FeedOverride),
+            text.spindle_override.map(Input::SpindleOverride),
+            text.handwheel.map(Input::Handwheel),
+            text.handwheel_axis.map(|axis| Input::HandwheelAxis(axis, factor)),
+            text.power.map(Input::Power),
+            text.speed.map(Input::Speed),
+            text.pause.map(Input::Pause),
+            text.cycles.map(cycles),
+            text.deed.map(Input::Deed),
+        ];
+        let mut found = found.into_iter().flatten();
+        match (found.next(), found.next()) {
+            (Some(input), None) => Ok(input),
+            _ => Err(Refusal(
+                "an input has exactly one field, as {\"key\":\"ENT\"}".into(),
+            )),
+        }
+    }
+}
+
+/// Keys that the machine does not have are refused where they are pressed.
+fn key(name: String, down: Option<bool>) -> Input {
+    match (Key::from_name(&name), down) {
+        (Some(key), _) => Input::Key(key),
+        (None, Some(true)) => Input::Machine(name, KeyAction::Press),
+        (None, Some(false)) => Input::Machine(name, KeyAction::Release),
+        (None, None) => Input::Machine(name, KeyAction::Tap),
+    }
+}
+
+impl From<&Input> for InputText {
+    fn from(input: &Input) -> InputText {
+        let mut text = InputText::default();
+        match input {
+            Input::Key(key) => text.key = Some(key.name().to_owned()),
+            Input::Machine(name, action) => {
+                text.key = Some(name.clone());
+                text.down = match action {
+                    KeyAction::Press => Some(true),
+                    KeyAction::Release => Some(false),
+                    KeyAction::Tap => None,
+                };
+            }
+            Input::Text(line) => text.text = Some(line.clone()),
+            Input::FeedOverride(percent) => text.feed_override = Some(*percent),
+            Input::SpindleOverride(percent) => text.spindle_override = Some(*percent),
+            Input::Handwheel(steps) => text.handwheel = Some(*steps),
+            Input::HandwheelAxis(axis, factor) => {
+                text.handwheel_axis = Some(*axis);
+                text.factor = Some(*factor);
+            }
+            Input::Power(on) => text.power = Some(*on),
+            Input::Speed(factor) => text.speed = Some(*factor),
+            Input::Pause(paused) => text.pause = Some(*paused),
+            Input::Cycles(cycles) => text.cycles = Some(*cycles),
+            Input::Deed(deed) => text.deed = Some(deed.clone()),
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inputs_read_as_they_are_written() {
+        for text in [
+            r#"{"key":"ENT"}"#,
+            r#"{"key":"NC_START"}"#,
+            r#"{"key":"X+","down":true}"#,
+            r#"{"text":"L X+10 R0 F200"}"#,
+            r#"{"feed_override":80.0}"#,
+            r#"{"handwheel_axis":"Y","factor":5}"#,
+            r#"{"handwheel":-250}"#,
+            r#"{"pause":true}"#,
+            r#"{"deed":"fault drive X off"}"#,
+        ] {
+            let read: InputText = serde_json::from_str(text).unwrap();
+            let input = Input::try_from(read).unwrap();
+            assert_eq!(serde_json::to_string(&InputText::from(&input)).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn an_input_is_one_thing() {
+        for text in ["{}", r#"{"key":"ENT","pause":true}"#] {
+            let read: InputText = serde_json::from_str(text).unwrap();
+            assert!(Input::try_from(read).is_err(), "{text}");
+        }
+        assert!(serde_json::from_str::<InputText>(r#"{"kee":"ENT"}"#).is_err());
+    }
+}

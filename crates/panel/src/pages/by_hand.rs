@@ -1,0 +1,125 @@
+//! MANUAL OPERATION, ELECTRONIC HANDWHEEL, and the reference run before them [003:1031-1145].
+
+use bahn_control::{Command, Mode};
+use bahn_dialogue::Key;
+
+use crate::page::{Page, Turn, View};
+use crate::pages::handwheel::Handwheel;
+use crate::pages::number::Number;
+use crate::pages::{datum, handwheel, probe, table};
+use crate::screen::{Dialogue, Line, Window, WindowKind};
+use crate::site::Site;
+
+/// Largest jog increment, mm [000:8494-8520].
+const JOG_MAX: f64 = 50.0;
+
+/// Axes are moved by hand.
+pub(crate) struct ByHand;
+
+impl Page for ByHand {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if site.mode() == Mode::Reference {
+            return Turn::Refused;
+        }
+        match key {
+            Key::X => datum::ask(0, site),
+            Key::Y => datum::ask(1, site),
+            Key::Z => datum::ask(2, site),
+            Key::Iv => datum::ask(3, site),
+            Key::V => datum::ask(4, site),
+            Key::M => self.soft_key(0, 0, site),
+            Key::S | Key::ToolCall => self.soft_key(0, 1, site),
+            Key::TouchProbe => probe::menu(),
+            Key::ToolDef => table::tools(site),
+            _ => Turn::Refused,
+        }
+    }
+
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        if site.mode() == Mode::Reference {
+            return Vec::new();
+        }
+        let there = |there: bool, text: String| if there { text } else { String::new() };
+        let rules = site.parameters().operation_parameters();
+        let leans = match site.control().first().leans() {
+            true => site.words("3D ROT OFF"),
+            false => site.words("3D ROT ON"),
+        };
+        vec![vec![
+            "M".to_owned(),
+            "S".to_owned(),
+            site.words("TOUCH PROBE"),
+            site.words("INCREMENT"),
+            site.words("HANDWHEEL"),
+            there(rules.tilting, leans),
+            String::new(),
+            there(table::has_tools(site), site.words("TOOL TABLE")),
+        ]]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        match place {
+            0 => Turn::Open(Number::ask(
+                site.words("MISCELLANEOUS FUNCTION M ="),
+                |value, site| {
+                    let whole =
+                        (value.fract() == 0.0 && (0.0..=999.0).contains(&value)).then_some(value as u16);
+                    whole.is_some_and(|m| site.command(Command::MFunction(m)))
+                },
+            )),
+            1 => Turn::Open(Number::ask(site.words("SPINDLE SPEED S ="), |value, site| {
+                site.command(Command::Speed(value))
+            })),
+            2 => probe::menu(),
+            3 => Turn::Open(Number::ask(site.words("JOG-INCREMENT ="), |value, site| {
+                (0.0..=JOG_MAX).contains(&value) && site.command(Command::JogIncrement(value))
+            })),
+            4 => Turn::Open(Box::new(Handwheel::default())),
+            5 => {
+                let on = !site.control().first().leans();
+                match site.command(Command::WorkingPlane(on)) {
+                    true => Turn::Done,
+                    false => Turn::Refused,
+                }
+            }
+            _ => table::tools(site),
+        }
+    }
+
+    fn show(&self, site: &Site, _lines: usize) -> View {
+        let asked = match site.mode() {
+            Mode::Reference => missing_references(site),
+            Mode::Handwheel => factor(site),
+            _ => String::new(),
+        };
+        View {
+            window: Some(Window {
+                kind: WindowKind::Positions,
+                lines: Vec::<Line>::new(),
+                ..Window::default()
+            }),
+            dialogue: Dialogue {
+                prompt: asked,
+                ..Dialogue::default()
+            },
+        }
+    }
+}
+
+/// `X: INTERPOLATION FACTOR 3`: what the handwheel moves.
+fn factor(site: &Site) -> String {
+    let words = site.words("INTERPOLATION FACTOR");
+    handwheel::chosen(site).map_or_else(String::new, |(axis, factor)| {
+        format!("{}: {words} {factor}", axis.letter())
+    })
+}
+
+/// `PASS OVER REFERENCE MARK X Y Z`: the axes that have not passed theirs.
+fn missing_references(site: &Site) -> String {
+    let snapshot = site.control().snapshot();
+    let missing = snapshot.axes.iter().filter(|axis| !axis.referenced);
+    let letters = missing
+        .map(|axis| format!(" {}", axis.letter))
+        .collect::<String>();
+    format!("{}{letters}", site.words("PASS OVER REFERENCE MARK"))
+}

@@ -1,0 +1,65 @@
+//! A question that a number answers, and what is done with it.
+
+use bahn_dialogue::Key;
+
+use crate::entry::Entry;
+use crate::page::{Page, Turn, View};
+use crate::screen::Dialogue;
+use crate::site::Site;
+
+/// What comes of the number.
+type Answer = Box<dyn FnMut(f64, &mut Site) -> Turn + Send>;
+
+/// A question: ENT answers it, END, DEL and NO ENT leave it.
+pub(crate) struct Number {
+    prompt: String,
+    entry: Entry,
+    answer: Answer,
+}
+
+impl Number {
+    /// Asks for a number that is taken or refused.
+    pub fn ask(prompt: String, answer: impl Fn(f64, &mut Site) -> bool + Send + 'static) -> Box<Number> {
+        Number::turning(prompt, move |value, site| match answer(value, site) {
+            true => Turn::Close,
+            false => Turn::Say(site.message(bahn_parameters::MessageId::EntryValueIncorrect)),
+        })
+    }
+
+    /// Asks for a number that leads on.
+    pub fn turning(
+        prompt: String,
+        answer: impl FnMut(f64, &mut Site) -> Turn + Send + 'static,
+    ) -> Box<Number> {
+        Box::new(Number {
+            prompt,
+            entry: Entry::default(),
+            answer: Box::new(answer),
+        })
+    }
+}
+
+impl Page for Number {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        match key {
+            Key::Ent => match self.entry.value() {
+                Some(value) => (self.answer)(value, site),
+                None => Turn::Refused,
+            },
+            Key::End | Key::Del | Key::NoEnt => Turn::Close,
+            key if self.entry.key(key) => Turn::Done,
+            _ => Turn::Refused,
+        }
+    }
+
+    fn show(&self, _site: &Site, _lines: usize) -> View {
+        View {
+            window: None,
+            dialogue: Dialogue {
+                prompt: self.prompt.clone(),
+                entry: self.entry.text(),
+                open: true,
+            },
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! The screen as data: what every front end shows, a test reads and a screen reader speaks.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// Everything that is to be seen at one moment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Screen {
+    /// Counts the screens that were different from the one before.
+    pub serial: u64,
+    /// Time of the machine since power-on, s.
+    pub time_s: f64,
+    /// Heading of the side that has the keys, as it stands on the screen: `MANUAL OPERATION`.
+    pub mode: String,
+    /// The headings of both sides, that of the machine first [000:2784-2833].
+    pub headings: Vec<Heading>,
+    /// The dialogue line.
+    pub dialogue: Dialogue,
+    /// Messages, the oldest first.
+    pub messages: Vec<MessageLine>,
+    /// The large window of the side that has the keys: program, table, menu.
+    pub program: Window,
+    /// The window of the other side, when the screen is split.
+    pub beside: Option<Window>,
+    /// The status display.
+    pub status: Status,
+    /// The soft-key row.
+    pub soft_keys: SoftKeys,
+    /// The window of the PLC program, when it has written something [000:6603-6617].
+    pub plc_window: Option<Vec<PlcLine>>,
+    /// Lamps of the machine operating panel by name.
+    pub lamps: BTreeMap<String, bool>,
+    /// The machine operating panel and the simulation.
+    pub machine: MachineState,
+}
+
+/// An operating mode in the header.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Heading {
+    /// Its key: `MANUAL`, `HANDWHEEL`, `MDI`, `SINGLE`, `FULL`, `PROGRAM`, `TEST`.
+    pub key: String,
+    /// Its words.
+    pub title: String,
+    /// It has the keys of the keyboard.
+    pub active: bool,
+}
+
+/// What the control asks for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Dialogue {
+    /// The question; empty when nothing is asked.
+    pub prompt: String,
+    /// What was typed so far.
+    pub entry: String,
+    /// Something is open and takes digits.
+    pub open: bool,
+}
+
+/// A message under the header.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct MessageLine {
+    /// Its words, with block or axis.
+    pub text: String,
+    /// It flashes: CE does not clear it.
+    pub flashing: bool,
+    /// Where it comes from, when it names a block: program and block.
+    pub place: Option<String>,
+}
+
+/// A window of lines.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Window {
+    /// What it is about: the name of a program, of a table, of a menu.
+    pub title: String,
+    /// What kind of thing it shows.
+    pub kind: WindowKind,
+    /// The lines that are in sight.
+    pub lines: Vec<Line>,
+    /// Place of the first of them among all, from 0.
+    pub first: usize,
+    /// How many there are.
+    pub total: usize,
+}
+
+/// What a window shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WindowKind {
+    /// Nothing.
+    #[default]
+    Empty,
+    /// Blocks of a program; the current one stands between two lines [003:574-588].
+    Program,
+    /// A list to choose from.
+    List,
+    /// A table to edit.
+    Table,
+    /// Large position display.
+    Positions,
+    /// Text to read.
+    Text,
+    /// A picture, from `/api/graphics`.
+    Graphics,
+}
+
+/// A line of a window.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Line {
+    /// Its text.
+    pub text: String,
+    /// It is the current one.
+    pub current: bool,
+    /// Parts of it that stand out: from character, to character (exclusive), why.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub marks: Vec<(usize, usize, Mark)>,
+}
+
+/// Why a part of a line stands out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mark {
+    /// The highlighted word or cell.
+    Cursor,
+    /// What is being typed.
+    Entry,
+    /// Part of a marked section.
+    Section,
+    /// It is wrong.
+    Fault,
+    /// Less important.
+    Quiet,
+}
+
+/// The status display [003:949-971].
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Status {
+    /// `ACTL`, `NOML`, `LAG`, `DIST` or `REF` [003:7081-7089].
+    pub position_type: String,
+    /// Positions are in inches.
+    pub inch: bool,
+    /// The axes.
+    pub axes: Vec<AxisLine>,
+    /// Tool in the spindle.
+    pub tool: u32,
+    /// The tool axis, when one was called.
+    pub tool_axis: Option<String>,
+    /// Programmed spindle speed, rpm.
+    pub s: f64,
+    /// Gear range, 1 to 8.
+    pub gear: u8,
+    /// Actual spindle speed, rpm, negative as M04.
+    pub spindle_rpm: f64,
+    /// Feed that is shown, mm/min or 0.1 inch/min as F stands on the screen.
+    pub f: String,
+    /// Path speed, mm/min.
+    pub feed_mm_min: f64,
+    /// Programmed feed, mm/min, of which the bar graph shows the part; 0 in rapid traverse.
+    pub programmed_feed_mm_min: f64,
+    /// M functions as shown: `M5/9`.
+    pub m: String,
+    /// The M function of the spindle is shown inverse (M2608), that of the coolant (M2609).
+    pub m_inverse: [bool; 2],
+    /// Control in operation: `*` steady, blinking or not there [003:1594-1600].
+    pub star: Star,
+    /// `N`, `S`, `ROT`, `SCL` and what else is in force [003:1297].
+    pub flags: Vec<String>,
+    /// Overrides in force, %: feed and spindle.
+    pub overrides: [f64; 2],
+    /// What the machine waits for, in words; empty when it waits for nothing.
+    pub waiting: String,
+    /// Processing time of the PLC, %: latest and longest scan.
+    pub plc_percent: [f64; 2],
+}
+
+/// `*` of the status display.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Star {
+    /// Not there.
+    #[default]
+    Off,
+    /// A program runs, or an M function or positioning is on its way.
+    Steady,
+    /// It is interrupted.
+    Blinking,
+}
+
+/// A line of the position display.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AxisLine {
+    /// The letter.
+    pub letter: char,
+    /// The position as it stands on the screen.
+    pub value: String,
+    /// `*`: the axis is locked, its loop is open.
+    pub locked: bool,
+    /// Its reference mark was passed.
+    pub referenced: bool,
+    /// Degrees instead of mm.
+    pub degrees: bool,
+}
+
+/// The soft-key row below the screen.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SoftKeys {
+    /// Texts of SK1 to SK8; empty ones do nothing.
+    pub keys: Vec<String>,
+    /// Which row is shown, from 0.
+    pub row: usize,
+    /// How many rows there are.
+    pub rows: usize,
+}
+
+/// A line of the PLC window.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PlcLine {
+    /// Its text, 38 characters.
+    pub text: String,
+    /// The colour of each character, 0 to 15.
+    pub colours: Vec<u8>,
+    /// A bar chart in its left half: maximum, current, colour of bar and of scale.
+    pub bar: Option<[u32; 4]>,
+}
+
+/// The machine operating panel, and how time passes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct MachineState {
+    /// The supply of the control is on.
+    pub power: bool,
+    /// The EMERGENCY STOP button is in.
+    pub emergency_stop: bool,
+    /// Potentiometers, %: feed and spindle.
+    pub knobs: [f64; 2],
+    /// Keys that are held.
+    pub held: Vec<String>,
+    /// Axis and factor of the handwheel.
+    pub handwheel: (char, u8),
+    /// How fast time passes; 1 is real time.
+    pub speed: f64,
+    /// Time stands.
+    pub paused: bool,
+}

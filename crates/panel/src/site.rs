@@ -1,0 +1,71 @@
+//! What a page may touch.
+
+use std::sync::Arc;
+
+use bahn_control::{Command, Control, Mode};
+use bahn_host::{Answer, Deed, Host, LoadedMachine, Source};
+use bahn_parameters::{MessageId, ParameterList};
+use bahn_path::Axis;
+
+use crate::programs::ProgramMemory;
+use crate::settings::Settings;
+use crate::texts::{self, Language};
+
+/// The station as a page sees it: the machine that is on, its folder, the program memory and what the operator chose.
+pub(crate) struct Site<'a> {
+    pub host: &'a mut Host,
+    pub machine: &'a LoadedMachine,
+    pub programs: &'a Arc<ProgramMemory>,
+    pub settings: &'a mut Settings,
+}
+
+impl Site<'_> {
+    /// Asks the control for something; `false` when it refuses.
+    pub fn command(&mut self, command: Command) -> bool {
+        self.act(Deed::Command(0, command))
+    }
+
+    /// Does something; `false` when it is refused or cannot be done.
+    pub fn act(&mut self, deed: Deed) -> bool {
+        let answer = self.host.act(Source::Client("panel".to_owned()), deed);
+        matches!(answer, Ok(Answer::Done))
+    }
+
+    /// The control.
+    pub fn control(&self) -> &Control {
+        self.host.control()
+    }
+
+    /// The machine parameters as they are edited.
+    pub fn parameters(&self) -> &ParameterList {
+        self.control().first().edited_list()
+    }
+
+    /// The machine operating mode.
+    pub fn mode(&self) -> Mode {
+        self.control().mode()
+    }
+
+    /// The language of the dialogue.
+    pub fn language(&self) -> Language {
+        let english = self.parameters().operation_parameters().english;
+        self.settings.language(english)
+    }
+
+    /// A text of the panel in the language of the dialogue.
+    pub fn words(&self, english: &'static str) -> String {
+        texts::words(self.language(), english).to_owned()
+    }
+
+    /// A message of the control.
+    pub fn message(&self, id: MessageId) -> String {
+        texts::translate(self.language(), id.text(self.control().model()))
+    }
+
+    /// The axis of a channel's key `X`, `Y`, `Z`, `IV` or `V`, by its place from 0.
+    pub fn axis_of_key(&self, place: usize) -> Option<Axis> {
+        let snapshot = self.control().snapshot();
+        let letter = snapshot.axes.iter().find(|axis| axis.index == place)?.letter;
+        Axis::from_letter(u8::try_from(letter).ok()?)
+    }
+}

@@ -1,0 +1,449 @@
+//! The operator's station: a machine that is on, and its panel.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use bahn_control::{Command, Control, Programs, RunState};
+use bahn_dialogue::Key;
+use bahn_host::{Answer, Attendance, Clock, Deed, Host, HostError, LoadedMachine, Operator, PowerOn, Source};
+use bahn_machine::KeyAction;
+use bahn_parameters::{MessageId, ParameterList};
+use bahn_plc::PlcWindow;
+
+use crate::console::{Console, Side};
+use crate::inhibit;
+use crate::input::{Input, Refusal};
+use crate::programs::ProgramMemory;
+use crate::screen::{MachineState, MessageLine, PlcLine, Screen};
+use crate::settings::Settings;
+use crate::site::Site;
+use crate::{numbers, status, texts};
+
+/// Lines of the large window.
+const LINES: usize = 16;
+/// Lines of a window beside another one.
+const LINES_BESIDE: usize = 16;
+/// A minute, µs.
+const MINUTE_US: u64 = 60_000_000;
+/// Factors by which time may pass.
+const SPEEDS: std::ops::RangeInclusive<f64> = 0.1..=100.0;
+
+/// A machine that is on, and its panel. It has no clock of its own: [`Station::cycle`] is one contour cycle.
+pub struct Station {
+    host: Host,
+    machine: LoadedMachine,
+    programs: Arc<ProgramMemory>,
+    settings: Settings,
+    /// What of the settings is on the medium.
+    stored: Settings,
+    state_folder: PathBuf,
+    console: Console,
+    knobs: [f64; 2],
+    emergency_stop: bool,
+    held: Vec<String>,
+    speed: f64,
+    paused: bool,
+    is_on: bool,
+    /// Less than a minute of each machine time, µs.
+    timers_us: [u64; 3],
+    shown: Screen,
+}
+
+impl Station {
+    /// Switches on the machine of a folder.
+    ///
+    /// # Errors
+    /// When it is switched on already, or what it kept cannot be read.
+    pub fn power_on(machine: LoadedMachine) -> Result<Station, HostError> {
+        let power_on = PowerOn::kept(&machine)?;
+        Ok(Station::with(machine, power_on))
+    }
+
+    /// The same with what the control finds.
+    pub fn with(machine: LoadedMachine, power_on: PowerOn) -> Station {
+        let programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
+        let operator = Operator::new(Attendance::Absent, machine.folder.operator.clone(), None);
+        let shared = Arc::clone(&programs) as Arc<dyn Programs>;
+        let host = Host::new(&machine, power_on, shared, operator);
+        let state_folder = machine.root.join(&machine.folder.state);
+        let settings = Settings::read(&state_folder);
+        Station {
+            console: Console::new(host.control().mode()),
+            stored: settings.clone(),
+            knobs: [100.0; 2],
+            emergency_stop: false,
+            held: Vec::new(),
+            speed: 1.0,
+            paused: false,
+            is_on: true,
+            timers_us: [0; 3],
+            shown: Screen::default(),
+            host,
+            machine,
+            programs,
+            settings,
+            state_folder,
+        }
+    }
+
+    /// Runs by the clock on the wall from now on, as fast as the operator chose.
+    pub fn run_by_the_wall(&mut self) {
+        self.host.set_clock(Clock::Wall(self.speed));
+    }
+
+    /// Takes what the operator does.
+    ///
+    /// # Errors
+    /// When there is no such key, or it cannot be done.
+    pub fn input(&mut self, input: &Input) -> Result<(), Refusal> {
+        match input {
+            Input::Key(key) => self.key(*key),
+            Input::Machine(name, action) => return self.machine_key(name, *action),
+            Input::Text(text) => {
+                let (console, mut site) = self.parts();
+                console.text(text, &mut site);
+            }
+            Input::FeedOverride(percent) => self.knob(0, *percent)?,
+            Input::SpindleOverride(percent) => self.knob(1, *percent)?,
+            Input::Handwheel(steps) => self.deed(&format!("handwheel {steps}"))?,
+            Input::HandwheelAxis(axis, factor) => {
+                self.deed(&format!("handwheel {axis} {factor}"))?;
+            }
+            Input::Power(on) => self.power(*on),
+            Input::Speed(factor) => self.set_speed(*factor)?,
+            Input::Pause(paused) => self.paused = *paused,
+            Input::Cycles(cycles) => {
+                for _ in 0..*cycles {
+                    self.cycle().map_err(|error| Refusal(error.to_string()))?;
+                }
+            }
+            Input::Deed(text) => self.deed(text)?,
+        }
+        Ok(())
+    }
+
+    /// One contour cycle of the machine.
+    ///
+    /// # Errors
+    /// When what survives power-off cannot be written; the machine goes on all the same.
+    pub fn cycle(&mut self) -> Result<(), HostError> {
+        let cycled = self.host.step();
+        let is_on = !self.host.control().is_off();
+        if self.is_on && !is_on {
+            self.console.power_off();
+        }
+        self.is_on = is_on;
+        if is_on {
+            self.count_time();
+            let (console, mut site) = self.parts();
+            if let Some(key) = inhibit::simulated(&mut site) {
+                console.key(key, &mut site);
+            }
+            console.tick(&mut site);
+        }
+        self.store_settings();
+        cycled
+    }
+
+    /// Time stands.
+    pub fn is_paused(&self) -> bool {
+        self.paused
+    }
+
+    /// Everything is on the medium: the station ends.
+    ///
+    /// # Errors
+    /// [`HostError::NotStored`].
+    pub fn store(&mut self) -> Result<(), HostError> {
+        self.store_settings();
+        self.host.store()
+    }
+
+    /// The control.
+    pub fn control(&self) -> &Control {
+        self.host.control()
+    }
+
+    /// The machine's host, to record, save and go back.
+    pub fn host(&mut self) -> &mut Host {
+        &mut self.host
+    }
+
+    /// The machine's folder as it was loaded.
+    pub fn machine(&self) -> &LoadedMachine {
+        &self.machine
+    }
+
+    /// Names of the keys of the machine operating panel.
+    pub fn machine_keys(&self) -> Vec<String> {
+        self.host.plant().keys().map(str::to_owned).collect()
+    }
+
+    /// The numbers behind the screen, for programs: times, positions in mm and degrees, speeds, the run, messages.
+    pub fn numbers(&self) -> serde_json::Value {
+        numbers::of(&self.host.control().snapshot(), self.host.control())
+    }
+
+    /// The screen as it is now. Its serial counts on when it is another one.
+    pub fn screen(&mut self) -> &Screen {
+        let mut screen = match self.is_on {
+            true => self.make_screen(),
+            false => Screen::default(),
+        };
+        screen.machine = self.machine_state();
+        screen.time_s = self.host.control().time_us() as f64 / 1e6;
+        screen.lamps = self.lamps();
+        screen.serial = self.shown.serial;
+        let time_s = std::mem::replace(&mut self.shown.time_s, screen.time_s);
+        if screen != self.shown {
+            screen.serial += 1;
+            self.shown = screen;
+        } else {
+            self.shown.time_s = time_s.max(screen.time_s);
+        }
+        &self.shown
+    }
+
+    fn parts(&mut self) -> (&mut Console, Site<'_>) {
+        let site = Site {
+            host: &mut self.host,
+            machine: &self.machine,
+            programs: &self.programs,
+            settings: &mut self.settings,
+        };
+        (&mut self.console, site)
+    }
+
+    fn make_screen(&mut self) -> Screen {
+        let messages = self.messages();
+        let snapshot = self.host.control().snapshot();
+        let status = status::of(
+            &snapshot,
+            self.host.control(),
+            self.parameters(),
+            &self.settings,
+            &self.shown.status,
+        );
+        let plc_window = self.plc_window();
+        let (console, site) = self.parts();
+        let front = console.front();
+        let other = match front {
+            Side::Machine => Side::Programming,
+            Side::Programming => Side::Machine,
+        };
+        let view = console.view(front, &site, LINES).unwrap_or_default();
+        let beside = match console.split {
+            true => console.view(other, &site, LINES_BESIDE),
+            false => None,
+        };
+        let headings = console.headings(&site);
+        let mode = headings.iter().find(|heading| heading.active);
+        Screen {
+            mode: mode.map(|heading| heading.title.clone()).unwrap_or_default(),
+            soft_keys: console.soft_keys(&site),
+            headings,
+            dialogue: view.dialogue,
+            messages,
+            program: view.window.unwrap_or_default(),
+            beside: beside.and_then(|view| view.window),
+            status,
+            plc_window,
+            ..Screen::default()
+        }
+    }
+
+    /// Counts the machine times, which are kept in whole minutes.
+    fn count_time(&mut self) {
+        let control = self.host.control();
+        let runs = control.run_state() == RunState::Running;
+        let turns = control.spindle().actual_rpm.abs() >= 1.0;
+        let cycle_us = u64::from(control.cycle_us());
+        let counters = self.timers_us.iter_mut().zip(&mut self.settings.timers_min);
+        for ((us, minutes), counts) in counters.zip([true, runs, turns]) {
+            *us += if counts { cycle_us } else { 0 };
+            if *us >= MINUTE_US {
+                *us -= MINUTE_US;
+                *minutes += 1;
+            }
+        }
+    }
+
+    fn parameters(&self) -> &ParameterList {
+        self.host.control().first().edited_list()
+    }
+
+    /// Messages of the control, and those of the panel behind them.
+    fn messages(&mut self) -> Vec<MessageLine> {
+        let english = self.parameters().operation_parameters().english;
+        let language = self.settings.language(english);
+        let control = self.host.control();
+        let line = |shown: &bahn_control::Shown| MessageLine {
+            text: texts::translate(language, &control.shown_text(shown)),
+            flashing: shown.flashing,
+            place: shown.block.map(|block| format!("{}", block.block)),
+        };
+        let shown = control.shown().iter().map(line);
+        let notes = self.console.notes().iter().map(|note| MessageLine {
+            text: note.clone(),
+            ..MessageLine::default()
+        });
+        shown.chain(notes).collect()
+    }
+
+    fn plc_window(&self) -> Option<Vec<PlcLine>> {
+        let window = self.host.control().plc_window();
+        let lines: Vec<_> = (0..PlcWindow::LINES)
+            .map(|line| PlcLine {
+                text: window.text(line),
+                colours: window.line(line).iter().map(|cell| cell.colour).collect(),
+                bar: window.bar(line).map(|bar| {
+                    [
+                        bar.maximum,
+                        bar.current,
+                        bar.bar_colour.into(),
+                        bar.scale_colour.into(),
+                    ]
+                }),
+            })
+            .collect();
+        let empty = |line: &PlcLine| line.text.trim().is_empty() && line.bar.is_none();
+        (!lines.iter().all(empty)).then_some(lines)
+    }
+
+    fn lamps(&self) -> BTreeMap<String, bool> {
+        let plant = self.host.plant();
+        let names = plant.lamps().map(str::to_owned);
+        names
+            .map(|name| (name.clone(), plant.lamp(&name).unwrap_or(false)))
+            .collect()
+    }
+
+    fn machine_state(&self) -> MachineState {
+        MachineState {
+            power: self.is_on,
+            emergency_stop: self.emergency_stop,
+            knobs: self.knobs,
+            held: self.held.clone(),
+            handwheel: self.handwheel(),
+            speed: self.speed,
+            paused: self.paused,
+        }
+    }
+
+    /// Axis and interpolation factor of the handwheel.
+    fn handwheel(&self) -> (char, u8) {
+        let control = self.host.control();
+        let (index, factor) = control.first().handwheel();
+        let snapshot = control.snapshot();
+        let axis = snapshot.axes.iter().find(|axis| axis.index == index);
+        (axis.map_or('X', |axis| axis.letter), factor)
+    }
+
+    /// A key of the keyboard: the PLC may inhibit it, and is told then [000:7319].
+    fn key(&mut self, key: Key) {
+        if !self.is_on {
+            return;
+        }
+        let (console, mut site) = self.parts();
+        if !inhibit::is_inhibited(key, &mut site) {
+            console.key(key, &mut site);
+        }
+    }
+
+    fn machine_key(&mut self, name: &str, action: KeyAction) -> Result<(), Refusal> {
+        if name == EMERGENCY_STOP {
+            let pressed = match action {
+                KeyAction::Press => true,
+                KeyAction::Release => false,
+                KeyAction::Tap => !self.emergency_stop,
+            };
+            self.emergency_stop = pressed;
+            return self.deed(if pressed {
+                "emergency press"
+            } else {
+                "emergency release"
+            });
+        }
+        let verb = match action {
+            KeyAction::Press => "press",
+            KeyAction::Release => "release",
+            KeyAction::Tap => "tap",
+        };
+        self.deed(&format!("key {name} {verb}"))?;
+        self.held.retain(|held| held != name);
+        if action == KeyAction::Press {
+            self.held.push(name.to_owned());
+        }
+        Ok(())
+    }
+
+    fn knob(&mut self, place: usize, percent: f64) -> Result<(), Refusal> {
+        let name = ["feed", "spindle"][place.min(1)];
+        self.deed(&format!("override {name} {percent}"))?;
+        if let Some(knob) = self.knobs.get_mut(place) {
+            *knob = percent;
+        }
+        Ok(())
+    }
+
+    fn set_speed(&mut self, factor: f64) -> Result<(), Refusal> {
+        if !SPEEDS.contains(&factor) {
+            return Err(Refusal(format!(
+                "time passes {} to {} times as fast, not {factor}",
+                SPEEDS.start(),
+                SPEEDS.end()
+            )));
+        }
+        self.speed = factor;
+        self.host.set_clock(Clock::Wall(factor));
+        Ok(())
+    }
+
+    fn power(&mut self, on: bool) {
+        let command = Deed::Command(0, Command::Power(on));
+        // A control that is on stays on.
+        let _ = self.host.act(Source::Client("panel".to_owned()), command);
+    }
+
+    fn deed(&mut self, text: &str) -> Result<(), Refusal> {
+        self.act(Deed::parse(text).map_err(|error| Refusal(error.to_string()))?)
+    }
+
+    fn act(&mut self, deed: Deed) -> Result<(), Refusal> {
+        let answer = self.host.act(Source::Client("panel".to_owned()), deed);
+        match answer.map_err(|error| Refusal(error.to_string()))? {
+            Answer::Done => Ok(()),
+            Answer::Refused => Err(Refusal(
+                MessageId::KeyNonFunctional.text(self.control().model()).into(),
+            )),
+            Answer::Impossible(why) => Err(Refusal(why)),
+        }
+    }
+
+    /// What the operator chose is kept as soon as it is another one.
+    fn store_settings(&mut self) {
+        if self.settings == self.stored {
+            return;
+        }
+        if let Err(error) = self.settings.write(&self.state_folder) {
+            self.console.say(error);
+        }
+        self.stored = self.settings.clone();
+    }
+}
+
+/// Name of the EMERGENCY STOP button among the keys of the machine operating panel.
+pub const EMERGENCY_STOP: &str = "EMERGENCY_STOP";
+
+/// Loads the machine of a folder, with its faults in words.
+///
+/// # Errors
+/// All faults of all files, one a line.
+pub fn load(folder: &Path) -> Result<LoadedMachine, String> {
+    let loaded = LoadedMachine::load(folder).map_err(|error| error.to_string())?;
+    loaded.map_err(|faults| {
+        let lines = faults.iter().map(|fault| fault.title.clone());
+        lines.collect::<Vec<_>>().join("\n")
+    })
+}

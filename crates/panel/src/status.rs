@@ -1,0 +1,226 @@
+//! The status display, made of what the control shows [003:949-971].
+
+use bahn_control::{AxisState, Control, InForce, RunState, Snapshot};
+use bahn_exchange::signal;
+use bahn_parameters::ParameterList;
+use bahn_parameters::machining::Decimal;
+use bahn_path::Axis;
+use bahn_servo::Rotation;
+
+use crate::screen::{AxisLine, Star, Status};
+use crate::settings::{PositionType, Settings};
+
+/// Millimetres of an inch.
+const INCH_MM: f64 = 25.4;
+/// Decimals of an inch display [003:7093-7102].
+const INCH_DECIMALS: usize = 4;
+
+/// How numbers stand on the screen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Notation {
+    inch: bool,
+    decimal: Decimal,
+}
+
+impl Notation {
+    pub fn of(settings: &Settings, parameters: &ParameterList) -> Notation {
+        Notation {
+            inch: settings.inch,
+            decimal: parameters.decimal(),
+        }
+    }
+
+    /// A position with its sign, in steps of the display: mm, inches or degrees.
+    pub fn position(self, value: f64, step_mm: f64, degrees: bool) -> String {
+        let (value, decimals) = match self.inch && !degrees {
+            true => (value / INCH_MM, INCH_DECIMALS),
+            false => ((value / step_mm).round() * step_mm, decimals(step_mm)),
+        };
+        self.sign(format!("{value:+.decimals$}"), decimals)
+    }
+
+    /// A number without a step of its own.
+    pub fn number(self, value: f64, decimals: usize) -> String {
+        self.sign(format!("{value:.decimals$}"), decimals)
+    }
+
+    /// With the decimal sign of MP7280, and without a sign before nothing.
+    fn sign(self, text: String, decimals: usize) -> String {
+        let zero = text.chars().all(|character| "+-0.".contains(character));
+        let text = if zero && text.starts_with('-') {
+            text.replacen('-', "+", 1)
+        } else {
+            text
+        };
+        match self.decimal {
+            Decimal::Comma if decimals > 0 => text.replace('.', ","),
+            _ => text,
+        }
+    }
+
+    /// A feed as F shows it: mm/min, in inches 0.1 inch/min... of the programmed feed [003:2140-2144].
+    pub fn feed(self, mm_min: f64) -> String {
+        match self.inch {
+            true => self.number(mm_min / INCH_MM, 1),
+            false => self.number(mm_min, 0),
+        }
+    }
+}
+
+/// Decimals of a display step: three for 0.001 and 0.005, four for 0.0001.
+fn decimals(step_mm: f64) -> usize {
+    (0..6)
+        .find(|decimals| {
+            let scaled = step_mm * 10f64.powi(*decimals);
+            (scaled - scaled.round()).abs() < 1e-9 && scaled > 0.5
+        })
+        .map_or(4, |decimals| decimals as usize)
+}
+
+/// The status display of the first channel.
+pub(crate) fn of(
+    snapshot: &Snapshot,
+    control: &Control,
+    parameters: &ParameterList,
+    settings: &Settings,
+    earlier: &Status,
+) -> Status {
+    let notation = Notation::of(settings, parameters);
+    let axes = snapshot
+        .axes
+        .iter()
+        .map(|axis| axis_line(axis, parameters, settings.position_type, notation));
+    // While the program is read on another thread what was shown stays.
+    let (tool_axis, flags) = match control.first().in_force() {
+        Some(in_force) => of_program(&in_force, snapshot.tool),
+        None => (earlier.tool_axis.clone(), earlier.flags.clone()),
+    };
+    Status {
+        position_type: settings.position_type.name().to_owned(),
+        inch: settings.inch,
+        axes: axes.collect(),
+        tool: snapshot.tool,
+        tool_axis,
+        s: snapshot.spindle.programmed_rpm,
+        gear: snapshot.spindle.gear,
+        spindle_rpm: snapshot.spindle.actual_rpm,
+        f: feed(snapshot, notation),
+        feed_mm_min: snapshot.feed_mm_min,
+        programmed_feed_mm_min: snapshot.programmed_feed_mm_min.unwrap_or_default(),
+        m: functions(snapshot, control),
+        m_inverse: [signal::SPINDLE_DISPLAY_INVERSE, signal::COOLANT_DISPLAY_INVERSE]
+            .map(|marker| control.memory().bit(marker)),
+        star: star(snapshot),
+        flags,
+        overrides: [snapshot.feed_override_percent, snapshot.spindle_override_percent],
+        waiting: snapshot
+            .waiting
+            .map_or_else(String::new, |waiting| waiting.to_string()),
+        plc_percent: snapshot.plc_percent,
+    }
+}
+
+/// The tool axis, once a tool was called, and the flags `N XY`, `S X`, `ROT`, `SCL` [003:1297].
+fn of_program(in_force: &InForce, tool: u32) -> (Option<String>, Vec<String>) {
+    let letters = |axes: &[Axis]| axes.iter().map(|axis| axis.letter()).collect::<String>();
+    let marked = |name: &str, axes: &[Axis]| (!axes.is_empty()).then(|| format!("{name} {}", letters(axes)));
+    let flags = [
+        marked("N", &in_force.shifted),
+        marked("S", &in_force.mirrored),
+        in_force.rotated.then(|| "ROT".to_owned()),
+        in_force.scaled.then(|| "SCL".to_owned()),
+    ];
+    let axis = (tool > 0).then(|| in_force.tool_axis.letter().to_string());
+    (axis, flags.into_iter().flatten().collect())
+}
+
+fn axis_line(
+    axis: &AxisState,
+    parameters: &ParameterList,
+    position_type: PositionType,
+    notation: Notation,
+) -> AxisLine {
+    let degrees = Axis::from_letter(axis.letter as u8).is_some_and(Axis::is_rotary);
+    let value = match position_type {
+        PositionType::Actl => axis.actual,
+        PositionType::Noml => axis.nominal,
+        PositionType::Lag => axis.lag,
+        PositionType::Dist => axis.distance_to_go,
+        PositionType::Ref => axis.machine,
+    };
+    let index = u8::try_from(axis.index).unwrap_or_default();
+    let step = parameters.axis_parameters(index).travel.display_step_mm;
+    AxisLine {
+        letter: axis.letter,
+        value: notation.position(value, step, degrees),
+        locked: !axis.closed,
+        referenced: axis.referenced,
+        degrees,
+    }
+}
+
+/// The programmed feed in program run, `MAX` in rapid traverse; else what the axes do [000:6521-6561].
+fn feed(snapshot: &Snapshot, notation: Notation) -> String {
+    match (snapshot.mode.is_automatic(), snapshot.programmed_feed_mm_min) {
+        (true, None) if snapshot.run != RunState::Idle => "MAX".to_owned(),
+        (true, Some(feed)) => notation.feed(feed),
+        _ => notation.feed(snapshot.feed_mm_min),
+    }
+}
+
+/// `M5/9`: the M functions of spindle and coolant as the PLC shows them [000:6563-6579].
+fn functions(snapshot: &Snapshot, control: &Control) -> String {
+    let spindle = match snapshot.spindle.rotation {
+        Rotation::M3 => '3',
+        Rotation::M4 => '4',
+        Rotation::M5 => '5',
+    };
+    let bit = |marker| control.memory().bit(marker);
+    let coolant = match (
+        bit(signal::COOLANT_DISPLAY_BIT_0),
+        bit(signal::COOLANT_DISPLAY_BIT_1),
+    ) {
+        (false, false) => "9",
+        (false, true) => "7",
+        (true, false) => "8",
+        (true, true) => "K",
+    };
+    format!("M{spindle}/{coolant}")
+}
+
+/// Steady while a run goes on, blinking while it is interrupted [003:1594-1600].
+fn star(snapshot: &Snapshot) -> Star {
+    match snapshot.run {
+        RunState::Idle => Star::Off,
+        RunState::Running => Star::Steady,
+        RunState::Interrupted | RunState::Stopped | RunState::BlockEnd => Star::Blinking,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn notation(inch: bool, decimal: Decimal) -> Notation {
+        Notation { inch, decimal }
+    }
+
+    #[test]
+    fn positions_have_the_step_of_the_display() {
+        let point = notation(false, Decimal::Point);
+        assert_eq!(point.position(12.3456, 0.001, false), "+12.346");
+        // 12.3456 in steps of 5 um: 12.345.
+        assert_eq!(point.position(12.3456, 0.005, false), "+12.345");
+        assert_eq!(point.position(-0.00004, 0.0001, false), "+0.0000");
+        let comma = notation(false, Decimal::Comma);
+        assert_eq!(comma.position(-1.5, 0.0001, false), "-1,5000");
+        // An inch has four decimals, an angle stays an angle.
+        let inch = notation(true, Decimal::Point);
+        assert_eq!(inch.position(25.4, 0.001, false), "+1.0000");
+        assert_eq!(inch.position(90.0, 0.001, true), "+90.000");
+        assert_eq!(
+            (inch.feed(254.0), point.feed(254.4)),
+            ("10.0".into(), "254".into())
+        );
+    }
+}

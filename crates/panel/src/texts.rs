@@ -1,0 +1,90 @@
+//! The words of the screen in the languages of the panel.
+//!
+//! The key of a text is what it is in English; `texts/*.tsv` have its translation. A language is complete when every
+//! text that the panel uses has one, which a test holds.
+
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+pub use bahn_dialogue::Tongue as Language;
+
+const GERMAN: &[&str] = &[include_str!("../texts/de.tsv")];
+
+/// The code of a language: `en`, `de`.
+pub(crate) fn code(language: Language) -> &'static str {
+    match language {
+        Language::English => "en",
+        Language::German => "de",
+    }
+}
+
+/// The language of a code.
+pub(crate) fn from_code(code: &str) -> Option<Language> {
+    [Language::English, Language::German]
+        .into_iter()
+        .find(|language| self::code(*language) == code)
+}
+
+/// A text in a language; in English when the language has none for it.
+pub(crate) fn words(language: Language, english: &'static str) -> &'static str {
+    find(language, english).unwrap_or(english)
+}
+
+/// A text that is known at run time only: messages, names of cycles.
+pub(crate) fn translate(language: Language, english: &str) -> String {
+    find(language, english).unwrap_or(english).to_owned()
+}
+
+fn find(language: Language, english: &str) -> Option<&'static str> {
+    static TABLE: OnceLock<HashMap<&'static str, &'static str>> = OnceLock::new();
+    match language {
+        Language::English => None,
+        Language::German => TABLE.get_or_init(german).get(english).copied(),
+    }
+}
+
+fn german() -> HashMap<&'static str, &'static str> {
+    let lines = GERMAN.iter().flat_map(|table| table.lines());
+    lines
+        .filter(|line| !line.starts_with('#'))
+        .filter_map(|line| line.split_once('\t'))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Texts in the sources of this crate: what stands in `words("...")`.
+    fn used() -> Vec<String> {
+        let mut found = Vec::new();
+        let mut folders = vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if !path.ends_with("texts.rs") {
+                    let source = std::fs::read_to_string(&path).unwrap();
+                    let places = source.split("words(\"").skip(1);
+                    found.extend(places.map(|rest| rest.split('"').next().unwrap().to_owned()));
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn every_text_of_the_panel_is_translated() {
+        let used = used();
+        assert!(used.len() > 15, "{}", used.len());
+        let missing: Vec<_> = used
+            .iter()
+            .filter(|text| find(Language::German, text).is_none())
+            .collect();
+        assert!(missing.is_empty(), "{missing:#?}");
+        assert!(GERMAN.iter().flat_map(|table| table.lines()).all(|line| {
+            line.starts_with('#') || line.split('\t').filter(|cell| !cell.is_empty()).count() == 2
+        }));
+    }
+}

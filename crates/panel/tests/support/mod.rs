@@ -1,0 +1,171 @@
+//! A trainee at the station of a shipped machine, in a folder of his own.
+
+#![allow(dead_code, reason = "each test uses a part")]
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use bahn_panel::{Input, InputText, Screen, Station};
+
+/// A station whose time passes as the test says.
+pub struct Trainee {
+    pub station: Station,
+    folder: PathBuf,
+}
+
+impl Trainee {
+    /// A machine that was never on.
+    pub fn at(machine: &str) -> Trainee {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("bahn-panel-{}-{number}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        copy(&machines().join(machine), &folder);
+        Trainee {
+            station: on(&folder),
+            folder,
+        }
+    }
+
+    /// The station ends without being asked, and the machine is switched on again.
+    pub fn killed(mut self) -> Trainee {
+        let folder = std::mem::take(&mut self.folder);
+        drop(self);
+        Trainee {
+            station: on(&folder),
+            folder,
+        }
+    }
+
+    /// Presses keys, separated by blanks, a tenth of a second apart; they must be there.
+    pub fn press(&mut self, keys: &str) -> &mut Trainee {
+        for key in keys.split_whitespace() {
+            self.give(&format!("{{\"key\":\"{key}\"}}"));
+            self.wait(0.1);
+        }
+        self
+    }
+
+    /// Types a number.
+    pub fn number(&mut self, text: &str) -> &mut Trainee {
+        for character in text.chars() {
+            let key = match character {
+                '-' => "SIGN".to_owned(),
+                '.' => "POINT".to_owned(),
+                digit => digit.to_string(),
+            };
+            self.press(&key);
+        }
+        self
+    }
+
+    /// Gives an input.
+    pub fn give(&mut self, json: &str) -> &mut Trainee {
+        let text: InputText = serde_json::from_str(json).unwrap();
+        let input = Input::try_from(text).unwrap();
+        self.station
+            .input(&input)
+            .unwrap_or_else(|refusal| panic!("{json}: {refusal}"));
+        self
+    }
+
+    /// Lets time pass, s.
+    pub fn wait(&mut self, seconds: f64) -> &mut Trainee {
+        let end = self.station.control().time_us() + (seconds * 1e6) as u64;
+        while self.station.control().time_us() < end {
+            self.station.cycle().unwrap();
+        }
+        self
+    }
+
+    /// Lets time pass until something is so, at most so many seconds.
+    pub fn until(&mut self, at_most: f64, what: impl Fn(&Screen) -> bool) -> &mut Trainee {
+        for _ in 0..(at_most * 10.0) as u32 {
+            if what(self.station.screen()) {
+                return self;
+            }
+            self.wait(0.1);
+        }
+        panic!("not within {at_most} s: {:#?}", self.station.screen());
+    }
+
+    pub fn screen(&mut self) -> Screen {
+        self.station.screen().clone()
+    }
+
+    /// Messages that are shown.
+    pub fn messages(&mut self) -> Vec<String> {
+        let screen = self.station.screen();
+        screen
+            .messages
+            .iter()
+            .map(|message| message.text.clone())
+            .collect()
+    }
+
+    /// The position of an axis as it stands on the screen.
+    pub fn position(&mut self, letter: char) -> String {
+        let screen = self.station.screen();
+        let axis = screen.status.axes.iter().find(|axis| axis.letter == letter);
+        axis.map(|axis| axis.value.clone()).unwrap()
+    }
+
+    /// POWER INTERRUPTED, control voltage and reference marks are behind him.
+    pub fn ready(&mut self) -> &mut Trainee {
+        self.until(5.0, |screen| !screen.messages.is_empty());
+        assert_eq!(self.messages(), ["POWER INTERRUPTED"]);
+        self.press("CE");
+        self.until(10.0, |screen| {
+            screen.mode == "PASS OVER REFERENCE MARKS" && screen.messages.is_empty()
+        });
+        self.wait(1.0);
+        self.press("NC_START");
+        self.until(120.0, |screen| screen.mode == "MANUAL OPERATION");
+        self
+    }
+
+    /// Whether there is a file in his machine's folder.
+    pub fn has(&self, name: &str) -> bool {
+        self.folder.join(name).exists()
+    }
+
+    /// Writes a file of his machine's folder.
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.folder.join(name), text).unwrap();
+    }
+
+    /// A file of his machine's folder.
+    pub fn file(&self, name: &str) -> String {
+        std::fs::read_to_string(self.folder.join(name)).unwrap()
+    }
+}
+
+impl Drop for Trainee {
+    fn drop(&mut self) {
+        if !self.folder.as_os_str().is_empty() {
+            let _ = std::fs::remove_dir_all(&self.folder);
+        }
+    }
+}
+
+fn on(folder: &Path) -> Station {
+    let machine = bahn_panel::load(folder).unwrap();
+    Station::power_on(machine).unwrap()
+}
+
+fn machines() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines")
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let target = to.join(entry.file_name());
+        match entry.file_type().unwrap().is_dir() {
+            true if entry.file_name() == "state" => {}
+            true => copy(&entry.path(), &target),
+            false => drop(std::fs::copy(entry.path(), target).unwrap()),
+        }
+    }
+}
