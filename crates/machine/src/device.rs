@@ -129,6 +129,11 @@ impl Device {
         self.position != before
     }
 
+    /// Something holds it in its first state.
+    pub fn hold_back(&mut self) {
+        self.position = 0.0;
+    }
+
     /// It has arrived in its second state.
     pub fn is_forth(&self) -> bool {
         self.position >= 1.0 - END

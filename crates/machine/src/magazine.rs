@@ -194,10 +194,13 @@ impl Magazine {
         if arrives(shuttle_before, shuttle) && !self.shuttle_moved(shuttle) {
             jams = Some(parts.shuttle);
         }
-        // What is gripped and clamped cannot be drawn.
+        // What is gripped and clamped cannot be drawn: the arm is held until the clamp opens.
         let leaves = draw_before == Place::Back && draw != Place::Back;
         if leaves && grips && !released && self.spindle != 0 {
-            jams = Some(parts.draw);
+            if let Some(arm) = devices.get_mut(parts.draw) {
+                arm.hold_back();
+            }
+            self.before[1] = Place::Back;
         }
         if arrives(draw_before, draw) && grips && !self.drawn(draw) {
             jams = Some(parts.draw);
