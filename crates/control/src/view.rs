@@ -61,6 +61,12 @@ impl<'a> ChannelView<'a> {
         self.channel.desk().mode()
     }
 
+    /// Indices of the axes whose direction keys are pressed.
+    pub fn pressed_axes(&self) -> impl Iterator<Item = usize> + use<'a> {
+        let keys = self.channel.desk().panel().axis_keys.iter().enumerate();
+        keys.filter(|(_, key)| key.is_some()).map(|(index, _)| index)
+    }
+
     /// State of the run.
     pub fn run_state(&self) -> RunState {
         self.channel.run.progress().state()

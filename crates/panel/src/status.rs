@@ -104,7 +104,7 @@ pub(crate) fn of(
         s: snapshot.spindle.programmed_rpm,
         gear: snapshot.spindle.gear,
         spindle_rpm: snapshot.spindle.actual_rpm,
-        f: feed(snapshot, notation),
+        f: feed(snapshot, control, parameters, notation),
         feed_mm_min: snapshot.feed_mm_min,
         programmed_feed_mm_min: snapshot.programmed_feed_mm_min.unwrap_or_default(),
         m: functions(snapshot, control),
@@ -159,12 +159,28 @@ fn axis_line(
     }
 }
 
-/// The programmed feed in program run, `MAX` in rapid traverse; else what the axes do [000:6521-6561].
-fn feed(snapshot: &Snapshot, notation: Notation) -> String {
+/// The programmed feed in program run, `MAX` in rapid traverse. By hand that of the axis whose key is pressed, blank for
+/// two of them, or with MP7270 the least of all; at 100 % everywhere [000:6521-6561]. With no key nothing moves *(inferred)*.
+fn feed(snapshot: &Snapshot, control: &Control, parameters: &ParameterList, notation: Notation) -> String {
+    let manual = |index: usize| {
+        let axis = parameters.axis_parameters(u8::try_from(index).unwrap_or_default());
+        axis.motion.manual_mm_min
+    };
     match (snapshot.mode.is_automatic(), snapshot.programmed_feed_mm_min) {
         (true, None) if snapshot.run != RunState::Idle => "MAX".to_owned(),
-        (true, Some(feed)) => notation.feed(feed),
-        _ => notation.feed(snapshot.feed_mm_min),
+        (true, feed) => notation.feed(feed.unwrap_or_default()),
+        (false, _) if parameters.operation_parameters().manual_feed_shown => {
+            let feeds = snapshot.axes.iter().map(|axis| manual(axis.index));
+            notation.feed(feeds.reduce(f64::min).unwrap_or_default())
+        }
+        (false, _) => {
+            let mut pressed = control.first().pressed_axes();
+            match (pressed.next(), pressed.next()) {
+                (Some(index), None) => notation.feed(manual(index)),
+                (None, _) => notation.feed(0.0),
+                _ => String::new(),
+            }
+        }
     }
 }
 

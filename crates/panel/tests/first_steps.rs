@@ -44,11 +44,15 @@ fn a_datum_is_set_and_an_axis_moved_by_hand() {
     assert_eq!(trainee.position('X'), "-12.500");
     // Y+ held for a second: MP1020.1 is the feed in MANUAL OPERATION.
     let before: f64 = trainee.position('Y').parse().unwrap();
+    let parameters = trainee.station.machine().parameters.axis_parameters(1);
     trainee.give(r#"{"key":"Y+","down":true}"#).wait(1.0);
+    assert_eq!(
+        trainee.screen().status.f,
+        parameters.motion.manual_mm_min.to_string()
+    );
     trainee.give(r#"{"key":"Y+","down":false}"#).wait(1.0);
     let way = trainee.position('Y').parse::<f64>().unwrap() - before;
-    let parameters = &trainee.station.machine().parameters;
-    let per_second = parameters.axis_parameters(1).motion.manual_mm_min / 60.0;
+    let per_second = parameters.motion.manual_mm_min / 60.0;
     assert!(
         (way - per_second).abs() < 0.1 * per_second,
         "{way} mm, {per_second} mm/s"

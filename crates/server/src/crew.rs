@@ -1,6 +1,7 @@
 //! Who looks at a station, and who of them operates.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A name that a viewer gave himself.
 pub(crate) type Name = String;
@@ -20,6 +21,8 @@ struct Viewer {
     connections: u32,
     /// The last of his inputs that was taken.
     taken: u64,
+    /// Held while one of his inputs is done: what his old connection brought comes before what his new one brings.
+    order: Arc<tokio::sync::Mutex<()>>,
 }
 
 /// Names that are remembered without a connection, so that their inputs are taken once.
@@ -49,6 +52,11 @@ impl Crew {
         if self.asks.as_deref() == Some(name) && !self.is_there(name) {
             self.asks = None;
         }
+    }
+
+    /// What is held while an input of somebody is judged and done.
+    pub fn order(&mut self, name: &str) -> Arc<tokio::sync::Mutex<()>> {
+        Arc::clone(&self.viewers.entry(name.to_owned()).or_default().order)
     }
 
     /// An input with its number: whether it is new, and his to give.

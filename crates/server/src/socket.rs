@@ -160,6 +160,8 @@ impl Viewer {
     }
 
     async fn input(&mut self, sent: Sent) -> Message {
+        let order = lock(&self.shared.crew).order(&self.name);
+        let _turn = order.lock().await;
         let taking = lock(&self.shared.crew).takes(&self.name, sent.n);
         self.taken = self.taken.max(sent.n);
         match taking {
