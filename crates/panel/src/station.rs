@@ -71,6 +71,8 @@ impl Station {
         let operator = Operator::new(Attendance::Absent, machine.folder.operator.clone(), None);
         let shared = Arc::clone(&programs) as Arc<dyn Programs>;
         let mut host = Host::new(&machine, power_on, shared, operator);
+        // Sessions and the time line repeat what was.
+        host.be_exact();
         let state_folder = machine.root.join(&machine.folder.state);
         let settings = Settings::read(&state_folder);
         let axis = host.control().axis_letters().next().unwrap_or('X');
