@@ -290,8 +290,8 @@ impl OwnAxes<'_> {
         }
     }
 
-    /// Goes over to changed machine parameters, with the limits of a traverse range.
-    pub fn set_parameters(&mut self, list: &ParameterList, range: usize) {
+    /// Goes over to changed machine parameters; the limits of the traverse range are the caller's.
+    pub fn set_parameters(&mut self, list: &ParameterList) {
         let channel = self.channel;
         for unit in self.units.iter_mut().filter(|unit| unit.home.0 == channel) {
             let Ok(index) = u8::try_from(unit.home.1) else {
@@ -303,9 +303,6 @@ impl OwnAxes<'_> {
                 parameters = Gantry::slave_parameters(&parameters, &list.axis_parameters(master));
             }
             unit.set_parameters(parameters);
-            if let Some(limits) = parameters.travel.ranges_mm.get(range) {
-                unit.limits = *limits;
-            }
         }
     }
 

@@ -4,7 +4,7 @@
 use bahn_exchange::signal;
 use bahn_interpreter::Rules;
 use bahn_parameters::{MessageId, ParameterList};
-use bahn_path::{Axis, BlockRef};
+use bahn_path::Axis;
 use bahn_servo::{HandwheelInputs, Measured, OperatorInputs};
 
 use crate::axes::Axes;
@@ -45,7 +45,7 @@ pub(crate) struct Channel {
     positioning: Positioning,
     strobes: strobes::Strobes,
     pub handshakes: Handshakes,
-    datums: Datums,
+    pub datums: Datums,
     pub tools: Tools,
     /// The version of the magazine that the interpreter knows.
     tools_seen: u64,
@@ -381,8 +381,7 @@ impl Channel {
         };
         let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
         let (life, tools) = (&mut self.life, &mut self.tools);
-        let changed = life.follow(counting, tools, magazine, &self.handshakes, exchange, files);
-        machine.unsaved |= changed;
+        machine.unsaved |= life.follow(counting, tools, magazine, exchange, files);
         let waits = keeps && machine.unsaved;
         if !waits {
             self.tools.end_geometry_strobe(exchange);
@@ -444,6 +443,8 @@ impl Channel {
         if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
             self.show(Message::PlcMarkers(code), machine);
         }
+        let (exchange, magazine) = (machine.memory.of(self.number), &mut machine.magazine);
+        self.tools.take_end(magazine, &self.handshakes, exchange);
     }
 
     /// Takes the strobes that the PLC set in a scan, and resets them.
@@ -544,7 +545,8 @@ impl Channel {
         let spindle = machine.spindles.of_mut(self.number);
         spindle.set_parameters(list.spindle_parameters());
         let mut axes = machine.axes.of(self.number);
-        axes.set_parameters(list, self.datums.range());
+        axes.set_parameters(list);
+        self.datums.limit(&mut axes);
         let intervals = axes.iter().map(|unit| unit.parameters.output.offset_interval_s);
         let interval = intervals.last().unwrap_or(0.0);
         machine.offsets.set_interval(interval);
@@ -623,7 +625,6 @@ impl Channel {
                 let mut axes = machine.axes.of(self.number);
                 self.desk.choose_mode(mode, progress, &mut axes)
             }
-            Command::Ce => machine.clear_message(),
             Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
             Command::WorkingPlane(on) => {
                 self.touch.leave();
@@ -636,17 +637,17 @@ impl Channel {
                 self.desk.enter(&command, &axes)
             }
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
-            Command::ToolLife(tool, minutes) => machine.set_tool_life(tool, minutes),
+            Command::AxisLimit(axis, range, limits) => self.limit_axis(axis, range, limits, machine),
             Command::Code(code) => {
                 machine.offsets.shown |= desk::enter_code(code, machine.memory.of_mut(self.number));
                 machine.oscilloscope.enter_code(code, machine.link.list().model())
             }
-            Command::Oscilloscope(start) => machine.oscilloscope.press(start),
             Command::Key(code) => self.desk.press_key(code, machine.memory.of_mut(self.number)),
             Command::Test(name) => {
                 let (run, site, basis) = self.parts(machine);
-                let feeder = run.test_feeder(&name, &site, &basis);
-                let test = feeder.map(|feeder| TestRun::new(&name, feeder));
+                let test = run
+                    .test_feeder(&name, &site, &basis)
+                    .map(|feeder| TestRun::new(&name, feeder));
                 let found = test.is_some();
                 self.test = test.or(self.test.take());
                 found
@@ -655,12 +656,19 @@ impl Channel {
                 self.test = None;
                 true
             }
-            Command::OffsetAdjustment(adjust) => machine.adjust_offsets(adjust),
-            of_the_run => {
+            command => machine.execute(&command).unwrap_or_else(|| {
                 let (run, mut site, basis) = self.parts(machine);
-                run_command::execute(of_the_run, &rules, run, &mut site, &basis)
-            }
+                run_command::execute(command, &rules, run, &mut site, &basis)
+            }),
         }
+    }
+
+    /// AXIS LIMIT, while no program runs.
+    fn limit_axis(&mut self, axis: Axis, range: u8, to: Option<[f64; 2]>, machine: &mut MachineSide) -> bool {
+        let axes = &mut machine.axes.of(self.number);
+        let done = !self.run.is_active() && self.datums.set_limit(axis, range, to, axes);
+        machine.unsaved |= done;
+        done
     }
 
     /// DATUM SET: the actual position becomes a value.
@@ -688,12 +696,8 @@ impl Channel {
             q: self.run.q_values(),
             program: self.run.selection.program.clone(),
             probe: self.touch.memory,
+            axis_limits: self.datums.axis_limits().to_vec(),
             ..Remembered::default()
         }
-    }
-
-    /// The block that is executed, while a run is on.
-    pub fn running_block(&self) -> Option<BlockRef> {
-        self.run.running_block()
     }
 }

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use bahn_exchange::{Assignment, BitArea, Operand};
 use bahn_path::Axis;
+use bahn_plc::TableKind;
 
 use crate::probe_command::ProbeCommand;
 
@@ -104,6 +105,14 @@ pub enum Command {
     Probe(ProbeCommand),
     /// `tool-life T MIN`: the current life of a tool (CUR.TIME), minutes; 0 begins anew [000:9185].
     ToolLife(u32, f64),
+    /// `q N VALUE`: a Q parameter, between runs or while a run is interrupted [003:4337-4344].
+    Q(u16, f64),
+    /// `axis-limit X 1 -100 250`, `axis-limit X 1 off`: AXIS LIMIT of MOD for a traverse range 1 to 3, from machine zero,
+    /// mm or degrees [003:7115-7157].
+    AxisLimit(Axis, u8, Option<[f64; 2]>),
+    /// `table T 12 L 80.5`: the file of the tool table (`T`), datum table (`D`) or pocket table (`P`) says something else in a
+    /// column of a line from now on. It counts with the next scan, as what module 9094 writes.
+    Table(TableKind, i32, usize, f64),
     /// `jog MM`: the jog increment, mm.
     JogIncrement(f64),
     /// `output step FEED`, `output ramp`: what direction keys put out in MANUAL OPERATION on axes with digital speed
@@ -146,6 +155,10 @@ pub enum Command {
 pub(crate) const CURRENT_MAX_MIN: f64 = 9999.0;
 /// Greatest feed of a step, mm/min: that of MP1010.
 const FEED_MAX: f64 = 300_000.0;
+/// Greatest Q parameter [003:4290-4300].
+const Q_MAX: f64 = 99_999.999_9;
+/// Greatest AXIS LIMIT, mm or degrees [003:7121-7157].
+const AXIS_LIMIT_MAX: f64 = 30_000.0;
 /// Largest coordinate, mm or degrees: 99 999.9999.
 const COORDINATE_MAX: f64 = 999_999_999.0 / 10_000.0;
 
@@ -165,7 +178,11 @@ impl Command {
     pub(crate) fn needs_program(&self) -> bool {
         matches!(
             self,
-            Command::InternalStop | Command::Select(_) | Command::Goto(_) | Command::RestoreAt(_)
+            Command::InternalStop
+                | Command::Select(_)
+                | Command::Goto(_)
+                | Command::RestoreAt(_)
+                | Command::Q(..)
         )
     }
 
@@ -229,6 +246,9 @@ impl FromStr for Command {
                     || CommandError::Wrong("`output` takes `ramp`, or `step` and a feed in mm/min".into());
                 value(name, feed.ok_or_else(wrong)?, 0.0, FEED_MAX).map(|feed| Command::Output(Some(feed)))
             }
+            "q" => q_parameter(name, rest),
+            "axis-limit" => axis_limit(rest),
+            "table" => table_element(rest),
             "datum" => {
                 let (axis, rest) = axis(name, rest)?;
                 value(name, rest, -COORDINATE_MAX, COORDINATE_MAX).map(|value| Command::Datum(axis, value))
@@ -293,6 +313,58 @@ fn axis<'a>(name: &str, text: &'a str) -> Result<(Axis, &'a str), CommandError> 
     }
 }
 
+/// `12 -0.5`.
+fn q_parameter(name: &str, rest: &str) -> Result<Command, CommandError> {
+    let (q, rest) = rest.split_once(' ').unwrap_or((rest, ""));
+    let q = number(name, q, 0, u32::from(u16::MAX))?;
+    value(name, rest.trim(), -Q_MAX, Q_MAX).map(|value| Command::Q(q, value))
+}
+
+/// `X 1 -100 250`, `X 1 off`.
+fn axis_limit(rest: &str) -> Result<Command, CommandError> {
+    let name = "axis-limit";
+    let (axis, rest) = axis(name, rest)?;
+    let (range, rest) = rest.split_once(' ').unwrap_or((rest, ""));
+    let range = number(name, range, 1, 3)?;
+    let rest = rest.trim();
+    if rest == "off" {
+        return Ok(Command::AxisLimit(axis, range, None));
+    }
+    let (least, greatest) = rest.split_once(' ').unwrap_or((rest, ""));
+    let limit = |text: &str| value(name, text.trim(), -AXIS_LIMIT_MAX, AXIS_LIMIT_MAX);
+    Ok(Command::AxisLimit(
+        axis,
+        range,
+        Some([limit(least)?, limit(greatest)?]),
+    ))
+}
+
+/// The tables by their letters.
+const TABLES: [(&str, TableKind); 3] = [
+    ("T", TableKind::Tool),
+    ("D", TableKind::Datum),
+    ("P", TableKind::Pocket),
+];
+
+/// `T 12 L 80.5`.
+fn table_element(rest: &str) -> Result<Command, CommandError> {
+    let wrong = || {
+        CommandError::Wrong("`table` takes T, D or P, line, column and value, as `table T 12 L 80.5`".into())
+    };
+    let [table, line, column, value] = rest.split_whitespace().collect::<Vec<_>>()[..] else {
+        return Err(wrong());
+    };
+    let (_, kind) = TABLES
+        .into_iter()
+        .find(|(letter, _)| *letter == table)
+        .ok_or_else(wrong)?;
+    let named = |own: &Option<bahn_plc::Column>| own.is_some_and(|own| own.name == column);
+    let element = kind.columns().iter().position(named).ok_or_else(wrong)?;
+    let line = line.parse().map_err(|_| wrong())?;
+    let value = self::value("table", value, -COORDINATE_MAX, COORDINATE_MAX)?;
+    Ok(Command::Table(kind, line, element, value))
+}
+
 fn number<T: TryFrom<u32>>(name: &str, text: &str, min: u32, max: u32) -> Result<T, CommandError> {
     text.parse::<u32>()
         .ok()
@@ -330,6 +402,20 @@ impl fmt::Display for Command {
             Command::Datum(axis, value) => write!(f, "datum {axis} {value}"),
             Command::Probe(command) => write!(f, "probe {command}"),
             Command::ToolLife(tool, minutes) => write!(f, "tool-life {tool} {minutes}"),
+            Command::Q(q, value) => write!(f, "q {q} {value}"),
+            Command::AxisLimit(axis, range, None) => write!(f, "axis-limit {axis} {range} off"),
+            Command::AxisLimit(axis, range, Some([least, greatest])) => {
+                write!(f, "axis-limit {axis} {range} {least} {greatest}")
+            }
+            Command::Table(kind, line, element, value) => {
+                let (letter, _) = TABLES
+                    .into_iter()
+                    .find(|(_, own)| own == kind)
+                    .unwrap_or(TABLES[0]);
+                let column = kind.columns().get(*element).and_then(Option::as_ref);
+                let column = column.map_or("?", |column| column.name);
+                write!(f, "table {letter} {line} {column} {value}")
+            }
             Command::JogIncrement(mm) => write!(f, "jog {mm}"),
             Command::Oscilloscope(true) => write!(f, "oscilloscope start"),
             Command::Oscilloscope(false) => write!(f, "oscilloscope stop"),
@@ -371,6 +457,11 @@ mod tests {
             "s 1500.5",
             "datum Z -0.25",
             "probe radius 25",
+            "q 12 -0.5",
+            "axis-limit X 1 -100 250.5",
+            "axis-limit C 3 off",
+            "table T 12 L 80.5",
+            "table P 3 T 7",
             "jog 0.5",
             "output step 250",
             "output ramp",
@@ -406,6 +497,10 @@ mod tests {
             ("s -1", "from 0 to 99999.999"),
             ("s nan", "not `nan`"),
             ("datum Q 5", "an axis and a value"),
+            ("q 1 far", "not `far`"),
+            ("axis-limit X 4 1 2", "from 1 to 3"),
+            ("axis-limit X 1 1", "from -30000 to 30000"),
+            ("table T 1 SHARP 2", "`table T 12 L 80.5`"),
             ("handwheel X 11", "from 0 to 10"),
             ("select", "needs something"),
             ("I4=1", "`fault input I4 1`"),

@@ -307,7 +307,7 @@ impl Control {
 
     /// A command is not possible now.
     fn refuse(&mut self, channel: usize) -> bool {
-        let block = self.kernel.channels.of(channel).running_block();
+        let block = self.kernel.channels.of(channel).run.running_block();
         let refused = Message::Plain(MessageId::KeyNonFunctional);
         self.kernel
             .machine

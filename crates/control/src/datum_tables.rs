@@ -32,6 +32,14 @@ impl LoadedDatums {
         }
     }
 
+    /// The file of the datum table with M status says something else from now on.
+    pub fn take(&mut self, link: &PlcLink, line: i32, element: usize, value: f64) {
+        let table = link.datum_table_name().and_then(|name| self.tables.get_mut(name));
+        if let Some(table) = table {
+            table.set_value(line, element, value);
+        }
+    }
+
     /// What module 9094 wrote into datum tables.
     pub fn written(&self, link: &PlcLink) -> Vec<(String, WrittenElement)> {
         let changed = self.tables.iter().filter_map(|(name, loaded)| {

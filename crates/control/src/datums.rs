@@ -8,7 +8,7 @@ use bahn_path::{Axis, Position};
 use crate::axes::OwnAxes;
 use crate::kinematics::{Chain, Kinematics, Offsets};
 use crate::leaning::MAIN;
-use crate::setup::Remembered;
+use crate::setup::{AxisLimit, Remembered};
 
 /// A datum that moves less than this stays where it is, mm: rounding.
 const NO_WAY_MM: f64 = 1e-9;
@@ -29,6 +29,8 @@ pub(crate) struct Datums {
     correction: PerPlcAxis<f64>,
     /// Active traverse range, 0 to 2.
     range: usize,
+    /// AXIS LIMIT of MOD.
+    axis_limits: Vec<AxisLimit>,
     /// Each traverse range has its datum (MP7490).
     pub each_range: bool,
     /// The kinematics with the datum and the tool in force.
@@ -49,6 +51,7 @@ impl Datums {
             points,
             correction: PerPlcAxis::splat(0.0),
             range: 0,
+            axis_limits: remembered.axis_limits.clone(),
             each_range,
             chain: Chain::new(kinematics, offsets),
         }
@@ -67,12 +70,52 @@ impl Datums {
     /// Makes a traverse range active, with its datum where each has one (MP7490).
     pub fn select_range(&mut self, range: usize, axes: &mut OwnAxes) {
         self.range = range;
-        for unit in axes.iter_mut() {
-            if let Some(limits) = unit.parameters.travel.ranges_mm.get(range) {
-                unit.limits = *limits;
-            }
-        }
+        self.limit(axes);
         self.chain.offsets.datum = self.active(axes);
+    }
+
+    /// The software limits of the active traverse range, and within them AXIS LIMIT.
+    pub fn limit(&self, axes: &mut OwnAxes) {
+        for unit in axes.iter_mut() {
+            let Some([least, greatest]) = unit.parameters.travel.ranges_mm.get(self.range).copied() else {
+                continue;
+            };
+            let own =
+                |limit: &&AxisLimit| limit.axis == unit.axis && usize::from(limit.range) == self.range + 1;
+            let [own_least, own_greatest] = self
+                .axis_limits
+                .iter()
+                .find(own)
+                .map_or([f64::NEG_INFINITY, f64::INFINITY], |limit| limit.limits);
+            unit.limits = [least.max(own_least), greatest.min(own_greatest)];
+        }
+    }
+
+    /// AXIS LIMIT of an axis in a traverse range 1 to 3, or none; `false` when its limits are no range within the software
+    /// limits, or there is no such axis [003:7121-7157].
+    pub fn set_limit(&mut self, axis: Axis, range: u8, limits: Option<[f64; 2]>, axes: &mut OwnAxes) -> bool {
+        let place = usize::from(range).wrapping_sub(1);
+        let travel = axes
+            .at(axis)
+            .and_then(|unit| unit.parameters.travel.ranges_mm.get(place));
+        let fits = |[least, greatest]: [f64; 2]| {
+            travel.is_some_and(|[from, to]| least < greatest && least < *to && greatest > *from)
+        };
+        if travel.is_none() || !limits.is_none_or(fits) {
+            return false;
+        }
+        self.axis_limits
+            .retain(|own| own.axis != axis || own.range != range);
+        if let Some(limits) = limits {
+            self.axis_limits.push(AxisLimit { axis, range, limits });
+        }
+        self.limit(axes);
+        true
+    }
+
+    /// AXIS LIMIT of MOD.
+    pub fn axis_limits(&self) -> &[AxisLimit] {
+        &self.axis_limits
     }
 
     /// Datum correction by the PLC: each replaces the last one.

@@ -223,7 +223,7 @@ impl Kernel {
         }
         machine.link.program_running = self.channels.iter().any(|channel| channel.run.is_active());
         self.channels.first().inform(machine);
-        let block = self.channels.first().running_block();
+        let block = self.channels.first().run.running_block();
         if !machine.scan(block, tracer) {
             return;
         }
@@ -231,7 +231,7 @@ impl Kernel {
         for channel in self.channels.iter_mut() {
             channel.after_scan(machine);
         }
-        let block = self.channels.first().running_block();
+        let block = self.channels.first().run.running_block();
         machine.messages.follow_plc(machine.memory.first(), block);
         for channel in self.channels.iter_mut() {
             channel.take_strobes(machine);
@@ -290,7 +290,7 @@ impl Kernel {
     /// Follows the "control is ready" circuit.
     fn follow_circuit(&mut self) {
         let machine = &mut self.machine;
-        let order = machine.follow_circuit(self.channels.first().running_block());
+        let order = machine.follow_circuit(self.channels.first().run.running_block());
         if matches!(order, CircuitOrder::Stop | CircuitOrder::StopSilently) {
             for channel in self.channels.iter_mut() {
                 channel.stop();
@@ -310,7 +310,7 @@ impl Kernel {
                 self.machine.end_silent_stop();
             }
             CircuitOrder::Stop => {
-                machine.show_emergency_stop(self.channels.first().running_block());
+                machine.show_emergency_stop(self.channels.first().run.running_block());
                 machine.axes.begin_shutdown();
                 let mut stand = true;
                 for channel in self.channels.iter_mut() {

@@ -162,7 +162,7 @@ pub use progress::RunState;
 pub use sampling::{ServoSampler, ServoSignal, ServoView};
 pub use scanning::{Digitized, DigitizedNews};
 pub use setup::{
-    Calibration, ChannelError, ChannelSetup, Checking, Position0, ProbeMemory, Remembered, Setup,
+    AxisLimit, Calibration, ChannelError, ChannelSetup, Checking, Position0, ProbeMemory, Remembered, Setup,
     ToolProbeCalibration,
 };
 pub use signal::{AxisSignal, ProbeSignal, Signal, SignalError, split_channel};
@@ -170,6 +170,6 @@ pub use snapshot::{AxisState, Snapshot};
 pub use spindle::{SpindleState, SpindleWiring};
 pub use test_run::{TestReport, TestState};
 pub use tool::{Edges, MovedTool, Tool, ToolLife};
-pub use view::ChannelView;
+pub use view::{ChannelView, InForce};
 pub use watch::AxisWatch;
 pub use window::Window;

@@ -7,11 +7,12 @@ use bahn_parameters::operation::{HandwheelParameters, Station};
 use bahn_parameters::plc::PlcParameters;
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::BlockRef;
-use bahn_plc::{Machine, PlcProgram, Start, Tracer, mirror_parameters};
+use bahn_plc::{Machine, PlcProgram, Start, TableKind, Tracer, mirror_parameters};
 use bahn_servo::{Commands, Measured, Timing};
 
 use crate::axes::Axes;
 use crate::axis::AxisId;
+use crate::command::Command;
 use crate::compensation::Compensation;
 use crate::datum_tables::LoadedDatums;
 use crate::emergency::{Circuit, EmergencyStop};
@@ -142,6 +143,34 @@ impl Wiring {
 }
 
 impl MachineSide {
+    /// A command that is the same for all channels; `None` for any other.
+    pub fn execute(&mut self, command: &Command) -> Option<bool> {
+        Some(match command {
+            Command::Ce => self.clear_message(),
+            Command::ToolLife(tool, minutes) => self.set_tool_life(*tool, *minutes),
+            Command::Table(kind, line, element, value) => self.take_element(*kind, *line, *element, *value),
+            Command::Oscilloscope(start) => self.oscilloscope.press(*start),
+            Command::OffsetAdjustment(adjust) => self.adjust_offsets(*adjust),
+            _ => return None,
+        })
+    }
+
+    /// The file of a table says something else from now on: it counts with the next scan.
+    fn take_element(&mut self, kind: TableKind, line: i32, element: usize, value: f64) -> bool {
+        if !self.link.write_element(kind, line, element, value) {
+            return false;
+        }
+        match kind {
+            TableKind::Datum => self.loaded_datums.take(&self.link, line, element, value),
+            _ => self.loaded_tables.take(kind, line, element, value),
+        }
+        if kind == TableKind::Pocket {
+            self.magazine.take_pocket(line, element, value);
+        }
+        self.unsaved = true;
+        true
+    }
+
     /// The current life of a tool, minutes; `false` for one that is not in the table.
     pub fn set_tool_life(&mut self, tool: u32, minutes: f64) -> bool {
         self.unsaved = true;
@@ -423,7 +452,8 @@ impl MachineSide {
                 ..
             } => {
                 let unit = AxisId::new(axis).and_then(|id| self.axes.with_id_mut(id));
-                if let Some(unit) = unit {
+                // A reference run of the PLC may have cancelled it already.
+                if let Some(unit) = unit.filter(|unit| unit.servo.fault().is_some()) {
                     unit.servo.acknowledge();
                     unit.transfer();
                 }

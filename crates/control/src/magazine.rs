@@ -61,6 +61,21 @@ impl Magazine {
         self.version += 1;
     }
 
+    /// The file of the pocket table has the tools where they are now, but in one pocket.
+    pub fn take_pocket(&mut self, pocket: i32, element: usize, tool: f64) {
+        let (Ok(pocket), true) = (u16::try_from(pocket), element == crate::tables::T) else {
+            return;
+        };
+        let tools = self.table.iter().flatten();
+        let now = tools.map(|(number, own)| (*number, own.pocket.filter(|own| *own != pocket)));
+        self.pockets = now.collect();
+        if tool >= 0.0
+            && let Some(own) = self.pockets.get_mut(&(tool as u32))
+        {
+            *own = Some(pocket);
+        }
+    }
+
     /// The tools that are elsewhere than in the pocket of the tool table.
     pub fn moved(&self) -> Vec<MovedTool> {
         let moved = |(tool, table): (&u32, &Option<u16>)| {

@@ -241,6 +241,20 @@ impl PlcLink {
             .or(self.files.datum_table.as_ref())
     }
 
+    /// Writes an element of a table as module 9094 does, with the next scan; `false` when there is no such line, or the
+    /// value does not fit.
+    pub fn write_element(&mut self, kind: TableKind, line: i32, element: usize, value: f64) -> bool {
+        let column = kind.columns().get(element).and_then(Option::as_ref);
+        let fits = column.is_some_and(|column| (column.min..=column.max).contains(&value));
+        let table = self.selected_table(kind).filter(|_| fits);
+        let Some(table) = table.filter(|table| table.value(line, element).is_some()) else {
+            return false;
+        };
+        table.set_value(line, element, value);
+        self.requests.geometry = true;
+        true
+    }
+
     /// The tables that modules 9092 to 9094 see.
     pub fn selected_table(&mut self, kind: TableKind) -> Option<&mut MemoryTable> {
         if kind != TableKind::Datum {

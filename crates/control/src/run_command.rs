@@ -3,9 +3,11 @@
 use bahn_parameters::operation::RestartParameters;
 
 use crate::command::Command;
+use crate::feeder::Feeder;
+use crate::progress::RunState;
 use crate::run::ProgramRun;
 use crate::site::Site;
-use crate::source::Basis;
+use crate::source::{Basis, Resume};
 
 /// Executes a command of the program run; `false` when it is not possible now, or none of the run.
 pub(crate) fn execute(
@@ -22,8 +24,33 @@ pub(crate) fn execute(
         Command::Mdi(blocks) => run.set_mdi(blocks),
         Command::ManualOperation => run.manual_operation(rules, site),
         Command::RestorePosition => run.restore_position(site),
+        Command::Q(number, value) => enter_q(number, value, run, site),
         Command::RestoreAt(block) => run.restore_at(block, rules, site, basis),
         // `Set` and `Power` are of the whole control.
         _ => false,
     }
+}
+
+/// A Q parameter is changed, between runs or while one is interrupted: what was read ahead with its old value is read
+/// again, from the block that is cut on [003:4337-4344].
+fn enter_q(number: u16, value: f64, run: &mut ProgramRun, site: &mut Site) -> bool {
+    // Behind a programmed stop nothing is read.
+    if run.is_active() && run.progress().state() != RunState::Stopped {
+        let stands = !run.progress().is_running() && run.track.stands(&site.axes);
+        let free = site.handshakes.is_idle() && run.track.has_output_all() && !run.probe.is_on();
+        if !stands || !free || run.restores() || run.track.path.is_coupled() {
+            return false;
+        }
+        let cut = run.track.path.clear().map(|cut| cut.sequence);
+        let next = run.source.feeder().map(Feeder::next_sequence);
+        run.source.resume_at(cut.or(next).map(Resume::Block));
+        if run.source.go_on(site)
+            && let Some(interpreter) = run.source.interpreter()
+        {
+            site.chain.place(interpreter.placement());
+        }
+        run.track.begin_at(site.here(), site.chain);
+    }
+    run.source.set_q(number, value);
+    true
 }

@@ -47,6 +47,11 @@ impl ServoSignal {
         row.map_or(("", ""), |(_, name, unit)| (name, unit))
     }
 
+    /// All signals, in the order of the manual's table.
+    pub fn all() -> impl Iterator<Item = ServoSignal> {
+        SIGNALS.into_iter().map(|(signal, ..)| signal)
+    }
+
     /// Unit of its values.
     pub fn unit(self) -> &'static str {
         self.row().1

@@ -93,6 +93,17 @@ impl ChannelError {
     pub const CHANNELS_MAX: usize = 8;
 }
 
+/// AXIS LIMIT: the operator allows an axis less than its traverse range [003:7115-7157].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisLimit {
+    /// The axis.
+    pub axis: Axis,
+    /// Traverse range, 1 to 3.
+    pub range: u8,
+    /// Least and greatest position from machine zero, mm or degrees.
+    pub limits: [f64; 2],
+}
+
 /// What survives power-off beside the memory of the PLC.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Remembered {
@@ -114,6 +125,8 @@ pub struct Remembered {
     pub q: Vec<(u16, f64)>,
     /// Offsets of the axes as adjusted with code number 75 368, V.
     pub offsets_volts: PerPlcAxis<f64>,
+    /// AXIS LIMIT of MOD.
+    pub axis_limits: Vec<AxisLimit>,
     /// The touch probe: what was calibrated, and the basic rotation.
     pub probe: ProbeMemory,
     /// Name of the list of machine parameters that module 9033 has selected.

@@ -7,7 +7,7 @@ use bahn_exchange::{Bit, signal};
 use bahn_interpreter::{Interpreter, Rules, Settings, Status};
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::{ControlModel, InchFeed, MessageId, ParameterList};
-use bahn_path::{PerAxis, Position};
+use bahn_path::{Frame, PerAxis, Position};
 use bahn_program::Program;
 use bahn_servo::Rotation;
 
@@ -296,6 +296,24 @@ impl Source {
                 known.map_or(0.0, |(_, value)| *value)
             }
         }
+    }
+
+    /// The transformations before the block of a sequence, else where a run that was broken off goes on or the interpreter is,
+    /// else as the last run has left them; `None` while the program is lent.
+    pub fn frame(&self, ended: bool, sequence: Option<u64>) -> Option<Frame> {
+        if self.is_lent() {
+            return None;
+        }
+        let broken_off = match self.resume_from {
+            Some(Resume::Block(sequence)) => Some(sequence),
+            _ => None,
+        };
+        let over = ended && !self.q_due;
+        let interpreter = self.interpreter().filter(|_| !over);
+        Some(interpreter.map_or_else(
+            || self.status.frame(),
+            |interpreter| interpreter.frame_at(sequence.or(broken_off)),
+        ))
     }
 
     /// Keeps the Q parameters of the run for the next one.

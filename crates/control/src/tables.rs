@@ -34,7 +34,7 @@ const R_OFFS: usize = 19;
 const LBREAK: usize = 20;
 const RBREAK: usize = 21;
 /// Elements of the pocket table [000:15422-15429].
-const T: usize = 0;
+pub(crate) const T: usize = 0;
 const ST: usize = 1;
 const F: usize = 2;
 const LOCKED: usize = 3;
@@ -183,6 +183,14 @@ impl LoadedTables {
         }
         take_tables(tools, files);
         loaded
+    }
+
+    /// The file of a table says something else from now on.
+    pub fn take(&mut self, kind: TableKind, line: i32, element: usize, value: f64) {
+        let table = self.0.iter_mut().find(|table| table.kind() == kind);
+        if let Some(table) = table {
+            table.set_value(line, element, value);
+        }
     }
 
     /// What module 9094 wrote and no tool change can say.

@@ -1,8 +1,8 @@
 //! A channel to be looked at.
 
 use bahn_interpreter::Interpreter;
-use bahn_parameters::PerPlcAxis;
-use bahn_path::{PathElement, Position};
+use bahn_parameters::{ParameterList, PerPlcAxis};
+use bahn_path::{Axis, Frame, PathElement, Position};
 
 use crate::axes::path_positions;
 use crate::channel::Channel;
@@ -13,11 +13,26 @@ use crate::progress::RunState;
 use crate::reference;
 use crate::scanning::DigitizedNews;
 use crate::seam::Seam;
-use crate::setup::Remembered;
+use crate::setup::{AxisLimit, Remembered};
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::upkeep::by_index;
 use crate::watch::AxisWatch;
+
+/// What the status display shows of a program beside positions [003:1297].
+#[derive(Clone, Debug, PartialEq)]
+pub struct InForce {
+    /// Axis of the tool.
+    pub tool_axis: Axis,
+    /// `N`: axes whose datum is shifted.
+    pub shifted: Vec<Axis>,
+    /// `S`: mirrored axes.
+    pub mirrored: Vec<Axis>,
+    /// `ROT`: rotation or basic rotation.
+    pub rotated: bool,
+    /// `SCL`: scaling.
+    pub scaled: bool,
+}
 
 /// A channel of a control as of now.
 #[derive(Clone, Copy)]
@@ -74,6 +89,76 @@ impl<'a> ChannelView<'a> {
     /// The interpreter of the program that runs, or ran last.
     pub fn interpreter(&self) -> Option<&'a Interpreter> {
         self.channel.run.source.interpreter()
+    }
+
+    /// What the status display shows beside positions: transformations at the block that is executed, between runs those
+    /// that the last one has left; `None` while the program is read on another thread.
+    pub fn in_force(&self) -> Option<InForce> {
+        let run = &self.channel.run;
+        let executed = run.track.path.element().filter(|_| run.is_active());
+        let executed = executed.map(|element| element.sequence);
+        let frame = run.source.frame(run.progress().has_ended(), executed)?;
+        let basic = self.channel.touch.memory.basic_rotation_deg;
+        let axes = |is: fn(&Frame, Axis) -> bool| {
+            let units = self.machine.axes.owned(self.channel.number());
+            units
+                .map(|unit| unit.axis)
+                .filter(|axis| is(&frame, *axis))
+                .collect()
+        };
+        let scaled = |axis: Axis| {
+            let own = frame.axis_scaling.map_or(1.0, |own| own.factor[axis]);
+            frame.factor[axis].abs() * own != 1.0
+        };
+        Some(InForce {
+            tool_axis: self.channel.chain().offsets.tool_axis,
+            shifted: axes(|frame, axis| frame.shift[axis] != 0.0),
+            mirrored: axes(|frame, axis| frame.factor[axis] < 0.0),
+            rotated: frame.rotation_deg != 0.0 || basic != 0.0,
+            scaled: Axis::ALL.into_iter().any(scaled),
+        })
+    }
+
+    /// 3D ROT is on by hand.
+    pub fn leans(&self) -> bool {
+        self.channel.desk().leaning.is_on()
+    }
+
+    /// AXIS LIMIT of MOD.
+    pub fn axis_limits(&self) -> &'a [AxisLimit] {
+        self.channel.datums.axis_limits()
+    }
+
+    /// Index of the axis that the handwheel moves, and its interpolation factor.
+    pub fn handwheel(&self) -> (usize, u8) {
+        let handwheel = &self.channel.desk().manual.handwheel;
+        let axis = handwheel.axis();
+        (axis, handwheel.factors().get(axis).copied().unwrap_or_default())
+    }
+
+    /// The jog increment, mm.
+    pub fn jog_increment_mm(&self) -> f64 {
+        self.channel.desk().manual.increment
+    }
+
+    /// A function of the TOUCH PROBE menu is chosen.
+    pub fn probe_is_chosen(&self) -> bool {
+        self.channel.touch.is_chosen()
+    }
+
+    /// A Q parameter at the block that is executed; without a run as the last one has left it.
+    pub fn q_value(&self, number: u16) -> f64 {
+        self.channel.run.q_value(number)
+    }
+
+    /// The datum table with M status.
+    pub fn datum_table_name(&self) -> Option<&'a str> {
+        self.machine.link.datum_table_name().map(String::as_str)
+    }
+
+    /// The list of machine parameters as it is edited, of the first channel.
+    pub fn edited_list(&self) -> &'a ParameterList {
+        self.machine.link.edited_list()
     }
 
     /// Where the workpiece datum of its axes is on the machine, mm or degrees.

@@ -139,6 +139,14 @@ impl TextTable {
         frame.to_ascii_uppercase().contains("INCH")
     }
 
+    /// The character between its columns, when there is one.
+    pub(crate) fn separator(&self) -> Option<char> {
+        match self.layout {
+            Layout::Separated(separator) => Some(separator),
+            Layout::Blanks | Layout::Fixed(_) => None,
+        }
+    }
+
     /// The place of a column by any of its names.
     pub fn place(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|column| canonical(column) == name)

@@ -369,6 +369,17 @@ impl Drop for NewFile {
     }
 }
 
+/// Writes a file, whole or not at all.
+///
+/// # Errors
+/// When the medium does not take it; the file is what it was before.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), HostError> {
+    let mut file = NewFile::create(path)?;
+    file.write_all(bytes)
+        .map_err(|error| cannot("write", path, &error))?;
+    file.finish()
+}
+
 /// The new name is safe when its folder is; where a folder cannot be synchronised nothing can be done.
 pub fn sync_folder(path: &Path) {
     let folder = path

@@ -2,6 +2,11 @@
 
 use std::path::Path;
 
+use bahn_control::Remembered;
+use bahn_parameters::ParameterList;
+use bahn_parameters::tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, shown_elements};
+use bahn_plc::TableKind;
+
 use crate::columns::{TableFault, TextRow, TextTable, canonical, quoted};
 use crate::{machine_folder, pocket_table, point_table, tool_table};
 
@@ -178,6 +183,28 @@ impl TableForm {
             })
     }
 
+    /// The columns that a control shows of it (MP7266, MP7267), but the first; `None` for all of them.
+    pub fn shown(self, parameters: &ParameterList) -> Option<Vec<String>> {
+        let tables = parameters.table_parameters();
+        let shown = match self {
+            TableForm::Tool => shown_elements(&tables.tool_columns, &TOOL_ELEMENTS),
+            TableForm::Pocket => shown_elements(&tables.pocket_columns, &POCKET_ELEMENTS),
+            _ => return None,
+        };
+        let shown: Vec<String> = shown.into_iter().map(str::to_owned).collect();
+        (!shown.is_empty()).then_some(shown)
+    }
+
+    /// The table as PLC and programs see it, when they do.
+    pub fn kind(self) -> Option<TableKind> {
+        match self {
+            TableForm::Tool => Some(TableKind::Tool),
+            TableForm::Pocket => Some(TableKind::Pocket),
+            TableForm::Datum => Some(TableKind::Datum),
+            TableForm::Pallet | TableForm::Point => None,
+        }
+    }
+
     /// All faults of a table.
     ///
     /// # Errors
@@ -244,6 +271,52 @@ impl PlainTable {
         let row = self.rows.get_mut(row);
         if let Some(field) = row.and_then(|row| row.get_mut(column)) {
             value.clone_into(field);
+        }
+    }
+
+    /// Tool and pocket table: tools have changed their pockets, their lives were counted, the PLC has written.
+    pub fn bring_up_to_date(&mut self, remembered: &Remembered) {
+        let table = self;
+        let key = table.kind.key();
+        let kind = match table.kind {
+            TableForm::Tool => TableKind::Tool,
+            TableForm::Pocket => TableKind::Pocket,
+            _ => return,
+        };
+        let written = remembered.written.iter().filter(|element| element.table == kind);
+        let written: Vec<(String, &str, String)> = written
+            .filter_map(|element| {
+                let column = kind.columns().get(element.element)?.as_ref()?;
+                Some((
+                    element.line.to_string(),
+                    canonical(column.name),
+                    element.value.to_string(),
+                ))
+            })
+            .collect();
+        for (line, column, value) in &written {
+            table.set(key, line, column, value);
+        }
+        let moved = remembered.pockets.iter();
+        let moved: Vec<(String, Option<u16>)> = moved
+            .map(|moved| (moved.tool.to_string(), moved.pocket))
+            .collect();
+        if table.kind == TableForm::Tool {
+            for (tool, pocket) in &moved {
+                table.set(
+                    key,
+                    tool,
+                    "P",
+                    &pocket.map(|pocket| pocket.to_string()).unwrap_or_default(),
+                );
+            }
+            return;
+        }
+        for (tool, _) in &moved {
+            table.set("T", tool, "T", "");
+        }
+        for (tool, pocket) in moved.iter().filter_map(|(tool, pocket)| Some((tool, (*pocket)?))) {
+            table.set(key, &pocket.to_string(), "T", tool);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use bahn_path::{Barrier, BlockRef, Position};
+use bahn_path::{Barrier, BlockRef, Frame, Position};
 use bahn_program::Operation;
 
 use crate::run::Run;
@@ -120,6 +120,16 @@ impl Interpreter {
         let before = kept.and_then(|kept| kept.states.iter().rfind(|state| state.sequence() <= sequence));
         let before = before.map(|state| state.run.numbers.q.get(number).unwrap_or(0.0));
         before.unwrap_or_else(|| self.q_value(number))
+    }
+
+    /// The transformations before the block of a sequence, as far as states are kept, else behind the last block that was
+    /// read.
+    pub fn frame_at(&self, sequence: Option<u64>) -> Frame {
+        let before = self.kept.as_ref().zip(sequence).and_then(|(kept, sequence)| {
+            let mut states = kept.states.iter();
+            states.rfind(|state| state.sequence() <= sequence)
+        });
+        before.map_or(self.run.modal.frame, |state| state.run.modal.frame)
     }
 
     /// States that are kept, to be seen that they do not pile up.

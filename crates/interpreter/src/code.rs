@@ -141,6 +141,12 @@ impl Code {
         Ok(found.map(|program| self.index_of(program)))
     }
 
+    pub fn names(&self) -> impl Iterator<Item = String> + '_ {
+        self.programs
+            .iter()
+            .map(|loaded| loaded.program.name().to_owned())
+    }
+
     pub fn name_of(&self, program: u16) -> String {
         self.program(program)
             .map(|p| p.name().to_owned())

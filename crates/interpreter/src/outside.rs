@@ -18,6 +18,11 @@ impl Interpreter {
         self.run.pen.placement.as_ref()
     }
 
+    /// Names of the programs that were called so far, the main program first.
+    pub fn program_names(&self) -> impl Iterator<Item = String> + '_ {
+        self.code.names()
+    }
+
     /// Machine zero of M91 from the workpiece datum, for the blocks that are read from now on.
     pub fn set_machine_zero(&mut self, zero: Position) {
         self.settings.rules.machine_zero = zero;

@@ -1,7 +1,7 @@
 //! Tool and spindle, and what of a run stays in force behind its end.
 
 use bahn_parameters::MessageId;
-use bahn_path::{Axis, Frame, Position, ToolShape};
+use bahn_path::{Axis, Frame, Plane, Position, ToolShape};
 
 /// A tool in the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,6 +183,12 @@ impl Status {
     /// Why nothing is probed by hand or digitized: a transformation is active [003:8053-8077].
     pub fn bars_probing(&self) -> Option<MessageId> {
         self.programmed.and_then(|(frame, _)| bars_probing(&frame))
+    }
+
+    /// The transformations that are in force.
+    pub fn frame(&self) -> Frame {
+        let programmed = self.programmed.map(|(frame, _)| frame);
+        programmed.unwrap_or_else(|| Frame::identity(Plane::XY))
     }
 
     /// Number of the tool whose data are in force.

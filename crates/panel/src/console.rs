@@ -80,6 +80,10 @@ impl Stack {
             }
             Turn::Refused => return Err(Said::KeyNonFunctional),
             Turn::Say(text) => return Err(Said::Text(text)),
+            Turn::CloseSaying(text) => {
+                self.opened.pop();
+                return Err(Said::Text(text));
+            }
         }
         Ok(())
     }
@@ -126,7 +130,7 @@ impl Console {
             Key::Test => self.program(Programming::Test, site),
             Key::Ce if !self.notes.is_empty() => drop(self.notes.pop()),
             Key::Screen => self.split = !self.split,
-            Key::SkLeft | Key::SkRight => self.turn_row(key == Key::SkRight, site),
+            Key::SkLeft | Key::SkRight => self.turn_row(key, site),
             _ => self.pass_on(key, site),
         }
     }
@@ -140,8 +144,9 @@ impl Console {
 
     fn pass_on(&mut self, key: Key, site: &mut Site) {
         let stack = self.stack();
+        let own = stack.shown().own_soft_keys().is_some();
         let turn = match key.soft_key() {
-            Some(place) => {
+            Some(place) if !own => {
                 let rows = stack.shown().soft_keys(site);
                 let row = stack.row.min(rows.len().saturating_sub(1));
                 let text = rows.get(row).and_then(|row| row.get(place));
@@ -150,18 +155,26 @@ impl Console {
                     false => Turn::Refused,
                 }
             }
-            None => stack.top().key(key, site),
+            _ => stack.top().key(key, site),
         };
         // CE that nobody wants clears the message of the control.
         if key == Key::Ce && matches!(turn, Turn::Refused) {
             site.command(Command::Ce);
             return;
         }
+        // MOD and HELP are there wherever the page itself does not take them.
+        let turn = match turn {
+            Turn::Refused => pages::everywhere(key, self.front(), site),
+            turn => turn,
+        };
         self.went(turn, site);
     }
 
     fn went(&mut self, turn: Turn, site: &Site) {
-        let changes = matches!(turn, Turn::Close | Turn::Open(_) | Turn::Replace(_));
+        let changes = matches!(
+            turn,
+            Turn::Close | Turn::CloseSaying(_) | Turn::Open(_) | Turn::Replace(_)
+        );
         let stack = self.stack();
         if changes {
             stack.row = 0;
@@ -247,9 +260,13 @@ impl Console {
         self.front = Side::Programming;
     }
 
-    fn turn_row(&mut self, right: bool, site: &Site) {
+    fn turn_row(&mut self, key: Key, site: &mut Site) {
         let stack = self.stack();
-        let rows = stack.shown().soft_keys(site).len().max(1);
+        if stack.shown().own_soft_keys().is_some() {
+            let turn = stack.top().key(key, site);
+            return self.went(turn, site);
+        }
+        let (right, rows) = (key == Key::SkRight, stack.shown().soft_keys(site).len().max(1));
         stack.row = (stack.row + if right { 1 } else { rows - 1 }) % rows;
     }
 
@@ -285,6 +302,9 @@ impl Console {
             (Side::Programming, Some((_, stack))) => stack,
             _ => &self.machine,
         };
+        if let Some(own) = stack.shown().own_soft_keys() {
+            return own;
+        }
         let rows = stack.shown().soft_keys(site);
         let row = stack.row.min(rows.len().saturating_sub(1));
         SoftKeys {

@@ -13,14 +13,6 @@ pub(crate) struct Entry {
 const DIGITS: usize = 12;
 
 impl Entry {
-    /// An entry that begins with a value.
-    pub fn of(text: &str) -> Entry {
-        Entry {
-            negative: text.starts_with('-'),
-            text: text.trim_start_matches(['+', '-']).to_owned(),
-        }
-    }
-
     /// Takes a digit, the point, the sign or CE, which clears it; `false` for any other key and what does not fit.
     pub fn key(&mut self, key: Key) -> bool {
         match key {

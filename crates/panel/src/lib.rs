@@ -10,6 +10,18 @@
 //!   exercise;
 //! - texts are in English in the sources, `texts/*.tsv` have the other languages.
 //!
+//! ```no_run
+//! use bahn_panel::{Input, Key, Station, load};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut station = Station::power_on(load("machines/mill".as_ref())?)?;
+//! station.cycle()?;
+//! assert_eq!(station.screen().messages[0].text, "POWER INTERRUPTED");
+//! station.input(&Input::Key(Key::Ce))?;
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! Nothing here knows sockets, pixels or terminals.
 
 #![allow(
@@ -24,10 +36,12 @@
 mod console;
 mod drawer;
 mod entry;
+mod frames;
 mod inhibit;
 mod input;
 mod lesson;
 mod live;
+mod numbers;
 mod page;
 mod pages;
 mod programs;

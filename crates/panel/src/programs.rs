@@ -1,14 +1,18 @@
 //! The program memory: the part programs of the machine's folder, listed, read, written and protected.
 
 use std::fs;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
 use bahn_control::Programs;
 use bahn_host::FolderPrograms;
 use bahn_host::files::{self, Loaded, NewFile};
-use bahn_program::Program;
+use bahn_parameters::MessageId;
+use bahn_program::{Edit, Program};
+
+use crate::frames;
 
 /// Characters of a name at most [000:6834-6905].
 pub(crate) const NAME_MAX: usize = 16;
@@ -20,13 +24,29 @@ pub(crate) struct Entry {
     pub name: String,
     /// Bytes.
     pub size: u64,
+    /// `P`: a program that is protected against erasing and editing [003:1015-1023].
+    pub protected: bool,
 }
+
+/// Bytes of a program in which its first block stands.
+const HEAD: u64 = 1024;
 
 /// The program memory, which the control reads and the panel writes.
 pub(crate) struct ProgramMemory {
     folder: PathBuf,
     /// Anew whenever a file was written: it keeps what it has read.
     inner: RwLock<FolderPrograms>,
+    /// Counts the changes.
+    version: AtomicU64,
+}
+
+/// Why the memory does not do something.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Denial {
+    /// A message of the control.
+    Message(MessageId),
+    /// In words: the medium does not do it.
+    Words(String),
 }
 
 impl ProgramMemory {
@@ -35,6 +55,7 @@ impl ProgramMemory {
         ProgramMemory {
             folder: folder.to_owned(),
             inner: RwLock::new(FolderPrograms::of_folder(folder)),
+            version: AtomicU64::new(0),
         }
     }
 
@@ -46,7 +67,12 @@ impl ProgramMemory {
         let entry = |entry: fs::DirEntry| {
             let size = entry.metadata().ok().filter(fs::Metadata::is_file)?.len();
             let name = entry.file_name().into_string().ok()?;
-            (!name.starts_with('.')).then_some(Entry { name, size })
+            let protected = is_program(&name) && is_protected(&self.folder.join(&name));
+            (!name.starts_with('.')).then_some(Entry {
+                name,
+                size,
+                protected,
+            })
         };
         let mut entries: Vec<_> = entries.flatten().filter_map(entry).collect();
         entries.sort_by(|one, other| one.name.cmp(&other.name));
@@ -94,39 +120,118 @@ impl ProgramMemory {
         Ok(())
     }
 
+    /// Makes a new file: a program has its first and last block, a table its columns.
+    ///
+    /// # Errors
+    /// When there is one of this name, or the medium does not take it.
+    pub fn create(&self, name: &str, inch: bool) -> Result<(), Denial> {
+        self.free(name)?;
+        let text = frames::new_file(name, inch);
+        self.write(name, text.as_bytes()).map_err(Denial::Words)
+    }
+
     /// Erases a file.
     ///
     /// # Errors
-    /// In words.
-    pub fn erase(&self, name: &str) -> Result<(), String> {
-        let path = self.path(name).ok_or_else(|| format!("{name} is no name"))?;
-        fs::remove_file(&path).map_err(|error| format!("{name}: {error}"))?;
+    /// When it is protected, or the medium does not do it.
+    pub fn erase(&self, name: &str) -> Result<(), Denial> {
+        let path = self.own(name)?;
+        if is_program(name) && is_protected(&path) {
+            return Err(Denial::Message(MessageId::ProtectedPgm));
+        }
+        fs::remove_file(&path).map_err(|error| Denial::Words(format!("{name}: {error}")))?;
         files::sync_folder(&path);
         self.changed();
         Ok(())
     }
 
-    /// Renames a file; what has the new name stays.
+    /// Copies a file; a program has the new name in its first and last block.
     ///
     /// # Errors
-    /// In words.
-    pub fn rename(&self, old: &str, new: &str) -> Result<(), String> {
-        let (Some(from), Some(to)) = (self.path(old), self.path(new)) else {
-            return Err(format!("{new} is no name"));
+    /// When there is a file of the new name, or the medium does not take it.
+    pub fn copy(&self, old: &str, new: &str) -> Result<(), Denial> {
+        let from = self.own(old)?;
+        self.free(new)?;
+        let text = fs::read(&from).map_err(|error| Denial::Words(format!("{old}: {error}")))?;
+        let text = match is_program(new) {
+            true => frames::renamed(&text, new),
+            false => text,
         };
-        if to.exists() {
-            return Err(format!("{new} is there already"));
+        self.write(new, &text).map_err(Denial::Words)
+    }
+
+    /// Renames a file, a program in its first and last block, too. Whenever it is cut short one of both is there, whole.
+    ///
+    /// # Errors
+    /// When it is protected, there is a file of the new name, or the medium does not do it.
+    pub fn rename(&self, old: &str, new: &str) -> Result<(), Denial> {
+        let from = self.own(old)?;
+        if is_program(old) && is_protected(&from) {
+            return Err(Denial::Message(MessageId::ProtectedPgm));
         }
-        fs::rename(&from, &to).map_err(|error| format!("{old}: {error}"))?;
-        files::sync_folder(&to);
+        self.copy(old, new)?;
+        self.erase(old)
+    }
+
+    /// Protects a program, or takes its protection away.
+    ///
+    /// # Errors
+    /// When it is no program, or the medium does not take it.
+    pub fn protect(&self, name: &str, on: bool) -> Result<(), Denial> {
+        let incorrect = Denial::Message(MessageId::EntryValueIncorrect);
+        let program = self.read(name).filter(|_| is_program(name)).ok_or(incorrect)?;
+        let edit = if on { Edit::Protect } else { Edit::Unprotect };
+        match program.edit(&edit) {
+            Ok(program) => self.write(name, &program.to_bytes()).map_err(Denial::Words),
+            Err(error) => Err(Denial::Message(error.message())),
+        }
+    }
+
+    /// Counts the changes of the memory.
+    pub fn version(&self) -> u64 {
+        self.version.load(Ordering::Relaxed)
+    }
+
+    /// A file that is there.
+    fn own(&self, name: &str) -> Result<PathBuf, Denial> {
+        let path = self.path(name).filter(|path| path.is_file());
+        path.ok_or(Denial::Message(MessageId::ProgramNotFound))
+    }
+
+    /// A name that is free.
+    fn free(&self, name: &str) -> Result<(), Denial> {
+        match self.path(name) {
+            Some(path) if !path.exists() => Ok(()),
+            _ => Err(Denial::Message(MessageId::EntryValueIncorrect)),
+        }
+    }
+
+    /// Something of the machine's files was written beside: who shows them looks at them again.
+    pub fn was_written(&self) {
         self.changed();
-        Ok(())
     }
 
     fn changed(&self) {
+        self.version.fetch_add(1, Ordering::Relaxed);
         let mut inner = self.inner.write().unwrap_or_else(PoisonError::into_inner);
         *inner = FolderPrograms::of_folder(&self.folder);
     }
+}
+
+/// A part program, by its name.
+pub(crate) fn is_program(name: &str) -> bool {
+    bahn_program::FILE_TYPES.iter().any(|kind| {
+        name.rsplit_once('.')
+            .is_some_and(|(_, ending)| ending.eq_ignore_ascii_case(kind.extension))
+    })
+}
+
+/// The first block of a program says that it is protected.
+fn is_protected(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    read.is_ok() && Program::from_bytes(&*name, head).is_protected()
 }
 
 /// A file name of the memory: letters, digits and what serial interfaces know, one point, nothing hidden.
@@ -190,6 +295,19 @@ mod tests {
         assert_eq!(blocks(&memory), Some(2));
         memory.rename("1.H", "2.H").unwrap();
         assert_eq!((memory.has("1.H"), memory.has("2.H")), (false, true));
+        let version = memory.version();
+        memory.protect("2.H", true).unwrap();
+        assert!(memory.version() > version && memory.list()[0].protected);
+        let denied = Err(Denial::Message(MessageId::ProtectedPgm));
+        assert_eq!(
+            (memory.erase("2.H"), memory.rename("2.H", "3.H")),
+            (denied.clone(), denied)
+        );
+        memory.copy("2.H", "3.H").unwrap();
+        assert_eq!(memory.text("3.H").unwrap(), "BEGIN PGM 3 MM P\nEND PGM 3 MM P\n");
+        memory.protect("3.H", false).unwrap();
+        memory.erase("3.H").unwrap();
+        memory.protect("2.H", false).unwrap();
         assert!(memory.write("../2.H", b"").is_err());
         memory.erase("2.H").unwrap();
         assert!(memory.list().is_empty());

@@ -61,6 +61,8 @@ pub(crate) struct Settings {
     pub iso: bool,
     /// AXIS SELECTION: letters of the axes that go into an L block with actual position capture, at most three.
     pub captured_axes: String,
+    /// Minutes that the control was on, a program ran, the spindle turned [003:7030].
+    pub timers_min: [u64; 3],
     /// The program that was selected for programming last.
     pub edited: Option<String>,
     /// What was typed of a block when the station ended.

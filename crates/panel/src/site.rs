@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bahn_control::{Command, Control, Mode};
 use bahn_host::{Answer, Deed, Host, LoadedMachine, Source};
-use bahn_parameters::MessageId;
+use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 
 use crate::programs::ProgramMemory;
@@ -36,6 +36,11 @@ impl Site<'_> {
         self.host.control()
     }
 
+    /// The machine parameters as they are edited.
+    pub fn parameters(&self) -> &ParameterList {
+        self.control().first().edited_list()
+    }
+
     /// The machine operating mode.
     pub fn mode(&self) -> Mode {
         self.control().mode()
@@ -43,7 +48,7 @@ impl Site<'_> {
 
     /// The language of the dialogue.
     pub fn language(&self) -> Language {
-        let english = self.machine.parameters.operation_parameters().english;
+        let english = self.parameters().operation_parameters().english;
         self.settings.language(english)
     }
 

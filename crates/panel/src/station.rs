@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_control::{Command, Control, Programs};
+use bahn_control::{Command, Control, Programs, RunState};
 use bahn_dialogue::Key;
 use bahn_host::{Answer, Attendance, Clock, Deed, Host, HostError, LoadedMachine, Operator, PowerOn, Source};
 use bahn_machine::KeyAction;
@@ -24,12 +24,14 @@ use crate::settings::Settings;
 use crate::site::Site;
 use crate::timeline::Past;
 use crate::why::Waits;
-use crate::{status, texts, why};
+use crate::{numbers, status, texts, why};
 
 /// Lines of the large window.
 const LINES: usize = 16;
 /// Lines of a window beside another one.
 const LINES_BESIDE: usize = 16;
+/// A minute, µs.
+const MINUTE_US: u64 = 60_000_000;
 /// Factors by which time may pass.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.1..=100.0;
 
@@ -43,11 +45,12 @@ pub struct Station {
     stored: Settings,
     state_folder: PathBuf,
     console: Console,
-    handwheel: (char, u8),
     speed: f64,
     by_the_wall: bool,
     paused: bool,
     is_on: bool,
+    /// Less than a minute of each machine time, µs.
+    timers_us: [u64; 3],
     recorder: Option<Recorder>,
     past: Past,
     waits: Waits,
@@ -75,15 +78,14 @@ impl Station {
         host.be_exact();
         let state_folder = machine.root.join(&machine.folder.state);
         let settings = Settings::read(&state_folder);
-        let axis = host.control().axis_letters().next().unwrap_or('X');
         Station {
             console: Console::new(host.control().mode()),
             stored: settings.clone(),
-            handwheel: (axis, 3),
             speed: 1.0,
             by_the_wall: false,
             paused: false,
             is_on: true,
+            timers_us: [0; 3],
             recorder: None,
             past: Past::new(&mut host),
             waits: Waits::new(&machine),
@@ -143,7 +145,6 @@ impl Station {
             Input::Handwheel(steps) => self.deed(&format!("handwheel {steps}"))?,
             Input::HandwheelAxis(axis, factor) => {
                 self.deed(&format!("handwheel {axis} {factor}"))?;
-                self.handwheel = (*axis, *factor);
             }
             Input::Power(on) => self.power(*on),
             Input::Speed(factor) => self.set_speed(*factor)?,
@@ -173,6 +174,7 @@ impl Station {
         }
         self.is_on = is_on;
         if is_on {
+            self.count_time();
             let (console, mut site) = self.parts();
             if let Some(key) = inhibit::simulated(&mut site) {
                 console.key(key, &mut site);
@@ -221,6 +223,11 @@ impl Station {
         self.host.plant().keys().map(str::to_owned).collect()
     }
 
+    /// The numbers behind the screen, for programs: times, positions in mm and degrees, speeds, the run, messages.
+    pub fn numbers(&self) -> serde_json::Value {
+        numbers::of(&self.host.control().snapshot(), self.host.control())
+    }
+
     /// The screen as it is now. Its serial counts on when it is another one.
     pub fn screen(&mut self) -> &Screen {
         let mut screen = match self.is_on {
@@ -263,7 +270,13 @@ impl Station {
     fn make_screen(&mut self) -> Screen {
         let messages = self.messages();
         let snapshot = self.host.control().snapshot();
-        let status = status::of(&snapshot, self.host.control(), self.parameters(), &self.settings);
+        let status = status::of(
+            &snapshot,
+            self.host.control(),
+            self.parameters(),
+            &self.settings,
+            &self.shown.status,
+        );
         let plc_window = self.plc_window();
         let (console, site) = self.parts();
         let front = console.front();
@@ -292,8 +305,24 @@ impl Station {
         }
     }
 
+    /// Counts the machine times, which are kept in whole minutes.
+    fn count_time(&mut self) {
+        let control = self.host.control();
+        let runs = control.run_state() == RunState::Running;
+        let turns = control.spindle().actual_rpm.abs() >= 1.0;
+        let cycle_us = u64::from(control.cycle_us());
+        let counters = self.timers_us.iter_mut().zip(&mut self.settings.timers_min);
+        for ((us, minutes), counts) in counters.zip([true, runs, turns]) {
+            *us += if counts { cycle_us } else { 0 };
+            if *us >= MINUTE_US {
+                *us -= MINUTE_US;
+                *minutes += 1;
+            }
+        }
+    }
+
     fn parameters(&self) -> &ParameterList {
-        &self.machine.parameters
+        self.host.control().first().edited_list()
     }
 
     /// Messages of the control, and those of the panel behind them.
@@ -348,10 +377,19 @@ impl Station {
             emergency_stop: plant.emergency_stop_is_pressed(),
             knobs: plant.knobs(),
             held: plant.held_keys().map(str::to_owned).collect(),
-            handwheel: self.handwheel,
+            handwheel: self.handwheel(),
             speed: self.speed,
             paused: self.paused,
         }
+    }
+
+    /// Axis and interpolation factor of the handwheel.
+    fn handwheel(&self) -> (char, u8) {
+        let control = self.host.control();
+        let (index, factor) = control.first().handwheel();
+        let snapshot = control.snapshot();
+        let axis = snapshot.axes.iter().find(|axis| axis.index == index);
+        (axis.map_or('X', |axis| axis.letter), factor)
     }
 
     /// A key of the keyboard: the PLC may inhibit it, and is told then [000:7319].

@@ -1,6 +1,6 @@
 //! The status display, made of what the control shows [003:949-971].
 
-use bahn_control::{AxisState, Control, RunState, Snapshot};
+use bahn_control::{AxisState, Control, InForce, RunState, Snapshot};
 use bahn_exchange::signal;
 use bahn_parameters::ParameterList;
 use bahn_parameters::machining::Decimal;
@@ -83,18 +83,24 @@ pub(crate) fn of(
     control: &Control,
     parameters: &ParameterList,
     settings: &Settings,
+    earlier: &Status,
 ) -> Status {
     let notation = Notation::of(settings, parameters);
     let axes = snapshot
         .axes
         .iter()
         .map(|axis| axis_line(axis, parameters, settings.position_type, notation));
+    // While the program is read on another thread what was shown stays.
+    let (tool_axis, flags) = match control.first().in_force() {
+        Some(in_force) => of_program(&in_force, snapshot.tool),
+        None => (earlier.tool_axis.clone(), earlier.flags.clone()),
+    };
     Status {
         position_type: settings.position_type.name().to_owned(),
         inch: settings.inch,
         axes: axes.collect(),
         tool: snapshot.tool,
-        tool_axis: None,
+        tool_axis,
         s: snapshot.spindle.programmed_rpm,
         gear: snapshot.spindle.gear,
         spindle_rpm: snapshot.spindle.actual_rpm,
@@ -105,13 +111,27 @@ pub(crate) fn of(
         m_inverse: [signal::SPINDLE_DISPLAY_INVERSE, signal::COOLANT_DISPLAY_INVERSE]
             .map(|marker| control.memory().bit(marker)),
         star: star(snapshot),
-        flags: Vec::new(),
+        flags,
         overrides: [snapshot.feed_override_percent, snapshot.spindle_override_percent],
         waiting: snapshot
             .waiting
             .map_or_else(String::new, |waiting| waiting.to_string()),
         plc_percent: snapshot.plc_percent,
     }
+}
+
+/// The tool axis, once a tool was called, and the flags `N XY`, `S X`, `ROT`, `SCL` [003:1297].
+fn of_program(in_force: &InForce, tool: u32) -> (Option<String>, Vec<String>) {
+    let letters = |axes: &[Axis]| axes.iter().map(|axis| axis.letter()).collect::<String>();
+    let marked = |name: &str, axes: &[Axis]| (!axes.is_empty()).then(|| format!("{name} {}", letters(axes)));
+    let flags = [
+        marked("N", &in_force.shifted),
+        marked("S", &in_force.mirrored),
+        in_force.rotated.then(|| "ROT".to_owned()),
+        in_force.scaled.then(|| "SCL".to_owned()),
+    ];
+    let axis = (tool > 0).then(|| in_force.tool_axis.letter().to_string());
+    (axis, flags.into_iter().flatten().collect())
 }
 
 fn axis_line(

@@ -31,6 +31,9 @@ probe datum AXIS VALUE              what was probed becomes this value
 probe angle DEGREES                 rotation angle: the basic rotation, and nominal angle of the next side
 probe end                           leaves the function
 tool-life T MIN                     current life of a tool (CUR.TIME), minutes
+q N VALUE                           a Q parameter, between runs or while one is interrupted
+axis-limit AXIS RANGE MIN MAX|off   AXIS LIMIT of a traverse range 1 to 3, from machine zero
+table T|D|P LINE COLUMN VALUE       the file of a table says something else from now on, and it counts
 jog MM                              jog increment
 output step FEED, output ramp       what direction keys put out on axes with digital speed controller
 oscilloscope start|stop             recording of --oscilloscope by hand, behind `code 688379`

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use bahn_host::{LoadedMachine, TableForm, canonical};
+use bahn_host::{LineChange, LoadedMachine, TableForm, canonical};
 use bahn_machine::MachineFolder;
 
 use super::options::SetOptions;
@@ -48,21 +48,10 @@ pub(super) fn command(options: &SetOptions) -> Result<Outcome, UsageError> {
 
 /// The new text, and what was done.
 fn changed(source: &Source, options: &SetOptions) -> Result<(String, &'static str), UsageError> {
-    let (table, key) = (&source.table, source.kind.key());
     let wrong = |message: String| UsageError::new(format!("{}: {message}", source.path.display()));
-    let is_wanted =
-        |row: &&bahn_host::TextRow| table.cell(row, key).is_some_and(|cell| cell.text == options.line);
-    let at = table.rows.iter().find(is_wanted).map(|row| row.line as usize - 1);
-    let mut lines: Vec<String> = source.text.split_inclusive('\n').map(str::to_owned).collect();
-    let end = if source.text.contains("\r\n") {
-        "\r\n"
-    } else {
-        "\n"
-    };
     if options.delete {
-        let at = at.ok_or_else(|| wrong(format!("there is no line {}", options.line)))?;
-        lines.remove(at);
-        return Ok((lines.concat(), "is removed"));
+        let text = bahn_host::delete_line(&source.text, source.kind, &options.line);
+        return Ok((text.map_err(wrong)?, "is removed"));
     }
     let mut values = Vec::new();
     for value in &options.values {
@@ -75,26 +64,12 @@ fn changed(source: &Source, options: &SetOptions) -> Result<(String, &'static st
         .iter()
         .map(|(name, value)| (name.as_str(), *value))
         .collect();
-    let Some(at) = at else {
-        let key = [(key, options.line.as_str())].into_iter();
-        let all: Vec<(&str, &str)> = key.chain(values).collect();
-        let line = table.new_line(&all).map_err(wrong)? + end;
-        let behind = table.rows.last().map_or(table.header_line, |row| row.line) as usize;
-        if let Some(last) = lines.get_mut(behind - 1).filter(|last| !last.ends_with('\n')) {
-            last.push_str(end);
-        }
-        lines.insert(behind, line);
-        return Ok((lines.concat(), "is added"));
-    };
-    if let Some(line) = lines.get_mut(at) {
-        let mut text = line.trim_end_matches(['\r', '\n']).to_owned();
-        let tail = line.get(text.len()..).unwrap_or_default().to_owned();
-        for (name, value) in values {
-            text = table.line_with(&text, name, value).map_err(wrong)?;
-        }
-        *line = text + &tail;
-    }
-    Ok((lines.concat(), "is changed"))
+    let (text, change) =
+        bahn_host::set_line(&source.text, source.kind, &options.line, &values).map_err(wrong)?;
+    Ok(match change {
+        LineChange::Changed => (text, "is changed"),
+        LineChange::Added => (text, "is added"),
+    })
 }
 
 /// Why a table is not changed: the machine in whose folder it lies protects it, or is switched on and would not see what

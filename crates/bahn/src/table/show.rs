@@ -1,9 +1,6 @@
 //! `bahn table show`: a table in columns.
 
-use bahn_control::Remembered;
-use bahn_host::{CellContent, LoadedMachine, PlainTable, TableForm, canonical};
-use bahn_parameters::tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, shown_elements};
-use bahn_plc::TableKind;
+use bahn_host::{CellContent, LoadedMachine, PlainTable, TableForm};
 use serde_json::{Map, Value, json};
 
 use super::options::{ShowFormat, ShowOptions};
@@ -31,10 +28,10 @@ pub(super) fn command(options: &ShowOptions) -> Result<Outcome, UsageError> {
     }
     let mut table = PlainTable::new(source.kind, &source.table);
     if let Some(remembered) = machine.as_ref().and_then(LoadedMachine::remembered) {
-        bring_up_to_date(&mut table, &remembered);
+        table.bring_up_to_date(&remembered);
     }
     if let Some(shown) = machine
-        .and_then(|machine| shown(&machine, source.kind))
+        .and_then(|machine| source.kind.shown(&machine.parameters))
         .filter(|_| !options.all)
     {
         let key = [source.kind.key().to_owned()].into_iter();
@@ -47,63 +44,6 @@ pub(super) fn command(options: &ShowOptions) -> Result<Outcome, UsageError> {
         ShowFormat::Json => console::print_json(&report(&source, &table))?,
     }
     Ok(Outcome::Fine)
-}
-
-/// Tools have changed their pockets, their lives were counted, the PLC has written.
-fn bring_up_to_date(table: &mut PlainTable, remembered: &Remembered) {
-    let key = table.kind.key();
-    let kind = match table.kind {
-        TableForm::Tool => TableKind::Tool,
-        TableForm::Pocket => TableKind::Pocket,
-        _ => return,
-    };
-    let written = remembered.written.iter().filter(|element| element.table == kind);
-    let written: Vec<(String, &str, String)> = written
-        .filter_map(|element| {
-            let column = kind.columns().get(element.element)?.as_ref()?;
-            Some((
-                element.line.to_string(),
-                canonical(column.name),
-                element.value.to_string(),
-            ))
-        })
-        .collect();
-    for (line, column, value) in &written {
-        table.set(key, line, column, value);
-    }
-    let moved = remembered.pockets.iter();
-    let moved: Vec<(String, Option<u16>)> = moved
-        .map(|moved| (moved.tool.to_string(), moved.pocket))
-        .collect();
-    if table.kind == TableForm::Tool {
-        for (tool, pocket) in &moved {
-            table.set(
-                key,
-                tool,
-                "P",
-                &pocket.map(|pocket| pocket.to_string()).unwrap_or_default(),
-            );
-        }
-        return;
-    }
-    for (tool, _) in &moved {
-        table.set("T", tool, "T", "");
-    }
-    for (tool, pocket) in moved.iter().filter_map(|(tool, pocket)| Some((tool, (*pocket)?))) {
-        table.set(key, &pocket.to_string(), "T", tool);
-    }
-}
-
-/// The columns that the control shows of a table; `None` for all of them.
-fn shown(machine: &LoadedMachine, kind: TableForm) -> Option<Vec<String>> {
-    let tables = machine.parameters.table_parameters();
-    let shown = match kind {
-        TableForm::Tool => shown_elements(&tables.tool_columns, &TOOL_ELEMENTS),
-        TableForm::Pocket => shown_elements(&tables.pocket_columns, &POCKET_ELEMENTS),
-        _ => return None,
-    };
-    let shown: Vec<String> = shown.into_iter().map(str::to_owned).collect();
-    (!shown.is_empty()).then_some(shown)
 }
 
 /// Numbers to the right, text to the left.

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use bahn_control::{
-    Calibration, MovedTool, Position0, ProbeMemory, Remembered, ToolProbeCalibration, WrittenElement,
+    AxisLimit, Calibration, MovedTool, Position0, ProbeMemory, Remembered, ToolProbeCalibration,
+    WrittenElement,
 };
 use bahn_parameters::{PLC_AXES, PerPlcAxis};
 use bahn_path::{Axis, Position};
@@ -35,6 +36,9 @@ struct Form {
     /// Datum table, line, element, value, value in the file.
     #[serde(default)]
     written_datums: Vec<(String, i32, usize, f64, f64)>,
+    /// Axis, traverse range, least and greatest position.
+    #[serde(default)]
+    axis_limits: Vec<(char, u8, f64, f64)>,
     /// Length, radius, offset in both axes of the plane.
     probe_calibration: Option<[f64; 4]>,
     #[serde(default)]
@@ -121,6 +125,7 @@ fn text(remembered: &Remembered) -> String {
     if remembered.probe.basic_rotation_deg != 0.0 {
         line("basic_rotation", number(remembered.probe.basic_rotation_deg));
     }
+    axis_limits(remembered, &mut line);
     line("offsets_volts", list(remembered.offsets_volts.map(number).0));
     let datum = |Position0(datum): &Position0| {
         let known = Axis::ALL.into_iter().filter_map(|axis| {
@@ -147,6 +152,24 @@ fn text(remembered: &Remembered) -> String {
         }
     }
     text
+}
+
+/// AXIS LIMIT of MOD.
+fn axis_limits(remembered: &Remembered, line: &mut impl FnMut(&str, String)) {
+    if !remembered.axis_limits.is_empty() {
+        let rows = remembered.axis_limits.iter().map(|own| {
+            let [least, greatest] = own.limits.map(number);
+            format!(
+                "\n  [\"{}\", {}, {least}, {greatest}],",
+                own.axis.letter(),
+                own.range
+            )
+        });
+        line(
+            "# AXIS LIMIT: axis, traverse range, least and greatest position, machine coordinates\naxis_limits",
+            format!("[{}\n]", rows.collect::<String>()),
+        );
+    }
 }
 
 /// What the PLC wrote into tables.
@@ -209,12 +232,6 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         });
         format!("line {line}: {}", error.message())
     })?;
-    let axis = |letter: char| {
-        u8::try_from(letter)
-            .ok()
-            .and_then(Axis::from_letter)
-            .ok_or_else(|| format!("`{letter}` is no axis"))
-    };
     let mut datums = [Position0::default(); 3];
     for (datum, values) in datums.iter_mut().zip(&form.datum) {
         let mut position = Position::ZERO;
@@ -253,6 +270,8 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         q.push((number, finite(*value)?));
     }
     q.sort_by_key(|(number, _)| *number);
+    let limits = form.axis_limits.iter();
+    let axis_limits = limits.map(axis_limit).collect::<Result<_, _>>()?;
     for volts in form.offsets_volts {
         finite(volts)?;
     }
@@ -270,6 +289,7 @@ fn content_of(text: &str) -> Result<Remembered, String> {
             .map(|[found, list]| ToolProbeCalibration { found, list }),
         pockets,
         written,
+        axis_limits,
         q,
         offsets_volts: PerPlcAxis(form.offsets_volts),
         parameter_list: form.parameter_list,
@@ -278,6 +298,24 @@ fn content_of(text: &str) -> Result<Remembered, String> {
         datum_table: form.datum_table,
         written_datums,
     })
+}
+
+fn axis(letter: char) -> Result<Axis, String> {
+    u8::try_from(letter)
+        .ok()
+        .and_then(Axis::from_letter)
+        .ok_or_else(|| format!("`{letter}` is no axis"))
+}
+
+fn axis_limit(&(letter, range, least, greatest): &(char, u8, f64, f64)) -> Result<AxisLimit, String> {
+    match range {
+        1..=3 => Ok(AxisLimit {
+            axis: axis(letter)?,
+            range,
+            limits: [finite(least)?, finite(greatest)?],
+        }),
+        _ => Err(format!("{range} is no traverse range")),
+    }
 }
 
 fn probe_memory(calibration: Option<[f64; 4]>, basic_rotation: f64) -> Result<ProbeMemory, String> {
@@ -368,6 +406,11 @@ mod tests {
             ],
             q: vec![(1, 0.5), (107, -1e-4)],
             offsets_volts: PerPlcAxis([0.0, 0.0015, 0.0, 0.0, 0.0]),
+            axis_limits: vec![AxisLimit {
+                axis: Axis::Z,
+                range: 2,
+                limits: [-12.5, 350.0],
+            }],
             probe: ProbeMemory {
                 calibration: Some(Calibration {
                     length_mm: 148.25,

@@ -4,8 +4,9 @@ use bahn_control::{Command, Mode};
 use bahn_dialogue::Key;
 
 use crate::page::{Page, Turn, View};
-use crate::pages::datum;
+use crate::pages::handwheel::Handwheel;
 use crate::pages::number::Number;
+use crate::pages::{datum, handwheel, probe, table};
 use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
@@ -26,8 +27,10 @@ impl Page for ByHand {
             Key::Z => datum::ask(2, site),
             Key::Iv => datum::ask(3, site),
             Key::V => datum::ask(4, site),
-            Key::M | Key::Stop => self.soft_key(0, 0, site),
+            Key::M => self.soft_key(0, 0, site),
             Key::S | Key::ToolCall => self.soft_key(0, 1, site),
+            Key::TouchProbe => probe::menu(),
+            Key::ToolDef => table::tools(site),
             _ => Turn::Refused,
         }
     }
@@ -36,12 +39,21 @@ impl Page for ByHand {
         if site.mode() == Mode::Reference {
             return Vec::new();
         }
-        let empty = String::new;
+        let there = |there: bool, text: String| if there { text } else { String::new() };
+        let rules = site.parameters().operation_parameters();
+        let leans = match site.control().first().leans() {
+            true => site.words("3D ROT OFF"),
+            false => site.words("3D ROT ON"),
+        };
         vec![vec![
             "M".to_owned(),
             "S".to_owned(),
-            empty(),
+            site.words("TOUCH PROBE"),
             site.words("INCREMENT"),
+            site.words("HANDWHEEL"),
+            there(rules.tilting, leans),
+            String::new(),
+            there(table::has_tools(site), site.words("TOOL TABLE")),
         ]]
     }
 
@@ -58,17 +70,27 @@ impl Page for ByHand {
             1 => Turn::Open(Number::ask(site.words("SPINDLE SPEED S ="), |value, site| {
                 site.command(Command::Speed(value))
             })),
+            2 => probe::menu(),
             3 => Turn::Open(Number::ask(site.words("JOG-INCREMENT ="), |value, site| {
                 (0.0..=JOG_MAX).contains(&value) && site.command(Command::JogIncrement(value))
             })),
-            _ => Turn::Refused,
+            4 => Turn::Open(Box::new(Handwheel::default())),
+            5 => {
+                let on = !site.control().first().leans();
+                match site.command(Command::WorkingPlane(on)) {
+                    true => Turn::Done,
+                    false => Turn::Refused,
+                }
+            }
+            _ => table::tools(site),
         }
     }
 
     fn show(&self, site: &Site, _lines: usize) -> View {
-        let asked = match site.mode() == Mode::Reference {
-            true => missing_references(site),
-            false => String::new(),
+        let asked = match site.mode() {
+            Mode::Reference => missing_references(site),
+            Mode::Handwheel => factor(site),
+            _ => String::new(),
         };
         View {
             window: Some(Window {
@@ -82,6 +104,14 @@ impl Page for ByHand {
             },
         }
     }
+}
+
+/// `X: INTERPOLATION FACTOR 3`: what the handwheel moves.
+fn factor(site: &Site) -> String {
+    let words = site.words("INTERPOLATION FACTOR");
+    handwheel::chosen(site).map_or_else(String::new, |(axis, factor)| {
+        format!("{}: {words} {factor}", axis.letter())
+    })
 }
 
 /// `PASS OVER REFERENCE MARK X Y Z`: the axes that have not passed theirs.

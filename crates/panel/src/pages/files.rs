@@ -1,15 +1,19 @@
-//! The directory: a program is chosen by its name [003:981-1001].
+//! Program management: the directory, in which a file is chosen, made, copied, renamed, erased and protected
+//! [003:981-1023].
 
-use bahn_control::Command;
+use bahn_control::{Command, RunState};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
+use crate::frames;
 use crate::page::{Page, Turn, View, first_in_sight};
-use crate::programs::{Entry, NAME_MAX};
+use crate::pages::ask::{Choice, Name};
+use crate::pages::table;
+use crate::programs::{Denial, Entry, NAME_MAX, is_program};
 use crate::screen::{Dialogue, Line, Window, WindowKind};
 use crate::site::Site;
 
-/// What a program is chosen for.
+/// What a file is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// It is to run.
@@ -18,12 +22,23 @@ pub(crate) enum Purpose {
     Edit,
     /// It is to be tested.
     Test,
+    /// It is to be erased: CL PGM [003:985-990].
+    Erase,
+    /// Its protection is to be taken away: code number 86 357 [003:7028].
+    Unprotect,
 }
+
+/// Code number that takes the protection away [000:6940] [003:7028].
+const UNPROTECT: u32 = 86_357;
+/// Ending of a file that nobody gives one.
+const ENDING: &str = "H";
 
 /// The directory of the program memory.
 pub(crate) struct Directory {
     purpose: Purpose,
     entries: Vec<Entry>,
+    /// The memory as it was listed.
+    version: u64,
     current: usize,
     typed: String,
 }
@@ -31,41 +46,59 @@ pub(crate) struct Directory {
 impl Directory {
     /// The directory as it is now.
     pub fn new(purpose: Purpose, site: &Site) -> Directory {
-        let mut entries = site.programs.list();
-        entries.retain(|entry| purpose == Purpose::Edit || is_program(&entry.name));
-        Directory {
+        let mut directory = Directory {
             purpose,
-            entries,
+            entries: Vec::new(),
+            version: 0,
             current: 0,
             typed: String::new(),
+        };
+        directory.list(site);
+        directory
+    }
+
+    fn list(&mut self, site: &Site) {
+        self.version = site.programs.version();
+        self.entries = site.programs.list();
+        match self.purpose {
+            Purpose::Edit => self.entries.extend(table::of_machine(site)),
+            Purpose::Erase => {}
+            Purpose::Run | Purpose::Test | Purpose::Unprotect => {
+                self.entries.retain(|entry| is_program(&entry.name));
+            }
+        }
+        self.current = self.current.min(self.entries.len().saturating_sub(1));
+    }
+
+    /// The name that is typed, else the one that is highlighted.
+    fn name(&self) -> Option<String> {
+        match self.typed.is_empty() {
+            true => self.entries.get(self.current).map(|entry| entry.name.clone()),
+            false => Some(with_ending(&self.typed)),
         }
     }
 
     fn choose(&self, site: &mut Site) -> Turn {
-        let name = match (self.typed.is_empty(), self.entries.get(self.current)) {
-            (true, Some(entry)) => entry.name.clone(),
-            (true, None) => return Turn::Refused,
-            (false, _) => {
-                let name = self.typed.clone();
-                if name.contains('.') {
-                    name
-                } else {
-                    format!("{name}.H")
-                }
-            }
+        let Some(name) = self.name() else {
+            return Turn::Refused;
         };
         let there = site.programs.has(&name);
         let chosen = match self.purpose {
-            Purpose::Run => {
-                let program = name.rsplit_once('.').map_or(name.as_str(), |(name, _)| name);
-                there && site.command(Command::Select(program.to_owned()))
-            }
+            Purpose::Erase => return erase(name, site),
+            Purpose::Unprotect => return unprotect(&name, site),
+            Purpose::Edit if self.typed == "0" => return table::tools(site),
+            Purpose::Edit if table::is_of_machine(&name, site) => return table::open(&name, site),
+            Purpose::Edit if !there => return create(name, site),
+            Purpose::Edit if table::is_table(&name) => return table::open(&name, site),
             Purpose::Edit => {
                 site.settings.edited = Some(name);
                 true
             }
+            Purpose::Run => there && site.command(Command::Select(stem(&name).to_owned())),
             Purpose::Test => {
-                site.settings.edited = Some(name);
+                if there {
+                    site.settings.edited = Some(name);
+                }
                 there
             }
         };
@@ -74,11 +107,176 @@ impl Directory {
             false => Turn::Say(site.message(MessageId::ProgramNotFound)),
         }
     }
+
+    fn copy(&self, site: &Site) -> Turn {
+        let Some(old) = self.name() else {
+            return Turn::Refused;
+        };
+        let prompt = format!("{} {}", site.words("DESTINATION FILE ="), ending(&old));
+        Turn::Open(Name::ask(prompt, NAME_MAX, move |new, site| {
+            done(site.programs.copy(&old, &like(&new, &old)), site)
+        }))
+    }
+
+    fn rename(&self, site: &Site) -> Turn {
+        let Some(old) = self.name() else {
+            return Turn::Refused;
+        };
+        if runs(&old, site) {
+            return in_use(site);
+        }
+        let prompt = format!("{} {}", site.words("NEW FILE NAME ="), ending(&old));
+        Turn::Open(Name::ask(prompt, NAME_MAX, move |new, site| {
+            let new = like(&new, &old);
+            let renamed = site.programs.rename(&old, &new);
+            if renamed.is_ok() && site.settings.edited.as_ref() == Some(&old) {
+                site.settings.edited = Some(new);
+            }
+            done(renamed, site)
+        }))
+    }
+
+    fn protect(&self, site: &Site) -> Turn {
+        match self.name().map(|name| site.programs.protect(&name, true)) {
+            Some(Ok(())) => Turn::Done,
+            Some(Err(denial)) => Turn::Say(said(denial, site)),
+            None => Turn::Refused,
+        }
+    }
+
+    /// The soft key UNPROTECT asks for the code number before.
+    fn cancel_protection(&self, site: &Site) -> Turn {
+        let Some(name) = self.name() else {
+            return Turn::Refused;
+        };
+        let prompt = site.words("CODE NUMBER =");
+        Turn::Open(Name::ask(prompt, NAME_MAX, move |code, site| {
+            if code.parse() != Ok(UNPROTECT) {
+                return Turn::Say(site.message(MessageId::EntryValueIncorrect));
+            }
+            done(site.programs.protect(&name, false), site)
+        }))
+    }
 }
 
-/// A part program.
-fn is_program(name: &str) -> bool {
-    name.to_ascii_uppercase().ends_with(".H") || name.to_ascii_uppercase().ends_with(".I")
+/// A program whose name says no type is one in plain language.
+fn with_ending(name: &str) -> String {
+    match name.contains('.') {
+        true => name.to_owned(),
+        false => format!("{name}.{ENDING}"),
+    }
+}
+
+fn stem(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
+fn ending(name: &str) -> String {
+    name.rsplit_once('.')
+        .map_or_else(String::new, |(_, ending)| format!(".{ending}"))
+}
+
+/// A new name with the type of an old one, when it says none.
+fn like(new: &str, old: &str) -> String {
+    match new.contains('.') {
+        true => new.to_owned(),
+        false => format!("{new}{}", ending(old)),
+    }
+}
+
+/// A new file: programs have a unit [003:2085-2121].
+fn create(name: String, site: &mut Site) -> Turn {
+    if site.programs.path(&name).is_none() || stem(&name).len() > NAME_MAX {
+        return Turn::Say(site.message(MessageId::EntryValueIncorrect));
+    }
+    if !frames::has_unit(&name) {
+        return created(&name, false, site);
+    }
+    let names = ["MM".to_owned(), "INCH".to_owned()];
+    Turn::Replace(Choice::ask(
+        site.words("MM = ENT / INCH = NO ENT"),
+        names,
+        move |mm, site| created(&name, !mm, site),
+    ))
+}
+
+fn created(name: &str, inch: bool, site: &mut Site) -> Turn {
+    match site.programs.create(name, inch) {
+        Ok(()) if table::is_table(name) => table::open(name, site),
+        Ok(()) => {
+            site.settings.edited = Some(name.to_owned());
+            Turn::Close
+        }
+        Err(denial) => Turn::CloseSaying(said(denial, site)),
+    }
+}
+
+/// Asks before a file is erased [003:985-990].
+fn erase(name: String, site: &mut Site) -> Turn {
+    if !site.programs.has(&name) {
+        return Turn::Say(site.message(MessageId::ProgramNotFound));
+    }
+    if runs(&name, site) {
+        return in_use(site);
+    }
+    let prompt = format!("{name}: {}", site.words("ERASE = ENT / END = NO ENT"));
+    Turn::Open(Choice::confirm(prompt, site.words("ERASE"), move |site| {
+        // It may have been started meanwhile.
+        if runs(&name, site) {
+            return in_use(site);
+        }
+        let erased = match table::is_protected(&name, site) {
+            true => Err(Denial::Message(MessageId::ProtectedPgm)),
+            false => site.programs.erase(&name),
+        };
+        if erased.is_ok() && site.settings.edited.as_ref() == Some(&name) {
+            site.settings.edited = None;
+        }
+        done(erased, site)
+    }))
+}
+
+fn unprotect(name: &str, site: &mut Site) -> Turn {
+    match site.programs.protect(name, false) {
+        Ok(()) => Turn::Done,
+        Err(denial) => Turn::Say(said(denial, site)),
+    }
+}
+
+/// A program run, interrupted or not, has the file.
+fn runs(name: &str, site: &Site) -> bool {
+    let control = site.control();
+    let selected = control
+        .selected_program()
+        .is_some_and(|own| stem(own) == stem(name));
+    let called = || {
+        let programs = control.interpreter().map(|own| own.program_names());
+        programs.is_some_and(|mut names| names.any(|own| stem(file_name(&own)) == stem(name)))
+    };
+    control.run_state() != RunState::Idle && is_program(name) && (selected || called())
+}
+
+/// A program may be named by its path.
+fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+fn in_use(site: &Site) -> Turn {
+    Turn::Say(site.words("BACKGROUND PROGRAMMING NOT POSSIBLE"))
+}
+
+fn done(result: Result<(), Denial>, site: &Site) -> Turn {
+    match result {
+        Ok(()) => Turn::Close,
+        Err(denial) => Turn::CloseSaying(said(denial, site)),
+    }
+}
+
+fn said(denial: Denial, site: &Site) -> String {
+    match denial {
+        Denial::Message(id) => site.message(id),
+        Denial::Words(words) => words,
+    }
 }
 
 impl Page for Directory {
@@ -87,7 +285,10 @@ impl Page for Directory {
             Key::Down => self.current = (self.current + 1).min(self.entries.len().saturating_sub(1)),
             Key::Up => self.current = self.current.saturating_sub(1),
             Key::Ent => return self.choose(site),
-            Key::End | Key::Del | Key::NoEnt | Key::PgmNr => return Turn::Close,
+            Key::ClPgm if self.purpose == Purpose::Edit => {
+                return self.name().map_or(Turn::Refused, |name| erase(name, site));
+            }
+            Key::End | Key::Del | Key::NoEnt | Key::PgmNr | Key::ClPgm => return Turn::Close,
             Key::Ce if !self.typed.is_empty() => self.typed.clear(),
             _ => match key.character() {
                 Some(character) if self.typed.len() < NAME_MAX => self.typed.push(character),
@@ -97,28 +298,93 @@ impl Page for Directory {
         Turn::Done
     }
 
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        let mut keys = vec![String::new(); 8];
+        let edits = self.purpose == Purpose::Edit;
+        let select = match self.purpose {
+            Purpose::Erase => site.words("ERASE"),
+            Purpose::Unprotect => site.words("UNPROTECT"),
+            _ => site.words("SELECT"),
+        };
+        let named = [
+            (0, true, select),
+            (1, edits, site.words("COPY")),
+            (2, edits, site.words("RENAME")),
+            (3, edits, site.words("ERASE")),
+            (4, edits, site.words("PROTECT")),
+            (5, edits, site.words("UNPROTECT")),
+            (7, true, site.words("END")),
+        ];
+        for (place, there, text) in named {
+            if let Some(key) = keys.get_mut(place).filter(|_| there) {
+                *key = text;
+            }
+        }
+        vec![keys]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        match place {
+            0 => self.choose(site),
+            1 => self.copy(site),
+            2 => self.rename(site),
+            3 => self.name().map_or(Turn::Refused, |name| erase(name, site)),
+            4 => self.protect(site),
+            5 => self.cancel_protection(site),
+            _ => Turn::Close,
+        }
+    }
+
+    fn text(&mut self, text: &str, _site: &mut Site) -> Turn {
+        match text.is_ascii() && text.len() <= NAME_MAX {
+            true => {
+                text.clone_into(&mut self.typed);
+                Turn::Done
+            }
+            false => Turn::Refused,
+        }
+    }
+
     fn show(&self, site: &Site, lines: usize) -> View {
         let first = first_in_sight(self.current, self.entries.len(), lines);
         let shown = self.entries.iter().enumerate().skip(first).take(lines);
+        let line = |(place, entry): (usize, &Entry)| Line {
+            text: format!(
+                "{:<16} {:<5} {:>10} {}",
+                stem(&entry.name),
+                ending(&entry.name),
+                entry.size,
+                if entry.protected { "P" } else { "" }
+            )
+            .trim_end()
+            .to_owned(),
+            current: place == self.current,
+            ..Line::default()
+        };
         View {
             window: Some(Window {
                 title: site.words("PROGRAM DIRECTORY"),
                 kind: WindowKind::List,
-                lines: shown
-                    .map(|(place, entry)| Line {
-                        text: format!("{:<20} {:>10}", entry.name, entry.size),
-                        current: place == self.current,
-                        ..Line::default()
-                    })
-                    .collect(),
+                lines: shown.map(line).collect(),
                 first,
                 total: self.entries.len(),
             }),
             dialogue: Dialogue {
-                prompt: site.words("PROGRAM NUMBER ="),
+                prompt: match self.purpose {
+                    Purpose::Erase => site.words("ERASE PROGRAM ="),
+                    Purpose::Unprotect => site.words("CANCEL PROTECTION OF PROGRAM ="),
+                    _ => site.words("PROGRAM NUMBER ="),
+                },
                 entry: self.typed.clone(),
                 open: true,
             },
         }
+    }
+
+    fn tick(&mut self, site: &mut Site) -> Turn {
+        if self.version != site.programs.version() {
+            self.list(site);
+        }
+        Turn::Done
     }
 }

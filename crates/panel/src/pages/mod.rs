@@ -1,17 +1,29 @@
 //! The pages: operating modes below, menus, tables and questions that stand on them.
 
+mod ask;
 mod by_hand;
+mod corrections;
 mod datum;
+mod editing;
 mod files;
+mod handwheel;
+mod help;
 mod mdi;
+mod menu;
 mod number;
+mod probe;
 mod programming;
+mod q_parameters;
 mod run;
+mod supplementary;
+mod table;
 mod test_run;
 
 use bahn_control::Mode;
+use bahn_dialogue::Key;
 
-use crate::page::Page;
+use crate::console::Side;
+use crate::page::{Page, Turn};
 use crate::site::Site;
 
 /// The page of a machine operating mode.
@@ -26,6 +38,15 @@ pub(crate) fn of_mode(mode: Mode) -> Box<dyn Page> {
 /// PROGRAMMING AND EDITING.
 pub(crate) fn editing(site: &mut Site) -> Box<dyn Page> {
     Box::new(programming::Programming::new(site))
+}
+
+/// What a key opens wherever nothing else takes it.
+pub(crate) fn everywhere(key: Key, side: Side, site: &mut Site) -> Turn {
+    match key {
+        Key::Mod => Turn::Open(supplementary::menu(side)),
+        Key::Help => help::key(site),
+        _ => Turn::Refused,
+    }
 }
 
 /// TEST RUN.

@@ -7,8 +7,8 @@ use crate::page::{Page, Turn, View};
 use crate::screen::Dialogue;
 use crate::site::Site;
 
-/// What is done with the number; `false` when it is refused.
-type Answer = Box<dyn Fn(f64, &mut Site) -> bool + Send>;
+/// What comes of the number.
+type Answer = Box<dyn FnMut(f64, &mut Site) -> Turn + Send>;
 
 /// A question: ENT answers it, END, DEL and NO ENT leave it.
 pub(crate) struct Number {
@@ -18,19 +18,24 @@ pub(crate) struct Number {
 }
 
 impl Number {
-    /// Asks for a number.
+    /// Asks for a number that is taken or refused.
     pub fn ask(prompt: String, answer: impl Fn(f64, &mut Site) -> bool + Send + 'static) -> Box<Number> {
+        Number::turning(prompt, move |value, site| match answer(value, site) {
+            true => Turn::Close,
+            false => Turn::Say(site.message(bahn_parameters::MessageId::EntryValueIncorrect)),
+        })
+    }
+
+    /// Asks for a number that leads on.
+    pub fn turning(
+        prompt: String,
+        answer: impl FnMut(f64, &mut Site) -> Turn + Send + 'static,
+    ) -> Box<Number> {
         Box::new(Number {
             prompt,
             entry: Entry::default(),
             answer: Box::new(answer),
         })
-    }
-
-    /// The same with an answer that stands there already.
-    pub fn with(mut self: Box<Number>, text: &str) -> Box<Number> {
-        self.entry = Entry::of(text);
-        self
     }
 }
 
@@ -38,8 +43,7 @@ impl Page for Number {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         match key {
             Key::Ent => match self.entry.value() {
-                Some(value) if (self.answer)(value, site) => Turn::Close,
-                Some(_) => Turn::Say(site.message(bahn_parameters::MessageId::EntryValueIncorrect)),
+                Some(value) => (self.answer)(value, site),
                 None => Turn::Refused,
             },
             Key::End | Key::Del | Key::NoEnt => Turn::Close,

@@ -9,6 +9,7 @@ use bahn_program::Program;
 use crate::page::{Page, Turn, View, first_in_sight};
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::number::Number;
+use crate::pages::q_parameters::QParameters;
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
@@ -45,6 +46,7 @@ impl Page for ProgramRun {
             Key::Goto => Turn::Open(Number::ask(site.words("GOTO: NUMBER ="), |value, site| {
                 value >= 0.0 && value.fract() == 0.0 && site.command(Command::Goto(value as u32))
             })),
+            Key::Q => q_parameters(site),
             Key::Down => self.move_cursor(true, site),
             Key::Up => self.move_cursor(false, site),
             Key::Stop => match site.command(Command::InternalStop) {
@@ -57,12 +59,18 @@ impl Page for ProgramRun {
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
         let keys = match site.control().run_state() {
-            RunState::Idle => vec![site.words("RESTORE POS. AT N")],
+            RunState::Idle => vec![
+                site.words("RESTORE POS. AT N"),
+                String::new(),
+                String::new(),
+                "Q".to_owned(),
+            ],
             RunState::Running => Vec::new(),
             _ => vec![
                 site.words("MANUAL OPERATION"),
                 site.words("RESTORE POSITION"),
                 site.words("INTERNAL STOP"),
+                "Q".to_owned(),
             ],
         };
         vec![keys]
@@ -78,6 +86,7 @@ impl Page for ProgramRun {
                     },
                 ));
             }
+            (_, 3) => return q_parameters(site),
             (_, 0) => site.command(Command::ManualOperation),
             (_, 1) => site.command(Command::RestorePosition),
             _ => site.command(Command::InternalStop),
@@ -110,6 +119,14 @@ impl Page for ProgramRun {
             self.cursor = block;
         }
         Turn::Done
+    }
+}
+
+/// Q parameters, while nothing runs.
+fn q_parameters(site: &Site) -> Turn {
+    match site.control().run_state() {
+        RunState::Running => Turn::Refused,
+        _ => Turn::Open(Box::new(QParameters::default())),
     }
 }
 

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use bahn_control::Command;
-use bahn_host::{Clock, Deed, Host, LoadedMachine};
+use bahn_host::{Clock, Host, LoadedMachine};
 
 use super::Station;
 use crate::drawer::{self, Breakable};
@@ -50,12 +49,6 @@ impl Station {
             let (console, mut site) = self.parts();
             console.tick(&mut site);
         }
-        let chosen = self.host.given().rev().find_map(|(_, _, deed)| match deed {
-            Deed::Command(0, Command::Handwheel(axis, factor)) => Some((axis.letter(), *factor)),
-            _ => None,
-        });
-        let first = self.host.control().axis_letters().next().unwrap_or('X');
-        self.handwheel = chosen.unwrap_or((first, 3));
         self.waits.forget();
         Ok(())
     }

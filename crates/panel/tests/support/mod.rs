@@ -145,6 +145,16 @@ impl Trainee {
         self
     }
 
+    /// Whether there is a file in his machine's folder.
+    pub fn has(&self, name: &str) -> bool {
+        self.folder.join(name).exists()
+    }
+
+    /// Writes a file of his machine's folder.
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.folder.join(name), text).unwrap();
+    }
+
     /// A file of his machine's folder.
     pub fn file(&self, name: &str) -> String {
         std::fs::read_to_string(self.folder.0.join(name)).unwrap()

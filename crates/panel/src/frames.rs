@@ -1,0 +1,98 @@
+//! First and last block of a program: they have its name, so they change with it.
+
+/// The text of a new file: a program has its frame, a table its columns.
+pub(crate) fn new_file(name: &str, inch: bool) -> String {
+    let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
+    let unit = if inch { "INCH" } else { "MM" };
+    match ending.to_ascii_uppercase().as_str() {
+        "H" => format!("BEGIN PGM {stem} {unit}\nEND PGM {stem} {unit}\n"),
+        "I" => {
+            let unit = if inch { "G70" } else { "G71" };
+            format!("%{stem} {unit} *\nN99999999 %{stem} {unit} *\n")
+        }
+        "D" => "NR\tX\tY\tZ\t4\t5\tDOC\n0\t0\t0\t0\t0\t0\t\n".to_owned(),
+        "P" => "NR\tPGM\tDATUM\tDOC\n".to_owned(),
+        "PNT" => "NR\tX\tY\tZ\tDOC\n".to_owned(),
+        "T" => "T\tNAME\tL\tR\tR2\tDL\tDR\tDR2\tTL\tRT\tTIME1\tTIME2\tCUR.TIME\tDOC\n".to_owned(),
+        _ => String::new(),
+    }
+}
+
+/// The unit of a file's lengths is asked for.
+pub(crate) fn has_unit(name: &str) -> bool {
+    let name = name.to_ascii_uppercase();
+    name.ends_with(".H") || name.ends_with(".I")
+}
+
+/// The text of a program under another name.
+pub(crate) fn renamed(text: &[u8], name: &str) -> Vec<u8> {
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let mut new = Vec::with_capacity(text.len());
+    for line in text.split_inclusive(|byte| *byte == b'\n') {
+        match frame_name(line) {
+            Some(at) => {
+                new.extend_from_slice(line.get(..at.start).unwrap_or_default());
+                new.extend_from_slice(stem.as_bytes());
+                new.extend_from_slice(line.get(at.end..).unwrap_or_default());
+            }
+            None => new.extend_from_slice(line),
+        }
+    }
+    new
+}
+
+/// Where the name stands in a first or last block.
+fn frame_name(line: &[u8]) -> Option<std::ops::Range<usize>> {
+    let number = line
+        .iter()
+        .take_while(|byte| byte.is_ascii_digit() || matches!(byte, b' ' | b'N'))
+        .count();
+    let rest = line.get(number..)?;
+    let before = [&b"BEGIN PGM "[..], b"END PGM ", b"%"]
+        .into_iter()
+        .find(|word| rest.starts_with(word))?
+        .len();
+    let start = number + before;
+    let length = line
+        .get(start..)?
+        .iter()
+        .take_while(|byte| !byte.is_ascii_whitespace())
+        .count();
+    (length > 0).then_some(start..start + length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_knows_its_new_name() {
+        for (text, expected) in [
+            (
+                "BEGIN PGM 1 MM\nL X+1\nEND PGM 1 MM\n",
+                "BEGIN PGM 2A MM\nL X+1\nEND PGM 2A MM\n",
+            ),
+            (
+                "0 BEGIN PGM OLD INCH P\r\n1 ; END PGM OLD\r\n2 END PGM OLD INCH P",
+                "0 BEGIN PGM 2A INCH P\r\n1 ; END PGM OLD\r\n2 END PGM 2A INCH P",
+            ),
+            (
+                "%7 G71 *\nN10 G00 X+1 *\nN99 %7 G71 *\n",
+                "%2A G71 *\nN10 G00 X+1 *\nN99 %2A G71 *\n",
+            ),
+        ] {
+            assert_eq!(renamed(text.as_bytes(), "2A.H"), expected.as_bytes());
+        }
+        assert_eq!(new_file("2A.H", true), "BEGIN PGM 2A INCH\nEND PGM 2A INCH\n");
+    }
+
+    #[test]
+    fn new_tables_are_tables() {
+        use bahn_host::TableForm;
+        for form in TableForm::ALL {
+            let name = format!("NEW.{}", form.ending());
+            let text = new_file(&name, false);
+            assert!(text.is_empty() || form.check(&text).is_ok(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! HELP: what a message means and what cures it, and the help files of the machine [000:7042-7073].
+
+use bahn_control::{Command, Message};
+use bahn_dialogue::Key;
+use bahn_parameters::MessageId;
+
+use crate::page::{Page, Turn, View, first_in_sight};
+use crate::pages::menu::{Item, Items, Menu};
+use crate::screen::{Line, Window, WindowKind};
+use crate::site::Site;
+
+/// Ending of help files [000:6842].
+const ENDING: &str = ".HLP";
+/// W270: no help file is selected, the cursor is on a line without a number [000:7048].
+const NO_FILE: i32 = -1;
+const NO_NUMBER: i32 = -2;
+/// Characters of a line of an explanation.
+const WIDTH: usize = 72;
+
+/// The key HELP: the message that is shown, else the help files.
+pub(crate) fn key(site: &mut Site) -> Turn {
+    let model = site.control().model();
+    let shown = site.control().shown().last();
+    let found = shown.map(|shown| (site.control().shown_text(shown), id_of(&shown.message)));
+    let Some((text, id)) = found else {
+        return files(site);
+    };
+    // Messages of axes have a letter where their text has a #.
+    let begins = |id: &&MessageId| {
+        let fixed = id.text(model).split('#').next().unwrap_or_default();
+        !fixed.is_empty() && text.starts_with(fixed)
+    };
+    match id.or_else(|| MessageId::ALL.iter().find(begins).copied()) {
+        Some(id) => Turn::Open(Box::new(Explanation::of(&text, id, site))),
+        None => files(site),
+    }
+}
+
+fn id_of(message: &Message) -> Option<MessageId> {
+    match message {
+        Message::Plain(id) => Some(*id),
+        // Its text says it.
+        _ => None,
+    }
+}
+
+/// The help files of the machine: one is opened at once, several are chosen from.
+pub(crate) fn files(site: &mut Site) -> Turn {
+    let entries = site.programs.list().into_iter();
+    let names: Vec<String> = entries
+        .map(|entry| entry.name)
+        .filter(|name| name.to_ascii_uppercase().ends_with(ENDING))
+        .collect();
+    match names.as_slice() {
+        [] => Turn::Say(site.words("NO HELP FILE")),
+        [name] => open(name, site),
+        _ => Turn::Open(Box::new(Menu::new(HelpFiles { names }))),
+    }
+}
+
+fn open(name: &str, site: &mut Site) -> Turn {
+    let Some(text) = site.programs.text(name) else {
+        return Turn::Say(site.message(MessageId::ProgramNotFound));
+    };
+    let mut file = HelpFile {
+        name: name.to_owned(),
+        lines: text.lines().map(str::to_owned).collect(),
+        current: 0,
+    };
+    file.go(0, site);
+    Turn::Open(Box::new(file))
+}
+
+/// PGM NAME selects among several.
+struct HelpFiles {
+    names: Vec<String>,
+}
+
+impl Items for HelpFiles {
+    fn title(&self, site: &Site) -> String {
+        site.words("HELP")
+    }
+
+    fn items(&self, _site: &Site) -> Vec<Item> {
+        self.names
+            .iter()
+            .map(|name| Item::new(name.clone(), ""))
+            .collect()
+    }
+
+    fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
+        self.names
+            .get(place)
+            .map_or(Turn::Refused, |name| open(name, site))
+    }
+}
+
+/// A help file; the number of the line under the cursor is told to the PLC.
+struct HelpFile {
+    name: String,
+    lines: Vec<String>,
+    current: usize,
+}
+
+/// `#1234 text`: a command of the machine, 0 to 9999.
+fn number_of(line: &str) -> Option<i32> {
+    let digits: String = line
+        .strip_prefix('#')?
+        .chars()
+        .take_while(char::is_ascii_digit)
+        .collect();
+    digits.parse().ok().filter(|number| (0..=9999).contains(number))
+}
+
+impl HelpFile {
+    fn go(&mut self, lines: isize, site: &mut Site) -> Turn {
+        let last = self.lines.len().saturating_sub(1);
+        self.current = self.current.saturating_add_signed(lines).min(last);
+        let number = self.lines.get(self.current).and_then(|line| number_of(line));
+        tell(number.unwrap_or(NO_NUMBER), site);
+        Turn::Done
+    }
+
+    fn close(site: &mut Site) -> Turn {
+        tell(NO_FILE, site);
+        Turn::Close
+    }
+}
+
+/// W270 of the PLC.
+fn tell(number: i32, site: &mut Site) {
+    if let Ok(command) = format!("W270={number}").parse::<Command>() {
+        site.command(command);
+    }
+}
+
+impl Page for HelpFile {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        match key {
+            Key::Up => self.go(-1, site),
+            Key::Down => self.go(1, site),
+            Key::End | Key::Del | Key::NoEnt | Key::Help | Key::Mod => HelpFile::close(site),
+            _ => Turn::Refused,
+        }
+    }
+
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        vec![vec![
+            site.words("PAGE UP"),
+            site.words("PAGE DOWN"),
+            site.words("END"),
+        ]]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        match place {
+            0 => self.go(-12, site),
+            1 => self.go(12, site),
+            _ => HelpFile::close(site),
+        }
+    }
+
+    fn show(&self, _site: &Site, lines: usize) -> View {
+        text_view(&self.name, &self.lines, Some(self.current), lines)
+    }
+}
+
+/// What a message means.
+struct Explanation {
+    title: String,
+    lines: Vec<String>,
+    first: usize,
+}
+
+impl Explanation {
+    fn of(text: &str, id: MessageId, site: &Site) -> Explanation {
+        let mut lines = Vec::new();
+        for (heading, words) in [
+            (site.words("CAUSE:"), id.cause()),
+            (site.words("CURE:"), id.remedy()),
+        ] {
+            lines.push(heading);
+            lines.extend(wrapped(&crate::texts::translate(site.language(), words)));
+        }
+        Explanation {
+            title: text.to_owned(),
+            lines,
+            first: 0,
+        }
+    }
+}
+
+/// Words in lines.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let full = lines
+            .last()
+            .is_some_and(|line| line.chars().count() + word.chars().count() >= WIDTH);
+        if full {
+            lines.push(String::new());
+        }
+        if let Some(line) = lines.last_mut() {
+            line.push_str(if line.is_empty() { "  " } else { " " });
+            line.push_str(word);
+        }
+    }
+    lines
+}
+
+impl Page for Explanation {
+    fn key(&mut self, key: Key, _site: &mut Site) -> Turn {
+        match key {
+            Key::Down => self.first = (self.first + 1).min(self.lines.len().saturating_sub(1)),
+            Key::Up => self.first = self.first.saturating_sub(1),
+            Key::End | Key::Del | Key::NoEnt | Key::Ent | Key::Help => return Turn::Close,
+            _ => return Turn::Refused,
+        }
+        Turn::Done
+    }
+
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        vec![vec![site.words("HELP FILES"), site.words("END")]]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        match place {
+            0 => files(site),
+            _ => Turn::Close,
+        }
+    }
+
+    fn show(&self, _site: &Site, lines: usize) -> View {
+        let mut view = text_view(
+            &self.title,
+            self.lines.get(self.first..).unwrap_or_default(),
+            None,
+            lines,
+        );
+        if let Some(window) = &mut view.window {
+            (window.first, window.total) = (self.first, self.lines.len());
+        }
+        view
+    }
+}
+
+/// Lines of a text, one of which may be the current one.
+fn text_view(title: &str, text: &[String], current: Option<usize>, lines: usize) -> View {
+    let first = first_in_sight(current.unwrap_or(0), text.len(), lines);
+    let shown = text.iter().enumerate().skip(first).take(lines);
+    let line = |(place, text): (usize, &String)| Line {
+        text: text.clone(),
+        current: Some(place) == current,
+        ..Line::default()
+    };
+    View::of(Window {
+        title: title.to_owned(),
+        kind: WindowKind::Text,
+        lines: shown.map(line).collect(),
+        first,
+        total: text.len(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_help_files_have_numbers() {
+        assert_eq!(number_of("#0012 Release the tool"), Some(12));
+        assert_eq!(number_of("#9999"), Some(9999));
+        for line in ["", "12", "#", "#12345", "# 12"] {
+            assert_eq!(number_of(line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn words_are_wrapped() {
+        let text = "word ".repeat(40);
+        let lines = wrapped(&text);
+        assert!(lines.len() > 2 && lines.iter().all(|line| line.chars().count() <= WIDTH + 2));
+        assert_eq!(lines.join(" ").split_whitespace().count(), 40);
+    }
+}

@@ -1,0 +1,118 @@
+//! A menu: lines to choose from, each with what it stands at.
+
+use bahn_dialogue::Key;
+
+use crate::page::{Page, Turn, View, first_in_sight};
+use crate::screen::{Line, Window, WindowKind};
+use crate::site::Site;
+
+/// A line of a menu.
+pub(crate) struct Item {
+    /// What it is.
+    pub name: String,
+    /// What it stands at.
+    pub value: String,
+}
+
+impl Item {
+    /// A line with a value.
+    pub fn new(name: impl Into<String>, value: impl Into<String>) -> Item {
+        Item {
+            name: name.into(),
+            value: value.into(),
+        }
+    }
+}
+
+/// What a menu has to say, and what a choice comes to.
+pub(crate) trait Items: Send {
+    /// Its title.
+    fn title(&self, site: &Site) -> String;
+    /// Its lines as they are now.
+    fn items(&self, site: &Site) -> Vec<Item>;
+    /// A line is chosen by ENT.
+    fn choose(&mut self, place: usize, site: &mut Site) -> Turn;
+    /// Any other key on a line.
+    fn key(&mut self, _place: usize, _key: Key, _site: &mut Site) -> Turn {
+        Turn::Refused
+    }
+    /// It is left.
+    fn leave(&mut self, _site: &mut Site) {}
+    /// What is asked meanwhile.
+    fn prompt(&self, _site: &Site) -> String {
+        String::new()
+    }
+}
+
+/// A menu.
+pub(crate) struct Menu<I> {
+    items: I,
+    current: usize,
+}
+
+impl<I: Items> Menu<I> {
+    /// A menu that begins with its first line.
+    pub fn new(items: I) -> Menu<I> {
+        Menu { items, current: 0 }
+    }
+
+    fn close(&mut self, site: &mut Site) -> Turn {
+        self.items.leave(site);
+        Turn::Close
+    }
+}
+
+impl<I: Items> Page for Menu<I> {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        let count = self.items.items(site).len();
+        match key {
+            Key::Down => self.current = (self.current + 1).min(count.saturating_sub(1)),
+            Key::Up => self.current = self.current.saturating_sub(1),
+            Key::Ent if count > 0 => return self.items.choose(self.current, site),
+            Key::End | Key::NoEnt | Key::Del | Key::Mod => return self.close(site),
+            key => return self.items.key(self.current, key, site),
+        }
+        Turn::Done
+    }
+
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        let empty = String::new;
+        vec![vec![
+            site.words("SELECT"),
+            empty(),
+            empty(),
+            empty(),
+            empty(),
+            empty(),
+            empty(),
+            site.words("END"),
+        ]]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        match place {
+            0 => self.items.choose(self.current, site),
+            _ => self.close(site),
+        }
+    }
+
+    fn show(&self, site: &Site, lines: usize) -> View {
+        let items = self.items.items(site);
+        let first = first_in_sight(self.current, items.len(), lines);
+        let line = |(place, item): (usize, &Item)| Line {
+            text: format!("{:<34} {}", item.name, item.value).trim_end().to_owned(),
+            current: place == self.current,
+            ..Line::default()
+        };
+        let shown = items.iter().enumerate().skip(first).take(lines);
+        let mut view = View::of(Window {
+            title: self.items.title(site),
+            kind: WindowKind::List,
+            lines: shown.map(line).collect(),
+            first,
+            total: items.len(),
+        });
+        view.dialogue.prompt = self.items.prompt(site);
+        view
+    }
+}

@@ -1,0 +1,265 @@
+//! MOD: supplementary functions, of PROGRAMMING and TEST RUN and of the machine operating modes [003:6980-7160].
+
+mod axis_limit;
+mod code;
+mod offsets;
+mod oscilloscope;
+mod parameters;
+mod timers;
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use bahn_dialogue::Key;
+
+use crate::console::Side;
+use crate::page::{Page, Turn};
+use crate::pages::ask::Name;
+use crate::pages::help;
+use crate::pages::menu::{Item, Items, Menu};
+use crate::settings::PositionType;
+use crate::site::Site;
+use crate::texts::{self, Language};
+
+/// Axes that an L block takes over at most [003:7104-7113].
+const CAPTURED_AXES: usize = 3;
+
+/// A function of the menu.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Function {
+    PositionDisplay,
+    Unit,
+    Input,
+    Language,
+    /// Of a traverse range, 1 to 3.
+    AxisLimit(u8),
+    CapturedAxes,
+    UserParameters,
+    NcNumber,
+    PlcNumber,
+    Code,
+    Help,
+}
+
+/// Functions of the machine operating modes.
+const MACHINE: &[Function] = &[
+    Function::PositionDisplay,
+    Function::Unit,
+    Function::Input,
+    Function::Language,
+    Function::AxisLimit(1),
+    Function::AxisLimit(2),
+    Function::AxisLimit(3),
+    Function::CapturedAxes,
+    Function::NcNumber,
+    Function::PlcNumber,
+    Function::Code,
+    Function::Help,
+];
+
+/// Functions of PROGRAMMING and TEST RUN.
+const PROGRAMMING: &[Function] = &[
+    Function::Code,
+    Function::UserParameters,
+    Function::CapturedAxes,
+    Function::Language,
+    Function::NcNumber,
+    Function::PlcNumber,
+    Function::Help,
+];
+
+/// The menu of a side.
+pub(crate) fn menu(side: Side) -> Box<dyn Page> {
+    let functions = match side {
+        Side::Machine => MACHINE,
+        Side::Programming => PROGRAMMING,
+    };
+    Box::new(Menu::new(Supplementary { functions }))
+}
+
+struct Supplementary {
+    functions: &'static [Function],
+}
+
+impl Items for Supplementary {
+    fn title(&self, site: &Site) -> String {
+        site.words("SUPPLEMENTARY FUNCTIONS")
+    }
+
+    fn items(&self, site: &Site) -> Vec<Item> {
+        self.functions
+            .iter()
+            .map(|function| function.item(site))
+            .collect()
+    }
+
+    fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
+        let function = self.functions.get(place);
+        function.map_or(Turn::Refused, |function| function.choose(true, site))
+    }
+
+    fn key(&mut self, place: usize, key: Key, site: &mut Site) -> Turn {
+        match (self.functions.get(place), key) {
+            (Some(Function::CapturedAxes), Key::X | Key::Y | Key::Z | Key::Iv | Key::V) => {
+                toggle_axis(key, site)
+            }
+            (Some(function), Key::Right) if function.is_switch() => function.choose(true, site),
+            (Some(function), Key::Left) if function.is_switch() => function.choose(false, site),
+            _ => Turn::Refused,
+        }
+    }
+}
+
+impl Function {
+    fn item(self, site: &Site) -> Item {
+        let settings = &*site.settings;
+        match self {
+            Function::PositionDisplay => {
+                Item::new(site.words("POSITION DISPLAY"), settings.position_type.name())
+            }
+            Function::Unit => Item::new(
+                site.words("CHANGE MM/INCH"),
+                if settings.inch { "INCH" } else { "MM" },
+            ),
+            Function::Input => {
+                let language = if settings.iso { "ISO" } else { "HEIDENHAIN" };
+                Item::new(site.words("PROGRAM INPUT"), language)
+            }
+            Function::Language => Item::new(site.words("DIALOGUE LANGUAGE"), site.words("ENGLISH")),
+            Function::AxisLimit(range) => Item::new(format!("{} {range}", site.words("AXIS LIMIT")), ""),
+            Function::CapturedAxes => {
+                Item::new(site.words("AXES FOR L BLOCK"), settings.captured_axes.clone())
+            }
+            Function::UserParameters => Item::new(site.words("USER PARAMETERS"), ""),
+            Function::NcNumber => Item::new(
+                site.words("NC SOFTWARE NUMBER"),
+                format!("BAHN {}", env!("CARGO_PKG_VERSION")),
+            ),
+            Function::PlcNumber => Item::new(site.words("PLC SOFTWARE NUMBER"), plc_number(site)),
+            Function::Code => Item::new(site.words("CODE NUMBER"), ""),
+            Function::Help => Item::new(site.words("HELP"), ""),
+        }
+    }
+
+    /// ENT and RIGHT go to the next setting, LEFT back.
+    fn is_switch(self) -> bool {
+        use Function::{Input, Language, PositionDisplay, Unit};
+        matches!(self, PositionDisplay | Unit | Input | Language)
+    }
+
+    fn choose(self, on: bool, site: &mut Site) -> Turn {
+        match self {
+            Function::PositionDisplay => {
+                site.settings.position_type = next_type(site.settings.position_type, on);
+            }
+            Function::Unit => site.settings.inch = !site.settings.inch,
+            Function::Input => site.settings.iso = !site.settings.iso,
+            Function::Language => {
+                let other = match site.language() {
+                    Language::English => Language::German,
+                    Language::German => Language::English,
+                };
+                site.settings.language = Some(texts::code(other).to_owned());
+            }
+            Function::AxisLimit(range) => return Turn::Open(axis_limit::page(range)),
+            Function::CapturedAxes => return ask_axes(site),
+            Function::UserParameters => return parameters::user(site),
+            Function::Code => return code::ask(site),
+            Function::Help => return help::files(site),
+            Function::NcNumber | Function::PlcNumber => return Turn::Refused,
+        }
+        Turn::Done
+    }
+}
+
+/// The next type of positions, or the one before.
+fn next_type(shown: PositionType, on: bool) -> PositionType {
+    let all = PositionType::ALL;
+    let at = all.iter().position(|own| *own == shown).unwrap_or(0);
+    let next = (at + if on { 1 } else { all.len() - 1 }) % all.len();
+    all.get(next).copied().unwrap_or_default()
+}
+
+/// An axis key takes its axis into the L block, or out of it.
+fn toggle_axis(key: Key, site: &mut Site) -> Turn {
+    let place = [Key::X, Key::Y, Key::Z, Key::Iv, Key::V]
+        .iter()
+        .position(|own| *own == key);
+    let Some(axis) = place.and_then(|place| site.axis_of_key(place)) else {
+        return Turn::Refused;
+    };
+    let mut axes = site.settings.captured_axes.clone();
+    match axes.find(axis.letter()) {
+        Some(at) => drop(axes.remove(at)),
+        None if axes.len() < CAPTURED_AXES => axes.push(axis.letter()),
+        None => return Turn::Refused,
+    }
+    site.settings.captured_axes = axes;
+    Turn::Done
+}
+
+fn ask_axes(site: &Site) -> Turn {
+    let prompt = format!("{} =", site.words("AXES FOR L BLOCK"));
+    Turn::Open(Name::ask(prompt, CAPTURED_AXES, |letters, site| {
+        let known: Vec<char> = site.control().axis_letters().collect();
+        let once = |letter: char| letters.matches(letter).count() == 1;
+        match letters
+            .chars()
+            .all(|letter| known.contains(&letter) && once(letter))
+        {
+            true => {
+                site.settings.captured_axes = letters;
+                Turn::Close
+            }
+            false => Turn::Say(site.message(bahn_parameters::MessageId::EntryValueIncorrect)),
+        }
+    }))
+}
+
+/// Name of the PLC program and the day on which it was written.
+fn plc_number(site: &Site) -> String {
+    let name = &site.machine.folder.plc;
+    let file = name.rsplit('/').next().unwrap_or(name);
+    let written = std::fs::metadata(site.machine.root.join(name)).and_then(|file| file.modified());
+    match written {
+        Ok(written) => format!("{file} {}", day(written)),
+        Err(_) => file.to_owned(),
+    }
+}
+
+/// A day as `2026-05-17`, of the universal time.
+fn day(time: SystemTime) -> String {
+    const DAY_S: u64 = 86_400;
+    let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    // Days from 1 March of year 0, in eras of 400 years.
+    let days = seconds / DAY_S + 719_468;
+    let (era, of_era) = (days / 146_097, days % 146_097);
+    let year = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let from_march = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * from_march + 2) / 5 + 1;
+    let month = if from_march < 10 {
+        from_march + 3
+    } else {
+        from_march - 9
+    };
+    let year = year + era * 400 + u64::from(month <= 2);
+    format!("{year:04}-{month:02}-{day:02}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn days() {
+        for (seconds, expected) in [
+            (0, "1970-01-01"),
+            (951_782_400, "2000-02-29"),
+            (951_868_800, "2000-03-01"),
+            (1_767_225_599, "2025-12-31"),
+        ] {
+            assert_eq!(day(UNIX_EPOCH + Duration::from_secs(seconds)), expected);
+        }
+    }
+}

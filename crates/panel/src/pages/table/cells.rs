@@ -1,0 +1,55 @@
+//! What stands in cells, and lines of the file of a table.
+
+use std::path::Path;
+
+use bahn_host::{LineChange, TableForm, decode, files, set_line};
+
+/// A mark: ENT sets it, NO ENT takes it away [003:1906-1911].
+pub(super) fn is_mark(form: TableForm, column: &str) -> bool {
+    match form {
+        TableForm::Tool => matches!(column, "TL" | "ST"),
+        TableForm::Pocket => matches!(column, "ST" | "F" | "L"),
+        _ => false,
+    }
+}
+
+/// What the control keeps of a cell: marks are 1, no tool is -1.
+pub(super) fn element_value(form: TableForm, column: &str, value: &str) -> Option<f64> {
+    let empty = matches!(value, "" | "-");
+    match column {
+        "T" | "RT" if empty || value == "0" => Some(-1.0),
+        _ if is_mark(form, column) || column == "DIRECT" => {
+            Some(f64::from(u8::from(!empty && !matches!(value, "0" | "N"))))
+        }
+        _ if empty => Some(0.0),
+        "PLC" => match value.strip_prefix('%') {
+            Some(bits) => u8::from_str_radix(bits, 2).ok().map(f64::from),
+            None => value.parse().ok(),
+        },
+        _ => value.parse().ok(),
+    }
+}
+
+pub(super) fn read(path: &Path) -> Result<String, String> {
+    let bytes = files::read_table(path).map_err(|error| error.to_string())?;
+    Ok(decode(&bytes))
+}
+
+pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    files::write_whole(path, bytes).map_err(|error| error.to_string())
+}
+
+/// A new line of the table of a file.
+pub(super) fn add_line(path: &Path, form: TableForm, line: &str) -> Result<(), String> {
+    let text = read(path)?;
+    let (text, change) = set_line(&text, form, line, &[])?;
+    let faults = form.check(&text).err();
+    match (change, faults) {
+        (LineChange::Changed, _) => Err(line.to_owned()),
+        (_, Some(faults)) => Err(faults
+            .first()
+            .map(|fault| fault.message.clone())
+            .unwrap_or_default()),
+        (LineChange::Added, None) => write(path, text.as_bytes()),
+    }
+}

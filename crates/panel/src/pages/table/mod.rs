@@ -1,0 +1,99 @@
+//! Table editor: tools, pockets, datums, pallets, points, cell by cell. What is entered is checked, on the medium at once,
+//! and counts in the control at once as far as the table is in use [000:8994-9192].
+
+mod cells;
+mod editor;
+mod page;
+
+use std::path::PathBuf;
+
+use bahn_host::TableForm;
+use bahn_parameters::MessageId;
+
+use crate::page::Turn;
+use crate::programs::Entry;
+use crate::site::Site;
+use editor::TableEditor;
+
+/// Names of the tables of the machine in the directory, as a control has them [000:9002-9008].
+const TOOL_FILE: &str = "TOOL.T";
+const POCKET_FILE: &str = "TOOL_P.TCH";
+
+/// Where a table lies.
+fn path_of(name: &str, site: &Site) -> Option<PathBuf> {
+    let folder = &site.machine.folder;
+    let named = |own: &Option<String>| own.as_ref().map(|own| site.machine.root.join(own));
+    match name {
+        TOOL_FILE => named(&folder.tools),
+        POCKET_FILE if site.parameters().operation_parameters().tools.pockets > 0 => named(&folder.pockets),
+        POCKET_FILE => None,
+        _ => site.programs.path(name).filter(|path| path.is_file()),
+    }
+}
+
+/// The tables of the machine that lie beside the program memory, for the directory.
+pub(crate) fn of_machine(site: &Site) -> Vec<Entry> {
+    let entry = |name: &str| {
+        let size = path_of(name, site)?.metadata().ok()?.len();
+        Some(Entry {
+            name: name.to_owned(),
+            size,
+            protected: is_protected(name, site),
+        })
+    };
+    [TOOL_FILE, POCKET_FILE].into_iter().filter_map(entry).collect()
+}
+
+/// A table of the machine that lies beside the program memory.
+pub(crate) fn is_of_machine(name: &str, site: &Site) -> bool {
+    matches!(name, TOOL_FILE | POCKET_FILE) && path_of(name, site).is_some()
+}
+
+/// A file that holds a table, by its name.
+pub(crate) fn is_table(name: &str) -> bool {
+    form_of(name).is_some()
+}
+
+fn form_of(name: &str) -> Option<TableForm> {
+    let (_, ending) = name.rsplit_once('.')?;
+    let is_meant = |form: &TableForm| form.ending().eq_ignore_ascii_case(ending);
+    TableForm::ALL.into_iter().find(is_meant)
+}
+
+/// MP7224.1 protects the tables of a kind [000:6870-6880].
+pub(crate) fn is_protected(name: &str, site: &Site) -> bool {
+    let [tools, datums, pallets] = site.parameters().table_parameters().protected;
+    match form_of(name) {
+        Some(TableForm::Tool | TableForm::Pocket) => tools,
+        Some(TableForm::Datum) => datums,
+        Some(TableForm::Pallet) => pallets,
+        Some(TableForm::Point) | None => false,
+    }
+}
+
+/// The tool table: program 0, and the soft key TOOL TABLE [003:1897].
+pub(crate) fn tools(site: &mut Site) -> Turn {
+    open(TOOL_FILE, site)
+}
+
+/// The machine has a tool table.
+pub(crate) fn has_tools(site: &Site) -> bool {
+    path_of(TOOL_FILE, site).is_some()
+}
+
+/// The pocket table.
+pub(crate) fn pockets(site: &mut Site) -> Turn {
+    open(POCKET_FILE, site)
+}
+
+/// Opens the editor of a table.
+pub(crate) fn open(name: &str, site: &mut Site) -> Turn {
+    let missing = |site: &Site| Turn::Say(site.message(MessageId::ProgramNotFound));
+    let (Some(path), Some(form)) = (path_of(name, site), form_of(name)) else {
+        return missing(site);
+    };
+    match TableEditor::read(name, path, form, site) {
+        Ok(editor) => Turn::Open(Box::new(editor)),
+        Err(why) => Turn::Say(why),
+    }
+}

@@ -1,0 +1,237 @@
+//! Program management by keys [003:981-1023], and the tables of the machine.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
+
+mod support;
+
+use bahn_panel::{Mark, Star, WindowKind};
+use support::Trainee;
+
+/// What is highlighted in the window.
+fn current(trainee: &mut Trainee) -> String {
+    let lines = trainee.screen().program.lines;
+    lines.into_iter().find(|line| line.current).unwrap().text
+}
+
+/// Goes down in the directory to a program.
+fn highlight(trainee: &mut Trainee, name: &str) {
+    for _ in 0..50 {
+        if current(trainee).starts_with(name) {
+            return;
+        }
+        trainee.press("DOWN");
+    }
+    panic!("no {name}");
+}
+
+/// The line of a program in the directory.
+fn line_of(trainee: &mut Trainee, name: &str) -> Option<String> {
+    let lines = trainee.screen().program.lines;
+    lines
+        .into_iter()
+        .map(|line| line.text)
+        .find(|text| text.starts_with(name))
+}
+
+#[test]
+fn a_program_is_made_copied_renamed_and_erased() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR 4 7 1 1 ENT");
+    assert_eq!(trainee.screen().dialogue.prompt, "MM = ENT / INCH = NO ENT");
+    trainee.press("NO_ENT");
+    assert_eq!(
+        trainee.file("programs/4711.H"),
+        "BEGIN PGM 4711 INCH\nEND PGM 4711 INCH\n"
+    );
+    assert_eq!(trainee.screen().program.title, "4711.H");
+
+    // COPY keeps the type, and the copy knows its name.
+    trainee.press("PGM_NR");
+    highlight(&mut trainee, "4711");
+    trainee.press("SK2 A 1 ENT");
+    assert_eq!(
+        trainee.file("programs/A1.H"),
+        "BEGIN PGM A1 INCH\nEND PGM A1 INCH\n"
+    );
+    assert!(line_of(&mut trainee, "A1 ").is_some());
+    // RENAME: what is there already is no new name.
+    highlight(&mut trainee, "A1");
+    trainee.press("SK3 4 7 1 1 ENT");
+    assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
+    trainee.press("CE SK3 B 2 ENT");
+    assert_eq!(
+        trainee.file("programs/B2.H"),
+        "BEGIN PGM B2 INCH\nEND PGM B2 INCH\n"
+    );
+    assert!(!trainee.has("programs/A1.H"));
+
+    // CL PGM asks before it erases.
+    trainee.press("END CL_PGM");
+    highlight(&mut trainee, "B2");
+    trainee.press("ENT");
+    assert_eq!(
+        trainee.screen().dialogue.prompt,
+        "B2.H: ERASE = ENT / END = NO ENT"
+    );
+    trainee.press("NO_ENT");
+    assert!(trainee.has("programs/B2.H"));
+    trainee.press("ENT ENT");
+    assert!(!trainee.has("programs/B2.H"));
+    // A name that leads out of the memory.
+    trainee.press("END PGM_NR POINT POINT ENT");
+    assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
+}
+
+#[test]
+fn a_protected_program_stays() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR");
+    highlight(&mut trainee, "CIRCLE");
+    let line = line_of(&mut trainee, "CIRCLE").unwrap();
+    let bytes = trainee.file("programs/CIRCLE.H").len();
+    let words: Vec<&str> = line.split_whitespace().collect();
+    assert_eq!(words, ["CIRCLE", ".H", bytes.to_string().as_str()]);
+    trainee.press("SK5");
+    assert!(line_of(&mut trainee, "CIRCLE").unwrap().ends_with(" P"));
+    // Erase and rename are refused, a copy is not.
+    trainee.press("SK4 ENT");
+    assert_eq!(trainee.messages(), ["PROTECTED PGM"]);
+    trainee.press("CE SK3 X 1 ENT");
+    assert_eq!(trainee.messages(), ["PROTECTED PGM"]);
+    assert!(trainee.has("programs/CIRCLE.H"));
+    // Only the code number takes it away.
+    trainee.press("CE SK6 1 2 3 ENT");
+    assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
+    trainee.press("CE CE").number("86357").press("ENT");
+    assert!(
+        line_of(&mut trainee, "CIRCLE")
+            .unwrap()
+            .ends_with(&bytes.to_string())
+    );
+    // The file is as it was.
+    assert_eq!(trainee.file("programs/CIRCLE.H").len(), bytes);
+}
+
+#[test]
+fn the_program_that_runs_cannot_be_erased() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("FULL PGM_NR C I R C L E ENT NC_START");
+    trainee.until(5.0, |screen| screen.status.star == Star::Steady);
+    trainee.press("PROGRAM PGM_NR");
+    highlight(&mut trainee, "CIRCLE");
+    for key in ["SK4", "SK3", "CL_PGM"] {
+        trainee.press(key);
+        let said = trainee.messages().pop().unwrap();
+        assert_eq!(said, "BACKGROUND PROGRAMMING NOT POSSIBLE", "{key}");
+        trainee.press("CE");
+    }
+    // Another one can.
+    highlight(&mut trainee, "INDEX");
+    trainee.press("SK4 ENT");
+    assert!(!trainee.has("programs/INDEX.H"));
+}
+
+#[test]
+fn the_tool_table_is_program_0() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR 0 ENT");
+    let screen = trainee.screen();
+    assert_eq!(screen.program.kind, WindowKind::Table);
+    assert!(screen.program.title.starts_with("TOOL.T"));
+    // The columns of MP7266, the key first.
+    let heading: Vec<String> = screen.program.lines[0]
+        .text
+        .split_whitespace()
+        .map(str::to_owned)
+        .collect();
+    assert_eq!(heading[..5], ["T", "NAME", "L", "R", "R2"]);
+    assert_eq!(screen.dialogue.prompt, "TOOL NAME?");
+
+    // Tool 2: L from 95 to 96.5, R is wrong.
+    trainee.press("DOWN RIGHT");
+    assert_eq!(trainee.screen().dialogue.prompt, "TOOL LENGTH L?");
+    trainee.number("96.5");
+    let line = trainee.screen().program.lines[2].clone();
+    assert!(line.current && line.marks[0].2 == Mark::Entry);
+    trainee.press("ENT").number("-1").press("ENT");
+    assert!(
+        trainee.messages()[0].starts_with("ENTRY VALUE INCORRECT"),
+        "{:?}",
+        trainee.messages()
+    );
+    trainee.press("CE CE");
+    let file = trainee.file("tools.tsv");
+    assert_eq!(file.lines().nth(2).unwrap(), "2\t96.5\t10\t0\tEND MILL D20");
+    // A column that the file does not have comes with its first value; other cells stay.
+    trainee
+        .press("GOTO 1 ENT")
+        .press("RIGHT RIGHT")
+        .number("0.05")
+        .press("ENT");
+    let file = trainee.file("tools.tsv");
+    assert_eq!(file.lines().next().unwrap(), "T\tL\tR\tR2\tNAME\tDL");
+    assert_eq!(
+        file.lines().nth(1).unwrap(),
+        "1\t70\t31.5\t0\tFACE MILL D63\t0.05"
+    );
+    // It counts in the control at once, and is there after power-off.
+    trainee.wait(0.2);
+    let length = |trainee: &Trainee| {
+        let remembered = trainee.station.control().remember();
+        remembered.written.len()
+    };
+    assert_eq!(length(&trainee), 0, "the file says it");
+    let mut trainee = trainee.killed();
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR 0 ENT DOWN RIGHT");
+    assert!(current(&mut trainee).contains("96.5"));
+}
+
+#[test]
+fn lines_of_the_pocket_table_are_marked() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR 0 ENT SK7");
+    let screen = trainee.screen();
+    assert!(screen.program.title.starts_with("TOOL_P.TCH"));
+    assert_eq!(screen.dialogue.prompt, "TOOL NUMBER?");
+    // A tool is in one pocket only.
+    trainee.press("2 ENT");
+    assert!(trainee.messages()[0].starts_with("ENTRY VALUE INCORRECT"));
+    trainee.press("CE CE RIGHT RIGHT");
+    assert_eq!(trainee.screen().dialogue.prompt, "FIXED POCKET? YES=ENT/NO=NOENT");
+    trainee.press("ENT");
+    let file = trainee.file("pockets.tsv");
+    let first: Vec<&str> = file.lines().nth(1).unwrap().split('\t').collect();
+    assert_eq!(first[..4], ["1", "1", "", "F"]);
+    trainee.press("LEFT NO_ENT");
+    let file = trainee.file("pockets.tsv");
+    assert_eq!(file.lines().nth(1).unwrap().split('\t').nth(3), Some(""));
+}
+
+#[test]
+fn a_datum_table_is_made_and_filled() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR Z E R O POINT D ENT");
+    let screen = trainee.screen();
+    assert_eq!(
+        (screen.program.title.as_str(), screen.program.total),
+        ("ZERO.D  MM", 1)
+    );
+    // The actual position of X, and a line of its own.
+    let actual: f64 = trainee.position('X').parse().unwrap();
+    trainee.press("CAPTURE ENT").number("-5").press("ENT");
+    trainee.press("SK5 3 ENT");
+    assert_eq!(trainee.screen().program.total, 2);
+    let file = trainee.file("programs/ZERO.D");
+    let rows: Vec<&str> = file.lines().skip(1).collect();
+    assert_eq!(rows[0], format!("0\t{actual:.3}\t-5\t0\t0\t0\t"));
+    assert!(rows[1].starts_with("3\t"));
+    trainee.press("SK2 SK6 ENT");
+    assert_eq!(trainee.screen().program.total, 1);
+}

@@ -1,0 +1,58 @@
+//! What programs ask for: docs/panel-api.md.
+
+use axum::Json;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use bahn_panel::{Input, InputText, Refusal};
+use serde_json::json;
+
+use crate::shared::Shared;
+
+/// `GET /api/station`.
+pub(crate) async fn station(State(shared): State<Shared>) -> Response {
+    Json(shared.about.as_ref()).into_response()
+}
+
+/// `GET /api/screen`.
+pub(crate) async fn screen(State(shared): State<Shared>) -> Response {
+    Json(shared.link.screen().as_ref()).into_response()
+}
+
+/// `GET /api/snapshot`: the numbers behind the screen.
+pub(crate) async fn snapshot(State(shared): State<Shared>) -> Response {
+    let asked = tokio::task::spawn_blocking(move || shared.link.with(|station| station.numbers()));
+    match asked.await {
+        Ok(Ok(numbers)) => Json(numbers).into_response(),
+        Ok(Err(refusal)) => refused(&refusal),
+        Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
+    }
+}
+
+/// `POST /api/key` and `POST /api/command`: an input; the answer has the screen behind it.
+pub(crate) async fn input(State(shared): State<Shared>, body: String) -> Response {
+    let input = serde_json::from_str::<InputText>(&body)
+        .map_err(|error| Refusal(error.to_string()))
+        .and_then(Input::try_from);
+    let input = match input {
+        Ok(input) => input,
+        Err(refusal) => {
+            return (
+                StatusCode::BAD_REQUEST,
+                Json(json!({"ok": false, "error": refusal.0})),
+            )
+                .into_response();
+        }
+    };
+    let link = shared.link.clone();
+    match tokio::task::spawn_blocking(move || link.input(input)).await {
+        Ok(Ok(())) => Json(json!({"ok": true, "serial": shared.link.screen().serial})).into_response(),
+        Ok(Err(refusal)) => refused(&refusal),
+        Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
+    }
+}
+
+fn refused(refusal: &Refusal) -> Response {
+    let body = Json(json!({"ok": false, "error": refusal.0}));
+    (StatusCode::CONFLICT, body).into_response()
+}
