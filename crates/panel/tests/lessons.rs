@@ -141,22 +141,28 @@ fn the_door() {
 #[test]
 fn the_lagging_axis() {
     let mut trainee = begin("05-lag");
+    // MOD: position display ACTL, NOML, LAG.
+    trainee.press("MOD ENT ENT MOD").wait(0.2);
+    assert_eq!(trainee.screen().status.position_type, "LAG");
     // As the hint says: 0.05 V of 9 V for 15 m/min, through kv in (m/min)/mm.
-    let axes = trainee.station.control().snapshot().axes;
-    let greatest = axes
-        .iter()
-        .max_by(|one, other| one.lag.abs().total_cmp(&other.lag.abs()));
-    let greatest = greatest.unwrap();
     let kv = trainee.station.machine().parameters.axis_parameters(1).lag.kv;
     let expected = 0.05 / 9.0 * 15.0 / kv;
-    assert_eq!(greatest.letter, 'Y');
-    assert!(
-        (greatest.lag.abs() - expected).abs() < 0.005,
-        "{} {expected}",
-        greatest.lag
-    );
-    trainee.give(r#"{"deed":"code 75368"}"#).wait(0.2);
-    trainee.give(r#"{"deed":"offset adjust"}"#).wait(1.0);
+    for letter in "XYZC".chars() {
+        let lag: f64 = trainee.position(letter).parse().unwrap();
+        let offset = if letter == 'Y' { expected } else { 0.0 };
+        assert!((lag.abs() - offset).abs() < 0.005, "{letter} {lag} {offset}");
+    }
+    trainee.press("PROGRAM MOD");
+    let chosen = |trainee: &mut Trainee| {
+        let lines = trainee.screen().program.lines;
+        lines.into_iter().find(|line| line.current).unwrap().text
+    };
+    while !chosen(&mut trainee).starts_with("CODE NUMBER") {
+        trainee.press("DOWN");
+    }
+    trainee.press("ENT").number("75368").press("ENT").wait(0.2);
+    assert_eq!(trainee.screen().program.title, "OFFSET ADJUSTMENT (1 = 0.15 mV)");
+    trainee.press("ENT MOD").wait(1.0);
     trainee.press(CHOOSE_CIRCLE);
     passed(&mut trainee);
     nothing_is_not_enough("05-lag");

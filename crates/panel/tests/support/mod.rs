@@ -147,12 +147,12 @@ impl Trainee {
 
     /// Whether there is a file in his machine's folder.
     pub fn has(&self, name: &str) -> bool {
-        self.folder.join(name).exists()
+        self.folder.0.join(name).exists()
     }
 
     /// Writes a file of his machine's folder.
     pub fn write(&self, name: &str, text: &str) {
-        std::fs::write(self.folder.join(name), text).unwrap();
+        std::fs::write(self.folder.0.join(name), text).unwrap();
     }
 
     /// A file of his machine's folder.
