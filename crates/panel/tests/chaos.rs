@@ -48,6 +48,9 @@ const KEYS: &[&str] = &[
     "NC_STOP",
     "CONFIRM",
     "SPINDLE_ON",
+    "MOD",
+    "RIGHT",
+    "1",
     "EMERGENCY_STOP",
     "SCREEN",
 ];
