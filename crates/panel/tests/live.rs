@@ -82,6 +82,24 @@ fn what_was_done_by_the_wall_is_seen_again() {
         serde_json::to_string(&end).unwrap()
     );
     assert_eq!(replay.came_true(&mut other.station), Some(true));
+    // And by the wall.
+    let (station, second) = Trainee::at("mill").apart();
+    let live = Live::replay(station, Replay::read(&path).unwrap());
+    let link = live.link();
+    until(&link, |screen| {
+        screen.machine.paused && screen.time_s == end.time_s
+    });
+    let seen = link.with(|station| station.screen().clone()).unwrap();
+    let seen = Screen {
+        serial: end.serial,
+        ..seen
+    };
+    assert_eq!(
+        serde_json::to_string(&seen).unwrap(),
+        serde_json::to_string(&end).unwrap()
+    );
+    live.end().unwrap();
     std::fs::remove_file(path).unwrap();
     std::fs::remove_dir_all(folder).unwrap();
+    std::fs::remove_dir_all(second).unwrap();
 }

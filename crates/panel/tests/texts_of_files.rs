@@ -28,6 +28,19 @@ fn the_seeds_are_right() {
     assert_eq!(check_session(SESSION.as_bytes()), Ok(2));
 }
 
+/// The example of docs/lessons.md is one.
+#[test]
+fn the_documented_lesson_is_right() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let page = std::fs::read_to_string(root.join("docs/lessons.md")).unwrap();
+    let example = page.split("```").nth(1).unwrap();
+    let mill = bahn_panel::load(&root.join("machines/mill")).unwrap();
+    assert_eq!(
+        check_lesson(&mill.plant, &mill.parameters, example.as_bytes()),
+        Ok(())
+    );
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
