@@ -151,7 +151,7 @@ impl Channel {
         let basis = Basis {
             list: self.own_list.as_ref().unwrap_or(machine.link.list()),
             link: &machine.link,
-            touch: self.touch,
+            touch: &self.touch,
         };
         (&mut self.run, site, basis)
     }

@@ -231,6 +231,36 @@ fn a_change_that_power_off_breaks_off() {
     }
 }
 
+/// The arm is stuck when it is to draw, and repaired while the supply is off: its valve stands at out, but the clamp has closed,
+/// and holds the arm until the PLC opens it again. The change is taken back.
+#[test]
+fn a_closed_clamp_holds_the_arm_until_it_opens() {
+    let mut rig = mill(3, MAGAZINE);
+    rig.run("11.H", 60.0);
+    rig.command("select 12.H");
+    rig.start();
+    rig.until(60.0, "the clamp opens", |rig| rig.number("W112") == 40);
+    rig.event("fault device arm_draw jammed");
+    rig.until(60.0, "the arm is to draw", |rig| rig.bit("O36"));
+    rig.seconds(0.5);
+    rig.command("power off");
+    rig.seconds(1.0);
+    rig.event("repair arm_draw");
+    rig.seconds(1.0);
+    assert_eq!(
+        rig.machine.magazine().map(|state| (state.spindle, state.arm)),
+        Some((1, [0, 0]))
+    );
+    rig.command("power on");
+    rig.command("ce");
+    rig.until(60.0, "the way back", |rig| {
+        rig.number("W112") == 0 && rig.control.mode() == bahn_control::Mode::Reference
+    });
+    agree(&rig, "taken back");
+    rig.power_on();
+    change_to_6(&mut rig, "26.H", "the next change");
+}
+
 /// A change with two codes, a special tool against a normal one. For the control the old tool is in the spindle until the
 /// second code is acknowledged. The supply goes whenever step or strobe change, some time behind that, and in each cycle
 /// between the codes: behind power-on all tools are where the control has them.

@@ -4,8 +4,8 @@ use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
 use bahn_path::Axis;
 
 use crate::dialogue::Dialogue;
-use crate::editor::{Editor, Open, Reaction};
-use crate::{Wanted, Word};
+use crate::editor::{Editor, Open};
+use crate::{Reaction, Wanted, Word};
 
 impl Editor {
     /// Gives the actual position of an axis for the value that is being entered or highlighted.

@@ -257,7 +257,8 @@ impl Dialogue {
                     let last = choices.last().ok_or(KeyNonFunctional)?;
                     typing.take(field, last.value);
                 }
-                Ask::Feed { max: true } => typing.take(field, "MAX"),
+                // Where F MAX is no word the question does not offer it.
+                Ask::Feed { max: true } if context.setting.rapid() == "MAX" => typing.take(field, "MAX"),
                 _ if field.slot.need == Need::Required => return Err(EntryValueIncorrect),
                 _ => {}
             }

@@ -6,11 +6,12 @@ use bahn_parameters::MessageId::{self, KeyNonFunctional};
 use bahn_program::{Block, Chunk, Edit, Operation, Program};
 
 use crate::dialogue::Dialogue;
-use crate::editor::{Editor, Open, Reaction};
+use crate::editor::{Editor, Open};
 use crate::highlight::Highlight;
 use crate::line::{Line, written};
+use crate::reading::line_of_block;
 use crate::soft_keys::Function;
-use crate::{Key, KeyGroup};
+use crate::{Key, KeyGroup, Reaction};
 
 /// Most characters of a text to find.
 const FIND_MAX: usize = 80;
@@ -87,8 +88,11 @@ impl Editor {
             }
             Key::Up | Key::Down => self.same_word(&highlight, key == Key::Down)?,
             Key::Ent => {
+                if let Err(message) = self.may_edit() {
+                    self.open = Open::Highlight(highlight);
+                    return Err(message);
+                }
                 let line = self.line_of(block).ok_or(KeyNonFunctional)?;
-                self.may_edit()?;
                 let field = highlight.place.map_or(0, |(field, _)| field);
                 match Dialogue::of_line(line, block, field) {
                     Some(dialogue) => self.show(Open::Dialogue(Box::new(dialogue)))?,
@@ -125,7 +129,7 @@ impl Editor {
             let address = name.split(' ').next().unwrap_or_default();
             let line = written(block, language)
                 .contains(address)
-                .then(|| Line::of_block(block, language))??;
+                .then(|| line_of_block(block, language))??;
             line.places()
                 .into_iter()
                 .find(|place| line.name_of(*place) == name)
@@ -183,7 +187,7 @@ impl Editor {
     }
 
     /// The blocks of the cycle that a block belongs to: numbered one after the other, from 0 or from where they begin.
-    pub(crate) fn cycle_of(&self, block: u32) -> Option<std::ops::Range<u32>> {
+    pub(crate) fn cycle_of(&self, block: u32) -> Option<Range<u32>> {
         let (kind, number, sub) = self.cycle_block(block)?;
         let (mut first, mut last) = (block, block);
         let mut below = sub;
@@ -269,14 +273,14 @@ impl Editor {
         Ok(Reaction::Shown)
     }
 
-    /// The marked blocks, or what DEL would delete, as text.
+    /// The marked blocks, or what DEL would delete, as text without numbers.
     fn section(&self) -> Result<Vec<String>, MessageId> {
         let blocks = match self.marked() {
             Some(marked) => marked,
             None => self.deletable()?,
         };
-        let texts = blocks.map(|block| self.program.text_of(block));
-        Ok(texts.collect())
+        let lines = blocks.filter_map(|block| self.line_of(block));
+        Ok(lines.map(|line| line.text()).collect())
     }
 
     /// A key while a text to find is entered.

@@ -4,9 +4,11 @@ use bahn_program::{Block, Operation, Program};
 
 use crate::dialogue::Dialogue;
 use crate::editor::{Editor, Open};
+use crate::field::Field;
 use crate::highlight::Highlight;
 use crate::line::{Line, WordPlace, written};
 use crate::prompt::text_of;
+use crate::reading::line_of_block;
 use crate::soft_keys::ROW;
 use crate::view::{List, Question, Row, ShownWord, View};
 
@@ -104,7 +106,7 @@ impl Editor {
     pub(crate) fn block_shown(&self, block: &Block) -> String {
         let language = self.program.language();
         let line = match block.operation {
-            Operation::Cycle(_) | Operation::Probe(_) => Line::of_block(block, language),
+            Operation::Cycle(_) | Operation::Probe(_) => line_of_block(block, language),
             _ => None,
         };
         line.map_or_else(|| written(block, language), |line| line.text())
@@ -147,7 +149,7 @@ impl Editor {
                 } else {
                     " "
                 };
-                (field.slot.prompt, format!("{words}{gap}{pending}"))
+                (self.prompt_of(field), format!("{words}{gap}{pending}"))
             }
             Open::Menu(menu) => (menu.prompt(), menu.typed.clone()),
             Open::Goto(digits) => ("goto", digits.clone()),
@@ -159,6 +161,14 @@ impl Editor {
             prompt: text_of(id, tongue),
             entered,
         })
+    }
+
+    /// The prompt of a field. That for the feed does not always offer F MAX [003:2156].
+    fn prompt_of(&self, field: &Field) -> &'static str {
+        match field.slot.prompt {
+            "feed_max" if self.setting.rapid() != "MAX" => "feed",
+            prompt => prompt,
+        }
     }
 
     /// What is being made.

@@ -220,6 +220,26 @@ fn sections_are_copied_cut_and_put_elsewhere() {
 }
 
 #[test]
+fn a_file_with_numbers_keeps_them_in_order() {
+    let text = "0 BEGIN PGM 7 MM\n1 L X+1\n2 / L Y+2 ; up\n3 END PGM 7 MM\n";
+    let program = bahn_program::Program::from_bytes("7.H", text.into());
+    let editor = bahn_dialogue::Editor::new(program.into(), desk::setting(Tnc360));
+    let mut desk = Desk { editor };
+    desk.enter("DOWN STOP END DOWN SK2 SK4 UP UP UP RIGHT RIGHT 5 END");
+    let wanted = "0 BEGIN PGM 7 MM\n1 L X+5\n2 STOP\n3 / L Y+2 ; up\n4 / L Y+2 ; up\n5 END PGM 7 MM\n";
+    assert_eq!(
+        String::from_utf8_lossy(&desk.editor.numbered().to_bytes()),
+        wanted
+    );
+    let mut desk = Desk::with("L X+1", Tnc360);
+    desk.enter("STOP END");
+    assert_eq!(
+        desk.editor.numbered().to_bytes(),
+        desk.editor.program().to_bytes()
+    );
+}
+
+#[test]
 fn texts_and_blocks_are_found() {
     let mut desk = desk("L X+1\nTOOL CALL 1 Z S500\nL X+2\nTOOL CALL 2 Z S700");
     desk.enter("SK5 T O O L SK1 C A L L ENT");
@@ -321,7 +341,10 @@ fn a_protected_program_is_only_looked_at() {
     desk.refuses("6", ProtectedPgm);
     desk.refuses("NO_ENT", ProtectedPgm);
     desk.refuses("ENT", ProtectedPgm);
-    assert_eq!(desk.blocks(), ["L X+5"]);
+    assert_eq!(
+        (word(&desk), desk.blocks()),
+        ("X+5".into(), vec!["L X+5".to_owned()])
+    );
 }
 
 #[test]
@@ -442,6 +465,15 @@ fn comments_and_optional_blocks_stay_what_they_are() {
         desk.blocks(),
         ["/ L X+6 ; first", "; only text more", "CYCL DEF 2.1 ABST -3"]
     );
+}
+
+#[test]
+fn f_max_is_offered_where_it_is_a_word() {
+    let mut desk = Desk::with("", Tnc155);
+    desk.enter("L X 1 ENT ENT");
+    assert_eq!(desk.prompt(), "FEED RATE F = ?");
+    desk.enter("ENT NO_ENT L X 2 ENT ENT SK1 ENT NO_ENT");
+    assert_eq!(desk.blocks(), ["L X+1 R0", "L X+2 R0 F15999"]);
 }
 
 #[test]

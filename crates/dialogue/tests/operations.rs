@@ -219,6 +219,34 @@ proptest! {
         prop_assert_eq!(operation(&desk, 1), Operation::Motion(motion), "{}", keys);
     }
 
+    /// NO ENT takes out the highlighted word and nothing else; entering a word as it stands changes nothing.
+    #[test]
+    fn no_ent_takes_out_one_word((keys, motion) in motion(), at in any::<prop::sample::Index>()) {
+        let words_meant = motion.coordinates.axes().len() + usize::from(motion.polar_angle.is_some());
+        prop_assume!(words_meant > 0);
+        let mut desk = Desk::new();
+        desk.enter(&keys);
+        let text = desk.blocks()[0].clone();
+        let words: Vec<&str> = text.split(' ').collect();
+        let at = at.index(words.len());
+        desk.enter("RIGHT");
+        desk.enter(&"RIGHT ".repeat(at));
+        let shown = desk.editor.view(0, 0).words;
+        let highlighted: Vec<_> = shown.iter().filter(|word| word.highlighted).map(|word| word.text.trim()).collect();
+        prop_assert_eq!(highlighted, [words[at]]);
+        let others: Vec<&str> = words.iter().enumerate().filter(|(index, _)| *index != at).map(|(_, word)| *word).collect();
+        match desk.press("NO_ENT") {
+            Reaction::Edited => prop_assert_eq!(&desk.blocks()[0], &others.join(" "), "{} of {}", words[at], text),
+            Reaction::Refused(_) => {
+                prop_assert_eq!(&desk.blocks()[0], &text);
+                let needed = at == 0 || matches!(motion.kind, MotionKind::CirclePolar | MotionKind::CircleRadius)
+                    || words[at].starts_with("DR") || motion.coordinates.axes().len() == 1;
+                prop_assert!(needed, "{} of {}", words[at], text);
+            }
+            other => prop_assert!(false, "{:?}", other),
+        }
+    }
+
     #[test]
     fn pockets_do_what_was_entered(depths in prop::array::uniform3(1_u32..90_000), sides in prop::array::uniform2(value()), feeds in prop::array::uniform2(1..29_999_u32), radius in 0..99_u32) {
         let depths = depths.map(|depth| -f64::from(depth) / 1000.0);

@@ -201,6 +201,12 @@ void main() {
     } else {
       ivec2 before = cell;
       before[axis] -= d[axis] > 0.0 ? 1 : -1;
+      if (height(before) > p.z) {
+        // At a corner of the cell the ray came from the other side.
+        before = cell;
+        axis = 1 - axis;
+        before[axis] -= d[axis] > 0.0 ? 1 : -1;
+      }
       float foot = height(before);
       vec3 flat_ = vec3(0.0);
       flat_[axis] = -sign(d[axis]);

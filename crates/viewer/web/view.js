@@ -126,7 +126,8 @@ export class PartView {
       this.calibrate();
     }
     if (this.cost === null) return;
-    const quiet = performance.now() - this.touched > REST || this.frames === 0;
+    // A change that waited long for its picture is a change all the same.
+    const quiet = this.frames === 0 || !this.dirty && performance.now() - this.touched > REST;
     if (this.dirty && this.steady) this.judge(time - this.last);
     this.steady = this.dirty && !quiet;
     this.last = time;
@@ -140,8 +141,10 @@ export class PartView {
 
   // How long a picture takes, by a small one: ms for a pixel. One before it compiles the shaders.
   async calibrate() {
-    const { canvas } = this;
+    const { canvas, show } = this;
     let cost = 0;
+    // The path costs what it costs, however coarse the picture is.
+    this.show = { part: true };
     canvas.style.visibility = 'hidden';
     for (const ratio of [0.05, 0.3]) {
       this.fitCanvas(ratio);
@@ -151,6 +154,7 @@ export class PartView {
       cost = (performance.now() - start) / (canvas.width * canvas.height);
     }
     this.cost = cost;
+    this.show = show;
     this.coarse = Math.min(1, Math.max(COARSEST, this.ratioFor(0.7 * FRAME) / devicePixelRatio));
     this.frames = 0;
     canvas.style.visibility = '';
@@ -222,7 +226,7 @@ export class PartView {
     gl.depthFunc(gl.LEQUAL);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (this.relief && this.show.part) this.relief.draw(camera, this.clip, this.colouring, ratio);
-    this.lines.draw(camera, this.show, this.now, ratio);
+    this.lines.draw(camera, this.show, this.now, ratio, ratio >= Math.min(1, this.floor));
     if (this.show.tool && this.toolAt) this.tool.draw(camera, this.toolAt);
     this.drawn = ratio;
     this.frames++;
