@@ -1,5 +1,5 @@
-//! The machines that are shipped, as data: each a folder with parameters, PLC program, simulated machine and part
-//! programs.
+//! The machines that are shipped, as data: each a folder with parameters, PLC program, simulated machine, part programs
+//! and lessons.
 //!
 //! ```
 //! let plant = bahn_machines::MILL.file("plant.toml");
@@ -35,6 +35,10 @@ pub const MILL: ShippedMachine = machine!("mill" for "tnc415b", "tnc407":
     "README.md", "machine.toml", "parameters.mp", "plant.toml", "tools.tsv", "pockets.tsv", "plc/MAIN.PLC",
     "plc/MAIN.ER1", "plc/functions.txt", "plc/gear.txt", "plc/start.txt", "plc/tool.txt", "plc355/MAIN.PLC",
     "programs/BRACKET.H", "programs/CIRCLE.H", "programs/INDEX.H", "programs/SADDLE.H",
+    "lessons/01-power-on.lesson", "lessons/02-datum.lesson", "lessons/03-limit.lesson",
+    "lessons/04-door.lesson", "lessons/05-lag.lesson", "lessons/06-drive.lesson",
+    "lessons/07-tool-change.lesson", "lessons/08-lubricant.lesson",
+    "lessons/09-emergency-stop.lesson", "lessons/10-broken-wire.lesson",
 );
 
 /// A small mill of three axes; its control is a TNC 360.

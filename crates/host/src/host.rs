@@ -52,6 +52,8 @@ pub struct Host<P = Machine> {
     watched: bool,
     /// What was is repeated: nobody is told, and nothing is stored but in the end.
     pub(crate) repeats: bool,
+    /// Also by the clock on the wall nothing is read or computed beside.
+    exact: bool,
     desk: Desk,
     state: Option<State>,
     sink: Option<Box<dyn Sink + Send>>,
@@ -142,6 +144,7 @@ impl<P: Operable> Host<P> {
             programs: all_programs,
             watched: false,
             repeats: false,
+            exact: false,
             desk: Desk::default(),
             state: power_on.state,
             sink: None,
@@ -213,7 +216,7 @@ impl<P: Operable> Host<P> {
         tracer: Option<&mut (dyn Tracer + '_)>,
         sampler: Option<&mut (dyn ServoSampler + '_)>,
     ) -> Result<(), HostError> {
-        let beside = self.pace.is_some() && !self.repeats;
+        let beside = self.works_beside();
         self.background
             .prepare(&mut self.control, beside, &self.break_off);
         self.control.cycle_watched(&mut self.plant, tracer, sampler);
@@ -298,7 +301,7 @@ impl<P: Operable> Host<P> {
         if before != (self.control.starts(), self.control.is_off()) {
             // What is computed or read beside belongs to the control that was on before.
             self.background = Background::default();
-            let beside = self.pace.is_some() && !self.repeats;
+            let beside = self.works_beside();
             self.background.read_beside(&mut self.control, beside);
         }
         match done {
@@ -469,8 +472,21 @@ impl<P: Operable> Host<P> {
     /// program needs to be read holds no cycle. It is back for every deed, and for what is stored.
     pub fn set_clock(&mut self, clock: Clock) {
         self.clock = clock;
-        self.background.read_beside(&mut self.control, clock.is_paced());
         self.pace = Pace::of(clock, self.control.time_us());
+        let beside = self.works_beside();
+        self.background.read_beside(&mut self.control, beside);
+    }
+
+    /// From now on a cycle waits for what programs need to be read and computed, also by the clock on the wall: what is
+    /// given then at the same times gives the same bits again, at the price of cycles that come late.
+    pub fn be_exact(&mut self) {
+        self.exact = true;
+        self.set_clock(self.clock);
+    }
+
+    /// Programs are read, and long computations done, on a thread of their own.
+    fn works_beside(&self) -> bool {
+        self.pace.is_some() && !self.repeats && !self.exact
     }
 
     /// The clock begins anew: the machine is at another time.

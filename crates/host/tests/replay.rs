@@ -99,6 +99,44 @@ fn a_moment_is_reached_again_to_the_bit() {
     }
 }
 
+/// A course that was kept is gone through again, to any moment and to its end, whatever was done instead.
+#[test]
+fn a_course_that_was_left_is_reached_again() {
+    let mut host = mill(BLOCKS);
+    seconds(&mut host, 5.0);
+    let saved = host.save();
+    let deeds = |host: &mut Host, percents: [u8; 2]| {
+        for percent in percents {
+            let text = format!("override feed {percent}");
+            host.act(Source::Script, deed(&text)).unwrap();
+            seconds(host, 1.0);
+        }
+    };
+    deeds(&mut host, [30, 120]);
+    let middle_us = host.control().time_us() - 500_000;
+    // Something that is given at the very end belongs to it.
+    host.act(Source::Script, deed("override feed 77")).unwrap();
+    let (first, course) = (bits(&host), host.course());
+    host.restore(&saved).unwrap();
+    deeds(&mut host, [60, 10]);
+    let (second, other) = (bits(&host), host.course());
+    assert_ne!(first, second);
+    for _ in 0..2 {
+        host.replay_course(&course, &saved, middle_us).unwrap();
+        let given: Vec<String> = host.given().map(|(_, _, deed)| deed.to_string()).collect();
+        assert_eq!(
+            given[given.len() - 2..],
+            ["override feed 30", "override feed 120"]
+        );
+        host.replay_course(&course, &saved, u64::MAX).unwrap();
+        assert_eq!(bits(&host), first);
+        assert_eq!(host.plant().knobs()[0], 77.0);
+        assert_eq!(host.given_count(), host.given().count() as u64);
+        host.replay_course(&other, &saved, other.end_us()).unwrap();
+        assert_eq!(bits(&host), second);
+    }
+}
+
 /// A save takes no part in the run, and a run from it is another one than the first when something else is done.
 #[test]
 fn a_saved_moment_is_the_beginning_of_another_run() {

@@ -6,6 +6,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::input::{Input, Refusal};
+use crate::replay::Replay;
 use crate::screen::Screen;
 use crate::station::Station;
 
@@ -51,7 +52,17 @@ pub struct Link {
 
 impl Live {
     /// Lets a station run.
-    pub fn start(mut station: Station) -> Live {
+    pub fn start(station: Station) -> Live {
+        Live::run(station, None)
+    }
+
+    /// Shows a session on a station, and lets it run on behind its end. Who watches may let time stand; pauses of the
+    /// session are passed over.
+    pub fn replay(station: Station, replay: Replay) -> Live {
+        Live::run(station, Some(replay))
+    }
+
+    fn run(mut station: Station, mut replay: Option<Replay>) -> Live {
         let (orders, taken) = sync_channel(INPUTS);
         let shared = Arc::new(Shared {
             seen: Mutex::default(),
@@ -60,7 +71,7 @@ impl Live {
         let published = Arc::clone(&shared);
         let thread = std::thread::spawn(move || {
             station.run_by_the_wall();
-            run(&mut station, &taken, &published);
+            run(&mut station, &mut replay, &taken, &published);
             station
         });
         Live {
@@ -158,7 +169,7 @@ impl Shared {
     }
 }
 
-fn run(station: &mut Station, orders: &Receiver<Order>, shared: &Shared) {
+fn run(station: &mut Station, replay: &mut Option<Replay>, orders: &Receiver<Order>, shared: &Shared) {
     let mut due = Instant::now();
     loop {
         let mut asked = false;
@@ -174,6 +185,12 @@ fn run(station: &mut Station, orders: &Receiver<Order>, shared: &Shared) {
                 }
                 Order::End => return,
             }
+        }
+        if let Some(session) = replay {
+            session.give(station);
+        }
+        if replay.as_ref().is_some_and(|session| session.is_over(station)) {
+            *replay = None;
         }
         if !station.is_paused() {
             // What cannot be stored is said on the screen; the machine goes on.

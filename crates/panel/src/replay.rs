@@ -141,7 +141,7 @@ impl Replay {
     }
 
     /// Gives what is due now. What was refused then is refused now.
-    fn give(&mut self, station: &mut Station) {
+    pub(crate) fn give(&mut self, station: &mut Station) {
         while let Some((time, input)) = self.inputs.get(self.next)
             && *time <= station.control().time_us()
         {

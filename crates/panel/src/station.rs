@@ -74,6 +74,8 @@ impl Station {
         let operator = Operator::new(Attendance::Absent, machine.folder.operator.clone(), None);
         let shared = Arc::clone(&programs) as Arc<dyn Programs>;
         let mut host = Host::new(&machine, power_on, shared, operator);
+        // Sessions and the time line repeat what was.
+        host.be_exact();
         let state_folder = machine.root.join(&machine.folder.state);
         let settings = Settings::read(&state_folder);
         Station {
@@ -241,7 +243,7 @@ impl Station {
         screen.lamps = self.lamps();
         screen.serial = self.shown.serial;
         // Time alone makes no other screen.
-        let time_s = std::mem::replace(&mut self.shown.time_s, screen.time_s);
+        self.shown.time_s = screen.time_s;
         if !self.past.looks_back() {
             self.shown.timeline.to_s = screen.timeline.to_s;
             self.shown.timeline.now_s = screen.timeline.now_s;
@@ -249,8 +251,6 @@ impl Station {
         if screen != self.shown {
             screen.serial += 1;
             self.shown = screen;
-        } else {
-            self.shown.time_s = time_s.max(screen.time_s);
         }
         &self.shown
     }

@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 
 use bahn_control::{Command, RunState};
-use bahn_host::{Course, Deed, Host, HostError, Next, Notice, Reader, Stamped, Timeline};
+use bahn_host::{Course, Deed, Host, HostError, Next, Notice, Reader, Source, Stamped, Timeline};
 use bahn_machine::{Event, Machine};
 
 use crate::lesson::LessonRun;
@@ -223,7 +223,10 @@ impl Past {
                     _ => return,
                 }
             }
-            Notice::Given(_, deed, _) if is_telling(deed) => (MarkKind::Deed, deed.to_string()),
+            // What a lesson does is for the trainee to find.
+            Notice::Given(Source::Client(_), deed, _) if is_telling(deed) => {
+                (MarkKind::Deed, deed.to_string())
+            }
             _ => return,
         };
         if self.marks.len() == MARKS {

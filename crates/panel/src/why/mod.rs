@@ -6,6 +6,7 @@ mod trace;
 
 use bahn_control::{Control, RunState, Waiting};
 use bahn_host::{Host, LoadedMachine};
+use bahn_path::BlockRef;
 use serde::Serialize;
 
 use crate::texts::Language;
@@ -47,6 +48,8 @@ const PRESSED_US: u64 = 20_000_000;
 /// After so long a start has had its effect, µs.
 const EFFECT_US: u64 = 400_000;
 
+/// A run whose axes stand so long waits for something, µs.
+const STANDS_US: u64 = 1_000_000;
 /// Changes of what is waited for that are known at most.
 const WAITED: usize = 256;
 
@@ -59,7 +62,9 @@ pub(crate) struct Waits {
     waited: Vec<(u64, Option<Waiting>)>,
     /// NC start was pressed, and nothing has come of it.
     pressed_us: Option<u64>,
-    blocks: Option<bahn_path::BlockRef>,
+    block: Option<BlockRef>,
+    /// A program runs and its axes stand since then.
+    stands_us: Option<u64>,
 }
 
 impl Waits {
@@ -71,7 +76,8 @@ impl Waits {
             start: machine.folder.operator.start.clone(),
             waited: Vec::new(),
             pressed_us: None,
-            blocks: None,
+            block: None,
+            stands_us: None,
         }
     }
 
@@ -89,8 +95,10 @@ impl Waits {
         }
         // A run that goes on, an axis that moves, another block: the start had its effect.
         let block = control.element().map(|element| element.block);
-        let another = self.blocks != block;
-        self.blocks = block;
+        let another = self.block != block;
+        self.block = block;
+        let stands = control.run_state() == RunState::Running && control.stands() && !another;
+        self.stands_us = stands.then(|| self.stands_us.unwrap_or(now_us));
         let old = self
             .pressed_us
             .is_some_and(|pressed| now_us > pressed + PRESSED_US);
@@ -109,6 +117,7 @@ impl Waits {
     /// The machine is at another moment.
     pub fn forget(&mut self) {
         self.pressed_us = None;
+        self.stands_us = None;
     }
 
     /// How long a control has waited for what it waits for, s.
@@ -135,6 +144,7 @@ impl Waits {
             language,
             waits_s: self.waits_s(control),
             start_in_vain: in_vain,
+            stands_long: self.stands_us.is_some_and(|since| now_us >= since + STANDS_US),
         };
         let mut reasons = situation.reasons();
         reasons.sort_by_key(|reason| reason.urgency);

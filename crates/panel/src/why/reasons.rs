@@ -34,6 +34,8 @@ pub(super) struct Situation<'a> {
     pub waits_s: f64,
     /// NC start was pressed, and nothing came of it.
     pub start_in_vain: bool,
+    /// A program runs, but no axis has moved for a while.
+    pub stands_long: bool,
 }
 
 impl Situation<'_> {
@@ -50,6 +52,7 @@ impl Situation<'_> {
         self.axes(&snapshot, &mut found);
         self.run(&snapshot, &mut found);
         self.handshake(&snapshot, &mut found);
+        self.positions(&snapshot, &mut found);
         self.spindle(&snapshot, &mut found);
         self.start(&snapshot, &mut found);
         found
@@ -299,6 +302,35 @@ impl Situation<'_> {
             let text = self.words("{1} reads no further block: {2} is 1, {3}");
             let program = self.words("The program");
             found.push(self.of_bit(Urgency::Waits, &text, &program, signal::READ_IN_INHIBIT, false));
+        }
+    }
+
+    /// Axes that do not come into their positioning windows, which a program waits for.
+    fn positions(&self, snapshot: &Snapshot, found: &mut Vec<Reason>) {
+        if !self.stands_long {
+            return;
+        }
+        let off = snapshot.axes.iter();
+        for axis in off.filter(|axis| axis.closed && axis.enabled && !axis.in_position) {
+            let Some(marker) = axis_signal("AXIS_", axis.index, "_IN_POSITION") else {
+                continue;
+            };
+            let text = self.words(
+                "The program waits for {1}: its lag {2} is beyond the positioning window {4}, {3} is 0",
+            );
+            let parameter = format!("MP1030.{}", axis.index);
+            let values = [
+                axis.letter.to_string(),
+                format!("{:.3}", axis.lag),
+                marker.to_string(),
+                parameter.clone(),
+            ];
+            let [letter, lag, name, window] = &values;
+            let told = Reason {
+                marker: Some(name.clone()),
+                ..reason(Urgency::Stands, fill(&text, &[letter, lag, name, window]))
+            };
+            found.push(with_parameter(told, &parameter));
         }
     }
 

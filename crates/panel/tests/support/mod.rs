@@ -10,8 +10,12 @@ use bahn_panel::{Input, InputText, Screen, Station};
 /// A station whose time passes as the test says.
 pub struct Trainee {
     pub station: Station,
-    folder: PathBuf,
+    folder: Folder,
 }
+
+/// A folder that is removed in the end.
+#[derive(Default)]
+struct Folder(PathBuf);
 
 impl Trainee {
     /// A machine that was never on.
@@ -29,23 +33,29 @@ impl Trainee {
         what(&folder);
         Trainee {
             station: on(&folder),
-            folder,
+            folder: Folder(folder),
         }
     }
 
+    /// His station, and his machine's folder, which is to be removed.
+    pub fn apart(self) -> (Station, PathBuf) {
+        let Trainee { station, mut folder } = self;
+        (station, std::mem::take(&mut folder.0))
+    }
+
     /// The station ends without being asked, and the machine is switched on again.
-    pub fn killed(mut self) -> Trainee {
-        let folder = std::mem::take(&mut self.folder);
-        drop(self);
+    pub fn killed(self) -> Trainee {
+        let (station, folder) = self.apart();
+        drop(station);
         Trainee {
             station: on(&folder),
-            folder,
+            folder: Folder(folder),
         }
     }
 
     /// His machine's folder.
     pub fn folder(&self) -> &Path {
-        &self.folder
+        &self.folder.0
     }
 
     /// Presses keys, separated by blanks, a tenth of a second apart; they must be there.
@@ -137,24 +147,24 @@ impl Trainee {
 
     /// Whether there is a file in his machine's folder.
     pub fn has(&self, name: &str) -> bool {
-        self.folder.join(name).exists()
+        self.folder.0.join(name).exists()
     }
 
     /// Writes a file of his machine's folder.
     pub fn write(&self, name: &str, text: &str) {
-        std::fs::write(self.folder.join(name), text).unwrap();
+        std::fs::write(self.folder.0.join(name), text).unwrap();
     }
 
     /// A file of his machine's folder.
     pub fn file(&self, name: &str) -> String {
-        std::fs::read_to_string(self.folder.join(name)).unwrap()
+        std::fs::read_to_string(self.folder.0.join(name)).unwrap()
     }
 }
 
-impl Drop for Trainee {
+impl Drop for Folder {
     fn drop(&mut self) {
-        if !self.folder.as_os_str().is_empty() {
-            let _ = std::fs::remove_dir_all(&self.folder);
+        if !self.0.as_os_str().is_empty() {
+            let _ = std::fs::remove_dir_all(&self.0);
         }
     }
 }
