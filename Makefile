@@ -6,7 +6,7 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test bench doc pictures conformance faults torture trails tools clean
+.PHONY: run test bench doc pictures conformance faults torture trails tools browser clean
 
 # Built for the first look: without the screen of `bahn plc watch`, and with the profile for it.
 BAHN := $(CARGO) run --quiet --profile quick -p bahn --no-default-features --
@@ -32,7 +32,7 @@ run:
 
 # Everything that must hold: format, lints, documentation, tests. Of the fuzz targets nothing is linked here: they
 # compile without libFuzzer.
-test: tools
+test: tools browser
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	$(CARGO) clippy -p bahn --no-default-features --locked -- -D warnings
@@ -79,6 +79,18 @@ torture:
 tools:
 	@$(CARGO) fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	@$(CARGO) clippy --version >/dev/null 2>&1 || rustup component add clippy
+
+# The browser that the tests of pages start. Where it cannot be installed they say that they are skipped, under
+# continuous integration they fail.
+browser:
+	@for name in "$${BAHN_CHROMIUM:-chromium}" chromium-browser google-chrome google-chrome-stable; do \
+		command -v "$$name" >/dev/null 2>&1 && exit 0; \
+	done; \
+	as_root=; [ "$$(id -u)" = 0 ] || as_root="sudo -n"; \
+	echo "installing Chromium for the tests of pages"; \
+	{ $$as_root apt-get update -q && \
+		DEBIAN_FRONTEND=noninteractive $$as_root apt-get install -q -y --no-install-recommends chromium; } \
+		>/dev/null 2>&1 || echo "Chromium cannot be installed: the tests of pages are skipped"
 
 clean:
 	$(CARGO) clean

@@ -15,6 +15,7 @@ use crate::oem::OemOptions;
 use crate::options::{
     CHECK_EXAMPLES, CheckOptions, EXPLAIN_EXAMPLES, ExplainOptions, FMT_EXAMPLES, FmtOptions,
 };
+use crate::panel::PanelOptions;
 use crate::plc::PlcOptions;
 use crate::run::RunMachineOptions;
 use crate::scope::ScopeOptions;
@@ -45,6 +46,9 @@ pub(crate) enum Command {
     /// Run a program on a simulated machine: power-up, reference run, program, with PLC and servo loops.
     #[command(after_help = crate::run::EXAMPLES)]
     Run(Box<RunMachineOptions>),
+    /// Sit down at the operating panel of a machine, in the browser.
+    #[command(after_help = crate::panel::EXAMPLES)]
+    Panel(PanelOptions),
     /// Draw recorded signals like an oscilloscope, and sum them up.
     #[command(after_help = crate::scope::EXAMPLES)]
     Scope(Box<ScopeOptions>),

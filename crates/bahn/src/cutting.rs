@@ -64,6 +64,11 @@ impl Memory {
             path: options.toolpath,
         }
     }
+
+    /// The same, and which tool cut what.
+    pub fn and_tools(self) -> Memory {
+        Memory { tools: true, ..self }
+    }
 }
 
 /// The part, once BLK FORM gives a blank.

@@ -42,6 +42,7 @@ mod manual;
 mod mp;
 mod oem;
 mod options;
+mod panel;
 mod paragraph;
 mod path_csv;
 mod path_svg;
@@ -81,6 +82,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = match command {
         cli::Command::Test(options) => test_run::command(*options, shelf::command),
         cli::Command::Run(options) => run::command(&options),
+        cli::Command::Panel(options) => panel::command(&options),
         cli::Command::Scope(options) => scope::command(&options),
         cli::Command::Tune(options) => tune::command(&options),
         cli::Command::Compensate(options) => compensate::command(&options),

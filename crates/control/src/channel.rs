@@ -381,7 +381,7 @@ impl Channel {
         };
         let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
         let (life, tools) = (&mut self.life, &mut self.tools);
-        let changed = life.follow(counting, tools, magazine, &self.handshakes, exchange, files);
+        let changed = life.follow(counting, tools, magazine, exchange, files);
         machine.unsaved |= changed;
         let waits = keeps && machine.unsaved;
         if !waits {
@@ -444,6 +444,8 @@ impl Channel {
         if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
             self.show(Message::PlcMarkers(code), machine);
         }
+        let (magazine, exchange) = (&mut machine.magazine, machine.memory.of(self.number));
+        self.tools.take_end(magazine, &self.handshakes, exchange);
     }
 
     /// Takes the strobes that the PLC set in a scan, and resets them.
@@ -620,9 +622,8 @@ impl Channel {
             Command::Probe(command) => self.desk.is_by_hand() && self.probe_menu(command, machine),
             Command::Mode(mode) => {
                 self.touch.leave();
-                let progress = self.run.progress();
                 let mut axes = machine.axes.of(self.number);
-                self.desk.choose_mode(mode, progress, &mut axes)
+                self.desk.choose_mode(mode, self.run.progress(), &mut axes)
             }
             Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
             Command::WorkingPlane(on) => {
@@ -632,11 +633,16 @@ impl Channel {
                 self.desk.switch_plane(on, list, &axes, chain)
             }
             Command::MFunction(_) | Command::Speed(_) | Command::JogIncrement(_) | Command::Handwheel(..) => {
-                let axes = machine.axes.of(self.number);
-                self.desk.enter(&command, &axes)
+                self.desk.enter(&command, &machine.axes.of(self.number))
             }
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
-            Command::AxisLimit(axis, range, limits) => self.limit_axis(axis, range, limits, machine),
+            Command::AxisLimit(axis, range, limits) if !self.run.is_active() => {
+                let done = self
+                    .datums
+                    .set_limit(axis, range, limits, &mut machine.axes.of(self.number));
+                machine.unsaved |= done;
+                done
+            }
             Command::Code(code) => {
                 machine.offsets.shown |= desk::enter_code(code, machine.memory.of_mut(self.number));
                 machine.oscilloscope.enter_code(code, machine.link.list().model())
@@ -660,14 +666,6 @@ impl Channel {
                 run_command::execute(command, &rules, run, &mut site, &basis)
             }),
         }
-    }
-
-    /// AXIS LIMIT, while no program runs.
-    fn limit_axis(&mut self, axis: Axis, range: u8, to: Option<[f64; 2]>, machine: &mut MachineSide) -> bool {
-        let axes = &mut machine.axes.of(self.number);
-        let done = !self.run.is_active() && self.datums.set_limit(axis, range, to, axes);
-        machine.unsaved |= done;
-        done
     }
 
     /// DATUM SET: the actual position becomes a value.

@@ -265,12 +265,14 @@ impl Handshakes {
             .then_some(Waiting::AcknowledgeReset(handshake))
     }
 
-    /// Takes back everything: EMERGENCY STOP, internal stop.
+    /// Takes back everything: EMERGENCY STOP, internal stop. No other code of a tool change follows any more, M2093 = 0
+    /// *(inferred)*: so the PLC knows of one that is broken off between its codes.
     pub fn abort(&mut self, exchange: &mut Exchange) {
         if let Some(transfer) = self.active.take() {
             transfer.end(exchange);
         }
         self.queue.clear();
+        exchange.nc_put(signal::TOOL_CALL_ANOTHER_T_FOLLOWS, false);
     }
 }
 
@@ -353,6 +355,27 @@ mod tests {
         assert!(plc.bit(signal::FN19_STROBE) && !plc.bit(signal::FN19_INCH));
         assert_eq!(plc.number(signal::FN19_FIRST_VALUE), 202_500);
         assert_eq!(plc.number(signal::FN19_SECOND_VALUE), 1_000_000);
+    }
+
+    /// Broken off between the two codes of a tool change: M2093 = 0, and no strobe comes.
+    #[test]
+    fn no_other_code_follows_what_is_broken_off() {
+        let mut exchange = Exchange::default();
+        let mut handshakes = Handshakes::default();
+        for more in [true, false] {
+            let (w262, w264) = (1, 0);
+            handshakes.push(Transfer::ToolCall { w262, w264, more });
+        }
+        handshakes.cycle(&mut exchange, true);
+        exchange.begin_scan();
+        exchange.plc_mut().set_bit(signal::TOOL_CALL_ACK, true);
+        exchange.end_scan();
+        assert!(handshakes.cycle(&mut exchange, true).is_some());
+        let markers = [signal::TOOL_CALL_STROBE, signal::TOOL_CALL_ANOTHER_T_FOLLOWS];
+        assert_eq!(markers.map(|marker| exchange.nc().bit(marker)), [false, true]);
+        handshakes.abort(&mut exchange);
+        assert_eq!(markers.map(|marker| exchange.nc().bit(marker)), [false, false]);
+        assert!(handshakes.is_idle());
     }
 
     #[test]

@@ -5,7 +5,6 @@ use bahn_exchange::{Exchange, signal};
 use bahn_plc::{TableFile, TableKind};
 
 use crate::command::CURRENT_MAX_MIN;
-use crate::handshake::{Handshakes, Transfer};
 use crate::magazine::Magazine;
 use crate::plc_link::NcFiles;
 use crate::tables;
@@ -34,23 +33,16 @@ pub(crate) struct Counting {
 }
 
 impl LifeCount {
-    /// One contour cycle: the tool that was changed is in the spindle, its time is counted, and the tables say so.
-    /// Whether something has changed that is to be stored.
+    /// One contour cycle: the time of the tool in the spindle is counted, and the tables say what was changed. Whether
+    /// something has changed that is to be stored: it is on the medium before the PLC sees the end of a tool change.
     pub fn follow(
         &mut self,
         counting: Counting,
         tools: &mut Tools,
         magazine: &mut Magazine,
-        handshakes: &Handshakes,
         exchange: &mut Exchange,
         files: &mut NcFiles,
     ) -> bool {
-        // What a tool change leads to is on the medium before the PLC sees its end.
-        if let Some(Transfer::ToolCall { more: false, .. }) = handshakes.acknowledged(exchange.nc())
-            && tools.is_changing()
-        {
-            tools.inserted(magazine, exchange);
-        }
         if let Some(measured) = tools.measured.take() {
             tables::take_measured(&measured, magazine, files);
             tools.changed = true;

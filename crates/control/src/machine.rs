@@ -452,7 +452,8 @@ impl MachineSide {
                 ..
             } => {
                 let unit = AxisId::new(axis).and_then(|id| self.axes.with_id_mut(id));
-                if let Some(unit) = unit {
+                // A reference run of the PLC may have cancelled it already.
+                if let Some(unit) = unit.filter(|unit| unit.servo.fault().is_some()) {
                     unit.servo.acknowledge();
                     unit.transfer();
                 }

@@ -5,6 +5,7 @@ use bahn_motion::Aim;
 use bahn_parameters::PerPlcAxis;
 use bahn_parameters::plc::PlcParameters;
 use bahn_plc::{PlcAxisCommand, PlcAxisStatus};
+use bahn_servo::Fault;
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -301,8 +302,16 @@ impl PlcAxis {
     /// Moves its axis for a cycle.
     fn moves(&mut self, unit: &mut AxisUnit, now: &Now) {
         let rapid = unit.parameters.motion.rapid_mm_min;
-        let able = unit.servo.closed() && unit.enabled;
-        let mut stop = !able || !now.ready;
+        let able = unit.servo.closed() && unit.enabled && now.ready;
+        let passes_marks = matches!(self.command, Some(PlcAxisCommand::TraverseReferenceMarks { .. }));
+        let cancels = unit.servo.fault().is_some_and(Fault::cancellable);
+        if able && passes_marks && cancels && self.target.is_none() {
+            // A reference run cancels the positioning error [000:15979].
+            unit.servo.acknowledge();
+            unit.transfer();
+        }
+        // An axis that does not follow stops, as the machine does [000:5198].
+        let mut stop = !able || unit.servo.fault().is_some();
         match self.command {
             Some(PlcAxisCommand::Start {
                 target,

@@ -234,6 +234,15 @@ impl Tools {
         }
     }
 
+    /// Behind a scan: what the PLC has acknowledged in it has happened, whenever the supply goes or an EMERGENCY STOP takes
+    /// the strobe away *(inferred)*. Its program may rely on that.
+    pub fn take_end(&mut self, magazine: &mut Magazine, handshakes: &Handshakes, exchange: &Exchange) {
+        let acknowledged = handshakes.acknowledged(exchange.nc());
+        if matches!(acknowledged, Some(Transfer::ToolCall { more: false, .. })) && self.is_changing() {
+            self.inserted(magazine, exchange);
+        }
+    }
+
     /// The last code of a TOOL CALL was acknowledged: the tool is in the spindle. With variable pocket
     /// coding the old tool has taken the pocket of the new one, unless it went to its own (inferred), and
     /// M2612 = 0 [000:9281].

@@ -3,6 +3,7 @@
 mod support;
 
 use bahn_control::RunState;
+use bahn_path::Axis;
 use support::bench::*;
 use support::*;
 
@@ -283,9 +284,14 @@ LBL 41
 ";
 
 fn chain(more: &str) -> Rig {
+    chain_with(more, "")
+}
+
+fn chain_with(more: &str, mps: &str) -> Rig {
     let mut rig = bench(&CHAIN.replace("LBL 40", &format!("{more}\nLBL 40")))
         .with(TABLE)
         .mps("10=15 50=15 60=8 810.3=360 960.3=-90 1010.3=3600 1020.3=1200 1330.3=1800 7480.1=2")
+        .mps(mps)
         .program("1.H", "TOOL DEF 4\nL X+60 R0 F3000\nTOOL DEF 11\nL X+50")
         .ready();
     rig.until(30.0, "the chain is referenced", |rig| rig.axis('C').referenced);
@@ -370,6 +376,84 @@ LBL 52
     rig.event("key IV+ press");
     rig.seconds(0.5);
     close(rig.speed('C'), 0.0, 0.5);
+}
+
+/// A PLC axis that does not follow: POSITIONING ERROR, and it comes to a standstill on its ramp, as the machine does
+/// [000:5198]. Its order is over, module 9122 says why; CE cancels that, and so does a reference run [000:15979].
+#[test]
+fn a_plc_axis_with_a_positioning_error_stops() {
+    let more = "
+       L I28
+       AN M80
+       CMT 50
+       L I28
+       = M80
+       L I29
+       AN M81
+       CMT 40
+       L I29
+       = M81
+LBL 50
+       PS K+3
+       PS K+3000000
+       PS K+1200
+       PS K+0
+       CM 9120
+       PL B237
+       EM
+";
+    for by_marks in [false, true] {
+        // MP1140: a slow drive is not yet one that does not move as its voltage says.
+        let mut rig = chain_with(more, "1140.3=9.9 1710.3=1");
+        rig.input("I28", true);
+        rig.until(5.0, "full speed", |rig| rig.speed('C').abs() > 1195.0);
+        let shows = |rig: &Rig| !rig.messages().is_empty();
+        rig.event("fault drive C slow");
+        rig.until(1.0, "the message", shows);
+        assert_eq!(rig.messages(), ["POSITIONING ERROR C"]);
+        let commanded = |rig: &Rig| {
+            let mut watch = rig.control.first().watch();
+            watch.find(|axis| axis.axis == Axis::C).unwrap().commanded
+        };
+        let (mut before, mut last) = (commanded(&rig), f64::INFINITY);
+        let (mut way, mut cycles) = (0.0, 0);
+        while last > 0.0 {
+            rig.cycle();
+            let step = (commanded(&rig) - before).abs();
+            assert!(step < last, "{step} behind {last}, {:?}", rig.messages());
+            (before, last, way, cycles) = (commanded(&rig), step, way + step, cycles + 1);
+            assert!(cycles < 100);
+        }
+        // 20 degrees in a second, MP1060 = 1 m/s²; what the loop and the interpolation have already is 3 cycles at
+        // most.
+        let ramp = 20.0 * 20.0 / 2000.0;
+        let cycle_s = f64::from(rig.control.cycle_us()) * 1e-6;
+        assert!(
+            (ramp..ramp + 3.0 * 20.0 * cycle_s).contains(&way),
+            "{way}, ramp {ramp}"
+        );
+        rig.event("repair C");
+        rig.seconds(0.3);
+        assert_eq!(rig.number("B236") & 0b10111, 0b10011, "stands, with its error");
+        assert_eq!(rig.messages(), ["POSITIONING ERROR C"]);
+        if by_marks {
+            rig.input("I29", true);
+            rig.seconds(0.1);
+            assert_eq!(rig.number("B236") & 0b10111, 0b00101, "it looks for its mark");
+            rig.command("ce");
+            rig.until(30.0, "the mark", |rig| rig.number("B236") & 0b10111 == 0b00011);
+        } else {
+            rig.command("ce");
+            rig.seconds(0.1);
+            assert_eq!(rig.number("B236") & 0b10111, 0b00011);
+            rig.input("I28", false);
+            rig.seconds(0.1);
+            rig.input("I28", true);
+            rig.seconds(10.0);
+            close(rig.table('C').rem_euclid(360.0), 300.0, 0.01);
+        }
+        assert_eq!(rig.messages(), [""; 0]);
+    }
 }
 
 /// Free rotation of the 4th axis: B518 and B519 with the strobe M2720; W566 times W754; B518 = 0 ends it

@@ -214,33 +214,123 @@ fn a_change_that_power_off_breaks_off() {
         begun.start();
         for step in (10..=130).step_by(10) {
             begun.until(60.0, &format!("step {step}"), |rig| rig.number("W112") == step);
-            // Whether the control has taken an acknowledgement in the cycle in which it is given the PLC cannot know.
-            for depth_s in depths.iter().filter(|depth_s| step < 130 || **depth_s > 0.0) {
+            // In the cycle behind the scan that gives it the control has taken the acknowledgement.
+            let taken = begun.control.tool();
+            assert_eq!(taken == 2, step == 130, "step {step}");
+            for depth_s in depths {
                 let mut rig = begun.clone();
                 rig.seconds(*depth_s);
                 let at = format!("MP7480.0 = {mp}, step {step} and {depth_s} s");
-                let remembered = rig.control.tool();
-                rig.command("power off");
-                rig.seconds(0.2);
-                rig.command("power on");
-                rig.command("ce");
-                // Arm and shuttle wait for the control voltage; no axis moves before they are back.
-                rig.until(60.0, &format!("{at}: the way back"), |rig| {
-                    rig.number("W112") == 0 && rig.control.mode() == bahn_control::Mode::Reference
-                });
-                rig.seconds(0.1);
-                assert_eq!(rig.control.tool(), remembered, "{at}");
-                agree(&rig, &at);
+                switch_off_and_on(&mut rig, &at);
                 rig.power_on();
                 // Of the normal tools the other one, then a special one: two codes.
-                rig.run(if remembered == 1 { "26.H" } else { "16.H" }, 120.0);
-                rig.seconds(0.2);
-                assert_eq!(rig.messages(), [""; 0], "{at}");
-                assert_eq!(rig.control.tool(), 6, "{at}");
-                agree(&rig, &at);
+                let next = if rig.control.tool() == 1 { "26.H" } else { "16.H" };
+                change_to_6(&mut rig, next, &at);
             }
         }
     }
+}
+
+/// A change with two codes, a special tool against a normal one. For the control the old tool is in the spindle until the
+/// second code is acknowledged. The supply goes whenever step or strobe change, some time behind that, and in each cycle
+/// between the codes: behind power-on all tools are where the control has them.
+#[test]
+fn two_codes_that_power_off_breaks_off() {
+    for kind in [MAGAZINE, OLD_FIRST] {
+        let mut begun = mill(3, kind);
+        begun.run("44.H", 60.0);
+        begun.seconds(0.2);
+        begun.command("select 41.H");
+        begun.start();
+        begun.until(10.0, "the first code", |rig| rig.bit("M2046"));
+        let (mut before, mut between) = ([0; 3], 0);
+        while !begun.control.snapshot().ended {
+            let now = [
+                begun.number("W112"),
+                i32::from(begun.bit("M2046")),
+                i32::from(begun.bit("M2093")),
+            ];
+            let passes = matches!(now[0], 130 | 140);
+            between += usize::from(passes);
+            for depth_s in [0.0, 0.15] {
+                if now == before && !(passes && depth_s == 0.0) {
+                    continue;
+                }
+                let mut rig = begun.clone();
+                rig.seconds(depth_s);
+                let at = format!("{kind:b}, W112 M2046 M2093 {now:?} and {depth_s} s");
+                switch_off_and_on(&mut rig, &at);
+                rig.power_on();
+                let next = if rig.control.tool() == 4 { "26.H" } else { "16.H" };
+                change_to_6(&mut rig, next, &at);
+            }
+            before = now;
+            begun.cycle();
+        }
+        assert!(between > 10, "{between}");
+        assert_eq!(begun.control.tool(), 1);
+        agree(&begun, "undisturbed");
+    }
+}
+
+/// The same without power-off: NC stop and internal stop about the change of the codes, in each cycle there. M2093 falls with
+/// what is broken off, and the first code is taken back before anything can be started.
+#[test]
+fn two_codes_that_a_stop_breaks_off() {
+    for kind in [MAGAZINE, OLD_FIRST] {
+        let mut begun = mill(3, kind);
+        begun.run("44.H", 60.0);
+        begun.seconds(0.2);
+        begun.command("select 41.H");
+        begun.start();
+        begun.until(60.0, "the first code is done", |rig| rig.number("W112") == 120);
+        let (mut tried, mut at_once) = (0, 0);
+        while !begun.bit("M2046") || begun.bit("M2093") {
+            let mut rig = begun.clone();
+            let at = format!("{kind:b}, {tried} cycles behind");
+            rig.event("key NC_STOP tap");
+            rig.until(1.0, "the interruption", |rig| {
+                rig.control.run_state() == bahn_control::RunState::Interrupted
+            });
+            at_once += usize::from(matches!(rig.number("W112"), 130 | 140));
+            rig.command("stop");
+            rig.seconds(0.1);
+            rig.until(60.0, &format!("{at}: the way back"), |rig| {
+                rig.number("W112") == 0
+            });
+            assert_eq!(rig.control.tool(), 4, "{at}");
+            agree(&rig, &at);
+            change_to_6(&mut rig, "26.H", &at);
+            tried += 1;
+            begun.cycle();
+        }
+        assert!(tried > 10 && at_once > 3, "{tried} {at_once}");
+    }
+}
+
+/// Off and on: shuttle and arm bring the tools to where the control has them, which remembers the one in the spindle.
+fn switch_off_and_on(rig: &mut Rig, at: &str) {
+    let remembered = rig.control.tool();
+    rig.command("power off");
+    rig.seconds(0.2);
+    rig.command("power on");
+    rig.command("ce");
+    // Arm and shuttle wait for the control voltage; no axis moves before they are back.
+    rig.until(60.0, &format!("{at}: the way back"), |rig| {
+        rig.number("W112") == 0 && rig.control.mode() == bahn_control::Mode::Reference
+    });
+    rig.seconds(0.1);
+    assert_eq!(rig.control.tool(), remembered, "{at}");
+    agree(rig, at);
+}
+
+/// The next changes work, and leave every tool where the control has it.
+fn change_to_6(rig: &mut Rig, name: &str, at: &str) {
+    rig.run(name, 240.0);
+    rig.seconds(0.2);
+    assert_eq!(rig.messages(), [""; 0], "{at}");
+    assert_eq!(rig.control.tool(), 6, "{at}");
+    agree(rig, at);
 }
 
 /// Every tool is where the control has it: one in the spindle, the others in their pockets of the table as it is now.

@@ -123,6 +123,29 @@ fn a_door_in_rapid_traverse_is_no_positioning_error() {
     assert_eq!(commanded(host.control(), Axis::X), 300.0);
 }
 
+/// A rotary axis of 120 degrees/s, too: with 0 V it needs v²/(2a) = 120² / (2 · 113 N / 3 kg), 3.2 degrees, less than
+/// MP1710 = 4.32.
+#[test]
+fn a_door_stops_rotary_axes_within_their_monitoring() {
+    for (name, axis, letter) in [("mill", Axis::C, 'C'), ("gantry", Axis::B, 'B')] {
+        let machine = machine(name);
+        let blocks = format!("L Z+100 R0 FMAX\nL {letter}-100 FMAX\nL {letter}+100 FMAX");
+        let mut host = host(&machine, PowerOn::fresh(&machine), &blocks);
+        until(&mut host, "rapid traverse", |control| {
+            let third = control.element().is_some_and(|element| element.block.block == 3);
+            third && commanded(control, axis) > -10.0
+        });
+        let from = host.plant().axis(letter).unwrap().position;
+        give(&mut host, "switch door open");
+        seconds(&mut host, 0.5);
+        let way = host.plant().axis(letter).unwrap().position - from;
+        assert!(way > 3.0, "{name}: it was on its way, {way}");
+        let shown = host.control().shown();
+        let fault = shown.iter().find(|shown| shown.fault() == FaultId::Positioning);
+        assert!(fault.is_none(), "{name}: {shown:?}");
+    }
+}
+
 /// The feed enable is back: what X ran on without it, 250²/(2 · 7000) = 4.5 mm, it goes back on its ramp (MP1060), no lag
 /// jumps, so that neither MP1410 = 0.5 nor the drive is at its end; the path goes on where X is.
 #[test]
@@ -349,4 +372,124 @@ fn a_path_without_feed_enable_has_no_speed() {
     seconds(&mut host, 1.0);
     give(&mut host, "key NC_START tap");
     until(&mut host, "the end", |control| control.first().has_ended());
+}
+
+/// EMERGENCY STOP while the shuttle of the digital mill passes its marks by order of the PLC (module 9123), which ends the
+/// order: it is given anew, and M61 brings its pallet to 50 mm.
+#[test]
+fn the_shuttle_passes_its_marks_behind_an_emergency_stop() {
+    let mut host = shuttle(&[]);
+    until(&mut host, "the loop of W", Control::loops_closed);
+    while place(&host) > 779.0 {
+        host.step().unwrap();
+    }
+    give(&mut host, "emergency press");
+    seconds(&mut host, 1.0);
+    assert!(place(&host) > 770.0, "no second mark before {}", place(&host));
+    give(&mut host, "emergency release");
+    seconds(&mut host, 0.5);
+    give(&mut host, "ce");
+    until(&mut host, "the end", Control::has_ended);
+    assert!((place(&host) - 50.0).abs() < 0.05, "{}", place(&host));
+}
+
+/// The shuttle is held on its way for a moment: POSITIONING ERROR (MP1720 lies far off here) ends the order, which is no
+/// arrival. The order is given anew behind CE, and only then M61 is acknowledged.
+#[test]
+fn a_pallet_that_is_held_on_its_way_has_not_arrived() {
+    let mut host = shuttle(&["1720.3=30"]);
+    until(&mut host, "M61", |control| control.waiting().is_some());
+    while place(&host) > 400.0 {
+        host.step().unwrap();
+    }
+    give(&mut host, "fault clamp W");
+    until(&mut host, "POSITIONING ERROR", |control| {
+        let mut shown = control.shown().iter();
+        shown.any(|shown| shown.fault() == FaultId::Positioning)
+    });
+    give(&mut host, "repair W");
+    seconds(&mut host, 1.0);
+    assert!(place(&host) > 300.0 && host.control().waiting().is_some());
+    give(&mut host, "ce");
+    until(&mut host, "the acknowledgement", |control| {
+        control.waiting().is_none()
+    });
+    assert!((place(&host) - 50.0).abs() < 0.05, "{}", place(&host));
+    give(&mut host, "key NC_START tap");
+    until(&mut host, "the end", Control::has_ended);
+}
+
+/// The digital mill with a program that wants pallet 1.
+fn shuttle(assignments: &[&str]) -> Host {
+    let mut digital = machine("dig425");
+    for assignment in assignments {
+        digital.parameters.assign(assignment).unwrap();
+    }
+    let power_on = PowerOn::fresh(&digital);
+    host(&digital, power_on, "L Z+100 R0 FMAX M61\nL X+10 F1000")
+}
+
+/// Where the shuttle is, mm.
+fn place(host: &Host) -> f64 {
+    host.plant().axis('W').unwrap().position
+}
+
+/// EMERGENCY STOP for 20 ms while the spindle starts up for M13, which no scan need see at I3: the PLC program sees that the
+/// control holds no axis, takes its order back, and gives it anew. Its M13 is acknowledged, and the run goes on.
+#[test]
+fn a_short_emergency_stop_does_not_leave_the_spindle_standing() {
+    for name in ["mill", "mill-tnc360", "dig425"] {
+        let machine = machine(name);
+        let blocks = "TOOL CALL 1 Z S3000\nL Z+100 R0 FMAX\nL X+10 FMAX M13\nL X+20 F1000";
+        let mut host = host(&machine, PowerOn::fresh(&machine), blocks);
+        until(&mut host, "M13", |control| {
+            let third = control.element().is_some_and(|element| element.block.block == 3);
+            third && control.waiting().is_some()
+        });
+        seconds(&mut host, 0.1);
+        let begun = host.save();
+        // Scans are 20 ms apart, contour cycles 3 or 6 ms; relays take 20 ms to drop out and 10 ms to pull in.
+        let cycle_s = f64::from(host.control().cycle_us()) * 1e-6;
+        for (cycles, more) in (0..7).flat_map(|cycles| [(cycles, 0.0), (cycles, 1.0)]) {
+            host.restore(&begun).unwrap();
+            for _ in 0..cycles {
+                host.step().unwrap();
+            }
+            give(&mut host, "emergency press");
+            seconds(&mut host, 0.019 + more * cycle_s);
+            give(&mut host, "emergency release");
+            seconds(&mut host, 1.0);
+            give(&mut host, "ce");
+            seconds(&mut host, 0.3);
+            give(&mut host, "key NC_START tap");
+            until(&mut host, name, Control::has_ended);
+        }
+    }
+}
+
+/// NC start in the same cycle in which CE closes the loops: the drives of the digital mill have no power yet, and Z would be
+/// GROSS POSITIONING ERROR 3F. Its PLC program waits with the start.
+#[test]
+fn a_start_waits_for_the_drives() {
+    let digital = machine("dig425");
+    let mut host = host(&digital, PowerOn::fresh(&digital), "L Z+100 R0 FMAX");
+    until(&mut host, "the loops", Control::loops_closed);
+    give(&mut host, "voltage off");
+    seconds(&mut host, 0.5);
+    give(&mut host, "voltage on");
+    seconds(&mut host, 0.3);
+    let begun = host.save();
+    for cycles in 0..16 {
+        host.restore(&begun).unwrap();
+        give(&mut host, "key NC_START press");
+        for _ in 0..cycles {
+            host.step().unwrap();
+        }
+        give(&mut host, "ce");
+        seconds(&mut host, 0.5);
+        let shown = host.control().shown();
+        assert!(shown.iter().all(|shown| !shown.flashing), "{shown:?}");
+        give(&mut host, "key NC_START release");
+        until(&mut host, "the end", Control::has_ended);
+    }
 }

@@ -463,3 +463,18 @@ fn faults_of_channels_have_their_lines() {
         );
     }
 }
+
+/// An acknowledgement that comes too early lets the left program go past M60; it waits for the right one at the next place
+/// then, which waits at M60: nobody goes on, and the PLC says so.
+#[test]
+fn programs_that_do_not_meet_are_told() {
+    let mut host = twin();
+    until(&mut host, 60.0, "the left program waits alone", |host| {
+        channel(host, 0).waiting().is_some() && see(host, "W260") == 60.0 && see(host, "M53") == 0.0
+    });
+    deed(&mut host, "M2482=1");
+    until(&mut host, 60.0, "the message", |host| {
+        shown(host).contains(&"PROGRAMS DO NOT MEET".to_owned())
+    });
+    assert!(channel(&host, 0).waiting().is_some() && channel(&host, 1).waiting().is_some());
+}

@@ -130,7 +130,7 @@ impl Console {
             Key::Test => self.program(Programming::Test, site),
             Key::Ce if !self.notes.is_empty() => drop(self.notes.pop()),
             Key::Screen => self.split = !self.split,
-            Key::SkLeft | Key::SkRight => self.turn_row(key == Key::SkRight, site),
+            Key::SkLeft | Key::SkRight => self.turn_row(key, site),
             _ => self.pass_on(key, site),
         }
     }
@@ -144,8 +144,9 @@ impl Console {
 
     fn pass_on(&mut self, key: Key, site: &mut Site) {
         let stack = self.stack();
+        let own = stack.shown().own_soft_keys().is_some();
         let turn = match key.soft_key() {
-            Some(place) => {
+            Some(place) if !own => {
                 let rows = stack.shown().soft_keys(site);
                 let row = stack.row.min(rows.len().saturating_sub(1));
                 let text = rows.get(row).and_then(|row| row.get(place));
@@ -154,7 +155,7 @@ impl Console {
                     false => Turn::Refused,
                 }
             }
-            None => stack.top().key(key, site),
+            _ => stack.top().key(key, site),
         };
         // CE that nobody wants clears the message of the control.
         if key == Key::Ce && matches!(turn, Turn::Refused) {
@@ -251,9 +252,13 @@ impl Console {
         self.front = Side::Programming;
     }
 
-    fn turn_row(&mut self, right: bool, site: &Site) {
+    fn turn_row(&mut self, key: Key, site: &mut Site) {
         let stack = self.stack();
-        let rows = stack.shown().soft_keys(site).len().max(1);
+        if stack.shown().own_soft_keys().is_some() {
+            let turn = stack.top().key(key, site);
+            return self.went(turn, site);
+        }
+        let (right, rows) = (key == Key::SkRight, stack.shown().soft_keys(site).len().max(1));
         stack.row = (stack.row + if right { 1 } else { rows - 1 }) % rows;
     }
 
@@ -289,6 +294,9 @@ impl Console {
             (Side::Programming, Some((_, stack))) => stack,
             _ => &self.machine,
         };
+        if let Some(own) = stack.shown().own_soft_keys() {
+            return own;
+        }
         let rows = stack.shown().soft_keys(site);
         let row = stack.row.min(rows.len().saturating_sub(1));
         SoftKeys {

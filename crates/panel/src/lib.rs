@@ -24,6 +24,7 @@ mod frames;
 mod inhibit;
 mod input;
 mod live;
+mod numbers;
 mod page;
 mod pages;
 mod programs;

@@ -2,7 +2,7 @@
 
 use bahn_dialogue::Key;
 
-use crate::screen::{Dialogue, Window};
+use crate::screen::{Dialogue, SoftKeys, Window};
 use crate::site::Site;
 
 /// What came of a key.
@@ -25,7 +25,7 @@ pub(crate) enum Turn {
 
 /// Something that takes the keys. Pages stand on each other: the topmost one has the keys.
 pub(crate) trait Page: Send {
-    /// A key of the keyboard, never a soft key, nor one that chooses an operating mode.
+    /// A key of the keyboard that chooses no operating mode; a soft key only with [`Page::own_soft_keys`].
     fn key(&mut self, key: Key, site: &mut Site) -> Turn;
 
     /// The texts of the soft keys, row by row, at most eight in each.
@@ -36,6 +36,11 @@ pub(crate) trait Page: Send {
     /// A soft key, by its row and its place there, from 0, that has a text.
     fn soft_key(&mut self, _row: usize, _place: usize, _site: &mut Site) -> Turn {
         Turn::Refused
+    }
+
+    /// The soft-key row of a page that takes soft keys as keys, with those that change the row.
+    fn own_soft_keys(&self) -> Option<SoftKeys> {
+        None
     }
 
     /// What it shows, in a window of so many lines.

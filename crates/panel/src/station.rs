@@ -18,7 +18,7 @@ use crate::programs::ProgramMemory;
 use crate::screen::{MachineState, MessageLine, PlcLine, Screen};
 use crate::settings::Settings;
 use crate::site::Site;
-use crate::{status, texts};
+use crate::{numbers, status, texts};
 
 /// Lines of the large window.
 const LINES: usize = 16;
@@ -178,6 +178,11 @@ impl Station {
     /// Names of the keys of the machine operating panel.
     pub fn machine_keys(&self) -> Vec<String> {
         self.host.plant().keys().map(str::to_owned).collect()
+    }
+
+    /// The numbers behind the screen, for programs: times, positions in mm and degrees, speeds, the run, messages.
+    pub fn numbers(&self) -> serde_json::Value {
+        numbers::of(&self.host.control().snapshot(), self.host.control())
     }
 
     /// The screen as it is now. Its serial counts on when it is another one.

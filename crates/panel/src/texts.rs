@@ -8,7 +8,10 @@ use std::sync::OnceLock;
 
 pub use bahn_dialogue::Tongue as Language;
 
-const GERMAN: &[&str] = &[include_str!("../texts/de.tsv")];
+const GERMAN: &[&str] = &[
+    include_str!("../texts/de.tsv"),
+    include_str!("../texts/messages-de.tsv"),
+];
 
 /// The code of a language: `en`, `de`.
 pub(crate) fn code(language: Language) -> &'static str {
@@ -32,7 +35,29 @@ pub(crate) fn words(language: Language, english: &'static str) -> &'static str {
 
 /// A text that is known at run time only: messages, names of cycles.
 pub(crate) fn translate(language: Language, english: &str) -> String {
-    find(language, english).unwrap_or(english).to_owned()
+    match find(language, english) {
+        Some(text) => text.to_owned(),
+        None => of_axis(language, english).unwrap_or_else(|| english.to_owned()),
+    }
+}
+
+/// A message with the letter of an axis in place of a #, and with a code behind it.
+fn of_axis(language: Language, english: &str) -> Option<String> {
+    if language == Language::English {
+        return None;
+    }
+    let words: Vec<&str> = english.split(' ').collect();
+    let lettered = (0..words.len()).find_map(|place| {
+        let mut around = words.clone();
+        let letter = std::mem::replace(around.get_mut(place)?, "#");
+        // The sign of a direction stands behind the letter.
+        Some(find(language, &around.join(" "))?.replace('#', letter))
+    });
+    lettered.or_else(|| {
+        let (before, code) = english.rsplit_once(' ')?;
+        let text = find(language, before).map(str::to_owned);
+        Some(format!("{} {code}", text.or_else(|| of_axis(language, before))?))
+    })
 }
 
 fn find(language: Language, english: &str) -> Option<&'static str> {
@@ -72,6 +97,27 @@ mod tests {
             }
         }
         found
+    }
+
+    #[test]
+    fn every_message_of_the_control_is_translated() {
+        use bahn_parameters::{ControlModel, MessageId};
+        for model in ControlModel::ALL {
+            for id in MessageId::ALL {
+                let text = id.text(model);
+                assert!(find(Language::German, text).is_some(), "{text}");
+            }
+        }
+        for (english, german) in [
+            ("LIMIT SWITCH X+", "ENDSCHALTER X+"),
+            ("MEASURING SYSTEM Z DEFECTIVE A", "MESS-SYSTEM Z DEFEKT A"),
+            ("GROSS POSITIONING ERROR X A", "GROBER POSITIONIERFEHLER X A"),
+            ("ERROR IN PLC-PROGRAM 1Q", "FEHLER IM PLC-PROGRAMM 1Q"),
+            ("Coolant is low", "Coolant is low"),
+        ] {
+            assert_eq!(translate(Language::German, english), german);
+            assert_eq!(translate(Language::English, english), english);
+        }
     }
 
     #[test]

@@ -31,7 +31,7 @@ const MOST_TOOLS: usize = 0x7f;
 
 impl Cutter {
     /// `None` for the mark of an untouched column.
-    fn of(mark: u8) -> Option<Cutter> {
+    pub fn of(mark: u8) -> Option<Cutter> {
         Some(Cutter {
             index: usize::from(mark & !RAPID).checked_sub(1)?,
             rapid: mark & RAPID != 0,
@@ -74,6 +74,13 @@ impl Cutters {
     /// Number of a tool; `None` for what was in the spindle before the first TOOL CALL.
     pub fn tool(&self, index: usize) -> Option<u32> {
         self.tools.get(index).copied().flatten()
+    }
+
+    /// All tools that were taken, with their marks in feed and in rapid traverse.
+    pub fn known(&self) -> impl Iterator<Item = (Option<u32>, [u8; 2])> {
+        (1_u8..)
+            .zip(&self.tools)
+            .map(|(mark, tool)| (*tool, [mark, mark | RAPID]))
     }
 
     /// The cutters that left a column, each once, in the order of their first call.

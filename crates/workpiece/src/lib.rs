@@ -3,7 +3,7 @@
 //! The face of this room:
 //! - [`Workpiece`]: takes a [`bahn_path::Blank`] and path elements, removes what the tool sweeps, and
 //!   collects what the operator should know ([`Event`]);
-//! - [`Part`]: the material as it is now ([`Workpiece::part`]): removed volume, heights, probing;
+//! - [`Part`]: the material as it is now ([`Workpiece::part`]): removed volume, heights, probing, who cut what ([`CutBy`]);
 //! - views of it as an [`Image`]: [`Part::plan_view`], [`Part::three_planes`], [`Part::view_3d`], each
 //!   on a [`Page`] with a title line;
 //! - [`Part::deviation`] from another part, as numbers and [`Part::deviation_view`];
@@ -57,5 +57,5 @@ pub use grid::{MAX_CELLS, Resolution};
 pub use part::Part;
 pub use solid::SolidError;
 pub use stl::{MAX_TRIANGLES, MeshError};
-pub use view::{Colouring, Page, PageError, PlanView, Projection, ThreePlanes, View3d};
+pub use view::{Colouring, CutBy, Page, PageError, PlanView, Projection, ThreePlanes, View3d};
 pub use workpiece::{Workpiece, WorkpieceError};

@@ -59,6 +59,19 @@ impl Part {
         [self.grid.nx, self.grid.ny]
     }
 
+    /// Heights of all columns over the lower face of the blank, mm; 0 where nothing is left. Rows run along the first
+    /// axis.
+    pub fn heights_mm(&self) -> &[f32] {
+        &self.heights
+    }
+
+    /// Who cut each column last, as a mark; 0 where nothing was cut. `None` unless
+    /// [`Workpiece::remember_tools`](crate::Workpiece::remember_tools) was called; [`Part::cutters`] says what
+    /// the marks mean.
+    pub fn marks(&self) -> Option<&[u8]> {
+        self.cutters.as_ref().map(|cutters| cutters.marks.as_slice())
+    }
+
     /// Volume of the removed material, mm³.
     pub fn removed_mm3(&self) -> f64 {
         let full = self.setup.size[2] as f32;

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use bahn_viewer::base64;
+
 use super::Totals;
 use super::crew::Done;
 use super::row::Row;
@@ -218,43 +220,9 @@ fn escaped(text: &str) -> String {
     out
 }
 
-/// Bytes as text (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |k: usize| u32::from(chunk.get(k).copied().unwrap_or_default());
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for k in 0..4 {
-            let digit = (bits >> (18 - 6 * k) & 63) as usize;
-            out.push(match DIGITS.get(digit) {
-                Some(digit) if k <= chunk.len() => char::from(*digit),
-                _ => '=',
-            });
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_follows_the_rfc() {
-        // Test vectors of RFC 4648, section 10.
-        for (text, coded) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-            ("foobar", "Zm9vYmFy"),
-        ] {
-            assert_eq!(base64(text.as_bytes()), coded);
-        }
-    }
 
     #[test]
     fn names_are_no_markup() {

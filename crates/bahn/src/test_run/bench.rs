@@ -9,6 +9,7 @@ use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanFault, ScanJob, Scanned};
 use bahn_program::{Operation, Program};
+use bahn_viewer::Recording;
 use bahn_workpiece::Part;
 
 use super::digitizing::digitize;
@@ -51,6 +52,8 @@ pub(crate) struct Company {
     /// Show how far the run has come.
     pub progress: bool,
     pub survey: Option<Survey>,
+    /// What the page of the run shows.
+    pub recording: Option<Recording>,
     pub stop: Stop,
 }
 
@@ -61,6 +64,8 @@ pub(crate) struct Tested {
     /// `None` without a blank, or without graphics.
     pub part: Option<Part>,
     pub survey: Option<Survey>,
+    /// What the page of the run shows, when it is wanted.
+    pub recording: Option<Recording>,
     /// Why a file of the path is not whole. The run went on without it.
     pub unwritten: Option<UsageError>,
     /// The programs of the run, for places.
@@ -79,7 +84,10 @@ impl Bench {
             left_hand: settings::left_hand(equipment.tools.as_ref()),
             limits: settings::limits(&equipment.list, machine),
             times: settings::times(machine),
-            memory: Memory::of(&options.output),
+            memory: match &options.html {
+                Some(_) => Memory::of(&options.output).and_tools(),
+                None => Memory::of(&options.output),
+            },
             columns: (!options.output.no_graphics).then_some(wanted),
             ends_at_stop: options.run.stop,
             digitized: options.output.digitized.clone(),
@@ -172,6 +180,15 @@ impl TestRun {
                         survey.element(&planned);
                     }
                     self.element(&planned.element)?;
+                    if let Some(recording) = &mut self.company.recording {
+                        let time_s = self.record.machining_time_s;
+                        recording.element(&planned.element, time_s);
+                        if recording.wants_part(time_s)
+                            && let Some(part) = self.cutting.as_mut().and_then(Cutting::part)
+                        {
+                            recording.part(part, time_s);
+                        }
+                    }
                 }
                 PlannedStep::Barrier(barrier) => {
                     if self.is_stop(&barrier) && self.ends_at_stop {
@@ -362,6 +379,7 @@ impl TestRun {
             report,
             part,
             survey: self.company.survey,
+            recording: self.company.recording,
             unwritten: self.unwritten.or(written.err()),
             interpreter: self.planner.into_source(),
         })

@@ -1,13 +1,14 @@
 //! `bahn test`: one program with its report, or a shelf of them as a table.
 //!
 //! - `options`: options and help; `bench`: one program run to its end, silently; `outputs`: files of the path;
-//!   `survey`: what a table says beyond the report;
+//!   `part_page`: the page for a browser; `survey`: what a table says beyond the report;
 //! - here: what is said of a single program. The table of many is [`crate::shelf`].
 
 mod bench;
 mod digitizing;
 mod options;
 mod outputs;
+mod part_page;
 mod survey;
 
 use std::path::Path;
@@ -16,6 +17,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use bahn_interpreter::Interpreter;
+use bahn_viewer::Recording;
 use bahn_workpiece::Projection;
 
 pub(crate) use bench::{Bench, Company, Tested, stop_function};
@@ -42,6 +44,9 @@ pub(crate) fn command(mut options: TestOptions, shelf: Shelf) -> Result<Outcome,
     settings::say_without_effect(&equipment.list, &options.machine.mp);
     match options.single() {
         Some(file) => single(&options, equipment, file),
+        None if options.html.is_some() => Err(UsageError::new(
+            "--html is the page of one program; --report OUT.html is that of a table".to_owned(),
+        )),
         None => shelf(&options, equipment),
     }
 }
@@ -57,18 +62,19 @@ fn single(options: &TestOptions, equipment: Equipment, file: &Path) -> Result<Ou
         outputs: Outputs::create(&options.output)?,
         progress: true,
         survey: None,
+        recording: options.html.as_ref().map(|_| Recording::default()),
         stop: stop.clone(),
     };
     let mut tested = bench.test(file, company)?;
     stop.run_is_over();
     let unwritten = tested.unwritten.take();
-    let outcome = say(&tested, &bench, options, file, &interrupt.after_run())?;
+    let outcome = say(&mut tested, &bench, options, file, &interrupt.after_run())?;
     unwritten.map_or(Ok(outcome), Err)
 }
 
 /// Prints the report and writes picture and mesh.
 fn say(
-    tested: &Tested,
+    tested: &mut Tested,
     bench: &Bench,
     options: &TestOptions,
     file: &Path,
@@ -90,6 +96,10 @@ fn say(
         projection(bench),
         stop,
     );
+    if let (Some(path), Some(recording)) = (&options.html, tested.recording.take()) {
+        part_page::write(path, recording, tested, options.model)?;
+    }
+    let report = &tested.report;
     print_report(report, options, matches!(drawn, Ok(Written::All)))?;
     Ok(match drawn? {
         Written::All => outcome(&tested.end),

@@ -14,6 +14,9 @@ Examples:
       Run part.h; report machining time, path, tools, removed material, warnings.
   bahn test part.h --image part.png --view 3d
       Show the finished part.
+  bahn test part.h --html part.html
+      A page for any browser, one file: the part to turn, cut open and measure, a slider along the path with the
+      blocks in step.
   bahn test part.h --path part.csv --path part.svg
       Every tool movement as a table and as a drawing.
   bahn test part.h --model tnc360 --mp 7420=4 --set Q1=5,Q2=-3.5
@@ -92,6 +95,10 @@ pub(crate) struct TestOptions {
     pub run: RunOptions,
     #[command(flatten)]
     pub output: OutputOptions,
+    /// Write a page (one file, no network) with the part to turn, cut open and measure, the tool path with a slider,
+    /// blocks, times and warnings.
+    #[arg(long, value_name = "OUT.html", value_hint = ValueHint::FilePath, help_heading = "Output")]
+    pub html: Option<PathBuf>,
     #[command(flatten)]
     pub table: TableOptions,
 }
@@ -161,7 +168,8 @@ impl TestOptions {
     /// Files that are written, with their options.
     pub fn written(&self) -> Vec<(&'static str, &Path)> {
         let reports = self.table.report.iter().map(|file| ("--report", file.path()));
-        self.output.written().chain(reports).collect()
+        let page = self.html.iter().map(|path| ("--html", path.as_path()));
+        self.output.written().chain(page).chain(reports).collect()
     }
 }
 

@@ -105,6 +105,7 @@ impl Axes {
         if let Some(before) = before.filter(|before| before.channel == channel) {
             judge.travel(&before.watch)?;
             judge.acceleration(&before.watch, corner)?;
+            judge.reaction(&before.watch)?;
             judge.way_back(&before)?;
             judge.enable(&before)?;
             judge.monitoring(before.beyond)?;
@@ -273,6 +274,24 @@ impl Judge<'_> {
                 most / cycle_s
             );
             return self.breaks(Rule::Acceleration, values);
+        }
+        Ok(())
+    }
+
+    /// An axis beside the path that does not follow comes to a standstill on its ramp, whoever moves it.
+    fn reaction(&self, before: &AxisWatch) -> Result<(), Violation> {
+        let watch = self.watch;
+        let alone = |watch: &AxisWatch| {
+            let held = watch.closed && !watch.halted;
+            held && watch.fault.is_some() && !watch.on_path && !watch.slave
+        };
+        let most = before.speed_mm_s.abs() - watch.acceleration_mm_s2 * self.moment.cycle_s * (1.0 - 1e-3);
+        if alone(watch) && alone(before) && watch.speed_mm_s.abs() > most.max(0.0) + 1e-4 {
+            let values = format!(
+                "{:.4} mm/s behind {:.4} with a fault",
+                watch.speed_mm_s, before.speed_mm_s
+            );
+            return self.breaks(Rule::Reaction, values);
         }
         Ok(())
     }

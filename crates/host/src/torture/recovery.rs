@@ -100,7 +100,7 @@ impl Course<'_> {
     }
 
     /// Where another mode was chosen before the reference marks were passed, they are passed now; `false` when a flashing
-    /// message is in the way.
+    /// message is in the way, or the operator who stands by has chosen his mode meanwhile.
     fn pass_marks(&mut self) -> Result<bool, Violation> {
         for number in 0..self.control().channels() {
             if !self
@@ -125,6 +125,12 @@ impl Course<'_> {
                     return Err(self.breaks(Rule::Recovery, "the reference run does not end"));
                 }
                 self.cycle()?;
+            }
+            if self
+                .channel(number)
+                .is_some_and(|channel| channel.lacks_reference())
+            {
+                return Ok(false);
             }
         }
         Ok(true)

@@ -1,44 +1,102 @@
-//! POSITIONING WITH MANUAL DATA INPUT: one positioning block, entered and executed, not stored [003:3564-3617].
+//! POSITIONING WITH MANUAL DATA INPUT: a block is entered by dialogue and executed by NC start; it is not stored
+//! [003:3564-3617].
+
+use std::sync::Arc;
 
 use bahn_control::Command;
-use bahn_dialogue::Key;
+use bahn_dialogue::{Editor, Key, Setting};
+use bahn_program::{Edit, Program};
 
 use crate::page::{Page, Turn, View};
-use crate::screen::{Line, Window, WindowKind};
+use crate::pages::editing;
+use crate::screen::SoftKeys;
 use crate::site::Site;
+
+/// The frame in which blocks are entered.
+const EMPTY: &[u8] = b"BEGIN PGM $MDI MM\nEND PGM $MDI MM\n";
 
 /// The block that NC start executes.
 #[derive(Default)]
 pub(crate) struct Mdi {
-    block: String,
+    editor: Option<Editor>,
 }
 
-impl Page for Mdi {
-    fn key(&mut self, _key: Key, _site: &mut Site) -> Turn {
-        Turn::Refused
+impl Mdi {
+    fn editor(&mut self, site: &Site) -> &mut Editor {
+        self.editor.get_or_insert_with(|| {
+            let mut setting = Setting::of(site.parameters());
+            setting.tongue = site.language();
+            Editor::new(Arc::new(Program::from_bytes("$MDI", EMPTY.to_vec())), setting)
+        })
     }
 
-    fn text(&mut self, text: &str, site: &mut Site) -> Turn {
-        match site.command(Command::Mdi(text.to_owned())) {
-            true => {
-                text.clone_into(&mut self.block);
-                Turn::Done
-            }
+    /// A complete block takes the place of the one before, unless it belongs to the cycle that is there.
+    fn entered(&mut self, site: &mut Site) -> Turn {
+        let Some(editor) = &self.editor else {
+            return Turn::Done;
+        };
+        let program = editor.program();
+        let inner = 1..program.block_count().saturating_sub(1);
+        let blocks: Vec<_> = inner.map(|block| program.text_of(block)).collect();
+        match site.command(Command::Mdi(blocks.join("\n"))) {
+            true => Turn::Done,
             false => Turn::Refused,
         }
     }
 
-    fn show(&self, _site: &Site, _lines: usize) -> View {
-        View::of(Window {
-            title: "$MDI".to_owned(),
-            kind: WindowKind::Program,
-            lines: vec![Line {
-                text: self.block.clone(),
-                current: true,
-                ..Line::default()
-            }],
-            first: 0,
-            total: 1,
-        })
+    /// The next block is entered into an empty frame.
+    fn clear(&mut self, site: &Site) {
+        let editor = self.editor(site);
+        let last = editor.program().block_count().saturating_sub(1);
+        if last > 1
+            && !editor.is_open()
+            && let Ok(program) = editor.program().edit(&Edit::Delete { blocks: 1..last })
+        {
+            *editor = Editor::new(Arc::new(program), editor.setting().clone());
+        }
+    }
+}
+
+impl Page for Mdi {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        let opens = matches!(
+            key.group(),
+            bahn_dialogue::KeyGroup::Contour | bahn_dialogue::KeyGroup::Tool | bahn_dialogue::KeyGroup::Axis
+        ) || matches!(
+            key,
+            Key::CyclDef | Key::CyclCall | Key::Stop | Key::TouchProbe | Key::Q
+        );
+        if opens {
+            self.clear(site);
+        }
+        let (turn, changed) = editing::key(self.editor(site), key, site);
+        match changed {
+            true => self.entered(site),
+            false => turn,
+        }
+    }
+
+    fn text(&mut self, text: &str, site: &mut Site) -> Turn {
+        let frame = format!("BEGIN PGM $MDI MM\n{}\nEND PGM $MDI MM\n", text.trim());
+        let setting = self.editor(site).setting().clone();
+        let program = Program::from_bytes("$MDI", frame.into_bytes());
+        self.editor = Some(Editor::new(Arc::new(program), setting));
+        self.entered(site)
+    }
+
+    fn own_soft_keys(&self) -> Option<SoftKeys> {
+        self.editor.as_ref().map(editing::soft_keys)
+    }
+
+    fn show(&self, _site: &Site, lines: usize) -> View {
+        match &self.editor {
+            Some(editor) => editing::view(editor, "$MDI", lines),
+            None => View::default(),
+        }
+    }
+
+    fn tick(&mut self, site: &mut Site) -> Turn {
+        self.editor(site);
+        Turn::Done
     }
 }

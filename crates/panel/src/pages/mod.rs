@@ -4,6 +4,7 @@ mod ask;
 mod by_hand;
 mod corrections;
 mod datum;
+mod editing;
 mod files;
 mod handwheel;
 mod help;

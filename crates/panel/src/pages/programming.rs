@@ -1,28 +1,97 @@
-//! PROGRAMMING AND EDITING [003:1692-1790].
+//! PROGRAMMING AND EDITING [003:1692-1790]: a program is written by dialogue. Every block is on the medium when it is
+//! complete, and what is still open of one is kept, too.
 
-use std::sync::Arc;
-
-use bahn_dialogue::Key;
-use bahn_program::Program;
+use bahn_control::RunState;
+use bahn_dialogue::{Draft, Editor, Key, Setting};
+use serde_json::Value;
 
 use crate::page::{Page, Turn, View};
+use crate::pages::editing;
 use crate::pages::files::{Directory, Purpose};
-use crate::pages::run::listing;
-use crate::screen::{Window, WindowKind};
+use crate::screen::{SoftKeys, Window, WindowKind};
 use crate::site::Site;
 
 /// A program is edited.
 pub(crate) struct Programming {
-    open: Option<(String, Arc<Program>)>,
-    cursor: u32,
+    open: Option<Open>,
+}
+
+struct Open {
+    name: String,
+    editor: Editor,
+    /// The program memory as this editor knows it.
+    version: u64,
 }
 
 impl Programming {
-    /// With the program that was edited last.
+    /// With the program that was edited last, and what was open of it.
     pub fn new(site: &mut Site) -> Programming {
         let name = site.settings.edited.clone();
-        let open = name.and_then(|name| Some((name.clone(), site.programs.read(&name)?)));
-        Programming { open, cursor: 0 }
+        let mut open = name.and_then(|name| Open::of(name, site));
+        let kept = site.settings.draft.as_ref().and_then(Value::as_str);
+        if let (Some(open), Some(draft)) = (&mut open, kept.and_then(|text| text.parse::<Draft>().ok())) {
+            open.editor.restore(&draft);
+        }
+        Programming { open }
+    }
+
+    /// What has changed is on the medium before the next key.
+    fn keep(&mut self, changed: bool, site: &mut Site) -> Option<String> {
+        let open = self.open.as_mut()?;
+        site.settings.draft = open.editor.draft().map(|draft| Value::from(draft.to_string()));
+        let stored = match changed {
+            true => site.programs.write(&open.name, &open.editor.program().to_bytes()),
+            false => Ok(()),
+        };
+        open.version = site.programs.version();
+        stored.err()
+    }
+
+    fn with(&mut self, site: &mut Site, what: impl FnOnce(&mut Editor, &mut Site) -> (Turn, bool)) -> Turn {
+        let Some(open) = &mut self.open else {
+            return Turn::Refused;
+        };
+        if open.runs(site) {
+            return Turn::Say(site.words("BACKGROUND PROGRAMMING NOT POSSIBLE"));
+        }
+        let (turn, changed) = what(&mut open.editor, site);
+        match self.keep(changed, site) {
+            Some(fault) => Turn::Say(fault),
+            None => turn,
+        }
+    }
+}
+
+impl Open {
+    fn of(name: String, site: &Site) -> Option<Open> {
+        let program = site.programs.read(&name)?;
+        let mut setting = Setting::of(site.parameters());
+        setting.tongue = site.language();
+        Some(Open {
+            name,
+            editor: Editor::new(program, setting),
+            version: site.programs.version(),
+        })
+    }
+
+    /// The file is another one than is edited: it was protected, or written elsewhere.
+    fn is_stale(&mut self, site: &Site) -> bool {
+        let version = std::mem::replace(&mut self.version, site.programs.version());
+        let own = || Some(self.editor.program().to_bytes());
+        version != self.version && site.programs.read(&self.name).map(|program| program.to_bytes()) != own()
+    }
+
+    /// The machine runs this program.
+    fn runs(&self, site: &Site) -> bool {
+        let control = site.control();
+        let stem = self
+            .name
+            .rsplit_once('.')
+            .map_or(self.name.as_str(), |(stem, _)| stem);
+        control.run_state() != RunState::Idle
+            && control
+                .selected_program()
+                .is_some_and(|selected| selected.eq_ignore_ascii_case(stem))
     }
 }
 
@@ -31,13 +100,21 @@ impl Page for Programming {
         match key {
             Key::ClPgm => Turn::Open(Box::new(Directory::new(Purpose::Erase, site))),
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Edit, site))),
-            _ => Turn::Refused,
+            _ => self.with(site, |editor, site| editing::key(editor, key, site)),
         }
+    }
+
+    fn text(&mut self, text: &str, site: &mut Site) -> Turn {
+        self.with(site, |editor, site| editing::text(editor, text, site))
+    }
+
+    fn own_soft_keys(&self) -> Option<SoftKeys> {
+        self.open.as_ref().map(|open| editing::soft_keys(&open.editor))
     }
 
     fn show(&self, _site: &Site, lines: usize) -> View {
         match &self.open {
-            Some((name, program)) => View::of(listing(name, program, self.cursor, lines)),
+            Some(open) => editing::view(&open.editor, &open.name, lines),
             None => View::of(Window {
                 kind: WindowKind::Program,
                 ..Window::default()
@@ -46,9 +123,17 @@ impl Page for Programming {
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {
-        let open = self.open.as_ref().map(|(name, _)| name.as_str());
-        if open != site.settings.edited.as_deref() {
+        if self.open.as_mut().is_some_and(|open| open.is_stale(site)) {
             *self = Programming::new(site);
+        }
+        let open = self.open.as_ref().map(|open| open.name.as_str());
+        if open != site.settings.edited.as_deref() {
+            site.settings.draft = None;
+            *self = Programming::new(site);
+            // A name without its program is not asked for again.
+            if self.open.is_none() {
+                site.settings.edited = None;
+            }
         }
         Turn::Done
     }

@@ -129,7 +129,7 @@ impl Trainee {
         self.folder.join(name).exists()
     }
 
-    /// Writes a file of his machine's folder.
+    /// Somebody puts a file into his machine's folder.
     pub fn write(&self, name: &str, text: &str) {
         std::fs::write(self.folder.join(name), text).unwrap();
     }

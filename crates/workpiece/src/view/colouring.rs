@@ -21,6 +21,31 @@ pub enum Colouring {
     Tool,
 }
 
+/// A tool that the part knows, with its marks ([`Part::marks`](crate::Part::marks)) and colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CutBy {
+    /// Its number; `None` for what was in the spindle before the first TOOL CALL.
+    pub tool: Option<u32>,
+    /// The marks of columns that it cut last: in feed, in rapid traverse.
+    pub marks: [u8; 2],
+    /// The colours of [`Colouring::Tool`] for both.
+    pub colours: [Colour; 2],
+}
+
+impl Part {
+    /// The tools whose marks it may have, in the order of their first call; empty when none are remembered.
+    pub fn cutters(&self) -> Vec<CutBy> {
+        let known = self.cutters.iter().flat_map(|cutters| cutters.known());
+        known
+            .map(|(tool, marks)| CutBy {
+                tool,
+                marks,
+                colours: marks.map(|mark| Cutter::of(mark).map_or(NO_TOOL, tool_colour)),
+            })
+            .collect()
+    }
+}
+
 /// The colours of a part.
 pub(super) struct Palette<'a> {
     part: &'a Part,

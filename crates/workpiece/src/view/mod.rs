@@ -15,7 +15,7 @@ mod three_planes;
 mod way;
 
 pub use camera::View3d;
-pub use colouring::Colouring;
+pub use colouring::{Colouring, CutBy};
 pub use plan::PlanView;
 
 pub use three_planes::{Projection, ThreePlanes};

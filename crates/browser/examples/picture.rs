@@ -1,0 +1,33 @@
+//! A picture of a page: `picture PAGE.html OUT.png WIDTHxHEIGHT [dark] [phone] [js:SCRIPT ...]`.
+//!
+//! Scripts are executed one after the other before the picture is taken.
+
+use std::path::Path;
+use std::time::Duration;
+
+use bahn_browser::Browser;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [page, out, size, further @ ..] = arguments.as_slice() else {
+        return Err("picture PAGE.html OUT.png WIDTHxHEIGHT [dark] [phone] [js:SCRIPT ...]".into());
+    };
+    let (width, height) = size.split_once('x').ok_or("the size is WIDTHxHEIGHT")?;
+    let is = |word: &str| further.iter().any(|other| other == word);
+    let browser = Browser::start()?;
+    let mut tab = browser.page()?;
+    tab.viewport(width.parse()?, height.parse()?, is("phone"))?;
+    tab.dark(is("dark"))?;
+    tab.open_file(Path::new(page))?;
+    let settled = "!globalThis.bahn || (bahn.view.frames > 0 && !bahn.view.asked)";
+    tab.wait_until(settled, Duration::from_secs(60))?;
+    for script in further.iter().filter_map(|word| word.strip_prefix("js:")) {
+        println!("{}", tab.evaluate(script)?);
+        tab.wait_until(settled, Duration::from_secs(60))?;
+    }
+    std::fs::write(out, tab.screenshot()?)?;
+    for complaint in tab.complaints() {
+        eprintln!("{complaint}");
+    }
+    Ok(())
+}

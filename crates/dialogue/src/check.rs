@@ -1,0 +1,84 @@
+//! What the control says of an entry before it becomes a block.
+
+use bahn_parameters::MessageId::{
+    self, EntryValueIncorrect, JumpToLabelZeroNotPermitted, LabelNumberAllocated, WrongSignProgrammed,
+};
+use bahn_program::{CycleWord, InputSteps, Operation, Program, check_limits};
+
+use crate::Setting;
+use crate::field::Field;
+use crate::line::Line;
+
+/// What a line is checked against.
+#[derive(Clone, Copy)]
+pub(crate) struct Context<'a> {
+    pub(crate) setting: &'a Setting,
+    pub(crate) program: &'a Program,
+    /// The block that the line takes the place of.
+    pub(crate) replaces: Option<u32>,
+}
+
+impl Context<'_> {
+    /// Checks a line, missing answers apart. The other lines are those of its cycle.
+    pub(crate) fn check<'l>(
+        &self,
+        line: &'l Line,
+        others: impl IntoIterator<Item = &'l Line>,
+    ) -> Result<(), MessageId> {
+        if !line.fields().iter().all(Field::is_whole) {
+            return Err(EntryValueIncorrect);
+        }
+        let read = self.program.language().parse_block(&line.text_to_check());
+        if let Some(fault) = read.faults.first() {
+            return Err(fault.message);
+        }
+        let mut operation = read.block.operation;
+        let unit = self.program.unit();
+        if let Some(fault) = check_limits(&operation, unit, self.setting.reading()) {
+            return Err(fault.message);
+        }
+        if InputSteps::of(self.setting.model, unit).round(&mut operation) {
+            return Err(EntryValueIncorrect);
+        }
+        self.labels(&operation, line)?;
+        let signs = std::iter::once(line).chain(others);
+        let mut signs = signs.flat_map(Line::fields).filter_map(working_sign);
+        let first = signs.next();
+        match signs.any(|sign| Some(sign) != first) {
+            true => Err(WrongSignProgrammed),
+            false => Ok(()),
+        }
+    }
+
+    /// A label is set once [003:7881-7883], and label 0 is only an end [003:7885-7887].
+    fn labels(&self, operation: &Operation, line: &Line) -> Result<(), MessageId> {
+        match operation {
+            Operation::Label(label) if *label > 0 && line.is_complete() => {
+                let at = self.program.label(*label);
+                match at.is_some_and(|block| Some(block) != self.replaces) {
+                    true => Err(LabelNumberAllocated),
+                    false => Ok(()),
+                }
+            }
+            Operation::CallLabel { label: 0, .. } | Operation::Jump { label: 0, .. } => {
+                Err(JumpToLabelZeroNotPermitted)
+            }
+            Operation::Cycle(block) => {
+                let zero =
+                    |word: &CycleWord| matches!(word, CycleWord::Labels(labels) if labels.contains(&0));
+                match block.words.iter().any(zero) {
+                    true => Err(JumpToLabelZeroNotPermitted),
+                    false => Ok(()),
+                }
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Whether a value that shows the working direction is negative; that of a Q parameter or of 0 is not known.
+fn working_sign(field: &Field) -> Option<bool> {
+    let word = field.words.first().filter(|_| field.slot.working)?;
+    let number: f64 = word.value.parse().ok()?;
+    (number != 0.0).then_some(number < 0.0)
+}

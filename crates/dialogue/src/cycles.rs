@@ -1,0 +1,255 @@
+//! What cycles and probe functions ask: derived from the table of cycles.
+
+use bahn_program::{Cycle, CycleFunction, CycleParameter, Quantity, Sign, cycle};
+
+use crate::blocks::{SIGNED, TURN, UNSIGNED, coordinates};
+use crate::field::{Ask, Field, Most, Need, Signs, Slot};
+use crate::line::Line;
+use crate::prompt::prompt;
+
+/// The words of all blocks of a cycle or probe function; of cycles that the table does not know, like those of the
+/// machine builder, their `Qn=` words as text.
+pub(crate) fn cycle_lines(function: CycleFunction, number: u16) -> Vec<Line> {
+    let known = cycle(function, number);
+    let last = known.and_then(Cycle::last_block).unwrap_or(1);
+    (0..=last).map(|sub| cycle_line(function, number, sub)).collect()
+}
+
+/// The words of one block.
+pub(crate) fn cycle_line(function: CycleFunction, number: u16, sub: u16) -> Line {
+    let word = match function {
+        CycleFunction::Definition => "CYCL DEF",
+        CycleFunction::Probe => "TCH PROBE",
+    };
+    let known = cycle(function, number);
+    let name = known.map_or("", |cycle| cycle.name);
+    if sub == 0 {
+        // The first block of REF. PLANE takes the result parameter and the direction [003:4414-4428].
+        let probing = function == CycleFunction::Probe && number == 0;
+        let fields = if probing { ref_plane(name) } else { Vec::new() };
+        let name = if probing { "" } else { name };
+        return Line::new(format!("{word} {number}.0 {name}").trim_end(), fields);
+    }
+    let head = format!("{word} {number}.{sub}");
+    let parameters = known.map_or(&[][..], |cycle| cycle.block(sub));
+    if parameters.is_empty() {
+        let slot = slot(Ask::Text, "parameters", Need::Optional);
+        return Line::new(&head, vec![Field::new(slot)]);
+    }
+    let mut fields: Vec<Field> = Vec::new();
+    for (index, parameter) in parameters.iter().enumerate() {
+        let before = parameters.iter().take(index);
+        let occurrence = 1 + before.filter(|other| other.name == parameter.name).count();
+        let place = Place {
+            function,
+            number,
+            sub,
+            occurrence,
+        };
+        fields.extend(place.fields(parameter));
+    }
+    Line::new(&head, fields)
+}
+
+/// Whether a block like the last one may follow it: a datum shift has one for each axis [003:6222].
+pub(crate) fn repeats(function: CycleFunction, number: u16) -> bool {
+    let last = cycle(function, number).and_then(|cycle| cycle.blocks.last());
+    let shifts = |parameter: &CycleParameter| parameter.quantity == Quantity::Shift;
+    last.is_none_or(|block| block.iter().any(shifts))
+}
+
+fn slot(ask: Ask, prompt: &'static str, need: Need) -> Slot {
+    Slot {
+        glue: " ",
+        address: "",
+        ask,
+        prompt,
+        need,
+        working: false,
+    }
+}
+
+fn ref_plane(name: &str) -> Vec<Field> {
+    let target = Slot {
+        address: "Q",
+        ..slot(Ask::Integer { q: false }, "probe target", Need::Required)
+    };
+    let mut target = Field::new(target);
+    target.glue = format!(" {name} ").into();
+    let direction = Field::new(slot(Ask::Direction, "probe direction", Need::Required));
+    vec![target, direction]
+}
+
+/// Where a parameter stands.
+struct Place {
+    function: CycleFunction,
+    number: u16,
+    sub: u16,
+    /// Which one of its name in the block, from 1.
+    occurrence: usize,
+}
+
+impl Place {
+    /// What is asked for a parameter.
+    fn fields(&self, parameter: &CycleParameter) -> Vec<Field> {
+        let need = match parameter.optional {
+            true => Need::Optional,
+            false => Need::Required,
+        };
+        let id = |what: &str| self.prompt(what);
+        let name = parameter.name;
+        let one = |ask, what: &str| vec![Field::new(slot(ask, id(what), need))];
+        match parameter.quantity {
+            Quantity::Coordinates => one(coordinates(Most::Count(3), true), "coordinates"),
+            Quantity::Side => one(coordinates(Most::Count(1), false), "side"),
+            Quantity::Shift => one(coordinates(Most::Count(1), true), "shift"),
+            Quantity::Axes => {
+                let most = match self.function {
+                    CycleFunction::Definition => 3,
+                    CycleFunction::Probe => 1,
+                };
+                named(
+                    name,
+                    one(Ask::Axes(most), if name.is_empty() { "axes" } else { name }),
+                )
+            }
+            Quantity::Directions => {
+                let first = Field::new(slot(Ask::Direction, id("approach"), need));
+                let mut second = Field::new(slot(Ask::Direction, id("start"), need));
+                second.glue = "/".into();
+                let mut fields = named(name, vec![first]);
+                fields.push(second);
+                fields
+            }
+            Quantity::AxisFactors => {
+                let factors = Ask::Coordinates {
+                    prefix: "",
+                    signs: Signs::None,
+                    incremental: false,
+                    most: Most::Count(3),
+                };
+                let centre = Ask::Coordinates {
+                    prefix: "CC",
+                    signs: Signs::Always,
+                    incremental: false,
+                    most: Most::Count(3),
+                };
+                let mut fields = one(factors, "factors");
+                fields.push(Field::new(slot(centre, id("centre"), Need::Optional)));
+                fields
+            }
+            Quantity::Feed => {
+                let slot = slot(Ask::Feed { max: false }, id(name), need);
+                vec![Field::new(Slot { address: "F", ..slot })]
+            }
+            Quantity::Turn => {
+                let slot = slot(TURN, id(name), need);
+                vec![Field::new(Slot {
+                    address: "DR",
+                    ..slot
+                })]
+            }
+            Quantity::Labels => named(name, one(Ask::Labels, name)),
+            Quantity::Program => named(name, one(Ask::Name, name)),
+            // `ROT`, incremental `IROT` [003:6313-6333].
+            Quantity::Rotation => {
+                let ask = Ask::Number {
+                    signs: Signs::Always,
+                    incremental: true,
+                };
+                vec![Field::new(Slot {
+                    address: "ROT",
+                    ..slot(ask, id(name), need)
+                })]
+            }
+            Quantity::Length
+            | Quantity::Dwell
+            | Quantity::Milliseconds
+            | Quantity::Angle
+            | Quantity::Orientation
+            | Quantity::Factor => named(name, vec![self.number(parameter, need)]),
+        }
+    }
+
+    fn number(&self, parameter: &CycleParameter, need: Need) -> Field {
+        let ask = match (parameter.sign, self.function) {
+            (Sign::Signed | Sign::Working, _) => SIGNED,
+            // The line spacing of CONTOUR LINES may be negative [003:6745].
+            (Sign::Unsigned, CycleFunction::Probe) => Ask::Number {
+                signs: Signs::Minus,
+                incremental: false,
+            },
+            (Sign::Unsigned, CycleFunction::Definition) => UNSIGNED,
+        };
+        let slot = slot(ask, self.prompt(parameter.name), need);
+        Field::new(Slot {
+            working: parameter.sign == Sign::Working,
+            ..slot
+        })
+    }
+
+    /// Id of the prompt for this place, or the one that more places share.
+    fn prompt(&self, what: &str) -> &'static str {
+        let Place {
+            number,
+            sub,
+            occurrence,
+            ..
+        } = self;
+        let kind = match self.function {
+            CycleFunction::Definition => "cycle",
+            CycleFunction::Probe => "probe",
+        };
+        let ids = [
+            format!("{kind} {number}.{sub} {what} {occurrence}"),
+            format!("{kind} {number}.{sub} {what}"),
+            format!("{kind} {number} {what}"),
+            format!("{kind} {what}"),
+        ];
+        let found = ids.iter().find_map(|id| prompt(id));
+        found.map_or("", |prompt| prompt.id())
+    }
+}
+
+/// Fields whose first has the name of the parameter before it.
+fn named(name: &str, mut fields: Vec<Field>) -> Vec<Field> {
+    if let Some(first) = fields.first_mut().filter(|_| !name.is_empty()) {
+        first.glue = format!(" {name} ").into();
+    }
+    fields
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bahn_program::CYCLES;
+
+    #[test]
+    fn every_parameter_of_every_cycle_has_its_question() {
+        for cycle in CYCLES {
+            for line in cycle_lines(cycle.function, cycle.number) {
+                for field in line.fields() {
+                    let id = field.slot.prompt;
+                    assert!(prompt(id).is_some(), "{} has no prompt", line.head());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cycle_asks_block_by_block() {
+        let lines = cycle_lines(CycleFunction::Definition, 4);
+        let asked: Vec<Vec<&str>> = lines
+            .iter()
+            .map(|line| line.fields().iter().map(|field| field.slot.prompt).collect())
+            .collect();
+        assert_eq!(asked[0], [""; 0]);
+        assert_eq!(asked[3], ["cycle PECKG", "cycle 4.3 F"]);
+        assert_eq!(asked[4..6], [["cycle 4.4 side"], ["cycle 4.5 side"]]);
+        assert_eq!(asked[6], ["cycle F", "cycle DR", "cycle 4.6 RADIUS"]);
+        let feeds = cycle_line(CycleFunction::Definition, 16, 2);
+        let ids: Vec<_> = feeds.fields().iter().map(|field| field.slot.prompt).collect();
+        assert_eq!(ids, ["cycle PECKG", "cycle 16.2 F", "cycle DR", "cycle 16.2 F 2"]);
+        assert!(repeats(CycleFunction::Definition, 7) && !repeats(CycleFunction::Definition, 1));
+    }
+}

@@ -1,0 +1,522 @@
+//! The editor: a program, a cursor, and what is open.
+
+use std::sync::Arc;
+
+use bahn_parameters::MessageId::{
+    self, EntryValueIncorrect, FurtherProgramEntryImpossible, KeyNonFunctional, ProtectedPgm,
+};
+use bahn_path::Axis;
+use bahn_program::{Edit, Program};
+
+use crate::blocks::BLOCKS;
+use crate::check::Context;
+use crate::dialogue::{Dialogue, Source, Step};
+use crate::highlight::Highlight;
+use crate::history::History;
+use crate::line::{Line, WordPlace, written};
+use crate::menu::{Choice, Menu, MenuKind};
+use crate::soft_keys::{self, Labelled, Soft};
+use crate::{Key, KeyGroup, Setting};
+
+/// What a key did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reaction {
+    /// What is shown has changed, the program has not.
+    Shown,
+    /// The program has changed.
+    Edited,
+    /// The key was refused with a message, which is shown.
+    Refused(MessageId),
+    /// The actual position is wanted; [`Editor::capture`] or [`Editor::capture_block`] gives it.
+    Position(Wanted),
+    /// The key is none of the editor's.
+    Passed,
+}
+
+/// Which actual position is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// That of an axis, for the coordinate that is being entered.
+    Axis(Axis),
+    /// That of the tool axis, for a length.
+    ToolAxis,
+    /// Those of the axes chosen by MOD, for a new L block [003:2260-2321].
+    Block,
+}
+
+/// What is open.
+#[derive(Clone, Debug)]
+pub(crate) enum Open {
+    Nothing,
+    Dialogue(Box<Dialogue>),
+    Highlight(Box<Highlight>),
+    Menu(Box<Menu>),
+    /// GOTO with the digits so far.
+    Goto(String),
+    /// The text to find so far.
+    Find(String),
+}
+
+/// Programming by dialogue: takes keys, changes a program, says what is to be shown.
+///
+/// A program is never changed in its place: whoever holds an older version keeps it.
+///
+/// ```
+/// use std::sync::Arc;
+/// use bahn_dialogue::{Editor, Key, Reaction, Setting};
+/// use bahn_parameters::{ControlModel, ParameterList};
+/// use bahn_program::Program;
+///
+/// let setting = Setting::of(&ParameterList::reference(ControlModel::Tnc360));
+/// let program = Program::from_bytes("7.H", b"0 BEGIN PGM 7 MM\n1 END PGM 7 MM\n".to_vec());
+/// let mut editor = Editor::new(Arc::new(program), setting);
+/// for name in "L X 1 0 Y SIGN 5 POINT 5 ENT RL ENT 2 0 0 ENT".split(' ') {
+///     editor.key(Key::from_name(name).unwrap());
+/// }
+/// assert_eq!(editor.view(2, 2).question.unwrap().prompt, "MISCELLANEOUS FUNCTION M?");
+/// assert_eq!(editor.key(Key::NoEnt), Reaction::Edited);
+/// assert_eq!(editor.program().text_of(1), "L X+10 Y-5.5 RL F200");
+/// ```
+#[derive(Clone, Debug)]
+pub struct Editor {
+    pub(crate) program: Arc<Program>,
+    pub(crate) setting: Setting,
+    pub(crate) cursor: u32,
+    pub(crate) open: Open,
+    pub(crate) message: Option<MessageId>,
+    pub(crate) soft_row: usize,
+    pub(crate) mark: Option<u32>,
+    pub(crate) clipboard: Vec<String>,
+    pub(crate) sought: String,
+    pub(crate) history: History,
+}
+
+impl Editor {
+    /// An editor at the beginning of a program.
+    pub fn new(program: Arc<Program>, setting: Setting) -> Editor {
+        Editor {
+            program,
+            setting,
+            cursor: 0,
+            open: Open::Nothing,
+            message: None,
+            soft_row: 0,
+            mark: None,
+            clipboard: Vec::new(),
+            sought: String::new(),
+            history: History::default(),
+        }
+    }
+
+    /// The program as it is now, without what is still being entered.
+    pub fn program(&self) -> &Arc<Program> {
+        &self.program
+    }
+
+    /// The block at the cursor.
+    pub fn cursor(&self) -> u32 {
+        self.cursor
+    }
+
+    /// What the editor knows of its control and machine.
+    pub fn setting(&self) -> &Setting {
+        &self.setting
+    }
+
+    /// Goes to a block, if nothing is open.
+    pub fn go_to(&mut self, block: u32) -> bool {
+        let free = matches!(self.open, Open::Nothing);
+        if free {
+            self.cursor = block.min(self.last());
+        }
+        free
+    }
+
+    /// Whether a dialogue, a list or a value is open.
+    pub fn is_open(&self) -> bool {
+        match &self.open {
+            Open::Nothing => false,
+            Open::Highlight(highlight) => highlight.is_changed(),
+            _ => true,
+        }
+    }
+
+    /// The message in the header.
+    pub fn message(&self) -> Option<MessageId> {
+        self.message
+    }
+
+    /// What a key does.
+    pub fn key(&mut self, key: Key) -> Reaction {
+        let others = matches!(key, Key::Graphics | Key::Magn | Key::Start);
+        if key.group() == KeyGroup::Mode || (key.group() == KeyGroup::Files && key != Key::PgmCall) || others
+        {
+            return Reaction::Passed;
+        }
+        if key == Key::Ce && self.message.take().is_some() && !self.is_open() {
+            return Reaction::Shown;
+        }
+        let done = match key {
+            Key::SkLeft | Key::SkRight => self.other_soft_row(key == Key::SkRight),
+            _ => match key.soft_key() {
+                Some(number) => self.soft_key(number),
+                None => self.other_key(key),
+            },
+        };
+        self.reaction(done)
+    }
+
+    /// Characters of a text that is being entered; elsewhere the keys of those characters.
+    pub fn type_text(&mut self, text: &str) -> Reaction {
+        let mut last = Reaction::Shown;
+        for character in text.chars() {
+            let mut text = [0; 4];
+            let text = character.encode_utf8(&mut text);
+            let taken = match &mut self.open {
+                Open::Dialogue(dialogue) if dialogue.current().is_some_and(|it| it.slot.ask.is_text()) => {
+                    Some(dialogue.take(text, &self.setting))
+                }
+                Open::Highlight(highlight) if highlight.ask().is_some_and(|ask| ask.is_text()) => {
+                    Some(highlight.take(text, &self.setting))
+                }
+                Open::Find(sought) => {
+                    sought.push(character);
+                    Some(Ok(()))
+                }
+                _ => None,
+            };
+            last = match taken {
+                Some(done) => self.reaction(done.map(|()| Reaction::Shown)),
+                None => match Key::of_character(character) {
+                    Some(key) => self.key(key),
+                    None => self.reaction(Err(KeyNonFunctional)),
+                },
+            };
+        }
+        last
+    }
+
+    pub(crate) fn reaction(&mut self, done: Result<Reaction, MessageId>) -> Reaction {
+        match done {
+            Ok(reaction) => {
+                self.message = None;
+                reaction
+            }
+            Err(message) => {
+                self.message = Some(message);
+                Reaction::Refused(message)
+            }
+        }
+    }
+
+    pub(crate) fn last(&self) -> u32 {
+        self.program.block_count().saturating_sub(1)
+    }
+
+    fn other_key(&mut self, key: Key) -> Result<Reaction, MessageId> {
+        let before = self.spot();
+        let done = self.open_key(key);
+        if self.spot() != before {
+            self.soft_row = 0;
+        }
+        done
+    }
+
+    /// What the soft keys belong to.
+    fn spot(&self) -> (u8, usize, usize) {
+        match &self.open {
+            Open::Nothing => (0, 0, 0),
+            Open::Dialogue(dialogue) => (1, dialogue.line, dialogue.field),
+            Open::Highlight(highlight) => match highlight.place {
+                Some((field, _)) => (2, field, highlight.block as usize),
+                None => (3, 0, 0),
+            },
+            Open::Menu(_) => (4, 0, 0),
+            Open::Goto(_) => (5, 0, 0),
+            Open::Find(_) => (6, 0, 0),
+        }
+    }
+
+    fn open_key(&mut self, key: Key) -> Result<Reaction, MessageId> {
+        match std::mem::replace(&mut self.open, Open::Nothing) {
+            Open::Nothing => self.program_key(key),
+            Open::Dialogue(dialogue) => self.dialogue_key(dialogue, key),
+            Open::Highlight(highlight) => self.highlight_key(highlight, key),
+            Open::Menu(menu) => self.menu_key(menu, key),
+            Open::Goto(digits) => self.goto_key(digits, key),
+            Open::Find(text) => self.find_key(text, key),
+        }
+    }
+
+    pub(crate) fn show(&mut self, open: Open) -> Result<Reaction, MessageId> {
+        self.open = open;
+        Ok(Reaction::Shown)
+    }
+
+    /// A key while nothing is open.
+    pub(crate) fn program_key(&mut self, key: Key) -> Result<Reaction, MessageId> {
+        match key {
+            Key::Up => {
+                self.cursor = self.cursor.saturating_sub(1);
+                return Ok(Reaction::Shown);
+            }
+            Key::Down => {
+                self.cursor = (self.cursor + 1).min(self.last());
+                return Ok(Reaction::Shown);
+            }
+            Key::Right => return self.highlight(self.cursor, None),
+            Key::Goto => return self.show(Open::Goto(String::new())),
+            Key::Ce => return Ok(Reaction::Shown),
+            Key::Del => return self.delete(),
+            Key::Capture => {
+                self.may_insert()?;
+                return Ok(Reaction::Position(Wanted::Block));
+            }
+            _ => {}
+        }
+        let menu = match key {
+            Key::CyclDef => Some(MenuKind::Cycles),
+            Key::TouchProbe => Some(MenuKind::Probes),
+            Key::Q => Some(MenuKind::Functions),
+            _ => None,
+        };
+        if let Some(kind) = menu {
+            self.may_insert()?;
+            let menu = Menu::new(kind, &self.setting);
+            return self.show(Open::Menu(Box::new(menu)));
+        }
+        if let Some(row) = BLOCKS.iter().find(|row| row.key == Some(key)) {
+            self.may_insert()?;
+            return self.show(Open::Dialogue(Box::new(Dialogue::new(Source::Row(row)))));
+        }
+        let id = match self.setting.axis(key) {
+            Some(_) if self.setting.paraxial_inhibited => return Err(KeyNonFunctional),
+            Some(_) => "AXIS",
+            None if key.group() == KeyGroup::Letter => "TEXT",
+            None => return Err(KeyNonFunctional),
+        };
+        self.may_insert()?;
+        self.new_block(id, key)
+    }
+
+    /// Opens a dialogue with the first key in it.
+    fn new_block(&mut self, id: &str, key: Key) -> Result<Reaction, MessageId> {
+        let mut dialogue = Dialogue::of_id(id).ok_or(KeyNonFunctional)?;
+        dialogue.key(key, self.context(None))?;
+        self.show(Open::Dialogue(Box::new(dialogue)))
+    }
+
+    pub(crate) fn context(&self, replaces: Option<u32>) -> Context<'_> {
+        Context {
+            setting: &self.setting,
+            program: &self.program,
+            replaces,
+        }
+    }
+
+    pub(crate) fn may_edit(&self) -> Result<(), MessageId> {
+        match self.program.is_protected() {
+            true => Err(ProtectedPgm),
+            false => Ok(()),
+        }
+    }
+
+    /// Blocks stand behind any block but END [003:1768-1774].
+    pub(crate) fn may_insert(&self) -> Result<(), MessageId> {
+        self.may_edit()?;
+        match self.cursor < self.last() {
+            true => Ok(()),
+            false => Err(KeyNonFunctional),
+        }
+    }
+
+    fn menu_key(&mut self, mut menu: Box<Menu>, key: Key) -> Result<Reaction, MessageId> {
+        let choice = menu.key(key);
+        match choice {
+            Ok(Choice::Close) => Ok(Reaction::Shown),
+            Ok(Choice::Open(dialogue)) => self.show(Open::Dialogue(dialogue)),
+            Ok(Choice::Stay) => {
+                self.open = Open::Menu(menu);
+                Ok(Reaction::Shown)
+            }
+            Err(message) => {
+                self.open = Open::Menu(menu);
+                Err(message)
+            }
+        }
+    }
+
+    fn dialogue_key(&mut self, mut dialogue: Box<Dialogue>, key: Key) -> Result<Reaction, MessageId> {
+        if key == Key::Capture {
+            let wanted = dialogue.wants_position();
+            self.open = Open::Dialogue(dialogue);
+            return match wanted.ok_or(KeyNonFunctional)? {
+                Some(axis) => Ok(Reaction::Position(Wanted::Axis(axis))),
+                None => Ok(Reaction::Position(Wanted::ToolAxis)),
+            };
+        }
+        let step = dialogue.key(key, self.context(dialogue.replaces));
+        let done = match step {
+            Ok(Step::Drop) => return Ok(Reaction::Shown),
+            Ok(Step::Finish) => self.finish(&dialogue),
+            Ok(Step::Stay) => Ok(None),
+            Err(message) => Err(message),
+        };
+        match done {
+            Ok(Some(edited)) => Ok(edited),
+            done => {
+                self.open = Open::Dialogue(dialogue);
+                done.map(|_| Reaction::Shown)
+            }
+        }
+    }
+
+    /// The blocks of a dialogue become blocks of the program.
+    fn finish(&mut self, dialogue: &Dialogue) -> Result<Option<Reaction>, MessageId> {
+        let lines = dialogue.made();
+        let texts = lines.iter().map(|line| self.block_text(line));
+        let texts: Vec<String> = texts.collect::<Result<_, _>>()?;
+        if let Some(block) = dialogue.replaces {
+            return self.replace(block, &texts.join("\n")).map(Some);
+        }
+        self.insert(&texts).map(Some)
+    }
+
+    /// A line as it is written into the program: as the manual prints it, free text as listings show it.
+    pub(crate) fn block_text(&self, line: &Line) -> Result<String, MessageId> {
+        let language = self.program.language();
+        let text = line.text();
+        let read = language.parse_block(&text);
+        match read.faults.first() {
+            Some(fault) => Err(fault.message),
+            None if line.has_text() => Ok(written(&read.block, language)),
+            None => Ok(text),
+        }
+    }
+
+    /// Puts blocks behind the cursor, which goes to the last of them.
+    pub(crate) fn insert(&mut self, texts: &[String]) -> Result<Reaction, MessageId> {
+        self.may_insert()?;
+        let before = self.cursor + 1;
+        let text = texts.join("\n");
+        let old = self.program.block_count();
+        self.apply(&Edit::Insert { before, text: &text })?;
+        self.cursor += self.program.block_count().saturating_sub(old);
+        Ok(Reaction::Edited)
+    }
+
+    pub(crate) fn replace(&mut self, block: u32, text: &str) -> Result<Reaction, MessageId> {
+        self.may_edit()?;
+        let language = self.program.language();
+        let old = language.parse_block(&self.program.text_of(block)).block;
+        if old == language.parse_block(text).block {
+            return Ok(Reaction::Shown);
+        }
+        self.apply(&Edit::Replace { block, text })?;
+        Ok(Reaction::Edited)
+    }
+
+    /// A new version of the program; the old one can be had back.
+    pub(crate) fn apply(&mut self, edit: &Edit<'_>) -> Result<(), MessageId> {
+        let new = self.program.edit(edit).map_err(|error| error.message())?;
+        let full = self.setting.bytes_max < Program::MAX_BYTES
+            && new.to_bytes().len() as u64 > self.setting.bytes_max
+            && !matches!(edit, Edit::Delete { .. });
+        if full {
+            return Err(FurtherProgramEntryImpossible);
+        }
+        self.history.keep(&self.program, self.cursor);
+        self.program = Arc::new(new);
+        self.mark = None;
+        Ok(())
+    }
+
+    /// The words of a block; none of BEGIN and END, which are the control's.
+    pub(crate) fn line_of(&self, number: u32) -> Option<Line> {
+        let chunk = self.program.decode(number / Program::CHUNK_SIZE);
+        let block = chunk.blocks.get((number % Program::CHUNK_SIZE) as usize)?;
+        Line::of_block(block, self.program.language())
+    }
+
+    pub(crate) fn highlight(&mut self, block: u32, place: WordPlace) -> Result<Reaction, MessageId> {
+        let line = self.line_of(block).ok_or(KeyNonFunctional)?;
+        let place = match (place, line.is_text()) {
+            // A line of text is entered as a whole.
+            (None, true) => Some((0, 0)),
+            (place, _) => place,
+        };
+        self.cursor = block;
+        self.show(Open::Highlight(Box::new(Highlight::new(block, line, place))))
+    }
+
+    fn goto_key(&mut self, mut digits: String, key: Key) -> Result<Reaction, MessageId> {
+        match key {
+            Key::Ent => {
+                let number = digits.parse::<u32>().ok().filter(|number| *number <= self.last());
+                let Some(number) = number else {
+                    self.open = Open::Goto(digits);
+                    return Err(EntryValueIncorrect);
+                };
+                self.cursor = number;
+                return Ok(Reaction::Shown);
+            }
+            Key::End | Key::NoEnt | Key::Del => return Ok(Reaction::Shown),
+            Key::Ce | Key::Goto => digits.clear(),
+            _ => {
+                let digit = key.digit().and(key.character()).filter(|_| digits.len() < 9);
+                let Some(digit) = digit else {
+                    self.open = Open::Goto(digits);
+                    return Err(KeyNonFunctional);
+                };
+                digits.push(digit);
+            }
+        }
+        self.open = Open::Goto(digits);
+        Ok(Reaction::Shown)
+    }
+
+    /// The soft keys of what is open, all rows.
+    pub(crate) fn soft_keys(&self) -> Vec<Labelled> {
+        let tongue = self.setting.tongue;
+        match &self.open {
+            Open::Nothing => soft_keys::of_program(self.mark.is_some(), tongue),
+            Open::Dialogue(dialogue) => soft_keys::of_dialogue(dialogue, tongue),
+            Open::Highlight(highlight) => match highlight.ask() {
+                Some(ask) => {
+                    let word = highlight.line.word(highlight.place);
+                    soft_keys::answers(ask, word.map_or("", |word| word.address.as_str()), tongue)
+                }
+                None => Vec::new(),
+            },
+            Open::Find(_) => soft_keys::answers(crate::field::Ask::Text, "", tongue),
+            Open::Menu(_) | Open::Goto(_) => Vec::new(),
+        }
+    }
+
+    fn other_soft_row(&mut self, right: bool) -> Result<Reaction, MessageId> {
+        let rows = self.soft_keys().len().div_ceil(soft_keys::ROW).max(1);
+        let step = if right { 1 } else { rows - 1 };
+        self.soft_row = (self.soft_row + step) % rows;
+        Ok(Reaction::Shown)
+    }
+
+    fn soft_key(&mut self, number: usize) -> Result<Reaction, MessageId> {
+        let keys = self.soft_keys();
+        let (_, soft) = keys
+            .get(self.soft_row * soft_keys::ROW + number)
+            .ok_or(KeyNonFunctional)?;
+        match soft {
+            Soft::Function(function) => self.function(*function),
+            Soft::Answer(value) => {
+                match &mut self.open {
+                    Open::Dialogue(dialogue) => dialogue.take(value, &self.setting)?,
+                    Open::Highlight(_) if self.program.is_protected() => return Err(ProtectedPgm),
+                    Open::Highlight(highlight) => highlight.take(value, &self.setting)?,
+                    Open::Find(text) => text.push_str(value),
+                    _ => return Err(KeyNonFunctional),
+                }
+                Ok(Reaction::Shown)
+            }
+        }
+    }
+}

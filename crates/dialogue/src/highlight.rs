@@ -1,0 +1,126 @@
+//! A word of a block of the program, highlighted: to overwrite it, delete it or find it elsewhere.
+
+use bahn_parameters::MessageId::{self, KeyNonFunctional};
+
+use crate::check::Context;
+use crate::field::{Ask, Need};
+use crate::line::{Line, WordPlace};
+use crate::typing::Typing;
+use crate::{Key, Setting};
+
+/// A highlighted word.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Highlight {
+    pub(crate) block: u32,
+    /// The block as it stands, with what is being entered.
+    pub(crate) line: Line,
+    pub(crate) place: WordPlace,
+    pub(crate) typing: Typing,
+    /// The block before something was entered.
+    original: Line,
+}
+
+impl Highlight {
+    pub(crate) fn new(block: u32, line: Line, place: WordPlace) -> Highlight {
+        Highlight {
+            block,
+            original: line.clone(),
+            typing: place.map_or_else(Typing::default, |(_, word)| Typing::over(word)),
+            line,
+            place,
+        }
+    }
+
+    /// Whether a value was entered and not yet confirmed.
+    pub(crate) fn is_changed(&self) -> bool {
+        self.line != self.original || self.typing.incremental
+    }
+
+    /// The entered value is forgotten.
+    pub(crate) fn forget(&mut self) {
+        *self = Highlight::new(self.block, self.original.clone(), self.place);
+    }
+
+    /// The word so many places farther; none beyond the ends.
+    pub(crate) fn beside(&self, by: isize) -> Option<WordPlace> {
+        let places = self.line.places();
+        let at = places.iter().position(|place| *place == self.place)?;
+        places.get(at.checked_add_signed(by)?).copied()
+    }
+
+    /// What a key enters.
+    pub(crate) fn key(&mut self, key: Key, setting: &Setting) -> Result<(), MessageId> {
+        let (index, _) = self.place.ok_or(KeyNonFunctional)?;
+        let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;
+        match key {
+            Key::Ce if !field.slot.ask.is_text() && field.slot.ask.has_decimals() => {
+                let word = self.typing.word.and_then(|word| field.words.get_mut(word));
+                let word = word.ok_or(KeyNonFunctional)?;
+                word.value = "0".to_owned();
+                self.typing.fresh = true;
+            }
+            Key::Ce if field.slot.ask.is_text() => self.typing.clear(field),
+            Key::Ce => return Err(KeyNonFunctional),
+            _ => self.typing.key(field, key, setting)?,
+        }
+        self.follow(index);
+        Ok(())
+    }
+
+    /// Takes an answer by soft key, or characters of a text.
+    pub(crate) fn take(&mut self, value: &str, setting: &Setting) -> Result<(), MessageId> {
+        let (index, _) = self.place.ok_or(KeyNonFunctional)?;
+        let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;
+        if field.slot.ask.is_text() {
+            for character in value.chars() {
+                self.typing.character(field, character, setting)?;
+            }
+        } else {
+            self.typing.take(field, value);
+        }
+        self.follow(index);
+        Ok(())
+    }
+
+    /// The highlight goes to the word that is entered.
+    fn follow(&mut self, field: usize) {
+        let last = self
+            .line
+            .field(field)
+            .map_or(0, |field| field.words.len().saturating_sub(1));
+        self.place = Some((field, self.typing.word.unwrap_or(last).min(last)));
+    }
+
+    /// Takes the word out.
+    pub(crate) fn remove(&mut self) -> Result<(), MessageId> {
+        let (index, word) = self.place.ok_or(KeyNonFunctional)?;
+        let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;
+        let last = field.words.len() < 2;
+        if (field.slot.need == Need::Required && last) || field.words.len() <= word {
+            return Err(KeyNonFunctional);
+        }
+        field.words.remove(word);
+        Ok(())
+    }
+
+    /// What a word highlighted takes instead of digits.
+    pub(crate) fn ask(&self) -> Option<Ask> {
+        let (field, _) = self.place?;
+        Some(self.line.field(field)?.slot.ask)
+    }
+
+    /// Numbers in their shortest form.
+    pub(crate) fn settle(&mut self) {
+        if let Some((index, _)) = self.place
+            && let Some(field) = self.line.field_mut(index)
+        {
+            self.typing.settle(field);
+        }
+        self.line.settle();
+    }
+
+    /// Checks what was entered.
+    pub(crate) fn check(&self, context: Context<'_>, others: &[Line]) -> Result<(), MessageId> {
+        context.check(&self.line, others)
+    }
+}

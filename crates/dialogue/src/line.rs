@@ -1,0 +1,320 @@
+//! One block as the dialogue sees it: a head and fields, made from a block and written as one.
+
+use bahn_program::{Block, CycleFunction, FormatOptions, Language, MotionKind, Operation};
+
+use crate::blocks::block_row;
+use crate::cycles::cycle_line;
+use crate::field::{Ask, Field, Need, Word};
+
+/// A block with its fields.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Line {
+    /// Optional block.
+    skip: bool,
+    head: String,
+    fields: Vec<Field>,
+    comment: Option<Box<str>>,
+}
+
+/// A field of a line and a word in it; the head of the block without.
+pub(crate) type WordPlace = Option<(usize, usize)>;
+
+impl Line {
+    pub(crate) fn new(head: &str, fields: Vec<Field>) -> Line {
+        Line {
+            skip: false,
+            head: head.to_owned(),
+            fields,
+            comment: None,
+        }
+    }
+
+    /// The lines of a block of the table.
+    pub(crate) fn of_row(id: &str) -> Vec<Line> {
+        let lines = block_row(id).map_or(&[][..], |row| row.lines);
+        lines
+            .iter()
+            .map(|line| {
+                let fields = line.slots.iter().copied().map(Field::new);
+                Line::new(line.head, fields.collect())
+            })
+            .collect()
+    }
+
+    /// Reads a block. One that the table does not know, or that stands in other words, is a line of text.
+    pub(crate) fn of_block(block: &Block, language: &dyn Language) -> Option<Line> {
+        let bare = Block {
+            skip: false,
+            operation: block.operation.clone(),
+            comment: None,
+        };
+        let text = written(&bare, language);
+        let mut line = match template(&block.operation)? {
+            Some(line) => line,
+            None => Line::of_row("TEXT").pop()?,
+        };
+        if !line.read(&text) || line.canonical(language).as_deref() != Some(text.as_str()) {
+            line = Line::of_row("TEXT").pop()?;
+            if !line.read(&text) {
+                return None;
+            }
+        }
+        line.skip = block.skip;
+        line.comment.clone_from(&block.comment);
+        Some(line)
+    }
+
+    fn read(&mut self, text: &str) -> bool {
+        if self.fields.is_empty() {
+            // The names of cycles are decoration.
+            self.head = text.to_owned();
+            return true;
+        }
+        let Some(mut rest) = text.strip_prefix(self.head.as_str()) else {
+            return false;
+        };
+        for field in &mut self.fields {
+            match field.read(rest) {
+                Some(length) => rest = rest.get(length..).unwrap_or_default(),
+                None if field.slot.need == Need::Required => return false,
+                None => {}
+            }
+        }
+        rest.is_empty()
+    }
+
+    /// What the block does and nothing else, as listings show it; none if it cannot be read.
+    fn canonical(&self, language: &dyn Language) -> Option<String> {
+        let read = language.parse_block(&self.bare_text());
+        read.faults.is_empty().then(|| written(&read.block, language))
+    }
+
+    #[cfg(test)]
+    pub(crate) fn head(&self) -> &str {
+        &self.head
+    }
+
+    pub(crate) fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    pub(crate) fn field(&self, index: usize) -> Option<&Field> {
+        self.fields.get(index)
+    }
+
+    pub(crate) fn field_mut(&mut self, index: usize) -> Option<&mut Field> {
+        self.fields.get_mut(index)
+    }
+
+    /// Head and words, without `/` and comment.
+    pub(crate) fn bare_text(&self) -> String {
+        let words = self.fields.iter().map(Field::text);
+        self.head
+            .chars()
+            .chain(words.collect::<String>().chars())
+            .collect()
+    }
+
+    /// The block with everything.
+    pub(crate) fn text(&self) -> String {
+        self.dressed(self.bare_text())
+    }
+
+    /// [`Line::text`], with something where answers are missing.
+    pub(crate) fn text_to_check(&self) -> String {
+        let words = self.fields.iter().map(Field::text_to_check);
+        self.head
+            .chars()
+            .chain(words.collect::<String>().chars())
+            .collect()
+    }
+
+    fn dressed(&self, text: String) -> String {
+        let skip = if self.skip { "/ " } else { "" };
+        let comment = self
+            .comment
+            .as_ref()
+            .map_or_else(String::new, |text| format!(" ; {text}"));
+        format!("{skip}{text}{comment}")
+    }
+
+    /// Whether it is only text.
+    pub(crate) fn is_text(&self) -> bool {
+        matches!(self.fields.as_slice(), [only] if only.slot.prompt == "text")
+    }
+
+    /// Whether an answer is text, in whatever spelling.
+    pub(crate) fn has_text(&self) -> bool {
+        self.fields.iter().any(|field| field.slot.ask == Ask::Text)
+    }
+
+    /// Whether nothing was answered.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.fields.iter().all(|field| field.words.is_empty())
+    }
+
+    /// Whether all answers are there that the block needs.
+    pub(crate) fn is_complete(&self) -> bool {
+        let missing = |field: &Field| field.slot.need == Need::Required && field.words.is_empty();
+        !self.fields.iter().any(missing)
+    }
+
+    /// Whether there is an answer that the block needs.
+    pub(crate) fn has_required(&self) -> bool {
+        self.fields.iter().any(|field| field.slot.need == Need::Required)
+    }
+
+    /// Numbers in their shortest form.
+    pub(crate) fn settle(&mut self) {
+        for field in &mut self.fields {
+            field.settle();
+        }
+    }
+
+    /// Forgets all words.
+    pub(crate) fn clear(&mut self) {
+        for field in &mut self.fields {
+            field.words.clear();
+        }
+    }
+
+    /// The block may stay away.
+    pub(crate) fn make_optional(&mut self) {
+        for field in &mut self.fields {
+            field.slot.need = Need::Optional;
+        }
+    }
+
+    /// Places of the head and all words, in order.
+    pub(crate) fn places(&self) -> Vec<WordPlace> {
+        let words = self.fields.iter().enumerate();
+        let words = words.flat_map(|(field, it)| (0..it.words.len()).map(move |word| Some((field, word))));
+        std::iter::once(None).chain(words).collect()
+    }
+
+    pub(crate) fn word(&self, place: WordPlace) -> Option<&Word> {
+        let (field, word) = place?;
+        self.fields.get(field)?.words.get(word)
+    }
+
+    /// What a word is found by in other blocks: its address, its name, or the head of the block.
+    pub(crate) fn name_of(&self, place: WordPlace) -> String {
+        let Some((field, word)) = place else {
+            return self.head.clone();
+        };
+        let Some((field, word)) = self
+            .fields
+            .get(field)
+            .and_then(|it| Some((it, it.words.get(word)?)))
+        else {
+            return String::new();
+        };
+        match (word.address.as_str(), field.glue.trim()) {
+            ("", "")
+                if field.slot.prompt == "compensation" || field.slot.prompt == "paraxial_compensation" =>
+            {
+                "R".to_owned()
+            }
+            ("", "") => self.head.clone() + " number",
+            ("", name) => name.to_owned(),
+            (address, _) => address.to_owned(),
+        }
+    }
+
+    /// Parts of the text, each with its place: the head, then each word with what stands before it.
+    pub(crate) fn parts(&self) -> Vec<(WordPlace, String)> {
+        let mut parts = Vec::new();
+        let mut before = match self.skip {
+            true => format!("/ {}", self.head),
+            false => self.head.clone(),
+        };
+        if !before.is_empty() {
+            parts.push((None, before.clone()));
+        }
+        for (index, field) in self.fields.iter().enumerate() {
+            for (number, word) in field.words.iter().enumerate() {
+                before = match number {
+                    0 => field.glue.to_string(),
+                    _ => field.separator().to_owned(),
+                };
+                parts.push((Some((index, number)), before + &field.written(word)));
+            }
+        }
+        if let Some(comment) = &self.comment {
+            parts.push((None, format!(" ; {comment}")));
+        }
+        parts
+    }
+}
+
+/// A block as its language writes it.
+pub(crate) fn written(block: &Block, language: &dyn Language) -> String {
+    let mut text = String::new();
+    language.write(block, FormatOptions::default(), &mut text);
+    text
+}
+
+/// The fields that a block has; `Some(None)` where it has none that the table knows, `None` for a block that is not
+/// the operator's.
+fn template(operation: &Operation) -> Option<Option<Line>> {
+    let id = match operation {
+        Operation::Begin(_) | Operation::End(_) => return None,
+        Operation::Cycle(block) => {
+            return Some(Some(cycle_line(
+                CycleFunction::Definition,
+                block.number,
+                block.sub,
+            )));
+        }
+        Operation::Probe(block) => {
+            return Some(Some(cycle_line(CycleFunction::Probe, block.number, block.sub)));
+        }
+        Operation::BlankMin(..) => "BLK FORM",
+        Operation::BlankMax(_) => return Some(Line::of_row("BLK FORM").pop()),
+        Operation::Motion(motion) => motion_id(motion.kind),
+        Operation::CircleCentre(_) => "CC",
+        Operation::Rounding { .. } => "RND",
+        Operation::Chamfer { .. } => "CHF",
+        Operation::ToolDefinition { .. } => "TOOL DEF",
+        Operation::ToolCall { .. } => "TOOL CALL",
+        Operation::Label(_) => "LBL",
+        Operation::CallLabel { .. } => "CALL LBL",
+        Operation::CallProgram(_) => "CALL PGM",
+        Operation::Stop(_) => "STOP",
+        Operation::CycleCall(_) => "CYCL CALL",
+        Operation::Miscellaneous(_) => "M",
+        Operation::Formula { .. } => "FORMULA",
+        Operation::ErrorNumber(_) => "FN 14",
+        Operation::Print(_) => "FN 15",
+        Operation::Plc { .. } => "FN 19",
+        Operation::Calculate { .. } | Operation::Jump { .. } => return Some(function_line(operation)),
+        Operation::Dialog(_) | Operation::Comment(_) | Operation::Invalid(_) => "TEXT",
+    };
+    Some(Line::of_row(id).into_iter().next())
+}
+
+fn motion_id(kind: MotionKind) -> &'static str {
+    match kind {
+        MotionKind::Line => "L",
+        MotionKind::Circle => "C",
+        MotionKind::CircleRadius => "CR",
+        MotionKind::CircleTangential => "CT",
+        MotionKind::LinePolar => "LP",
+        MotionKind::CirclePolar => "CP",
+        MotionKind::CircleTangentialPolar => "CTP",
+        MotionKind::LineNormal => "LN",
+        MotionKind::Paraxial => "AXIS",
+    }
+}
+
+/// FN 0 to 13 by the number that the listing shows.
+fn function_line(operation: &Operation) -> Option<Line> {
+    let block = Block {
+        skip: false,
+        operation: operation.clone(),
+        comment: None,
+    };
+    let text = bahn_program::format_block(&block, FormatOptions::default());
+    let number = text.strip_prefix("FN")?.split(':').next()?;
+    Line::of_row(&format!("FN {number}")).pop()
+}

@@ -1,0 +1,169 @@
+//! Lists to choose from: cycles, probe functions, functions of Q parameters.
+
+use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
+use bahn_program::{CYCLES, CycleFunction};
+
+use crate::blocks::{BLOCKS, block_row};
+use crate::dialogue::{Dialogue, Source};
+use crate::prompt::text_of;
+use crate::{Key, Setting};
+
+/// Cycles of the machine builder [003:4904-4906].
+const OEM_CYCLES: std::ops::RangeInclusive<u16> = 68..=99;
+/// Most digits of a number.
+const DIGITS_MAX: usize = 3;
+
+/// Which list it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MenuKind {
+    Cycles,
+    Probes,
+    Functions,
+}
+
+/// A line of a list.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MenuItem {
+    number: Option<u16>,
+    pub(crate) text: String,
+    source: Source,
+}
+
+/// An open list.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Menu {
+    pub(crate) kind: MenuKind,
+    pub(crate) items: Vec<MenuItem>,
+    pub(crate) at: usize,
+    /// The number as far as it was entered.
+    pub(crate) typed: String,
+}
+
+/// What becomes of a list.
+pub(crate) enum Choice {
+    Stay,
+    Close,
+    Open(Box<Dialogue>),
+}
+
+impl Menu {
+    pub(crate) fn new(kind: MenuKind, setting: &Setting) -> Menu {
+        let items = match kind {
+            MenuKind::Cycles => cycles(CycleFunction::Definition, setting),
+            MenuKind::Probes => cycles(CycleFunction::Probe, setting),
+            MenuKind::Functions => functions(setting),
+        };
+        Menu {
+            kind,
+            items,
+            at: 0,
+            typed: String::new(),
+        }
+    }
+
+    pub(crate) fn prompt(&self) -> &'static str {
+        match self.kind {
+            MenuKind::Cycles => "cycles",
+            MenuKind::Probes => "probes",
+            MenuKind::Functions => "functions",
+        }
+    }
+
+    pub(crate) fn key(&mut self, key: Key) -> Result<Choice, MessageId> {
+        match key {
+            Key::Up => self.at = self.at.saturating_sub(1),
+            Key::Down => self.at = (self.at + 1).min(self.items.len().saturating_sub(1)),
+            // GOTO and a number, or the number alone [003:4822-4829].
+            Key::Goto | Key::Ce => self.typed.clear(),
+            Key::Ent => return self.chosen().map(|dialogue| Choice::Open(Box::new(dialogue))),
+            Key::NoEnt | Key::End | Key::Del => return Ok(Choice::Close),
+            _ => {
+                let digit = key.digit().and(key.character()).ok_or(KeyNonFunctional)?;
+                if self.typed.len() >= DIGITS_MAX {
+                    return Err(EntryValueIncorrect);
+                }
+                self.typed.push(digit);
+                self.show_typed();
+            }
+        }
+        Ok(Choice::Stay)
+    }
+
+    /// The line of the number that was entered is marked.
+    fn show_typed(&mut self) {
+        let number = self.typed.parse::<u16>().ok();
+        let found = self
+            .items
+            .iter()
+            .position(|item| number.is_some() && item.number == number);
+        self.at = found.unwrap_or(self.at);
+    }
+
+    fn chosen(&self) -> Result<Dialogue, MessageId> {
+        if self.typed.is_empty() {
+            let item = self.items.get(self.at).ok_or(KeyNonFunctional)?;
+            return Ok(Dialogue::new(item.source));
+        }
+        let number = self.typed.parse::<u16>().map_err(|_| EntryValueIncorrect)?;
+        if let Some(item) = self.items.iter().find(|item| item.number == Some(number)) {
+            return Ok(Dialogue::new(item.source));
+        }
+        match self.kind {
+            MenuKind::Cycles if OEM_CYCLES.contains(&number) => {
+                Ok(Dialogue::new(Source::Cycle(CycleFunction::Definition, number)))
+            }
+            _ => Err(EntryValueIncorrect),
+        }
+    }
+}
+
+/// The cycles of the model that the machine builder has not inhibited, in the order of their numbers.
+fn cycles(function: CycleFunction, setting: &Setting) -> Vec<MenuItem> {
+    let limits = setting.model.limits();
+    let exists = |number: u16| match function {
+        CycleFunction::Definition => {
+            limits.has_cycle(u32::from(number)) && !setting.inhibited_cycles.contains(&number)
+        }
+        CycleFunction::Probe => true,
+    };
+    let all = CYCLES
+        .iter()
+        .filter(|cycle| cycle.function == function && exists(cycle.number));
+    let mut items: Vec<_> = all
+        .map(|cycle| {
+            let kind = match function {
+                CycleFunction::Definition => "DEF",
+                CycleFunction::Probe => "PROBE",
+            };
+            let name = crate::prompt::prompt(&format!("{kind} {}", cycle.number));
+            let name = name.map_or(cycle.name, |name| name.text(setting.tongue));
+            MenuItem {
+                number: Some(cycle.number),
+                text: format!("{} {name}", cycle.number),
+                source: Source::Cycle(function, cycle.number),
+            }
+        })
+        .collect();
+    items.sort_by_key(|item| item.number);
+    items
+}
+
+/// The functions of Q parameters that the model has.
+fn functions(setting: &Setting) -> Vec<MenuItem> {
+    let limits = setting.model.limits();
+    let numbered = BLOCKS.iter().filter_map(|row| {
+        let number = row.id.strip_prefix("FN ")?.parse::<u16>().ok()?;
+        limits.has_fn(u32::from(number)).then(|| MenuItem {
+            number: Some(number),
+            text: format!("{}: {}", row.id, text_of(row.id, setting.tongue)),
+            source: Source::Row(row),
+        })
+    });
+    let formula = block_row("FORMULA").filter(|_| limits.formulas);
+    let formula = formula.map(|row| MenuItem {
+        number: None,
+        text: text_of("FN FORMULA", setting.tongue).to_owned(),
+        source: Source::Row(row),
+    });
+    numbered.chain(formula).collect()
+}

@@ -1,0 +1,323 @@
+//! What is done with blocks that stand in the program: highlighted words, deleting, sections, finding.
+
+use std::ops::Range;
+
+use bahn_parameters::MessageId::{self, KeyNonFunctional};
+use bahn_program::{Edit, Operation, Program};
+
+use crate::dialogue::Dialogue;
+use crate::editor::{Editor, Open, Reaction};
+use crate::highlight::Highlight;
+use crate::line::Line;
+use crate::soft_keys::Function;
+use crate::{Key, KeyGroup};
+
+/// Most characters of a text to find.
+const FIND_MAX: usize = 80;
+
+impl Editor {
+    /// A key while a word is highlighted.
+    pub(crate) fn highlight_key(
+        &mut self,
+        mut highlight: Box<Highlight>,
+        key: Key,
+    ) -> Result<Reaction, MessageId> {
+        let text = highlight.ask().is_some_and(|ask| ask.is_text());
+        let changed = highlight.is_changed();
+        match key {
+            Key::Del if changed => highlight.forget(),
+            Key::Del => return self.delete(),
+            Key::Up | Key::Down | Key::Left | Key::Right | Key::End | Key::Ent => {
+                return self.leave_word(highlight, key);
+            }
+            Key::Goto if !changed => return self.program_key(key),
+            Key::Capture => {
+                self.open = Open::Highlight(highlight);
+                return Err(KeyNonFunctional);
+            }
+            _ if !changed && !text && opens_block(&highlight, key) => return self.program_key(key),
+            _ => {
+                let done = self.may_edit().and_then(|()| match key {
+                    Key::NoEnt => highlight.remove(),
+                    _ => highlight.key(key, &self.setting),
+                });
+                if done.is_ok() && key == Key::NoEnt {
+                    return self.leave_word(highlight, Key::NoEnt);
+                }
+                self.open = Open::Highlight(highlight);
+                return done.map(|()| Reaction::Shown);
+            }
+        }
+        self.open = Open::Highlight(highlight);
+        Ok(Reaction::Shown)
+    }
+
+    /// Confirms the value of a word and goes on.
+    fn leave_word(&mut self, mut highlight: Box<Highlight>, key: Key) -> Result<Reaction, MessageId> {
+        let block = highlight.block;
+        highlight.settle();
+        let confirmed = self.confirm(&highlight);
+        let reaction = match confirmed {
+            Ok(reaction) => reaction,
+            Err(message) => {
+                if key == Key::NoEnt {
+                    highlight.forget();
+                }
+                self.open = Open::Highlight(highlight);
+                return Err(message);
+            }
+        };
+        match key {
+            Key::Left | Key::Right => {
+                let by = if key == Key::Left { -1 } else { 1 };
+                let beside = highlight.beside(by);
+                let leaves = by < 0 && (beside.is_none() || highlight.line.is_text());
+                if !leaves {
+                    self.highlight(block, beside.unwrap_or(highlight.place))?;
+                }
+            }
+            Key::NoEnt => {
+                let line = self.line_of(block).ok_or(KeyNonFunctional)?;
+                let last = line.places().into_iter().rfind(|place| *place <= highlight.place);
+                self.highlight(block, last.flatten())?;
+            }
+            Key::Up | Key::Down => self.same_word(&highlight, key == Key::Down)?,
+            Key::Ent => {
+                let line = self.line_of(block).ok_or(KeyNonFunctional)?;
+                self.may_edit()?;
+                let field = highlight.place.map_or(0, |(field, _)| field);
+                match Dialogue::of_line(line, block, field) {
+                    Some(dialogue) => self.show(Open::Dialogue(Box::new(dialogue)))?,
+                    // Nothing is asked from here on.
+                    None => Reaction::Shown,
+                };
+            }
+            _ => {}
+        }
+        Ok(reaction)
+    }
+
+    /// What was entered becomes the block.
+    fn confirm(&mut self, highlight: &Highlight) -> Result<Reaction, MessageId> {
+        if !highlight.is_changed() {
+            return Ok(Reaction::Shown);
+        }
+        self.may_edit()?;
+        let block = highlight.block;
+        let cycle = self.cycle_of(block).unwrap_or(block..block);
+        let others = cycle.filter(|other| *other != block);
+        let others: Vec<Line> = others.filter_map(|other| self.line_of(other)).collect();
+        highlight.check(self.context(Some(block)), &others)?;
+        let text = self.block_text(&highlight.line)?;
+        self.replace(block, &text)
+    }
+
+    /// Finds the same word in other blocks [003:1744-1758]; where there is none, the highlight stays.
+    fn same_word(&mut self, highlight: &Highlight, down: bool) -> Result<(), MessageId> {
+        let name = highlight.line.name_of(highlight.place);
+        let found = self.search(highlight.block, down, |line| {
+            line.places()
+                .into_iter()
+                .find(|place| line.name_of(*place) == name)
+        });
+        let (block, place) = found.unwrap_or((highlight.block, highlight.place));
+        self.highlight(block, place)?;
+        Ok(())
+    }
+
+    /// Looks through the blocks before or behind a block, the nearest first.
+    fn search<T>(&self, from: u32, down: bool, found: impl Fn(&Line) -> Option<T>) -> Option<(u32, T)> {
+        let language = self.program.language();
+        let chunks: Box<dyn Iterator<Item = u32>> = match down {
+            true => Box::new(from / Program::CHUNK_SIZE..self.program.chunk_count()),
+            false => Box::new((0..=from / Program::CHUNK_SIZE).rev()),
+        };
+        for chunk in chunks {
+            let chunk = self.program.decode(chunk);
+            let numbered = (chunk.first_block..).zip(&chunk.blocks);
+            let mut beyond: Vec<_> = numbered
+                .filter(|(number, _)| if down { *number > from } else { *number < from })
+                .collect();
+            if !down {
+                beyond.reverse();
+            }
+            for (number, block) in beyond {
+                let line = Line::of_block(block, language);
+                if let Some(found) = line.as_ref().and_then(&found) {
+                    return Some((number, found));
+                }
+            }
+        }
+        None
+    }
+
+    /// Deletes the marked section, the block at the cursor, or from its last block the whole cycle [003:1784-1790].
+    pub(crate) fn delete(&mut self) -> Result<Reaction, MessageId> {
+        self.may_edit()?;
+        let blocks = match self.marked() {
+            Some(marked) => marked,
+            None => self.deletable()?,
+        };
+        self.take_out(blocks)
+    }
+
+    fn deletable(&self) -> Result<Range<u32>, MessageId> {
+        let block = self.cursor;
+        if block == 0 || block >= self.last() {
+            return Err(KeyNonFunctional);
+        }
+        match self.cycle_of(block) {
+            Some(cycle) if block + 1 == cycle.end => Ok(cycle),
+            // A cycle without one of its blocks would be none *(inferred)*.
+            Some(_) => Err(KeyNonFunctional),
+            None => Ok(block..block + 1),
+        }
+    }
+
+    /// The blocks of the cycle that a block belongs to: numbered one after the other, from 0 or from where they begin.
+    pub(crate) fn cycle_of(&self, block: u32) -> Option<std::ops::Range<u32>> {
+        let (kind, number, sub) = self.cycle_block(block)?;
+        let (mut first, mut last) = (block, block);
+        let mut below = sub;
+        while let Some(before) = first.checked_sub(1)
+            && below > 0
+            && self.cycle_block(before) == Some((kind, number, below - 1))
+        {
+            (first, below) = (before, below - 1);
+        }
+        let mut above = sub;
+        while let Some(next) = above.checked_add(1)
+            && self.cycle_block(last + 1) == Some((kind, number, next))
+        {
+            (last, above) = (last + 1, next);
+        }
+        Some(first..last + 1)
+    }
+
+    /// Whether a block is one of a probe function, its number and the number of the block in it.
+    fn cycle_block(&self, block: u32) -> Option<(bool, u16, u16)> {
+        let read = self.program.language().parse_block(&self.program.text_of(block));
+        match read.block.operation {
+            Operation::Cycle(block) => Some((false, block.number, block.sub)),
+            Operation::Probe(block) => Some((true, block.number, block.sub)),
+            _ => None,
+        }
+    }
+
+    fn take_out(&mut self, blocks: Range<u32>) -> Result<Reaction, MessageId> {
+        let first = blocks.start;
+        self.apply(&Edit::Delete { blocks })?;
+        self.cursor = first.saturating_sub(1);
+        Ok(Reaction::Edited)
+    }
+
+    /// The marked blocks, without BEGIN and END.
+    pub(crate) fn marked(&self) -> Option<Range<u32>> {
+        let mark = self.mark?;
+        let first = mark.min(self.cursor).max(1);
+        let end = mark.max(self.cursor).saturating_add(1).min(self.last());
+        (first < end).then_some(first..end)
+    }
+
+    /// A function of the soft keys.
+    pub(crate) fn function(&mut self, function: Function) -> Result<Reaction, MessageId> {
+        match function {
+            Function::Mark => self.mark = Some(self.cursor),
+            Function::Unmark => self.mark = None,
+            Function::Copy => {
+                self.clipboard = self.section()?;
+                self.mark = None;
+            }
+            Function::Cut => {
+                self.may_edit()?;
+                let section = self.section()?;
+                let edited = self.delete()?;
+                self.clipboard = section;
+                return Ok(edited);
+            }
+            Function::Paste => {
+                let texts = self.clipboard.clone();
+                return match texts.is_empty() {
+                    true => Err(KeyNonFunctional),
+                    false => self.insert(&texts),
+                };
+            }
+            Function::Find => return self.show(Open::Find(String::new())),
+            Function::Text => {
+                self.may_insert()?;
+                let dialogue = Dialogue::of_id("TEXT").ok_or(KeyNonFunctional)?;
+                return self.show(Open::Dialogue(Box::new(dialogue)));
+            }
+            Function::Undo | Function::Redo => {
+                let version = match function {
+                    Function::Undo => self.history.undo(&self.program, self.cursor),
+                    _ => self.history.redo(&self.program, self.cursor),
+                };
+                (self.program, self.cursor) = version.ok_or(KeyNonFunctional)?;
+                self.mark = None;
+                return Ok(Reaction::Edited);
+            }
+        }
+        Ok(Reaction::Shown)
+    }
+
+    /// The marked blocks, or what DEL would delete, as text.
+    fn section(&self) -> Result<Vec<String>, MessageId> {
+        let blocks = match self.marked() {
+            Some(marked) => marked,
+            None => self.deletable()?,
+        };
+        let texts = blocks.map(|block| self.program.text_of(block));
+        Ok(texts.collect())
+    }
+
+    /// A key while a text to find is entered.
+    pub(crate) fn find_key(&mut self, mut text: String, key: Key) -> Result<Reaction, MessageId> {
+        let character = key.character().filter(|_| text.len() < FIND_MAX);
+        match key {
+            Key::Ent => {
+                if text.is_empty() {
+                    text.clone_from(&self.sought);
+                }
+                return self.find(text);
+            }
+            Key::End | Key::NoEnt | Key::Del => return Ok(Reaction::Shown),
+            Key::Ce => drop(text.pop()),
+            _ => match character {
+                Some(character) => text.push(character),
+                None => {
+                    self.open = Open::Find(text);
+                    return Err(KeyNonFunctional);
+                }
+            },
+        }
+        self.open = Open::Find(text);
+        Ok(Reaction::Shown)
+    }
+
+    /// Goes to the next block that holds a text, behind the end to the first.
+    fn find(&mut self, text: String) -> Result<Reaction, MessageId> {
+        let wanted = text.to_uppercase();
+        self.sought = text;
+        let holds = |block: &u32| self.program.text_of(*block).to_uppercase().contains(&wanted);
+        let behind = self.cursor + 1..self.program.block_count();
+        let found = behind.chain(0..=self.cursor).find(holds);
+        self.cursor = found
+            .filter(|_| !wanted.is_empty())
+            .ok_or(MessageId::EntryValueIncorrect)?;
+        Ok(Reaction::Shown)
+    }
+}
+
+/// Whether a key opens the dialogue of a new block while a word is highlighted, instead of entering it.
+fn opens_block(highlight: &Highlight, key: Key) -> bool {
+    let opens = match key.group() {
+        KeyGroup::Contour | KeyGroup::Cycle | KeyGroup::Files => true,
+        KeyGroup::Tool | KeyGroup::Graphics => matches!(key, Key::ToolDef | Key::ToolCall | Key::BlkForm),
+        _ => false,
+    };
+    let enters = highlight
+        .ask()
+        .is_some_and(|ask| matches!(ask, crate::field::Ask::Coordinates { .. }));
+    opens && !(enters && key == Key::C)
+}

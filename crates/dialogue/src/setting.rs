@@ -1,0 +1,84 @@
+//! What an editor has to know of its control and machine.
+
+use bahn_parameters::machining::Decimal;
+use bahn_parameters::{ControlModel, ParameterList};
+use bahn_path::{Axis, AxisSet};
+use bahn_program::{Program, Reading};
+
+use crate::{Key, Tongue};
+
+/// What an editor has to know of its control and machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// The control model, whose limits the entries keep to.
+    pub model: ControlModel,
+    /// Language of the dialogue.
+    pub tongue: Tongue,
+    /// The axes of the machine.
+    pub axes: AxisSet,
+    /// The axis of key IV.
+    pub fourth: Option<Axis>,
+    /// The axis of key V.
+    pub fifth: Option<Axis>,
+    /// Numbers are shown with a comma.
+    pub decimal_comma: bool,
+    /// Blocks with R+ and R- are inhibited.
+    pub paraxial_inhibited: bool,
+    /// Cycles that the machine builder has inhibited.
+    pub inhibited_cycles: Vec<u16>,
+    /// Bytes that a program may have in the memory of the control.
+    pub bytes_max: u64,
+}
+
+/// Greatest number of a standard cycle.
+const CYCLE_MAX: u16 = 31;
+
+impl Setting {
+    /// That of a machine.
+    ///
+    /// ```
+    /// use bahn_dialogue::Setting;
+    /// use bahn_parameters::{ControlModel, ParameterList};
+    ///
+    /// let setting = Setting::of(&ParameterList::reference(ControlModel::Tnc360));
+    /// assert_eq!(setting.model, ControlModel::Tnc360);
+    /// ```
+    pub fn of(list: &ParameterList) -> Setting {
+        let axes = list.axes();
+        let at = |index| axes.iter().find(|axis| list.axis_index(*axis) == Some(index));
+        Setting {
+            model: list.model(),
+            tongue: match list.operation_parameters().english {
+                true => Tongue::English,
+                false => Tongue::German,
+            },
+            axes,
+            fourth: at(3),
+            fifth: at(4),
+            decimal_comma: list.decimal() == Decimal::Comma,
+            paraxial_inhibited: list.paraxial_inhibited(),
+            inhibited_cycles: (0..=CYCLE_MAX)
+                .filter(|cycle| list.cycle_inhibited(u32::from(*cycle)))
+                .collect(),
+            bytes_max: Program::MAX_BYTES,
+        }
+    }
+
+    /// The axis of a key. Letters of the alpha keyboard are the axes of this name.
+    pub fn axis(&self, key: Key) -> Option<Axis> {
+        let lettered = |key: Key| match key.name().as_bytes() {
+            [letter] => Axis::from_letter(*letter).filter(|axis| self.axes.contains(*axis)),
+            _ => None,
+        };
+        match key {
+            Key::Iv => self.fourth,
+            Key::V => self.fifth.or_else(|| lettered(key)),
+            _ => lettered(key),
+        }
+    }
+
+    /// What programs are read for.
+    pub(crate) fn reading(&self) -> Reading<'static> {
+        self.model.limits().into()
+    }
+}

@@ -1,0 +1,177 @@
+//! What the editor shows of its state.
+
+use bahn_program::Program;
+
+use crate::dialogue::Dialogue;
+use crate::editor::{Editor, Open};
+use crate::highlight::Highlight;
+use crate::line::{Line, WordPlace, written};
+use crate::prompt::text_of;
+use crate::soft_keys::ROW;
+use crate::view::{List, Question, Row, ShownWord, View};
+
+impl Editor {
+    /// What is to be shown, with so many blocks before and behind the cursor.
+    pub fn view(&self, before: u32, behind: u32) -> View {
+        let (words, rows) = match &self.open {
+            Open::Dialogue(dialogue) => self.with_dialogue(dialogue, before, behind),
+            Open::Highlight(highlight) => {
+                let words = self.words(&highlight.line, Some(highlight.place));
+                (words, self.rows(before, behind, Some(highlight)))
+            }
+            _ => {
+                let line = self.line_of(self.cursor);
+                let words = line.map_or_else(Vec::new, |line| self.words(&line, None));
+                (words, self.rows(before, behind, None))
+            }
+        };
+        let keys = self.soft_keys();
+        let shown = keys.chunks(ROW).nth(self.soft_row).unwrap_or_default();
+        let mut soft_keys: [String; ROW] = Default::default();
+        for (key, (label, _)) in soft_keys.iter_mut().zip(shown) {
+            key.clone_from(label);
+        }
+        View {
+            rows,
+            words,
+            question: self.question(),
+            list: self.list(),
+            message: self.message,
+            soft_keys,
+            soft_row: (self.soft_row, keys.len().div_ceil(ROW)),
+        }
+    }
+
+    fn with_dialogue(&self, dialogue: &Dialogue, before: u32, behind: u32) -> (Vec<ShownWord>, Vec<Row>) {
+        let mut rows = self.rows(before, behind, None);
+        let current = dialogue.lines.get(dialogue.line);
+        let at = dialogue
+            .current()
+            .and_then(|field| field.words.len().checked_sub(1));
+        let place = at.map(|last| (dialogue.field, dialogue.typing.word.unwrap_or(last)));
+        let words = current.map_or_else(Vec::new, |line| self.words(line, place.map(Some)));
+        let mut open: Vec<Row> = dialogue
+            .lines
+            .iter()
+            .take(dialogue.reached + 1)
+            .enumerate()
+            .map(|(index, line)| Row {
+                number: dialogue.replaces,
+                text: self.shown(&line.text()),
+                current: index == dialogue.line,
+                marked: false,
+            })
+            .collect();
+        if let Some(position) = rows.iter().position(|row| row.current) {
+            for row in &mut rows {
+                row.current = false;
+            }
+            match dialogue.replaces {
+                Some(_) => rows.splice(position..=position, open),
+                None => rows.splice(position + 1..position + 1, std::mem::take(&mut open)),
+            };
+        }
+        (words, rows)
+    }
+
+    fn rows(&self, before: u32, behind: u32, highlight: Option<&Highlight>) -> Vec<Row> {
+        let first = self.cursor.saturating_sub(before);
+        let last = self.cursor.saturating_add(behind).min(self.last());
+        let marked = self.marked().unwrap_or(0..0);
+        let chunks = first / Program::CHUNK_SIZE..=last / Program::CHUNK_SIZE;
+        let mut rows = Vec::new();
+        for chunk in chunks.map(|chunk| self.program.decode(chunk)) {
+            for (number, block) in (chunk.first_block..).zip(&chunk.blocks) {
+                if !(first..=last).contains(&number) {
+                    continue;
+                }
+                let text = match highlight.filter(|highlight| highlight.block == number) {
+                    Some(highlight) => highlight.line.text(),
+                    None => match Line::of_block(block, self.program.language()) {
+                        Some(line) => line.text(),
+                        None => written(block, self.program.language()),
+                    },
+                };
+                rows.push(Row {
+                    number: Some(number),
+                    text: self.shown(&text),
+                    current: number == self.cursor,
+                    marked: marked.contains(&number),
+                });
+            }
+        }
+        rows
+    }
+
+    /// The words of a line; the place is that of the highlighted one.
+    fn words(&self, line: &Line, place: Option<WordPlace>) -> Vec<ShownWord> {
+        let parts = line.parts().into_iter();
+        let mut head = true;
+        parts
+            .map(|(at, text)| {
+                // The comment is no word to highlight.
+                let highlighted = place == Some(at) && (at.is_some() || std::mem::take(&mut head));
+                ShownWord {
+                    text: self.shown(&text),
+                    highlighted,
+                }
+            })
+            .collect()
+    }
+
+    /// A number that is being entered, with point or comma.
+    fn shown(&self, text: &str) -> String {
+        match self.setting.decimal_comma {
+            true => with_comma(text),
+            false => text.to_owned(),
+        }
+    }
+
+    fn question(&self) -> Option<Question> {
+        let tongue = self.setting.tongue;
+        let (id, entered) = match &self.open {
+            Open::Nothing | Open::Highlight(_) => return None,
+            Open::Dialogue(dialogue) => {
+                let field = dialogue.current()?;
+                let pending = if dialogue.typing.incremental { "I" } else { "" };
+                (field.slot.prompt, self.shown(field.text().trim_start()) + pending)
+            }
+            Open::Menu(menu) => (menu.prompt(), menu.typed.clone()),
+            Open::Goto(digits) => ("goto", digits.clone()),
+            Open::Find(text) => ("find", text.clone()),
+        };
+        Some(Question {
+            prompt: text_of(id, tongue),
+            entered,
+        })
+    }
+
+    fn list(&self) -> Option<List> {
+        let Open::Menu(menu) = &self.open else { return None };
+        Some(List {
+            lines: menu.items.iter().map(|item| item.text.clone()).collect(),
+            at: menu.at,
+        })
+    }
+}
+
+/// Points between digits as commas; the number of a cycle block keeps its point.
+fn with_comma(text: &str) -> String {
+    let (head, words) =
+        match text.starts_with("CYCL DEF") || text.starts_with("TCH PROBE") || text.starts_with("BLK FORM") {
+            true => text.split_at(text.match_indices(' ').nth(2).map_or(text.len(), |(at, _)| at)),
+            false => text.split_at(0),
+        };
+    let mut shown = head.to_owned();
+    let bytes = words.as_bytes();
+    for (at, character) in words.char_indices() {
+        let digit = |index: Option<usize>| {
+            index
+                .and_then(|index| bytes.get(index))
+                .is_some_and(u8::is_ascii_digit)
+        };
+        let decimal = character == '.' && digit(at.checked_sub(1));
+        shown.push(if decimal { ',' } else { character });
+    }
+    shown
+}

@@ -1,0 +1,106 @@
+//! What the soft keys offer.
+
+use crate::Tongue;
+use crate::dialogue::Dialogue;
+use crate::field::Ask;
+use crate::prompt::text_of;
+
+/// What a soft key does.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Soft {
+    /// Answers the question.
+    Answer(String),
+    /// A function of the editor.
+    Function(Function),
+}
+
+/// Functions of the editor beside the keys of the control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    Mark,
+    Unmark,
+    Copy,
+    Cut,
+    Paste,
+    Find,
+    Undo,
+    Redo,
+    Text,
+}
+
+/// M functions that are offered; any other is entered as a number.
+const M_FUNCTIONS: &[&str] = &[
+    "0", "2", "3", "4", "5", "6", "8", "9", "13", "14", "30", "89", "90", "91", "92", "99", "93", "94", "97",
+    "98",
+];
+
+/// Characters that the alpha keyboard lacks, a blank first.
+const CHARACTERS: &[&str] = &[
+    " ", "+", "=", "*", "/", "(", ")", ":", ";", ",", "#", "^", "_", "\"",
+];
+
+/// Soft keys in a row.
+pub(crate) const ROW: usize = 8;
+
+/// A soft key with its text.
+pub(crate) type Labelled = (String, Soft);
+
+/// The soft keys for a question.
+pub(crate) fn answers(ask: Ask, address: &str, tongue: Tongue) -> Vec<Labelled> {
+    let labelled = |label: String, value: &str| (label, Soft::Answer(value.to_owned()));
+    match ask {
+        Ask::Choice(choices) => {
+            let values = choices.iter().map(|choice| choice.value);
+            values
+                .map(|value| labelled(format!("{address}{value}"), value))
+                .collect()
+        }
+        Ask::Feed { max: true } => vec![labelled("F MAX".to_owned(), "MAX")],
+        Ask::M => {
+            let all = M_FUNCTIONS.iter();
+            all.map(|number| labelled(format!("M{number}"), number)).collect()
+        }
+        Ask::Name | Ask::Text => CHARACTERS
+            .iter()
+            .map(|character| {
+                let label = match *character {
+                    " " => text_of("soft blank", tongue),
+                    character => character,
+                };
+                labelled(label.to_owned(), character)
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The soft keys of a dialogue.
+pub(crate) fn of_dialogue(dialogue: &Dialogue, tongue: Tongue) -> Vec<Labelled> {
+    let field = dialogue.current();
+    field.map_or_else(Vec::new, |field| {
+        answers(field.slot.ask, field.slot.address, tongue)
+    })
+}
+
+/// The soft keys while nothing is open.
+pub(crate) fn of_program(marked: bool, tongue: Tongue) -> Vec<Labelled> {
+    use Function::{Copy, Cut, Find, Mark, Paste, Redo, Text, Undo, Unmark};
+    let mark = if marked {
+        ("soft unmark", Unmark)
+    } else {
+        ("soft mark", Mark)
+    };
+    let all = [
+        mark,
+        ("soft copy", Copy),
+        ("soft cut", Cut),
+        ("soft paste", Paste),
+        ("soft find", Find),
+        ("soft undo", Undo),
+        ("soft redo", Redo),
+        ("soft text", Text),
+    ];
+    let all = all.into_iter();
+    all.map(|(id, function)| (text_of(id, tongue).to_owned(), Soft::Function(function)))
+        .collect()
+}

@@ -1,0 +1,146 @@
+//! What an editor of the dialogue shows, as a page's window.
+
+use bahn_control::AxisState;
+use bahn_dialogue::{Editor, Key, Reaction, Row, ShownWord, Wanted};
+use bahn_path::Axis;
+
+use crate::page::{Turn, View, first_in_sight};
+use crate::screen::{Dialogue, Line, Mark, SoftKeys, Window, WindowKind};
+use crate::site::Site;
+
+/// Width of block numbers.
+const NUMBER: usize = 5;
+/// The axes of an L block with actual positions, where MOD chose none [003:2260-2321].
+const CAPTURED: &str = "XYZ";
+
+/// A key for the editor; `true` with it when the program has changed.
+pub(crate) fn key(editor: &mut Editor, key: Key, site: &mut Site) -> (Turn, bool) {
+    let reaction = editor.key(key);
+    went(editor, reaction, site)
+}
+
+/// Text for the editor, as if it had been typed.
+pub(crate) fn text(editor: &mut Editor, text: &str, site: &mut Site) -> (Turn, bool) {
+    let reaction = editor.type_text(text);
+    went(editor, reaction, site)
+}
+
+fn went(editor: &mut Editor, reaction: Reaction, site: &mut Site) -> (Turn, bool) {
+    match reaction {
+        Reaction::Shown => (Turn::Done, false),
+        Reaction::Edited => (Turn::Done, true),
+        Reaction::Refused(id) => (Turn::Say(site.message(id)), false),
+        Reaction::Passed => (Turn::Refused, false),
+        Reaction::Position(wanted) => match capture(editor, wanted, site) {
+            Reaction::Position(_) => (Turn::Refused, false),
+            reaction => went(editor, reaction, site),
+        },
+    }
+}
+
+/// Actual position capture [003:2260-2321]: workpiece coordinates, with the tool length in the tool axis.
+fn capture(editor: &mut Editor, wanted: Wanted, site: &Site) -> Reaction {
+    let snapshot = site.control().snapshot();
+    let axis_of = |state: &AxisState| Axis::from_letter(u8::try_from(state.letter).ok()?);
+    let actual = |axis: Axis| {
+        let state = snapshot.axes.iter().find(|state| axis_of(state) == Some(axis));
+        state.map(|state| state.actual)
+    };
+    match wanted {
+        Wanted::Axis(axis) => actual(axis).map(|value| editor.capture(axis, value)),
+        Wanted::ToolAxis => actual(Axis::Z).map(|value| editor.capture(Axis::Z, value)),
+        Wanted::Block => {
+            let chosen = match site.settings.captured_axes.as_str() {
+                "" => CAPTURED,
+                chosen => chosen,
+            };
+            let axes = chosen.bytes().filter_map(Axis::from_letter);
+            let position: Vec<_> = axes.filter_map(|axis| Some((axis, actual(axis)?))).collect();
+            Some(editor.capture_block(&position))
+        }
+    }
+    .unwrap_or(Reaction::Passed)
+}
+
+/// What an editor shows in so many lines.
+pub(crate) fn view(editor: &Editor, title: &str, lines: usize) -> View {
+    let half = u32::try_from(lines / 2).unwrap_or_default();
+    let view = editor.view(half, half);
+    let total = editor.program().block_count() as usize;
+    let window = match &view.list {
+        Some(list) => Window {
+            title: title.to_owned(),
+            kind: WindowKind::List,
+            first: first_in_sight(list.at, list.lines.len(), lines),
+            total: list.lines.len(),
+            lines: {
+                let first = first_in_sight(list.at, list.lines.len(), lines);
+                let shown = list.lines.iter().enumerate().skip(first).take(lines);
+                shown
+                    .map(|(place, text)| Line {
+                        text: text.clone(),
+                        current: place == list.at,
+                        ..Line::default()
+                    })
+                    .collect()
+            },
+        },
+        None => Window {
+            title: title.to_owned(),
+            kind: WindowKind::Program,
+            first: view.rows.first().and_then(|row| row.number).unwrap_or_default() as usize,
+            total,
+            lines: view.rows.iter().map(|row| line(row, &view.words)).collect(),
+        },
+    };
+    let question = view.question;
+    View {
+        window: Some(window),
+        dialogue: Dialogue {
+            open: question.is_some(),
+            prompt: question
+                .as_ref()
+                .map_or_else(String::new, |question| question.prompt.to_owned()),
+            entry: question.map(|question| question.entered).unwrap_or_default(),
+        },
+    }
+}
+
+fn line(row: &Row, words: &[ShownWord]) -> Line {
+    let number = row.number.map_or_else(String::new, |number| number.to_string());
+    let mut text = format!("{number:<NUMBER$}");
+    let mut marks = Vec::new();
+    if row.current && !words.is_empty() {
+        for (place, word) in words.iter().enumerate() {
+            if place > 0 {
+                text.push(' ');
+            }
+            let from = text.chars().count();
+            text.push_str(&word.text);
+            if word.highlighted {
+                marks.push((from, text.chars().count(), Mark::Cursor));
+            }
+        }
+    } else {
+        text.push_str(&row.text);
+    }
+    if row.marked && marks.is_empty() {
+        marks.push((0, text.chars().count(), Mark::Section));
+    }
+    Line {
+        text,
+        current: row.current,
+        marks,
+    }
+}
+
+/// The soft-key row of an editor.
+pub(crate) fn soft_keys(editor: &Editor) -> SoftKeys {
+    let view = editor.view(0, 0);
+    let (row, rows) = view.soft_row;
+    SoftKeys {
+        keys: view.soft_keys.to_vec(),
+        row,
+        rows,
+    }
+}

@@ -1,0 +1,74 @@
+//! A program is written by dialogue, kept, tested and run.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
+
+mod support;
+
+use bahn_panel::Star;
+use support::Trainee;
+
+fn new_program(trainee: &mut Trainee) {
+    trainee.write("programs/4711.H", "0 BEGIN PGM 4711 MM\n1 END PGM 4711 MM\n");
+    trainee.press("PROGRAM PGM_NR 4 7 1 1 ENT").wait(0.1);
+}
+
+#[test]
+fn a_block_is_entered_by_dialogue_and_is_on_the_medium() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    new_program(&mut trainee);
+    assert_eq!(trainee.screen().mode, "PROGRAMMING AND EDITING");
+    trainee
+        .press("L X")
+        .number("10")
+        .press("Y")
+        .number("-5.5")
+        .press("ENT");
+    assert_eq!(
+        trainee.screen().dialogue.prompt,
+        "TOOL RADIUS COMP.: RL/RR/NO COMP.?"
+    );
+    trainee.press("ENT").number("200").press("ENT END").wait(0.1);
+    assert!(
+        trainee.file("programs/4711.H").contains("L X+10 Y-5.5 R0 F200"),
+        "{}",
+        trainee.file("programs/4711.H")
+    );
+}
+
+#[test]
+fn what_was_typed_of_a_block_survives_a_kill() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    new_program(&mut trainee);
+    trainee.press("L X").number("12").wait(0.1);
+    let before = trainee.screen().dialogue;
+    assert_eq!(before.prompt, "COORDINATES?");
+    let mut trainee = trainee.killed();
+    trainee.ready();
+    trainee.press("PROGRAM").wait(0.1);
+    let after = trainee.screen();
+    assert_eq!(after.dialogue, before);
+    assert_eq!(after.program.title, "4711.H");
+}
+
+#[test]
+fn a_block_of_mdi_moves_the_axis() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee
+        .press("MDI L X")
+        .number("250")
+        .press("ENT ENT")
+        .number("3000")
+        .press("ENT END")
+        .wait(0.2);
+    assert!(trainee.messages().is_empty(), "{:?}", trainee.messages());
+    trainee.press("NC_START");
+    trainee.until(5.0, |screen| screen.status.star == Star::Steady);
+    trainee.until(60.0, |screen| screen.status.star != Star::Steady);
+    trainee.wait(0.5);
+    // The scale resolves 0.1 µm, the drive has noise.
+    let at: f64 = trainee.position('X').parse().unwrap();
+    assert!((at - 250.0).abs() < 0.002, "{at}");
+}

@@ -1,0 +1,56 @@
+//! The page and its modules, embedded: there is no way to any other file.
+
+use axum::extract::Path;
+use axum::http::StatusCode;
+use axum::http::header::{CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, X_CONTENT_TYPE_OPTIONS};
+use axum::response::{IntoResponse, Response};
+
+const PAGE: &str = include_str!("../web/index.html");
+
+macro_rules! modules {
+    ($($name:literal),+ $(,)?) => {
+        [$(($name, include_str!(concat!("../web/", $name)))),+]
+    };
+}
+
+/// The modules by name.
+const MODULES: &[(&str, &str)] = &modules![
+    "style.css",
+    "main.js",
+    "connection.js",
+    "messagepack.js",
+    "screen.js",
+    "keyboard.js",
+    "machine.js",
+];
+
+/// Only what this server serves, nothing inline.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; \
+                      base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// The page.
+pub(crate) async fn page() -> Response {
+    served("text/html; charset=utf-8", PAGE)
+}
+
+/// One of its modules.
+pub(crate) async fn module(Path(name): Path<String>) -> Response {
+    let Some((name, text)) = MODULES.iter().find(|(known, _)| *known == name) else {
+        return StatusCode::NOT_FOUND.into_response();
+    };
+    let kind = match name.ends_with(".css") {
+        true => "text/css; charset=utf-8",
+        false => "text/javascript; charset=utf-8",
+    };
+    served(kind, text)
+}
+
+fn served(kind: &'static str, text: &'static str) -> Response {
+    let headers = [
+        (CONTENT_TYPE, kind),
+        (CACHE_CONTROL, "no-cache"),
+        (CONTENT_SECURITY_POLICY, POLICY),
+        (X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    ];
+    (headers, text).into_response()
+}

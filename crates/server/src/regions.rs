@@ -1,0 +1,84 @@
+//! A screen in regions, each encoded once, however many look at it.
+
+use bahn_panel::Screen;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// The regions of a screen, as MessagePack: an array of a name and a value each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Regions {
+    serial: u64,
+    /// Name and value, and the serial of the screen since which it is so.
+    parts: Vec<(u64, Arc<[u8]>)>,
+}
+
+impl Regions {
+    /// The serial of the screen.
+    pub fn serial(&self) -> u64 {
+        self.serial
+    }
+
+    /// The regions of the next screen.
+    pub fn next(&self, screen: &Screen) -> Regions {
+        let time = (screen.serial, screen.time_s);
+        let encoded = [
+            encode("time", &time),
+            encode("header", &(&screen.mode, &screen.headings, &screen.messages)),
+            encode("dialogue", &screen.dialogue),
+            encode("program", &(&screen.program, &screen.beside)),
+            encode("status", &screen.status),
+            encode("softkeys", &screen.soft_keys),
+            encode("plc", &screen.plc_window),
+            encode("machine", &(&screen.machine, &screen.lamps)),
+        ];
+        let parts = encoded
+            .into_iter()
+            .enumerate()
+            .map(|(place, bytes)| match self.parts.get(place) {
+                Some((since, before)) if **before == *bytes => (*since, Arc::clone(before)),
+                _ => (screen.serial, Arc::from(bytes)),
+            });
+        Regions {
+            serial: screen.serial,
+            parts: parts.collect(),
+        }
+    }
+
+    /// What has changed behind a screen, as one message: an array of regions.
+    pub fn since(&self, serial: u64) -> Vec<u8> {
+        let news = self.parts.iter().filter(|(since, _)| *since > serial);
+        let count = news.clone().count();
+        // Fewer than 16 regions: the array has a head of one byte.
+        let head = 0x90 | (count & 0x0f) as u8;
+        let mut message = vec![head];
+        news.for_each(|(_, bytes)| message.extend_from_slice(bytes));
+        message
+    }
+}
+
+/// Structures become maps by name; what cannot be encoded is left out, which no screen can be.
+fn encode<T: Serialize>(name: &str, value: &T) -> Vec<u8> {
+    rmp_serde::to_vec_named(&(name, value)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn viewers_are_sent_what_has_changed() {
+        let mut screen = Screen {
+            serial: 1,
+            ..Screen::default()
+        };
+        let first = Regions::default().next(&screen);
+        assert_eq!(first.since(0)[0], 0x98, "all eight regions");
+        assert_eq!(first.since(1), [0x90]);
+        screen.serial = 2;
+        screen.dialogue.prompt = "PROGRAM NUMBER =".to_owned();
+        let second = first.next(&screen);
+        // The time, which has the serial, and the dialogue.
+        assert_eq!(second.since(1)[0], 0x92);
+        assert_eq!(second.since(0)[0], 0x98);
+    }
+}

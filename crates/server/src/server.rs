@@ -1,0 +1,163 @@
+//! Listens and serves.
+
+use std::net::SocketAddr;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::middleware;
+use axum::routing::{any, get, post};
+use bahn_panel::{Link, Live, Station};
+use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
+use tokio::sync::{Semaphore, watch};
+
+use crate::access::{self, Access};
+use crate::api::{self, About};
+use crate::assets;
+use crate::crew::Crew;
+use crate::regions::Regions;
+use crate::socket;
+
+/// Largest body of a request, bytes.
+const BODY: usize = 64 << 10;
+/// Viewers at most.
+const VIEWERS: usize = 32;
+/// A viewer without news is sent nothing for so long at most.
+const QUIET: Duration = Duration::from_secs(1);
+
+/// Where to listen, and who may come in.
+#[derive(Clone, Debug)]
+pub struct ServerOptions {
+    /// The address; port 0 takes a free one.
+    pub listen: SocketAddr,
+    /// What others than this computer must know; needed for any address but loopback.
+    pub token: Option<String>,
+}
+
+/// Why a server cannot begin.
+#[derive(Debug, thiserror::Error)]
+pub enum ServerError {
+    /// Others can reach the address, and there is no token.
+    #[error("{0} can be reached by others: it needs a token")]
+    NoToken(SocketAddr),
+    /// The address cannot be listened on.
+    #[error("cannot listen on {0}: {1}")]
+    Address(SocketAddr, std::io::Error),
+    /// No thread can be started.
+    #[error("cannot begin: {0}")]
+    Runtime(std::io::Error),
+}
+
+/// What all requests share.
+#[derive(Clone)]
+pub(crate) struct Shared {
+    pub link: Link,
+    pub about: Arc<About>,
+    pub regions: watch::Receiver<Arc<Regions>>,
+    pub crew: Arc<Mutex<Crew>>,
+    pub viewers: Arc<Semaphore>,
+    pub access: Arc<Access>,
+}
+
+/// A station that is served.
+pub struct Server {
+    live: Live,
+    address: SocketAddr,
+    runtime: Runtime,
+}
+
+impl Server {
+    /// Lets a station run and serves it.
+    ///
+    /// # Errors
+    /// [`ServerError`].
+    pub fn start(station: Station, options: &ServerOptions) -> Result<Server, ServerError> {
+        let listen = options.listen;
+        if !listen.ip().is_loopback() && options.token.is_none() {
+            return Err(ServerError::NoToken(listen));
+        }
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()
+            .map_err(ServerError::Runtime)?;
+        let listener = runtime
+            .block_on(TcpListener::bind(listen))
+            .map_err(|error| ServerError::Address(listen, error))?;
+        let address = listener
+            .local_addr()
+            .map_err(|error| ServerError::Address(listen, error))?;
+        let about = Arc::new(About::of(&station));
+        let live = Live::start(station);
+        let shared = Shared {
+            regions: follow(live.link()),
+            link: live.link(),
+            about,
+            crew: Arc::default(),
+            viewers: Arc::new(Semaphore::new(VIEWERS)),
+            access: Arc::new(Access::new(address, options.token.clone())),
+        };
+        let router = router(shared);
+        runtime.spawn(async move {
+            // It ends with the runtime.
+            let _ = axum::serve(listener, router).await;
+        });
+        Ok(Server {
+            live,
+            address,
+            runtime,
+        })
+    }
+
+    /// The address at which it listens.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The station.
+    pub fn link(&self) -> Link {
+        self.live.link()
+    }
+
+    /// Ends; what must survive is on the medium.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn end(self) -> Result<(), String> {
+        self.runtime.shutdown_timeout(QUIET);
+        self.live.end()
+    }
+}
+
+fn router(shared: Shared) -> Router {
+    Router::new()
+        .route("/", get(assets::page))
+        .route("/web/{name}", get(assets::module))
+        .route("/api/station", get(api::station))
+        .route("/api/screen", get(api::screen))
+        .route("/api/snapshot", get(api::snapshot))
+        .route("/api/key", post(api::input))
+        .route("/api/command", post(api::input))
+        .route("/ws", any(socket::open))
+        .layer(DefaultBodyLimit::max(BODY))
+        .layer(middleware::from_fn_with_state(shared.clone(), access::guard))
+        .with_state(shared)
+}
+
+/// Encodes every screen once, on a thread of its own.
+fn follow(link: Link) -> watch::Receiver<Arc<Regions>> {
+    let (sender, receiver) = watch::channel(Arc::new(Regions::default()));
+    std::thread::spawn(move || {
+        let mut regions = Regions::default();
+        while !sender.is_closed() {
+            let screen = link.next_screen(regions.serial(), QUIET);
+            if screen.serial > regions.serial() {
+                regions = regions.next(&screen);
+                sender.send_replace(Arc::new(regions.clone()));
+            }
+        }
+    });
+    receiver
+}

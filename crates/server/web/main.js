@@ -1,0 +1,81 @@
+// Wires the page: regions from the station are drawn, keys are sent to it.
+
+import { Connection } from "/web/connection.js";
+import * as keyboard from "/web/keyboard.js";
+import * as machine from "/web/machine.js";
+import * as screen from "/web/screen.js";
+
+let status = null;
+let windows = null;
+
+const draw = {
+  time: () => {},
+  header: (value) => screen.header(value, press),
+  dialogue: screen.dialogue,
+  program: (value) => {
+    windows = value;
+    screen.program(value, status);
+  },
+  status: (value) => {
+    status = value;
+    screen.drawStatus(value);
+    // Large positions stand in a window.
+    if (windows) screen.program(windows, status);
+  },
+  plc: screen.plcWindow,
+  softkeys: (value) => screen.softKeys(value, press),
+  machine: machine.draw,
+  crew: crew,
+  refused: (why) => line(why),
+};
+
+const connection = await begin();
+
+async function begin() {
+  const station = await (await fetch("/api/station")).json();
+  keyboard.build(station, press);
+  keyboard.help();
+  machine.build(station, (input) => connection.input(input));
+  return new Connection(
+    (name, value) => draw[name]?.(value),
+    (connected) => line(connected ? "" : "The station does not answer; it is asked again."),
+  );
+}
+
+function press(key) {
+  connection.input({ key });
+}
+
+keyboard.listen(press);
+
+for (const tab of document.querySelectorAll("[data-tab]")) {
+  tab.addEventListener("click", () => {
+    document.body.dataset.tab = tab.dataset.tab;
+    for (const other of document.querySelectorAll("[data-tab]")) {
+      other.setAttribute("aria-pressed", String(other === tab));
+    }
+  });
+}
+
+function line(text) {
+  screen.setText(document.querySelector(".tabs .line"), text);
+}
+
+// One operates, the others look on: who wants the keys asks for them.
+function crew({ operates, asks }) {
+  document.body.classList.toggle("looks-on", !operates);
+  const node = document.querySelector(".tabs .line");
+  if (operates && !asks) return line("");
+  const buttons = operates
+    ? [["Hand over", { hand_over: true }], ["No", { hand_over: false }]]
+    : [["Operate", { operate: true }]];
+  node.replaceChildren(
+    operates ? "Somebody wants the keys." : "Somebody else operates.",
+    ...buttons.map(([text, message]) => {
+      const button = screen.element("button", "", text);
+      button.type = "button";
+      button.addEventListener("click", () => connection.ask(message));
+      return button;
+    }),
+  );
+}

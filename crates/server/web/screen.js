@@ -1,0 +1,211 @@
+// Draws the regions of the screen. Only what has changed is touched, so that nothing flickers and a screen reader
+// speaks what is new.
+
+const region = (name) => document.querySelector(`[data-region="${name}"]`);
+
+/** A new element with classes and text. */
+export function element(tag, classes = "", text = "") {
+  const made = document.createElement(tag);
+  if (classes) made.className = classes;
+  if (text) made.textContent = text;
+  return made;
+}
+
+/** Sets a text when it is another one. */
+export function setText(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
+/** Makes a node have so many children of a kind. */
+function children(node, count, make) {
+  while (node.children.length > count) node.lastElementChild.remove();
+  while (node.children.length < count) node.append(make(node.children.length));
+  return [...node.children];
+}
+
+export function header([mode, headings, messages], press) {
+  document.title = mode ? `Bahn: ${mode}` : "Bahn";
+  const head = region("header");
+  const nodes = children(head.querySelector(".headings"), headings.length, () => {
+    const button = element("button", "heading");
+    button.type = "button";
+    button.addEventListener("click", () => press(button.dataset.mode));
+    return button;
+  });
+  headings.forEach((heading, place) => {
+    nodes[place].dataset.mode = heading.key;
+    nodes[place].setAttribute("aria-pressed", String(heading.active));
+    setText(nodes[place], heading.title);
+  });
+  const lines = children(head.querySelector(".messages"), messages.length, () => element("div", "message"));
+  messages.forEach((message, place) => {
+    lines[place].classList.toggle("flashing", message.flashing);
+    setText(lines[place], message.place ? `${message.place}  ${message.text}` : message.text);
+  });
+}
+
+export function dialogue({ prompt, entry, open }) {
+  const node = region("dialogue");
+  node.classList.toggle("open", open);
+  setText(node.querySelector(".prompt"), prompt);
+  setText(node.querySelector(".entry"), entry);
+}
+
+export function program([front, beside], status) {
+  drawWindow(region("program"), front, status);
+  const other = region("beside");
+  other.hidden = !beside;
+  if (beside) drawWindow(other, beside, status);
+}
+
+function drawWindow(node, shown, status) {
+  node.dataset.kind = shown.kind;
+  let title = node.querySelector(":scope > .title");
+  let lines = node.querySelector(":scope > .lines");
+  if (!title) {
+    title = element("div", "title");
+    lines = element("ol", "lines");
+    node.replaceChildren(title, lines);
+  }
+  setText(title, shown.title);
+  title.hidden = !shown.title;
+  if (shown.kind === "positions") {
+    largePositions(lines, status);
+    return;
+  }
+  const nodes = children(lines, shown.lines.length, () => element("li"));
+  shown.lines.forEach((line, place) => drawLine(nodes[place], line));
+}
+
+function drawLine(node, line) {
+  node.className = line.current ? "current" : "";
+  if (line.current) node.setAttribute("aria-current", "true");
+  else node.removeAttribute("aria-current");
+  const marks = line.marks ?? [];
+  if (!marks.length) {
+    setText(node, line.text || "\u00a0");
+    return;
+  }
+  const characters = [...line.text];
+  const parts = [];
+  let at = 0;
+  for (const [from, to, kind] of marks) {
+    parts.push(characters.slice(at, from).join(""));
+    parts.push(element("mark", kind, characters.slice(from, to).join("") || "\u00a0"));
+    at = to;
+  }
+  parts.push(characters.slice(at).join(""));
+  node.replaceChildren(...parts);
+}
+
+function largePositions(lines, status) {
+  const axes = status?.axes ?? [];
+  const nodes = children(lines, axes.length, () => {
+    const line = element("li", "axis");
+    line.append(element("span", "star"), element("span", "letter"), element("span", "value"));
+    return line;
+  });
+  axes.forEach((axis, place) => {
+    nodes[place].className = axis.referenced ? "axis" : "axis unreferenced";
+    const [star, letter, value] = nodes[place].children;
+    setText(star, axis.locked ? "*" : "");
+    setText(letter, axis.letter);
+    setText(value, axis.value);
+  });
+}
+
+const ITEMS = [
+  ["position", (status) => status.position_type + (status.inch ? " INCH" : "")],
+  ["axes", (status) => status.axes.map((axis) => `${axis.locked ? "*" : ""}${axis.letter} ${axis.value}`).join("  ")],
+  ["tool", (status) => `T ${status.tool}${status.tool_axis ? ` ${status.tool_axis}` : ""}`],
+  ["speed", (status) => `S ${Math.round(status.s)}${status.gear ? `/${status.gear}` : ""}`],
+  ["feed", (status) => `F ${status.f}`],
+  ["functions", (status) => status.m],
+  ["flags", (status) => status.flags.join(" ")],
+  ["star", (status) => (status.star === "off" ? "" : "*")],
+  ["waiting", (status) => status.waiting],
+];
+
+export function drawStatus(status) {
+  const node = region("status");
+  const nodes = children(node, ITEMS.length + 2, (place) =>
+    place < ITEMS.length ? element("span", ITEMS[place][0]) : bar(place === ITEMS.length ? "F" : "S"));
+  ITEMS.forEach(([name, text], place) => {
+    setText(nodes[place], text(status));
+    nodes[place].hidden = !nodes[place].textContent;
+    if (name === "star") nodes[place].classList.toggle("blinking", status.star === "blinking");
+  });
+  const [feed, speed] = nodes.slice(ITEMS.length);
+  setBar(feed, status.feed_mm_min, status.programmed_feed_mm_min, status.overrides[0]);
+  setBar(speed, Math.abs(status.spindle_rpm), status.s, status.overrides[1]);
+}
+
+function bar(name) {
+  const node = element("label", "bar");
+  const meter = element("meter");
+  meter.max = 150;
+  meter.setAttribute("aria-label", name === "F" ? "Feed, percent" : "Spindle speed, percent");
+  node.append(element("span", "", name), meter, element("span", "percent"));
+  return node;
+}
+
+// A bar is what is done of what was programmed, up to 150 %.
+function setBar(node, value, programmed, override) {
+  const part = programmed > 0 ? (value / programmed) * 100 : 0;
+  const meter = node.querySelector("meter");
+  const rounded = Math.round(part);
+  if (meter.value !== rounded) meter.value = rounded;
+  setText(node.querySelector(".percent"), `${Math.round(override)} %`);
+}
+
+const COLOURS = 16;
+
+export function plcWindow(lines) {
+  const node = region("plc");
+  node.hidden = !lines;
+  if (!lines) return;
+  const nodes = children(node, lines.length, () => element("div", "plc-line"));
+  lines.forEach((line, place) => {
+    const parts = [];
+    if (line.bar) {
+      const meter = element("meter", `colour-${line.bar[2] % COLOURS}`);
+      [meter.max, meter.value] = line.bar;
+      parts.push(meter);
+    }
+    for (let from = 0; from < line.text.length; ) {
+      let to = from;
+      while (to < line.text.length && line.colours[to] === line.colours[from]) to += 1;
+      parts.push(element("span", `colour-${line.colours[from] % COLOURS}`, line.text.slice(from, to)));
+      from = to;
+    }
+    nodes[place].replaceChildren(...parts);
+  });
+}
+
+export function softKeys({ keys, row, rows }, press) {
+  const node = region("softkeys");
+  if (!node.children.length) {
+    const names = ["SK_LEFT", ...Array.from({ length: 8 }, (_, place) => `SK${place + 1}`), "SK_RIGHT"];
+    for (const name of names) {
+      const button = element("button", "key soft");
+      button.type = "button";
+      button.dataset.key = name;
+      button.addEventListener("click", () => press(name));
+      node.append(button);
+    }
+  }
+  const nodes = [...node.children];
+  const turns = rows > 1;
+  for (const [button, text, label] of [[nodes[0], "◁", "Soft-key row to the left"], [nodes[9], "▷", "Soft-key row to the right"]]) {
+    setText(button, text);
+    button.setAttribute("aria-label", turns ? `${label}, row ${row + 1} of ${rows}` : label);
+    button.disabled = !turns;
+  }
+  for (let place = 0; place < 8; place += 1) {
+    const text = keys[place] ?? "";
+    const button = nodes[place + 1];
+    setText(button, text);
+    button.setAttribute("aria-label", text ? `Soft key ${place + 1}: ${text}` : `Soft key ${place + 1}, empty`);
+    button.disabled = !text;
+  }
+}

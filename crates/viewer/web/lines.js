@@ -1,0 +1,103 @@
+// The path of the tool and the edges of the blank.
+
+import { program, LINE_VERTEX, LINE_FRAGMENT } from './shaders.js';
+import { RAPID, FEED } from './codec.js';
+
+// Numbers of a segment: two places, kind, tool, way before it, its times.
+const NUMBERS = 11;
+const EDGE = 2;
+
+export class Lines {
+  constructor(gl) {
+    this.gl = gl;
+    this.shader = program(gl, LINE_VERTEX, LINE_FRAGMENT);
+    this.sets = { path: this.set(), box: this.set() };
+    this.colours = new Float32Array(64 * 4).fill(0.8);
+    this.rapid = [0.8, 0.2, 0.2, 1];
+    this.box = [0.5, 0.5, 0.5, 1];
+  }
+
+  set() {
+    const { gl, shader } = this;
+    const made = { array: gl.createVertexArray(), buffer: gl.createBuffer(), count: 0 };
+    gl.bindVertexArray(made.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, made.buffer);
+    for (const [name, size, from] of [['from', 3, 0], ['to', 3, 3], ['about', 4, 6], ['until', 1, 10]]) {
+      const at = gl.getAttribLocation(shader.program, name);
+      gl.enableVertexAttribArray(at);
+      gl.vertexAttribPointer(at, size, gl.FLOAT, false, 4 * NUMBERS, 4 * from);
+      gl.vertexAttribDivisor(at, 1);
+    }
+    gl.bindVertexArray(null);
+    return made;
+  }
+
+  fill(set, numbers) {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, set.buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.STATIC_DRAW);
+    set.count = numbers.length / NUMBERS;
+  }
+
+  path(path) {
+    const { places, kinds, tools, times, count } = path;
+    const numbers = [];
+    let way = 0;
+    for (let k = 1; k < count; k++) {
+      if (kinds[k] !== RAPID && kinds[k] !== FEED) continue;
+      const from = places.subarray(3 * k - 3, 3 * k), to = places.subarray(3 * k, 3 * k + 3);
+      numbers.push(...from, ...to, kinds[k], tools[k], way, times[k - 1], times[k]);
+      way = (way + Math.hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2])) % 1e4;
+    }
+    this.fill(this.sets.path, Float32Array.from(numbers));
+  }
+
+  // The edges of a box from the origin.
+  edges(size) {
+    const numbers = [];
+    for (let axis = 0; axis < 3; axis++) {
+      for (let k = 0; k < 4; k++) {
+        const from = [0, 0, 0];
+        from[(axis + 1) % 3] = k & 1 ? size[(axis + 1) % 3] : 0;
+        from[(axis + 2) % 3] = k & 2 ? size[(axis + 2) % 3] : 0;
+        const to = [...from];
+        to[axis] = size[axis];
+        numbers.push(...from, ...to, EDGE, 0, 0, 0, 0);
+      }
+    }
+    this.fill(this.sets.box, Float32Array.from(numbers));
+  }
+
+  // `show`: which of path and box; lines behind the part are faint.
+  draw(camera, show, now, ratio) {
+    const { gl, shader: { program, at } } = this;
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(at.camera, false, camera.matrix());
+    const window = camera.window.map(side => side * ratio);
+    gl.uniform2fv(at.window, window);
+    gl.uniform4fv(at.colours, this.colours);
+    gl.uniform4fv(at.rapid, this.rapid);
+    gl.uniform4fv(at.box, this.box);
+    gl.uniform1f(at.now, now);
+    gl.uniform1f(at.dash, 5 * camera.mm);
+    gl.uniform1f(at.ahead, 0.22);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthMask(false);
+    for (const [name, width, strength, behind] of [['box', 1, 0.55, 0.12], ['path', 1.5, 1, 0.16]]) {
+      if (!show[name]) continue;
+      const set = this.sets[name];
+      gl.bindVertexArray(set.array);
+      gl.uniform1f(at.width, width * ratio);
+      gl.uniform1f(at.bias, 0.6 * camera.mm / camera.far);
+      for (const [depth, share] of [[gl.LEQUAL, strength], [gl.GREATER, behind]]) {
+        gl.depthFunc(depth);
+        gl.uniform1f(at.strength, share);
+        gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, set.count);
+      }
+    }
+    gl.depthFunc(gl.LEQUAL);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
+  }
+}
