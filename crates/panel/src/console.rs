@@ -164,7 +164,10 @@ impl Console {
         }
         // MOD and HELP are there wherever the page itself does not take them.
         let turn = match turn {
-            Turn::Refused => pages::everywhere(key, self.front(), site),
+            Turn::Refused => {
+                let note = self.notes.last().map(String::as_str);
+                pages::everywhere(key, self.front(), note, site)
+            }
             turn => turn,
         };
         self.went(turn, site);

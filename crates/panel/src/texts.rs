@@ -11,6 +11,7 @@ pub use bahn_dialogue::Tongue as Language;
 const GERMAN: &[&str] = &[
     include_str!("../texts/de.tsv"),
     include_str!("../texts/messages-de.tsv"),
+    include_str!("../texts/causes-de.tsv"),
 ];
 
 /// The code of a language: `en`, `de`.
@@ -104,8 +105,9 @@ mod tests {
         use bahn_parameters::{ControlModel, MessageId};
         for model in ControlModel::ALL {
             for id in MessageId::ALL {
-                let text = id.text(model);
-                assert!(find(Language::German, text).is_some(), "{text}");
+                for text in [id.text(model), id.cause(), id.remedy()] {
+                    assert!(find(Language::German, text).is_some(), "{text}");
+                }
             }
         }
         for (english, german) in [

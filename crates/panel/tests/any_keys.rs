@@ -80,7 +80,7 @@ fn any_keys_in_program_management() {
 
 #[test]
 fn any_keys_in_tables() {
-    for seed in 21..=23 {
+    for seed in 21..=25 {
         hammer("PROGRAM PGM_NR 0 ENT", seed, 1000);
     }
 }

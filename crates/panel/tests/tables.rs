@@ -39,7 +39,10 @@ fn the_datum_table_in_use_counts_at_once() {
         trainee.station.control().remember().written_datums.is_empty(),
         "the file says it"
     );
-    trainee.press("FULL PGM_NR S H I F T ENT NC_START");
+    // Without it the machine could not be switched on again.
+    trainee.press("END CL_PGM Z E R O POINT D ENT");
+    assert_eq!(trainee.messages(), ["BACKGROUND PROGRAMMING NOT POSSIBLE"]);
+    trainee.press("CE END FULL PGM_NR S H I F T ENT NC_START");
     trainee.until(5.0, |screen| screen.status.star == Star::Steady);
     trainee.until(60.0, |screen| screen.status.star == Star::Off);
     trainee.wait(1.0);
@@ -47,19 +50,19 @@ fn the_datum_table_in_use_counts_at_once() {
     assert_eq!(trainee.position('X'), "-12.500");
 }
 
-/// Length and radius of a tool count with its next call: the tip of a tool of 100 mm stands at Z+50.
+/// The tool table opens in program run and by hand; what is entered is in its file only.
 #[test]
-fn the_length_of_a_tool_counts_with_its_call() {
+fn the_tool_table_opens_in_program_run() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     trainee
-        .press("MANUAL SK8 RIGHT")
+        .press("FULL SK5 RIGHT")
         .number("100")
         .press("ENT END")
         .wait(0.2);
     let tools = trainee.station.control().remember();
     assert!(tools.written.is_empty());
-    trainee.press("SK8 RIGHT");
+    trainee.press("MANUAL SK8 RIGHT");
     let line = trainee.screen().program.lines[1].clone();
     assert!(line.current && line.text.contains("100"), "{line:?}");
 }
@@ -123,6 +126,14 @@ fn messages_are_in_the_language_of_the_dialogue() {
     trainee.ready();
     trainee.press("MOD DOWN DOWN DOWN ENT END RL");
     assert_eq!(trainee.messages(), ["TASTE OHNE FUNKTION"]);
-    trainee.press("CE PROGRAM CL_PGM Z Z ENT");
+    // HELP explains it in the same language.
+    trainee.press("HELP");
+    let lines = trainee.screen().program.lines;
+    assert_eq!(lines[0].text, "URSACHE:");
+    assert_eq!(
+        lines[1].text.trim(),
+        "Die Taste hat im jetzigen Dialog keine Bedeutung."
+    );
+    trainee.press("END CE PROGRAM CL_PGM Z Z ENT");
     assert_eq!(trainee.messages(), ["PROGRAMM NICHT GEFUNDEN"]);
 }
