@@ -40,3 +40,9 @@ cp examples/digitizing/* "$copy"
 "$bahn" test "$copy/AGAIN.H" --tools "$copy/tools.tsv" --resolution 0.1 --compare "$copy/model.stl" --color deviation \
     --view plan --image "$out/digitized-deviation.png" >/dev/null
 echo "$out/digitized-deviation.png"
+# The page of a test run in a browser, where there is one.
+cargo build --quiet --locked -p bahn-browser --example picture
+picture=${CARGO_TARGET_DIR:-target}/debug/examples/picture
+"$bahn" test examples/housing.H --html "$copy/page.html" >/dev/null
+"$picture" "$copy/page.html" "$out/page.png" 1400x900 "js:bahn.seek(bahn.end * 0.62)" >/dev/null
+echo "$out/page.png"

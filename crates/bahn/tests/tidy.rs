@@ -50,6 +50,26 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "panel",
+        &[
+            "path",
+            "parameters",
+            "program",
+            "dialogue",
+            "exchange",
+            "plc",
+            "servo",
+            "machine",
+            "control",
+            "host",
+            "workpiece",
+            "viewer",
+            "interpreter",
+            "machines",
+        ],
+    ),
+    ("server", &["panel", "viewer"]),
+    (
         "bahn",
         &[
             "path",
@@ -67,6 +87,8 @@ const ROOMS: &[(&str, &[&str])] = &[
             "machines",
             "control",
             "host",
+            "panel",
+            "server",
         ],
     ),
 ];

@@ -1,4 +1,4 @@
-//! A picture of a page: `picture PAGE.html OUT.png WIDTHxHEIGHT [dark] [phone] [js:SCRIPT ...]`.
+//! A picture of a page: `picture PAGE.html OUT.png WIDTHxHEIGHT [dark] [phone] [js:SCRIPT ...]`; of the pages of `bahn test --html` a fine one.
 //!
 //! Scripts are executed one after the other before the picture is taken.
 
@@ -19,11 +19,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     tab.viewport(width.parse()?, height.parse()?, is("phone"))?;
     tab.dark(is("dark"))?;
     tab.open_file(Path::new(page))?;
-    let settled = "!globalThis.bahn || (bahn.view.frames > 0 && !bahn.view.asked)";
+    let settled = "!document.querySelector('#data') || globalThis.bahn.view.settled";
     tab.wait_until(settled, Duration::from_secs(60))?;
+    // However long that takes without a graphics card.
+    tab.evaluate("globalThis.bahn && (bahn.view.floor = 2, bahn.view.changed())")?;
+    tab.wait_until(settled, Duration::from_secs(300))?;
     for script in further.iter().filter_map(|word| word.strip_prefix("js:")) {
         println!("{}", tab.evaluate(script)?);
-        tab.wait_until(settled, Duration::from_secs(60))?;
+        tab.wait_until(settled, Duration::from_secs(300))?;
     }
     std::fs::write(out, tab.screenshot()?)?;
     for complaint in tab.complaints() {

@@ -151,7 +151,7 @@ impl Channel {
         let basis = Basis {
             list: self.own_list.as_ref().unwrap_or(machine.link.list()),
             link: &machine.link,
-            touch: self.touch,
+            touch: &self.touch,
         };
         (&mut self.run, site, basis)
     }
@@ -381,8 +381,7 @@ impl Channel {
         };
         let (magazine, files) = (&mut machine.magazine, &mut machine.link.files);
         let (life, tools) = (&mut self.life, &mut self.tools);
-        let changed = life.follow(counting, tools, magazine, exchange, files);
-        machine.unsaved |= changed;
+        machine.unsaved |= life.follow(counting, tools, magazine, exchange, files);
         let waits = keeps && machine.unsaved;
         if !waits {
             self.tools.end_geometry_strobe(exchange);
@@ -444,7 +443,7 @@ impl Channel {
         if let Err(code) = self.desk.take_panel(machine.memory.of(self.number)) {
             self.show(Message::PlcMarkers(code), machine);
         }
-        let (magazine, exchange) = (&mut machine.magazine, machine.memory.of(self.number));
+        let (exchange, magazine) = (machine.memory.of(self.number), &mut machine.magazine);
         self.tools.take_end(magazine, &self.handshakes, exchange);
     }
 

@@ -26,7 +26,7 @@ use crate::per_channel::PerChannel;
 use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
 use crate::status;
-use crate::tables::LoadedTables;
+use crate::tables::{self, LoadedTables};
 use crate::upkeep::{self, BufferBattery, DriveOffsets};
 use crate::window::Window;
 
@@ -95,7 +95,8 @@ pub(crate) struct PlcUnit {
 /// The inputs and outputs of the PLC with their operands.
 #[derive(Clone)]
 struct Wiring {
-    input_bits: Vec<(usize, Bit)>,
+    /// First and last number of the inputs on each board.
+    input_boards: &'static [(u16, u16)],
     /// I160 to I175, where a handwheel has its keys.
     handwheel_bits: Vec<(usize, Bit)>,
     output_bits: Vec<(usize, Bit)>,
@@ -135,7 +136,7 @@ impl Wiring {
                 .collect()
         };
         Wiring {
-            input_bits: bits(BitArea::I, model.limits().inputs),
+            input_boards: model.limits().inputs,
             handwheel_bits: bits(BitArea::I, &[(160, 175)]),
             output_bits: bits(BitArea::O, model.limits().outputs),
         }
@@ -164,8 +165,8 @@ impl MachineSide {
             TableKind::Datum => self.loaded_datums.take(&self.link, line, element, value),
             _ => self.loaded_tables.take(kind, line, element, value),
         }
-        if kind == TableKind::Pocket {
-            self.magazine.take_pocket(line, element, value);
+        if kind == TableKind::Pocket && element == tables::T {
+            self.magazine.take_pocket(line, value);
         }
         self.unsaved = true;
         true
@@ -305,8 +306,23 @@ impl MachineSide {
     /// Reads the inputs for a scan.
     pub fn read_inputs(&mut self, measured: &Measured) {
         let exchange = self.memory.first_mut();
-        for (number, bit) in &self.wiring.input_bits {
-            exchange.nc_put(*bit, measured.inputs.get(*number).copied().unwrap_or(false));
+        for (first, last) in self.wiring.input_boards {
+            let cells =
+                usize::from(BitArea::I.first_cell() + first)..=usize::from(BitArea::I.first_cell() + last);
+            let known = exchange.nc().cells().get(cells).unwrap_or_default();
+            let read = measured.inputs.get(usize::from(*first)..=usize::from(*last));
+            let read = read.unwrap_or_default();
+            // Most of the time no contact has moved; all are compared at once.
+            let differ = |differs, (known, read): (&u8, &bool)| differs | (*known ^ u8::from(*read));
+            if known.len() == read.len() && known.iter().zip(read).fold(0, differ) == 0 {
+                continue;
+            }
+            for number in *first..=*last {
+                if let Some(bit) = Bit::new(BitArea::I, number) {
+                    let read = measured.inputs.get(usize::from(number));
+                    exchange.nc_put(bit, read.copied().unwrap_or(false));
+                }
+            }
         }
         let keys = handwheel::plc_inputs(&self.handwheel, &measured.operator.handwheel);
         for ((number, bit), key) in self.wiring.handwheel_bits.iter().zip(keys) {

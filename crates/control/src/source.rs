@@ -29,7 +29,7 @@ const BLOCKS_WITHOUT_MOTION: u64 = 100_000;
 pub(crate) struct Basis<'a> {
     pub list: &'a ParameterList,
     /// What was calibrated and measured by hand.
-    pub touch: ManualProbing,
+    pub touch: &'a ManualProbing,
     pub link: &'a PlcLink,
 }
 

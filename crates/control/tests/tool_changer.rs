@@ -231,6 +231,36 @@ fn a_change_that_power_off_breaks_off() {
     }
 }
 
+/// The arm is stuck when it is to draw, and repaired while the supply is off: its valve stands at out, but the clamp has closed,
+/// and holds the arm until the PLC opens it again. The change is taken back.
+#[test]
+fn a_closed_clamp_holds_the_arm_until_it_opens() {
+    let mut rig = mill(3, MAGAZINE);
+    rig.run("11.H", 60.0);
+    rig.command("select 12.H");
+    rig.start();
+    rig.until(60.0, "the clamp opens", |rig| rig.number("W112") == 40);
+    rig.event("fault device arm_draw jammed");
+    rig.until(60.0, "the arm is to draw", |rig| rig.bit("O36"));
+    rig.seconds(0.5);
+    rig.command("power off");
+    rig.seconds(1.0);
+    rig.event("repair arm_draw");
+    rig.seconds(1.0);
+    assert_eq!(
+        rig.machine.magazine().map(|state| (state.spindle, state.arm)),
+        Some((1, [0, 0]))
+    );
+    rig.command("power on");
+    rig.command("ce");
+    rig.until(60.0, "the way back", |rig| {
+        rig.number("W112") == 0 && rig.control.mode() == bahn_control::Mode::Reference
+    });
+    agree(&rig, "taken back");
+    rig.power_on();
+    change_to_6(&mut rig, "26.H", "the next change");
+}
+
 /// A change with two codes, a special tool against a normal one. For the control the old tool is in the spindle until the
 /// second code is acknowledged. The supply goes whenever step or strobe change, some time behind that, and in each cycle
 /// between the codes: behind power-on all tools are where the control has them.
@@ -260,9 +290,11 @@ fn two_codes_that_power_off_breaks_off() {
                 rig.seconds(depth_s);
                 let at = format!("{kind:b}, W112 M2046 M2093 {now:?} and {depth_s} s");
                 switch_off_and_on(&mut rig, &at);
-                rig.power_on();
-                let next = if rig.control.tool() == 4 { "26.H" } else { "16.H" };
-                change_to_6(&mut rig, next, &at);
+                if now != before && depth_s == 0.0 {
+                    rig.power_on();
+                    let next = if rig.control.tool() == 4 { "26.H" } else { "16.H" };
+                    change_to_6(&mut rig, next, &at);
+                }
             }
             before = now;
             begun.cycle();
@@ -306,6 +338,46 @@ fn two_codes_that_a_stop_breaks_off() {
         }
         assert!(tried > 10 && at_once > 3, "{tried} {at_once}");
     }
+}
+
+/// Tool 3 has no pocket: the arm takes tool 1 away, and the second code is done by hand. Broken off between the codes the first
+/// one is taken back; in the second one no arm moves: the PLC tells the control that the spindle is empty (M2717), and the next
+/// TOOL CALL of any tool is a change.
+#[test]
+fn a_second_code_by_hand_that_is_broken_off() {
+    let mut begun = mill(3, MAGAZINE);
+    begun.run("11.H", 60.0);
+    begun.seconds(0.2);
+    begun.command("select 13.H");
+    begun.start();
+    begun.until(60.0, "the first code is done", |rig| rig.number("W112") == 120);
+    let mut found = std::collections::BTreeMap::from([(0, 0), (1, 0), (3, 0)]);
+    while !begun.control.snapshot().ended {
+        let by_hand = begun.bit("M2046") && !begun.bit("M2093");
+        let mut rig = begun.clone();
+        rig.command("power off");
+        rig.seconds(0.2);
+        rig.command("power on");
+        rig.command("ce");
+        rig.until(60.0, "the way back", |rig| {
+            rig.number("W112") == 0 && rig.control.mode() == bahn_control::Mode::Reference
+        });
+        rig.seconds(0.1);
+        rig.power_on();
+        let tool = rig.control.tool();
+        let at = format!("by hand {by_hand}: tool {tool}");
+        match tool {
+            0 | 1 => agree(&rig, &at),
+            other => assert!(other == 3 && by_hand, "{at}"),
+        }
+        let times = found.get_mut(&tool).unwrap();
+        *times += 1;
+        if *times % 8 == 1 {
+            change_to_6(&mut rig, "16.H", &at);
+        }
+        (0..3).for_each(|_| begun.cycle());
+    }
+    assert!(found.values().all(|times| *times > 0), "{found:?}");
 }
 
 /// Off and on: shuttle and arm bring the tools to where the control has them, which remembers the one in the spindle.

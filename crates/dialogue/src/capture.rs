@@ -3,22 +3,26 @@
 use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
 use bahn_path::Axis;
 
-use crate::Word;
 use crate::dialogue::Dialogue;
-use crate::editor::{Editor, Open, Reaction};
+use crate::editor::{Editor, Open};
+use crate::{Reaction, Wanted, Word};
 
 impl Editor {
-    /// Gives the actual position of an axis for the value that is being entered.
+    /// Gives the actual position of an axis for the value that is being entered or highlighted.
     pub fn capture(&mut self, axis: Axis, value: f64) -> Reaction {
+        let fits =
+            |wanted: Option<Wanted>| wanted == Some(Wanted::Axis(axis)) || wanted == Some(Wanted::ToolAxis);
+        let value = number_text(value);
         let done = match &mut self.open {
-            Open::Dialogue(dialogue) => match dialogue.wants_position() {
-                Some(wanted) if wanted.is_none_or(|wanted| wanted == axis) => {
-                    dialogue.capture(number_text(value)).map(|()| Reaction::Shown)
-                }
-                _ => Err(KeyNonFunctional),
-            },
+            Open::Dialogue(dialogue) if fits(dialogue.wants_position()) => dialogue.capture(value),
+            Open::Highlight(highlight)
+                if fits(highlight.wants_position()) && !self.program.is_protected() =>
+            {
+                highlight.capture(value)
+            }
             _ => Err(KeyNonFunctional),
         };
+        let done = done.map(|()| Reaction::Shown);
         self.reaction(done)
     }
 

@@ -9,7 +9,7 @@ use crate::cycles::{cycle_line, cycle_lines, repeats};
 use crate::field::{Ask, Field, Need};
 use crate::line::Line;
 use crate::typing::Typing;
-use crate::{Key, Setting, Word};
+use crate::{Key, Setting, Wanted, Word};
 
 /// Most blocks of one cycle.
 const LINES_MAX: usize = 64;
@@ -21,6 +21,17 @@ pub(crate) enum Source {
     Row(&'static BlockRow),
     /// A cycle or probe function.
     Cycle(CycleFunction, u16),
+}
+
+impl Source {
+    /// `L`, `CYCL DEF 4`, `TCH PROBE 0`.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Source::Row(row) => row.id.to_owned(),
+            Source::Cycle(CycleFunction::Definition, number) => format!("CYCL DEF {number}"),
+            Source::Cycle(CycleFunction::Probe, number) => format!("TCH PROBE {number}"),
+        }
+    }
 }
 
 /// What becomes of a dialogue.
@@ -201,17 +212,12 @@ impl Dialogue {
         Ok(())
     }
 
-    /// The axis whose value may be captured; `Some(None)` for a length without an axis.
-    pub(crate) fn wants_position(&self) -> Option<Option<bahn_path::Axis>> {
+    /// The position that may be captured for the question.
+    pub(crate) fn wants_position(&self) -> Option<Wanted> {
         let field = self.current()?;
         match field.slot.ask {
-            Ask::Coordinates { .. } => {
-                let word = field.words.get(self.typing.word?)?;
-                let letter = word.address.bytes().last()?;
-                Some(bahn_path::Axis::from_letter(letter))
-            }
-            Ask::Number { .. } => Some(None),
-            _ => None,
+            Ask::Number { .. } => Some(Wanted::ToolAxis),
+            _ => field.wants_position(self.typing.word?),
         }
     }
 
@@ -224,11 +230,7 @@ impl Dialogue {
         }
         let word = field.words.get_mut(index).ok_or(KeyNonFunctional)?;
         (word.value, word.incremental) = (value, false);
-        *typing = Typing {
-            word: Some(index),
-            fresh: true,
-            incremental: false,
-        };
+        *typing = Typing::over(index);
         Ok(())
     }
 
@@ -255,7 +257,8 @@ impl Dialogue {
                     let last = choices.last().ok_or(KeyNonFunctional)?;
                     typing.take(field, last.value);
                 }
-                Ask::Feed { max: true } => typing.take(field, "MAX"),
+                // Where F MAX is no word the question does not offer it.
+                Ask::Feed { max: true } if context.setting.rapid() == "MAX" => typing.take(field, "MAX"),
                 _ if field.slot.need == Need::Required => return Err(EntryValueIncorrect),
                 _ => {}
             }
@@ -275,11 +278,12 @@ impl Dialogue {
     }
 
     fn skip(&mut self, context: Context<'_>) -> Result<Step, MessageId> {
-        let (field, _) = self.parts().ok_or(KeyNonFunctional)?;
+        let (field, typing) = self.parts().ok_or(KeyNonFunctional)?;
         match field.slot.need {
             Need::Required => Err(KeyNonFunctional),
             _ => {
                 field.words.clear();
+                *typing = Typing::default();
                 self.next(context)
             }
         }

@@ -10,7 +10,7 @@ use crate::blocks::block_row;
 use crate::dialogue::{Dialogue, Source};
 use crate::editor::{Editor, Open};
 use crate::highlight::Highlight;
-use crate::typing::Typing;
+use crate::typing::{Fresh, Typing};
 
 /// Most words of a draft; more were never entered.
 const WORDS_MAX: usize = 10_000;
@@ -46,8 +46,9 @@ pub struct Draft {
     pub question: (usize, usize),
     /// The last line that was asked for.
     pub reached: usize,
-    /// The word that is being entered, and whether the first digit takes its place.
-    pub typing: Option<(usize, bool)>,
+    /// The word that is being entered, and what the next digit does with its value: 0 goes on with it, 1 takes its
+    /// place, 2 likewise and negative.
+    pub typing: Option<(usize, u8)>,
     /// `I` was pressed before an axis.
     pub incremental: bool,
     /// The answers: line, field and word.
@@ -69,9 +70,7 @@ impl Editor {
             block: self.cursor,
             source: match dialogue.source {
                 _ if dialogue.replaces.is_some() => String::new(),
-                Source::Row(row) => row.id.to_owned(),
-                Source::Cycle(CycleFunction::Definition, number) => format!("CYCL DEF {number}"),
-                Source::Cycle(CycleFunction::Probe, number) => format!("TCH PROBE {number}"),
+                source => source.name(),
             },
             question: (dialogue.line, dialogue.field),
             reached: dialogue.reached,
@@ -166,14 +165,25 @@ impl Draft {
     }
 
     fn set_typing(&mut self, typing: Typing) {
-        self.typing = typing.word.map(|word| (word, typing.fresh));
+        self.typing = typing.word.map(|word| {
+            let fresh = match typing.fresh {
+                Fresh::No => 0,
+                Fresh::Yes => 1,
+                Fresh::Negative => 2,
+            };
+            (word, fresh)
+        });
         self.incremental = typing.incremental;
     }
 
     fn typing(&self) -> Typing {
         Typing {
             word: self.typing.map(|(word, _)| word),
-            fresh: self.typing.is_some_and(|(_, fresh)| fresh),
+            fresh: match self.typing {
+                None | Some((_, 0)) => Fresh::No,
+                Some((_, 2)) => Fresh::Negative,
+                Some(_) => Fresh::Yes,
+            },
             incremental: self.incremental,
         }
     }
@@ -183,7 +193,7 @@ impl Display for Draft {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (line, field) = self.question;
         let typing = match self.typing {
-            Some((word, fresh)) => format!("{word} {}", u8::from(fresh)),
+            Some((word, fresh)) => format!("{word} {fresh}"),
             None => "-".to_owned(),
         };
         writeln!(f, "block {}", self.block)?;
@@ -248,7 +258,7 @@ impl Draft {
                 self.reached = number()?;
             }
             "typing" if value == "-" => self.typing = None,
-            "typing" => self.typing = Some((number()?, number()? == 1)),
+            "typing" => self.typing = Some((number()?, u8::try_from(number()?).ok()?)),
             "incremental" => self.incremental = number()? == 1,
             "word" => {
                 let (line, field, incremental) = (number()?, number()?, number()? == 1);

@@ -5,44 +5,19 @@ use std::sync::Arc;
 use bahn_parameters::MessageId::{
     self, EntryValueIncorrect, FurtherProgramEntryImpossible, KeyNonFunctional, ProtectedPgm,
 };
-use bahn_path::Axis;
 use bahn_program::{Edit, Program};
 
 use crate::blocks::BLOCKS;
 use crate::check::Context;
 use crate::dialogue::{Dialogue, Source, Step};
+use crate::field::Ask;
 use crate::highlight::Highlight;
 use crate::history::History;
 use crate::line::{Line, WordPlace, written};
 use crate::menu::{Choice, Menu, MenuKind};
+use crate::reading::line_of_block;
 use crate::soft_keys::{self, Labelled, Soft};
-use crate::{Key, KeyGroup, Setting};
-
-/// What a key did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reaction {
-    /// What is shown has changed, the program has not.
-    Shown,
-    /// The program has changed.
-    Edited,
-    /// The key was refused with a message, which is shown.
-    Refused(MessageId),
-    /// The actual position is wanted; [`Editor::capture`] or [`Editor::capture_block`] gives it.
-    Position(Wanted),
-    /// The key is none of the editor's.
-    Passed,
-}
-
-/// Which actual position is wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
-    /// That of an axis, for the coordinate that is being entered.
-    Axis(Axis),
-    /// That of the tool axis, for a length.
-    ToolAxis,
-    /// Those of the axes chosen by MOD, for a new L block [003:2260-2321].
-    Block,
-}
+use crate::{Key, KeyGroup, Reaction, Setting, Wanted};
 
 /// What is open.
 #[derive(Clone, Debug)]
@@ -58,6 +33,16 @@ pub(crate) enum Open {
 }
 
 /// Programming by dialogue: takes keys, changes a program, says what is to be shown.
+///
+/// While nothing is open, arrows and GOTO go from block to block, a key of a block opens its dialogue behind the cursor,
+/// CYCL DEF, TOUCH PROBE and Q open lists, DEL deletes the block, the cycle from its last block, or the marked section.
+///
+/// In a dialogue ENT takes the answer and goes on, NO ENT passes over the question, END makes the block of what is there,
+/// DEL drops it, CE erases the value, LEFT and RIGHT go to other questions. Nothing stands in the program before the
+/// last answer: a cycle is one edit.
+///
+/// RIGHT highlights a word of the block at the cursor. Digits overwrite it; LEFT, RIGHT, END, UP and DOWN confirm, the
+/// latter two find the same word in other blocks. NO ENT deletes the word, ENT opens the dialogue from there.
 ///
 /// A program is never changed in its place: whoever holds an older version keeps it.
 ///
@@ -113,6 +98,20 @@ impl Editor {
         &self.program
     }
 
+    /// The program as its file is to be: where the file has block numbers they are written anew, since the control
+    /// generates them [003:1774].
+    pub fn numbered(&self) -> Arc<Program> {
+        let has_numbers = self
+            .program
+            .text_of(0)
+            .starts_with(|first: char| first.is_ascii_digit());
+        let new = match has_numbers {
+            true => self.program.edit(&Edit::Renumber).ok(),
+            false => None,
+        };
+        new.map_or_else(|| Arc::clone(&self.program), Arc::new)
+    }
+
     /// The block at the cursor.
     pub fn cursor(&self) -> u32 {
         self.cursor
@@ -121,6 +120,11 @@ impl Editor {
     /// What the editor knows of its control and machine.
     pub fn setting(&self) -> &Setting {
         &self.setting
+    }
+
+    /// The language of the dialogue, the axes or limits have changed; what is open stays.
+    pub fn set_setting(&mut self, setting: Setting) {
+        self.setting = setting;
     }
 
     /// Goes to a block, if nothing is open.
@@ -350,10 +354,7 @@ impl Editor {
         if key == Key::Capture {
             let wanted = dialogue.wants_position();
             self.open = Open::Dialogue(dialogue);
-            return match wanted.ok_or(KeyNonFunctional)? {
-                Some(axis) => Ok(Reaction::Position(Wanted::Axis(axis))),
-                None => Ok(Reaction::Position(Wanted::ToolAxis)),
-            };
+            return wanted.map(Reaction::Position).ok_or(KeyNonFunctional);
         }
         let step = dialogue.key(key, self.context(dialogue.replaces));
         let done = match step {
@@ -435,15 +436,17 @@ impl Editor {
     pub(crate) fn line_of(&self, number: u32) -> Option<Line> {
         let chunk = self.program.decode(number / Program::CHUNK_SIZE);
         let block = chunk.blocks.get((number % Program::CHUNK_SIZE) as usize)?;
-        Line::of_block(block, self.program.language())
+        line_of_block(block, self.program.language())
     }
 
     pub(crate) fn highlight(&mut self, block: u32, place: WordPlace) -> Result<Reaction, MessageId> {
         let line = self.line_of(block).ok_or(KeyNonFunctional)?;
-        let place = match (place, line.is_text()) {
+        let places = line.places();
+        let place = match place {
             // A line of text is entered as a whole.
-            (None, true) => Some((0, 0)),
-            (place, _) => place,
+            None if line.is_text() => Some((0, 0)),
+            None => places.first().copied().flatten(),
+            place => place,
         };
         self.cursor = block;
         self.show(Open::Highlight(Box::new(Highlight::new(block, line, place))))
@@ -477,18 +480,18 @@ impl Editor {
 
     /// The soft keys of what is open, all rows.
     pub(crate) fn soft_keys(&self) -> Vec<Labelled> {
-        let tongue = self.setting.tongue;
+        let setting = &self.setting;
         match &self.open {
-            Open::Nothing => soft_keys::of_program(self.mark.is_some(), tongue),
-            Open::Dialogue(dialogue) => soft_keys::of_dialogue(dialogue, tongue),
+            Open::Nothing => soft_keys::of_program(self.mark.is_some(), setting.tongue),
+            Open::Dialogue(dialogue) => soft_keys::of_dialogue(dialogue, setting),
             Open::Highlight(highlight) => match highlight.ask() {
                 Some(ask) => {
                     let word = highlight.line.word(highlight.place);
-                    soft_keys::answers(ask, word.map_or("", |word| word.address.as_str()), tongue)
+                    soft_keys::answers(ask, word.map_or("", |word| word.address.as_str()), setting)
                 }
                 None => Vec::new(),
             },
-            Open::Find(_) => soft_keys::answers(crate::field::Ask::Text, "", tongue),
+            Open::Find(_) => soft_keys::answers(Ask::Text, "", setting),
             Open::Menu(_) | Open::Goto(_) => Vec::new(),
         }
     }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use bahn_parameters::Limits;
 use bahn_path::Axis;
 
-use crate::Key;
+use crate::{Key, Wanted};
 
 /// A word of a block in its parts, as it is being entered.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -191,6 +191,11 @@ impl Ask {
             self,
             Ask::Number { .. } | Ask::Coordinates { .. } | Ask::Feed { .. } | Ask::Items
         )
+    }
+
+    /// Whether its values are numbers.
+    pub(crate) fn is_number(self) -> bool {
+        self.has_decimals() || matches!(self, Ask::Integer { .. } | Ask::Repeat | Ask::Labels | Ask::M)
     }
 
     /// Whether digits write a value without an axis before.
@@ -412,6 +417,16 @@ impl Field {
             return format!("{}{}{}", self.glue, self.slot.address, self.slot.ask.neutral());
         }
         self.text()
+    }
+
+    /// The position that may be captured for a word.
+    pub(crate) fn wants_position(&self, word: usize) -> Option<Wanted> {
+        let word = self.words.get(word)?;
+        match self.slot.ask {
+            Ask::Coordinates { .. } => Axis::from_letter(word.address.bytes().last()?).map(Wanted::Axis),
+            Ask::Number { .. } => Some(Wanted::ToolAxis),
+            _ => None,
+        }
     }
 
     /// Whether all values are whole.

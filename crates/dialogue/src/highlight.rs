@@ -5,8 +5,8 @@ use bahn_parameters::MessageId::{self, KeyNonFunctional};
 use crate::check::Context;
 use crate::field::{Ask, Need};
 use crate::line::{Line, WordPlace};
-use crate::typing::Typing;
-use crate::{Key, Setting};
+use crate::typing::{Fresh, Typing};
+use crate::{Key, Setting, Wanted};
 
 /// A highlighted word.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,11 +53,11 @@ impl Highlight {
         let (index, _) = self.place.ok_or(KeyNonFunctional)?;
         let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;
         match key {
-            Key::Ce if !field.slot.ask.is_text() && field.slot.ask.has_decimals() => {
+            Key::Ce if field.slot.ask.is_number() => {
                 let word = self.typing.word.and_then(|word| field.words.get_mut(word));
                 let word = word.ok_or(KeyNonFunctional)?;
                 word.value = "0".to_owned();
-                self.typing.fresh = true;
+                self.typing.fresh = Fresh::Yes;
             }
             Key::Ce if field.slot.ask.is_text() => self.typing.clear(field),
             Key::Ce => return Err(KeyNonFunctional),
@@ -79,6 +79,22 @@ impl Highlight {
             self.typing.take(field, value);
         }
         self.follow(index);
+        Ok(())
+    }
+
+    /// The position that may be captured for the word.
+    pub(crate) fn wants_position(&self) -> Option<Wanted> {
+        let (field, word) = self.place?;
+        self.line.field(field)?.wants_position(word)
+    }
+
+    /// Takes the value of a position.
+    pub(crate) fn capture(&mut self, value: String) -> Result<(), MessageId> {
+        let (field, index) = self.place.ok_or(KeyNonFunctional)?;
+        let field = self.line.field_mut(field).ok_or(KeyNonFunctional)?;
+        let word = field.words.get_mut(index).ok_or(KeyNonFunctional)?;
+        (word.value, word.incremental) = (value, false);
+        self.typing = Typing::over(index);
         Ok(())
     }
 

@@ -1,9 +1,8 @@
-//! One block as the dialogue sees it: a head and fields, made from a block and written as one.
+//! One block as the dialogue sees it: a head and fields.
 
-use bahn_program::{Block, CycleFunction, FormatOptions, Language, MotionKind, Operation};
+use bahn_program::{Block, FormatOptions, Language};
 
 use crate::blocks::block_row;
-use crate::cycles::cycle_line;
 use crate::field::{Ask, Field, Need, Word};
 
 /// A block with its fields.
@@ -41,30 +40,8 @@ impl Line {
             .collect()
     }
 
-    /// Reads a block. One that the table does not know, or that stands in other words, is a line of text.
-    pub(crate) fn of_block(block: &Block, language: &dyn Language) -> Option<Line> {
-        let bare = Block {
-            skip: false,
-            operation: block.operation.clone(),
-            comment: None,
-        };
-        let text = written(&bare, language);
-        let mut line = match template(&block.operation)? {
-            Some(line) => line,
-            None => Line::of_row("TEXT").pop()?,
-        };
-        if !line.read(&text) || line.canonical(language).as_deref() != Some(text.as_str()) {
-            line = Line::of_row("TEXT").pop()?;
-            if !line.read(&text) {
-                return None;
-            }
-        }
-        line.skip = block.skip;
-        line.comment.clone_from(&block.comment);
-        Some(line)
-    }
-
-    fn read(&mut self, text: &str) -> bool {
+    /// Reads head and words; whether that is all there is.
+    pub(crate) fn read(&mut self, text: &str) -> bool {
         if self.fields.is_empty() {
             // The names of cycles are decoration.
             self.head = text.to_owned();
@@ -84,12 +61,18 @@ impl Line {
     }
 
     /// What the block does and nothing else, as listings show it; none if it cannot be read.
-    fn canonical(&self, language: &dyn Language) -> Option<String> {
+    pub(crate) fn canonical(&self, language: &dyn Language) -> Option<String> {
         let read = language.parse_block(&self.bare_text());
         read.faults.is_empty().then(|| written(&read.block, language))
     }
 
-    #[cfg(test)]
+    /// The same words, optional and with the comment as a block is.
+    pub(crate) fn like(mut self, block: &Block) -> Line {
+        self.skip = block.skip;
+        self.comment.clone_from(&block.comment);
+        self
+    }
+
     pub(crate) fn head(&self) -> &str {
         &self.head
     }
@@ -185,11 +168,13 @@ impl Line {
         }
     }
 
-    /// Places of the head and all words, in order.
+    /// Places of the head, where there is one, and all words, in order.
     pub(crate) fn places(&self) -> Vec<WordPlace> {
         let words = self.fields.iter().enumerate();
         let words = words.flat_map(|(field, it)| (0..it.words.len()).map(move |word| Some((field, word))));
-        std::iter::once(None).chain(words).collect()
+        // A block that opens with a word has no head to highlight.
+        let head = (!self.head.is_empty() || self.is_empty()).then_some(None);
+        head.into_iter().chain(words).collect()
     }
 
     pub(crate) fn word(&self, place: WordPlace) -> Option<&Word> {
@@ -252,69 +237,4 @@ pub(crate) fn written(block: &Block, language: &dyn Language) -> String {
     let mut text = String::new();
     language.write(block, FormatOptions::default(), &mut text);
     text
-}
-
-/// The fields that a block has; `Some(None)` where it has none that the table knows, `None` for a block that is not
-/// the operator's.
-fn template(operation: &Operation) -> Option<Option<Line>> {
-    let id = match operation {
-        Operation::Begin(_) | Operation::End(_) => return None,
-        Operation::Cycle(block) => {
-            return Some(Some(cycle_line(
-                CycleFunction::Definition,
-                block.number,
-                block.sub,
-            )));
-        }
-        Operation::Probe(block) => {
-            return Some(Some(cycle_line(CycleFunction::Probe, block.number, block.sub)));
-        }
-        Operation::BlankMin(..) => "BLK FORM",
-        Operation::BlankMax(_) => return Some(Line::of_row("BLK FORM").pop()),
-        Operation::Motion(motion) => motion_id(motion.kind),
-        Operation::CircleCentre(_) => "CC",
-        Operation::Rounding { .. } => "RND",
-        Operation::Chamfer { .. } => "CHF",
-        Operation::ToolDefinition { .. } => "TOOL DEF",
-        Operation::ToolCall { .. } => "TOOL CALL",
-        Operation::Label(_) => "LBL",
-        Operation::CallLabel { .. } => "CALL LBL",
-        Operation::CallProgram(_) => "CALL PGM",
-        Operation::Stop(_) => "STOP",
-        Operation::CycleCall(_) => "CYCL CALL",
-        Operation::Miscellaneous(_) => "M",
-        Operation::Formula { .. } => "FORMULA",
-        Operation::ErrorNumber(_) => "FN 14",
-        Operation::Print(_) => "FN 15",
-        Operation::Plc { .. } => "FN 19",
-        Operation::Calculate { .. } | Operation::Jump { .. } => return Some(function_line(operation)),
-        Operation::Dialog(_) | Operation::Comment(_) | Operation::Invalid(_) => "TEXT",
-    };
-    Some(Line::of_row(id).into_iter().next())
-}
-
-fn motion_id(kind: MotionKind) -> &'static str {
-    match kind {
-        MotionKind::Line => "L",
-        MotionKind::Circle => "C",
-        MotionKind::CircleRadius => "CR",
-        MotionKind::CircleTangential => "CT",
-        MotionKind::LinePolar => "LP",
-        MotionKind::CirclePolar => "CP",
-        MotionKind::CircleTangentialPolar => "CTP",
-        MotionKind::LineNormal => "LN",
-        MotionKind::Paraxial => "AXIS",
-    }
-}
-
-/// FN 0 to 13 by the number that the listing shows.
-fn function_line(operation: &Operation) -> Option<Line> {
-    let block = Block {
-        skip: false,
-        operation: operation.clone(),
-        comment: None,
-    };
-    let text = bahn_program::format_block(&block, FormatOptions::default());
-    let number = text.strip_prefix("FN")?.split(':').next()?;
-    Line::of_row(&format!("FN {number}")).pop()
 }

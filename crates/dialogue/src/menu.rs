@@ -167,3 +167,92 @@ fn functions(setting: &Setting) -> Vec<MenuItem> {
     });
     numbered.chain(formula).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use bahn_parameters::{ControlModel, ParameterList};
+
+    use super::*;
+    use crate::cycles::cycle_lines;
+    use crate::prompt::{prompt, prompts};
+    use crate::soft_keys;
+
+    /// Ids of all questions that can be asked.
+    fn asked() -> BTreeSet<&'static str> {
+        let slots = BLOCKS
+            .iter()
+            .flat_map(|row| row.lines)
+            .flat_map(|line| line.slots);
+        let mut ids: BTreeSet<&'static str> = slots.map(|slot| slot.prompt).collect();
+        for cycle in CYCLES {
+            for line in cycle_lines(cycle.function, cycle.number) {
+                ids.extend(line.fields().iter().map(|field| field.slot.prompt));
+            }
+        }
+        ids
+    }
+
+    #[test]
+    fn every_text_is_there_and_is_used() {
+        let mut used = asked();
+        for id in &used {
+            assert!(prompt(id).is_some(), "{id} has no text");
+        }
+        used.extend(["cycles", "probes", "functions", "goto", "find", "FN FORMULA"]);
+        let mut unused = Vec::new();
+        for row in prompts() {
+            let id = row.id();
+            let of_cycle = |prefix, function| {
+                let number = id
+                    .strip_prefix(prefix)
+                    .and_then(|number: &str| number.parse::<u16>().ok());
+                number.is_some_and(|number| bahn_program::cycle(function, number).is_some())
+            };
+            let listed = of_cycle("DEF ", CycleFunction::Definition)
+                || of_cycle("PROBE ", CycleFunction::Probe)
+                || (id.starts_with("FN ") && block_row(id).is_some())
+                || id.starts_with("soft ");
+            if !used.contains(id) && !listed {
+                unused.push(id);
+            }
+        }
+        assert!(unused.is_empty(), "never shown: {unused:?}");
+        for cycle in CYCLES {
+            let kind = if cycle.function == CycleFunction::Probe {
+                "PROBE"
+            } else {
+                "DEF"
+            };
+            assert!(
+                prompt(&format!("{kind} {}", cycle.number)).is_some(),
+                "{}",
+                cycle.name
+            );
+        }
+    }
+
+    #[test]
+    fn lists_and_soft_keys_have_texts_in_both_languages() {
+        for tongue in [crate::Tongue::English, crate::Tongue::German] {
+            let mut setting = Setting::of(&ParameterList::reference(ControlModel::Tnc425));
+            setting.tongue = tongue;
+            for kind in [MenuKind::Cycles, MenuKind::Probes, MenuKind::Functions] {
+                let menu = Menu::new(kind, &setting);
+                assert_ne!(text_of(menu.prompt(), tongue), menu.prompt());
+                assert!(
+                    menu.items.iter().all(|item| !item.text.ends_with(": ")),
+                    "{:?}",
+                    menu.items
+                );
+            }
+            for (label, _) in soft_keys::of_program(false, tongue)
+                .into_iter()
+                .chain(soft_keys::of_program(true, tongue))
+            {
+                assert!(!label.starts_with("soft"), "{label}");
+            }
+        }
+    }
+}

@@ -3,14 +3,15 @@
 use std::ops::Range;
 
 use bahn_parameters::MessageId::{self, KeyNonFunctional};
-use bahn_program::{Edit, Operation, Program};
+use bahn_program::{Block, Chunk, Edit, Operation, Program};
 
 use crate::dialogue::Dialogue;
-use crate::editor::{Editor, Open, Reaction};
+use crate::editor::{Editor, Open};
 use crate::highlight::Highlight;
-use crate::line::Line;
+use crate::line::{Line, written};
+use crate::reading::line_of_block;
 use crate::soft_keys::Function;
-use crate::{Key, KeyGroup};
+use crate::{Key, KeyGroup, Reaction};
 
 /// Most characters of a text to find.
 const FIND_MAX: usize = 80;
@@ -32,8 +33,11 @@ impl Editor {
             }
             Key::Goto if !changed => return self.program_key(key),
             Key::Capture => {
+                let wanted = highlight.wants_position();
                 self.open = Open::Highlight(highlight);
-                return Err(KeyNonFunctional);
+                return self
+                    .may_edit()
+                    .and(wanted.map(Reaction::Position).ok_or(KeyNonFunctional));
             }
             _ if !changed && !text && opens_block(&highlight, key) => return self.program_key(key),
             _ => {
@@ -78,13 +82,17 @@ impl Editor {
             }
             Key::NoEnt => {
                 let line = self.line_of(block).ok_or(KeyNonFunctional)?;
-                let last = line.places().into_iter().rfind(|place| *place <= highlight.place);
-                self.highlight(block, last.flatten())?;
+                let places = line.places();
+                let behind = places.iter().find(|place| **place >= highlight.place);
+                self.highlight(block, behind.or(places.last()).copied().flatten())?;
             }
             Key::Up | Key::Down => self.same_word(&highlight, key == Key::Down)?,
             Key::Ent => {
+                if let Err(message) = self.may_edit() {
+                    self.open = Open::Highlight(highlight);
+                    return Err(message);
+                }
                 let line = self.line_of(block).ok_or(KeyNonFunctional)?;
-                self.may_edit()?;
                 let field = highlight.place.map_or(0, |(field, _)| field);
                 match Dialogue::of_line(line, block, field) {
                     Some(dialogue) => self.show(Open::Dialogue(Box::new(dialogue)))?,
@@ -115,7 +123,13 @@ impl Editor {
     /// Finds the same word in other blocks [003:1744-1758]; where there is none, the highlight stays.
     fn same_word(&mut self, highlight: &Highlight, down: bool) -> Result<(), MessageId> {
         let name = highlight.line.name_of(highlight.place);
-        let found = self.search(highlight.block, down, |line| {
+        let language = self.program.language();
+        let found = self.search(highlight.block, down, |block| {
+            // Nearly all blocks are passed over by a look at their text.
+            let address = name.split(' ').next().unwrap_or_default();
+            let line = written(block, language)
+                .contains(address)
+                .then(|| line_of_block(block, language))??;
             line.places()
                 .into_iter()
                 .find(|place| line.name_of(*place) == name)
@@ -126,26 +140,24 @@ impl Editor {
     }
 
     /// Looks through the blocks before or behind a block, the nearest first.
-    fn search<T>(&self, from: u32, down: bool, found: impl Fn(&Line) -> Option<T>) -> Option<(u32, T)> {
-        let language = self.program.language();
-        let chunks: Box<dyn Iterator<Item = u32>> = match down {
-            true => Box::new(from / Program::CHUNK_SIZE..self.program.chunk_count()),
-            false => Box::new((0..=from / Program::CHUNK_SIZE).rev()),
+    fn search<T>(&self, from: u32, down: bool, found: impl Fn(&Block) -> Option<T>) -> Option<(u32, T)> {
+        let at = from / Program::CHUNK_SIZE;
+        let mut chunk = Chunk::default();
+        let count = if down {
+            self.program.chunk_count().saturating_sub(at)
+        } else {
+            at + 1
         };
-        for chunk in chunks {
-            let chunk = self.program.decode(chunk);
+        for index in 0..count {
+            let number = if down { at + index } else { at - index };
+            self.program.decode_into(number, &mut chunk);
             let numbered = (chunk.first_block..).zip(&chunk.blocks);
-            let mut beyond: Vec<_> = numbered
+            let mut hits = numbered
                 .filter(|(number, _)| if down { *number > from } else { *number < from })
-                .collect();
-            if !down {
-                beyond.reverse();
-            }
-            for (number, block) in beyond {
-                let line = Line::of_block(block, language);
-                if let Some(found) = line.as_ref().and_then(&found) {
-                    return Some((number, found));
-                }
+                .filter_map(|(number, block)| Some((number, found(block)?)));
+            let hit = if down { hits.next() } else { hits.last() };
+            if hit.is_some() {
+                return hit;
             }
         }
         None
@@ -175,7 +187,7 @@ impl Editor {
     }
 
     /// The blocks of the cycle that a block belongs to: numbered one after the other, from 0 or from where they begin.
-    pub(crate) fn cycle_of(&self, block: u32) -> Option<std::ops::Range<u32>> {
+    pub(crate) fn cycle_of(&self, block: u32) -> Option<Range<u32>> {
         let (kind, number, sub) = self.cycle_block(block)?;
         let (mut first, mut last) = (block, block);
         let mut below = sub;
@@ -261,14 +273,14 @@ impl Editor {
         Ok(Reaction::Shown)
     }
 
-    /// The marked blocks, or what DEL would delete, as text.
+    /// The marked blocks, or what DEL would delete, as text without numbers.
     fn section(&self) -> Result<Vec<String>, MessageId> {
         let blocks = match self.marked() {
             Some(marked) => marked,
             None => self.deletable()?,
         };
-        let texts = blocks.map(|block| self.program.text_of(block));
-        Ok(texts.collect())
+        let lines = blocks.filter_map(|block| self.line_of(block));
+        Ok(lines.map(|line| line.text()).collect())
     }
 
     /// A key while a text to find is entered.
@@ -295,16 +307,34 @@ impl Editor {
         Ok(Reaction::Shown)
     }
 
-    /// Goes to the next block that holds a text, behind the end to the first.
+    /// Goes to the next block that shows a text, behind the end to the first.
     fn find(&mut self, text: String) -> Result<Reaction, MessageId> {
         let wanted = text.to_uppercase();
         self.sought = text;
-        let holds = |block: &u32| self.program.text_of(*block).to_uppercase().contains(&wanted);
-        let behind = self.cursor + 1..self.program.block_count();
-        let found = behind.chain(0..=self.cursor).find(holds);
-        self.cursor = found
-            .filter(|_| !wanted.is_empty())
-            .ok_or(MessageId::EntryValueIncorrect)?;
+        let holds = |block: &Block| {
+            self.block_shown(block)
+                .to_uppercase()
+                .contains(&wanted)
+                .then_some(())
+        };
+        let found = match wanted.is_empty() {
+            true => None,
+            false => {
+                let behind = self.search(self.cursor, true, holds);
+                // The first block comes behind none.
+                let first = || {
+                    self.program
+                        .decode(0)
+                        .blocks
+                        .first()
+                        .and_then(holds)
+                        .map(|()| (0, ()))
+                };
+                behind.or_else(first).or_else(|| self.search(0, true, holds))
+            }
+        };
+        let (block, ()) = found.ok_or(MessageId::EntryValueIncorrect)?;
+        self.cursor = block;
         Ok(Reaction::Shown)
     }
 }

@@ -77,6 +77,12 @@ impl Setting {
         }
     }
 
+    /// The word for rapid traverse: `MAX`, or the feed that means it where there is no such word [001:471].
+    pub(crate) fn rapid(&self) -> String {
+        let feed = self.model.limits().rapid_feed_mm_min;
+        feed.map_or_else(|| "MAX".to_owned(), |feed| feed.to_string())
+    }
+
     /// What programs are read for.
     pub(crate) fn reading(&self) -> Reading<'static> {
         self.model.limits().into()

@@ -1,12 +1,14 @@
 //! What the editor shows of its state.
 
-use bahn_program::Program;
+use bahn_program::{Block, Operation, Program};
 
 use crate::dialogue::Dialogue;
 use crate::editor::{Editor, Open};
+use crate::field::Field;
 use crate::highlight::Highlight;
 use crate::line::{Line, WordPlace, written};
 use crate::prompt::text_of;
+use crate::reading::line_of_block;
 use crate::soft_keys::ROW;
 use crate::view::{List, Question, Row, ShownWord, View};
 
@@ -87,10 +89,7 @@ impl Editor {
                 }
                 let text = match highlight.filter(|highlight| highlight.block == number) {
                     Some(highlight) => highlight.line.text(),
-                    None => match Line::of_block(block, self.program.language()) {
-                        Some(line) => line.text(),
-                        None => written(block, self.program.language()),
-                    },
+                    None => self.block_shown(block),
                 };
                 rows.push(Row {
                     number: Some(number),
@@ -101,6 +100,16 @@ impl Editor {
             }
         }
         rows
+    }
+
+    /// A block as the screen shows it: cycles as the manual prints them.
+    pub(crate) fn block_shown(&self, block: &Block) -> String {
+        let language = self.program.language();
+        let line = match block.operation {
+            Operation::Cycle(_) | Operation::Probe(_) => line_of_block(block, language),
+            _ => None,
+        };
+        line.map_or_else(|| written(block, language), |line| line.text())
     }
 
     /// The words of a line; the place is that of the highlighted one.
@@ -134,16 +143,46 @@ impl Editor {
             Open::Dialogue(dialogue) => {
                 let field = dialogue.current()?;
                 let pending = if dialogue.typing.incremental { "I" } else { "" };
-                (field.slot.prompt, self.shown(field.text().trim_start()) + pending)
+                let words = self.shown(field.text().trim_start());
+                let gap = if pending.is_empty() || words.is_empty() {
+                    ""
+                } else {
+                    " "
+                };
+                (self.prompt_of(field), format!("{words}{gap}{pending}"))
             }
             Open::Menu(menu) => (menu.prompt(), menu.typed.clone()),
             Open::Goto(digits) => ("goto", digits.clone()),
             Open::Find(text) => ("find", text.clone()),
         };
         Some(Question {
+            id,
+            about: self.about(),
             prompt: text_of(id, tongue),
             entered,
         })
+    }
+
+    /// The prompt of a field. That for the feed does not always offer F MAX [003:2156].
+    fn prompt_of(&self, field: &Field) -> &'static str {
+        match field.slot.prompt {
+            "feed_max" if self.setting.rapid() != "MAX" => "feed",
+            prompt => prompt,
+        }
+    }
+
+    /// What is being made.
+    fn about(&self) -> String {
+        match &self.open {
+            Open::Dialogue(dialogue) => match dialogue.replaces {
+                Some(_) => dialogue
+                    .lines
+                    .first()
+                    .map_or_else(String::new, |line| line.head().to_owned()),
+                None => dialogue.source.name(),
+            },
+            _ => String::new(),
+        }
     }
 
     fn list(&self) -> Option<List> {

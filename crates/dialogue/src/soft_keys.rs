@@ -1,9 +1,9 @@
 //! What the soft keys offer.
 
-use crate::Tongue;
 use crate::dialogue::Dialogue;
 use crate::field::Ask;
 use crate::prompt::text_of;
+use crate::{Setting, Tongue};
 
 /// What a soft key does.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +46,7 @@ pub(crate) const ROW: usize = 8;
 pub(crate) type Labelled = (String, Soft);
 
 /// The soft keys for a question.
-pub(crate) fn answers(ask: Ask, address: &str, tongue: Tongue) -> Vec<Labelled> {
+pub(crate) fn answers(ask: Ask, address: &str, setting: &Setting) -> Vec<Labelled> {
     let labelled = |label: String, value: &str| (label, Soft::Answer(value.to_owned()));
     match ask {
         Ask::Choice(choices) => {
@@ -55,7 +55,10 @@ pub(crate) fn answers(ask: Ask, address: &str, tongue: Tongue) -> Vec<Labelled> 
                 .map(|value| labelled(format!("{address}{value}"), value))
                 .collect()
         }
-        Ask::Feed { max: true } => vec![labelled("F MAX".to_owned(), "MAX")],
+        Ask::Feed { max: true } => {
+            let rapid = setting.rapid();
+            vec![labelled(format!("F {rapid}"), &rapid)]
+        }
         Ask::M => {
             let all = M_FUNCTIONS.iter();
             all.map(|number| labelled(format!("M{number}"), number)).collect()
@@ -64,7 +67,7 @@ pub(crate) fn answers(ask: Ask, address: &str, tongue: Tongue) -> Vec<Labelled> 
             .iter()
             .map(|character| {
                 let label = match *character {
-                    " " => text_of("soft blank", tongue),
+                    " " => text_of("soft blank", setting.tongue),
                     character => character,
                 };
                 labelled(label.to_owned(), character)
@@ -75,10 +78,10 @@ pub(crate) fn answers(ask: Ask, address: &str, tongue: Tongue) -> Vec<Labelled> 
 }
 
 /// The soft keys of a dialogue.
-pub(crate) fn of_dialogue(dialogue: &Dialogue, tongue: Tongue) -> Vec<Labelled> {
+pub(crate) fn of_dialogue(dialogue: &Dialogue, setting: &Setting) -> Vec<Labelled> {
     let field = dialogue.current();
     field.map_or_else(Vec::new, |field| {
-        answers(field.slot.ask, field.slot.address, tongue)
+        answers(field.slot.ask, field.slot.address, setting)
     })
 }
 

@@ -16,13 +16,25 @@ const TEXT_MAX: usize = 240;
 /// What a text cannot hold: it would end the block, or join the next.
 const NO_TEXT: &[char] = &['~', '\n', '\r', '\u{c}', '\u{feff}'];
 
+/// What the first digit does with the value that stands there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Fresh {
+    /// It goes on with it.
+    #[default]
+    No,
+    /// It takes its place.
+    Yes,
+    /// It takes its place, negative: the sign was keyed first.
+    Negative,
+}
+
 /// The word that is being entered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Typing {
     /// Which word of the field.
     pub(crate) word: Option<usize>,
     /// The first digit takes the place of the value.
-    pub(crate) fresh: bool,
+    pub(crate) fresh: Fresh,
     /// `I` was pressed before the axis.
     pub(crate) incremental: bool,
 }
@@ -32,7 +44,7 @@ impl Typing {
     pub(crate) fn over(word: usize) -> Typing {
         Typing {
             word: Some(word),
-            fresh: true,
+            fresh: Fresh::Yes,
             incremental: false,
         }
     }
@@ -53,14 +65,14 @@ impl Typing {
         match key {
             Key::Sign => self.sign(field),
             Key::Q if ask.takes_q() => {
+                let fresh = self.fresh;
                 let word = self.begun(field)?;
-                let sign = if word.value.starts_with('-') && !self.fresh {
-                    "-Q"
-                } else {
-                    "Q"
+                let negative = match fresh {
+                    Fresh::No => word.value.starts_with('-'),
+                    fresh => fresh == Fresh::Negative,
                 };
-                word.value = sign.to_owned();
-                self.fresh = false;
+                word.value = if negative { "-Q" } else { "Q" }.to_owned();
+                self.fresh = Fresh::No;
                 Ok(())
             }
             Key::I if ask.takes_incremental() => {
@@ -79,7 +91,7 @@ impl Typing {
     fn make_incremental(&mut self, field: &mut Field) {
         let axes = matches!(field.slot.ask, Ask::Coordinates { .. });
         match self.word.and_then(|word| field.words.get_mut(word)) {
-            Some(word) if !axes || word.value.is_empty() || self.fresh => {
+            Some(word) if !axes || word.value.is_empty() || self.fresh != Fresh::No => {
                 word.incremental = !word.incremental
             }
             _ => self.incremental = !self.incremental,
@@ -111,7 +123,7 @@ impl Typing {
             return Err(EntryValueIncorrect);
         }
         // A name is entered anew, other text goes on.
-        let anew = std::mem::take(&mut self.fresh) && field.slot.ask == Ask::Name;
+        let anew = std::mem::take(&mut self.fresh) == Fresh::Yes && field.slot.ask == Ask::Name;
         let word = self.begun(field)?;
         if anew {
             word.value.clear();
@@ -136,11 +148,11 @@ impl Typing {
                     address: field.slot.address.to_owned(),
                     value: String::new(),
                 });
-                self.fresh = false;
+                self.fresh = Fresh::No;
                 count
             }
             None => {
-                self.fresh = true;
+                self.fresh = Fresh::Yes;
                 count - 1
             }
         };
@@ -151,8 +163,10 @@ impl Typing {
     fn digit(&mut self, field: &mut Field, digit: char) -> Result<(), MessageId> {
         let m = field.slot.ask == Ask::M;
         let word = self.begun(field)?;
-        if std::mem::take(&mut self.fresh) || word.value == "MAX" {
-            word.value.clear();
+        match std::mem::take(&mut self.fresh) {
+            Fresh::No if word.value != "MAX" => {}
+            Fresh::Negative => word.value = "-".to_owned(),
+            _ => word.value.clear(),
         }
         let parameter = word.value.trim_start_matches('-').strip_prefix('Q');
         let full = match parameter {
@@ -180,10 +194,14 @@ impl Typing {
             return Err(KeyNonFunctional);
         }
         let word = self.begun(field)?;
-        self.fresh = false;
         word.value = match word.value.strip_prefix('-') {
             Some(number) => number.to_owned(),
             None => format!("-{}", word.value),
+        };
+        self.fresh = match self.fresh {
+            Fresh::No => Fresh::No,
+            Fresh::Yes => Fresh::Negative,
+            Fresh::Negative => Fresh::Yes,
         };
         Ok(())
     }
@@ -227,7 +245,7 @@ impl Typing {
         }
         field.words.push(word);
         self.word = matches!(field.slot.ask, Ask::Coordinates { .. }).then(|| field.words.len() - 1);
-        self.fresh = false;
+        self.fresh = Fresh::No;
         Ok(())
     }
 
@@ -271,7 +289,7 @@ impl Typing {
             *self = Typing::default();
         } else {
             self.word = Some(index);
-            self.fresh = false;
+            self.fresh = Fresh::No;
         }
     }
 }

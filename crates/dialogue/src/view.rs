@@ -27,6 +27,10 @@ pub struct ShownWord {
 /// The question in the header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
+    /// Id of the prompt in the table of [`prompts`](crate::prompts), for help.
+    pub id: &'static str,
+    /// What is being made: `L`, `CYCL DEF 4`, `TCH PROBE 0`; empty where no block is.
+    pub about: String,
     /// The prompt.
     pub prompt: &'static str,
     /// What was entered so far.

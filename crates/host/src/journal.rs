@@ -17,7 +17,25 @@ pub(crate) enum Given {
     Order(Order),
 }
 
-#[derive(Debug, Default)]
+impl Given {
+    /// By whom.
+    pub fn source(&self) -> &Source {
+        match self {
+            Given::AtOnce(source, _) => source,
+            Given::Order(order) => &order.source,
+        }
+    }
+
+    /// What was given.
+    pub fn deed(&self) -> &Deed {
+        match self {
+            Given::AtOnce(_, deed) => deed,
+            Given::Order(order) => &order.deed,
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Journal {
     given: VecDeque<(u64, Given)>,
     /// Number of the first one.
@@ -36,6 +54,11 @@ impl Journal {
     /// Number of the next entry.
     pub fn end(&self) -> u64 {
         self.first + self.given.len() as u64
+    }
+
+    /// What is known, the oldest first.
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = &(u64, Given)> {
+        self.given.iter()
     }
 
     /// Takes all entries from a number on; `None` when some of them are not known any more.

@@ -28,7 +28,8 @@
 //! - a [`Deed`] is done at once ([`Host::act`]) or ordered for a time, from any thread ([`Desk`]), by a
 //!   [`Source`]; a [`Sink`] logs it; an [`Operator`] stands by; a [`Script`] is [played](Play);
 //! - any number of [`Reader`]s follow [`Notice`]s and snapshots; who is slow is told how much he missed;
-//! - [`Saved`] is a moment to go back to, a [`Timeline`] many of them: [`Host::replay`] reaches any moment again;
+//! - [`Saved`] is a moment to go back to, a [`Timeline`] many of them: [`Host::replay`] reaches any moment again, also of
+//!   another [`Course`] that was kept;
 //! - [`State`] is what survives power-off: it is on the medium before the control goes on;
 //! - [`oem_cycles`] are the cycles of the machine builder, [`eprom`] what of them and of the PLC is put into an EPROM, as
 //!   [`s_records`];
@@ -130,7 +131,7 @@ pub use play::{Case, FailedExpectation, Play, Verdict};
 pub use plc_source::PlcSource;
 pub use power_on::{ChannelPowerOn, PowerOn};
 pub use retained::Retained;
-pub use saved::{Saved, Timeline};
+pub use saved::{Course, Saved, Timeline};
 pub use script::{Action, Base, Line, Script, Stage};
 pub use table_edit::{LineChange, delete_line, set_line, with_column};
 pub use table_kind::{Content as CellContent, KnownColumn, PlainTable, TableForm};

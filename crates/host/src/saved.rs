@@ -1,13 +1,16 @@
 //! Moments that can be gone back to.
 
+use std::collections::VecDeque;
+use std::sync::Arc;
+
 use bahn_control::Control;
 
 use crate::background::Background;
-use crate::deed::Operable;
+use crate::deed::{Deed, Operable, Source};
 use crate::digitizing::Digitizing;
 use crate::error::HostError;
 use crate::host::Host;
-use crate::journal::Given;
+use crate::journal::{Given, Journal};
 use crate::notice::{Before, Notice};
 use crate::operator::Operator;
 use crate::orders::Waiting;
@@ -30,6 +33,43 @@ impl<P> Saved<P> {
     /// When it was, µs since power-on.
     pub fn time_us(&self) -> u64 {
         self.control.time_us()
+    }
+}
+
+/// What was given since power-on, and how far the machine came with it: what is kept of it can be gone through again
+/// when the machine has gone another way.
+#[derive(Clone, Debug)]
+pub struct Course {
+    journal: Journal,
+    end_us: u64,
+}
+
+impl Course {
+    /// How far the machine came, µs since power-on.
+    pub fn end_us(&self) -> u64 {
+        self.end_us
+    }
+}
+
+impl<P: Operable> Host<P> {
+    /// What was given until now.
+    pub fn course(&self) -> Course {
+        Course {
+            journal: self.journal.clone(),
+            end_us: self.control.time_us(),
+        }
+    }
+
+    /// The number of deeds that were given in the course that led here.
+    pub fn given_count(&self) -> u64 {
+        self.journal.end()
+    }
+
+    /// The deeds that were given in the course that led here, with their times, µs since power-on, and by whom, the
+    /// oldest first; of very many the oldest are forgotten.
+    pub fn given(&self) -> impl DoubleEndedIterator<Item = (u64, &Source, &Deed)> {
+        let entries = self.journal.entries();
+        entries.map(|(time, given)| (*time, given.source(), given.deed()))
     }
 }
 
@@ -68,16 +108,47 @@ impl<P: Operable + Clone> Host<P> {
         if self.is_logged() {
             return Err(HostError::Logged);
         }
-        let mut given = self.journal.split_off(saved.entry).ok_or(HostError::Forgotten)?;
+        let given = self.journal.split_off(saved.entry).ok_or(HostError::Forgotten)?;
         let end_us = time_us.min(self.control.time_us());
+        self.repeat(saved, given, end_us, false)
+    }
+
+    /// Goes to a moment of a course from a moment that was saved in it, as [`Host::replay`] does in that which led here.
+    /// At the end of the course everything is as it was when the course was taken.
+    ///
+    /// # Errors
+    /// As [`Host::replay`].
+    pub fn replay_course(
+        &mut self,
+        course: &Course,
+        saved: &Saved<P>,
+        time_us: u64,
+    ) -> Result<(), HostError> {
+        if self.is_logged() {
+            return Err(HostError::Logged);
+        }
+        let mut journal = course.journal.clone();
+        let given = journal.split_off(saved.entry).ok_or(HostError::Forgotten)?;
+        self.journal = journal;
+        let whole = time_us >= course.end_us;
+        self.repeat(saved, given, time_us.min(course.end_us), whole)
+    }
+
+    /// Goes back and gives again what was given until a time; `whole`: also what was given at this time.
+    fn repeat(
+        &mut self,
+        saved: &Saved<P>,
+        mut given: VecDeque<(u64, Given)>,
+        end_us: u64,
+        whole: bool,
+    ) -> Result<(), HostError> {
         self.go_back(saved);
         self.repeats = true;
         let repeated = loop {
             let now = self.control.time_us();
-            if now >= end_us {
-                break Ok(());
-            }
-            while given.front().is_some_and(|(time, _)| *time <= now)
+            let at_end = now >= end_us;
+            while (!at_end || whole)
+                && given.front().is_some_and(|(time, _)| *time <= now)
                 && let Some((_, entry)) = given.pop_front()
             {
                 self.journal.add(now, entry.clone());
@@ -85,6 +156,9 @@ impl<P: Operable + Clone> Host<P> {
                     Given::AtOnce(source, deed) => drop(self.execute(source, deed)),
                     Given::Order(order) => self.take(order),
                 }
+            }
+            if at_end {
+                break Ok(());
             }
             if let Err(error) = self.step() {
                 break Err(error);
@@ -117,9 +191,9 @@ impl<P: Operable + Clone> Host<P> {
 }
 
 /// Saved moments of a run at regular times, at most so many: when there are more, every other one goes and the
-/// times between them double.
+/// times between them double. A copy shares them.
 pub struct Timeline<P> {
-    moments: Vec<Saved<P>>,
+    moments: Vec<Arc<Saved<P>>>,
     every_us: u64,
     most: usize,
 }
@@ -147,19 +221,45 @@ impl<P: Operable + Clone> Timeline<P> {
             return;
         }
         if self.moments.len() >= self.most {
-            let mut place = 0;
-            self.moments.retain(|_| {
-                place += 1;
-                place % 2 == 1
-            });
-            self.every_us *= 2;
+            self.thin();
         }
-        self.moments.push(host.save());
+        self.moments.push(Arc::new(host.save()));
     }
 
     /// The last saved moment up to a time.
     pub fn nearest(&self, time_us: u64) -> Option<&Saved<P>> {
         let mut moments = self.moments.iter();
-        moments.rfind(|moment| moment.time_us() <= time_us)
+        moments
+            .rfind(|moment| moment.time_us() <= time_us)
+            .map(Arc::as_ref)
+    }
+
+    /// Every other moment goes, and the times between them double.
+    pub fn thin(&mut self) {
+        let mut place = 0;
+        self.moments.retain(|_| {
+            place += 1;
+            place % 2 == 1
+        });
+        self.every_us *= 2;
+    }
+
+    /// How many moments are saved.
+    pub fn len(&self) -> usize {
+        self.moments.len()
+    }
+
+    /// None is saved yet.
+    pub fn is_empty(&self) -> bool {
+        self.moments.is_empty()
+    }
+}
+
+impl<P> Clone for Timeline<P> {
+    fn clone(&self) -> Timeline<P> {
+        Timeline {
+            moments: self.moments.clone(),
+            ..*self
+        }
     }
 }

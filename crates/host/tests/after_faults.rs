@@ -317,7 +317,7 @@ fn a_magazine_that_is_stuck_goes_on_when_it_is_repaired() {
     }
 }
 
-/// Z of the digital mill weighs. Its brake closes before the torque ends (MP1980 = 0.3 s, the drive goes on for 0.28 s), and
+/// Z of the digital mill weighs. Its brake closes before the torque ends (MP1980 = 0.6 s, the drive goes on for 0.28 s), and
 /// at once when the control itself is off, for then nobody gives torque: it never sinks farther than the play of its brake.
 /// 100 ms of free fall with (2000 - 150) N on the moved mass would be centimetres.
 #[test]
@@ -347,6 +347,34 @@ fn no_axis_sinks_between_torque_and_brake() {
         give(&mut host, back);
         seconds(&mut host, 0.1);
         assert!((z(&host) - from).abs() < 0.1, "{back}");
+    }
+}
+
+/// The same when the voltage is off for some milliseconds only: the PLC need not see that, and takes the enable with the
+/// loops, which are opened when the shuttle, too, stands.
+#[test]
+fn no_axis_sinks_behind_a_short_emergency_stop() {
+    let mut host = shuttle(&[]);
+    until(&mut host, "M61", |control| control.waiting().is_some());
+    while place(&host) > 400.0 {
+        host.step().unwrap();
+    }
+    let z = |host: &Host| host.plant().axis('Z').unwrap().position;
+    let (from, begun) = (z(&host), host.save());
+    for cycles in 0..7 {
+        host.restore(&begun).unwrap();
+        for _ in 0..cycles {
+            host.step().unwrap();
+        }
+        give(&mut host, "emergency press");
+        seconds(&mut host, 0.021);
+        give(&mut host, "emergency release");
+        let mut sunk = 0.0_f64;
+        for _ in 0..400 {
+            host.step().unwrap();
+            sunk = sunk.max((z(&host) - from).abs());
+        }
+        assert!(!host.control().loops_closed() && sunk < 0.1, "{sunk}");
     }
 }
 

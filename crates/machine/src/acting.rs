@@ -24,6 +24,7 @@ impl Machine {
     /// # Errors
     /// When it names what the machine does not have. Nothing is done then.
     pub fn act(&mut self, event: &Event) -> Result<(), EventError> {
+        self.rests = false;
         match event {
             Event::Key(name, action) => self.key(name, *action)?,
             Event::FeedOverride(percent) => self.panel.operator.feed_override_percent = *percent,
@@ -80,6 +81,7 @@ impl Machine {
     }
 
     fn key(&mut self, name: &str, action: KeyAction) -> Result<(), EventError> {
+        self.rests = false;
         if self.panel.act(name, action) {
             return Ok(());
         }
@@ -135,6 +137,7 @@ impl Machine {
     /// # Errors
     /// When the machine does not have it.
     pub fn inject(&mut self, fault: &Fault) -> Result<(), EventError> {
+        self.rests = false;
         match fault {
             Fault::Encoder(letter, kind) => return self.encoder_fault(*letter, Some(*kind)),
             Fault::Motor(letter) => return self.lose_motor(*letter),
@@ -283,5 +286,111 @@ fn no<'a>(what: &'static str, name: &str, known: impl Iterator<Item = &'a str>) 
         } else {
             known.join(", ")
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use bahn_servo::{Commands, Measured, OUTPUTS, Plant, Step};
+    use proptest::prelude::*;
+
+    use crate::Machine;
+
+    const MILL: &str = include_str!("../../../machines/mill/plant.toml");
+    const DIGITAL: &str = include_str!("../../../machines/dig425/plant.toml");
+    /// What happens to a machine, which need not have all of it.
+    const EVENTS: &[&str] = &[
+        "key X+ tap",
+        "key LATCH press",
+        "emergency press",
+        "emergency release",
+        "voltage off",
+        "voltage on",
+        "switch door open",
+        "switch door closed",
+        "tool 3",
+        "force C 30",
+        "force C 0",
+        "force Z -5000",
+        "force Z 0",
+        "fault device shuttle jammed",
+        "fault device flood slow",
+        "fault device magazine jammed",
+        "fault device gear jammed",
+        "fault drive X dead",
+        "fault brake Z",
+        "fault clamp C",
+        "fault relay slow 40",
+        "fault magazine lost",
+        "repair all",
+    ];
+
+    /// Event, output that is switched, nominal voltage of all drives, milliseconds until the next.
+    type Deed = (usize, usize, f64, u32);
+
+    /// What a step without any shortcut does to all axes: for each of them the state and the encoder.
+    fn stepped(machine: &Machine) -> String {
+        let axes = machine.axes.iter().cloned().map(|mut axis| {
+            let load = axis.load();
+            axis.step(&load, 2e-4);
+            format!("{axis:?}")
+        });
+        axes.collect()
+    }
+
+    fn run(machine: &mut Machine) -> String {
+        let axes = machine.axes.iter().cloned().map(|mut axis| {
+            axis.run(1, 2e-4);
+            format!("{axis:?}")
+        });
+        axes.collect()
+    }
+
+    fn is_left_out_without_effect(plant: &str, deeds: &[Deed]) {
+        let mut lazy = Machine::from_toml(plant).unwrap();
+        lazy.load_magazine([(1, 1), (2, 2)].into_iter(), 0);
+        let mut eager = lazy.clone();
+        let mut commands = Commands {
+            control_ready: true,
+            ..Commands::default()
+        };
+        commands.outputs[8..=12].fill(true);
+        let mut measured = [Measured::default(), Measured::default()];
+        let mut from_us = 0;
+        for (event, output, volts, milliseconds) in deeds {
+            let event = EVENTS.get(*event).unwrap();
+            assert_eq!(lazy.apply(event).is_ok(), eager.apply(event).is_ok());
+            commands.outputs[*output] ^= true;
+            commands.axes.iter_mut().for_each(|axis| axis.volts = *volts);
+            for _ in 0..*milliseconds {
+                let step = Step {
+                    from_us,
+                    length_us: 1000,
+                };
+                from_us += 1000;
+                eager.rests = false;
+                lazy.exchange(step, &commands, &mut measured[0]);
+                eager.exchange(step, &commands, &mut measured[1]);
+                assert_eq!(measured[0], measured[1], "{event} at {from_us}");
+                assert_eq!(stepped(&lazy), run(&mut lazy), "{event} at {from_us}");
+            }
+            assert!(lazy.devices().eq(eager.devices()) && lazy.magazine() == eager.magazine());
+            assert!(lazy.axes().eq(eager.axes()) && lazy.spindles().eq(eager.spindles()));
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        /// A machine that looks at everything in each tick, and moves every axis in each step, is the same as one that
+        /// leaves out what rests.
+        #[test]
+        fn what_rests_is_left_out_without_effect(
+            deeds in prop::collection::vec((0..EVENTS.len(), 0..OUTPUTS / 4, -3.0..3.0, 1u32..60), 1..30),
+        ) {
+            is_left_out_without_effect(MILL, &deeds);
+            is_left_out_without_effect(DIGITAL, &deeds);
+        }
     }
 }

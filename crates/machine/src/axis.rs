@@ -124,6 +124,8 @@ pub(crate) struct Axis {
     integral: f64,
     motor: f64,
     pub table: f64,
+    /// Where the encoder says that it is.
+    seen: f64,
 }
 
 impl Cam {
@@ -214,6 +216,19 @@ impl Amplifier {
     }
 }
 
+/// What acts on an axis between two ticks, and stays as it is meanwhile.
+pub(crate) struct Load {
+    /// At the drive, without noise, V.
+    volts: f64,
+    /// Accelerations by weight and push, by friction, and by what holds it where it stands, units/s².
+    outside: f64,
+    friction: f64,
+    stiction: f64,
+    /// It is clamped.
+    fixed: bool,
+    half_play: f64,
+}
+
 /// The travel of an axis that has no ends.
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 /// Speeds below this count as standing, units/s.
@@ -278,8 +293,7 @@ impl Axis {
                 .is_some_and(|encoder| encoder.word("on", &["table", "motor"]) == Some(1)),
             counter: section.section("encoder").and_then(|encoder| {
                 encoder.word("on", &["table", "motor"]);
-                let noise = Noise::new(seed, part + 1000);
-                let counter = Counter::read(&encoder, travel, start, noise);
+                let counter = Counter::read(&encoder, travel, start, Noise::new(seed, part + 1000));
                 deviation = Deviation::read(&encoder, step_s);
                 encoder.finish();
                 counter
@@ -300,6 +314,7 @@ impl Axis {
             integral: 0.0,
             motor: start,
             table: start,
+            seen: start,
         };
         section.finish();
         axis.set_zero();
@@ -309,6 +324,7 @@ impl Axis {
     /// The encoder counts from where it says that the axis is at power-on.
     fn set_zero(&mut self) {
         let measured = self.measured();
+        self.seen = measured;
         if let Some(counter) = self.counter.as_mut().filter(|_| self.deviation.is_some()) {
             counter.begin(measured);
         }
@@ -316,12 +332,15 @@ impl Axis {
 
     /// Lets the drive have voltage or not, as enable output and control voltage say. A drive that goes on without them
     /// brakes on order of the control; when that is not ready there is none, and its brake must hold it (inferred)
-    /// [000:18508-18521].
-    pub fn set_power(&mut self, voltage: bool, control_ready: bool, outputs: &[bool; OUTPUTS]) {
+    /// [000:18508-18521]. Whether its power is about to end by itself.
+    pub fn set_power(&mut self, voltage: bool, control_ready: bool, outputs: &[bool; OUTPUTS]) -> bool {
         let enabled = self.enable.is_none_or(|enable| enable.is_on(outputs));
         let mut on = voltage && enabled;
+        let mut runs_out = false;
         if let Some(drive) = &mut self.current {
-            on = drive.holds(on, control_ready);
+            let held = drive.holds(on, control_ready);
+            runs_out = held && !on;
+            on = held;
         }
         self.powered = on && self.fault != Some(DriveFault::Dead);
         if !self.powered {
@@ -330,6 +349,7 @@ impl Axis {
                 drive.rest();
             }
         }
+        runs_out
     }
 
     /// Makes the drive fail or repairs it.
@@ -345,48 +365,85 @@ impl Axis {
 
     /// Makes the encoder fail or repairs it. `false` when the axis has none.
     pub fn set_encoder_fault(&mut self, fault: Option<EncoderFault>) -> bool {
-        let position = self.measured();
+        let position = self.seen;
         self.counter
             .as_mut()
             .map(|counter| counter.set_fault(fault, position))
             .is_some()
     }
 
+    /// Some steps of the simulation, between which nobody acts.
+    pub fn run(&mut self, steps: u32, step_s: f64) {
+        if self.lies_still() {
+            self.driven = 0.0;
+            self.speed = 0.0;
+            return;
+        }
+        let load = self.load();
+        for _ in 0..steps {
+            self.step(&load, step_s);
+        }
+    }
+
+    /// What acts on it as long as nobody acts.
+    pub fn load(&self) -> Load {
+        let held = if self.powered { 0.0 } else { self.held() };
+        Load {
+            volts: self.volts_at_drive(),
+            outside: self.push - self.weight,
+            friction: self.friction + held,
+            stiction: self.stiction + held,
+            fixed: self.clamped || self.jammed,
+            half_play: self.play / 2.0,
+        }
+    }
+
+    /// It stands without power and nothing moves it: a step leaves everything as it is.
+    fn lies_still(&self) -> bool {
+        let stands = !self.powered && self.speed == 0.0 && self.deviation.is_none();
+        let held = |axis: &Axis| (axis.push - axis.weight).abs() <= axis.stiction + axis.held();
+        stands && (self.clamped || self.jammed || held(self))
+    }
+
     /// One step of the simulation.
-    #[inline]
-    pub fn step(&mut self, step_s: f64) {
-        let mut acceleration = self.push - self.weight;
-        let (mut friction, mut stiction) = (self.friction, self.stiction);
+    #[inline(always)]
+    pub fn step(&mut self, load: &Load, step_s: f64) {
+        let mut acceleration = load.outside;
         self.driven = 0.0;
         if self.powered {
-            let volts = self.volts_at_drive();
+            let mut volts = load.volts;
+            if self.noise_volts > 0.0 {
+                volts += self.noise.next() * self.noise_volts;
+            }
             self.driven = match &mut self.current {
                 None => self.motor_acceleration(volts),
                 Some(drive) => drive.force(volts) * self.per_force,
             };
             acceleration += self.driven;
-        } else {
-            friction += self.held();
-            stiction += self.held();
         }
         let before = self.speed;
-        self.speed = if self.clamped || self.jammed {
+        let mut speed = if load.fixed {
             0.0
         } else {
-            rubbed(before, acceleration, friction, stiction, step_s)
+            rubbed(before, acceleration, load.friction, load.stiction, step_s)
         };
-        self.motor += (self.speed + (before - self.speed) * self.early) * step_s;
-        self.stay_in_travel();
-        self.table = self
-            .table
-            .clamp(self.motor - self.play / 2.0, self.motor + self.play / 2.0)
-            .clamp(self.travel[0], self.travel[1]);
+        let mut motor = self.motor + (speed + (before - speed) * self.early) * step_s;
+        // The hard stops.
+        let [first, last] = self.travel;
+        if motor < first {
+            (motor, speed) = (first, speed.max(0.0));
+        } else if motor > last {
+            (motor, speed) = (last, speed.min(0.0));
+        }
+        (self.motor, self.speed) = (motor, speed);
+        let table = within(self.table, motor - load.half_play, motor + load.half_play);
+        self.table = within(table, first, last);
         if let Some(deviation) = &mut self.deviation {
             deviation.advance();
         }
-        let measured = self.measured();
+        self.seen = self.measured();
         if let Some(counter) = &mut self.counter {
-            counter.move_to(measured);
+            counter.move_to(self.seen);
         }
     }
 
@@ -395,46 +452,32 @@ impl Axis {
         if self.brake_lost { 0.0 } else { self.brake }
     }
 
-    /// What the drive makes of its nominal voltage, V.
-    #[inline]
-    fn volts_at_drive(&mut self) -> f64 {
-        let mut volts = self.volts + self.offset;
+    /// What the drive makes of its nominal voltage, V, without noise.
+    fn volts_at_drive(&self) -> f64 {
+        let volts = self.volts + self.offset;
         match self.fault {
-            Some(DriveFault::Runaway) => volts = 10.0,
-            Some(DriveFault::Reversed) => volts = -volts,
-            Some(DriveFault::Slow) => volts *= DriveFault::SLOW,
-            _ => {}
+            Some(DriveFault::Runaway) => 10.0,
+            Some(DriveFault::Reversed) => -volts,
+            Some(DriveFault::Slow) => volts * DriveFault::SLOW,
+            _ => volts,
         }
-        if self.noise_volts > 0.0 {
-            volts += self.noise.next() * self.noise_volts;
-        }
-        volts
     }
 
     /// The speed controller of the amplifier: proportional and integral, its force limited. The integral
     /// part waits while the force is at its limit.
-    #[inline]
+    #[inline(always)]
     fn motor_acceleration(&mut self, volts: f64) -> f64 {
         let error = volts * self.gain - self.speed;
         let wanted = (error + self.integral) * self.rate;
-        let given = wanted.clamp(-self.motor_max, self.motor_max);
+        let given = within(wanted, -self.motor_max, self.motor_max);
         if given == wanted {
             self.integral += error * self.integral_rate;
         }
         given
     }
 
-    fn stay_in_travel(&mut self) {
-        if self.motor < self.travel[0] {
-            self.motor = self.travel[0];
-            self.speed = self.speed.max(0.0);
-        } else if self.motor > self.travel[1] {
-            self.motor = self.travel[1];
-            self.speed = self.speed.min(0.0);
-        }
-    }
-
     /// The position where the encoder sits.
+    #[inline(always)]
     fn measured(&self) -> f64 {
         let truth = if self.on_motor { self.motor } else { self.table };
         match &self.deviation {
@@ -465,13 +508,16 @@ impl Axis {
         }
     }
 
+    /// The control reads the motor's encoder.
+    pub fn has_motor_encoder(&self) -> bool {
+        self.current.is_some()
+    }
+
     /// What the control reads of the encoder; `again` without time having passed.
-    pub fn read_encoder(&mut self, again: bool) -> bahn_servo::Encoder {
-        let (measured, speed) = (self.measured(), self.speed);
-        match &mut self.counter {
-            Some(counter) if again => counter.look_at(measured, speed),
-            Some(counter) => counter.read_at(measured, speed),
-            None => Default::default(),
+    #[inline]
+    pub fn read_encoder(&mut self, again: bool, read: &mut bahn_servo::Encoder) {
+        if let Some(counter) = &mut self.counter {
+            counter.read_at(self.seen, self.speed, again, read);
         }
     }
 
@@ -515,6 +561,13 @@ impl Axis {
             weight: self.weight.abs() + self.push.abs(),
         }
     }
+}
+
+/// As `clamp` of ends that are in order.
+#[inline(always)]
+fn within(value: f64, first: f64, last: f64) -> f64 {
+    let value = if value < first { first } else { value };
+    if value > last { last } else { value }
 }
 
 /// The speed after a step with dry friction: what stands stays until stiction is overcome, and what

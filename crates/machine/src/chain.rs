@@ -129,8 +129,13 @@ impl Chain {
         self.relay
     }
 
-    /// Lets a millisecond pass.
-    pub fn advance(&mut self, limits_clear: bool, key_pressed: bool) {
+    /// It wants to know whether limit switches are actuated.
+    pub fn watches_limits(&self) -> bool {
+        self.limit_switches
+    }
+
+    /// Lets a millisecond pass; whether the relay has switched.
+    pub fn advance(&mut self, limits_clear: bool, key_pressed: bool) -> bool {
         let held = self.key.is_none() || self.relay || key_pressed;
         let closed = self.supply
             && !self.button
@@ -144,7 +149,7 @@ impl Chain {
         };
         if wanted == self.relay {
             self.changing_ms = 0;
-            return;
+            return false;
         }
         self.changing_ms += 1;
         let delay = match (self.relay, self.fault) {
@@ -152,10 +157,12 @@ impl Chain {
             (true, Some(RelayFault::Slow(delay))) => delay,
             (true, _) => self.drop_out_ms,
         };
-        if self.changing_ms >= delay {
+        let switches = self.changing_ms >= delay;
+        if switches {
             self.relay = wanted;
             self.changing_ms = 0;
         }
+        switches
     }
 
     /// What arrives of the PLC's outputs at the machine.

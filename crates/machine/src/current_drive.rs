@@ -2,6 +2,7 @@
 //! [000:18329-18333].
 
 use bahn_servo::Encoder;
+use bahn_servo::rounding::floor_to_i64;
 
 use crate::reader::Section;
 
@@ -88,6 +89,6 @@ impl CurrentDrive {
 
     /// What the motor's encoder has counted at a way of the motor, mm or degrees.
     pub fn count(&self, way: f64) -> i64 {
-        (way * self.steps_per_unit).floor() as i64
+        floor_to_i64(way * self.steps_per_unit)
     }
 }

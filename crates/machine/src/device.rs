@@ -31,6 +31,10 @@ pub struct DeviceState<'a> {
     pub position: f64,
     /// The name of the state that it has reached.
     pub state: Option<&'a str>,
+    /// The names of both.
+    pub states: [&'a str; 2],
+    /// It is moved by hand, not by the PLC.
+    pub by_hand: bool,
 }
 
 /// See the module.
@@ -100,8 +104,8 @@ impl Device {
         self.forth = forth;
     }
 
-    /// Lets a millisecond pass.
-    pub fn advance(&mut self, outputs: &[bool; OUTPUTS]) {
+    /// Lets a millisecond pass; whether it has moved.
+    pub fn advance(&mut self, outputs: &[bool; OUTPUTS]) -> bool {
         if let Some(output) = self.output {
             match self.output_back.map(|back| back.is_on(outputs)) {
                 None => self.forth = output.is_on(outputs),
@@ -110,17 +114,24 @@ impl Device {
             }
         }
         if self.fault == Some(DeviceFault::Jammed) {
-            return;
+            return false;
         }
         let [mut back, mut forth] = self.speed;
         if self.fault == Some(DeviceFault::Slow) {
             (back, forth) = (back / DeviceFault::SLOW, forth / DeviceFault::SLOW);
         }
+        let before = self.position;
         self.position = if self.forth {
-            (self.position + forth).min(1.0)
+            (before + forth).min(1.0)
         } else {
-            (self.position - back).max(0.0)
+            (before - back).max(0.0)
         };
+        self.position != before
+    }
+
+    /// Something holds it in its first state.
+    pub fn hold_back(&mut self) {
+        self.position = 0.0;
     }
 
     /// It has arrived in its second state.
@@ -153,6 +164,8 @@ impl Device {
             name: &self.name,
             position: self.position,
             state,
+            states: [&self.states[0], &self.states[1]],
+            by_hand: self.by_hand(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Incremental encoders and their reference marks.
 
 use bahn_servo::Encoder;
+use bahn_servo::rounding::floor_to_i64;
 
 use crate::noise::Noise;
 use crate::reader::Section;
@@ -236,33 +237,26 @@ impl Counter {
     }
 
     fn steps(&self, position: f64) -> i64 {
-        ((position - self.zero) * self.steps_per_unit).floor() as i64
+        floor_to_i64((position - self.zero) * self.steps_per_unit)
     }
 
-    /// What the control reads at a position and speed (units per second) after time has passed.
-    pub fn read_at(&mut self, position: f64, speed: f64) -> Encoder {
-        if self.noise_amplitude > 0.0 {
-            self.blur = self.noise.next() * self.noise_amplitude;
+    /// What the control reads at a position and speed (units per second) after time has passed, or `again`: then the
+    /// marks of the step before are still there.
+    #[inline]
+    pub fn read_at(&mut self, position: f64, speed: f64, again: bool, read: &mut Encoder) {
+        if !again {
+            if self.noise_amplitude > 0.0 {
+                self.blur = self.noise.next() * self.noise_amplitude;
+            }
+            read.mark = self.latched.take();
         }
-        Encoder {
-            mark: self.latched.take(),
-            ..self.look_at(position, speed)
-        }
-    }
-
-    /// The same once more, without the mark.
-    pub fn look_at(&self, position: f64, speed: f64) -> Encoder {
         let failing = self.fault.filter(|fault| !fault.counts());
-        Encoder {
-            count: if failing.is_some() {
-                self.frozen
-            } else {
-                self.steps(position + self.blur)
-            },
-            mark: None,
-            amplitude_low: failing == Some(EncoderFault::Amplitude),
-            edges_too_close: failing == Some(EncoderFault::Edges) || speed.abs() > self.speed_max,
-        }
+        read.count = match failing {
+            Some(_) => self.frozen,
+            None => self.steps(position + self.blur),
+        };
+        read.amplitude_low = failing == Some(EncoderFault::Amplitude);
+        read.edges_too_close = failing == Some(EncoderFault::Edges) || speed.abs() > self.speed_max;
     }
 
     /// Makes the encoder fail, or repairs it; what was not counted meanwhile stays lost.

@@ -62,6 +62,8 @@ pub struct Machine {
     pub(crate) devices: Vec<Device>,
     pub(crate) magazine: Option<Magazine>,
     pub(crate) panel: Panel,
+    /// The place of the key of the control voltage.
+    voltage_key: Option<usize>,
     pub(crate) probe: Option<Probe>,
     pub(crate) tool_probe: Option<ToolProbe>,
     pub(crate) by_hand: ByHand,
@@ -72,6 +74,8 @@ pub struct Machine {
     /// As the PLC set them, and as they arrive.
     outputs: [bool; OUTPUTS],
     live: [bool; OUTPUTS],
+    /// Nothing has moved in the last tick and nobody has acted since: contacts, relays and things stay as they are.
+    pub(crate) rests: bool,
     pub(crate) stuck: Vec<(usize, ContactFault)>,
     /// Of the logic unit.
     pub(crate) buffer_battery_low: bool,
@@ -114,7 +118,8 @@ impl Machine {
             .map(|(name, section)| Device::read(name, section))
             .collect();
         let index = |letter| axes.iter().position(|axis| axis.letter == letter);
-        let machine = Machine {
+        let chain = Chain::read(&root);
+        let mut machine = Machine {
             name: root.text("name").unwrap_or("machine").to_owned(),
             step_us,
             step_s,
@@ -127,11 +132,12 @@ impl Machine {
                 .into_iter()
                 .map(|section| Spindle::read(section, step_s, seed))
                 .collect(),
-            chain: Chain::read(&root),
             magazine: root
                 .section("magazine")
                 .map(|section| Magazine::read(section, &devices)),
             devices,
+            voltage_key: None,
+            chain,
             panel: Panel::read(&root),
             probe: root.section("probe").map(Probe::read),
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
@@ -141,11 +147,14 @@ impl Machine {
             moved_on: true,
             outputs: [false; OUTPUTS],
             live: [false; OUTPUTS],
+            rests: false,
             stuck: Vec::new(),
             buffer_battery_low: false,
             wires: Vec::new(),
             axes,
         };
+        let key = machine.chain.key();
+        machine.voltage_key = key.and_then(|key| machine.panel.place(key));
         machine.check(&root);
         root.finish();
         machine
@@ -178,11 +187,7 @@ impl Machine {
                 root.fault_at("device", format!("there is no axis {clamped} to clamp"));
             }
         }
-        if let Some(key) = self
-            .chain
-            .key()
-            .filter(|key| !self.panel.keys.iter().any(|own| own.name == *key))
-        {
+        if let Some(key) = self.chain.key().filter(|key| self.panel.place(key).is_none()) {
             root.fault_at("emergency_stop", format!("there is no key `{key}` in [keys]"));
         }
     }
@@ -205,6 +210,28 @@ impl Machine {
     /// The names of the keys.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.panel.keys.iter().map(|key| key.name.as_str())
+    }
+
+    /// The keys that are held; one that is tapped is let go by itself.
+    pub fn held_keys(&self) -> impl Iterator<Item = &str> {
+        let held = self.panel.keys.iter().filter(|key| key.is_held());
+        held.map(|key| key.name.as_str())
+    }
+
+    /// The potentiometers of feed and spindle, %.
+    pub fn knobs(&self) -> [f64; 2] {
+        let operator = &self.panel.operator;
+        [operator.feed_override_percent, operator.spindle_override_percent]
+    }
+
+    /// The EMERGENCY STOP button is in.
+    pub fn emergency_stop_is_pressed(&self) -> bool {
+        self.chain.button
+    }
+
+    /// The supply of the control voltage is there.
+    pub fn has_supply(&self) -> bool {
+        self.chain.supply
     }
 
     /// The names of the lamps.
@@ -255,6 +282,7 @@ impl Machine {
 
     /// The tools lie in the magazine as its operator has put them there: pocket and tool, and the tool in the spindle.
     pub fn load_magazine(&mut self, tools: impl Iterator<Item = (u16, u32)>, spindle: u32) {
+        self.rests = false;
         if let Some(magazine) = &mut self.magazine {
             magazine.load(tools, spindle);
         }
@@ -282,19 +310,23 @@ impl Machine {
     /// Contacts, relays and things: once in a millisecond.
     fn tick(&mut self) {
         self.panel.advance();
-        let limits_clear = self.axes.iter().all(Axis::limits_clear);
-        let key = self.chain.key().is_some_and(|key| self.panel.pressed(key));
-        self.chain.advance(limits_clear, key);
+        let limits_clear = !self.chain.watches_limits() || self.limit_switches_clear();
+        let key = self.voltage_key.is_some_and(|place| self.panel.pressed(place));
+        let switches = self.chain.advance(limits_clear, key);
+        if self.rests && !switches {
+            return;
+        }
         self.live = self.chain.live(&self.outputs);
+        let mut moves = false;
         for device in &mut self.devices {
-            device.advance(&self.live);
+            moves |= device.advance(&self.live);
         }
         if let Some(magazine) = &mut self.magazine {
-            magazine.advance(&self.live, &mut self.devices);
+            moves |= magazine.advance(&self.live, &mut self.devices);
         }
         let voltage = self.chain.voltage();
         for axis in &mut self.axes {
-            axis.set_power(voltage, self.chain.control_ready, &self.live);
+            moves |= axis.set_power(voltage, self.chain.control_ready, &self.live);
             axis.clamped = self
                 .devices
                 .iter()
@@ -302,8 +334,9 @@ impl Machine {
         }
         for spindle in &mut self.spindles {
             spindle.set_power(voltage, &self.live);
-            spindle.shift(&self.live);
+            moves |= spindle.shift(&self.live);
         }
+        self.rests = !moves;
     }
 }
 
@@ -347,24 +380,21 @@ impl Machine {
     /// What the encoders answer; inputs without encoder stay as they are.
     fn read_encoders(&mut self, measured: &mut Measured) {
         let again = !std::mem::take(&mut self.moved_on);
-        let mut put = |input: usize, read: Encoder| {
-            if let Some(seen) = measured.encoders.get_mut(input) {
-                let mark = seen.mark.filter(|_| again);
-                *seen = read;
-                seen.mark = seen.mark.or(mark);
-            }
-        };
         for axis in &mut self.axes {
-            if let Some(input) = axis.counter.as_ref().map(|counter| counter.input) {
-                put(input, axis.read_encoder(again));
+            let input = axis.counter.as_ref().map(|counter| counter.input);
+            if let Some(read) = input.and_then(|input| measured.encoders.get_mut(input)) {
+                axis.read_encoder(again, read);
             }
-            if let Some(motor) = measured.motors.get_mut(axis.output) {
+            if axis.has_motor_encoder()
+                && let Some(motor) = measured.motors.get_mut(axis.output)
+            {
                 *motor = axis.motor_count();
             }
         }
         for spindle in &mut self.spindles {
-            if let Some(input) = spindle.counter.as_ref().map(|counter| counter.input) {
-                put(input, spindle.read_encoder(again));
+            let input = spindle.counter.as_ref().map(|counter| counter.input);
+            if let Some(read) = input.and_then(|input| measured.encoders.get_mut(input)) {
+                spindle.read_encoder(again, read);
             }
         }
     }
@@ -393,14 +423,19 @@ impl Machine {
         self.time_us += u64::from(micros);
         self.pending_us = self.pending_us.saturating_add(micros);
         while self.pending_us >= self.step_us {
-            self.pending_us -= self.step_us;
+            // Between two ticks the parts do not see each other.
+            let steps = (self.pending_us / self.step_us).min((TICK_US - self.tick_us) / self.step_us);
             for axis in &mut self.axes {
-                axis.step(self.step_s);
+                axis.run(steps, self.step_s);
             }
             for spindle in &mut self.spindles {
-                spindle.step(self.step_s);
+                for _ in 0..steps {
+                    spindle.step(self.step_s);
+                }
             }
-            self.tick_us += self.step_us;
+            let length_us = steps * self.step_us;
+            self.pending_us -= length_us;
+            self.tick_us += length_us;
             if self.tick_us >= TICK_US {
                 self.tick_us = 0;
                 self.tick();
@@ -429,18 +464,16 @@ impl Machine {
 
     /// Reads an encoder input.
     pub fn encoder(&mut self, input: usize) -> Encoder {
-        self.read_encoder(input, false)
-    }
-
-    fn read_encoder(&mut self, input: usize, again: bool) -> Encoder {
+        let mut read = Encoder::default();
         let at = |counter: &Option<crate::encoder::Counter>| {
             counter.as_ref().is_some_and(|counter| counter.input == input)
         };
         if let Some(axis) = self.axes.iter_mut().find(|axis| at(&axis.counter)) {
-            return axis.read_encoder(again);
+            axis.read_encoder(false, &mut read);
+        } else if let Some(spindle) = self.spindles.iter_mut().find(|spindle| at(&spindle.counter)) {
+            spindle.read_encoder(false, &mut read);
         }
-        let spindle = self.spindles.iter_mut().find(|spindle| at(&spindle.counter));
-        spindle.map_or_else(Encoder::default, |spindle| spindle.read_encoder(again))
+        read
     }
 
     /// Reads the PLC inputs.
@@ -469,7 +502,10 @@ impl Machine {
 
     /// Sets the PLC outputs.
     pub fn set_outputs(&mut self, outputs: &[bool; OUTPUTS]) {
-        self.outputs = *outputs;
+        if self.outputs != *outputs {
+            self.outputs = *outputs;
+            self.rests = false;
+        }
     }
 
     /// The PLC outputs as they were set last.
@@ -479,6 +515,7 @@ impl Machine {
 
     /// Switches the output X41/34 "control is ready".
     pub fn set_control_ready(&mut self, on: bool) {
+        self.rests &= self.chain.control_ready == on;
         self.chain.control_ready = on;
     }
 
@@ -497,18 +534,22 @@ impl Machine {
         let Some(probe) = &self.tool_probe else {
             return Touch::default();
         };
-        let tool = self.tool_in_spindle();
-        let place = self.probe_axes.map(|index| Some(self.axes.get(index?)?.table));
-        let deflected = match place {
-            [Some(x), Some(y), Some(z)] => probe.deflected(tool, [x, y, z], self.spindle()),
-            _ => false,
-        };
+        let deflected = self
+            .probe_place()
+            .is_some_and(|place| probe.deflected(self.tool_in_spindle(), place, || self.spindle()));
         Touch {
             deflected,
             ready: probe.ready,
             deflection_mm: [0.0; 3],
             battery_low: false,
         }
+    }
+
+    /// Where the axes X, Y and Z stand, which both probes need.
+    fn probe_place(&self) -> Option<[f64; 3]> {
+        let [x, y, z] = self.probe_axes;
+        let at = |place: Option<usize>| Some(self.axes.get(place?)?.table);
+        Some([at(x)?, at(y)?, at(z)?])
     }
 
     /// The angle of the first spindle since power-on, degrees.
@@ -523,20 +564,19 @@ impl Machine {
         let Some(probe) = &self.probe else {
             return Touch::default();
         };
-        let place = self.probe_axes.map(|index| Some(self.axes.get(index?)?.table));
-        let deflected = match place {
-            [Some(x), Some(y), Some(z)] => probe.deflected([x, y, z], self.spindle_deg()),
-            _ => false,
-        };
-        let deflected = deflected || probe.early && probe.inserted;
+        if !probe.inserted {
+            return Touch {
+                battery_low: probe.battery_low,
+                ..Touch::default()
+            };
+        }
+        let place = self.probe_place();
+        let deflected = place.is_some_and(|place| probe.deflected(place, self.spindle_deg())) || probe.early;
         Touch {
             deflected,
-            ready: probe.inserted && probe.ready,
+            ready: probe.ready,
             battery_low: probe.battery_low,
-            deflection_mm: match place {
-                [Some(x), Some(y), Some(z)] => probe.deflection([x, y, z], self.spindle_deg()),
-                _ => [0.0; 3],
-            },
+            deflection_mm: place.map_or([0.0; 3], |place| probe.deflection(place, self.spindle_deg())),
         }
     }
 

@@ -176,8 +176,8 @@ impl Magazine {
         self.spindle
     }
 
-    /// Lets a millisecond pass, behind the things.
-    pub fn advance(&mut self, outputs: &[bool; OUTPUTS], devices: &mut [Device]) {
+    /// Lets a millisecond pass, behind the things; whether anything has moved.
+    pub fn advance(&mut self, outputs: &[bool; OUTPUTS], devices: &mut [Device]) -> bool {
         let at = |place: usize| Place::of(devices.get(place));
         let parts = self.parts;
         let now = [parts.shuttle, parts.draw, parts.turn].map(at);
@@ -185,16 +185,22 @@ impl Magazine {
         let [shuttle_before, draw_before, turn_before] = self.before;
         let [shuttle, draw, turn] = now;
         self.before = now;
-        self.rotate(outputs, shuttle != Place::Between);
+        let turned = self.rotate(outputs, shuttle != Place::Between);
+        if !turned && now == [shuttle_before, draw_before, turn_before] {
+            return false;
+        }
         let mut jams = None;
         let arrives = |before: Place, now: Place| before != now && now != Place::Between;
         if arrives(shuttle_before, shuttle) && !self.shuttle_moved(shuttle) {
             jams = Some(parts.shuttle);
         }
-        // What is gripped and clamped cannot be drawn.
+        // What is gripped and clamped cannot be drawn: the arm is held until the clamp opens.
         let leaves = draw_before == Place::Back && draw != Place::Back;
         if leaves && grips && !released && self.spindle != 0 {
-            jams = Some(parts.draw);
+            if let Some(arm) = devices.get_mut(parts.draw) {
+                arm.hold_back();
+            }
+            self.before[1] = Place::Back;
         }
         if arrives(draw_before, draw) && grips && !self.drawn(draw) {
             jams = Some(parts.draw);
@@ -205,15 +211,17 @@ impl Magazine {
         if let Some(device) = jams.and_then(|place| devices.get_mut(place)) {
             device.fault = Some(DeviceFault::Jammed);
         }
+        true
     }
 
     /// The chain turns while one of its outputs is on; a shuttle on its way holds it. At rest an index pin draws
-    /// it to the pocket.
-    fn rotate(&mut self, outputs: &[bool; OUTPUTS], free: bool) {
+    /// it to the pocket. Whether it has moved.
+    fn rotate(&mut self, outputs: &[bool; OUTPUTS], free: bool) -> bool {
         let is_on = |coil: Option<Coil>| coil.is_some_and(|coil| coil.is_on(outputs));
         if !free || self.fault == Some(DeviceFault::Jammed) {
-            return;
+            return false;
         }
+        let before = self.position;
         let count = self.pockets.len() as f64;
         match (is_on(self.forward), is_on(self.backward)) {
             (true, false) => self.position += self.speed,
@@ -226,6 +234,7 @@ impl Magazine {
             }
         }
         self.position = self.position.rem_euclid(count);
+        self.position != before
     }
 
     /// The place of the pocket that is nearest to the change position, from 0.

@@ -15,6 +15,13 @@ pub(crate) struct Key {
     tapped_ms: u32,
 }
 
+impl Key {
+    /// It is pressed until it is released.
+    pub fn is_held(&self) -> bool {
+        self.pressed && self.tapped_ms == 0
+    }
+}
+
 /// See the module.
 #[derive(Clone, Debug)]
 pub(crate) struct Panel {
@@ -24,6 +31,7 @@ pub(crate) struct Panel {
     /// Milliseconds until the tapped keys of the handwheel are released.
     wheel_taps_ms: [u32; HandwheelKey::NAMES.len()],
     wheel_is_tapped: bool,
+    key_is_tapped: bool,
 }
 
 impl Panel {
@@ -45,6 +53,7 @@ impl Panel {
             },
             wheel_taps_ms: [0; HandwheelKey::NAMES.len()],
             wheel_is_tapped: false,
+            key_is_tapped: false,
         }
     }
 
@@ -59,6 +68,7 @@ impl Panel {
         } else {
             0
         };
+        self.key_is_tapped |= key.tapped_ms > 0;
         true
     }
 
@@ -76,15 +86,24 @@ impl Panel {
         }
     }
 
-    pub fn pressed(&self, name: &str) -> bool {
-        self.keys.iter().any(|key| key.pressed && key.name == name)
+    /// The place of a key among all.
+    pub fn place(&self, name: &str) -> Option<usize> {
+        self.keys.iter().position(|key| key.name == name)
+    }
+
+    pub fn pressed(&self, place: usize) -> bool {
+        self.keys.get(place).is_some_and(|key| key.pressed)
     }
 
     /// Lets a millisecond pass.
     pub fn advance(&mut self) {
-        for key in self.keys.iter_mut().filter(|key| key.tapped_ms > 0) {
-            key.tapped_ms -= 1;
-            key.pressed = key.tapped_ms > 0;
+        if self.key_is_tapped {
+            self.key_is_tapped = false;
+            for key in self.keys.iter_mut().filter(|key| key.tapped_ms > 0) {
+                key.tapped_ms -= 1;
+                key.pressed = key.tapped_ms > 0;
+                self.key_is_tapped |= key.pressed;
+            }
         }
         if self.wheel_is_tapped {
             self.wheel_is_tapped = false;

@@ -169,10 +169,10 @@ impl Spindle {
         }
     }
 
-    /// Lets the gear shift for a millisecond.
-    pub fn shift(&mut self, outputs: &[bool; OUTPUTS]) {
+    /// Lets the gear shift for a millisecond; whether it does.
+    pub fn shift(&mut self, outputs: &[bool; OUTPUTS]) -> bool {
         if self.gears.len() < 2 || self.gear_fault == Some(DeviceFault::Jammed) {
-            return;
+            return false;
         }
         let opened = |gear: &Gear| gear.valve.is_some_and(|valve| valve.is_on(outputs));
         let mut open = self.gears.iter().enumerate().filter(|(_, gear)| opened(gear));
@@ -185,7 +185,7 @@ impl Spindle {
             self.shifted_ms = 0.0;
         }
         if wanted.is_none() || wanted == self.engaged {
-            return;
+            return false;
         }
         self.engaged = None;
         if (self.shift_speed[0]..=self.shift_speed[1]).contains(&self.motor.abs()) {
@@ -194,6 +194,7 @@ impl Spindle {
         if self.shifted_ms >= self.shift_ms {
             self.engaged = wanted;
         }
+        true
     }
 
     /// Sets the contacts of drive and gear.
@@ -217,12 +218,9 @@ impl Spindle {
         }
     }
 
-    pub fn read_encoder(&mut self, again: bool) -> Encoder {
-        let turns = self.turns;
-        match &mut self.counter {
-            Some(counter) if again => counter.look_at(turns, 0.0),
-            Some(counter) => counter.read_at(turns, 0.0),
-            None => Encoder::default(),
+    pub fn read_encoder(&mut self, again: bool, read: &mut Encoder) {
+        if let Some(counter) = &mut self.counter {
+            counter.read_at(self.turns, 0.0, again, read);
         }
     }
 

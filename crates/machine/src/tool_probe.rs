@@ -97,7 +97,12 @@ impl ToolProbe {
 
     /// Whether a tool in the spindle touches the contact, with the axes X, Y, Z at a position. A tool that turns is
     /// as long and as thick as its longest teeth.
-    pub fn deflected(&self, tool: u32, position: [f64; 3], spindle: Option<SpindleState>) -> bool {
+    pub fn deflected(
+        &self,
+        tool: u32,
+        position: [f64; 3],
+        spindle: impl Fn() -> Option<SpindleState>,
+    ) -> bool {
         let Some(tool) = self.tools.iter().find(|own| own.number == tool) else {
             return false;
         };
@@ -107,9 +112,14 @@ impl ToolProbe {
         };
         let [height, first, second] = self.axes.map(off);
         let contact = self.diameter / 2.0;
-        let near = height < tool.length && first.hypot(second) < tool.radius + contact;
-        let stands = spindle.filter(|spindle| spindle.rpm.abs() < STANDS_RPM);
-        let Some(spindle) = stands.filter(|_| near && !tool.teeth.is_empty()) else {
+        let reach = tool.radius + contact;
+        // No way is shorter than its parts: most of the time the tool is far off.
+        let may = height < tool.length && first.abs() < reach && second.abs() < reach;
+        let near = may && first.hypot(second) < reach;
+        if !near || tool.teeth.is_empty() {
+            return near;
+        }
+        let Some(spindle) = spindle().filter(|spindle| spindle.rpm.abs() < STANDS_RPM) else {
             return near;
         };
         let pitch = 360.0 / tool.teeth.len() as f64;

@@ -5,22 +5,13 @@ use bahn_control::{Command, Mode};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
-use crate::page::{Page, Turn, View};
+use crate::page::{Page, Side, Turn, View};
 use crate::pages;
 use crate::screen::{Heading, SoftKeys};
 use crate::site::Site;
 
 /// Messages of the panel itself that are kept at most.
 const NOTES: usize = 8;
-
-/// The two sides of the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
-    /// The machine operating mode.
-    Machine,
-    /// PROGRAMMING AND EDITING or TEST RUN.
-    Programming,
-}
 
 /// Modes of the programming side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -230,6 +221,14 @@ impl Console {
     pub fn power_off(&mut self) {
         self.machine.opened.clear();
         self.front = Side::Machine;
+        self.notes.clear();
+    }
+
+    /// The machine was brought to another moment: its mode has a page as it is then. What is programmed beside it is of
+    /// now.
+    pub fn machine_is_elsewhere(&mut self, mode: Mode) {
+        self.mode = mode;
+        self.machine = Stack::new(pages::of_mode(mode));
         self.notes.clear();
     }
 

@@ -29,6 +29,12 @@ pub enum Input {
     Pause(bool),
     /// So many contour cycles, while time stands.
     Cycles(u32),
+    /// To a moment since power-on, s, of this way or of a branch; time stands there.
+    GoTo(f64, Option<u32>),
+    /// A lesson of the machine's folder begins, by its name; `None` ends it.
+    Lesson(Option<String>),
+    /// The trainee says that he has done what the lesson asks.
+    HandIn,
     /// What a script does: a command of the control or an event of the machine (docs/scripts.md).
     Deed(String),
 }
@@ -41,7 +47,7 @@ pub struct Refusal(pub String);
 /// Contour cycles that one input asks for at most: 30 s of a TNC 415.
 const CYCLES_MAX: u32 = 10_000;
 
-/// An input as JSON. Exactly one of its fields is set, beside `down` and `factor`.
+/// An input as JSON. Exactly one of its fields is set, beside `down`, `factor` and `branch`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputText {
@@ -81,6 +87,18 @@ pub struct InputText {
     /// Contour cycles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cycles: Option<u32>,
+    /// A moment, s since power-on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub go_to: Option<f64>,
+    /// The branch of that moment.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub branch: Option<u32>,
+    /// A lesson; the empty name ends it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lesson: Option<String>,
+    /// The task is done; always true.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hand_in: Option<bool>,
     /// A deed of a script.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deed: Option<String>,
@@ -103,6 +121,10 @@ impl TryFrom<InputText> for Input {
             text.speed.map(Input::Speed),
             text.pause.map(Input::Pause),
             text.cycles.map(cycles),
+            text.go_to.map(|time_s| Input::GoTo(time_s, text.branch)),
+            text.lesson
+                .map(|name| Input::Lesson((!name.is_empty()).then_some(name))),
+            text.hand_in.map(|_| Input::HandIn),
             text.deed.map(Input::Deed),
         ];
         let mut found = found.into_iter().flatten();
@@ -150,6 +172,12 @@ impl From<&Input> for InputText {
             Input::Speed(factor) => text.speed = Some(*factor),
             Input::Pause(paused) => text.pause = Some(*paused),
             Input::Cycles(cycles) => text.cycles = Some(*cycles),
+            Input::GoTo(time_s, branch) => {
+                text.go_to = Some(*time_s);
+                text.branch = *branch;
+            }
+            Input::Lesson(name) => text.lesson = Some(name.clone().unwrap_or_default()),
+            Input::HandIn => text.hand_in = Some(true),
             Input::Deed(deed) => text.deed = Some(deed.clone()),
         }
         text
@@ -171,6 +199,11 @@ mod tests {
             r#"{"handwheel_axis":"Y","factor":5}"#,
             r#"{"handwheel":-250}"#,
             r#"{"pause":true}"#,
+            r#"{"go_to":12.5}"#,
+            r#"{"go_to":12.5,"branch":2}"#,
+            r#"{"lesson":"door"}"#,
+            r#"{"lesson":""}"#,
+            r#"{"hand_in":true}"#,
             r#"{"deed":"fault drive X off"}"#,
         ] {
             let read: InputText = serde_json::from_str(text).unwrap();

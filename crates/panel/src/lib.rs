@@ -5,7 +5,22 @@
 //! - [`Live`] is a station on a thread of its own, by the clock on the wall, which any number of viewers watch;
 //! - `console` says who has the keys, `page` what takes them and shows itself, `pages` are the operating modes, menus and
 //!   tables; each is given a `site`, what it may touch;
+//! - [`Recorder`] and [`Replay`] keep a session and show it again; a [`TimeLine`] leads back to any moment;
+//! - [`Reason`]s say what a standing machine waits for; [`Breakable`]s are what a teacher can break, a [`LessonRun`] is an
+//!   exercise;
 //! - texts are in English in the sources, `texts/*.tsv` have the other languages.
+//!
+//! ```no_run
+//! use bahn_panel::{Input, Key, Station, load};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut station = Station::power_on(load("machines/mill".as_ref())?)?;
+//! station.cycle()?;
+//! assert_eq!(station.screen().messages[0].text, "POWER INTERRUPTED");
+//! station.input(&Input::Key(Key::Ce))?;
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! Nothing here knows sockets, pixels or terminals.
 
@@ -19,28 +34,40 @@
 )]
 
 mod console;
+mod drawer;
 mod entry;
 mod frames;
 mod inhibit;
 mod input;
+mod lesson;
 mod live;
 mod numbers;
 mod page;
 mod pages;
 mod programs;
+mod replay;
 mod screen;
+mod session;
 mod settings;
 mod site;
 mod station;
 mod status;
 mod texts;
+mod timeline;
+mod why;
+mod wiring;
 
 pub use bahn_dialogue::{Key, KeyGroup};
+pub use drawer::{Breakable, Breaking};
 pub use input::{Input, InputText, Refusal};
+pub use lesson::{Lesson, LessonRun, check_lesson};
 pub use live::{Link, Live, Seen};
+pub use replay::{Ending, Replay, check_session};
 pub use screen::{
-    AxisLine, Dialogue, Heading, Line, MachineState, Mark, MessageLine, PlcLine, Screen, SoftKeys, Star,
-    Status, Window, WindowKind,
+    AxisLine, BranchLine, CheckLine, Dialogue, Heading, LessonLine, LessonState, Line, MachineState, Mark,
+    MarkKind, MessageLine, PlcLine, Screen, SoftKeys, Star, Status, TimeLine, TimeMark, Window, WindowKind,
 };
+pub use session::{Head, Recorder};
 pub use settings::PositionType;
 pub use station::{EMERGENCY_STOP, Station, load};
+pub use why::{Reason, Urgency};

@@ -33,6 +33,12 @@ pub struct Screen {
     pub lamps: BTreeMap<String, bool>,
     /// The machine operating panel and the simulation.
     pub machine: MachineState,
+    /// The time line.
+    pub timeline: TimeLine,
+    /// Why something stands or waits, in words; empty while everything goes on, or nothing is to be done.
+    pub why: Vec<String>,
+    /// The lesson, while there is one.
+    pub lesson: Option<LessonLine>,
 }
 
 /// An operating mode in the header.
@@ -240,4 +246,98 @@ pub struct MachineState {
     pub speed: f64,
     /// Time stands.
     pub paused: bool,
+}
+
+/// The time line as the screen shows it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TimeLine {
+    /// The first moment, s since power-on.
+    pub from_s: f64,
+    /// The last one of this way.
+    pub to_s: f64,
+    /// The moment that is shown; before the last one while the operator looks back.
+    pub now_s: f64,
+    /// What happened when, the oldest first.
+    pub marks: Vec<TimeMark>,
+    /// Other ways that can be gone back to.
+    pub branches: Vec<BranchLine>,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TimeMark {
+    /// When, s since power-on.
+    pub t: f64,
+    /// What kind of thing.
+    pub kind: MarkKind,
+    /// Its words: message, program, deed.
+    pub text: String,
+}
+
+/// What kind of thing happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MarkKind {
+    /// A message came up.
+    Message,
+    /// A program was started.
+    Start,
+    /// A program has come to its end.
+    End,
+    /// A program was interrupted or stopped.
+    Stop,
+    /// Something was done to the machine: a fault, a repair, a door, EMERGENCY STOP, power.
+    Deed,
+}
+
+/// A way that was left.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BranchLine {
+    /// Its number.
+    pub number: u32,
+    /// Where it was left, s.
+    pub from_s: f64,
+    /// How far it goes, s.
+    pub to_s: f64,
+}
+
+/// A lesson as the screen shows it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct LessonLine {
+    /// Its name.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// What is to be done.
+    pub task: String,
+    /// What helps, one after the other.
+    pub hints: Vec<String>,
+    /// What is looked at, in this order.
+    pub checks: Vec<CheckLine>,
+    /// Where it stands.
+    pub state: LessonState,
+    /// Why it failed.
+    pub reason: String,
+}
+
+/// What is looked at.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CheckLine {
+    /// In words.
+    pub text: String,
+    /// It was so.
+    pub done: bool,
+}
+
+/// Where a lesson stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LessonState {
+    /// It goes on.
+    #[default]
+    Running,
+    /// Everything was done.
+    Passed,
+    /// It was not.
+    Failed,
 }

@@ -1,5 +1,7 @@
 //! The operator's station: a machine that is on, and its panel.
 
+mod teaching;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,14 +13,19 @@ use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
 
-use crate::console::{Console, Side};
+use crate::console::Console;
 use crate::inhibit;
 use crate::input::{Input, Refusal};
+use crate::lesson::LessonRun;
+use crate::page::Side;
 use crate::programs::ProgramMemory;
 use crate::screen::{MachineState, MessageLine, PlcLine, Screen};
+use crate::session::Recorder;
 use crate::settings::Settings;
 use crate::site::Site;
-use crate::{numbers, status, texts};
+use crate::timeline::Past;
+use crate::why::Waits;
+use crate::{numbers, status, texts, why};
 
 /// Lines of the large window.
 const LINES: usize = 16;
@@ -39,14 +46,16 @@ pub struct Station {
     stored: Settings,
     state_folder: PathBuf,
     console: Console,
-    knobs: [f64; 2],
-    emergency_stop: bool,
-    held: Vec<String>,
     speed: f64,
+    by_the_wall: bool,
     paused: bool,
     is_on: bool,
     /// Less than a minute of each machine time, µs.
     timers_us: [u64; 3],
+    recorder: Option<Recorder>,
+    past: Past,
+    waits: Waits,
+    lesson: Option<LessonRun>,
     shown: Screen,
 }
 
@@ -65,19 +74,21 @@ impl Station {
         let programs = Arc::new(ProgramMemory::new(&machine.programs(0)));
         let operator = Operator::new(Attendance::Absent, machine.folder.operator.clone(), None);
         let shared = Arc::clone(&programs) as Arc<dyn Programs>;
-        let host = Host::new(&machine, power_on, shared, operator);
+        let mut host = Host::new(&machine, power_on, shared, operator);
         let state_folder = machine.root.join(&machine.folder.state);
         let settings = Settings::read(&state_folder);
         Station {
             console: Console::new(host.control().mode()),
             stored: settings.clone(),
-            knobs: [100.0; 2],
-            emergency_stop: false,
-            held: Vec::new(),
             speed: 1.0,
+            by_the_wall: false,
             paused: false,
             is_on: true,
             timers_us: [0; 3],
+            recorder: None,
+            past: Past::new(&mut host),
+            waits: Waits::new(&machine),
+            lesson: None,
             shown: Screen::default(),
             host,
             machine,
@@ -89,14 +100,38 @@ impl Station {
 
     /// Runs by the clock on the wall from now on, as fast as the operator chose.
     pub fn run_by_the_wall(&mut self) {
-        self.host.set_clock(Clock::Wall(self.speed));
+        self.by_the_wall = true;
+        self.host.set_clock(self.clock());
     }
 
-    /// Takes what the operator does.
+    /// The clock by which the machine runs.
+    pub(crate) fn clock(&self) -> Clock {
+        match self.by_the_wall {
+            true => Clock::Wall(self.speed),
+            false => Clock::Free,
+        }
+    }
+
+    /// Takes what the operator does, and notes it while a session is recorded.
     ///
     /// # Errors
     /// When there is no such key, or it cannot be done.
     pub fn input(&mut self, input: &Input) -> Result<(), Refusal> {
+        let now_us = self.host.control().time_us();
+        let noted = self
+            .recorder
+            .as_mut()
+            .map(|recorder| recorder.note(now_us, input));
+        if let Some(Err(error)) = noted {
+            self.console.say(error);
+            self.recorder = None;
+        }
+        let taken = self.take(input);
+        self.past.settle(&self.host);
+        taken
+    }
+
+    fn take(&mut self, input: &Input) -> Result<(), Refusal> {
         match input {
             Input::Key(key) => self.key(*key),
             Input::Machine(name, action) => return self.machine_key(name, *action),
@@ -118,6 +153,9 @@ impl Station {
                     self.cycle().map_err(|error| Refusal(error.to_string()))?;
                 }
             }
+            Input::GoTo(time_s, branch) => self.go_to_in(*time_s, *branch)?,
+            Input::Lesson(name) => self.begin_lesson(name.as_deref())?,
+            Input::HandIn => self.hand_in(),
             Input::Deed(text) => self.deed(text)?,
         }
         Ok(())
@@ -142,6 +180,9 @@ impl Station {
             }
             console.tick(&mut site);
         }
+        self.past.follow(&mut self.host);
+        self.waits.follow(self.host.control());
+        self.follow_lesson();
         self.store_settings();
         cycled
     }
@@ -157,6 +198,7 @@ impl Station {
     /// [`HostError::NotStored`].
     pub fn store(&mut self) -> Result<(), HostError> {
         self.store_settings();
+        self.end_recording().map_err(HostError::NotStored)?;
         self.host.store()
     }
 
@@ -191,11 +233,20 @@ impl Station {
             true => self.make_screen(),
             false => Screen::default(),
         };
+        screen.timeline = self.past.shown(&self.host);
+        screen.why = why::in_words(&self.why());
+        let language = self.language();
+        screen.lesson = self.lesson.as_ref().map(|lesson| lesson.line(language));
         screen.machine = self.machine_state();
         screen.time_s = self.host.control().time_us() as f64 / 1e6;
         screen.lamps = self.lamps();
         screen.serial = self.shown.serial;
+        // Time alone makes no other screen.
         let time_s = std::mem::replace(&mut self.shown.time_s, screen.time_s);
+        if !self.past.looks_back() {
+            self.shown.timeline.to_s = screen.timeline.to_s;
+            self.shown.timeline.now_s = screen.timeline.now_s;
+        }
         if screen != self.shown {
             screen.serial += 1;
             self.shown = screen;
@@ -275,8 +326,7 @@ impl Station {
 
     /// Messages of the control, and those of the panel behind them.
     fn messages(&mut self) -> Vec<MessageLine> {
-        let english = self.parameters().operation_parameters().english;
-        let language = self.settings.language(english);
+        let language = self.language();
         let control = self.host.control();
         let line = |shown: &bahn_control::Shown| MessageLine {
             text: texts::translate(language, &control.shown_text(shown)),
@@ -320,11 +370,12 @@ impl Station {
     }
 
     fn machine_state(&self) -> MachineState {
+        let plant = self.host.plant();
         MachineState {
             power: self.is_on,
-            emergency_stop: self.emergency_stop,
-            knobs: self.knobs,
-            held: self.held.clone(),
+            emergency_stop: plant.emergency_stop_is_pressed(),
+            knobs: plant.knobs(),
+            held: plant.held_keys().map(str::to_owned).collect(),
             handwheel: self.handwheel(),
             speed: self.speed,
             paused: self.paused,
@@ -356,9 +407,8 @@ impl Station {
             let pressed = match action {
                 KeyAction::Press => true,
                 KeyAction::Release => false,
-                KeyAction::Tap => !self.emergency_stop,
+                KeyAction::Tap => !self.host.plant().emergency_stop_is_pressed(),
             };
-            self.emergency_stop = pressed;
             return self.deed(if pressed {
                 "emergency press"
             } else {
@@ -370,21 +420,13 @@ impl Station {
             KeyAction::Release => "release",
             KeyAction::Tap => "tap",
         };
-        self.deed(&format!("key {name} {verb}"))?;
-        self.held.retain(|held| held != name);
-        if action == KeyAction::Press {
-            self.held.push(name.to_owned());
-        }
-        Ok(())
+        self.waits.pressed(name, self.host.control().time_us());
+        self.deed(&format!("key {name} {verb}"))
     }
 
     fn knob(&mut self, place: usize, percent: f64) -> Result<(), Refusal> {
         let name = ["feed", "spindle"][place.min(1)];
-        self.deed(&format!("override {name} {percent}"))?;
-        if let Some(knob) = self.knobs.get_mut(place) {
-            *knob = percent;
-        }
-        Ok(())
+        self.deed(&format!("override {name} {percent}"))
     }
 
     fn set_speed(&mut self, factor: f64) -> Result<(), Refusal> {
@@ -396,7 +438,7 @@ impl Station {
             )));
         }
         self.speed = factor;
-        self.host.set_clock(Clock::Wall(factor));
+        self.host.set_clock(self.clock());
         Ok(())
     }
 

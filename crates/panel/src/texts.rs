@@ -12,6 +12,7 @@ const GERMAN: &[&str] = &[
     include_str!("../texts/de.tsv"),
     include_str!("../texts/messages-de.tsv"),
     include_str!("../texts/causes-de.tsv"),
+    include_str!("../texts/de-teaching.tsv"),
 ];
 
 /// The code of a language: `en`, `de`.
@@ -92,8 +93,10 @@ mod tests {
                     folders.push(path);
                 } else if !path.ends_with("texts.rs") {
                     let source = std::fs::read_to_string(&path).unwrap();
-                    let places = source.split("words(\"").skip(1);
-                    found.extend(places.map(|rest| rest.split('"').next().unwrap().to_owned()));
+                    // A long text stands on a line of its own.
+                    let places = source.split("words(").skip(1).map(str::trim_start);
+                    let texts = places.filter_map(|rest| rest.strip_prefix('"')?.split('"').next());
+                    found.extend(texts.map(str::to_owned));
                 }
             }
         }

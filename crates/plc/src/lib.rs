@@ -8,7 +8,8 @@
 //! - [`modules`] lists the modules 9000 to 9171; [`Nc`] is what they need from the control, with the types
 //!   that it speaks in; with the feature `desk`, `TestNc` stands in for it;
 //! - [`mirror_parameters`] puts the machine parameters of the PLC into its words and markers;
-//! - [`Instruction`] and [`Op`] are the compiled form, for tools that list, cross-reference or translate it.
+//! - [`Instruction`] and [`Op`] are the compiled form, for tools that list, cross-reference or translate it; [`accesses`]
+//!   are the operands of an instruction.
 //!
 //! ```
 //! use bahn_exchange::Exchange;
@@ -34,6 +35,7 @@
     reason = "citations as [000:12070] look like links"
 )]
 
+mod access;
 mod compile;
 mod error;
 mod fast;
@@ -45,6 +47,7 @@ mod run;
 mod source;
 mod syntax;
 
+pub use access::{Access, Memory, Subject, accesses};
 pub use compile::{Compilation, Options};
 pub use error::{Detection, Diagnostic, PlcError};
 pub use modules::{Module, modules};

@@ -7,16 +7,11 @@
 
 use std::net::SocketAddr;
 
-use axum::extract::{Request, State};
-use axum::http::header::{AUTHORIZATION, COOKIE, HOST, LOCATION, ORIGIN, SET_COOKIE};
-use axum::http::{HeaderMap, Method, StatusCode};
-use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
-
-use crate::server::Shared;
+use axum::http::header::{AUTHORIZATION, COOKIE, HOST, ORIGIN};
+use axum::http::{HeaderMap, Method};
 
 /// Name of the cookie that holds the token.
-const COOKIE_NAME: &str = "bahn-token";
+pub(crate) const COOKIE_NAME: &str = "bahn-token";
 
 /// The rules.
 #[derive(Debug)]
@@ -37,6 +32,11 @@ pub(crate) enum Verdict {
 impl Access {
     pub fn new(address: SocketAddr, token: Option<String>) -> Access {
         Access { address, token }
+    }
+
+    /// What everybody must know.
+    pub fn token(&self) -> &str {
+        self.token.as_deref().unwrap_or_default()
     }
 
     /// Judges a request by its method, query and headers.
@@ -95,26 +95,6 @@ fn is_loopback_name(host: &str) -> bool {
         || name
             .parse::<std::net::IpAddr>()
             .is_ok_and(|address| address.is_loopback())
-}
-
-/// Lets requests in, or not.
-pub(crate) async fn guard(State(shared): State<Shared>, request: Request, next: Next) -> Response {
-    let query = request.uri().query().unwrap_or_default().to_owned();
-    match shared.access.judge(request.method(), &query, request.headers()) {
-        Verdict::Welcome => next.run(request).await,
-        Verdict::WithCookie if request.uri().path() == "/" => {
-            let token = shared.access.token.clone().unwrap_or_default();
-            let cookie = format!("{COOKIE_NAME}={token}; HttpOnly; SameSite=Strict; Path=/");
-            // The token does not stay in the address.
-            (
-                StatusCode::SEE_OTHER,
-                [(SET_COOKIE, cookie), (LOCATION, "/".to_owned())],
-            )
-                .into_response()
-        }
-        Verdict::WithCookie => next.run(request).await,
-        Verdict::Refused(why) => (StatusCode::FORBIDDEN, why).into_response(),
-    }
 }
 
 #[cfg(test)]

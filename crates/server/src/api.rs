@@ -4,54 +4,10 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
-use bahn_panel::{Input, InputText, Key, Refusal, Station};
-use serde::Serialize;
+use bahn_panel::{Input, InputText, Refusal};
 use serde_json::json;
 
-use crate::server::Shared;
-
-/// What does not change while a station is on.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct About {
-    /// Name of the machine.
-    machine: String,
-    /// Its control model.
-    model: String,
-    /// The keyboard.
-    keys: Vec<KeyText>,
-    /// Keys of the machine operating panel.
-    machine_keys: Vec<String>,
-    /// Axes that a handwheel can move.
-    axes: String,
-    /// The version of this program.
-    version: &'static str,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct KeyText {
-    name: &'static str,
-    group: String,
-    label: &'static str,
-}
-
-impl About {
-    /// Of a station.
-    pub fn of(station: &Station) -> About {
-        let key = |key: &Key| KeyText {
-            name: key.name(),
-            group: format!("{:?}", key.group()).to_lowercase(),
-            label: key.label(),
-        };
-        About {
-            machine: station.machine().folder.name.clone(),
-            model: station.control().model().name().to_owned(),
-            keys: Key::ALL.iter().map(key).collect(),
-            machine_keys: station.machine_keys(),
-            axes: station.control().axis_letters().collect(),
-            version: env!("CARGO_PKG_VERSION"),
-        }
-    }
-}
+use crate::shared::Shared;
 
 /// `GET /api/station`.
 pub(crate) async fn station(State(shared): State<Shared>) -> Response {

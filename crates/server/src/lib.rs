@@ -1,10 +1,23 @@
 //! The operating panel in the browser: a station over HTTP and a web socket.
 //!
 //! - [`Server`] listens, serves the page and its modules, which are embedded, and the interface of docs/panel-api.md;
-//! - `access` says who may come in: on loopback whoever comes from the page itself, anywhere else with a token;
+//! - `access` says who may come in, `gate` asks it: on loopback whoever comes from the page itself, anywhere else with a token;
 //! - `regions` is a screen in parts, each encoded once for all viewers, who are sent what has changed;
 //! - `crew` knows the viewers, and which of them operates;
-//! - `socket` is one viewer, `api` what programs ask for.
+//! - `socket` is one viewer, `api` what programs ask for; both have what is `shared`.
+//!
+//! ```no_run
+//! use bahn_panel::{Station, load};
+//! use bahn_server::{Server, ServerOptions};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let station = Station::power_on(load("machines/mill".as_ref())?)?;
+//! let listen = "127.0.0.1:8155".parse()?;
+//! let server = Server::start(station, &ServerOptions { listen, token: None })?;
+//! println!("http://{}/", server.address());
+//! # Ok(())
+//! # }
+//! ```
 
 #![allow(
     rustdoc::broken_intra_doc_links,
@@ -15,12 +28,15 @@
     allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")
 )]
 
+mod about;
 mod access;
 mod api;
 mod assets;
 mod crew;
+mod gate;
 mod regions;
 mod server;
+mod shared;
 mod socket;
 
 pub use server::{Server, ServerError, ServerOptions};

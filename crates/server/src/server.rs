@@ -1,7 +1,7 @@
 //! Listens and serves.
 
 use std::net::SocketAddr;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
@@ -13,12 +13,11 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
 
-use crate::access::{self, Access};
-use crate::api::{self, About};
-use crate::assets;
-use crate::crew::Crew;
+use crate::about::About;
+use crate::access::Access;
 use crate::regions::Regions;
-use crate::socket;
+use crate::shared::Shared;
+use crate::{api, assets, gate, socket};
 
 /// Largest body of a request, bytes.
 const BODY: usize = 64 << 10;
@@ -48,17 +47,6 @@ pub enum ServerError {
     /// No thread can be started.
     #[error("cannot begin: {0}")]
     Runtime(std::io::Error),
-}
-
-/// What all requests share.
-#[derive(Clone)]
-pub(crate) struct Shared {
-    pub link: Link,
-    pub about: Arc<About>,
-    pub regions: watch::Receiver<Arc<Regions>>,
-    pub crew: Arc<Mutex<Crew>>,
-    pub viewers: Arc<Semaphore>,
-    pub access: Arc<Access>,
 }
 
 /// A station that is served.
@@ -142,7 +130,7 @@ fn router(shared: Shared) -> Router {
         .route("/api/command", post(api::input))
         .route("/ws", any(socket::open))
         .layer(DefaultBodyLimit::max(BODY))
-        .layer(middleware::from_fn_with_state(shared.clone(), access::guard))
+        .layer(middleware::from_fn_with_state(shared.clone(), gate::guard))
         .with_state(shared)
 }
 

@@ -16,7 +16,7 @@ use bahn_panel::{Input, InputText};
 use serde::{Deserialize, Serialize};
 
 use crate::crew::{Crew, Taking};
-use crate::server::Shared;
+use crate::shared::Shared;
 
 /// Longest message of a viewer, bytes.
 const MESSAGE: usize = 16 << 10;

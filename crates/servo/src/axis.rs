@@ -53,6 +53,7 @@ pub struct Axis {
     travel: Travel,
     reversal: ReversalPeak,
     characteristic: Characteristic,
+    fixed: Fixed,
     offset: Offset,
     /// Of axes with digital speed controller.
     speed_loop: Option<SpeedLoop>,
@@ -95,6 +96,17 @@ pub struct Axis {
     residual_steps: u32,
 }
 
+/// What follows from parameters and method alone, so that no servo step has to find it again.
+#[derive(Clone, Copy, Debug, Default)]
+struct Fixed {
+    /// Voltage of a velocity, V/(mm/min).
+    volts_per_mm_min: f64,
+    /// What a step leaves of [`Axis::bias_mm_min`].
+    decay: f64,
+    /// The velocity that a loop at rest goes to and fro with, for neither encoder nor converter is finer, mm/min.
+    standing_mm_min: f64,
+}
+
 impl Axis {
     /// An axis with open loop, at position 0.
     pub fn new(parameters: AxisParameters, timing: Timing) -> Axis {
@@ -108,6 +120,7 @@ impl Axis {
             travel: Travel::default(),
             reversal: ReversalPeak::default(),
             characteristic: Characteristic::straight(1.0),
+            fixed: Fixed::default(),
             offset: Offset::default(),
             speed_loop: SpeedLoop::of(&parameters, &timing),
             monitor: Monitor::new(&timing),
@@ -161,6 +174,7 @@ impl Axis {
     }
 
     /// Takes an encoder reading; once in each servo step, before [`Axis::step`].
+    #[inline]
     pub fn measure(&mut self, encoder: Encoder) {
         let encoder = match &mut self.speed_loop {
             Some(speed_loop) => speed_loop.position(encoder),
@@ -225,13 +239,12 @@ impl Axis {
             0
         };
         self.update_velocity(next - now);
-        let full = self.parameters.output.rapid_volts / self.parameters.motion.rapid_mm_min;
         let by_torque = self.speed_loop.as_ref().is_some_and(SpeedLoop::is_active);
         // What concerns the voltage of a speed is not monitored then: MP1140 is inactive [000:18360-18365].
         let wanted = if by_torque {
             0.0
         } else {
-            self.velocity_mm_min * full + self.offset.volts()
+            self.velocity_mm_min * self.fixed.volts_per_mm_min + self.offset.volts()
         };
         if standing && self.is_in_window() {
             self.in_position = true;
@@ -257,6 +270,7 @@ impl Axis {
     }
 
     /// What the last step says to the drive.
+    #[inline]
     pub fn output(&self) -> AxisCommand {
         let way_mm = self.next_mm - self.actual_mm;
         let by_torque = self.speed_loop.as_ref().is_some_and(SpeedLoop::is_active);
@@ -271,6 +285,7 @@ impl Axis {
     }
 
     /// Takes the fault word of a drive: another than 0 opens the loop for good.
+    #[inline]
     pub fn take_drive_fault(&mut self, word: u16) {
         if word != 0 && self.closed {
             self.raise(Fault::Gross(GrossFault::Movement));
@@ -289,10 +304,9 @@ impl Axis {
         let rest = time_constants >= REST_TIME_CONSTANTS;
         // A digital speed loop has no offset [000:18147].
         if rest && self.drives() && self.parameters.digital.is_none() {
-            let output = &self.parameters.output;
-            let full = output.rapid_volts / self.parameters.motion.rapid_mm_min;
+            let loop_volts = self.velocity_mm_min * self.fixed.volts_per_mm_min;
             self.offset
-                .rest(self.velocity_mm_min * full, output.integral_factor);
+                .rest(loop_volts, self.parameters.output.integral_factor);
         }
     }
 
@@ -315,7 +329,6 @@ impl Axis {
 
     /// Velocity of the nominal value for a nominal way in this step.
     fn update_velocity(&mut self, way_mm: f64) {
-        let slope = self.characteristic.slope();
         self.profile_mm_min = way_mm / self.timing.step_min();
         let control = self.characteristic.velocity_mm_min(self.lag_mm());
         let velocity = match self.method {
@@ -328,11 +341,12 @@ impl Axis {
                 control + self.run_up.advance(self.profile_mm_min, damping) + self.stiction_mm_min
             }
         };
-        let decay = (1.0 - slope * self.timing.step_min()).max(0.0);
-        self.bias_mm_min *= decay;
-        // It never comes to 0 by itself, and processors are slow with numbers that are nearly 0.
-        if self.bias_mm_min.is_subnormal() {
-            self.bias_mm_min = 0.0;
+        if self.bias_mm_min != 0.0 {
+            self.bias_mm_min *= self.fixed.decay;
+            // It never comes to 0 by itself, and processors are slow with numbers that are nearly 0.
+            if self.bias_mm_min.is_subnormal() {
+                self.bias_mm_min = 0.0;
+            }
         }
         if std::mem::take(&mut self.changed) {
             self.bias_mm_min = if self.drove {
@@ -379,16 +393,9 @@ impl Axis {
                 .parameters
                 .precontrol
                 .window_mm_min
-                .max(self.standing_mm_min());
+                .max(self.fixed.standing_mm_min);
         let window = self.window_mm.unwrap_or(self.parameters.monitoring.window_mm);
         (slow || self.method == Method::Lag) && self.lag_mm().abs() <= window
-    }
-
-    /// The velocity that a loop at rest goes to and fro with, for neither encoder nor converter is finer, mm/min.
-    fn standing_mm_min(&self) -> f64 {
-        let seen = self.measuring.step_mm().abs() / self.timing.contour_min();
-        let full = self.parameters.motion.rapid_mm_min / self.parameters.output.rapid_volts;
-        STANDING_STEPS * seen.max(self.timing.resolution_volts() * full)
     }
 
     /// Whether a voltage is put out at all.
@@ -396,6 +403,7 @@ impl Axis {
         self.closed() && self.enabled && !self.is_released()
     }
 
+    #[inline]
     fn is_sound(&self) -> bool {
         self.fault.is_none_or(Fault::keeps_loop)
     }
@@ -474,6 +482,16 @@ impl Axis {
                 self.parameters.motion.rapid_mm_min,
             ),
             Method::Precontrol => Characteristic::straight(choose(precontrol.kv, precontrol.kv_m105)),
+        };
+        let (volts, rapid) = (
+            self.parameters.output.rapid_volts,
+            self.parameters.motion.rapid_mm_min,
+        );
+        let seen = self.measuring.step_mm().abs() / self.timing.contour_min();
+        self.fixed = Fixed {
+            volts_per_mm_min: volts / rapid,
+            decay: (1.0 - self.characteristic.slope() * self.timing.step_min()).max(0.0),
+            standing_mm_min: STANDING_STEPS * seen.max(self.timing.resolution_volts() * (rapid / volts)),
         };
         self.changed = true;
     }
@@ -653,6 +671,7 @@ impl Axis {
     }
 
     /// Whether the loop is closed; not with a fault that cannot be cleared.
+    #[inline]
     pub fn closed(&self) -> bool {
         self.closed && self.is_sound()
     }

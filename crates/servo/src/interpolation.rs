@@ -5,6 +5,8 @@
 pub(crate) struct FineInterpolation {
     start: f64,
     end: f64,
+    /// From start to end.
+    way: f64,
     now: f64,
     step: u32,
     steps: u32,
@@ -15,6 +17,7 @@ impl FineInterpolation {
         FineInterpolation {
             start: 0.0,
             end: 0.0,
+            way: 0.0,
             now: 0.0,
             step: 0,
             steps: steps.max(1),
@@ -25,6 +28,7 @@ impl FineInterpolation {
     pub(crate) fn command(&mut self, end: f64) {
         self.start = self.now;
         self.end = end;
+        self.way = end - self.start;
         self.step = 0;
     }
 
@@ -34,7 +38,7 @@ impl FineInterpolation {
         self.now = if self.step == self.steps {
             self.end
         } else {
-            self.start + (self.end - self.start) * f64::from(self.step) / f64::from(self.steps)
+            self.start + self.way * f64::from(self.step) / f64::from(self.steps)
         };
         self.now
     }
@@ -50,12 +54,14 @@ impl FineInterpolation {
     pub(crate) fn set(&mut self, position: f64) {
         self.start = position;
         self.end = position;
+        self.way = 0.0;
         self.now = position;
     }
 
     pub(crate) fn shift(&mut self, way: f64) {
         self.start += way;
         self.end += way;
+        self.way = self.end - self.start;
         self.now += way;
     }
 }
@@ -79,6 +85,8 @@ pub(crate) struct Transient {
     ring: [f64; WINDOW_MAX],
     at: usize,
     window: usize,
+    /// The position that came in last.
+    last: f64,
     mean: f64,
     /// Steps for which the same position came in.
     equal: usize,
@@ -90,6 +98,7 @@ impl Transient {
             ring: [0.0; WINDOW_MAX],
             at: 0,
             window: 1,
+            last: 0.0,
             mean: 0.0,
             equal: 0,
         };
@@ -113,10 +122,19 @@ impl Transient {
 
     /// Takes the next position in and gives the mean.
     pub(crate) fn advance(&mut self, position: f64) -> f64 {
-        let last = self.ring[(self.at + self.window - 1) % self.window];
-        self.equal = if position == last { self.equal + 1 } else { 0 };
+        let equal = position == self.last;
+        self.last = position;
+        self.equal = if equal { self.equal.saturating_add(1) } else { 0 };
+        if equal && self.equal >= self.window {
+            // The whole window is this position already.
+            self.mean = position;
+            return position;
+        }
         let oldest = std::mem::replace(&mut self.ring[self.at], position);
-        self.at = (self.at + 1) % self.window;
+        self.at += 1;
+        if self.at >= self.window {
+            self.at = 0;
+        }
         self.mean = if self.equal + 1 >= self.window {
             position
         } else {
@@ -132,12 +150,14 @@ impl Transient {
     pub(crate) fn set(&mut self, position: f64) {
         self.ring = [position; WINDOW_MAX];
         self.at = 0;
+        self.last = position;
         self.mean = position;
         self.equal = WINDOW_MAX;
     }
 
     pub(crate) fn shift(&mut self, way: f64) {
         self.ring.iter_mut().for_each(|position| *position += way);
+        self.last += way;
         self.mean += way;
     }
 }

@@ -64,6 +64,7 @@ mod monitor;
 mod offset;
 mod plant;
 mod reversal;
+pub mod rounding;
 mod run_up;
 mod speed_loop;
 mod spindle;

@@ -4,6 +4,7 @@ use bahn_parameters::axis::{AxisParameters, DigitalSpeedParameters};
 
 use crate::fault::GrossFault;
 use crate::plant::Encoder;
+use crate::rounding::round;
 use crate::timing::{OUTPUT_VOLTS, Timing};
 
 /// What a counting step in the sum of the integral part gives for 1 in MP1920, V [000:18387-18391].
@@ -32,8 +33,12 @@ pub struct SpeedState {
 pub(crate) struct SpeedLoop {
     parameters: DigitalSpeedParameters,
     step_min: f64,
-    /// Way of a counting step of the motor's encoder, mm, in the sense of the axis (MP1040).
+    /// Way of a counting step of the motor's encoder, mm, in the sense of the axis (MP1040), and the speed of one for
+    /// each servo step, mm/min.
     step_mm: f64,
+    per_step: f64,
+    /// From here on MP1910 finds a fault, V.
+    limit_volts: f64,
     /// Counting steps of the position encoder for one of the motor's, with its sense MP210.
     position_steps: f64,
     /// Part of the sum that is left after a step: MP1925.
@@ -66,6 +71,8 @@ impl SpeedLoop {
             parameters: digital,
             step_min: timing.step_min(),
             step_mm: 1.0,
+            per_step: 1.0,
+            limit_volts: LIMIT_VOLTS,
             position_steps: 1.0,
             kept: 1.0,
             shutdown_steps: 0,
@@ -101,6 +108,11 @@ impl SpeedLoop {
         let period_mm = parameters.encoder.signal_period_um * 1e-3 / ratio;
         let motor = sign(parameters.output.polarity_negative);
         self.step_mm = motor * period_mm / Encoder::MOTOR_STEPS as f64;
+        self.per_step = self.step_mm / self.step_min;
+        self.limit_volts = match digital.integral {
+            integral if integral > 0.0 => digital.monitoring_steps * integral * VOLTS_PER_STEP,
+            _ => LIMIT_VOLTS,
+        };
         let steps = Encoder::STEPS as f64 / Encoder::MOTOR_STEPS as f64 / ratio;
         self.position_steps = motor * sign(parameters.encoder.counts_negative) * steps;
         // Which limit MP1925 is, no manual says: the sum forgets with this time constant (inferred).
@@ -133,7 +145,7 @@ impl SpeedLoop {
         let Some(motor) = self.count.filter(|_| self.parameters.motor_encoder) else {
             return scale;
         };
-        let count = (motor as f64 * self.position_steps).round() as i64;
+        let count = round(motor as f64 * self.position_steps) as i64;
         let there = count.wrapping_sub(scale.count);
         Encoder {
             count,
@@ -173,7 +185,7 @@ impl SpeedLoop {
         circular: bool,
     ) -> (f64, Option<GrossFault>) {
         let nominal_mm_min = self.step_mm_min.unwrap_or(nominal_mm_min);
-        let per_step = self.step_mm / self.step_min;
+        let per_step = self.per_step;
         // What was asked for in the last step is what was measured at its end.
         let asked = std::mem::replace(&mut self.asked_steps, nominal_mm_min / per_step);
         let error_steps = asked - self.way_steps;
@@ -189,12 +201,8 @@ impl SpeedLoop {
             digital.integral * self.sum_steps + digital.proportional * PROPORTIONAL_WEIGHT * error_steps;
         let volts = digital_volts * VOLTS_PER_STEP
             + digital.acceleration_v_m_s2 * acceleration * self.step_mm.signum();
-        let limit = match digital.integral {
-            integral if integral > 0.0 => digital.monitoring_steps * integral * VOLTS_PER_STEP,
-            _ => LIMIT_VOLTS,
-        };
         // What is calculated is monitored, what is put out is limited [000:18387-18391].
-        let fault = (volts.abs() > limit).then_some(GrossFault::SpeedController);
+        let fault = (volts.abs() > self.limit_volts).then_some(GrossFault::SpeedController);
         let turned = if digital.polarity_negative { -volts } else { volts };
         (turned.clamp(-OUTPUT_VOLTS, OUTPUT_VOLTS), fault)
     }
@@ -231,7 +239,7 @@ impl SpeedLoop {
         self.sum_steps = 0.0;
         self.asked_steps = 0.0;
         self.profile_mm_min = 0.0;
-        let per_step = self.step_mm / self.step_min;
+        let per_step = self.per_step;
         self.state = SpeedState {
             actual_mm_min: self.way_steps * per_step,
             ..SpeedState::default()

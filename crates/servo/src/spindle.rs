@@ -103,6 +103,8 @@ pub struct Spindle {
     goal_volts: f64,
     offset_volts: f64,
     volts: f64,
+    /// The voltage is where it goes to and nothing has been asked since: it stays.
+    settled: bool,
     fault: Option<Fault>,
 }
 
@@ -126,12 +128,14 @@ impl Spindle {
             goal_volts: 0.0,
             offset_volts: 0.0,
             volts: 0.0,
+            settled: false,
             fault: None,
         }
     }
 
     /// Takes changed parameters over (those that the PLC may change).
     pub fn set_parameters(&mut self, parameters: SpindleParameters) {
+        self.settled = false;
         self.parameters = parameters;
         self.lead.set_parameters(&parameters, &self.timing);
     }
@@ -144,18 +148,20 @@ impl Spindle {
 
     /// Sets programmed speed, rpm, and gear range, 0 to 7.
     pub fn set_speed(&mut self, rpm: f64, gear: u8) {
+        self.settled = false;
         self.programmed_rpm = if rpm.is_finite() { rpm.max(0.0) } else { 0.0 };
         self.gear = gear;
     }
 
     /// Sets the override, %: limited by MP3310, its effect by MP3515.
     pub fn set_override(&mut self, percent: f64) {
+        self.settled &= self.override_percent == percent;
         self.override_percent = percent;
     }
 
     /// Switches the spindle on or off: M2485 to M2487. It ends jog and orientation.
     pub fn rotate(&mut self, rotation: Rotation) {
-        self.mode = Mode::Speed(rotation);
+        self.go_over(Mode::Speed(rotation));
     }
 
     /// Chooses the ramp of M03, M04 and M05.
@@ -166,22 +172,29 @@ impl Spindle {
     /// Jogs for a gear change, M2490 left (as M04, inferred) and M2491 right; `M5` stands still
     /// [000:5636-5641].
     pub fn jog(&mut self, rotation: Rotation) {
-        self.mode = Mode::Jog(rotation);
+        self.go_over(Mode::Jog(rotation));
     }
 
     /// Turns at MP3520.0 while M2501 is set, in the direction of M2656; `M5` when it is reset
     /// [000:5888-5895].
     pub fn turn(&mut self, rotation: Rotation) {
-        self.mode = Mode::Turn(rotation);
+        self.go_over(Mode::Turn(rotation));
+    }
+
+    fn go_over(&mut self, mode: Mode) {
+        self.settled = false;
+        self.mode = mode;
     }
 
     /// Turns the polarity of the voltage round: M2489 [000:5492].
     pub fn set_inverted(&mut self, inverted: bool) {
+        self.settled &= self.inverted == inverted;
         self.inverted = inverted;
     }
 
     /// Gives or withdraws the spindle enable; without it the output is 0 V at once: M2608 [000:5500].
     pub fn set_enabled(&mut self, enabled: bool) {
+        self.settled &= self.enabled == enabled;
         self.enabled = enabled;
     }
 
@@ -218,7 +231,7 @@ impl Spindle {
             reached: false,
             steps: 0,
         };
-        self.mode = Mode::Orientation(orientation);
+        self.go_over(Mode::Orientation(orientation));
         if turning == 0.0 {
             self.enter_loop(orientation, 0.0);
         }
@@ -229,7 +242,7 @@ impl Spindle {
     /// stays led, and stands at the last one, until something else is asked of it.
     pub fn lead(&mut self, angle_deg: f64) {
         if self.mode != Mode::Lead {
-            self.mode = Mode::Lead;
+            self.go_over(Mode::Lead);
             self.lead.begin(self.held_deg());
         }
         if angle_deg.is_finite() {
@@ -268,6 +281,9 @@ impl Spindle {
 
     /// One servo step: the voltage for output S, V.
     pub fn step(&mut self) -> f64 {
+        if self.settled {
+            return self.volts;
+        }
         if let Mode::Orientation(orientation) = self.mode {
             self.advance(orientation);
         }
@@ -299,6 +315,8 @@ impl Spindle {
             0.0
         };
         self.volts = self.timing.convert(self.ramp_volts + offset);
+        let by_speed = matches!(self.mode, Mode::Speed(_) | Mode::Jog(_));
+        self.settled = by_speed && !self.on_ramp();
         self.volts
     }
 

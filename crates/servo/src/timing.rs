@@ -2,6 +2,8 @@
 
 use bahn_parameters::ControlModel;
 
+use crate::rounding::round;
+
 /// Greatest voltage of a nominal value output, V [000:4863].
 pub const OUTPUT_VOLTS: f64 = 10.0;
 /// Microseconds of a minute.
@@ -12,7 +14,11 @@ const MINUTE_US: f64 = 60e6;
 pub struct Timing {
     contour_us: u32,
     steps: u32,
-    output_bits: u8,
+    step_us: u32,
+    /// What follows from these, since every servo step of every axis asks for it.
+    resolution_volts: f64,
+    step_min: f64,
+    contour_min: f64,
 }
 
 impl Timing {
@@ -21,10 +27,14 @@ impl Timing {
     pub fn of(model: ControlModel) -> Timing {
         let limits = model.limits();
         let contour_us = limits.contour_cycle_us;
+        let steps = limits.fine_cycle_us.map_or(1, |fine_us| contour_us / fine_us);
         Timing {
             contour_us,
-            steps: limits.fine_cycle_us.map_or(1, |fine_us| contour_us / fine_us),
-            output_bits: limits.output_bits,
+            steps,
+            step_us: contour_us / steps,
+            resolution_volts: OUTPUT_VOLTS / f64::from(1u32 << limits.output_bits.min(30)),
+            step_min: f64::from(contour_us / steps) / MINUTE_US,
+            contour_min: f64::from(contour_us) / MINUTE_US,
         }
     }
 
@@ -35,7 +45,7 @@ impl Timing {
 
     /// A servo step, µs.
     pub fn step_us(&self) -> u32 {
-        self.contour_us / self.steps
+        self.step_us
     }
 
     /// Servo steps of a contour cycle.
@@ -45,7 +55,7 @@ impl Timing {
 
     /// Smallest step of the output voltage, V: 0.15 mV with 16 bits, 0.6 mV with 14 [000:4863].
     pub fn resolution_volts(&self) -> f64 {
-        OUTPUT_VOLTS / f64::from(1u32 << self.output_bits.min(30))
+        self.resolution_volts
     }
 
     /// The voltage that the converter makes of a nominal value, V: a multiple of the resolution, at most
@@ -54,16 +64,15 @@ impl Timing {
         if volts.is_nan() {
             return 0.0;
         }
-        let resolution = self.resolution_volts();
-        (volts.clamp(-OUTPUT_VOLTS, OUTPUT_VOLTS) / resolution).round() * resolution
+        round(volts.clamp(-OUTPUT_VOLTS, OUTPUT_VOLTS) / self.resolution_volts) * self.resolution_volts
     }
 
     pub(crate) fn step_min(&self) -> f64 {
-        f64::from(self.step_us()) / MINUTE_US
+        self.step_min
     }
 
     pub(crate) fn contour_min(&self) -> f64 {
-        f64::from(self.contour_us) / MINUTE_US
+        self.contour_min
     }
 
     /// Servo steps of a time in s.

@@ -144,3 +144,99 @@ fn merged(before: &[Change], after: Vec<Change>) -> Vec<Change> {
     both.extend(old.cloned());
     both
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bahn_path::{
+        Axis, Blank, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Plane, Position, ToolShape,
+    };
+    use bahn_workpiece::{Resolution, Workpiece};
+
+    fn down(x: f64, y: f64, z: f64) -> PathElement {
+        let at = |z: f64| {
+            let mut position = Position::UNKNOWN;
+            (position[Axis::X], position[Axis::Y], position[Axis::Z]) = (x, y, z);
+            position
+        };
+        PathElement {
+            block: BlockRef::default(),
+            sequence: 0,
+            curve: Curve::Line,
+            start: at(1.0),
+            end: at(z),
+            feed: FeedRate::Programmed(100.0),
+            override_law: OverrideLaw::Free,
+            constant_speed: false,
+            tangential_end: false,
+            dwell_s: 0.0,
+            placement: None,
+            functions: None,
+        }
+    }
+
+    /// 5000 holes, one each tenth of a second, over and over the same places: what is kept of the moments is the part as it
+    /// was then, the last one is the part as it is, and they lie evenly.
+    #[test]
+    fn the_moments_that_are_kept_are_true() {
+        let blank = Blank {
+            plane: Plane::XY,
+            min: [0.0, 0.0, -10.0],
+            max: [60.0, 40.0, 0.0],
+        };
+        let mut workpiece = Workpiece::new(&blank, Resolution::Millimetres(0.5)).unwrap();
+        workpiece.remember_tools();
+        let tool = ToolShape {
+            radius: 1.5,
+            ..ToolShape::default()
+        };
+        let mut history = History::new(workpiece.part());
+        let mut seen: Vec<(f64, Sheet)> = Vec::new();
+        let mut last_s = 0.0;
+        for hole in 0..5000_u32 {
+            let turn = f64::from(hole);
+            workpiece.cut(
+                &down(turn * 7.3 % 60.0, turn * 3.1 % 40.0, -turn / 500.0),
+                &tool,
+                Axis::Z,
+            );
+            last_s = 0.1 * (turn + 1.0);
+            if history.is_due(last_s) {
+                let mut sheet = Sheet::blank_of(workpiece.part());
+                sheet.take(workpiece.part());
+                seen.push((last_s, sheet));
+                history.take(last_s, workpiece.part());
+            }
+        }
+        history.take(last_s, workpiece.part());
+        let count = history.moments.len();
+        assert!((MOST_MOMENTS / 2 - 2..=MOST_MOMENTS).contains(&count), "{count}");
+        let steps: Vec<f64> = history
+            .moments
+            .windows(2)
+            .map(|pair| pair[1].time_s - pair[0].time_s)
+            .collect();
+        let longest = steps.iter().copied().fold(0.0, f64::max);
+        assert!(
+            longest <= 2.5 * last_s / count as f64,
+            "{longest} s of {last_s} s"
+        );
+
+        for _ in 0..8 {
+            let mut sheet = history.blank.clone();
+            for moment in &history.moments {
+                for change in &moment.changes {
+                    sheet.apply(change);
+                }
+                if let Some((_, then)) = seen.iter().find(|(time_s, _)| *time_s == moment.time_s) {
+                    assert!(sheet == *then, "{} s", moment.time_s);
+                }
+            }
+            assert!(sheet == history.now);
+            let before = history.moments.len();
+            assert_eq!(history.halve(), before > 1);
+            assert!(history.moments.len() <= before.div_ceil(2));
+        }
+        assert_eq!(history.moments.len(), 1);
+    }
+}

@@ -56,7 +56,9 @@ pub(crate) struct Track {
     points: Vec<Point>,
     tools: Vec<TrackTool>,
     tool: u8,
+    /// Of chords, and of what is left out when there are too many points: of those before `thinned`.
     tolerance_mm: f64,
+    thinned: usize,
 }
 
 impl Default for Track {
@@ -70,6 +72,7 @@ impl Default for Track {
             }],
             tool: 0,
             tolerance_mm: FIRST_TOLERANCE_MM,
+            thinned: 0,
         }
     }
 }
@@ -211,20 +214,24 @@ impl Track {
     fn thin(&mut self) {
         const ENOUGH: usize = MOST_POINTS / 2;
         const COARSEST_MM: f64 = 1e4;
-        while self.points.len() > ENOUGH && self.tolerance_mm < COARSEST_MM {
-            self.tolerance_mm *= 2.0;
-            let all = std::mem::take(&mut self.points);
-            let mut kept: Vec<Point> = Vec::with_capacity(all.len());
+        loop {
+            let all = self.points.split_off(self.thinned.min(self.points.len()));
             let mut first = 0;
             while let Some(anchor) = all.get(first) {
-                kept.push(*anchor);
+                self.points.push(*anchor);
                 let mut last = first + 1;
                 while last - first < MOST_LEFT_OUT && self.may_leave_out(&all, first, last) {
                     last += 1;
                 }
                 first = last;
             }
-            self.points = kept;
+            if self.points.len() <= ENOUGH || self.tolerance_mm > COARSEST_MM {
+                // The last one may still begin a line.
+                self.thinned = self.points.len().saturating_sub(1);
+                return;
+            }
+            self.tolerance_mm *= 2.0;
+            self.thinned = 0;
         }
     }
 
@@ -244,11 +251,16 @@ impl Track {
         &self.tools
     }
 
+    /// How far the lines are from the path at most: what was left out, too, may be as far from them as chords from arcs.
     pub fn tolerance_mm(&self) -> f64 {
-        self.tolerance_mm
+        if self.thinned > 0 {
+            2.0 * self.tolerance_mm
+        } else {
+            self.tolerance_mm
+        }
     }
 
-    /// Blocks that it knows, by program the greatest number.
+    /// The programs that it knows, always the main program.
     pub fn programs(&self) -> Vec<u16> {
         let mut programs: Vec<u16> = self.points.iter().map(|point| point.block.program).collect();
         programs.push(0);
@@ -343,4 +355,125 @@ fn off_line(point: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
         0.0
     };
     distance(point, [0, 1, 2].map(|k| from[k] + way[k] * t))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bahn_path::{OverrideLaw, Plane};
+
+    fn at(x: f64, y: f64, z: f64) -> Position {
+        let mut position = Position::UNKNOWN;
+        (position[Axis::X], position[Axis::Y], position[Axis::Z]) = (x, y, z);
+        position
+    }
+
+    fn element(curve: Curve, start: Position, end: Position, block: u32) -> PathElement {
+        PathElement {
+            block: BlockRef { program: 0, block },
+            sequence: 0,
+            curve,
+            start,
+            end,
+            feed: FeedRate::Programmed(100.0),
+            override_law: OverrideLaw::Free,
+            constant_speed: false,
+            tangential_end: false,
+            dwell_s: 0.0,
+            placement: None,
+            functions: None,
+        }
+    }
+
+    /// A full circle of 50 mm in 31.4 s: chords keep within the tolerance and are no finer than that needs, and time
+    /// goes on evenly.
+    #[test]
+    fn arcs_become_chords() {
+        let arc = Arc {
+            plane: Plane::XY,
+            centre: [0.0, 0.0],
+            sweep_deg: 360.0,
+        };
+        let start = at(50.0, 0.0, -3.0);
+        let mut track = Track::default();
+        track.element(&element(Curve::Arc(arc), start, start, 4), 31.4);
+        let chords = track.points.len() - 1;
+        let sagitta = 50.0 * (1.0 - (std::f64::consts::PI / chords as f64).cos());
+        assert!(
+            (0.5 * FIRST_TOLERANCE_MM..=FIRST_TOLERANCE_MM).contains(&sagitta),
+            "{sagitta}"
+        );
+        for (k, point) in track.points.iter().enumerate() {
+            assert!((point.at[0].hypot(point.at[1]) - 50.0).abs() < 1e-9);
+            assert!((point.time_s - 31.4 * k as f64 / chords as f64).abs() < 1e-9);
+        }
+        assert_eq!(track.points.iter().filter(|point| point.is_end).count(), 1);
+    }
+
+    /// A million lines of 0.01 mm along a wave: few points are left, the wave stays within the tolerance that is said, and
+    /// the last point is the end.
+    #[test]
+    fn a_long_path_becomes_few_points() {
+        let wave = |k: u32| at(0.01 * f64::from(k), 5.0 * (f64::from(k) * 1e-3).sin(), 0.0);
+        let mut track = Track::default();
+        for k in 0..1_000_000 {
+            track.element(
+                &element(Curve::Line, wave(k), wave(k + 1), k / 100),
+                1e-3 * f64::from(k + 1),
+            );
+        }
+        assert!(track.points.len() <= MOST_POINTS, "{}", track.points.len());
+        assert!(
+            track.tolerance_mm() <= 2.0 * FIRST_TOLERANCE_MM,
+            "{}",
+            track.tolerance_mm()
+        );
+        let last = track.points.last().unwrap();
+        assert!((last.time_s - 1000.0).abs() < 1e-9 && (last.at[0] - 10_000.0).abs() < 1e-6);
+        for pair in track.points.windows(2) {
+            assert!(pair[1].time_s >= pair[0].time_s);
+            let middle = 0.5 * (pair[0].at[0] + pair[1].at[0]);
+            let y = 0.5 * (pair[0].at[1] + pair[1].at[1]);
+            assert!(
+                (y - 5.0 * (0.1 * middle).sin()).abs() <= track.tolerance_mm(),
+                "{middle}"
+            );
+        }
+    }
+
+    /// Where an axis has no position yet nothing is drawn, but time goes on; standing is one point, however often.
+    #[test]
+    fn standing_and_unknown_ways_are_points_in_time() {
+        let mut track = Track::default();
+        let mut only_z = Position::UNKNOWN;
+        only_z[Axis::Z] = 100.0;
+        track.element(&element(Curve::Line, Position::UNKNOWN, only_z, 1), 2.0);
+        track.element(
+            &element(Curve::Line, at(0.0, 0.0, 100.0), at(10.0, 0.0, 100.0), 2),
+            3.0,
+        );
+        for k in 0..5 {
+            let here = at(10.0, 0.0, 100.0);
+            track.element(&element(Curve::Hold, here, here, 3), 4.0 + f64::from(k));
+        }
+        let kinds: Vec<Kind> = track.points.iter().map(|point| point.kind).collect();
+        assert_eq!(kinds, [Kind::Hidden, Kind::Hidden, Kind::Feed, Kind::Hold]);
+        assert_eq!(track.points.last().unwrap().time_s, 8.0);
+        assert_eq!(track.bounds(), Some([[10.0, 0.0, 100.0], [10.0, 0.0, 100.0]]));
+    }
+
+    /// A feed of 0 never ends: the picture of the path goes on without a time.
+    #[test]
+    fn a_path_without_end_has_finite_times() {
+        let mut track = Track::default();
+        track.element(
+            &element(Curve::Line, at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), 1),
+            f64::INFINITY,
+        );
+        track.element(
+            &element(Curve::Line, at(1.0, 0.0, 0.0), at(2.0, 0.0, 0.0), 2),
+            f64::INFINITY,
+        );
+        assert!(track.points.iter().all(|point| point.time_s == 0.0));
+    }
 }

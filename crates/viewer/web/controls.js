@@ -59,8 +59,8 @@ function keys(view, onPick) {
   canvas.addEventListener('keydown', event => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-    if (arrow && event.shiftKey) camera.pan(-24 * arrow[0], -24 * arrow[1]);
-    else if (arrow) camera.rotate(-KEY_TURN * arrow[0], -KEY_TURN * arrow[1]);
+    if (arrow && event.shiftKey) camera.pan(24 * arrow[0], 24 * arrow[1]);
+    else if (arrow) camera.rotate(KEY_TURN * arrow[0], KEY_TURN * arrow[1]);
     else if (event.key === '+' || event.key === '=') camera.zoom(1.25);
     else if (event.key === '-') camera.zoom(0.8);
     else if (event.key === '0' || event.key === 'Home') camera.reset();

@@ -68,8 +68,8 @@ export class Lines {
     this.fill(this.sets.box, Float32Array.from(numbers));
   }
 
-  // `show`: which of path and box; lines behind the part are faint.
-  draw(camera, show, now, ratio) {
+  // `show`: which of path and box; lines behind the part are faint, or left out where that takes too long.
+  draw(camera, show, now, ratio, hasTime) {
     const { gl, shader: { program, at } } = this;
     gl.useProgram(program);
     gl.uniformMatrix4fv(at.camera, false, camera.matrix());
@@ -84,13 +84,14 @@ export class Lines {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.depthMask(false);
-    for (const [name, width, strength, behind] of [['box', 1, 0.55, 0.12], ['path', 1.5, 1, 0.16]]) {
+    for (const [name, width, strength, behind] of [['box', 1, 0.55, 0.12], ['path', 1.5, 0.85, 0.12]]) {
       if (!show[name]) continue;
       const set = this.sets[name];
       gl.bindVertexArray(set.array);
       gl.uniform1f(at.width, width * ratio);
       gl.uniform1f(at.bias, 0.6 * camera.mm / camera.far);
-      for (const [depth, share] of [[gl.LEQUAL, strength], [gl.GREATER, behind]]) {
+      for (const [depth, share] of [[gl.LEQUAL, strength], [gl.GREATER, hasTime ? behind : 0]]) {
+        if (share === 0) continue;
         gl.depthFunc(depth);
         gl.uniform1f(at.strength, share);
         gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, set.count);

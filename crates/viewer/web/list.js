@@ -16,7 +16,10 @@ export class BlockList {
     this.inner.className = 'rows';
     this.inner.style.height = `${rows.length * ROW}px`;
     box.addEventListener('scroll', () => this.draw());
-    new ResizeObserver(() => this.draw()).observe(box);
+    new ResizeObserver(() => {
+      this.reveal();
+      this.draw();
+    }).observe(box);
     box.addEventListener('click', event => {
       const row = event.target.closest('[data-row]');
       if (row) onChoose(Number(row.dataset.row));
@@ -43,11 +46,14 @@ export class BlockList {
   show(row) {
     if (row === this.current) return;
     this.current = row;
-    const top = row * ROW, { scrollTop, clientHeight } = this.box;
-    if (row >= 0 && (top < scrollTop + ROW || top > scrollTop + clientHeight - 2 * ROW)) {
-      this.box.scrollTop = top - clientHeight / 3;
-    }
+    this.reveal();
     this.draw();
+  }
+
+  reveal() {
+    const top = this.current * ROW, { scrollTop, clientHeight } = this.box;
+    if (this.current < 0 || (top >= scrollTop + ROW && top <= scrollTop + clientHeight - 2 * ROW)) return;
+    this.box.scrollTop = top - clientHeight / 3;
   }
 
   draw() {

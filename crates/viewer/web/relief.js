@@ -132,6 +132,7 @@ export class Relief {
     gl.uniform3fv(at.whole, this.size.map((value, k) => value * scale[k]));
     gl.uniform1i(at.colouring, colouring);
     gl.uniform1f(at.pixel, camera.mm / ratio);
+    gl.uniform1f(at.hatch, camera.mm);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 

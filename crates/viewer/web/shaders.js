@@ -25,12 +25,12 @@ uniform ivec2 cells;
 uniform vec3 scale;         // mm to cells and steps
 uniform vec3 clipMin, clipMax, whole;
 uniform int colouring;      // 0 material, 1 tool, 2 depth
-uniform float pixel;        // mm
+uniform float pixel, hatch;  // mm: a pixel of the picture, one of CSS
 
 const int TOP_LEVEL = 6;
 const float WHOLE = 65535.0;
 const vec3 SKIN = vec3(0.27, 0.34, 0.44);
-const vec3 CUT = vec3(0.72, 0.70, 0.66);
+const vec3 CUT = vec3(0.58, 0.565, 0.54);
 const vec3 SECTION = vec3(0.62, 0.24, 0.13);
 
 float height(ivec2 c) {
@@ -90,20 +90,45 @@ vec2 slope(ivec2 c) {
   return sum / max(count, vec2(1.0)) * scale.xy / scale.z;
 }
 
-// Which way a wall looks: away from where the material is around a place.
+// How far the material is behind a place, in cells along an axis: found by halving. 99 when there is no such border.
+int border(ivec2 at, ivec2 inward, float z) {
+  int air = -12, solid = 12;
+  if (height(at + inward * air) > z || height(at + inward * solid) <= z) return 99;
+  for (int k = 0; k < 5; k++) {
+    int middle = (air + solid) >> 1;
+    if (height(at + inward * middle) > z) solid = middle;
+    else air = middle;
+  }
+  return solid;
+}
+
+// Which way a wall looks. It has steps of whole cells; the line through its borders some cells away has not.
 vec3 wallNormal(vec2 at, float z) {
-  vec2 sum = vec2(0.0);
+  vec2 rough = vec2(0.0);
   ivec2 middle = ivec2(floor(at));
-  float soft = scale.z / scale.x;
-  for (int j = -3; j <= 3; j++) {
-    for (int i = -3; i <= 3; i++) {
+  for (int j = -2; j <= 2; j++) {
+    for (int i = -2; i <= 2; i++) {
       vec2 off = vec2(middle + ivec2(i, j)) + 0.5 - at;
-      float weight = max(0.0, 1.0 - dot(off, off) / 12.0);
-      float there = clamp((height(middle + ivec2(i, j)) - z) / soft + 0.5, 0.0, 1.0);
-      sum -= there * weight * off;
+      rough -= step(z, height(middle + ivec2(i, j)) - 0.5) * off;
     }
   }
-  return vec3(sum, 0.0);
+  bool first = abs(rough.x) > abs(rough.y);
+  int look = first ? (rough.x < 0.0 ? -1 : 1) : (rough.y < 0.0 ? -1 : 1);
+  ivec2 inward = first ? ivec2(-look, 0) : ivec2(0, -look), along = first ? ivec2(0, 1) : ivec2(1, 0);
+  int own = border(middle, inward, z);
+  float squares = 1.0, products = 0.0;
+  if (own < 99) {
+    for (int k = 1; k <= 3; k++) {
+      for (int s = -1; s <= 1; s += 2) {
+        int u = 4 * k * s, b = border(middle + along * u, inward, z) - own;
+        if (abs(b) > abs(u) * 3 / 2 + 1) continue;
+        squares += float(u * u);
+        products += float(u * b);
+      }
+    }
+  }
+  float lean = products / squares;
+  return vec3(first ? vec2(float(look), lean) : vec2(lean, float(look)), 0.0);
 }
 
 // How much of the sky is hidden by what stands around.
@@ -117,7 +142,7 @@ float hidden(vec3 p, vec3 n) {
     float sine = 0.0;
     for (int ring = 1; ring <= 4; ring++) {
       float distance = 1.5 * exp2(float(ring));
-      float rise = (highest(ivec2(floor(p.xy + direction * distance)), ring - 1) - p.z) * toMm;
+      float rise = (highest(ivec2(floor(p.xy + direction * distance)), max(ring - 2, 0)) - p.z) * toMm;
       sine = max(sine, rise * inversesqrt(rise * rise + distance * distance / (scale.x * scale.x)));
     }
     sum += weight * sine;
@@ -176,19 +201,25 @@ void main() {
     } else {
       ivec2 before = cell;
       before[axis] -= d[axis] > 0.0 ? 1 : -1;
+      if (height(before) > p.z) {
+        // At a corner of the cell the ray came from the other side.
+        before = cell;
+        axis = 1 - axis;
+        before[axis] -= d[axis] > 0.0 ? 1 : -1;
+      }
       float foot = height(before);
       vec3 flat_ = vec3(0.0);
       flat_[axis] = -sign(d[axis]);
       if ((h - foot) / scale.z * scale.x < 2.5) n = normalize(vec3(-slope(cell), 1.0));
       else {
-        n = wallNormal(p.xy, p.z) + flat_ * 1e-3;
-        n = dot(n, flat_) > 0.0 ? normalize(n) : flat_;
+        n = wallNormal(p.xy + flat_.xy * 1e-2, p.z);
+        n = dot(n, forward) < 0.0 ? normalize(n) : flat_;
       }
       base = surface(p.z, before, false);
     }
   }
   if (section) {
-    vec2 dots = corner * extent / pixel;
+    vec2 dots = corner * extent / hatch;
     base *= mod(dots.x + dots.y, 9.0) < 1.3 ? 0.72 : 1.0;
   }
 
@@ -198,7 +229,8 @@ void main() {
   if (lit > 0.0 && !section) {
     vec3 l = lamp * scale;
     l += vec3(lessThan(abs(l), vec3(1e-7))) * 1e-7;
-    vec3 start = p + n * vec3(1.2, 1.2, 0.6 * scale.z / scale.x);
+    // Far enough off that the steps of a slanting wall cast no shadows.
+    vec3 start = p + n * vec3(2.5, 2.5, 0.6 * scale.z / scale.x);
     vec3 rise = (mix(vec3(0.0), whole, step(vec3(0.0), l)) - start) / l;
     ivec2 other; int side;
     float limit = min(min(rise.x, rise.y), rise.z);
@@ -256,7 +288,7 @@ uniform float now, dash, width, strength, ahead;
 void main() {
   vec4 own = kind == 0 ? rapid : kind == 1 ? colours[tool] : box;
   if (kind == 0 && mod(way, 2.0 * dash) > 1.2 * dash) discard;
-  float soft = clamp((1.0 - abs(side)) * (width + 1.0) * 0.5 + 0.0, 0.0, 1.0);
+  float soft = clamp((1.0 - abs(side)) * (width + 1.0) * 0.5, 0.0, 1.0);
   float alpha = own.a * soft * strength * (kind < 2 && time > now ? ahead : 1.0);
   colour = vec4(own.rgb * alpha, alpha);
 }`;

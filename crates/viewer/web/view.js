@@ -31,6 +31,8 @@ export class PartView {
     this.toolAt = null;
     this.listeners = [];
     this.coarse = 1;
+    // The picture at rest is no coarser, however slow the graphics are.
+    this.floor = 0.5;
     this.frames = 0;
     this.blank = blank;
     this.build();
@@ -119,8 +121,13 @@ export class PartView {
 
   frame(time) {
     this.asked = null;
-    if (this.cost === undefined) this.calibrate();
-    const quiet = performance.now() - this.touched > REST || this.frames === 0;
+    if (this.cost === undefined) {
+      this.cost = null;
+      this.calibrate();
+    }
+    if (this.cost === null) return;
+    // A change that waited long for its picture is a change all the same.
+    const quiet = this.frames === 0 || !this.dirty && performance.now() - this.touched > REST;
     if (this.dirty && this.steady) this.judge(time - this.last);
     this.steady = this.dirty && !quiet;
     this.last = time;
@@ -132,19 +139,41 @@ export class PartView {
     if (!quiet) this.asked ??= requestAnimationFrame(next => this.frame(next));
   }
 
-  // How long a picture takes, by two of the very first: ms for a pixel. The first one compiles shaders.
-  calibrate() {
-    const { gl, canvas } = this;
-    const one = new Uint8Array(4);
-    for (const ratio of [0.1, 0.5]) {
+  // How long a picture takes, by a small one: ms for a pixel. One before it compiles the shaders.
+  async calibrate() {
+    const { canvas, show } = this;
+    let cost = 0;
+    // The path costs what it costs, however coarse the picture is.
+    this.show = { part: true };
+    canvas.style.visibility = 'hidden';
+    for (const ratio of [0.05, 0.3]) {
       this.fitCanvas(ratio);
       const start = performance.now();
       this.draw(ratio);
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, one);
-      this.cost = (performance.now() - start) / (canvas.width * canvas.height);
+      await this.drawnNow();
+      cost = (performance.now() - start) / (canvas.width * canvas.height);
     }
-    this.frames = 0;
+    this.cost = cost;
+    this.show = show;
     this.coarse = Math.min(1, Math.max(COARSEST, this.ratioFor(0.7 * FRAME) / devicePixelRatio));
+    this.frames = 0;
+    canvas.style.visibility = '';
+    this.changed();
+  }
+
+  // Resolves when the graphics card has drawn everything. It is not waited for with the page standing still.
+  drawnNow() {
+    const { gl } = this;
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    return new Promise(resolve => {
+      const look = () => {
+        if (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) return setTimeout(look, 1);
+        gl.deleteSync(fence);
+        resolve();
+      };
+      look();
+    });
   }
 
   // Pixels for a CSS pixel of a picture that takes so long.
@@ -170,7 +199,12 @@ export class PartView {
   finest() {
     const area = Math.max(1, this.canvas.clientWidth * this.canvas.clientHeight);
     const most = Math.min(Math.max(FINEST, devicePixelRatio), Math.sqrt(MOST_PIXELS / area));
-    return Math.min(most, Math.max(1, this.ratioFor(RESTING)));
+    return Math.min(most, Math.max(this.floor, this.ratioFor(RESTING)));
+  }
+
+  // Nothing is left to be drawn.
+  get settled() {
+    return this.cost > 0 && !this.dirty && !this.asked && this.drawn === this.finest();
   }
 
   fitCanvas(ratio) {
@@ -192,7 +226,7 @@ export class PartView {
     gl.depthFunc(gl.LEQUAL);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (this.relief && this.show.part) this.relief.draw(camera, this.clip, this.colouring, ratio);
-    this.lines.draw(camera, this.show, this.now, ratio);
+    this.lines.draw(camera, this.show, this.now, ratio, ratio >= Math.min(1, this.floor));
     if (this.show.tool && this.toolAt) this.tool.draw(camera, this.toolAt);
     this.drawn = ratio;
     this.frames++;

@@ -1,16 +1,16 @@
 //! `bahn plc xref`: where operands and labels are used.
 
-mod access;
+mod meaning;
 
 use std::collections::BTreeMap;
 
-use bahn_plc::{Label, LabelPlace, PlcProgram, SourceLine};
+use bahn_plc::{Access, Label, LabelPlace, PlcProgram, SourceLine, Subject, accesses};
 
 use super::options::XrefOptions;
 use super::source::Source;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console};
-use access::{Access, Subject, accesses, fixed_name, is_read_outside};
+use meaning::{fixed_name, is_read_outside};
 
 /// Prints the cross-reference of a program.
 pub(super) fn command(options: &XrefOptions) -> Result<Outcome, UsageError> {

@@ -149,11 +149,11 @@ pub(crate) fn print_error(error: &ErrorReport, run: &Interpreter, main: &Path) {
 
 fn print_report(report: &Report, options: &TestOptions, drawn: bool) -> Result<(), UsageError> {
     match options.format {
-        Format::Text => console::print(&report_text::render(
-            report,
-            options.model,
-            &report_text::written(&options.output, drawn),
-        )),
+        Format::Text => {
+            let mut written = report_text::written(&options.output, drawn);
+            written.extend(options.html.iter().map(|path| path.display().to_string()));
+            console::print(&report_text::render(report, options.model, &written))
+        }
         Format::Json => console::print_json(report),
     }
 }

@@ -22,8 +22,7 @@ mod test_run;
 use bahn_control::Mode;
 use bahn_dialogue::Key;
 
-use crate::console::Side;
-use crate::page::{Page, Turn};
+use crate::page::{Page, Side, Turn};
 use crate::site::Site;
 
 /// The page of a machine operating mode.

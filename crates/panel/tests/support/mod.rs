@@ -16,11 +16,17 @@ pub struct Trainee {
 impl Trainee {
     /// A machine that was never on.
     pub fn at(machine: &str) -> Trainee {
+        Trainee::with(machine, |_| {})
+    }
+
+    /// The same with a folder that something was done to.
+    pub fn with(machine: &str, what: impl FnOnce(&Path)) -> Trainee {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("bahn-panel-{}-{number}", std::process::id());
         let folder = std::env::temp_dir().join(name);
         copy(&machines().join(machine), &folder);
+        what(&folder);
         Trainee {
             station: on(&folder),
             folder,
@@ -35,6 +41,11 @@ impl Trainee {
             station: on(&folder),
             folder,
         }
+    }
+
+    /// His machine's folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// Presses keys, separated by blanks, a tenth of a second apart; they must be there.
@@ -129,7 +140,7 @@ impl Trainee {
         self.folder.join(name).exists()
     }
 
-    /// Somebody puts a file into his machine's folder.
+    /// Writes a file of his machine's folder.
     pub fn write(&self, name: &str, text: &str) {
         std::fs::write(self.folder.join(name), text).unwrap();
     }

@@ -40,28 +40,34 @@ impl Clock {
     /// A timer that is started counts its preset, in cycles, while T48+n is 1. A start in run k gives
     /// running in runs k+1 to k+N (inferred, the figure is lost) [000:11756-11772].
     fn run_timers(&mut self, image: &mut Image, parameters: &ParameterList) {
-        for (timer, count) in (0_u8..).zip(&mut self.timers) {
-            let n = u16::from(timer);
-            if set(image, BitArea::T, n) {
-                *count = parameters.timer_preset(timer);
-            } else {
-                *count = count.saturating_sub(1);
-            }
-            put(image, BitArea::T, 48 + n, *count > 0);
+        let (starts, running) = cells(image, BitArea::T, 2 * TIMERS).split_at_mut(TIMERS);
+        let timers = (0_u8..).zip(&mut self.timers).zip(starts).zip(running);
+        for (((timer, count), start), running) in timers {
+            *count = match start {
+                0 => count.saturating_sub(1),
+                _ => parameters.timer_preset(timer),
+            };
+            *running = u8::from(*count > 0);
         }
     }
 
     /// A counter that is set counts down by one in every cycle in which its release C96+n is 1; C48+n is 1
     /// until it has counted out (inferred, the figure is lost) [000:11824-11833].
     fn run_counters(&mut self, image: &mut Image, parameters: &ParameterList) {
-        for (counter, count) in (0_u8..).zip(&mut self.counters) {
-            let n = u16::from(counter);
-            if set(image, BitArea::C, n) {
+        let (sets, rest) = cells(image, BitArea::C, 96 + COUNTERS).split_at_mut(48);
+        let (running, releases) = rest.split_at_mut(48);
+        let counters = (0_u8..)
+            .zip(&mut self.counters)
+            .zip(sets)
+            .zip(running)
+            .zip(releases);
+        for ((((counter, count), set), running), release) in counters {
+            if *set != 0 {
                 *count = parameters.counter_preset(counter);
-            } else if set(image, BitArea::C, 96 + n) {
+            } else if *release != 0 {
                 *count = count.saturating_sub(1);
             }
-            put(image, BitArea::C, 48 + n, *count > 0);
+            *running = u8::from(*count > 0);
         }
     }
 
@@ -69,10 +75,17 @@ impl Clock {
     /// [000:11869-11892].
     fn evaluate_edges(&mut self, image: &mut Image) {
         let enabled = image.bit(signal::ENABLE_INPUT_EDGES);
+        if !enabled && !self.edges {
+            let now = cells(image, BitArea::I, BitArea::I.count().into());
+            for (before, now) in self.inputs.iter_mut().zip(now) {
+                *before = *now != 0;
+            }
+            return;
+        }
         for (n, before) in (0_u16..).zip(&mut self.inputs) {
             let now = set(image, BitArea::I, n);
             let has_marker = matches!(n, 0..=31 | 64..=126 | 128..=152);
-            if has_marker && (enabled || self.edges) {
+            if has_marker {
                 let edge = |range: bahn_exchange::BitRange| range.get(n);
                 if let (Some(rising), Some(falling)) =
                     (edge(signal::RISING_EDGES), edge(signal::FALLING_EDGES))
@@ -91,8 +104,11 @@ fn set(image: &Image, area: BitArea, number: u16) -> bool {
     Bit::new(area, number).is_some_and(|bit| image.bit(bit))
 }
 
-fn put(image: &mut Image, area: BitArea, number: u16, value: bool) {
-    if let Some(bit) = Bit::new(area, number) {
-        image.set_bit(bit, value);
-    }
+/// The first cells of an area.
+fn cells(image: &mut Image, area: BitArea, count: usize) -> &mut [u8] {
+    let start = usize::from(area.first_cell());
+    image
+        .cells_mut()
+        .get_mut(start..start + count)
+        .unwrap_or_default()
 }

@@ -7,6 +7,7 @@ use crate::speed_loop::{SpeedLoop, SpeedState};
 
 impl Axis {
     /// Whether the axis has a digital speed controller (MP1900) and wants the count of the motor's encoder.
+    #[inline]
     pub fn is_digital(&self) -> bool {
         self.speed_loop.is_some()
     }

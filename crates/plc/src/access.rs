@@ -1,12 +1,14 @@
 //! What instructions do with operands.
 
-use bahn_exchange::signal::{self, SignalOperand};
-use bahn_exchange::{Bit, BitArea, BitRange, Number};
-use bahn_plc::{BitOperand, NumberOperand, Op, TextOperand, Value};
+use bahn_exchange::{Bit, BitArea, Number};
+
+use crate::operand::{BitOperand, NumberOperand, TextOperand, Value};
+use crate::program::{Instruction, Op, PlcProgram};
 
 /// What an instruction does with an operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Access {
+pub enum Access {
+    /// Looks at it.
     Read,
     /// Sets it whatever the accumulator is.
     Assign,
@@ -16,17 +18,24 @@ pub(super) enum Access {
 
 /// An operand as a line names it; with `[X]` it may be any one of its memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Subject {
+#[allow(missing_docs, reason = "the variants say what their fields are")]
+pub enum Subject {
+    /// A marker, input, output, timer or counter.
     Bit { bit: Bit, indexed: bool },
+    /// A byte, word or doubleword.
     Number { number: Number, indexed: bool },
+    /// A string.
     Text { string: u8, indexed: bool },
 }
 
 /// A kind of memory with addresses of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Memory {
+pub enum Memory {
+    /// Bits of an area.
     Bits(BitArea),
+    /// What B, W and D share.
     Bytes,
+    /// Strings.
     Texts,
 }
 
@@ -65,6 +74,7 @@ impl Subject {
         memory == other_memory && own.start < others.end && others.start < own.end
     }
 
+    /// It is named with `[X]`.
     pub fn is_indexed(self) -> bool {
         let (Subject::Bit { indexed, .. } | Subject::Number { indexed, .. } | Subject::Text { indexed, .. }) =
             self;
@@ -122,7 +132,7 @@ impl From<NumberOperand> for Subject {
 }
 
 /// The operands of an instruction.
-pub(super) fn accesses(op: &Op) -> Vec<(Subject, Access)> {
+pub fn accesses(op: &Op) -> Vec<(Subject, Access)> {
     match op {
         Op::LoadBit { bit, .. } | Op::GateBit { bit, .. } | Op::PushBit { bit } => {
             vec![((*bit).into(), Access::Read)]
@@ -183,67 +193,18 @@ fn bits(first: BitOperand, count: u8, access: Access) -> Vec<(Subject, Access)> 
         .collect()
 }
 
-/// Whether control or machine read what a program writes to an operand: outputs, starts of timers and
-/// counters, markers with a fixed meaning, the bytes from PLC to NC [000:11556-11584][000:10534-10968]. Markers that only
-/// the TNC 355 has are read by nobody [000:16442-16500].
-pub(super) fn is_read_outside(subject: Subject) -> bool {
-    const PLC_TO_NC: std::ops::Range<u16> = 512..768;
-    match subject {
-        Subject::Bit { indexed: true, .. } | Subject::Number { indexed: true, .. } => true,
-        Subject::Bit { bit, .. } => match bit.area() {
-            BitArea::O | BitArea::T | BitArea::C => true,
-            BitArea::I => false,
-            BitArea::M => signal::all()
-                .iter()
-                .filter(|signal| signal.has_function())
-                .any(|signal| match signal.operand {
-                    SignalOperand::Bit(fixed) => fixed == bit,
-                    SignalOperand::Bits(range) => is_in(range, bit),
-                    SignalOperand::Number(_) | SignalOperand::Bytes(_) => false,
-                }),
-        },
-        Subject::Number { number, .. } => PLC_TO_NC.contains(&number.address()),
-        Subject::Text { .. } => false,
+impl PlcProgram {
+    /// Where an instruction stands, as `MAIN.PLC:42`.
+    pub fn place(&self, instruction: &Instruction) -> String {
+        let file = self.files.get(usize::from(instruction.file));
+        let name = file.map_or("", |file| file.name.as_str());
+        format!("{name}:{}", instruction.line)
     }
-}
-
-/// The name of an operand with a fixed meaning, or of the markers it belongs to.
-pub(super) fn fixed_name(subject: Subject) -> Option<&'static str> {
-    let named = signal::all()
-        .iter()
-        .find(|signal| match (subject, signal.operand) {
-            (Subject::Bit { bit, indexed: false }, SignalOperand::Bit(fixed)) => bit == fixed,
-            (Subject::Bit { bit, indexed: false }, SignalOperand::Bits(range)) => is_in(range, bit),
-            (
-                Subject::Number {
-                    number,
-                    indexed: false,
-                },
-                SignalOperand::Number(fixed),
-            ) => number == fixed,
-            _ => false,
-        });
-    named.map(|signal| signal.name)
-}
-
-/// Whether a marker belongs to a range with a meaning; that of the retained markers has none.
-fn is_in(range: BitRange, bit: Bit) -> bool {
-    range != signal::RETAINED_MARKERS && range.iter().any(|fixed| fixed == bit)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// M2510 had a function on the TNC 355 only; M2452 is read with M2719 = 0, M2657 has another function here.
-    #[test]
-    fn markers_of_the_tnc_355_are_read_where_they_act() {
-        let read = |text: &str| {
-            let bit = text.parse().unwrap();
-            is_read_outside(Subject::Bit { bit, indexed: false })
-        };
-        assert_eq!(["M2510", "M2452", "M2657"].map(read), [false, true, true]);
-    }
 
     #[test]
     fn operands_meet_where_they_share_memory() {

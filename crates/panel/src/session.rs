@@ -1,0 +1,153 @@
+//! A session as a file: every input with its time, so that it can be seen again.
+//!
+//! ```text
+//! {"session":1,"machine":"Mill, TNC 415 B","model":"tnc415b","version":"0.1.0","kept":"5d0c43f1"}
+//! {"t_us":1860000,"input":{"key":"CE"}}
+//! {"t_us":93000000,"end":{"inputs":1,"screen":"91ad03b2","check":"0a7be33c"}}
+//! ```
+//!
+//! A line is in the file as soon as the input is taken, whatever happens to the station then: a file without its last
+//! line, or with a torn one, is a session that was cut off.
+
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use bahn_control::Control;
+use bahn_host::{LoadedMachine, files};
+use crc32fast::Hasher;
+use serde::{Deserialize, Serialize};
+
+use crate::input::{Input, InputText};
+use crate::screen::Screen;
+
+/// The form of the file.
+pub(crate) const FORM: u32 = 1;
+
+/// What a session began with.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Head {
+    /// The form of the file.
+    pub session: u32,
+    /// Name of the machine.
+    pub machine: String,
+    /// Model of the control.
+    pub model: String,
+    /// Version of Bahn.
+    pub version: String,
+    /// Check sum of what the control had kept.
+    pub kept: String,
+}
+
+impl Head {
+    /// Of a machine as it is now.
+    pub(crate) fn of(machine: &LoadedMachine, control: &Control) -> Head {
+        Head {
+            session: FORM,
+            machine: machine.folder.name.clone(),
+            model: control.model().id().to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            kept: sum(format!("{:?}", control.remember()).as_bytes()),
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct InputLine {
+    pub t_us: u64,
+    pub input: InputText,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EndLine {
+    pub t_us: u64,
+    pub end: End,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct End {
+    pub inputs: u64,
+    /// Of the last screen.
+    pub screen: String,
+    /// Of all lines before.
+    pub check: String,
+}
+
+/// Writes a session. [`crate::Station::record`] makes one.
+pub struct Recorder {
+    file: File,
+    path: PathBuf,
+    inputs: u64,
+    check: Hasher,
+}
+
+impl Recorder {
+    /// Begins a file; one that is there stays as it is.
+    ///
+    /// # Errors
+    /// In words, when it is there already or cannot be written.
+    pub fn create(path: &Path, head: &Head) -> Result<Recorder, String> {
+        let file = OpenOptions::new().append(true).create_new(true).open(path);
+        let mut recorder = Recorder {
+            file: file.map_err(|error| files::cannot("write", path, &error).to_string())?,
+            path: path.to_owned(),
+            inputs: 0,
+            check: Hasher::new(),
+        };
+        recorder.write(head)?;
+        files::sync_folder(path);
+        Ok(recorder)
+    }
+
+    /// Notes an input before the cycle of this time.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn note(&mut self, t_us: u64, input: &Input) -> Result<(), String> {
+        self.inputs += 1;
+        self.write(&InputLine {
+            t_us,
+            input: input.into(),
+        })
+    }
+
+    /// Ends the session with the screen as it is.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn finish(mut self, t_us: u64, screen: &Screen) -> Result<(), String> {
+        let end = End {
+            inputs: self.inputs,
+            screen: screen_sum(screen),
+            check: format!("{:08x}", self.check.clone().finalize()),
+        };
+        self.write(&EndLine { t_us, end })?;
+        let synced = self.file.sync_all();
+        synced.map_err(|error| files::cannot("write", &self.path, &error).to_string())
+    }
+
+    fn write(&mut self, line: &impl Serialize) -> Result<(), String> {
+        let mut text = serde_json::to_vec(line).map_err(|error| error.to_string())?;
+        text.push(b'\n');
+        self.check.update(&text);
+        let written = self.file.write_all(&text);
+        written.map_err(|error| files::cannot("write", &self.path, &error).to_string())
+    }
+}
+
+/// Check sum of what is to be seen. How many screens there were before depends on who looked.
+pub(crate) fn screen_sum(screen: &Screen) -> String {
+    let seen = Screen {
+        serial: 0,
+        ..screen.clone()
+    };
+    serde_json::to_vec(&seen).map_or_else(|_| String::new(), |text| sum(&text))
+}
+
+fn sum(bytes: &[u8]) -> String {
+    format!("{:08x}", crc32fast::hash(bytes))
+}

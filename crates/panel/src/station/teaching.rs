@@ -1,0 +1,135 @@
+//! What a station has for teachers and for those who look back: sessions, the time line, why, the drawer, lessons.
+
+use std::path::Path;
+
+use bahn_host::{Clock, Host, LoadedMachine};
+
+use super::Station;
+use crate::drawer::{self, Breakable};
+use crate::input::{Input, Refusal};
+use crate::lesson::{self, Driven, LessonRun};
+use crate::session::{Head, Recorder};
+use crate::texts::Language;
+use crate::why::Reason;
+
+impl Driven for Station {
+    fn machine(&self) -> &LoadedMachine {
+        &self.machine
+    }
+
+    fn host(&mut self) -> &mut Host {
+        &mut self.host
+    }
+
+    fn cycle(&mut self) -> Result<(), String> {
+        Station::cycle(self).map_err(|error| error.to_string())
+    }
+}
+
+impl Station {
+    /// Goes to a moment since power-on, s, and stands there; what is done then leads another way, and what was later is
+    /// kept as a branch.
+    ///
+    /// # Errors
+    /// When the moment is forgotten.
+    pub fn go_to(&mut self, time_s: f64) -> Result<(), Refusal> {
+        self.input(&Input::GoTo(time_s, None))
+    }
+
+    pub(super) fn go_to_in(&mut self, time_s: f64, branch: Option<u32>) -> Result<(), Refusal> {
+        // A number that is none is the beginning.
+        let time_us = (time_s.max(0.0) * 1e6).round() as u64;
+        let gone = self.past.go_to(&mut self.host, &mut self.lesson, time_us, branch);
+        gone.map_err(Refusal)?;
+        self.paused = true;
+        self.is_on = !self.host.control().is_off();
+        self.console.machine_is_elsewhere(self.host.control().mode());
+        if self.is_on {
+            // The page finds what it shows.
+            let (console, mut site) = self.parts();
+            console.tick(&mut site);
+        }
+        self.waits.forget();
+        Ok(())
+    }
+
+    /// Keeps every input from now on in a file.
+    ///
+    /// # Errors
+    /// In words, when the file is there already or cannot be written.
+    pub fn record(&mut self, path: &Path) -> Result<(), String> {
+        let head = Head::of(&self.machine, self.host.control());
+        self.recorder = Some(Recorder::create(path, &head)?);
+        Ok(())
+    }
+
+    /// Ends the file that is recorded.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn end_recording(&mut self) -> Result<(), String> {
+        let Some(recorder) = self.recorder.take() else {
+            return Ok(());
+        };
+        let now_us = self.host.control().time_us();
+        recorder.finish(now_us, self.screen())
+    }
+
+    /// What the machine waits for, in the language of the dialogue, what is most urgent first.
+    pub fn why(&self) -> Vec<Reason> {
+        self.waits.reasons(&self.host, &self.machine, self.language())
+    }
+
+    /// Everything that a teacher can break, and how.
+    pub fn drawer(&self) -> Vec<Breakable> {
+        drawer::of(&self.machine, self.language())
+    }
+
+    /// The lessons of the machine's folder: names and titles.
+    ///
+    /// # Errors
+    /// File, line and fault of one that cannot be read.
+    pub fn lessons(&self) -> Result<Vec<(String, String)>, String> {
+        lesson::list(&self.machine, self.language())
+    }
+
+    /// The lesson that goes on.
+    pub fn lesson(&self) -> Option<&LessonRun> {
+        self.lesson.as_ref()
+    }
+
+    /// Begins a lesson, as fast as the machine gets ready for it, or ends the one that goes on.
+    pub(super) fn begin_lesson(&mut self, name: Option<&str>) -> Result<(), Refusal> {
+        self.lesson = None;
+        let Some(name) = name else {
+            return Ok(());
+        };
+        self.host.set_clock(Clock::Free);
+        let begun = lesson::begin(self, name);
+        self.host.set_clock(self.clock());
+        self.lesson = Some(begun.map_err(Refusal)?);
+        Ok(())
+    }
+
+    pub(super) fn hand_in(&mut self) {
+        if let Some(mut lesson) = self.lesson.take() {
+            let screen = self.screen().clone();
+            lesson.hand_in(&mut self.host, &screen);
+            self.lesson = Some(lesson);
+        }
+    }
+
+    /// The lesson looks at what a cycle has changed.
+    pub(super) fn follow_lesson(&mut self) {
+        if let Some(mut lesson) = self.lesson.take() {
+            let screen = lesson.wants_screen(&self.host).then(|| self.screen().clone());
+            lesson.follow(&mut self.host, screen.as_ref());
+            self.lesson = Some(lesson);
+        }
+    }
+
+    pub(crate) fn language(&self) -> Language {
+        let english = self.machine.parameters.operation_parameters().english;
+        self.settings.language(english)
+    }
+}

@@ -1,0 +1,22 @@
+//! What all requests share.
+
+use std::sync::{Arc, Mutex};
+
+use bahn_panel::Link;
+use tokio::sync::{Semaphore, watch};
+
+use crate::about::About;
+use crate::access::Access;
+use crate::crew::Crew;
+use crate::regions::Regions;
+
+/// What all requests share.
+#[derive(Clone)]
+pub(crate) struct Shared {
+    pub link: Link,
+    pub about: Arc<About>,
+    pub regions: watch::Receiver<Arc<Regions>>,
+    pub crew: Arc<Mutex<Crew>>,
+    pub viewers: Arc<Semaphore>,
+    pub access: Arc<Access>,
+}
