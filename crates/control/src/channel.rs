@@ -621,9 +621,8 @@ impl Channel {
             Command::Probe(command) => self.desk.is_by_hand() && self.probe_menu(command, machine),
             Command::Mode(mode) => {
                 self.touch.leave();
-                let progress = self.run.progress();
                 let mut axes = machine.axes.of(self.number);
-                self.desk.choose_mode(mode, progress, &mut axes)
+                self.desk.choose_mode(mode, self.run.progress(), &mut axes)
             }
             Command::Output(feed) => self.desk.manual.set_step(feed, &machine.axes.of(self.number)),
             Command::WorkingPlane(on) => {
@@ -633,11 +632,16 @@ impl Channel {
                 self.desk.switch_plane(on, list, &axes, chain)
             }
             Command::MFunction(_) | Command::Speed(_) | Command::JogIncrement(_) | Command::Handwheel(..) => {
-                let axes = machine.axes.of(self.number);
-                self.desk.enter(&command, &axes)
+                self.desk.enter(&command, &machine.axes.of(self.number))
             }
             Command::Datum(axis, value) => self.set_datum(axis, value, machine),
-            Command::AxisLimit(axis, range, limits) => self.limit_axis(axis, range, limits, machine),
+            Command::AxisLimit(axis, range, limits) if !self.run.is_active() => {
+                let done = self
+                    .datums
+                    .set_limit(axis, range, limits, &mut machine.axes.of(self.number));
+                machine.unsaved |= done;
+                done
+            }
             Command::Code(code) => {
                 machine.offsets.shown |= desk::enter_code(code, machine.memory.of_mut(self.number));
                 machine.oscilloscope.enter_code(code, machine.link.list().model())
@@ -661,14 +665,6 @@ impl Channel {
                 run_command::execute(command, &rules, run, &mut site, &basis)
             }),
         }
-    }
-
-    /// AXIS LIMIT, while no program runs.
-    fn limit_axis(&mut self, axis: Axis, range: u8, to: Option<[f64; 2]>, machine: &mut MachineSide) -> bool {
-        let axes = &mut machine.axes.of(self.number);
-        let done = !self.run.is_active() && self.datums.set_limit(axis, range, to, axes);
-        machine.unsaved |= done;
-        done
     }
 
     /// DATUM SET: the actual position becomes a value.

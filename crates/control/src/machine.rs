@@ -26,7 +26,7 @@ use crate::per_channel::PerChannel;
 use crate::plc_link::PlcLink;
 use crate::spindle::SpindleUnit;
 use crate::status;
-use crate::tables::LoadedTables;
+use crate::tables::{self, LoadedTables};
 use crate::upkeep::{self, BufferBattery, DriveOffsets};
 use crate::window::Window;
 
@@ -165,8 +165,8 @@ impl MachineSide {
             TableKind::Datum => self.loaded_datums.take(&self.link, line, element, value),
             _ => self.loaded_tables.take(kind, line, element, value),
         }
-        if kind == TableKind::Pocket {
-            self.magazine.take_pocket(line, element, value);
+        if kind == TableKind::Pocket && element == tables::T {
+            self.magazine.take_pocket(line, value);
         }
         self.unsaved = true;
         true

@@ -62,8 +62,8 @@ impl Magazine {
     }
 
     /// The file of the pocket table has the tools where they are now, but in one pocket.
-    pub fn take_pocket(&mut self, pocket: i32, element: usize, tool: f64) {
-        let (Ok(pocket), true) = (u16::try_from(pocket), element == crate::tables::T) else {
+    pub fn take_pocket(&mut self, pocket: i32, tool: f64) {
+        let Ok(pocket) = u16::try_from(pocket) else {
             return;
         };
         let tools = self.table.iter().flatten();

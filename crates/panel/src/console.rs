@@ -5,22 +5,13 @@ use bahn_control::{Command, Mode};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
-use crate::page::{Page, Turn, View};
+use crate::page::{Page, Side, Turn, View};
 use crate::pages;
 use crate::screen::{Heading, SoftKeys};
 use crate::site::Site;
 
 /// Messages of the panel itself that are kept at most.
 const NOTES: usize = 8;
-
-/// The two sides of the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
-    /// The machine operating mode.
-    Machine,
-    /// PROGRAMMING AND EDITING or TEST RUN.
-    Programming,
-}
 
 /// Modes of the programming side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,7 +155,10 @@ impl Console {
         }
         // MOD and HELP are there wherever the page itself does not take them.
         let turn = match turn {
-            Turn::Refused => pages::everywhere(key, self.front(), site),
+            Turn::Refused => {
+                let note = self.notes.last().map(String::as_str);
+                pages::everywhere(key, self.front(), note, site)
+            }
             turn => turn,
         };
         self.went(turn, site);

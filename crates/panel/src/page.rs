@@ -5,6 +5,15 @@ use bahn_dialogue::Key;
 use crate::screen::{Dialogue, SoftKeys, Window};
 use crate::site::Site;
 
+/// The two sides of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// The machine operating mode.
+    Machine,
+    /// PROGRAMMING AND EDITING or TEST RUN.
+    Programming,
+}
+
 /// What came of a key.
 pub(crate) enum Turn {
     /// It was taken.

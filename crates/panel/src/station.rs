@@ -13,10 +13,11 @@ use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
 
-use crate::console::{Console, Side};
+use crate::console::Console;
 use crate::inhibit;
 use crate::input::{Input, Refusal};
 use crate::lesson::LessonRun;
+use crate::page::Side;
 use crate::programs::ProgramMemory;
 use crate::screen::{MachineState, MessageLine, PlcLine, Screen};
 use crate::session::Recorder;

@@ -10,6 +10,8 @@ pub use bahn_dialogue::Tongue as Language;
 
 const GERMAN: &[&str] = &[
     include_str!("../texts/de.tsv"),
+    include_str!("../texts/messages-de.tsv"),
+    include_str!("../texts/causes-de.tsv"),
     include_str!("../texts/de-teaching.tsv"),
 ];
 
@@ -35,7 +37,29 @@ pub(crate) fn words(language: Language, english: &'static str) -> &'static str {
 
 /// A text that is known at run time only: messages, names of cycles.
 pub(crate) fn translate(language: Language, english: &str) -> String {
-    find(language, english).unwrap_or(english).to_owned()
+    match find(language, english) {
+        Some(text) => text.to_owned(),
+        None => of_axis(language, english).unwrap_or_else(|| english.to_owned()),
+    }
+}
+
+/// A message with the letter of an axis in place of a #, and with a code behind it.
+fn of_axis(language: Language, english: &str) -> Option<String> {
+    if language == Language::English {
+        return None;
+    }
+    let words: Vec<&str> = english.split(' ').collect();
+    let lettered = (0..words.len()).find_map(|place| {
+        let mut around = words.clone();
+        let letter = std::mem::replace(around.get_mut(place)?, "#");
+        // The sign of a direction stands behind the letter.
+        Some(find(language, &around.join(" "))?.replace('#', letter))
+    });
+    lettered.or_else(|| {
+        let (before, code) = english.rsplit_once(' ')?;
+        let text = find(language, before).map(str::to_owned);
+        Some(format!("{} {code}", text.or_else(|| of_axis(language, before))?))
+    })
 }
 
 fn find(language: Language, english: &str) -> Option<&'static str> {
@@ -77,6 +101,28 @@ mod tests {
             }
         }
         found
+    }
+
+    #[test]
+    fn every_message_of_the_control_is_translated() {
+        use bahn_parameters::{ControlModel, MessageId};
+        for model in ControlModel::ALL {
+            for id in MessageId::ALL {
+                for text in [id.text(model), id.cause(), id.remedy()] {
+                    assert!(find(Language::German, text).is_some(), "{text}");
+                }
+            }
+        }
+        for (english, german) in [
+            ("LIMIT SWITCH X+", "ENDSCHALTER X+"),
+            ("MEASURING SYSTEM Z DEFECTIVE A", "MESS-SYSTEM Z DEFEKT A"),
+            ("GROSS POSITIONING ERROR X A", "GROBER POSITIONIERFEHLER X A"),
+            ("ERROR IN PLC-PROGRAM 1Q", "FEHLER IM PLC-PROGRAMM 1Q"),
+            ("Coolant is low", "Coolant is low"),
+        ] {
+            assert_eq!(translate(Language::German, english), german);
+            assert_eq!(translate(Language::English, english), english);
+        }
     }
 
     #[test]

@@ -235,3 +235,21 @@ fn a_datum_table_is_made_and_filled() {
     trainee.press("SK2 SK6 ENT");
     assert_eq!(trainee.screen().program.total, 1);
 }
+
+/// What is done to the program that is edited counts for its editor, too.
+#[test]
+fn a_program_that_is_protected_is_not_edited() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM PGM_NR 9 ENT ENT");
+    trainee.press("STOP END");
+    assert!(trainee.file("programs/9.H").contains("STOP"));
+    trainee.press("PGM_NR");
+    highlight(&mut trainee, "9");
+    trainee.press("SK5 END");
+    let before = trainee.file("programs/9.H");
+    assert!(before.contains("BEGIN PGM 9 MM P"));
+    trainee.press("STOP");
+    assert_eq!(trainee.messages(), ["PROTECTED PGM"]);
+    assert_eq!(trainee.file("programs/9.H"), before);
+}

@@ -59,7 +59,7 @@ impl LoadedMachine {
     /// # Errors
     /// When there is no such folder or no `machine.toml` in it.
     pub fn load(root: &Path) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
-        load(root, None)
+        load(root, &Instead::default())
     }
 
     /// The same with another tool table of the folder than that of `machine.toml`: a control has several of them, of which
@@ -71,7 +71,28 @@ impl LoadedMachine {
         root: &Path,
         tools: &str,
     ) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
-        load(root, Some(tools))
+        let instead = Instead {
+            tools: Some(tools),
+            ..Instead::default()
+        };
+        load(root, &instead)
+    }
+
+    /// The same with other bytes in one of the files that `machine.toml` names: whether the machine can be switched on when
+    /// they are written.
+    ///
+    /// # Errors
+    /// As [`LoadedMachine::load`].
+    pub fn load_with_file(
+        root: &Path,
+        name: &str,
+        bytes: &[u8],
+    ) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+        let instead = Instead {
+            file: Some((name, bytes)),
+            ..Instead::default()
+        };
+        load(root, &instead)
     }
 
     /// The files that were read, and the lock of the state.
@@ -133,7 +154,7 @@ impl LoadedMachine {
 }
 
 /// See [`LoadedMachine::load`].
-fn load(root: &Path, tools: Option<&str>) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
+fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<FileFault>>, HostError> {
     let file = root.join(MachineFolder::FILE);
     let bytes = files::read_description(&file).map_err(|error| {
         HostError::new(format!(
@@ -143,11 +164,12 @@ fn load(root: &Path, tools: Option<&str>) -> Result<Result<LoadedMachine, Vec<Fi
     })?;
     let text = decode(&bytes);
     let (mut folder, faults) = MachineFolder::read(&text);
-    if let Some(tools) = tools {
+    if let Some(tools) = instead.tools {
         folder.tools = Some(tools.to_owned());
     }
     let mut loader = Loader {
         root,
+        file: instead.file,
         faults: Vec::new(),
         warnings: Vec::new(),
         description: (file.clone(), text),
@@ -170,8 +192,19 @@ fn load(root: &Path, tools: Option<&str>) -> Result<Result<LoadedMachine, Vec<Fi
     })
 }
 
+/// What is taken in place of what the folder says.
+#[derive(Default)]
+struct Instead<'a> {
+    /// The tool table.
+    tools: Option<&'a str>,
+    /// The bytes of a file.
+    file: Option<(&'a str, &'a [u8])>,
+}
+
 pub(super) struct Loader<'a> {
     pub root: &'a Path,
+    /// The bytes of a file that are taken in place of its own.
+    file: Option<(&'a str, &'a [u8])>,
     pub faults: Vec<FileFault>,
     pub warnings: Vec<FileFault>,
     /// `machine.toml`: its path and text.
@@ -281,6 +314,9 @@ impl Loader<'_> {
             return None;
         }
         let path = self.root.join(name);
+        if let Some((_, bytes)) = self.file.filter(|(own, _)| *own == name) {
+            return Some((path, bytes.to_vec()));
+        }
         match reading(&path) {
             Ok(bytes) => Some((path, bytes)),
             Err(error) => {

@@ -139,6 +139,14 @@ impl Page for Name {
         Turn::Done
     }
 
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        vec![vec!["ENT".to_owned(), site.words("END")]]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        self.key(if place == 0 { Key::Ent } else { Key::End }, site)
+    }
+
     fn text(&mut self, text: &str, _site: &mut Site) -> Turn {
         let fits = text.is_ascii() && text.len() <= self.longest && !text.contains(char::is_control);
         match fits {

@@ -39,14 +39,13 @@ pub(crate) fn open(site: &Site) -> Turn {
     }
 }
 
-/// Where the value of a point stands in its line: the second of two words, before a comment.
+/// Where the value of a point stands in its line: the second of two words.
 fn value_at(line: &str) -> Option<std::ops::Range<usize>> {
-    let content = line.split(';').next()?;
-    let mut words = content.split_whitespace();
+    let mut words = line.split_whitespace();
     let (point, value) = (words.next()?, words.next()?);
     let is_point = words.next().is_none() && point.parse::<u32>().is_ok() && value.parse::<f64>().is_ok();
-    let start = content.find(point)? + point.len();
-    let start = start + content.get(start..)?.find(value)?;
+    let start = line.find(point)? + point.len();
+    let start = start + line.get(start..)?.find(value)?;
     is_point.then_some(start..start + value.len())
 }
 

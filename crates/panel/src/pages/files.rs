@@ -122,7 +122,7 @@ impl Directory {
         let Some(old) = self.name() else {
             return Turn::Refused;
         };
-        if runs(&old, site) {
+        if is_needed(&old, site) {
             return in_use(site);
         }
         let prompt = format!("{} {}", site.words("NEW FILE NAME ="), ending(&old));
@@ -216,13 +216,13 @@ fn erase(name: String, site: &mut Site) -> Turn {
     if !site.programs.has(&name) {
         return Turn::Say(site.message(MessageId::ProgramNotFound));
     }
-    if runs(&name, site) {
+    if is_needed(&name, site) {
         return in_use(site);
     }
     let prompt = format!("{name}: {}", site.words("ERASE = ENT / END = NO ENT"));
     Turn::Open(Choice::confirm(prompt, site.words("ERASE"), move |site| {
         // It may have been started meanwhile.
-        if runs(&name, site) {
+        if is_needed(&name, site) {
             return in_use(site);
         }
         let erased = match table::is_protected(&name, site) {
@@ -241,6 +241,13 @@ fn unprotect(name: &str, site: &mut Site) -> Turn {
         Ok(()) => Turn::Done,
         Err(denial) => Turn::Say(said(denial, site)),
     }
+}
+
+/// A program runs, or the machine is not switched on again without the file.
+fn is_needed(name: &str, site: &Site) -> bool {
+    let folder = &site.machine.folder;
+    let mut named = [&folder.datum_table, &folder.pallets].into_iter().flatten();
+    runs(name, site) || named.any(|own| own.eq_ignore_ascii_case(name))
 }
 
 /// A program run, interrupted or not, has the file.

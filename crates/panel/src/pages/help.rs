@@ -8,6 +8,7 @@ use crate::page::{Page, Turn, View, first_in_sight};
 use crate::pages::menu::{Item, Items, Menu};
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
+use crate::texts;
 
 /// Ending of help files [000:6842].
 const ENDING: &str = ".HLP";
@@ -18,16 +19,21 @@ const NO_NUMBER: i32 = -2;
 const WIDTH: usize = 72;
 
 /// The key HELP: the message that is shown, else the help files.
-pub(crate) fn key(site: &mut Site) -> Turn {
+pub(crate) fn key(note: Option<&str>, site: &mut Site) -> Turn {
+    let language = site.language();
     let model = site.control().model();
-    let shown = site.control().shown().last();
-    let found = shown.map(|shown| (site.control().shown_text(shown), id_of(&shown.message)));
-    let Some((text, id)) = found else {
+    let of_control = || {
+        let shown = site.control().shown().last()?;
+        let text = texts::translate(language, &site.control().shown_text(shown));
+        Some((text, id_of(&shown.message)))
+    };
+    let Some((text, id)) = note.map(|note| (note.to_owned(), None)).or_else(of_control) else {
         return files(site);
     };
     // Messages of axes have a letter where their text has a #.
     let begins = |id: &&MessageId| {
-        let fixed = id.text(model).split('#').next().unwrap_or_default();
+        let own = texts::translate(language, id.text(model));
+        let fixed = own.split('#').next().unwrap_or_default();
         !fixed.is_empty() && text.starts_with(fixed)
     };
     match id.or_else(|| MessageId::ALL.iter().find(begins).copied()) {
@@ -180,7 +186,7 @@ impl Explanation {
             (site.words("CURE:"), id.remedy()),
         ] {
             lines.push(heading);
-            lines.extend(wrapped(&crate::texts::translate(site.language(), words)));
+            lines.extend(wrapped(&texts::translate(site.language(), words)));
         }
         Explanation {
             title: text.to_owned(),

@@ -24,7 +24,7 @@ pub(crate) struct Mdi {
 impl Mdi {
     fn editor(&mut self, site: &Site) -> &mut Editor {
         self.editor.get_or_insert_with(|| {
-            let mut setting = Setting::of(&site.machine.parameters);
+            let mut setting = Setting::of(site.parameters());
             setting.tongue = site.language();
             Editor::new(Arc::new(Program::from_bytes("$MDI", EMPTY.to_vec())), setting)
         })

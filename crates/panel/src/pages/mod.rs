@@ -22,8 +22,7 @@ mod test_run;
 use bahn_control::Mode;
 use bahn_dialogue::Key;
 
-use crate::console::Side;
-use crate::page::{Page, Turn};
+use crate::page::{Page, Side, Turn};
 use crate::site::Site;
 
 /// The page of a machine operating mode.
@@ -40,11 +39,11 @@ pub(crate) fn editing(site: &mut Site) -> Box<dyn Page> {
     Box::new(programming::Programming::new(site))
 }
 
-/// What a key opens wherever nothing else takes it.
-pub(crate) fn everywhere(key: Key, side: Side, site: &mut Site) -> Turn {
+/// What a key opens wherever nothing else takes it; HELP explains the note of the panel before messages of the control.
+pub(crate) fn everywhere(key: Key, side: Side, note: Option<&str>, site: &mut Site) -> Turn {
     match key {
         Key::Mod => Turn::Open(supplementary::menu(side)),
-        Key::Help => help::key(site),
+        Key::Help => help::key(note, site),
         _ => Turn::Refused,
     }
 }

@@ -52,6 +52,14 @@ impl Page for Number {
         }
     }
 
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        vec![vec!["ENT".to_owned(), site.words("END")]]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        self.key(if place == 0 { Key::Ent } else { Key::End }, site)
+    }
+
     fn show(&self, _site: &Site, _lines: usize) -> View {
         View {
             window: None,

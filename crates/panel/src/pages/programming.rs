@@ -19,6 +19,8 @@ pub(crate) struct Programming {
 struct Open {
     name: String,
     editor: Editor,
+    /// The program memory as this editor knows it.
+    version: u64,
 }
 
 impl Programming {
@@ -35,12 +37,13 @@ impl Programming {
 
     /// What has changed is on the medium before the next key.
     fn keep(&mut self, changed: bool, site: &mut Site) -> Option<String> {
-        let open = self.open.as_ref()?;
+        let open = self.open.as_mut()?;
         site.settings.draft = open.editor.draft().map(|draft| Value::from(draft.to_string()));
         let stored = match changed {
             true => site.programs.write(&open.name, &open.editor.program().to_bytes()),
             false => Ok(()),
         };
+        open.version = site.programs.version();
         stored.err()
     }
 
@@ -62,12 +65,20 @@ impl Programming {
 impl Open {
     fn of(name: String, site: &Site) -> Option<Open> {
         let program = site.programs.read(&name)?;
-        let mut setting = Setting::of(&site.machine.parameters);
+        let mut setting = Setting::of(site.parameters());
         setting.tongue = site.language();
         Some(Open {
             name,
             editor: Editor::new(program, setting),
+            version: site.programs.version(),
         })
+    }
+
+    /// The file is another one than is edited: it was protected, or written elsewhere.
+    fn is_stale(&mut self, site: &Site) -> bool {
+        let version = std::mem::replace(&mut self.version, site.programs.version());
+        let own = || Some(self.editor.program().to_bytes());
+        version != self.version && site.programs.read(&self.name).map(|program| program.to_bytes()) != own()
     }
 
     /// The machine runs this program.
@@ -112,6 +123,9 @@ impl Page for Programming {
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {
+        if self.open.as_mut().is_some_and(|open| open.is_stale(site)) {
+            *self = Programming::new(site);
+        }
         let open = self.open.as_ref().map(|open| open.name.as_str());
         if open != site.settings.edited.as_deref() {
             site.settings.draft = None;

@@ -10,6 +10,7 @@ use crate::page::{Page, Turn, View, first_in_sight};
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::number::Number;
 use crate::pages::q_parameters::QParameters;
+use crate::pages::table;
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 
@@ -64,6 +65,7 @@ impl Page for ProgramRun {
                 String::new(),
                 String::new(),
                 "Q".to_owned(),
+                tool_table(site),
             ],
             RunState::Running => Vec::new(),
             _ => vec![
@@ -71,6 +73,7 @@ impl Page for ProgramRun {
                 site.words("RESTORE POSITION"),
                 site.words("INTERNAL STOP"),
                 "Q".to_owned(),
+                tool_table(site),
             ],
         };
         vec![keys]
@@ -87,6 +90,7 @@ impl Page for ProgramRun {
                 ));
             }
             (_, 3) => return q_parameters(site),
+            (_, 4) => return table::tools(site),
             (_, 0) => site.command(Command::ManualOperation),
             (_, 1) => site.command(Command::RestorePosition),
             _ => site.command(Command::InternalStop),
@@ -119,6 +123,14 @@ impl Page for ProgramRun {
             self.cursor = block;
         }
         Turn::Done
+    }
+}
+
+/// The soft key of the tool table, when the machine has one [000:9002-9008].
+fn tool_table(site: &Site) -> String {
+    match table::has_tools(site) {
+        true => site.words("TOOL TABLE"),
+        false => String::new(),
     }
 }
 

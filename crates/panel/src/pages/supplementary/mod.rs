@@ -11,8 +11,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use bahn_dialogue::Key;
 
-use crate::console::Side;
-use crate::page::{Page, Turn};
+use crate::page::{Page, Side, Turn};
 use crate::pages::ask::Name;
 use crate::pages::help;
 use crate::pages::menu::{Item, Items, Menu};

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use bahn_control::{Command, RunState};
 use bahn_dialogue::Key;
-use bahn_host::files;
+use bahn_host::{LoadedMachine, files};
 use bahn_parameters::{Definition, ListText, MessageId, ParameterId, ParameterList, Reaction};
 
 use crate::page::{Page, Turn, View, first_in_sight};
@@ -168,7 +168,7 @@ impl Parameters {
     fn write(&self, site: &Site) -> Result<(), String> {
         let selected = site.control().remember().parameter_list;
         let name = selected.unwrap_or_else(|| site.machine.folder.parameters.clone());
-        let path = site.machine.root.join(name);
+        let path = site.machine.root.join(&name);
         let bytes = files::read_table(&path).map_err(|error| error.to_string())?;
         let mut text = ListText::from_bytes(self.list.model(), &bytes);
         for id in &self.changed {
@@ -178,7 +178,16 @@ impl Parameters {
                 .unwrap_or_default();
             text.set(*id, value).map_err(|error| error.to_string())?;
         }
-        files::write_whole(&path, &text.to_bytes()).map_err(|error| error.to_string())
+        let bytes = text.to_bytes();
+        // A list with which the machine could not be switched on again is refused.
+        let loaded = LoadedMachine::load_with_file(&site.machine.root, &name, &bytes);
+        if let Err(faults) = loaded.map_err(|error| error.to_string())? {
+            let fault = faults
+                .first()
+                .map(|fault| format!("{}: {}", fault.title, fault.label));
+            return Err(fault.unwrap_or_default());
+        }
+        files::write_whole(&path, &bytes).map_err(|error| error.to_string())
     }
 
     /// The control takes over what has changed: at once, with the reference marks, with a reset, in this order.

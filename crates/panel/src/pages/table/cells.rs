@@ -35,21 +35,10 @@ pub(super) fn read(path: &Path) -> Result<String, String> {
     Ok(decode(&bytes))
 }
 
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    files::write_whole(path, bytes).map_err(|error| error.to_string())
-}
-
-/// A new line of the table of a file.
-pub(super) fn add_line(path: &Path, form: TableForm, line: &str) -> Result<(), String> {
-    let text = read(path)?;
-    let (text, change) = set_line(&text, form, line, &[])?;
-    let faults = form.check(&text).err();
-    match (change, faults) {
-        (LineChange::Changed, _) => Err(line.to_owned()),
-        (_, Some(faults)) => Err(faults
-            .first()
-            .map(|fault| fault.message.clone())
-            .unwrap_or_default()),
-        (LineChange::Added, None) => write(path, text.as_bytes()),
+/// The text of the table of a file with a new line.
+pub(super) fn with_line(path: &Path, form: TableForm, line: &str) -> Result<String, String> {
+    match set_line(&read(path)?, form, line, &[])? {
+        (_, LineChange::Changed) => Err(format!("{} {line}", form.key())),
+        (text, LineChange::Added) => Ok(text),
     }
 }

@@ -8,10 +8,9 @@ use bahn_host::{
     CellContent, PlainTable, TableForm, TextTable, canonical, decode, delete_line, files, set_line,
     with_column,
 };
-use bahn_parameters::MessageId;
 
-use super::cells::{add_line, element_value, read, write};
-use super::{POCKET_FILE, TOOL_FILE, is_protected};
+use super::cells::{element_value, read, with_line};
+use super::{POCKET_FILE, TOOL_FILE, store};
 use crate::page::Turn;
 use crate::pages::ask::{Choice, Later, Name};
 use crate::site::Site;
@@ -172,22 +171,8 @@ impl TableEditor {
     }
 
     /// The new text, when it has no fault, whole or not at all.
-    pub(super) fn store(&mut self, text: String, site: &mut Site) -> Result<(), String> {
-        if is_protected(&self.name, site) {
-            return Err(site.message(MessageId::ProtectedPgm));
-        }
-        let incorrect = site.message(MessageId::EntryValueIncorrect);
-        if let Err(faults) = self.form.check(&text) {
-            let why = faults.first().map(|fault| fault.message.clone());
-            return Err(format!("{incorrect}: {}", why.unwrap_or_default()));
-        }
-        if self.is_of_machine()
-            && let Err(why) = site.machine.fits(self.form, &text, site.parameters())
-        {
-            return Err(format!("{incorrect}: {why}"));
-        }
-        write(&self.path, text.as_bytes())?;
-        site.programs.was_written();
+    fn store(&mut self, text: String, site: &mut Site) -> Result<(), String> {
+        store(&self.name, &self.path, self.form, &text, site)?;
         self.version = site.programs.version();
         self.text = text;
         Ok(())
@@ -210,21 +195,14 @@ impl TableEditor {
 
     pub(super) fn insert(&self, site: &Site) -> Turn {
         let prompt = format!("{} {} =", site.words("NEW LINE"), self.form.key());
-        let (path, form) = (self.path.clone(), self.form);
-        let (protected, in_use) = (is_protected(&self.name, site), self.is_of_machine());
+        let (path, form, name) = (self.path.clone(), self.form, self.name.clone());
+        let in_use = self.is_of_machine();
         Turn::Open(Name::ask(prompt, 8, move |line, site| {
-            if protected {
-                return Turn::CloseSaying(site.message(MessageId::ProtectedPgm));
-            }
-            match add_line(&path, form, &line) {
-                Ok(()) => {
-                    site.programs.was_written();
-                    match in_use {
-                        true => Turn::CloseSaying(site.words("THE NEW LINE COUNTS FROM POWER-ON")),
-                        false => Turn::Close,
-                    }
-                }
-                Err(why) => Turn::Say(format!("{}: {why}", site.message(MessageId::EntryValueIncorrect))),
+            let text = with_line(&path, form, &line);
+            match text.and_then(|text| store(&name, &path, form, &text, site)) {
+                Ok(()) if in_use => Turn::CloseSaying(site.words("THE NEW LINE COUNTS FROM POWER-ON")),
+                Ok(()) => Turn::Close,
+                Err(why) => Turn::Say(why),
             }
         }))
     }
@@ -240,14 +218,9 @@ impl TableEditor {
         );
         let (path, form, name) = (self.path.clone(), self.form, self.name.clone());
         Turn::Open(Choice::confirm(prompt, site.words("ERASE"), move |site| {
-            if is_protected(&name, site) {
-                return Turn::CloseSaying(site.message(MessageId::ProtectedPgm));
-            }
-            let erased = read(&path)
-                .and_then(|text| delete_line(&text, form, &line))
-                .and_then(|text| write(&path, text.as_bytes()));
-            site.programs.was_written();
-            erased.map_or_else(Turn::CloseSaying, |()| Turn::Close)
+            let text = read(&path).and_then(|text| delete_line(&text, form, &line));
+            let stored = text.and_then(|text| store(&name, &path, form, &text, site));
+            stored.map_or_else(Turn::CloseSaying, |()| Turn::Close)
         }))
     }
 
