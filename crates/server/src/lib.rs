@@ -13,7 +13,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let station = Station::power_on(load("machines/mill".as_ref())?)?;
 //! let listen = "127.0.0.1:8155".parse()?;
-//! let server = Server::start(station, &ServerOptions { listen, token: None })?;
+//! let server = Server::start(station, ServerOptions { listen, token: None, replay: None })?;
 //! println!("http://{}/", server.address());
 //! # Ok(())
 //! # }

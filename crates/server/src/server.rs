@@ -8,7 +8,7 @@ use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::middleware;
 use axum::routing::{any, get, post};
-use bahn_panel::{Link, Live, Station};
+use bahn_panel::{Link, Live, Replay, Station};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
@@ -27,12 +27,26 @@ const VIEWERS: usize = 32;
 const QUIET: Duration = Duration::from_secs(1);
 
 /// Where to listen, and who may come in.
-#[derive(Clone, Debug)]
 pub struct ServerOptions {
     /// The address; port 0 takes a free one.
     pub listen: SocketAddr,
     /// What others than this computer must know; needed for any address but loopback.
     pub token: Option<String>,
+    /// A session that is shown before anybody can go on.
+    pub replay: Option<Replay>,
+}
+
+impl ServerOptions {
+    /// Whether the address may be listened on.
+    ///
+    /// # Errors
+    /// [`ServerError::NoToken`].
+    pub fn check(&self) -> Result<(), ServerError> {
+        match self.listen.ip().is_loopback() || self.token.is_some() {
+            true => Ok(()),
+            false => Err(ServerError::NoToken(self.listen)),
+        }
+    }
 }
 
 /// Why a server cannot begin.
@@ -61,11 +75,9 @@ impl Server {
     ///
     /// # Errors
     /// [`ServerError`].
-    pub fn start(station: Station, options: &ServerOptions) -> Result<Server, ServerError> {
+    pub fn start(station: Station, options: ServerOptions) -> Result<Server, ServerError> {
+        options.check()?;
         let listen = options.listen;
-        if !listen.ip().is_loopback() && options.token.is_none() {
-            return Err(ServerError::NoToken(listen));
-        }
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(1)
             .enable_all()
@@ -78,14 +90,17 @@ impl Server {
             .local_addr()
             .map_err(|error| ServerError::Address(listen, error))?;
         let about = Arc::new(About::of(&station));
-        let live = Live::start(station);
+        let live = match options.replay {
+            Some(replay) => Live::replay(station, replay),
+            None => Live::start(station),
+        };
         let shared = Shared {
             regions: follow(live.link()),
             link: live.link(),
             about,
             crew: Arc::default(),
             viewers: Arc::new(Semaphore::new(VIEWERS)),
-            access: Arc::new(Access::new(address, options.token.clone())),
+            access: Arc::new(Access::new(address, options.token)),
         };
         let router = router(shared);
         runtime.spawn(async move {

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use bahn_host::LoadedMachine;
 use bahn_host::files::NewFile;
-use bahn_panel::{Input, Station};
+use bahn_panel::{Input, Replay, Station};
 use bahn_server::{Server, ServerOptions};
 
 use crate::interrupt::Interrupt;
@@ -22,6 +22,14 @@ const LOOK: Duration = Duration::from_millis(50);
 
 /// Switches the machine on and serves its panel until Ctrl-C.
 pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
+    let mut served = ServerOptions {
+        listen: options.listen,
+        token: options.token.clone(),
+        replay: None,
+    };
+    served
+        .check()
+        .map_err(|error| UsageError::new(error.to_string()))?;
     let folder = match &options.machine {
         Some(folder) => folder.clone(),
         None => own_mill()?,
@@ -38,15 +46,21 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     station
         .input(&Input::Speed(options.speed))
         .map_err(|refusal| UsageError::new(refusal.to_string()))?;
+    if let Some(path) = &options.record {
+        station.record(path).map_err(UsageError::new)?;
+    }
+    if let Some(path) = &options.replay {
+        served.replay = Some(Replay::read(path).map_err(UsageError::new)?);
+    }
+    for difference in served
+        .replay
+        .iter()
+        .flat_map(|replay| replay.differences(&station))
+    {
+        diagnostics::print_line(&format!("warning: {difference}"));
+    }
     let interrupt = Interrupt::on_ctrl_c();
-    let server = Server::start(
-        station,
-        &ServerOptions {
-            listen: options.listen,
-            token: options.token.clone(),
-        },
-    )
-    .map_err(|error| UsageError::new(error.to_string()))?;
+    let server = Server::start(station, served).map_err(|error| UsageError::new(error.to_string()))?;
     let address = page_address(&server, options);
     diagnostics::print_text(&format!(
         "{name}: the panel is at {address}; Ctrl-C switches the machine off"
@@ -57,6 +71,10 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     while !interrupt.is_requested() {
         std::thread::sleep(LOOK);
     }
+    let recorded = server.link().with(Station::end_recording);
+    recorded
+        .map_err(|refusal| UsageError::new(refusal.to_string()))?
+        .map_err(UsageError::new)?;
     server.end().map_err(UsageError::new)?;
     Ok(Outcome::Fine)
 }

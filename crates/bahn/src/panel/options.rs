@@ -11,6 +11,8 @@ Examples:
   bahn panel --machine machines/mill-tnc360 --speed 5
       Another machine; time passes five times as fast.
   bahn panel --listen 0.0.0.0:8155 --token SECRET     for others, too; they need the token once
+  bahn panel --machine NEW --record session.jsonl     keeps what is done, and ...
+  bahn panel --machine NEW2 --replay session.jsonl    ... shows it again on another such machine (docs/sessions.md)
   curl -X POST -d '{\"key\":\"CE\"}' http://127.0.0.1:8155/api/key
       A key from a program; docs/panel-api.md tells everything that can be asked for.
 
@@ -36,6 +38,12 @@ pub(crate) struct PanelOptions {
     /// So many times as fast as the clock on the wall, 0.1 to 100.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed)]
     pub speed: f64,
+    /// Keeps every input with its time in a new file.
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+    /// Shows a session that was recorded on such a machine; behind its end the panel goes on.
+    #[arg(long, value_name = "FILE", conflicts_with = "record")]
+    pub replay: Option<PathBuf>,
 }
 
 /// A token stands in addresses and cookies.

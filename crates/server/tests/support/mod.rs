@@ -33,8 +33,9 @@ impl Panel {
         let options = ServerOptions {
             listen: "127.0.0.1:0".parse().unwrap(),
             token: None,
+            replay: None,
         };
-        let server = Server::start(station, &options).unwrap();
+        let server = Server::start(station, options).unwrap();
         Panel {
             address: server.address(),
             server: Some(server),

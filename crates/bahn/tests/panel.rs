@@ -1,0 +1,100 @@
+//! `bahn panel` as a user starts it: it says where it is, answers, and keeps everything when it ends.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+
+/// A panel that was started, and its address.
+fn start(folder: &std::path::Path, options: &[&str]) -> (Child, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_bahn"))
+        .args(["panel", "--listen", "127.0.0.1:0"])
+        .args(options)
+        .env("XDG_DATA_HOME", folder)
+        .stderr(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = String::new();
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    while !said.contains("the panel is at") {
+        said.clear();
+        assert!(lines.read_line(&mut said).unwrap() > 0, "it ended");
+    }
+    let address = said.split("http://").nth(1).unwrap().split('/').next().unwrap();
+    (child, address.to_owned())
+}
+
+fn request(address: &str, method: &str, path: &str, body: &str) -> String {
+    let mut stream = TcpStream::connect(address).unwrap();
+    let length = body.len();
+    let head = format!(
+        "{method} {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\nContent-Length: {length}\r\n\r\n"
+    );
+    stream.write_all((head + body).as_bytes()).unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    answer
+}
+
+fn end(mut child: Child) -> i32 {
+    let id = child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &id])
+            .status()
+            .unwrap()
+            .success()
+    );
+    child.wait().unwrap().code().unwrap()
+}
+
+fn until(address: &str, what: &str) {
+    for _ in 0..600 {
+        if request(address, "GET", "/api/screen", "").contains(what) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    panic!("no {what}: {}", request(address, "GET", "/api/screen", ""));
+}
+
+#[test]
+fn the_mill_needs_no_folder_and_keeps_what_is_done() {
+    let data = std::env::temp_dir().join(format!("bahn-panel-command-{}", std::process::id()));
+    let (child, address) = start(&data, &[]);
+    until(&address, "POWER INTERRUPTED");
+    assert!(request(&address, "GET", "/", "").contains("data-region=\"header\""));
+    let keys = ["CE", "PROGRAM", "MANUAL"];
+    for key in keys {
+        let answer = request(&address, "POST", "/api/key", &format!("{{\"key\":\"{key}\"}}"));
+        assert!(answer.contains("\"ok\":true"), "{answer}");
+    }
+    assert_eq!(end(child), 0);
+    // A second time the folder is there; a session is recorded, and shown again on a third.
+    let session = data.join("session.jsonl");
+    let (child, address) = start(&data, &["--record", session.to_str().unwrap()]);
+    until(&address, "POWER INTERRUPTED");
+    request(&address, "POST", "/api/key", "{\"key\":\"CE\"}");
+    until(&address, "REFERENCE");
+    assert_eq!(end(child), 0);
+    let recorded = std::fs::read_to_string(&session).unwrap();
+    assert!(
+        recorded.contains("\"key\":\"CE\"") && recorded.contains("\"end\""),
+        "{recorded}"
+    );
+    let (child, address) = start(&data, &["--replay", session.to_str().unwrap(), "--speed", "20"]);
+    until(&address, "REFERENCE");
+    assert_eq!(end(child), 0);
+    std::fs::remove_dir_all(data).unwrap();
+}
+
+#[test]
+fn others_need_a_token() {
+    let output = Command::new(env!("CARGO_BIN_EXE_bahn"))
+        .args(["panel", "--listen", "0.0.0.0:0"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("needs a token"));
+}
