@@ -6,6 +6,7 @@ mod support;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
 
 use support::Folder;
 
@@ -121,6 +122,9 @@ fn digitizing(folder: &Folder) {
     );
 }
 
+/// Held while a panel runs.
+static PANEL: Mutex<()> = Mutex::new(());
+
 /// Runs each command in a shell, in this order.
 fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     assert!(!commands.is_empty());
@@ -135,8 +139,11 @@ fn run_all(folder: &Folder, place: &Path, commands: &[String]) {
     }
     let mut faults = Vec::new();
     for command in commands {
+        // A panel runs until somebody ends it, and only one listens at an address.
+        let ended = format!("timeout --preserve-status --signal INT 4 {command}");
+        let panel = command.starts_with("bahn panel").then(|| PANEL.lock().unwrap());
         let output = Command::new("sh")
-            .args(["-c", command])
+            .args(["-c", if panel.is_some() { &ended } else { command }])
             .current_dir(place)
             .env("PATH", &path)
             .env("HOME", folder.path(""))

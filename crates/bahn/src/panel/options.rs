@@ -11,8 +11,9 @@ Examples:
   bahn panel --machine machines/mill-tnc360 --speed 5
       Another machine; time passes five times as fast.
   bahn panel --listen 0.0.0.0:8155 --token SECRET     for others, too; they need the token once
-  bahn panel --machine NEW --record session.jsonl     keeps what is done, and ...
-  bahn panel --machine NEW2 --replay session.jsonl    ... shows it again on another such machine (docs/sessions.md)
+  bahn panel --machine machines/mill --record session.jsonl
+      Keeps what is done in a file ...
+  bahn panel --machine mill --replay session.jsonl    ... and shows it again, on a copy of the folder (docs/sessions.md)
   curl -X POST -d '{\"key\":\"CE\"}' http://127.0.0.1:8155/api/key
       A key from a program; docs/panel-api.md tells everything that can be asked for.
 
