@@ -112,6 +112,11 @@ impl Control {
         true
     }
 
+    /// A PLC program that was compiled anew: it runs when the control begins anew, at the next power-on or reset.
+    pub fn replace_plc(&mut self, program: Arc<bahn_plc::PlcProgram>) {
+        Arc::make_mut(&mut self.supply.made_of).0.plc = program;
+    }
+
     /// The kernel begins anew with what it has kept, at the time that it is.
     fn begin_anew(&mut self, parameters: ParameterList) {
         let (mut setup, mut others) = (*self.supply.made_of).clone();

@@ -105,6 +105,39 @@ impl Operand {
     }
 }
 
+impl Operand {
+    /// A content as tables of the PLC show it: decimal, hexadecimal and binary, those two in the width of the operand; empty where
+    /// there is nothing to be said.
+    ///
+    /// ```
+    /// use bahn_exchange::{Content, Operand};
+    /// let word: Operand = "W8".parse()?;
+    /// assert_eq!(word.forms(&Content::Number(10)), ["10", "000A", "0000000000001010"]);
+    /// # Ok::<(), String>(())
+    /// ```
+    pub fn forms(self, content: &Content) -> [String; 3] {
+        match (self, content) {
+            (Operand::Number(number), Content::Number(value)) => {
+                let size = number.size();
+                let digits = usize::from(size.bytes()) * 2;
+                let bits = match size {
+                    Size::Byte => *value as u32 & 0xff,
+                    Size::Word => *value as u32 & 0xffff,
+                    Size::Double => *value as u32,
+                };
+                let width = digits * 4;
+                [
+                    value.to_string(),
+                    format!("{bits:0digits$X}"),
+                    format!("{bits:0width$b}"),
+                ]
+            }
+            (_, Content::Number(value)) => [value.to_string(), String::new(), value.to_string()],
+            (_, Content::Text(text)) => [text.clone(), String::new(), String::new()],
+        }
+    }
+}
+
 /// What an operand holds. Numbers are signed.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(untagged)]
@@ -223,6 +256,18 @@ fn characters(text: &str) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_shown_in_their_width() {
+        let forms = |operand: &str, value| {
+            let operand: Operand = operand.parse().unwrap();
+            operand.forms(&Content::Number(value))
+        };
+        assert_eq!(forms("B8", -2), ["-2", "FE", "11111110"]);
+        assert_eq!(forms("W8", 10), ["10", "000A", "0000000000001010"]);
+        assert_eq!(forms("D8", -1), ["-1".to_owned(), "F".repeat(8), "1".repeat(32)]);
+        assert_eq!(forms("O2", 1), ["1", "", "1"]);
+    }
 
     #[test]
     fn values_fit_their_operands() {

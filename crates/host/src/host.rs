@@ -10,7 +10,7 @@ use bahn_control::{
 use bahn_interpreter::Warning;
 use bahn_machine::Machine;
 use bahn_path::PathElement;
-use bahn_plc::Tracer;
+use bahn_plc::{PlcProgram, Tracer, WindowView};
 
 use crate::background::Background;
 use crate::deed::{Answer, Deed, Operable, Source};
@@ -50,6 +50,8 @@ pub struct Host<P = Machine> {
     programs: Vec<Arc<dyn Programs>>,
     /// Whoever follows looks at what programs have read, in every cycle.
     watched: bool,
+    /// How the window of the PLC is to be seen.
+    window: WindowView,
     /// What was is repeated: nobody is told, and nothing is stored but in the end.
     pub(crate) repeats: bool,
     /// Also by the clock on the wall nothing is read or computed beside.
@@ -143,6 +145,7 @@ impl<P: Operable> Host<P> {
             digitizing: vec![Digitizing::default(); all_programs.len()],
             programs: all_programs,
             watched: false,
+            window: WindowView::default(),
             repeats: false,
             exact: false,
             desk: Desk::default(),
@@ -219,6 +222,7 @@ impl<P: Operable> Host<P> {
         let beside = self.works_beside();
         self.background
             .prepare(&mut self.control, beside, &self.break_off);
+        self.control.show_plc_window(self.window);
         self.control.cycle_watched(&mut self.plant, tracer, sampler);
         self.plant.tool_is_called(self.control.tool());
         // A message names the program of its block.
@@ -429,8 +433,16 @@ impl<P: Operable> Host<P> {
     }
 
     /// Tells the PLC whether its window is to be seen; see [`Control::show_plc_window`].
-    pub fn show_plc_window(&mut self, view: bahn_plc::WindowView) {
-        self.control.show_plc_window(view);
+    /// Holds from the next cycle on, also when the control begins anew.
+    pub fn show_plc_window(&mut self, view: WindowView) {
+        self.window = view;
+    }
+
+    /// A PLC program that was compiled anew; see [`Control::replace_plc`]. Who goes back finds the one of then.
+    pub fn replace_plc(&mut self, program: Arc<PlcProgram>) {
+        let now = self.control.time_us();
+        self.journal.add(now, Given::Plc(Arc::clone(&program)));
+        self.control.replace_plc(program);
     }
 
     /// The plant.

@@ -1,6 +1,9 @@
 //! What was given since power-on, and when: given again at these times it repeats the run.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
+
+use bahn_plc::PlcProgram;
 
 use crate::deed::{Deed, Source};
 use crate::orders::Order;
@@ -15,22 +18,17 @@ pub(crate) enum Given {
     AtOnce(Source, Deed),
     /// At the desk.
     Order(Order),
+    /// A PLC program for the next power-on.
+    Plc(Arc<PlcProgram>),
 }
 
 impl Given {
-    /// By whom.
-    pub fn source(&self) -> &Source {
+    /// What was done, and by whom.
+    pub fn deed(&self) -> Option<(&Source, &Deed)> {
         match self {
-            Given::AtOnce(source, _) => source,
-            Given::Order(order) => &order.source,
-        }
-    }
-
-    /// What was given.
-    pub fn deed(&self) -> &Deed {
-        match self {
-            Given::AtOnce(_, deed) => deed,
-            Given::Order(order) => &order.deed,
+            Given::AtOnce(source, deed) => Some((source, deed)),
+            Given::Order(order) => Some((&order.source, &order.deed)),
+            Given::Plc(_) => None,
         }
     }
 }

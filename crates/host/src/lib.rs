@@ -61,6 +61,7 @@ mod journal;
 mod kept;
 pub mod lists;
 mod log;
+pub mod logic_diagram;
 mod machine_folder;
 mod notice;
 mod observable;

@@ -69,7 +69,7 @@ impl<P: Operable> Host<P> {
     /// oldest first; of very many the oldest are forgotten.
     pub fn given(&self) -> impl DoubleEndedIterator<Item = (u64, &Source, &Deed)> {
         let entries = self.journal.entries();
-        entries.map(|(time, given)| (*time, given.source(), given.deed()))
+        entries.filter_map(|(time, given)| given.deed().map(|(source, deed)| (*time, source, deed)))
     }
 }
 
@@ -155,6 +155,7 @@ impl<P: Operable + Clone> Host<P> {
                 match entry {
                     Given::AtOnce(source, deed) => drop(self.execute(source, deed)),
                     Given::Order(order) => self.take(order),
+                    Given::Plc(program) => self.control.replace_plc(program),
                 }
             }
             if at_end {

@@ -44,6 +44,7 @@ mod live;
 mod numbers;
 mod page;
 mod pages;
+mod plc_mode;
 mod programs;
 mod replay;
 mod screen;

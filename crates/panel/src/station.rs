@@ -18,6 +18,7 @@ use crate::inhibit;
 use crate::input::{Input, Refusal};
 use crate::lesson::LessonRun;
 use crate::page::Side;
+use crate::plc_mode::PlcMode;
 use crate::programs::ProgramMemory;
 use crate::screen::{MachineState, MessageLine, PlcLine, Screen};
 use crate::session::Recorder;
@@ -33,6 +34,8 @@ const LINES: usize = 16;
 const LINES_BESIDE: usize = 16;
 /// A minute, µs.
 const MINUTE_US: u64 = 60_000_000;
+/// Stands in the status window while a logic diagram is recorded [000:11466].
+const RECORDING: &str = "PCTR";
 /// Factors by which time may pass.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.1..=100.0;
 
@@ -56,6 +59,7 @@ pub struct Station {
     past: Past,
     waits: Waits,
     lesson: Option<LessonRun>,
+    plc: PlcMode,
     shown: Screen,
 }
 
@@ -91,6 +95,7 @@ impl Station {
             past: Past::new(&mut host),
             waits: Waits::new(&machine),
             lesson: None,
+            plc: PlcMode::default(),
             shown: Screen::default(),
             host,
             machine,
@@ -168,10 +173,12 @@ impl Station {
     /// # Errors
     /// When what survives power-off cannot be written; the machine goes on all the same.
     pub fn cycle(&mut self) -> Result<(), HostError> {
-        let cycled = self.host.step();
+        let cycled = self.plc.cycle(&mut self.host);
+        self.follow_plc();
         let is_on = !self.host.control().is_off();
         if self.is_on && !is_on {
             self.console.power_off();
+            self.plc.power_off();
         }
         self.is_on = is_on;
         if is_on {
@@ -187,6 +194,15 @@ impl Station {
         self.follow_lesson();
         self.store_settings();
         cycled
+    }
+
+    /// The control may have begun anew with a program that was compiled meanwhile.
+    fn follow_plc(&mut self) {
+        let running = self.host.control().plc().program();
+        if !Arc::ptr_eq(running, &self.machine.plc) {
+            self.machine.plc = Arc::clone(running);
+            self.waits = Waits::new(&self.machine);
+        }
     }
 
     /// Time stands.
@@ -262,6 +278,7 @@ impl Station {
             machine: &self.machine,
             programs: &self.programs,
             settings: &mut self.settings,
+            plc: &mut self.plc,
         };
         (&mut self.console, site)
     }
@@ -269,13 +286,16 @@ impl Station {
     fn make_screen(&mut self) -> Screen {
         let messages = self.messages();
         let snapshot = self.host.control().snapshot();
-        let status = status::of(
+        let mut status = status::of(
             &snapshot,
             self.host.control(),
             self.parameters(),
             &self.settings,
             &self.shown.status,
         );
+        if self.plc.records() {
+            status.flags.push(RECORDING.to_owned());
+        }
         let plc_window = self.plc_window();
         let (console, site) = self.parts();
         let front = console.front();

@@ -56,6 +56,14 @@ impl ControlModel {
         }
     }
 
+    /// Has the PLC mode behind code number 807 667: editor, compiler, trace and tables [000:11187-11241].
+    pub const fn has_plc_mode(self) -> bool {
+        matches!(
+            self,
+            ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425
+        )
+    }
+
     /// Has an oscilloscope behind code number 688 379 [000:18640].
     pub const fn has_oscilloscope(self) -> bool {
         matches!(

@@ -4,7 +4,7 @@
 //! - [`Compilation::compile`] turns source files into a [`PlcProgram`], with every error and warning of all
 //!   files in one pass ([`Diagnostic`], [`PlcError`]);
 //! - [`Machine`] runs a program scan by scan on a [`bahn_exchange::Exchange`]: timers, counters, edges, submit
-//!   jobs, nominal processing time; [`Tracer`] sees every executed line;
+//!   jobs, nominal processing time; [`Tracer`] sees every executed line, [`CodeTrace`] is a scan as the instruction list shows it;
 //! - [`modules`] lists the modules 9000 to 9171; [`Nc`] is what they need from the control, with the types
 //!   that it speaks in; with the feature `desk`, `TestNc` stands in for it;
 //! - [`mirror_parameters`] puts the machine parameters of the PLC into its words and markers;
@@ -67,6 +67,8 @@ pub use program::{
     PlcProgram, SourceLine, SourceText, Target, Transform,
 };
 pub use run::{
-    Machine, OperandContent, ProcessingTime, Registers, RuntimeError, ScanReport, Start, TraceStep, Tracer,
+    CodeTrace, Executed, Machine, OperandContent, ProcessingTime, Registers, RuntimeError, ScanReport, Start,
+    TraceStep, Tracer,
 };
 pub use source::{MemoryFiles, ProgramMemory, SourceFiles};
+pub use syntax::{check_line, code_of_line, split_comment};

@@ -15,6 +15,8 @@ pub struct PlcProgram {
     pub cases: Vec<Vec<Target>>,
     /// Labels and constants fields that the source names, file by file in the order of their first mention.
     pub labels: Vec<Label>,
+    /// Length of the code in bytes, as the control counts it.
+    pub size_bytes: u32,
 }
 
 /// A source file as text.

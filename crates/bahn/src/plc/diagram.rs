@@ -1,20 +1,17 @@
 //! `bahn plc diagram`: operands over cycles, with trigger [000:11461-11480].
 
-use std::collections::VecDeque;
 use std::io::Write;
 
 use bahn_exchange::Exchange;
 
-use super::drawing::{self, Diagram};
+use super::drawing;
 use super::options::DiagramOptions;
 use super::subject::Subject;
 use crate::files::{self, NewFile};
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
+use bahn_host::logic_diagram::{Diagram, DiagramRecorder, OPERANDS_MAX, Trigger};
 use bahn_host::{Assignment, Content, Operand};
-
-/// Operands of a diagram [000:11461].
-const OPERANDS_MAX: usize = 16;
 
 /// Runs a program and draws operands.
 pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
@@ -30,49 +27,20 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
     let Some(mut subject) = open else {
         return Ok(Outcome::ProgramError);
     };
-    let mut samples = VecDeque::new();
-    // The cycle that triggers; without trigger the first.
-    let mut triggered = trigger.is_none().then_some(1);
-    let is_met = |subject: &Subject| {
-        let wanted = trigger.as_ref();
-        wanted.is_some_and(|(operand, wanted)| subject.read(*operand) == *wanted)
-    };
-    // A trigger is an edge: the operand gets its value [000:11461].
-    let mut was_met = is_met(&subject);
-    let before = options.before.min(options.cycles.saturating_sub(1));
+    let size = |cycles: u64| usize::try_from(cycles).unwrap_or(usize::MAX);
+    let wanted = trigger.map_or(Trigger::Start, |edge| Trigger::Edge(vec![edge]));
+    let read = |operand: Operand| subject.read(operand);
+    let extent = (size(options.before), size(options.cycles));
+    let mut recorder = DiagramRecorder::new(options.show.clone(), wanted, extent, read).filled();
     let mut outcome = Outcome::Fine;
-    loop {
-        let end = triggered.map_or(options.limit, |cycle: u64| {
-            // Fewer cycles lie before an early trigger.
-            cycle
-                .saturating_sub(before)
-                .max(1)
-                .saturating_add(options.cycles - 1)
-        });
-        if subject.cycle() >= end {
-            break;
-        }
+    while !recorder.is_over() && (recorder.is_triggered() || subject.cycle() < options.limit) {
         if let Err(halt) = subject.scan(None) {
             outcome = subject.say(&halt);
             break;
         }
-        samples.push_back(
-            options
-                .show
-                .iter()
-                .map(|operand| subject.read(*operand))
-                .collect(),
-        );
-        if triggered.is_none() {
-            let is_met = is_met(&subject);
-            if !std::mem::replace(&mut was_met, is_met) && is_met {
-                triggered = Some(subject.cycle());
-            } else if samples.len() as u64 > before {
-                samples.pop_front();
-            }
-        }
+        recorder.scan(|operand| subject.read(operand));
     }
-    if triggered.is_none() && outcome == Outcome::Fine {
+    if !recorder.is_triggered() && outcome == Outcome::Fine {
         diagnostics::print_line(&format!(
             "the trigger did not come within {} cycles",
             subject.cycle()
@@ -82,12 +50,7 @@ pub(super) fn command(options: &DiagramOptions) -> Result<Outcome, UsageError> {
     if let Outcome::ProgramError = subject.finish() {
         outcome = Outcome::ProgramError;
     }
-    let diagram = Diagram {
-        operands: options.show.clone(),
-        first: subject.cycle().saturating_sub(samples.len() as u64) + 1,
-        trigger: trigger.and(triggered),
-        samples: samples.into(),
-    };
+    let diagram = recorder.into_diagram();
     match (&options.svg, options.format) {
         (Some(path), _) => {
             let mut file = NewFile::create(path)?;

@@ -1,5 +1,6 @@
 //! Logic diagrams as text and as SVG.
 
+use bahn_host::logic_diagram::Diagram;
 use bahn_host::{Content, Operand};
 
 /// Cycles in a line of text.
@@ -11,34 +12,6 @@ const ROW: usize = 28;
 const CHARACTER: usize = 8;
 /// Width of the names in the drawing.
 const NAMES: usize = 70;
-
-/// What is drawn.
-pub(super) struct Diagram {
-    pub operands: Vec<Operand>,
-    /// The first cycle.
-    pub first: u64,
-    /// The cycle that triggered.
-    pub trigger: Option<u64>,
-    /// The operands after each cycle.
-    pub samples: Vec<Vec<Content>>,
-}
-
-impl Diagram {
-    /// Stretches of cycles over which an operand keeps its content: first sample, number of samples.
-    pub fn stretches(&self, operand: usize) -> Vec<(usize, usize, &Content)> {
-        let mut stretches: Vec<(usize, usize, &Content)> = Vec::new();
-        for (at, sample) in self.samples.iter().enumerate() {
-            let Some(content) = sample.get(operand) else {
-                continue;
-            };
-            match stretches.last_mut() {
-                Some((_, count, last)) if *last == content => *count += 1,
-                _ => stretches.push((at, 1, content)),
-            }
-        }
-        stretches
-    }
-}
 
 /// For the terminal: a high line for 1, a low one for 0. Numbers and texts stand where they change; where
 /// there is no room for one, least, greatest and last number are given at the end of the row.
@@ -57,27 +30,13 @@ pub(super) fn text(diagram: &Diagram) -> String {
         }
         for (index, operand) in diagram.operands.iter().enumerate() {
             let row = match operand {
-                Operand::Bit(_) => levels(diagram, index, start, end),
+                Operand::Bit(_) => diagram.levels(index, start, end),
                 _ => contents(diagram, index, start, end),
             };
             text += &format!("{:>8} {}\n", operand.to_string(), row.trim_end());
         }
     }
     text
-}
-
-/// The samples of an operand in a row.
-fn samples(diagram: &Diagram, index: usize, start: usize, end: usize) -> impl Iterator<Item = &Content> {
-    let samples = diagram.samples.iter().skip(start).take(end - start);
-    samples.filter_map(move |sample| sample.get(index))
-}
-
-fn levels(diagram: &Diagram, index: usize, start: usize, end: usize) -> String {
-    let level = |content: &Content| match content {
-        Content::Number(0) => '_',
-        _ => '\u{2580}',
-    };
-    samples(diagram, index, start, end).map(level).collect()
 }
 
 fn contents(diagram: &Diagram, index: usize, start: usize, end: usize) -> String {
@@ -101,16 +60,18 @@ fn contents(diagram: &Diagram, index: usize, start: usize, end: usize) -> String
         return row;
     }
     let numbers = || {
-        samples(diagram, index, start, end).filter_map(|content| match content {
-            Content::Number(value) => Some(value),
-            Content::Text(_) => None,
-        })
+        diagram
+            .row(index, start, end)
+            .filter_map(|content| match content {
+                Content::Number(value) => Some(value),
+                Content::Text(_) => None,
+            })
     };
     let extremes = match (numbers().min(), numbers().max()) {
         (Some(least), Some(greatest)) => format!("{least}..{greatest}, "),
         _ => String::new(),
     };
-    let last = samples(diagram, index, start, end).last();
+    let last = diagram.row(index, start, end).last();
     row + &last.map_or(String::new(), |last| format!("| {extremes}last {last}"))
 }
 

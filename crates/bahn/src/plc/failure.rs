@@ -12,7 +12,7 @@ pub(super) fn print(program: &PlcProgram, error: &RuntimeError) {
         .and_then(|file| file.lines.get(index))
         .cloned()
         .unwrap_or_default();
-    let code = super::list::split_comment(&text).0;
+    let code = bahn_plc::split_comment(&text).0;
     let start = code.chars().take_while(|c| c.is_whitespace()).count();
     let length = code.trim().chars().count();
     diagnostics::print_fault(&FileFault {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bahn_plc::Compilation;
+use bahn_plc::{Compilation, split_comment};
 
 use super::check::Entry;
 use super::options::ListOptions;
@@ -141,14 +141,4 @@ fn split_command(code: &str) -> (&str, &str) {
     let code = code.trim();
     let (command, operand) = code.split_once(char::is_whitespace).unwrap_or((code, ""));
     (command, operand.trim())
-}
-
-/// A line before its comment, and the comment with its sign.
-pub(super) fn split_comment(line: &str) -> (&str, &str) {
-    let mut quoted = false;
-    let at = line.find(|character| {
-        quoted ^= character == '"';
-        character == ';' && !quoted
-    });
-    line.split_at(at.unwrap_or(line.len()))
 }

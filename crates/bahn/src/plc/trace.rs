@@ -1,7 +1,7 @@
 //! `bahn plc trace`: line, instruction, operand and accumulators per executed line [000:11414-11435].
 
 use bahn_exchange::Exchange;
-use bahn_plc::{OperandContent, TraceStep, Tracer};
+use bahn_plc::{OperandContent, TraceStep, Tracer, code_of_line};
 
 use super::diagram;
 use super::halt::Halt;
@@ -151,7 +151,7 @@ impl Tracer for Trace {
             cycle: self.cycle,
             file: step.file().to_owned(),
             line: step.instruction.line,
-            instruction: instruction(step.text()),
+            instruction: code_of_line(step.text()),
             operand,
             logic: step.registers.logic.into(),
             word: step.registers.word,
@@ -209,14 +209,5 @@ impl Trace {
                 self.left_off
             )
         })
-    }
-}
-
-/// A line without comment, blanks drawn together.
-pub(super) fn instruction(text: &str) -> String {
-    let text = super::list::split_comment(text).0;
-    match text.contains('"') {
-        true => text.trim().to_owned(),
-        false => text.split_whitespace().collect::<Vec<_>>().join(" "),
     }
 }

@@ -56,6 +56,11 @@ impl<I: Items> Menu<I> {
         Menu { items, current: 0 }
     }
 
+    /// A menu that begins with another line.
+    pub fn at(items: I, current: usize) -> Menu<I> {
+        Menu { items, current }
+    }
+
     fn close(&mut self, site: &mut Site) -> Turn {
         self.items.leave(site);
         Turn::Close

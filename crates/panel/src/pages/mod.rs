@@ -11,6 +11,7 @@ mod help;
 mod mdi;
 mod menu;
 mod number;
+mod plc;
 mod probe;
 mod programming;
 mod q_parameters;

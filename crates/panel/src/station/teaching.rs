@@ -50,6 +50,8 @@ impl Station {
             console.tick(&mut site);
         }
         self.waits.forget();
+        self.plc.stop();
+        self.follow_plc();
         Ok(())
     }
 

@@ -36,7 +36,10 @@ pub(super) fn compile(files: &dyn SourceFiles, main: &str, options: Options) -> 
     let globals = globals(&linked, &mut reports);
     check_externs(&linked, &globals, &mut reports);
     let texts = linked.iter().map(|file| file.text.clone()).collect();
-    let program = reports.errors.is_empty().then(|| join(linked, &globals));
+    let program = reports.errors.is_empty().then(|| PlcProgram {
+        size_bytes,
+        ..join(linked, &globals)
+    });
     Compilation {
         nominal_time: program.as_ref().map_or(0, time::nominal_time),
         program,

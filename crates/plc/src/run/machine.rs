@@ -274,7 +274,7 @@ impl Machine {
     }
 
     /// The program.
-    pub fn program(&self) -> &PlcProgram {
+    pub fn program(&self) -> &Arc<PlcProgram> {
         &self.program
     }
 

@@ -15,4 +15,4 @@ pub(crate) use memory::read_number;
 pub(crate) use processor::Processor;
 pub use registers::Registers;
 pub(crate) use registers::{CALLS_MAX, DataStack, Text};
-pub use trace::{OperandContent, TraceStep, Tracer};
+pub use trace::{CodeTrace, Executed, OperandContent, TraceStep, Tracer};

@@ -45,6 +45,51 @@ pub enum OperandContent {
     Text(Vec<u8>),
 }
 
+/// What an instruction left behind when it was executed last.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Executed {
+    /// The content of its operand.
+    pub operand: Option<OperandContent>,
+    /// The logic accumulator.
+    pub logic: bool,
+    /// The word accumulator.
+    pub word: i32,
+}
+
+/// The latest scan instruction by instruction: TRACE IN CODE [000:11414-11435].
+#[derive(Clone, Debug, Default)]
+pub struct CodeTrace {
+    executed: Vec<Option<Executed>>,
+}
+
+impl CodeTrace {
+    /// What an instruction did in that scan, by its index; `None` when it was passed by.
+    pub fn executed(&self, at: usize) -> Option<&Executed> {
+        self.executed.get(at)?.as_ref()
+    }
+}
+
+impl Tracer for CodeTrace {
+    fn began(&mut self, _image: &Image) {
+        self.executed.fill(None);
+    }
+
+    fn executed(&mut self, step: &TraceStep<'_>) {
+        let length = step.program.code.len();
+        if self.executed.len() != length {
+            self.executed.clear();
+            self.executed.resize(length, None);
+        }
+        if let Some(place) = self.executed.get_mut(step.at) {
+            *place = Some(Executed {
+                operand: step.operand(),
+                logic: step.registers.logic,
+                word: step.registers.word,
+            });
+        }
+    }
+}
+
 impl TraceStep<'_> {
     /// The content of the operand after the instruction; `None` for instructions without one.
     pub fn operand(&self) -> Option<OperandContent> {
@@ -100,5 +145,45 @@ impl TraceStep<'_> {
     /// The name of the file.
     pub fn file(&self) -> &str {
         self.program.file_name(self.instruction.file)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use bahn_exchange::Exchange;
+    use bahn_parameters::{ControlModel, ParameterList};
+
+    use super::*;
+    use crate::{Compilation, Machine, MemoryFiles, Options, Start, TestNc};
+
+    /// The instruction behind a jump that is taken is passed by, until the jump is not taken.
+    #[test]
+    fn a_scan_stands_by_its_instructions() {
+        let text = "L I4\nJPT OVER\nL K+7\n= W8\nLBL OVER\nL I4\n= O2\nEM\n";
+        let files = MemoryFiles::from([("MAIN.PLC", text)]);
+        let compiled = Compilation::compile(&files, "MAIN.PLC", Options::default());
+        let program = Arc::new(compiled.program.unwrap());
+        let at = |line: u32| program.code.iter().position(|own| own.line == line).unwrap();
+        let mut machine = Machine::new(Arc::clone(&program), Start::PowerOn);
+        let mut nc = TestNc::new(ParameterList::reference(ControlModel::Tnc415b));
+        let mut exchange = Exchange::default();
+        let mut trace = CodeTrace::default();
+        machine.scan_traced(&mut exchange, &mut nc, &mut trace).unwrap();
+        let assigned = trace.executed(at(4)).unwrap();
+        assert_eq!(
+            (&assigned.operand, assigned.word),
+            (&Some(OperandContent::Number(7)), 7)
+        );
+        assert!(!trace.executed(at(7)).unwrap().logic);
+        exchange.nc_set("I4".parse().unwrap(), true);
+        machine.scan_traced(&mut exchange, &mut nc, &mut trace).unwrap();
+        assert_eq!(trace.executed(at(4)), None, "the scan passed it by");
+        let output = trace.executed(at(7)).unwrap();
+        assert_eq!(
+            (&output.operand, output.logic),
+            (&Some(OperandContent::Bit(true)), true)
+        );
     }
 }

@@ -45,6 +45,35 @@ pub(crate) fn parse(line: &str, model: ControlModel) -> Result<Option<Command>, 
     Ok(Some(command))
 }
 
+/// A line of source text before its comment, and the comment with its sign. A semicolon inside quotation marks is text.
+pub fn split_comment(line: &str) -> (&str, &str) {
+    let mut quoted = false;
+    let at = line.find(|character| {
+        quoted ^= character == '"';
+        character == ';' && !quoted
+    });
+    line.split_at(at.unwrap_or(line.len()))
+}
+
+/// A line of source text without its comment, blanks drawn together.
+///
+/// ```
+/// assert_eq!(bahn_plc::code_of_line("  L   I4   ; door"), "L I4");
+/// ```
+pub fn code_of_line(line: &str) -> String {
+    let code = split_comment(line).0;
+    match code.contains('"') {
+        true => code.trim().to_owned(),
+        false => code.split_whitespace().collect::<Vec<_>>().join(" "),
+    }
+}
+
+/// What is wrong with a line by itself, as the editor of a control finds it on entry (errors of class E) [000:11925]; it is
+/// the compiler that sees how lines belong together.
+pub fn check_line(line: &str, model: ControlModel) -> Result<(), PlcError> {
+    parse(line, model).map(drop).map_err(|fault| fault.error)
+}
+
 /// The line without comment and trailing blanks. A semicolon inside quotation marks is text.
 fn code_part(characters: &[char]) -> &[char] {
     let mut quoted = false;

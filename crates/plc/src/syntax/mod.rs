@@ -7,4 +7,5 @@ mod operand;
 
 pub(crate) use form::{CASE_ENTRY_BYTES, Class, Cost, Mnemonic};
 pub(crate) use line::{Command, parse};
+pub use line::{check_line, code_of_line, split_comment};
 pub(crate) use operand::{LineError, MODULE_NUMBERS, Operand};

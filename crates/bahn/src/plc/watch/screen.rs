@@ -1,6 +1,5 @@
 //! What the view looks like.
 
-use bahn_exchange::Size;
 use bahn_exchange::signal::{self, Signal, SignalOperand};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout};
@@ -185,37 +184,6 @@ fn signal_of(operand: Operand) -> Option<&'static Signal> {
 
 /// Operand, decimal, hexadecimal, binary.
 fn columns(operand: Operand, content: &Content) -> [String; 4] {
-    let name = operand.to_string();
-    match (operand, content) {
-        (Operand::Number(number), Content::Number(value)) => {
-            let (digits, mask) = match number.size() {
-                Size::Byte => (2, 0xff),
-                Size::Word => (4, 0xffff),
-                Size::Double => (8, u32::MAX),
-            };
-            let bits = *value as u32 & mask;
-            let width = digits * 4;
-            [
-                name,
-                value.to_string(),
-                format!("{bits:0digits$X}"),
-                format!("{bits:0width$b}"),
-            ]
-        }
-        (_, Content::Number(value)) => [name, value.to_string(), String::new(), value.to_string()],
-        (_, Content::Text(text)) => [name, printable(text), String::new(), String::new()],
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_shown_in_their_width() {
-        let columns = |operand: &str, value| columns(operand.parse().unwrap(), &Content::Number(value));
-        assert_eq!(columns("B8", -2), ["B8", "-2", "FE", "11111110"]);
-        assert_eq!(columns("W8", 10), ["W8", "10", "000A", "0000000000001010"]);
-        assert_eq!(columns("O2", 1), ["O2", "1", "", "1"]);
-    }
+    let [decimal, hex, binary] = operand.forms(content);
+    [operand.to_string(), printable(&decimal), hex, binary]
 }

@@ -8,6 +8,7 @@ use crate::page::Turn;
 use crate::pages::ask::{Choice, Name};
 use crate::pages::corrections;
 use crate::pages::files::{Directory, Purpose};
+use crate::pages::plc;
 use crate::site::Site;
 
 const USER_PARAMETERS: u32 = 123;
@@ -17,6 +18,7 @@ const CANCEL_PROTECTION: u32 = 86_357;
 const OFFSET_ADJUSTMENT: u32 = 75_368;
 const ERASE_MEMORY: u32 = 531_210;
 const OSCILLOSCOPE: u32 = 688_379;
+const PLC_MODE: u32 = 807_667;
 const TIMERS: u32 = 857_282;
 
 /// Digits of a code number at most.
@@ -54,6 +56,7 @@ fn entered(code: u32, site: &mut Site) -> Turn {
         CANCEL_PROTECTION => Turn::Open(Box::new(Directory::new(Purpose::Unprotect, site))),
         OFFSET_ADJUSTMENT => offsets::open(site),
         OSCILLOSCOPE => Turn::Open(Box::new(oscilloscope::Signals)),
+        PLC_MODE => plc::open(site),
         TIMERS => Turn::Open(Box::new(timers::Timers)),
         _ => Turn::Done,
     }

@@ -13,8 +13,8 @@ use bahn_dialogue::Key;
 
 use crate::page::{Page, Side, Turn};
 use crate::pages::ask::Name;
-use crate::pages::help;
 use crate::pages::menu::{Item, Items, Menu};
+use crate::pages::{help, plc};
 use crate::settings::PositionType;
 use crate::site::Site;
 use crate::texts::{self, Language};
@@ -36,6 +36,8 @@ enum Function {
     NcNumber,
     PlcNumber,
     Code,
+    /// PLC EDIT: without the code number, once it was entered [000:11195-11197].
+    Plc,
     Help,
 }
 
@@ -53,6 +55,7 @@ const MACHINE: &[Function] = &[
     Function::PlcNumber,
     Function::Code,
     Function::Help,
+    Function::Plc,
 ];
 
 /// Functions of PROGRAMMING and TEST RUN.
@@ -64,6 +67,7 @@ const PROGRAMMING: &[Function] = &[
     Function::NcNumber,
     Function::PlcNumber,
     Function::Help,
+    Function::Plc,
 ];
 
 /// The menu of a side.
@@ -79,25 +83,31 @@ struct Supplementary {
     functions: &'static [Function],
 }
 
+impl Supplementary {
+    fn functions(&self, site: &Site) -> impl Iterator<Item = Function> + use<> {
+        let entered = site.plc.entered;
+        let all = self.functions.iter().copied();
+        all.filter(move |function| *function != Function::Plc || entered)
+    }
+}
+
 impl Items for Supplementary {
     fn title(&self, site: &Site) -> String {
         site.words("SUPPLEMENTARY FUNCTIONS")
     }
 
     fn items(&self, site: &Site) -> Vec<Item> {
-        self.functions
-            .iter()
-            .map(|function| function.item(site))
-            .collect()
+        let functions = self.functions(site);
+        functions.map(|function| function.item(site)).collect()
     }
 
     fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
-        let function = self.functions.get(place);
+        let function = self.functions(site).nth(place);
         function.map_or(Turn::Refused, |function| function.choose(true, site))
     }
 
     fn key(&mut self, place: usize, key: Key, site: &mut Site) -> Turn {
-        match (self.functions.get(place), key) {
+        match (self.functions(site).nth(place), key) {
             (Some(Function::CapturedAxes), Key::X | Key::Y | Key::Z | Key::Iv | Key::V) => {
                 toggle_axis(key, site)
             }
@@ -134,6 +144,7 @@ impl Function {
                 format!("BAHN {}", env!("CARGO_PKG_VERSION")),
             ),
             Function::PlcNumber => Item::new(site.words("PLC SOFTWARE NUMBER"), plc_number(site)),
+            Function::Plc => Item::new(site.words("PLC EDIT"), ""),
             Function::Code => Item::new(site.words("CODE NUMBER"), ""),
             Function::Help => Item::new(site.words("HELP"), ""),
         }
@@ -163,6 +174,7 @@ impl Function {
             Function::CapturedAxes => return ask_axes(site),
             Function::UserParameters => return parameters::user(site),
             Function::Code => return code::ask(site),
+            Function::Plc => return plc::open(site),
             Function::Help => return help::files(site),
             Function::NcNumber | Function::PlcNumber => return Turn::Refused,
         }

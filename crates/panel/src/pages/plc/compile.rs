@@ -1,0 +1,99 @@
+//! COMPILE: the program as it lies on the medium, and the list of its errors [000:11478-11480].
+
+use std::sync::Arc;
+
+use bahn_host::{FileFault, PlcSource, Severity};
+use bahn_plc::{Options, ProgramMemory};
+
+use super::editor::Editor;
+use super::source;
+use crate::page::Turn;
+use crate::pages::menu::{Item, Items, Menu};
+use crate::site::Site;
+
+/// Compiles a main file and what it links; the machine's own program takes effect at the next power-on.
+pub(super) fn run(name: &str, site: &mut Site) -> Turn {
+    let memory = match site.parameters().plc_parameters().from_eprom {
+        true => ProgramMemory::Eprom,
+        false => ProgramMemory::Ram,
+    };
+    let options = Options::for_model(site.control().model()).stored_in(memory);
+    let mut compiled = PlcSource::compile(&source::path(name, site), None, options);
+    let faults: Vec<Fault> = compiled.faults().into_iter().map(Fault::of).collect();
+    let Some(program) = compiled.compilation.program.take() else {
+        return Turn::Replace(Box::new(Menu::new(Faults { faults })));
+    };
+    let bytes = compiled.compilation.size_bytes;
+    let said = format!(
+        "{name}: 0 {}, {bytes} {}",
+        site.words("ERRORS"),
+        site.words("BYTES")
+    );
+    if name != source::main_file(site) {
+        return Turn::CloseSaying(said);
+    }
+    let program = Arc::new(program);
+    site.host.replace_plc(Arc::clone(&program));
+    site.plc.compiled = Some(program);
+    Turn::CloseSaying(format!(
+        "{said}; {}",
+        site.words("COMPILED, RUNS FROM THE NEXT POWER-ON")
+    ))
+}
+
+struct Fault {
+    file: String,
+    line: u32,
+    text: String,
+}
+
+impl Fault {
+    /// In the words of `bahn plc check`.
+    fn of(fault: FileFault) -> Fault {
+        let file = fault
+            .path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let kind = match fault.severity {
+            Severity::Error => "",
+            Severity::Warning => "warning: ",
+        };
+        let detail = match fault.label.is_empty() {
+            true => String::new(),
+            false => format!(": {}", fault.label),
+        };
+        Fault {
+            text: format!("{kind}{}{detail}", fault.title),
+            line: fault.marked.line,
+            file,
+        }
+    }
+}
+
+/// The list: ENT opens the file at the line.
+struct Faults {
+    faults: Vec<Fault>,
+}
+
+impl Items for Faults {
+    fn title(&self, site: &Site) -> String {
+        site.words("COMPILE: ERRORS")
+    }
+
+    fn items(&self, _site: &Site) -> Vec<Item> {
+        let item = |fault: &Fault| Item::new(format!("{}:{} {}", fault.file, fault.line, fault.text), "");
+        self.faults.iter().map(item).collect()
+    }
+
+    fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
+        let Some(fault) = self.faults.get(place) else {
+            return Turn::Refused;
+        };
+        match Editor::open(&fault.file, fault.line as usize, site) {
+            Ok(editor) => Turn::Replace(Box::new(editor)),
+            Err(why) => Turn::Say(why),
+        }
+    }
+}

@@ -1,0 +1,385 @@
+//! EDIT: a screen editor for the PLC's source files [000:11370-11384]. Each line is checked when it is left [000:11925], and what has
+//! changed is on the medium then.
+
+use bahn_dialogue::Key;
+use bahn_parameters::MessageId;
+use bahn_plc::check_line;
+
+use super::source::{NotWritten, Source};
+use crate::page::{Page, Turn, View, first_in_sight};
+use crate::pages::ask::Later;
+use crate::screen::{Dialogue, Line, Mark, Window, WindowKind};
+use crate::site::Site;
+
+/// Lines that a page goes.
+const PAGE: isize = 12;
+/// Characters of a line in the window, behind its number.
+const WIDTH: usize = 70;
+/// Width of line numbers.
+const NUMBER: usize = 6;
+/// Characters of a word to look for at most.
+const WORD_MAX: usize = 32;
+/// Characters of a line at most: what is longer is no line of a program [000:11940].
+const LINE_MAX: usize = 128;
+/// Lines of a file at most.
+const LINES_MAX: usize = 100_000;
+
+/// Characters that the keyboard does not have, on soft keys.
+const CHARACTERS: [&str; 16] = [
+    "BLANK", "=", ";", "_", "+", ",", "#", "\"", "(", ")", "[", "]", "<", ">", "*", "/",
+];
+
+/// The editor.
+pub(super) struct Editor {
+    name: String,
+    source: Source,
+    line: usize,
+    /// Characters before the cursor.
+    column: usize,
+    overwrites: bool,
+    /// The line under the cursor is not as it was.
+    changed: bool,
+    find: Later,
+    goto: Later,
+    word: String,
+}
+
+impl Editor {
+    /// Opens a file at a line, from 1.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn open(name: &str, line: usize, site: &mut Site) -> Result<Editor, String> {
+        let mut source = Source::read(name, site)?;
+        if source.lines.is_empty() {
+            source.lines.push(String::new());
+        }
+        site.plc.edited = Some(name.to_owned());
+        let last = source.lines.len() - 1;
+        Ok(Editor {
+            name: name.to_owned(),
+            source,
+            line: line.saturating_sub(1).min(last),
+            column: 0,
+            overwrites: false,
+            changed: false,
+            find: Later::default(),
+            goto: Later::default(),
+            word: String::new(),
+        })
+    }
+
+    fn current(&self) -> &str {
+        self.source.lines.get(self.line).map_or("", String::as_str)
+    }
+
+    fn length(&self) -> usize {
+        self.current().chars().count()
+    }
+
+    /// The byte before which the cursor stands.
+    fn place(&self) -> usize {
+        let text = self.current();
+        text.char_indices()
+            .nth(self.column)
+            .map_or(text.len(), |(at, _)| at)
+    }
+
+    /// The line is left: it is checked, and the file written.
+    fn leave(&mut self, site: &Site) -> Turn {
+        if !std::mem::take(&mut self.changed) {
+            return Turn::Done;
+        }
+        let checked = check_line(self.current(), site.control().model());
+        match self.source.write() {
+            Ok(()) => {}
+            Err(NotWritten::Words(why)) => {
+                self.changed = true;
+                return Turn::Say(why);
+            }
+            Err(NotWritten::Changed) => {
+                let renewed = self.source.renew();
+                self.go_to(self.line);
+                return Turn::Say(match renewed {
+                    Ok(()) => site.words("FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"),
+                    Err(why) => why,
+                });
+            }
+        }
+        match checked {
+            Ok(()) => Turn::Done,
+            Err(error) => Turn::Say(format!("{} {error}", site.words("INPUT ERROR"))),
+        }
+    }
+
+    fn go_to(&mut self, line: usize) {
+        if self.source.lines.is_empty() {
+            self.source.lines.push(String::new());
+        }
+        self.line = line.min(self.source.lines.len() - 1);
+        self.column = self.column.min(self.length());
+    }
+
+    fn go(&mut self, lines: isize, site: &Site) -> Turn {
+        let turn = self.leave(site);
+        self.go_to(self.line.saturating_add_signed(lines));
+        turn
+    }
+
+    fn put(&mut self, character: char) -> bool {
+        let replaces = self.overwrites && self.column < self.length();
+        if self.length() >= LINE_MAX && !replaces {
+            return false;
+        }
+        let at = self.place();
+        let Some(line) = self.source.lines.get_mut(self.line) else {
+            return false;
+        };
+        if replaces {
+            line.remove(at);
+        }
+        line.insert(at, character);
+        self.column += 1;
+        self.changed = true;
+        true
+    }
+
+    /// What stands behind the cursor becomes a line of its own.
+    fn split(&mut self, site: &Site) -> Turn {
+        if self.source.lines.len() >= LINES_MAX {
+            return Turn::Refused;
+        }
+        let at = self.place();
+        let Some(line) = self.source.lines.get_mut(self.line) else {
+            return Turn::Refused;
+        };
+        let rest = line.split_off(at);
+        self.source.lines.insert(self.line + 1, rest);
+        self.changed = true;
+        let turn = self.leave(site);
+        self.column = 0;
+        self.go_to(self.line + 1);
+        turn
+    }
+
+    /// Takes the character before the cursor away, or joins the line with the one before.
+    fn back(&mut self) {
+        if self.column > 0 {
+            self.column -= 1;
+            self.delete();
+        } else if self.line > 0 && self.line < self.source.lines.len() {
+            let rest = self.source.lines.remove(self.line);
+            self.line -= 1;
+            self.column = self.length();
+            if let Some(line) = self.source.lines.get_mut(self.line) {
+                line.push_str(&rest);
+            }
+            self.changed = true;
+        }
+    }
+
+    /// Takes the character under the cursor away.
+    fn delete(&mut self) {
+        if self.column >= self.length() {
+            return;
+        }
+        let at = self.place();
+        if let Some(line) = self.source.lines.get_mut(self.line) {
+            line.remove(at);
+            self.changed = true;
+        }
+    }
+
+    fn delete_line(&mut self, site: &Site) -> Turn {
+        if self.line < self.source.lines.len() {
+            self.source.lines.remove(self.line);
+        }
+        self.go_to(self.line);
+        self.changed = true;
+        self.leave(site)
+    }
+
+    fn insert_line(&mut self, site: &Site) -> Turn {
+        self.column = self.length();
+        self.split(site)
+    }
+
+    /// The next line that has the word, from the one behind the cursor on and around.
+    fn search(&mut self, site: &Site) -> Turn {
+        let turn = self.leave(site);
+        let (count, word) = (self.source.lines.len(), self.word.to_uppercase());
+        let mut order = (1..=count).map(|way| (self.line + way) % count);
+        let has = |place: &usize| {
+            let line = self.source.lines.get(*place);
+            line.is_some_and(|line| line.to_uppercase().contains(&word))
+        };
+        match order.find(has) {
+            Some(place) => {
+                self.column = 0;
+                self.go_to(place);
+                turn
+            }
+            None => Turn::Say(site.words("NOT FOUND")),
+        }
+    }
+
+    fn function(&mut self, place: usize, site: &mut Site) -> Turn {
+        match place {
+            0 => self.overwrites = !self.overwrites,
+            1 => return self.insert_line(site),
+            2 => return self.delete_line(site),
+            3 => return self.find.ask(site.words("FIND ="), WORD_MAX),
+            4 => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER),
+            5 => return self.go(-PAGE, site),
+            6 => return self.go(PAGE, site),
+            _ => return self.finish(site),
+        }
+        Turn::Done
+    }
+
+    fn finish(&mut self, site: &Site) -> Turn {
+        match self.leave(site) {
+            Turn::Done => Turn::Close,
+            // What is not on the medium is not left.
+            Turn::Say(text) if self.changed => Turn::Say(text),
+            Turn::Say(text) => Turn::CloseSaying(text),
+            other => other,
+        }
+    }
+
+    fn shown(&self, place: usize, text: &str) -> Line {
+        let current = place == self.line;
+        // A long line moves to the left under its cursor.
+        let first = if current {
+            self.column.saturating_sub(WIDTH - 1)
+        } else {
+            0
+        };
+        let visible: String = text.chars().skip(first).take(WIDTH).collect();
+        let at = NUMBER + 1 + self.column - first.min(self.column);
+        Line {
+            text: format!("{:>NUMBER$} {visible}", place + 1),
+            current,
+            marks: match current {
+                true => vec![(at, at + 1, Mark::Cursor)],
+                false => Vec::new(),
+            },
+        }
+    }
+}
+
+impl Page for Editor {
+    fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        match key {
+            Key::Up => return self.go(-1, site),
+            Key::Down => return self.go(1, site),
+            Key::Left => self.column = self.column.saturating_sub(1),
+            Key::Right => self.column = (self.column + 1).min(self.length()),
+            Key::Ent => return self.split(site),
+            Key::Ce => self.back(),
+            Key::Del => self.delete(),
+            Key::Goto => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER),
+            Key::End => return self.finish(site),
+            key => match key.character() {
+                Some(character) if self.put(character) => {}
+                _ => return Turn::Refused,
+            },
+        }
+        Turn::Done
+    }
+
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        let names = CHARACTERS.map(|name| match name {
+            "BLANK" => site.words("BLANK"),
+            name => name.to_owned(),
+        });
+        let functions = vec![
+            site.words("INSERT/OVERWRITE"),
+            site.words("INSERT LINE"),
+            site.words("DELETE LINE"),
+            site.words("FIND"),
+            site.words("GOTO"),
+            site.words("PAGE UP"),
+            site.words("PAGE DOWN"),
+            site.words("END"),
+        ];
+        let rows = names.chunks(8).map(<[String]>::to_vec);
+        std::iter::once(functions).chain(rows).collect()
+    }
+
+    fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
+        let Some(row) = row.checked_sub(1) else {
+            return self.function(place, site);
+        };
+        let character = match CHARACTERS.get(row * 8 + place) {
+            Some(&"BLANK") => Some(' '),
+            name => name.and_then(|name| name.chars().next()),
+        };
+        match character {
+            Some(character) if self.put(character) => Turn::Done,
+            _ => Turn::Refused,
+        }
+    }
+
+    /// What is pasted is typed; its ends of lines are those of lines.
+    fn text(&mut self, text: &str, site: &mut Site) -> Turn {
+        let (overwrites, mut turn) = (std::mem::take(&mut self.overwrites), Turn::Done);
+        for (place, line) in text.lines().enumerate() {
+            if place > 0 {
+                turn = self.split(site);
+            }
+            let typed = line.chars().map(|c| if c == '\t' { ' ' } else { c });
+            if !typed.filter(|c| !c.is_control()).all(|c| self.put(c)) {
+                turn = Turn::Say(site.message(MessageId::EntryValueIncorrect));
+            }
+        }
+        self.overwrites = overwrites;
+        turn
+    }
+
+    fn show(&self, site: &Site, lines: usize) -> View {
+        let total = self.source.lines.len();
+        let first = first_in_sight(self.line, total, lines);
+        let shown = self.source.lines.iter().enumerate().skip(first).take(lines);
+        let mode = match self.overwrites {
+            true => site.words("OVERWRITE"),
+            false => site.words("INSERT"),
+        };
+        View {
+            window: Some(Window {
+                title: format!(
+                    "{} {}  {} {}  {} {}  {mode}",
+                    site.words("FILE"),
+                    self.name,
+                    site.words("LINE"),
+                    self.line + 1,
+                    site.words("COLUMN"),
+                    self.column + 1
+                ),
+                kind: WindowKind::Text,
+                lines: shown.map(|(place, text)| self.shown(place, text)).collect(),
+                first,
+                total,
+            }),
+            dialogue: Dialogue::default(),
+        }
+    }
+
+    fn tick(&mut self, site: &mut Site) -> Turn {
+        if let Some(word) = self.find.take() {
+            self.word = word;
+            return self.search(site);
+        }
+        let Some(text) = self.goto.take() else {
+            return Turn::Done;
+        };
+        match text.parse::<usize>() {
+            Ok(line) if line > 0 => {
+                let turn = self.leave(site);
+                self.go_to(line - 1);
+                turn
+            }
+            _ => Turn::Say(site.message(MessageId::EntryValueIncorrect)),
+        }
+    }
+}

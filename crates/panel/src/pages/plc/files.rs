@@ -1,0 +1,71 @@
+//! The directory of the PLC's source files: one is edited, or compiled as main program.
+
+use super::compile;
+use super::editor::Editor;
+use super::source;
+use crate::page::Turn;
+use crate::pages::menu::{Item, Items, Menu};
+use crate::site::Site;
+
+/// What a file is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// EDIT.
+    Edit,
+    /// COMPILE.
+    Compile,
+}
+
+/// The directory, with the cursor on the file that is most likely meant.
+pub(super) fn open(purpose: Purpose, site: &Site) -> Turn {
+    let names = source::list(site);
+    let wanted = match (purpose, &site.plc.edited) {
+        (Purpose::Edit, Some(edited)) => edited.as_str(),
+        _ => source::main_file(site),
+    };
+    let at = names.iter().position(|name| name == wanted).unwrap_or(0);
+    Turn::Open(Box::new(Menu::at(SourceFiles { purpose, names }, at)))
+}
+
+struct SourceFiles {
+    purpose: Purpose,
+    names: Vec<String>,
+}
+
+impl Items for SourceFiles {
+    fn title(&self, site: &Site) -> String {
+        match self.purpose {
+            Purpose::Edit => site.words("PLC FILES: EDIT"),
+            Purpose::Compile => site.words("PLC FILES: COMPILE"),
+        }
+    }
+
+    fn items(&self, site: &Site) -> Vec<Item> {
+        let main = source::main_file(site);
+        let runtime = |name: &String| {
+            let is_main = name == main;
+            Item::new(
+                name.clone(),
+                if is_main {
+                    site.words("RUNTIME PGM")
+                } else {
+                    String::new()
+                },
+            )
+        };
+        self.names.iter().map(runtime).collect()
+    }
+
+    fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
+        let Some(name) = self.names.get(place) else {
+            return Turn::Refused;
+        };
+        match self.purpose {
+            Purpose::Edit => match Editor::open(name, 1, site) {
+                Ok(editor) => Turn::Replace(Box::new(editor)),
+                Err(why) => Turn::Say(why),
+            },
+            Purpose::Compile => compile::run(name, site),
+        }
+    }
+}

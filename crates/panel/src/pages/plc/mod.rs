@@ -1,0 +1,124 @@
+//! The PLC mode behind code number 807 667: EDIT, TABLE, TRACE, COMPILE [000:11187-11480].
+
+mod code;
+mod compile;
+mod diagram;
+mod editor;
+mod files;
+mod operands;
+mod source;
+
+use bahn_dialogue::Key;
+use bahn_parameters::MessageId;
+
+use crate::page::{Page, Turn, View};
+use crate::screen::{Line, Window, WindowKind};
+use crate::site::Site;
+use files::Purpose;
+
+/// The code number opens the mode until power-off; controls without it have no PLC that could be programmed.
+pub(crate) fn open(site: &mut Site) -> Turn {
+    if !site.control().model().has_plc_mode() {
+        return Turn::Say(site.message(MessageId::EntryValueIncorrect));
+    }
+    site.plc.entered = true;
+    Turn::Open(Box::new(MainMenu))
+}
+
+/// The main menu [000:11203-11241].
+struct MainMenu;
+
+impl MainMenu {
+    fn lines(site: &Site) -> [String; 5] {
+        let plc = site.control().plc();
+        let time = plc.time();
+        let bytes = plc.program().size_bytes;
+        let runtime = plc.program().files.first().map_or("", |file| file.name.as_str());
+        let edited = site.plc.edited.as_deref().unwrap_or_default();
+        [
+            format!(
+                "{:<17}{:<9}{:>4.0} %",
+                site.words("PROCESSING TIME:"),
+                site.words("MAXIMUM"),
+                time.maximum_percent()
+            ),
+            format!(
+                "{:<17}{:<9}{:>4.0} %",
+                "",
+                site.words("CURRENT"),
+                time.current_percent()
+            ),
+            format!(
+                "{:<17}{:>13} KBYTE",
+                site.words("CODE LENGTH"),
+                bytes.div_ceil(1024)
+            ),
+            format!("{:<17}{runtime}", site.words("RUNTIME PGM")),
+            format!("{:<17}{edited}", site.words("EDITOR PGM")),
+        ]
+    }
+}
+
+impl Page for MainMenu {
+    fn key(&mut self, key: Key, _site: &mut Site) -> Turn {
+        match key {
+            Key::End | Key::Del | Key::NoEnt => Turn::Close,
+            _ => Turn::Refused,
+        }
+    }
+
+    fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        let empty = String::new;
+        vec![vec![
+            site.words("EDIT"),
+            site.words("TABLE"),
+            site.words("TRACE"),
+            site.words("LOGIC DIAGRAM"),
+            site.words("COMPILE"),
+            empty(),
+            empty(),
+            site.words("END"),
+        ]]
+    }
+
+    fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
+        match place {
+            0 => files::open(Purpose::Edit, site),
+            1 => Turn::Open(Box::new(operands::Table::default())),
+            2 => Turn::Open(Box::new(code::Code::new(site))),
+            3 => Turn::Open(Box::new(diagram::LogicDiagram::default())),
+            4 => files::open(Purpose::Compile, site),
+            _ => Turn::Close,
+        }
+    }
+
+    fn show(&self, site: &Site, _lines: usize) -> View {
+        let mut lines: Vec<String> = MainMenu::lines(site).to_vec();
+        if let Some(program) = &site.plc.compiled {
+            let name = program.files.first().map_or("", |file| file.name.as_str());
+            lines.push(format!(
+                "{name}: {}",
+                site.words("COMPILED, RUNS FROM THE NEXT POWER-ON")
+            ));
+        }
+        if let Some(error) = site.control().plc().stopped() {
+            lines.push(error.to_string());
+        }
+        View::of(window(site.words("PLC PROGRAMMING"), lines))
+    }
+}
+
+/// A window of lines without a cursor.
+fn window(title: String, lines: Vec<String>) -> Window {
+    let line = |text| Line {
+        text,
+        ..Line::default()
+    };
+    Window {
+        title,
+        kind: WindowKind::Text,
+        total: lines.len(),
+        lines: lines.into_iter().map(line).collect(),
+        first: 0,
+    }
+}

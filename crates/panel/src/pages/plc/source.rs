@@ -1,0 +1,148 @@
+//! The PLC's source files beside the main file, as text: read and written whole or not at all.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use bahn_host::files;
+
+use crate::site::Site;
+
+/// Bytes of a source file at most.
+const SIZE_MAX: u64 = 4 << 20;
+
+/// How a file writes its characters: bytes that are no UTF-8 are the control's own Latin letters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Letters {
+    Utf8,
+    Latin,
+}
+
+/// A source file.
+#[derive(Debug)]
+pub(super) struct Source {
+    path: PathBuf,
+    /// Its lines, without what ends them.
+    pub lines: Vec<String>,
+    letters: Letters,
+    ending: &'static str,
+    /// What lies on the medium, as far as is known here.
+    stored: Vec<u8>,
+}
+
+/// Why a file is not written.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum NotWritten {
+    /// Somebody else has written it since it was read.
+    Changed,
+    /// In words: the medium does not do it.
+    Words(String),
+}
+
+impl Source {
+    /// Reads a file of the folder by its name.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn read(name: &str, site: &Site) -> Result<Source, String> {
+        let known = list(site).iter().any(|own| own == name);
+        let path = folder(site).join(name);
+        match known {
+            true => Source::open(path),
+            false => Err(format!("{name} is no file of the PLC program")),
+        }
+    }
+
+    fn open(path: PathBuf) -> Result<Source, String> {
+        let stored = files::read_table(&path).map_err(|error| error.to_string())?;
+        if stored.contains(&0) {
+            return Err(format!("{} is no text of single bytes", path.display()));
+        }
+        let (letters, text) = match std::str::from_utf8(&stored) {
+            Ok(text) => (Letters::Utf8, text.to_owned()),
+            Err(_) => (
+                Letters::Latin,
+                stored.iter().map(|byte| char::from(*byte)).collect(),
+            ),
+        };
+        let ending = if text.contains("\r\n") { "\r\n" } else { "\n" };
+        let lines = text.lines().map(str::to_owned).collect();
+        Ok(Source {
+            path,
+            lines,
+            letters,
+            ending,
+            stored,
+        })
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        let mut text = self.lines.join(self.ending);
+        if !text.is_empty() {
+            text.push_str(self.ending);
+        }
+        match self.letters {
+            Letters::Utf8 => text.into_bytes(),
+            Letters::Latin => text.chars().map(|c| u8::try_from(c).unwrap_or(b'?')).collect(),
+        }
+    }
+
+    /// Writes what has changed, whole or not at all.
+    ///
+    /// # Errors
+    /// [`NotWritten`]; the file is what it was.
+    pub fn write(&mut self) -> Result<(), NotWritten> {
+        let words = |error: bahn_host::HostError| NotWritten::Words(error.to_string());
+        let bytes = self.bytes();
+        if bytes == self.stored {
+            return Ok(());
+        }
+        if files::read_table(&self.path).map_err(words)? != self.stored {
+            return Err(NotWritten::Changed);
+        }
+        files::write_whole(&self.path, &bytes).map_err(words)?;
+        self.stored = bytes;
+        Ok(())
+    }
+
+    /// Reads it again.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn renew(&mut self) -> Result<(), String> {
+        *self = Source::open(self.path.clone())?;
+        Ok(())
+    }
+}
+
+/// The folder of the main file.
+fn folder(site: &Site) -> PathBuf {
+    let main = site.machine.root.join(&site.machine.folder.plc);
+    main.parent().map(Path::to_owned).unwrap_or_default()
+}
+
+/// The main file of the machine's program.
+pub(super) fn main_file<'a>(site: &'a Site<'_>) -> &'a str {
+    let path = &site.machine.folder.plc;
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+/// Where a main file lies; its name comes from [`list`].
+pub(super) fn path(name: &str, site: &Site) -> PathBuf {
+    folder(site).join(name)
+}
+
+/// The files of the program's folder by name: plain files that are not hidden and not too long. Links lead out of it and are none.
+pub(super) fn list(site: &Site) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(folder(site)) else {
+        return Vec::new();
+    };
+    let names = entries.flatten().filter_map(|entry| {
+        let about = fs::symlink_metadata(entry.path()).ok()?;
+        let name = entry.file_name().into_string().ok()?;
+        let fits = about.is_file() && about.len() <= SIZE_MAX && !name.starts_with('.');
+        fits.then_some(name)
+    });
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}

@@ -1,0 +1,388 @@
+//! The PLC mode by keys: table, editor, compiler, trace and logic diagram of the machine that runs.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
+
+mod support;
+
+use bahn_exchange::Operand;
+use support::Trainee;
+
+const HIGH: char = '\u{2580}';
+
+/// Enters the code number; the main menu has the keys.
+fn plc_mode(trainee: &mut Trainee) {
+    trainee.press("PROGRAM MOD");
+    current(trainee, "CODE NUMBER");
+    trainee.press("ENT").number("807667").press("ENT");
+}
+
+/// Goes down a list to the line that begins so.
+fn current(trainee: &mut Trainee, name: &str) {
+    for _ in 0..40 {
+        let lines = trainee.screen().program.lines;
+        if lines
+            .iter()
+            .any(|line| line.current && line.text.starts_with(name))
+        {
+            return;
+        }
+        trainee.press("DOWN");
+    }
+    panic!("no {name}: {:#?}", trainee.screen().program);
+}
+
+/// Presses the soft key of this text, whatever row it is in.
+fn soft(trainee: &mut Trainee, name: &str) {
+    for _ in 0..trainee.screen().soft_keys.rows.max(1) {
+        let keys = trainee.screen().soft_keys.keys;
+        if let Some(place) = keys.iter().position(|key| key == name) {
+            trainee.press(&format!("SK{}", place + 1));
+            return;
+        }
+        trainee.press("SK_RIGHT");
+    }
+    panic!("no soft key {name}: {:?}", trainee.screen().soft_keys);
+}
+
+fn line(trainee: &mut Trainee) -> String {
+    let lines = trainee.screen().program.lines;
+    lines.into_iter().find(|line| line.current).unwrap().text
+}
+
+fn title(trainee: &mut Trainee) -> String {
+    trainee.screen().program.title
+}
+
+fn text(trainee: &mut Trainee, text: &str) {
+    let json = serde_json::json!({ "text": text }).to_string();
+    trainee.give(&json).wait(0.1);
+}
+
+fn value(trainee: &Trainee, operand: &str) -> String {
+    let operand: Operand = operand.parse().unwrap();
+    operand
+        .read(trainee.station.control().exchange().plc())
+        .to_string()
+}
+
+/// Types letters and digits, each by its key.
+fn typed(trainee: &mut Trainee, word: &str) {
+    for character in word.chars() {
+        trainee.press(&character.to_string());
+    }
+}
+
+#[test]
+fn the_code_number_opens_the_mode_until_power_off() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.press("PROGRAM MOD");
+    let has_edit = |trainee: &mut Trainee| {
+        let lines = trainee.screen().program.lines;
+        lines.iter().any(|line| line.text == "PLC EDIT")
+    };
+    assert!(!has_edit(&mut trainee));
+    trainee.press("END");
+    plc_mode(&mut trainee);
+    assert_eq!(title(&mut trainee), "PLC PROGRAMMING");
+    let program = trainee.station.control().plc().program().clone();
+    let time = trainee.station.control().plc().time();
+    let lines = trainee.screen().program.lines;
+    let expected = [
+        format!("PROCESSING TIME: MAXIMUM  {:>4.0} %", time.maximum_percent()),
+        format!("CODE LENGTH      {:>13} KBYTE", program.size_bytes.div_ceil(1024)),
+        "RUNTIME PGM      MAIN.PLC".to_owned(),
+    ];
+    assert!(program.size_bytes > 0 && time.maximum_percent() > 0.0);
+    for (place, expected) in [0, 2, 3].into_iter().zip(expected) {
+        assert_eq!(lines[place].text, expected);
+    }
+    // The program is told the code number in D276.
+    assert_eq!(value(&trainee, "D276"), "807667");
+    soft(&mut trainee, "END");
+    assert!(has_edit(&mut trainee), "the menu has it without the number");
+    current(&mut trainee, "PLC EDIT");
+    trainee.press("ENT");
+    assert_eq!(title(&mut trainee), "PLC PROGRAMMING");
+    trainee.press("END END");
+    trainee.give(r#"{"power":false}"#).wait(0.5);
+    trainee.give(r#"{"power":true}"#).ready();
+    trainee.press("PROGRAM MOD");
+    assert!(!has_edit(&mut trainee));
+}
+
+#[test]
+fn a_tnc_360_has_no_plc_mode() {
+    let mut trainee = Trainee::at("mill-tnc360");
+    trainee.ready();
+    plc_mode(&mut trainee);
+    assert_eq!(trainee.messages().last().unwrap(), "ENTRY VALUE INCORRECT");
+    assert_ne!(title(&mut trainee), "PLC PROGRAMMING");
+}
+
+#[test]
+fn the_table_shows_and_sets_operands() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    plc_mode(&mut trainee);
+    soft(&mut trainee, "TABLE");
+    // M3000 is message 76 of the PLC, which the program leaves alone: M2924 + n.
+    trainee.press("GOTO").number("3000").press("ENT");
+    assert!(
+        line(&mut trainee).starts_with("M3000   0"),
+        "{}",
+        line(&mut trainee)
+    );
+    soft(&mut trainee, "SET");
+    assert!(
+        line(&mut trainee).starts_with("M3000   1"),
+        "{}",
+        line(&mut trainee)
+    );
+    assert_eq!(trainee.messages(), ["PLC: ERROR 76"]);
+    trainee.number("0").press("ENT");
+    assert_eq!(trainee.messages(), [""; 0]);
+    trainee.number("2").press("ENT");
+    assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
+    trainee.press("CE CE");
+    // A word, hexadecimal and decimal.
+    soft(&mut trainee, "GOTO");
+    trainee.press("W").number("900").press("ENT");
+    assert_eq!(
+        (title(&mut trainee).as_str(), line(&mut trainee).as_str()),
+        ("TABLE W", "W900    0")
+    );
+    soft(&mut trainee, "HEX/DECIMAL");
+    typed(&mut trainee, "1F");
+    trainee.press("ENT");
+    assert_eq!(
+        (line(&mut trainee).as_str(), value(&trainee, "W900").as_str()),
+        ("W900    001F", "31")
+    );
+    soft(&mut trainee, "HEX/DECIMAL");
+    trainee.number("-2").press("ENT");
+    assert_eq!(
+        (line(&mut trainee).as_str(), value(&trainee, "B900").as_str()),
+        ("W900    -2", "-1")
+    );
+    // What the control itself writes is live, with its name.
+    soft(&mut trainee, "I");
+    assert_eq!(title(&mut trainee), "TABLE I");
+    trainee.press("GOTO");
+    typed(&mut trainee, "S1");
+    trainee.press("ENT");
+    assert_eq!(
+        trainee.messages(),
+        ["ENTRY VALUE INCORRECT"],
+        "strings have no table"
+    );
+}
+
+#[test]
+fn a_faulty_line_is_found_mended_and_runs_from_the_next_power_on() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    plc_mode(&mut trainee);
+    let main = trainee.file("plc/MAIN.PLC");
+    let begin = main
+        .lines()
+        .position(|line| line.contains("L     M2719"))
+        .unwrap()
+        + 1;
+    soft(&mut trainee, "EDIT");
+    assert!(
+        line(&mut trainee).starts_with("MAIN.PLC"),
+        "{}",
+        line(&mut trainee)
+    );
+    trainee.press("ENT GOTO").number(&begin.to_string()).press("ENT");
+    assert_eq!(
+        title(&mut trainee),
+        format!("FILE MAIN.PLC  LINE {begin}  COLUMN 1  INSERT")
+    );
+    // `LN M3100`, `= M3001` by keys: message 77 while M3100 is 0. Then a line that no PLC knows.
+    typed(&mut trainee, "LN");
+    soft(&mut trainee, "BLANK");
+    typed(&mut trainee, "M3100");
+    trainee.press("ENT");
+    soft(&mut trainee, "=");
+    soft(&mut trainee, "BLANK");
+    typed(&mut trainee, "M3001");
+    trainee.press("ENT");
+    assert_eq!(trainee.messages(), [""; 0]);
+    text(&mut trainee, "XYZ M1\n");
+    trainee.press("ENT");
+    let wrong = begin + 2;
+    assert_eq!(trainee.messages(), ["INPUT ERROR 0 not a valid command"]);
+    trainee.press("CE");
+    let edited = trainee.file("plc/MAIN.PLC");
+    let lines: Vec<&str> = edited.lines().skip(begin - 1).take(4).collect();
+    assert_eq!(
+        lines,
+        [
+            "LN M3100",
+            "= M3001",
+            "XYZ M1",
+            "       L     M2719        ; word processing instead of the markers of old programs"
+        ]
+    );
+    assert_eq!(edited.lines().count(), main.lines().count() + 3);
+    trainee.press("END");
+    soft(&mut trainee, "COMPILE");
+    trainee.press("ENT");
+    assert_eq!(title(&mut trainee), "COMPILE: ERRORS");
+    let shown = line(&mut trainee);
+    assert!(
+        shown.starts_with(&format!("MAIN.PLC:{wrong} 0 not a valid command")),
+        "{shown}"
+    );
+    trainee.press("ENT");
+    assert_eq!(line(&mut trainee), format!("{wrong:>6} XYZ M1"));
+    soft(&mut trainee, "DELETE LINE");
+    trainee.press("END");
+    soft(&mut trainee, "COMPILE");
+    trainee.press("ENT");
+    let said = trainee.messages();
+    assert!(said[0].starts_with("MAIN.PLC: 0 ERRORS, "), "{said:?}");
+    assert!(said[0].ends_with("RUNS FROM THE NEXT POWER-ON"), "{said:?}");
+    trainee.press("CE").wait(1.0);
+    assert_eq!(trainee.messages(), [""; 0], "the program of before runs on");
+    let before_s = trainee.screen().time_s;
+    trainee.give(r#"{"power":false}"#).wait(0.5);
+    trainee.give(r#"{"power":true}"#).wait(5.0).press("CE").wait(2.0);
+    assert!(
+        trainee.messages().contains(&"PLC: ERROR 77".to_owned()),
+        "{:?}",
+        trainee.messages()
+    );
+    // Who looks back finds the program of then, and that of now where he came from.
+    let now_s = trainee.screen().time_s;
+    let running = |trainee: &Trainee| trainee.station.control().plc().program().files[0].lines.len();
+    let new = main.lines().count() + 2;
+    assert_eq!(running(&trainee), new);
+    trainee.station.go_to(before_s - 1.0).unwrap();
+    assert_eq!(running(&trainee), main.lines().count());
+    trainee.station.go_to(now_s).unwrap();
+    assert_eq!(running(&trainee), new);
+}
+
+#[test]
+fn what_somebody_else_has_written_is_not_lost() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    plc_mode(&mut trainee);
+    soft(&mut trainee, "EDIT");
+    trainee.press("ENT");
+    trainee.write("plc/MAIN.PLC", "EM\n");
+    typed(&mut trainee, "A");
+    trainee.press("DOWN");
+    assert_eq!(
+        trainee.messages(),
+        ["FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"]
+    );
+    assert_eq!(
+        (trainee.file("plc/MAIN.PLC").as_str(), line(&mut trainee).as_str()),
+        ("EM\n", "     1 EM")
+    );
+    // FIND, and overwriting; a file of the control's own letters stays one.
+    trainee.press("CE END");
+    let latin = b"L I4 ;T\xfcr\r\n= O2\r\nEM\r\n";
+    std::fs::write(trainee.folder().join("plc/MAIN.PLC"), latin).unwrap();
+    soft(&mut trainee, "EDIT");
+    trainee.press("ENT");
+    soft(&mut trainee, "FIND");
+    typed(&mut trainee, "O2");
+    trainee.press("ENT");
+    assert_eq!(line(&mut trainee), "     2 = O2");
+    soft(&mut trainee, "INSERT/OVERWRITE");
+    trainee.press("RIGHT RIGHT RIGHT 3 END");
+    let written = std::fs::read(trainee.folder().join("plc/MAIN.PLC")).unwrap();
+    assert_eq!(written, b"L I4 ;T\xfcr\r\n= O3\r\nEM\r\n");
+}
+
+#[test]
+fn trace_shows_what_the_latest_scan_did() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    plc_mode(&mut trainee);
+    soft(&mut trainee, "TRACE");
+    assert_eq!(title(&mut trainee), "TRACE MAIN.PLC");
+    // M2719 is set since the first scan: instruction, operand, logic accumulator.
+    let words = |text: String| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    let first = words(line(&mut trainee));
+    assert_eq!(
+        first[1..6],
+        ["18", "L", "M2719", "1", "1"].map(str::to_owned)[..],
+        "{first:?}"
+    );
+    assert_eq!(first[0], "*");
+    // What belongs to the first scan after power-on is passed by.
+    soft(&mut trainee, "FIND");
+    typed(&mut trainee, "M2487");
+    trainee.press("ENT");
+    let passed = line(&mut trainee);
+    assert!(
+        !passed.starts_with('*') && passed.ends_with("S M2487"),
+        "{passed}"
+    );
+    // A display that stands does not follow.
+    soft(&mut trainee, "GOTO");
+    trainee.number(&number.to_string()).press("ENT");
+    assert!(line(&mut trainee).contains("L M2719"));
+    soft(&mut trainee, "STOP DISPLAY");
+    let stands = trainee.screen().program.lines;
+    trainee.wait(0.5);
+    assert_eq!(trainee.screen().program.lines, stands);
+    soft(&mut trainee, "START DISPLAY");
+    soft(&mut trainee, "LOGIC DIAGRAM");
+    assert_eq!(title(&mut trainee), "LOGIC DIAGRAM");
+}
+
+#[test]
+fn the_diagram_catches_an_edge() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    plc_mode(&mut trainee);
+    soft(&mut trainee, "LOGIC DIAGRAM");
+    for operand in ["M3100", "M2719"] {
+        trainee.press("ENT");
+        typed(&mut trainee, operand);
+        trainee.press("ENT DOWN");
+    }
+    trainee.press("UP UP 1");
+    assert_eq!(line(&mut trainee), "M3100  1");
+    soft(&mut trainee, "START TRACE");
+    trainee.wait(11.0);
+    let records = |trainee: &mut Trainee| trainee.screen().status.flags.contains(&"PCTR".to_owned());
+    assert!(records(&mut trainee), "it waits for the event");
+    trainee.press("END");
+    soft(&mut trainee, "TABLE");
+    trainee.press("GOTO").number("3100").press("ENT");
+    soft(&mut trainee, "SET");
+    assert!(records(&mut trainee));
+    trainee.press("END").wait(11.0);
+    assert!(!records(&mut trainee), "512 scans of 20 ms are behind it");
+    soft(&mut trainee, "LOGIC DIAGRAM");
+    let expected = format!("M3100  1  {}{}", "_".repeat(32), HIGH.to_string().repeat(32));
+    assert_eq!(line(&mut trainee), expected);
+    let lines = trainee.screen().program.lines;
+    assert_eq!(
+        lines[1].text,
+        format!("M2719  -  {}", HIGH.to_string().repeat(64))
+    );
+    assert!(
+        title(&mut trainee).contains(" / 1024  TRIGGER "),
+        "{}",
+        title(&mut trainee)
+    );
+    // To the left there are only scans before it.
+    soft(&mut trainee, "<");
+    assert_eq!(line(&mut trainee), format!("M3100  1  {}", "_".repeat(64)));
+    // DEL erases a row; a word has no place in it.
+    trainee.press("DEL");
+    assert!(line(&mut trainee).starts_with("M2719"), "{}", line(&mut trainee));
+    soft(&mut trainee, "OPERAND");
+    typed(&mut trainee, "W900");
+    trainee.press("ENT");
+    assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
+}
