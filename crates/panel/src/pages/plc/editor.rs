@@ -1,5 +1,5 @@
-//! EDIT: a screen editor for the PLC's source files [000:11370-11384]. Each line is checked when it is left [000:11925], and what has
-//! changed is on the medium then.
+//! EDIT: a screen editor for the PLC's source files [000:11370-11384]. Each line is checked when it is left
+//! [000:11925]; what was typed is on the medium before the next key.
 
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
@@ -85,30 +85,32 @@ impl Editor {
             .map_or(text.len(), |(at, _)| at)
     }
 
-    /// The line is left: it is checked, and the file written.
+    /// The line is left: it is checked when it has changed.
     fn leave(&mut self, site: &Site) -> Turn {
         if !std::mem::take(&mut self.changed) {
             return Turn::Done;
         }
-        let checked = check_line(self.current(), site.control().model());
-        match self.source.write() {
-            Ok(()) => {}
-            Err(NotWritten::Words(why)) => {
-                self.changed = true;
-                return Turn::Say(why);
-            }
-            Err(NotWritten::Changed) => {
-                let renewed = self.source.renew();
-                self.go_to(self.line);
-                return Turn::Say(match renewed {
-                    Ok(()) => site.words("FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"),
-                    Err(why) => why,
-                });
-            }
-        }
-        match checked {
+        match check_line(self.current(), site.control().model()) {
             Ok(()) => Turn::Done,
             Err(error) => Turn::Say(format!("{} {error}", site.words("INPUT ERROR"))),
+        }
+    }
+
+    /// What a key has changed is on the medium before the next one.
+    fn stored(&mut self, turn: Turn, site: &Site) -> Turn {
+        match self.source.write() {
+            Ok(()) => turn,
+            // What is not on the medium is not left.
+            Err(NotWritten::Words(why)) => Turn::Say(why),
+            Err(NotWritten::Changed) => {
+                let renewed = self.source.renew();
+                self.changed = false;
+                self.go_to(self.line);
+                Turn::Say(match renewed {
+                    Ok(()) => site.words("FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"),
+                    Err(why) => why,
+                })
+            }
         }
     }
 
@@ -239,11 +241,41 @@ impl Editor {
 
     fn finish(&mut self, site: &Site) -> Turn {
         match self.leave(site) {
-            Turn::Done => Turn::Close,
-            // What is not on the medium is not left.
-            Turn::Say(text) if self.changed => Turn::Say(text),
             Turn::Say(text) => Turn::CloseSaying(text),
-            other => other,
+            _ => Turn::Close,
+        }
+    }
+
+    fn pressed(&mut self, key: Key, site: &mut Site) -> Turn {
+        match key {
+            Key::Up => return self.go(-1, site),
+            Key::Down => return self.go(1, site),
+            Key::Left => self.column = self.column.saturating_sub(1),
+            Key::Right => self.column = (self.column + 1).min(self.length()),
+            Key::Ent => return self.split(site),
+            Key::Ce => self.back(),
+            Key::Del => self.delete(),
+            Key::Goto => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER),
+            Key::End => return self.finish(site),
+            key => match key.character() {
+                Some(character) if self.put(character) => {}
+                _ => return Turn::Refused,
+            },
+        }
+        Turn::Done
+    }
+
+    fn soft_pressed(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
+        let Some(row) = row.checked_sub(1) else {
+            return self.function(place, site);
+        };
+        let character = match CHARACTERS.get(row * 8 + place) {
+            Some(&"BLANK") => Some(' '),
+            name => name.and_then(|name| name.chars().next()),
+        };
+        match character {
+            Some(character) if self.put(character) => Turn::Done,
+            _ => Turn::Refused,
         }
     }
 
@@ -270,22 +302,8 @@ impl Editor {
 
 impl Page for Editor {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
-        match key {
-            Key::Up => return self.go(-1, site),
-            Key::Down => return self.go(1, site),
-            Key::Left => self.column = self.column.saturating_sub(1),
-            Key::Right => self.column = (self.column + 1).min(self.length()),
-            Key::Ent => return self.split(site),
-            Key::Ce => self.back(),
-            Key::Del => self.delete(),
-            Key::Goto => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER),
-            Key::End => return self.finish(site),
-            key => match key.character() {
-                Some(character) if self.put(character) => {}
-                _ => return Turn::Refused,
-            },
-        }
-        Turn::Done
+        let turn = self.pressed(key, site);
+        self.stored(turn, site)
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
@@ -308,17 +326,8 @@ impl Page for Editor {
     }
 
     fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
-        let Some(row) = row.checked_sub(1) else {
-            return self.function(place, site);
-        };
-        let character = match CHARACTERS.get(row * 8 + place) {
-            Some(&"BLANK") => Some(' '),
-            name => name.and_then(|name| name.chars().next()),
-        };
-        match character {
-            Some(character) if self.put(character) => Turn::Done,
-            _ => Turn::Refused,
-        }
+        let turn = self.soft_pressed(row, place, site);
+        self.stored(turn, site)
     }
 
     /// What is pasted is typed; its ends of lines are those of lines.
@@ -334,7 +343,7 @@ impl Page for Editor {
             }
         }
         self.overwrites = overwrites;
-        turn
+        self.stored(turn, site)
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {

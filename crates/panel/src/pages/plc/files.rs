@@ -19,9 +19,11 @@ pub(super) enum Purpose {
 /// The directory, with the cursor on the file that is most likely meant.
 pub(super) fn open(purpose: Purpose, site: &Site) -> Turn {
     let names = source::list(site);
-    let wanted = match (purpose, &site.plc.edited) {
-        (Purpose::Edit, Some(edited)) => edited.as_str(),
-        _ => source::main_file(site),
+    let stopped = site.control().plc().stopped().map(|error| error.file.as_str());
+    let edited = stopped.or(site.plc.edited.as_deref());
+    let wanted = match purpose {
+        Purpose::Edit => edited.unwrap_or(source::main_file(site)),
+        Purpose::Compile => source::main_file(site),
     };
     let at = names.iter().position(|name| name == wanted).unwrap_or(0);
     Turn::Open(Box::new(Menu::at(SourceFiles { purpose, names }, at)))
@@ -61,10 +63,17 @@ impl Items for SourceFiles {
             return Turn::Refused;
         };
         match self.purpose {
-            Purpose::Edit => match Editor::open(name, 1, site) {
-                Ok(editor) => Turn::Replace(Box::new(editor)),
-                Err(why) => Turn::Say(why),
-            },
+            Purpose::Edit => {
+                // Where the PLC was stopped: of a time out at the last jump [000:11919].
+                let stopped = site.control().plc().stopped();
+                let line = stopped
+                    .filter(|error| error.file == *name)
+                    .map_or(1, |error| error.line);
+                match Editor::open(name, line as usize, site) {
+                    Ok(editor) => Turn::Replace(Box::new(editor)),
+                    Err(why) => Turn::Say(why),
+                }
+            }
             Purpose::Compile => compile::run(name, site),
         }
     }
