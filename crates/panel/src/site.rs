@@ -7,6 +7,7 @@ use bahn_host::{Answer, Deed, Host, LoadedMachine, Source};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 
+use crate::graphics::Graphics;
 use crate::programs::ProgramMemory;
 use crate::settings::Settings;
 use crate::texts::{self, Language};
@@ -17,6 +18,7 @@ pub(crate) struct Site<'a> {
     pub machine: &'a LoadedMachine,
     pub programs: &'a Arc<ProgramMemory>,
     pub settings: &'a mut Settings,
+    pub graphics: &'a mut Graphics,
 }
 
 impl Site<'_> {
