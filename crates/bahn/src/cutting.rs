@@ -4,11 +4,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use bahn_path::{Axis, BlockRef};
+use bahn_path::BlockRef;
 use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{
-    Colouring, Columns, Deviation, Hears, Memory, MeshError, Page, Part, PlanView, Projection, Remark,
-    ThreePlanes, View3d, WorkpieceError,
+    Colouring, Deviation, Hears, Memory, MeshError, Page, Part, PlanView, Projection, Remark, ThreePlanes,
+    View3d, WorkpieceError,
 };
 
 use crate::files::NewFile;

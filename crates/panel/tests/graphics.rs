@@ -4,7 +4,12 @@
 
 mod support;
 
+use std::collections::BTreeSet;
+
+use bahn_interpreter::{Interpreter, NoLibrary, Rules, Settings};
 use bahn_panel::{GraphicsView, Star};
+use bahn_path::{BlockRef, ElementSource, LiveData, Step};
+use bahn_workpiece::{Columns, Cutting, Hears, Memory, Remark};
 use support::Trainee;
 
 /// A groove of 10 mm width and 5 mm depth through the whole of a blank of 40 x 30 x 10 mm.
@@ -163,4 +168,53 @@ fn what_a_height_map_cannot_show_is_said() {
         messages.iter().any(|text| text == "PGM SECTION CANNOT BE SHOWN"),
         "{messages:?}"
     );
+}
+
+struct Deaf;
+
+impl Hears for Deaf {
+    fn hear(&mut self, _block: BlockRef, _remark: Remark, _count: u64) {}
+}
+
+/// What a program removes with the tools of the machine, without a machine and without a panel, as `bahn test` does it.
+fn removed_without_a_panel(trainee: &Trainee, name: &str) -> f64 {
+    let machine = trainee.station.machine();
+    let bytes = trainee.file(&format!("programs/{name}"));
+    let program = std::sync::Arc::new(bahn_program::Program::from_bytes(name, bytes.into_bytes()));
+    let tools = machine.tools.as_ref().unwrap().iter();
+    let settings = Settings {
+        model: machine.parameters.model(),
+        rules: Rules::of(&machine.parameters),
+        tools: Some(tools.map(|(number, tool)| (*number, tool.shape)).collect()),
+        ..Settings::default()
+    };
+    let mut run = Interpreter::new(program, settings, Box::new(NoLibrary));
+    let mut cutting = Cutting::new(Columns::BySize, Memory::default(), BTreeSet::new());
+    loop {
+        match run.next() {
+            Step::Element(element) => cutting.element(&element, &mut Deaf).unwrap(),
+            Step::Barrier(_) => run.resume(LiveData::default()),
+            Step::End => return cutting.finish(&mut Deaf).unwrap().removed_mm3(),
+            step => panic!("{step:?}"),
+        }
+    }
+}
+
+/// A bracket with six tools, cycles and tapping: by the free clock with the machine, and by the clock on the wall on a
+/// thread of its own.
+#[test]
+fn the_part_is_that_of_the_program_however_it_is_tested() {
+    let mut trainee = trainee();
+    let expected = removed_without_a_panel(&trainee, "BRACKET.H");
+    assert!(expected > 1000.0, "{expected} mm³");
+    trainee.press("TEST PGM_NR B R A C K E T ENT GRAPHICS");
+    for by_the_wall in [false, true] {
+        if by_the_wall {
+            trainee.station.run_by_the_wall();
+        }
+        trainee.press("START");
+        trainee.until(60.0, |screen| !screen.graphics.as_ref().unwrap().running);
+        assert_eq!(trainee.screen().graphics.unwrap().progress, 1.0);
+        assert_eq!(removed_mm3(&mut trainee), expected, "by the wall: {by_the_wall}");
+    }
 }
