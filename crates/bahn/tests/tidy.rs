@@ -65,6 +65,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "workpiece",
             "viewer",
             "interpreter",
+            "motion",
             "machines",
         ],
     ),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bahn_exchange::{Exchange, Image};
 use bahn_interpreter::{Done, Interpreter, Warning, Work};
+use bahn_motion::Limits;
 use bahn_parameters::{ControlModel, MessageId, ParameterList, PerPlcAxis};
 use bahn_path::PathElement;
 use bahn_plc::Tracer;
@@ -26,6 +27,7 @@ use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::spindle::SpindleState;
 use crate::test_run::{TestReport, TestRun};
+use crate::track::path_limits;
 use crate::upkeep::by_index;
 use crate::view::{ChannelView, offsets_volts};
 
@@ -355,6 +357,23 @@ impl Control {
     /// The test run that was started last.
     pub fn test_report(&self) -> Option<TestReport> {
         self.kernel.channels.first().test().map(TestRun::report)
+    }
+
+    /// The program of the test run as it stands there, to be gone on with beside: for the graphics. Long computations are
+    /// left to whoever drives it when they are here.
+    pub fn tested(&self) -> Option<Interpreter> {
+        self.kernel.channels.first().test().map(TestRun::interpreter)
+    }
+
+    /// The limits within which a path is planned.
+    pub fn path_limits(&self) -> Limits {
+        let channel = self.kernel.channels.first();
+        let axes = self.kernel.machine.axes.owned(0);
+        path_limits(
+            self.first().edited_list(),
+            axes,
+            channel.datums.chain.kinematics(),
+        )
     }
 
     /// What the NC sees of the PLC's memory.

@@ -1,6 +1,7 @@
 //! TEST RUN beside what the machine does: a program is executed without moving an axis, to find what is
 //! wrong with it [003:1514-1535]. Nothing goes to the PLC.
 
+use bahn_interpreter::Interpreter;
 use bahn_parameters::MessageId;
 use bahn_path::{Barrier, BlockRef, ElementSource, Function, LiveData, Step, Touch};
 
@@ -73,6 +74,11 @@ impl TestRun {
     /// The program that is tested.
     pub fn program(&self) -> &str {
         &self.program
+    }
+
+    /// The run as it stands, to be gone on with by somebody else.
+    pub fn interpreter(&self) -> Interpreter {
+        self.feeder.interpreter().clone()
     }
 
     pub fn report(&self) -> TestReport {

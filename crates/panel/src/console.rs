@@ -5,6 +5,7 @@ use bahn_control::{Command, Mode};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
+use crate::graphics::Cut;
 use crate::page::{Page, Side, Turn, View};
 use crate::pages;
 use crate::screen::{Heading, SoftKeys};
@@ -287,6 +288,14 @@ impl Console {
                 .programming
                 .as_ref()
                 .map(|(_, stack)| stack.view(site, lines)),
+        }
+    }
+
+    /// The part that the graphics of a side show.
+    pub fn cut(&self, side: Side) -> Option<Cut> {
+        match side {
+            Side::Machine => self.machine.base.cut(),
+            Side::Programming => self.programming.as_ref().and_then(|(_, stack)| stack.base.cut()),
         }
     }
 

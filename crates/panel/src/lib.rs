@@ -5,6 +5,7 @@
 //! - [`Live`] is a station on a thread of its own, by the clock on the wall, which any number of viewers watch;
 //! - `console` says who has the keys, `page` what takes them and shows itself, `pages` are the operating modes, menus and
 //!   tables; each is given a `site`, what it may touch;
+//! - [`Picture`] is what the graphics show of the part that a test or a run cuts, to be drawn on any thread;
 //! - [`Recorder`] and [`Replay`] keep a session and show it again; a [`TimeLine`] leads back to any moment;
 //! - [`Reason`]s say what a standing machine waits for; [`Breakable`]s are what a teacher can break, a [`LessonRun`] is an
 //!   exercise;
@@ -37,6 +38,7 @@ mod console;
 mod drawer;
 mod entry;
 mod frames;
+mod graphics;
 mod inhibit;
 mod input;
 mod lesson;
@@ -60,13 +62,15 @@ mod wiring;
 
 pub use bahn_dialogue::{Key, KeyGroup};
 pub use drawer::{Breakable, Breaking};
+pub use graphics::Picture;
 pub use input::{Input, InputText, Refusal};
 pub use lesson::{Lesson, LessonRun, check_lesson};
 pub use live::{Link, Live, Seen};
 pub use replay::{Ending, Replay, check_session};
 pub use screen::{
-    AxisLine, BranchLine, CheckLine, Dialogue, Heading, LessonLine, LessonState, Line, MachineState, Mark,
-    MarkKind, MessageLine, PlcLine, Screen, SoftKeys, Star, Status, TimeLine, TimeMark, Window, WindowKind,
+    AxisLine, BranchLine, CheckLine, Dialogue, GraphicsLine, GraphicsView, Heading, LessonLine, LessonState,
+    Line, MachineState, Mark, MarkKind, MessageLine, PlcLine, Screen, SoftKeys, Star, Status, TimeLine,
+    TimeMark, Window, WindowKind,
 };
 pub use session::{Head, Recorder};
 pub use settings::PositionType;

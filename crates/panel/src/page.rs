@@ -2,6 +2,7 @@
 
 use bahn_dialogue::Key;
 
+use crate::graphics::Cut;
 use crate::screen::{Dialogue, SoftKeys, Window};
 use crate::site::Site;
 
@@ -54,6 +55,11 @@ pub(crate) trait Page: Send {
 
     /// What it shows, in a window of so many lines.
     fn show(&self, site: &Site, lines: usize) -> View;
+
+    /// The part that the graphics show beside it.
+    fn cut(&self) -> Option<Cut> {
+        None
+    }
 
     /// Once in every contour cycle: what goes on without a key.
     fn tick(&mut self, _site: &mut Site) -> Turn {

@@ -29,6 +29,8 @@ pub struct Screen {
     pub soft_keys: SoftKeys,
     /// The window of the PLC program, when it has written something [000:6603-6617].
     pub plc_window: Option<Vec<PlcLine>>,
+    /// The graphics, while the operator looks at them; the picture itself is made when somebody wants it.
+    pub graphics: Option<GraphicsLine>,
     /// Lamps of the machine operating panel by name.
     pub lamps: BTreeMap<String, bool>,
     /// The machine operating panel and the simulation.
@@ -106,8 +108,6 @@ pub enum WindowKind {
     Positions,
     /// Text to read.
     Text,
-    /// A picture, from `/api/graphics`.
-    Graphics,
 }
 
 /// A line of a window.
@@ -216,6 +216,39 @@ pub struct SoftKeys {
     pub row: usize,
     /// How many rows there are.
     pub rows: usize,
+}
+
+/// The graphics [003:854-945].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GraphicsLine {
+    /// How the part is shown.
+    pub view: GraphicsView,
+    /// A test is on its way.
+    pub running: bool,
+    /// How far it has come, 0 to 1; 0 in a program run.
+    pub progress: f64,
+    /// Machining time of what was tested so far, s; none in a program run.
+    pub machining_time_s: Option<f64>,
+    /// How many times greater a detail is shown: 1, 2 or 4.
+    pub magn: u8,
+    /// From where the 3D view is seen, about the tool axis.
+    pub azimuth_deg: f64,
+    /// Where the sections lie, as part of the blank along its first and second axis.
+    pub sections: [f64; 2],
+    /// Counts the pictures: another number is another picture.
+    pub serial: u64,
+}
+
+/// How the part is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GraphicsView {
+    /// Plan view.
+    Plan,
+    /// Projection in three planes.
+    ThreePlanes,
+    /// 3D view.
+    Solid,
 }
 
 /// A line of the PLC window.

@@ -7,6 +7,7 @@ use bahn_host::{Answer, Deed, Host, LoadedMachine, Source};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
 
+use crate::graphics::Graphics;
 use crate::plc_mode::PlcMode;
 use crate::programs::ProgramMemory;
 use crate::settings::Settings;
@@ -19,6 +20,7 @@ pub(crate) struct Site<'a> {
     pub programs: &'a Arc<ProgramMemory>,
     pub settings: &'a mut Settings,
     pub plc: &'a mut PlcMode,
+    pub graphics: &'a mut Graphics,
 }
 
 impl Site<'_> {

@@ -14,6 +14,7 @@ use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
 
 use crate::console::Console;
+use crate::graphics::{Graphics, Picture};
 use crate::inhibit;
 use crate::input::{Input, Refusal};
 use crate::lesson::LessonRun;
@@ -60,6 +61,7 @@ pub struct Station {
     waits: Waits,
     lesson: Option<LessonRun>,
     plc: PlcMode,
+    graphics: Graphics,
     shown: Screen,
 }
 
@@ -92,6 +94,7 @@ impl Station {
             is_on: true,
             timers_us: [0; 3],
             recorder: None,
+            graphics: Graphics::new(&mut host),
             past: Past::new(&mut host),
             waits: Waits::new(&machine),
             lesson: None,
@@ -108,6 +111,7 @@ impl Station {
     /// Runs by the clock on the wall from now on, as fast as the operator chose.
     pub fn run_by_the_wall(&mut self) {
         self.by_the_wall = true;
+        self.graphics.run_beside();
         self.host.set_clock(self.clock());
     }
 
@@ -181,6 +185,7 @@ impl Station {
             self.plc.power_off();
         }
         self.is_on = is_on;
+        self.graphics.cycle(&mut self.host);
         if is_on {
             self.count_time();
             let (console, mut site) = self.parts();
@@ -245,6 +250,14 @@ impl Station {
         numbers::of(&self.host.control().snapshot(), self.host.control())
     }
 
+    /// What the graphics show, to be drawn; `None` while the operator does not look at them, and without a part.
+    pub fn picture(&mut self) -> Option<Picture> {
+        let third_angle = self.parameters().graphics().third_angle;
+        let (console, site) = self.parts();
+        let cut = console.cut(console.front())?;
+        site.graphics.picture(cut, third_angle)
+    }
+
     /// The screen as it is now. Its serial counts on when it is another one.
     pub fn screen(&mut self) -> &Screen {
         let mut screen = match self.is_on {
@@ -279,6 +292,7 @@ impl Station {
             programs: &self.programs,
             settings: &mut self.settings,
             plc: &mut self.plc,
+            graphics: &mut self.graphics,
         };
         (&mut self.console, site)
     }
@@ -304,6 +318,7 @@ impl Station {
             Side::Programming => Side::Machine,
         };
         let view = console.view(front, &site, LINES).unwrap_or_default();
+        let graphics = console.cut(front).and_then(|cut| site.graphics.line(cut));
         let beside = match console.split {
             true => console.view(other, &site, LINES_BESIDE),
             false => None,
@@ -320,6 +335,7 @@ impl Station {
             beside: beside.and_then(|view| view.window),
             status,
             plc_window,
+            graphics,
             ..Screen::default()
         }
     }

@@ -179,7 +179,10 @@ fn the_table_shows_and_sets_operands() {
 }
 
 #[test]
-#[expect(clippy::too_many_lines, reason = "one way from the fault to the machine that runs")]
+#[expect(
+    clippy::too_many_lines,
+    reason = "one way from the fault to the machine that runs"
+)]
 fn a_faulty_line_is_found_mended_and_runs_from_the_next_power_on() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();

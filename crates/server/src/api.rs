@@ -1,10 +1,12 @@
 //! What programs ask for: docs/panel-api.md.
 
 use axum::Json;
-use axum::extract::State;
+use axum::extract::{Query, State};
 use axum::http::StatusCode;
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
-use bahn_panel::{Input, InputText, Refusal};
+use bahn_panel::{Input, InputText, Refusal, Station};
+use serde::Deserialize;
 use serde_json::json;
 
 use crate::shared::Shared;
@@ -24,6 +26,48 @@ pub(crate) async fn snapshot(State(shared): State<Shared>) -> Response {
     let asked = tokio::task::spawn_blocking(move || shared.link.with(|station| station.numbers()));
     match asked.await {
         Ok(Ok(numbers)) => Json(numbers).into_response(),
+        Ok(Err(refusal)) => refused(&refusal),
+        Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
+    }
+}
+
+/// How large a picture is wanted, pixels.
+#[derive(Deserialize)]
+pub(crate) struct Size {
+    #[serde(default = "Size::width")]
+    width: u32,
+    #[serde(default = "Size::height")]
+    height: u32,
+}
+
+impl Size {
+    /// Longest side that is drawn (inferred).
+    const MOST: u32 = 3840;
+
+    fn width() -> u32 {
+        800
+    }
+
+    fn height() -> u32 {
+        600
+    }
+}
+
+/// `GET /api/graphics.png`: what the graphics show.
+pub(crate) async fn graphics(State(shared): State<Shared>, Query(size): Query<Size>) -> Response {
+    let (width, height) = (size.width.min(Size::MOST), size.height.min(Size::MOST));
+    let drawn = tokio::task::spawn_blocking(move || {
+        let picture = shared.link.with(Station::picture)?;
+        Ok::<_, Refusal>(picture.map(|picture| picture.png(width, height)))
+    });
+    match drawn.await {
+        Ok(Ok(Some(Ok(Some(png))))) => {
+            ([(CONTENT_TYPE, "image/png"), (CACHE_CONTROL, "no-store")], png).into_response()
+        }
+        Ok(Ok(Some(Err(error)))) => (StatusCode::BAD_REQUEST, error.to_string()).into_response(),
+        Ok(Ok(None | Some(Ok(None)))) => {
+            (StatusCode::NOT_FOUND, "there is nothing to be seen").into_response()
+        }
         Ok(Err(refusal)) => refused(&refusal),
         Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
     }

@@ -29,6 +29,7 @@ impl Regions {
             encode("status", &screen.status),
             encode("softkeys", &screen.soft_keys),
             encode("plc", &screen.plc_window),
+            encode("graphics", &screen.graphics),
             encode("machine", &(&screen.machine, &screen.lamps)),
         ];
         let parts = encoded
@@ -72,13 +73,13 @@ mod tests {
             ..Screen::default()
         };
         let first = Regions::default().next(&screen);
-        assert_eq!(first.since(0)[0], 0x98, "all eight regions");
+        assert_eq!(first.since(0)[0], 0x99, "all nine regions");
         assert_eq!(first.since(1), [0x90]);
         screen.serial = 2;
         screen.dialogue.prompt = "PROGRAM NUMBER =".to_owned();
         let second = first.next(&screen);
         // The time, which has the serial, and the dialogue.
         assert_eq!(second.since(1)[0], 0x92);
-        assert_eq!(second.since(0)[0], 0x98);
+        assert_eq!(second.since(0)[0], 0x99);
     }
 }

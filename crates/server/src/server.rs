@@ -141,6 +141,7 @@ fn router(shared: Shared) -> Router {
         .route("/api/station", get(api::station))
         .route("/api/screen", get(api::screen))
         .route("/api/snapshot", get(api::snapshot))
+        .route("/api/graphics.png", get(api::graphics))
         .route("/api/key", post(api::input))
         .route("/api/command", post(api::input))
         .route("/ws", any(socket::open))

@@ -23,6 +23,7 @@ const draw = {
     if (windows) screen.program(windows, status);
   },
   plc: screen.plcWindow,
+  graphics: screen.graphics,
   softkeys: (value) => screen.softKeys(value, press),
   machine: machine.draw,
   crew: crew,

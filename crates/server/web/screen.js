@@ -182,6 +182,50 @@ export function plcWindow(lines) {
   });
 }
 
+const VIEWS = { plan: "Plan view", three_planes: "Projection in three planes", solid: "3D view" };
+const picture = { wanted: 0, loading: 0 };
+
+/** The part as the graphics show it: a picture is asked for when there is another one, and never two at once. */
+export function graphics(shown) {
+  const node = region("graphics");
+  node.hidden = !shown;
+  if (!shown) {
+    picture.wanted = 0;
+    return;
+  }
+  const image = node.querySelector("img");
+  image.alt = `${VIEWS[shown.view]} of the part${shown.magn > 1 ? `, magnified ${shown.magn} times` : ""}`;
+  const bar = node.querySelector("progress");
+  bar.hidden = !shown.running;
+  bar.value = shown.progress;
+  const seconds = shown.machining_time_s;
+  setText(node.querySelector(".time"), seconds === null ? "" : `Machining time ${clock(seconds)}`);
+  picture.wanted = shown.serial;
+  loadPicture(node, image);
+}
+
+function loadPicture(node, image) {
+  if (picture.loading || !picture.wanted || picture.wanted === Number(image.dataset.serial)) return;
+  picture.loading = picture.wanted;
+  const done = (loaded) => {
+    image.dataset.serial = picture.loading;
+    image.classList.toggle("empty", !loaded);
+    picture.loading = 0;
+    loadPicture(node, image);
+  };
+  image.onload = () => done(true);
+  image.onerror = () => done(false);
+  const sharp = Math.min(window.devicePixelRatio || 1, 2);
+  const width = Math.round(Math.max(320, Math.min(node.clientWidth, 1200)) * sharp);
+  image.src = `/api/graphics.png?width=${width}&height=${Math.round(width * 0.75)}&serial=${picture.wanted}`;
+}
+
+function clock(seconds) {
+  const whole = Math.round(seconds);
+  const two = (value) => String(value).padStart(2, "0");
+  return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
+}
+
 export function softKeys({ keys, row, rows }, press) {
   const node = region("softkeys");
   if (!node.children.length) {

@@ -8,9 +8,10 @@ use bahn_path::{BlockRef, PathElement};
 
 use super::turning::{ElementId, Turning};
 use crate::UsageError;
-use crate::cutting::Cutting;
+use crate::cutting::no_workpiece;
 use crate::report::{Notice, Record};
 use crate::test_run::{Outputs, stop_function};
+use bahn_workpiece::Cutting;
 
 /// Follows the path.
 pub(super) struct Executed {
@@ -108,7 +109,9 @@ impl Executed {
             if let Some(spindle) = spindle {
                 cutting.see(spindle);
             }
-            cutting.element(&element, &mut self.record)?;
+            cutting
+                .element(&element, &mut self.record)
+                .map_err(no_workpiece)?;
         }
         if let Some(run) = control.interpreter().filter(|_| !self.outputs.is_empty()) {
             self.outputs.element(&element, run, &mut self.record)?;

@@ -33,7 +33,7 @@ use bahn_host::{
 };
 use bahn_workpiece::Projection;
 
-use crate::cutting::{self, Columns, Cutting, Memory, Written};
+use crate::cutting::{self, Written};
 use crate::diagnostics::{self, FileFault};
 use crate::interrupt::Interrupt;
 use crate::junit;
@@ -43,6 +43,7 @@ use crate::progress::Progress;
 use crate::report::{End, ErrorReport, Place, Record};
 use crate::test_run::{Outputs, print_error};
 use crate::{Outcome, UsageError, console, files, report_text, settings, solid};
+use bahn_workpiece::{Columns, Cutting};
 use executed::Executed;
 use oscilloscope::Scoped;
 use recording::Recording;
@@ -97,7 +98,7 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
         let columns = options.output.resolution;
         Cutting::new(
             columns.map_or(Columns::BySize, Columns::Millimetres),
-            Memory::of(&options.output),
+            cutting::memory(&options.output),
             settings::left_hand(machine.tools.as_ref()),
         )
     });

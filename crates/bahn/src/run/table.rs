@@ -7,8 +7,8 @@ use bahn_host::Host;
 use bahn_path::Position;
 use bahn_workpiece::Part;
 
-use crate::cutting::Cutting;
 use crate::solid;
+use bahn_workpiece::Cutting;
 
 /// The table: a solid that was given, or the part as far as it is machined.
 #[derive(Default)]

@@ -8,7 +8,7 @@ use bahn_machine::Machine;
 use bahn_path::{OverrideLaw, PathElement, PerAxis};
 use bahn_servo::Rotation;
 
-use crate::cutting::Spindle;
+use bahn_workpiece::Spindle;
 
 /// Elements that were seen and are passed over at most, when one of them is looked for.
 const PASSED_OVER: usize = 8;

@@ -21,7 +21,6 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use row::Row;
 
-use crate::cutting::Columns;
 use crate::files::NewFile;
 use crate::interrupt::Interrupt;
 use crate::options::Format;
@@ -29,6 +28,7 @@ use crate::settings::Equipment;
 use crate::test_run::{Bench, ReportFile, TestOptions, Tested};
 use crate::{Outcome, UsageError, console, diagnostics, files};
 use against::Other;
+use bahn_workpiece::Columns;
 use crew::{Done, Work};
 use row::Verdict;
 

@@ -10,14 +10,14 @@ use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::{Barrier, BlockRef, LiveData, PathElement, Position, ScanFault, ScanJob, Scanned};
 use bahn_program::{Operation, Program};
 use bahn_viewer::Recording;
-use bahn_workpiece::Part;
+use bahn_workpiece::{Columns, Cutting, Memory, Part};
 
 use super::digitizing::digitize;
 use super::options::TestOptions;
 use super::outputs::Outputs;
 use super::survey::Survey;
 use crate::block_time::BlockTime;
-use crate::cutting::{Columns, Cutting, Memory};
+use crate::cutting::{self, no_workpiece};
 use crate::diagnostics::Marked;
 use crate::files::{self, FileLibrary, Loaded};
 use crate::interrupt::Stop;
@@ -85,8 +85,11 @@ impl Bench {
             limits: settings::limits(&equipment.list, machine),
             times: settings::times(machine),
             memory: match &options.html {
-                Some(_) => Memory::of(&options.output).and_tools(),
-                None => Memory::of(&options.output),
+                Some(_) => Memory {
+                    tools: true,
+                    ..cutting::memory(&options.output)
+                },
+                None => cutting::memory(&options.output),
             },
             columns: (!options.output.no_graphics).then_some(wanted),
             ends_at_stop: options.run.stop,
@@ -232,7 +235,7 @@ impl TestRun {
     #[inline]
     fn element(&mut self, element: &PathElement) -> Result<(), UsageError> {
         if let Some(cutting) = &mut self.cutting {
-            cutting.element(element, &mut self.record)?;
+            cutting.element(element, &mut self.record).map_err(no_workpiece)?;
         }
         if !self.company.outputs.is_empty() {
             let outputs = &mut self.company.outputs;

@@ -18,14 +18,14 @@ use std::time::Duration;
 
 use bahn_interpreter::Interpreter;
 use bahn_viewer::Recording;
-use bahn_workpiece::Projection;
+use bahn_workpiece::{Columns, Projection};
 
 pub(crate) use bench::{Bench, Company, Tested, stop_function};
 pub(crate) use options::{EXAMPLES, ReportFile, TestOptions};
 pub(crate) use outputs::Outputs;
 pub(crate) use survey::Survey;
 
-use crate::cutting::{self, Columns, Written};
+use crate::cutting::{self, Written};
 use crate::diagnostics::{self, FileFault, Marked, Severity};
 use crate::interrupt::{Interrupt, Stop};
 use crate::options::Format;

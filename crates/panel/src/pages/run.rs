@@ -6,6 +6,7 @@ use bahn_control::{Command, Programs, RunState};
 use bahn_dialogue::Key;
 use bahn_program::Program;
 
+use crate::graphics::Cut;
 use crate::page::{Page, Turn, View, first_in_sight};
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::number::Number;
@@ -42,6 +43,9 @@ impl ProgramRun {
 
 impl Page for ProgramRun {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if site.graphics.key(Cut::Run, key) {
+            return Turn::Done;
+        }
         match key {
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Run, site))),
             Key::Goto => Turn::Open(Number::ask(site.words("GOTO: NUMBER ="), |value, site| {
@@ -106,6 +110,10 @@ impl Page for ProgramRun {
                 ..Window::default()
             }),
         }
+    }
+
+    fn cut(&self) -> Option<Cut> {
+        Some(Cut::Run)
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {

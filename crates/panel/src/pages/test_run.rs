@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use bahn_control::{Command, TestState};
 use bahn_dialogue::Key;
+use bahn_parameters::MessageId;
 use bahn_program::Program;
 
+use crate::graphics::Cut;
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::run::listing;
@@ -39,31 +41,55 @@ impl TestRun {
         let program = name.rsplit_once('.').map_or(name.as_str(), |(name, _)| name);
         self.said = false;
         match site.command(Command::Test(program.to_owned())) {
+            true => {
+                site.graphics.test(site.host.control());
+                Turn::Done
+            }
+            false => Turn::Refused,
+        }
+    }
+
+    /// STOP: neither the test nor its graphics go on.
+    fn stop(&mut self, site: &mut Site) -> Turn {
+        site.graphics.stop();
+        match site.command(Command::EndTest) {
             true => Turn::Done,
             false => Turn::Refused,
         }
     }
 }
 
+/// The soft keys.
+const KEYS: [Key; 5] = [Key::Start, Key::Stop, Key::Graphics, Key::BlkForm, Key::Magn];
+
 impl Page for TestRun {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if site.graphics.key(Cut::Test, key) {
+            return Turn::Done;
+        }
         match key {
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Test, site))),
             Key::Start => self.start(site),
-            Key::Stop => match site.command(Command::EndTest) {
-                true => Turn::Done,
-                false => Turn::Refused,
-            },
+            Key::Stop => self.stop(site),
             _ => Turn::Refused,
         }
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        vec![vec![site.words("START"), site.words("STOP")]]
+        vec![vec![
+            site.words("START"),
+            site.words("STOP"),
+            site.words("GRAPHICS"),
+            site.words("BLK FORM"),
+            site.words("MAGN"),
+        ]]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        self.key(if place == 0 { Key::Start } else { Key::Stop }, site)
+        match KEYS.get(place) {
+            Some(key) => self.key(*key, site),
+            None => Turn::Refused,
+        }
     }
 
     fn show(&self, _site: &Site, lines: usize) -> View {
@@ -76,10 +102,17 @@ impl Page for TestRun {
         }
     }
 
+    fn cut(&self) -> Option<Cut> {
+        Some(Cut::Test)
+    }
+
     fn tick(&mut self, site: &mut Site) -> Turn {
         let open = self.open.as_ref().map(|(name, _)| name.as_str());
         if open != site.settings.edited.as_deref() {
             *self = TestRun::new(site);
+        }
+        if site.graphics.cannot_be_shown() {
+            return Turn::Say(site.message(MessageId::PgmSectionCannotBeShown));
         }
         let Some(report) = site.control().test_report() else {
             return Turn::Done;

@@ -44,6 +44,7 @@ impl Station {
         self.paused = true;
         self.is_on = !self.host.control().is_off();
         self.console.machine_is_elsewhere(self.host.control().mode());
+        self.graphics.machine_is_elsewhere();
         if self.is_on {
             // The page finds what it shows.
             let (console, mut site) = self.parts();

@@ -1,0 +1,215 @@
+//! TEST RUN with graphics: a program is executed as the control's own test does it, planned and cut.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bahn_control::Control;
+use bahn_interpreter::Interpreter;
+use bahn_motion::{AuxiliaryTimes, PlannedStep, Planner};
+use bahn_path::{Barrier, LiveData, PathElement, ScanFault, Scanned};
+
+use super::stock::{Heard, Stock};
+
+/// Elements that are cut in one contour cycle by the free clock (inferred).
+const BUDGET: u32 = 500;
+/// Elements after which a thread says how far it has come.
+const NEWS: u32 = 200;
+
+/// How far a test has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Progress {
+    /// Elements that were cut.
+    pub elements: u64,
+    /// Part of the blocks of the main program that lie behind it, 0 to 1.
+    pub part: f64,
+    pub machining_time_s: f64,
+    /// Something could not be shown.
+    not_shown: bool,
+    /// It is through, wrong or broken off.
+    pub ended: bool,
+}
+
+/// A program that is tested.
+pub(super) struct Trial {
+    program: String,
+    stock: Arc<Stock>,
+    progress: Arc<Mutex<Progress>>,
+    stop: Arc<AtomicBool>,
+    /// `None` while a thread has it.
+    run: Option<Box<Run>>,
+    said: bool,
+}
+
+impl Trial {
+    /// Begins with what the control has just begun to test; `None` when it tests nothing.
+    pub fn begin(control: &Control, beside: bool) -> Option<Trial> {
+        let (mut interpreter, report) = (control.tested()?, control.test_report()?);
+        let stop = Arc::new(AtomicBool::new(false));
+        interpreter.set_interrupt(Arc::clone(&stop));
+        let blocks = interpreter.program(0).map_or(0, |program| program.block_count());
+        let stock = Arc::new(Stock::default());
+        let run = Box::new(Run {
+            planner: Planner::new(interpreter, &control.path_limits(), &AuxiliaryTimes::default()),
+            stock: Arc::clone(&stock),
+            blocks,
+            progress: Progress::default(),
+        });
+        let mut trial = Trial {
+            program: report.program,
+            stock,
+            progress: Arc::default(),
+            stop,
+            run: Some(run),
+            said: false,
+        };
+        if beside {
+            trial.start_thread();
+        }
+        Some(trial)
+    }
+
+    /// Without another thread the machine's own one does it.
+    fn start_thread(&mut self) {
+        let Some(mut run) = self.run.take() else { return };
+        let (told, stop) = (Arc::clone(&self.progress), Arc::clone(&self.stop));
+        std::thread::spawn(move || {
+            while !run.progress.ended && !stop.load(Ordering::Relaxed) {
+                run.advance(NEWS);
+                tell(&told, run.progress);
+            }
+            run.progress.ended = true;
+            tell(&told, run.progress);
+        });
+    }
+
+    /// Goes on, by the free clock.
+    pub fn cycle(&mut self) {
+        if let Some(run) = &mut self.run {
+            run.advance(BUDGET);
+            tell(&self.progress, run.progress);
+            if run.progress.ended {
+                self.run = None;
+            }
+        }
+    }
+
+    /// Ends it where it is.
+    pub fn stop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if self.run.take().is_some() {
+            let ended = Progress {
+                ended: true,
+                ..self.progress()
+            };
+            tell(&self.progress, ended);
+        }
+    }
+
+    pub fn progress(&self) -> Progress {
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Something cannot be shown; told once.
+    pub fn cannot_be_shown(&mut self) -> bool {
+        let news = self.progress().not_shown && !self.said;
+        self.said |= news;
+        news
+    }
+
+    pub fn stock(&self) -> Arc<Stock> {
+        Arc::clone(&self.stock)
+    }
+
+    pub fn program(&self) -> &str {
+        &self.program
+    }
+}
+
+impl Drop for Trial {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+fn tell(told: &Mutex<Progress>, progress: Progress) {
+    *told.lock().unwrap_or_else(PoisonError::into_inner) = progress;
+}
+
+/// A program on its way.
+struct Run {
+    planner: Planner<Interpreter>,
+    stock: Arc<Stock>,
+    /// Blocks of the main program.
+    blocks: u32,
+    progress: Progress,
+}
+
+impl Run {
+    /// Goes on by so many steps at most.
+    fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            match self.planner.next() {
+                PlannedStep::Element(planned) => {
+                    self.progress.machining_time_s += planned.duration_s();
+                    self.element(&planned.element);
+                }
+                PlannedStep::Barrier(barrier) => {
+                    let live = self.live_data(&barrier);
+                    self.planner.resume(live);
+                }
+                PlannedStep::Starved => {
+                    // A long computation is done here and now; without one it was interrupted.
+                    let run = self.planner.source_mut();
+                    match run.take_work() {
+                        Some(work) => run.finish_work(work.compute()),
+                        None => self.progress.ended = true,
+                    }
+                }
+                PlannedStep::End => {
+                    self.progress.part = 1.0;
+                    self.progress.ended = true;
+                }
+                PlannedStep::Error(_) => self.progress.ended = true,
+            }
+            if self.progress.ended {
+                let mut heard = Heard::default();
+                self.stock.tell(&mut heard);
+                self.progress.not_shown |= heard.0;
+                return;
+            }
+        }
+    }
+
+    fn element(&mut self, element: &PathElement) {
+        let mut heard = Heard::default();
+        self.stock.cut(element, &mut heard);
+        self.progress.not_shown |= heard.0;
+        self.progress.elements += 1;
+        if element.block.program == 0 && self.blocks > 0 {
+            self.progress.part = f64::from(element.block.block) / f64::from(self.blocks);
+        }
+        let run = self.planner.source_mut();
+        run.forget_before(element.sequence);
+        drop(run.take_warnings());
+    }
+
+    /// What is found at a barrier: a stylus feels the part as it is; nothing is digitized.
+    fn live_data(&self, barrier: &Barrier) -> LiveData {
+        match barrier {
+            Barrier::Probe {
+                from,
+                to,
+                stylus_radius,
+                ..
+            } => self.stock.touch(from, to, *stylus_radius),
+            Barrier::Scan { job, .. } => LiveData {
+                scan: Some(Scanned {
+                    at: job.begin(),
+                    fault: Some(ScanFault::Inaccessible),
+                }),
+                ..LiveData::default()
+            },
+            _ => LiveData::default(),
+        }
+    }
+}
