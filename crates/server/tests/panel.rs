@@ -11,7 +11,16 @@ use support::Panel;
 fn the_screen_has_its_fields_and_keys_change_it() {
     let panel = Panel::start();
     let screen = panel.until(|screen| screen["messages"][0]["text"] == "POWER INTERRUPTED");
-    for field in ["mode", "dialogue", "messages", "program", "status", "soft_keys", "plc_window", "lamps"] {
+    for field in [
+        "mode",
+        "dialogue",
+        "messages",
+        "program",
+        "status",
+        "soft_keys",
+        "plc_window",
+        "lamps",
+    ] {
         assert!(screen.get(field).is_some(), "{field}");
     }
     panel.press("CE");
@@ -23,10 +32,17 @@ fn the_screen_has_its_fields_and_keys_change_it() {
     assert_eq!(panel.give(&json!({"feed_override": 80})), 200);
     panel.until(|screen| screen["status"]["overrides"][0] == 80.0);
     let snapshot = panel.get("/api/snapshot");
-    assert_eq!((&snapshot["mode"], &snapshot["axes"][0]["referenced"]), (&json!("manual"), &json!(true)));
+    assert_eq!(
+        (&snapshot["mode"], &snapshot["axes"][0]["referenced"]),
+        (&json!("manual"), &json!(true))
+    );
     // A key that is held, until it is let go.
     assert_eq!(panel.give(&json!({"key": "X+", "down": true})), 200);
-    panel.until(|screen| screen["status"]["feed_mm_min"].as_f64().is_some_and(|feed| feed > 0.0));
+    panel.until(|screen| {
+        screen["status"]["feed_mm_min"]
+            .as_f64()
+            .is_some_and(|feed| feed > 0.0)
+    });
     assert_eq!(panel.give(&json!({"key": "X+", "down": false})), 200);
     panel.until(|screen| screen["status"]["feed_mm_min"] == 0.0);
 }
@@ -60,7 +76,12 @@ fn nobody_comes_in_who_should_not() {
     assert_eq!(status(&[("Origin", &own)]), 200);
     let large = format!("{{\"text\":\"{}\"}}", "X".repeat(100_000));
     assert_eq!(panel.request("POST", "/api/key", &[], &large).0, 413);
-    for path in ["/web/../Cargo.toml", "/web/%2e%2e%2fCargo.toml", "/etc/passwd", "/web/none.js"] {
+    for path in [
+        "/web/../Cargo.toml",
+        "/web/%2e%2e%2fCargo.toml",
+        "/etc/passwd",
+        "/web/none.js",
+    ] {
         assert_eq!(panel.request("GET", path, &[], "").0, 404, "{path}");
     }
 }
@@ -97,7 +118,9 @@ fn one_operates_and_hands_over_and_no_key_is_lost() {
 #[test]
 fn more_viewers_than_there_is_room_for_are_sent_away() {
     let panel = Panel::start();
-    let viewers: Vec<_> = (0..32).map(|number| panel.viewer(&format!("viewer-{number}"))).collect();
+    let viewers: Vec<_> = (0..32)
+        .map(|number| panel.viewer(&format!("viewer-{number}")))
+        .collect();
     let url = format!("ws://{}/ws?name=one-more", panel.address);
     assert!(tungstenite::connect(&url).is_err());
     drop(viewers);
