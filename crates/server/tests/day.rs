@@ -199,6 +199,8 @@ impl<'a> Desk<'a> {
         self.keys("CE");
         self.mode("PASS OVER REFERENCE MARKS");
         self.until("!document.querySelector('[data-region=header] .message')");
+        // The drives are ready a moment after the control voltage.
+        self.panel.wait(1.0);
         self.machine_key("NC_START");
         self.speed(100.0);
         self.mode("MANUAL OPERATION");

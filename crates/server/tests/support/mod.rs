@@ -110,6 +110,15 @@ impl Panel {
         }
     }
 
+    /// Waits until so much time of the machine has passed, s.
+    pub fn wait(&self, seconds: f64) {
+        let now = || self.get("/api/snapshot")["t"].as_f64().unwrap();
+        let end = now() + seconds;
+        while now() < end {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
     /// A viewer of this name.
     pub fn viewer(&self, name: &str) -> Viewer {
         let url = format!("ws://{}/ws?name={name}", self.address);
