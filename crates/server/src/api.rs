@@ -6,7 +6,7 @@ use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 use bahn_panel::{Input, InputText, Refusal, Station};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use crate::shared::Shared;
@@ -23,10 +23,33 @@ pub(crate) async fn screen(State(shared): State<Shared>) -> Response {
 
 /// `GET /api/snapshot`: the numbers behind the screen.
 pub(crate) async fn snapshot(State(shared): State<Shared>) -> Response {
-    let asked = tokio::task::spawn_blocking(move || shared.link.with(|station| station.numbers()));
-    match asked.await {
-        Ok(Ok(numbers)) => Json(numbers).into_response(),
-        Ok(Err(refusal)) => refused(&refusal),
+    asked(shared, |station| Ok(station.numbers())).await
+}
+
+/// `GET /api/drawer`: what can be broken.
+pub(crate) async fn drawer(State(shared): State<Shared>) -> Response {
+    asked(shared, |station| Ok(station.drawer())).await
+}
+
+/// `GET /api/lessons`: the lessons of the machine.
+pub(crate) async fn lessons(State(shared): State<Shared>) -> Response {
+    asked(shared, |station| {
+        let lessons = station.lessons().map_err(Refusal)?;
+        let named = |(name, title)| json!({"name": name, "title": title});
+        Ok(lessons.into_iter().map(named).collect::<Vec<_>>())
+    })
+    .await
+}
+
+/// What the station says between two cycles.
+async fn asked<T: Serialize + Send + 'static>(
+    shared: Shared,
+    what: impl FnOnce(&mut Station) -> Result<T, Refusal> + Send + 'static,
+) -> Response {
+    let link = shared.link;
+    match tokio::task::spawn_blocking(move || link.with(what)).await {
+        Ok(Ok(Ok(said))) => Json(said).into_response(),
+        Ok(Ok(Err(refusal)) | Err(refusal)) => refused(&refusal),
         Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
     }
 }

@@ -22,6 +22,8 @@ const MODULES: &[(&str, &str)] = &modules![
     "screen.js",
     "keyboard.js",
     "machine.js",
+    "timeline.js",
+    "teacher.js",
 ];
 
 /// Only what this server serves, nothing inline.

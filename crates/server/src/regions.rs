@@ -20,7 +20,9 @@ impl Regions {
 
     /// The regions of the next screen.
     pub fn next(&self, screen: &Screen) -> Regions {
-        let time = (screen.serial, screen.time_s);
+        // What changes with every cycle stands apart from what does not.
+        let line = &screen.timeline;
+        let time = (screen.serial, screen.time_s, line.to_s);
         let encoded = [
             encode("time", &time),
             encode("header", &(&screen.mode, &screen.headings, &screen.messages)),
@@ -31,6 +33,9 @@ impl Regions {
             encode("plc", &screen.plc_window),
             encode("graphics", &screen.graphics),
             encode("machine", &(&screen.machine, &screen.lamps)),
+            encode("timeline", &(&line.marks, &line.branches)),
+            encode("why", &screen.why),
+            encode("lesson", &screen.lesson),
         ];
         let parts = encoded
             .into_iter()
@@ -73,13 +78,13 @@ mod tests {
             ..Screen::default()
         };
         let first = Regions::default().next(&screen);
-        assert_eq!(first.since(0)[0], 0x99, "all nine regions");
+        assert_eq!(first.since(0)[0], 0x9c, "all twelve regions");
         assert_eq!(first.since(1), [0x90]);
         screen.serial = 2;
         screen.dialogue.prompt = "PROGRAM NUMBER =".to_owned();
         let second = first.next(&screen);
         // The time, which has the serial, and the dialogue.
         assert_eq!(second.since(1)[0], 0x92);
-        assert_eq!(second.since(0)[0], 0x99);
+        assert_eq!(second.since(0)[0], 0x9c);
     }
 }

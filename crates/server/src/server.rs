@@ -142,6 +142,8 @@ fn router(shared: Shared) -> Router {
         .route("/api/screen", get(api::screen))
         .route("/api/snapshot", get(api::snapshot))
         .route("/api/graphics.png", get(api::graphics))
+        .route("/api/drawer", get(api::drawer))
+        .route("/api/lessons", get(api::lessons))
         .route("/api/key", post(api::input))
         .route("/api/command", post(api::input))
         .route("/ws", any(socket::open))

@@ -26,6 +26,8 @@ fn the_screen_has_its_fields_and_keys_change_it() {
     panel.press("CE");
     panel.until(|screen| screen["mode"] == "PASS OVER REFERENCE MARKS");
     panel.until(|screen| screen["messages"].as_array().is_some_and(Vec::is_empty));
+    // The drives are ready a moment after the control voltage.
+    panel.wait(1.0);
     assert_eq!(panel.give(&json!({"speed": 50})), 200);
     panel.press("NC_START");
     panel.until(|screen| screen["mode"] == "MANUAL OPERATION");

@@ -4,12 +4,14 @@ import { Connection } from "/web/connection.js";
 import * as keyboard from "/web/keyboard.js";
 import * as machine from "/web/machine.js";
 import * as screen from "/web/screen.js";
+import * as teacher from "/web/teacher.js";
+import * as timeline from "/web/timeline.js";
 
 let status = null;
 let windows = null;
 
 const draw = {
-  time: () => {},
+  time: timeline.time,
   header: (value) => screen.header(value, press),
   dialogue: screen.dialogue,
   program: (value) => {
@@ -25,7 +27,13 @@ const draw = {
   plc: screen.plcWindow,
   graphics: screen.graphics,
   softkeys: (value) => screen.softKeys(value, press),
-  machine: machine.draw,
+  machine: (value) => {
+    machine.draw(value);
+    timeline.paused(value[0].paused);
+  },
+  timeline: timeline.draw,
+  why: teacher.why,
+  lesson: teacher.lesson,
   crew: crew,
   refused: (why) => line(why),
 };
@@ -36,7 +44,10 @@ async function begin() {
   const station = await (await fetch("/api/station")).json();
   keyboard.build(station, press);
   keyboard.help();
-  machine.build(station, (input) => connection.input(input));
+  const send = (input) => connection.input(input);
+  machine.build(station, send);
+  timeline.build(send);
+  teacher.build(send);
   return new Connection(
     (name, value) => draw[name]?.(value),
     (connected) => line(connected ? "" : "The station does not answer; it is asked again."),

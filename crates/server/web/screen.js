@@ -75,6 +75,15 @@ function drawWindow(node, shown, status) {
   }
   const nodes = children(lines, shown.lines.length, () => element("li"));
   shown.lines.forEach((line, place) => drawLine(nodes[place], line));
+  keepInSight(node, nodes[shown.lines.findIndex((line) => line.current)]);
+}
+
+// A small window is scrolled to the current line, and nothing else moves.
+function keepInSight(window, line) {
+  if (!line) return;
+  const [around, inside] = [window.getBoundingClientRect(), line.getBoundingClientRect()];
+  if (inside.top < around.top) window.scrollTop += inside.top - around.top;
+  else if (inside.bottom > around.bottom) window.scrollTop += inside.bottom - around.bottom;
 }
 
 function drawLine(node, line) {

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod pictures;
+
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::path::{Path, PathBuf};
@@ -23,12 +25,18 @@ pub struct Panel {
 
 impl Panel {
     pub fn start() -> Panel {
+        Panel::with(|_| {})
+    }
+
+    /// The same with a folder that something was done to.
+    pub fn with(what: impl FnOnce(&Path)) -> Panel {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("bahn-server-{}-{number}", std::process::id());
         let folder = std::env::temp_dir().join(name);
         let machines = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/mill");
         copy(&machines, &folder);
+        what(&folder);
         let station = Station::power_on(load(&folder).unwrap()).unwrap();
         let options = ServerOptions {
             listen: "127.0.0.1:0".parse().unwrap(),
@@ -41,6 +49,11 @@ impl Panel {
             server: Some(server),
             folder,
         }
+    }
+
+    /// A file of the machine's folder.
+    pub fn file(&self, name: &str) -> String {
+        std::fs::read_to_string(self.folder.join(name)).unwrap()
     }
 
     /// Status and body of a request.
@@ -95,6 +108,15 @@ impl Panel {
             }
             assert!(Instant::now() < end, "{screen:#}");
             std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Waits until so much time of the machine has passed, s.
+    pub fn wait(&self, seconds: f64) {
+        let now = || self.get("/api/snapshot")["t"].as_f64().unwrap();
+        let end = now() + seconds;
+        while now() < end {
+            std::thread::sleep(Duration::from_millis(20));
         }
     }
 
