@@ -393,6 +393,7 @@ fn the_diagram_catches_an_edge() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     plc_mode(&mut trainee);
+    soft(&mut trainee, "TRACE");
     soft(&mut trainee, "LOGIC DIAGRAM");
     for operand in ["M3100", "M2719"] {
         trainee.press("ENT");
@@ -405,6 +406,8 @@ fn the_diagram_catches_an_edge() {
     trainee.wait(11.0);
     let records = |trainee: &mut Trainee| trainee.screen().status.flags.contains(&"PCTR".to_owned());
     assert!(records(&mut trainee), "it waits for the event");
+    soft(&mut trainee, "TRACE IN CODE");
+    assert_eq!(title(&mut trainee), "TRACE MAIN.PLC");
     trainee.press("END");
     soft(&mut trainee, "TABLE");
     trainee.press("GOTO").number("3100").press("ENT");
@@ -412,6 +415,7 @@ fn the_diagram_catches_an_edge() {
     assert!(records(&mut trainee));
     trainee.press("END").wait(11.0);
     assert!(!records(&mut trainee), "512 scans of 20 ms are behind it");
+    soft(&mut trainee, "TRACE");
     soft(&mut trainee, "LOGIC DIAGRAM");
     let expected = format!("M3100  1  {}{}", "_".repeat(32), HIGH.to_string().repeat(32));
     assert_eq!(line(&mut trainee), expected);
