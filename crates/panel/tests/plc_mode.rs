@@ -178,33 +178,33 @@ fn the_table_shows_and_sets_operands() {
     );
 }
 
+/// The line of the main program's first instruction.
+fn begin_of(main: &str) -> usize {
+    main.lines()
+        .position(|line| line.contains("L     M2719"))
+        .unwrap()
+        + 1
+}
+
+/// Opens the main file at its first instruction.
+fn edit(trainee: &mut Trainee, line: usize) {
+    soft(trainee, "EDIT");
+    trainee.press("ENT GOTO").number(&line.to_string()).press("ENT");
+    assert_eq!(
+        title(trainee),
+        format!("FILE MAIN.PLC  LINE {line}  COLUMN 1  INSERT")
+    );
+}
+
 #[test]
-#[expect(
-    clippy::too_many_lines,
-    reason = "one way from the fault to the machine that runs"
-)]
-fn a_faulty_line_is_found_mended_and_runs_from_the_next_power_on() {
+fn a_faulty_line_is_found_and_mended() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     plc_mode(&mut trainee);
     let main = trainee.file("plc/MAIN.PLC");
-    let begin = main
-        .lines()
-        .position(|line| line.contains("L     M2719"))
-        .unwrap()
-        + 1;
-    soft(&mut trainee, "EDIT");
-    assert!(
-        line(&mut trainee).starts_with("MAIN.PLC"),
-        "{}",
-        line(&mut trainee)
-    );
-    trainee.press("ENT GOTO").number(&begin.to_string()).press("ENT");
-    assert_eq!(
-        title(&mut trainee),
-        format!("FILE MAIN.PLC  LINE {begin}  COLUMN 1  INSERT")
-    );
-    // `LN M3100`, `= M3001` by keys: message 77 while M3100 is 0. Then a line that no PLC knows.
+    let begin = begin_of(&main);
+    edit(&mut trainee, begin);
+    // `LN M3100`, `= M3001` by keys, then a line that no PLC knows.
     typed(&mut trainee, "LN");
     soft(&mut trainee, "BLANK");
     typed(&mut trainee, "M3100");
@@ -216,41 +216,26 @@ fn a_faulty_line_is_found_mended_and_runs_from_the_next_power_on() {
     assert_eq!(trainee.messages(), [""; 0]);
     text(&mut trainee, "XYZ M1\n");
     trainee.press("ENT");
-    let wrong = begin + 2;
     assert_eq!(trainee.messages(), ["INPUT ERROR 0 not a valid command"]);
     trainee.press("CE");
     let edited = trainee.file("plc/MAIN.PLC");
-    let lines: Vec<&str> = edited.lines().skip(begin - 1).take(4).collect();
-    assert_eq!(
-        lines,
-        [
-            "LN M3100",
-            "= M3001",
-            "XYZ M1",
-            "       L     M2719        ; word processing instead of the markers of old programs"
-        ]
-    );
-    assert_eq!(edited.lines().count(), main.lines().count() + 3);
+    let mut expected: Vec<&str> = main.lines().collect();
+    let typed_lines = ["LN M3100", "= M3001", "XYZ M1"];
+    expected.splice(begin - 1..begin - 1, typed_lines);
+    assert_eq!(edited.lines().collect::<Vec<_>>(), expected);
     // Half a line is on the medium, too.
     typed(&mut trainee, "EM");
-    assert_eq!(
-        trainee
-            .file("plc/MAIN.PLC")
-            .lines()
-            .nth(begin + 2)
-            .map(|line| &line[..4]),
-        Some("EM  ")
-    );
+    let half = trainee.file("plc/MAIN.PLC");
+    assert_eq!(half.len(), edited.len() + 2);
+    assert!(half.lines().nth(begin + 2).unwrap().starts_with("EM "));
     trainee.press("CE CE END");
     assert_eq!(trainee.file("plc/MAIN.PLC"), edited);
     soft(&mut trainee, "COMPILE");
     trainee.press("ENT");
     assert_eq!(title(&mut trainee), "COMPILE: ERRORS");
-    let shown = line(&mut trainee);
-    assert!(
-        shown.starts_with(&format!("MAIN.PLC:{wrong} 0 not a valid command")),
-        "{shown}"
-    );
+    let (shown, wrong) = (line(&mut trainee), begin + 2);
+    let expected = format!("MAIN.PLC:{wrong} 0 not a valid command");
+    assert!(shown.starts_with(&expected), "{shown}");
     trainee.press("ENT");
     assert_eq!(line(&mut trainee), format!("{wrong:>6} XYZ M1"));
     soft(&mut trainee, "DELETE LINE");
@@ -260,16 +245,35 @@ fn a_faulty_line_is_found_mended_and_runs_from_the_next_power_on() {
     let said = trainee.messages();
     assert!(said[0].starts_with("MAIN.PLC: 0 ERRORS, "), "{said:?}");
     assert!(said[0].ends_with("RUNS FROM THE NEXT POWER-ON"), "{said:?}");
-    trainee.press("CE").wait(1.0);
+    // It can be switched off here without END.
+    let mut trainee = trainee.killed();
+    trainee.wait(5.0).press("CE").wait(2.0);
+    let shown = trainee.messages();
+    assert!(
+        shown.contains(&"PLC: ERROR 77".to_owned()),
+        "M3100 is 0: {shown:?}"
+    );
+}
+
+#[test]
+fn what_was_compiled_runs_from_the_next_power_on() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    plc_mode(&mut trainee);
+    let main = trainee.file("plc/MAIN.PLC");
+    edit(&mut trainee, begin_of(&main));
+    text(&mut trainee, "LN M3100\n= M3001\n");
+    trainee.press("ENT END");
+    soft(&mut trainee, "COMPILE");
+    trainee.press("ENT CE").wait(1.0);
     assert_eq!(trainee.messages(), [""; 0], "the program of before runs on");
+    let lines = trainee.screen().program.lines;
+    assert_eq!(lines[5].text, "MAIN.PLC: COMPILED, RUNS FROM THE NEXT POWER-ON");
     let before_s = trainee.screen().time_s;
     trainee.give(r#"{"power":false}"#).wait(0.5);
     trainee.give(r#"{"power":true}"#).wait(5.0).press("CE").wait(2.0);
-    assert!(
-        trainee.messages().contains(&"PLC: ERROR 77".to_owned()),
-        "{:?}",
-        trainee.messages()
-    );
+    let shown = trainee.messages();
+    assert!(shown.contains(&"PLC: ERROR 77".to_owned()), "{shown:?}");
     // Who looks back finds the program of then, and that of now where he came from.
     let now_s = trainee.screen().time_s;
     let running = |trainee: &Trainee| trainee.station.control().plc().program().files[0].lines.len();
@@ -279,6 +283,40 @@ fn a_faulty_line_is_found_mended_and_runs_from_the_next_power_on() {
     assert_eq!(running(&trainee), main.lines().count());
     trainee.station.go_to(now_s).unwrap();
     assert_eq!(running(&trainee), new);
+}
+
+/// Once after power-on a text and a bar; what module 9081 tells stands in W902. M3112 clears it all.
+const WINDOW_CALLS: &str = "L M3111\nJPT WINDOW_SHOWN\nLN M3111\nS M3111\nSUBM WINDOW_SHOW\n= B900\nLBL WINDOW_SHOWN\n\
+    CM 9081\nPL W902\nL M3112\nJPF WINDOW_KEPT\nR M3112\nSUBM WINDOW_CLEAR\n= B901\nLBL WINDOW_KEPT\n";
+const WINDOW_MODULES: &str = "LBL WINDOW_SHOW\nL S\"SPINDLE\"\n= S0\nPS K+0\nPS K+10\nPS K+0\nPS K+0\nCM 9082\n\
+    PS K+1\nPS K+100\nPS K+40\nPS K+11\nPS K+12\nCM 9083\nEM\nLBL WINDOW_CLEAR\nCM 9080\nEM\n";
+
+#[test]
+fn the_window_of_the_plc_is_seen_and_the_plc_knows() {
+    let mut trainee = Trainee::with("mill", |folder| {
+        let path = folder.join("plc/MAIN.PLC");
+        let main = std::fs::read_to_string(&path).unwrap();
+        let at = main.find("       L     M2719").unwrap();
+        let (head, body) = main.split_at(at);
+        let cut = body.find("; ---- After power-on").unwrap();
+        let (body, rest) = body.split_at(cut);
+        let changed = format!("{head}{WINDOW_CALLS}{body}{WINDOW_MODULES}{rest}");
+        std::fs::write(path, changed).unwrap();
+    });
+    trainee.ready();
+    let window = trainee.screen().plc_window.unwrap();
+    assert_eq!(window[0].text.trim_end(), format!("{:10}SPINDLE", ""));
+    assert_eq!(window[1].bar, Some([100, 40, 11, 12]));
+    assert_eq!(value(&trainee, "W902"), "3");
+    // It is there in every mode.
+    trainee.press("PROGRAM").wait(0.1);
+    assert_eq!(value(&trainee, "W902"), "3");
+    plc_mode(&mut trainee);
+    soft(&mut trainee, "TABLE");
+    trainee.press("GOTO").number("3112").press("ENT");
+    soft(&mut trainee, "SET");
+    trainee.wait(0.5);
+    assert_eq!(trainee.screen().plc_window, None);
 }
 
 #[test]
@@ -355,6 +393,7 @@ fn the_diagram_catches_an_edge() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     plc_mode(&mut trainee);
+    soft(&mut trainee, "TRACE");
     soft(&mut trainee, "LOGIC DIAGRAM");
     for operand in ["M3100", "M2719"] {
         trainee.press("ENT");
@@ -367,6 +406,8 @@ fn the_diagram_catches_an_edge() {
     trainee.wait(11.0);
     let records = |trainee: &mut Trainee| trainee.screen().status.flags.contains(&"PCTR".to_owned());
     assert!(records(&mut trainee), "it waits for the event");
+    soft(&mut trainee, "TRACE IN CODE");
+    assert_eq!(title(&mut trainee), "TRACE MAIN.PLC");
     trainee.press("END");
     soft(&mut trainee, "TABLE");
     trainee.press("GOTO").number("3100").press("ENT");
@@ -374,6 +415,7 @@ fn the_diagram_catches_an_edge() {
     assert!(records(&mut trainee));
     trainee.press("END").wait(11.0);
     assert!(!records(&mut trainee), "512 scans of 20 ms are behind it");
+    soft(&mut trainee, "TRACE");
     soft(&mut trainee, "LOGIC DIAGRAM");
     let expected = format!("M3100  1  {}{}", "_".repeat(32), HIGH.to_string().repeat(32));
     assert_eq!(line(&mut trainee), expected);

@@ -6,6 +6,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_plc::{CodeTrace, Executed, OperandContent, PlcProgram, code_of_line};
 
+use super::diagram::LogicDiagram;
 use crate::page::{Page, Turn, View, first_in_sight};
 use crate::pages::ask::Later;
 use crate::screen::{Dialogue, Line, Window, WindowKind};
@@ -141,7 +142,7 @@ impl Page for Code {
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
         match place {
-            0 => return Turn::Replace(Box::new(super::diagram::LogicDiagram::default())),
+            0 => return Turn::Open(Box::new(LogicDiagram::default())),
             1 => return self.find.ask(site.words("FIND ="), WORD_MAX),
             2 => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER_MAX),
             3 => self.hexadecimal = !self.hexadecimal,

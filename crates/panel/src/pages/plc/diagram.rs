@@ -173,12 +173,12 @@ impl Page for LogicDiagram {
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
         match place {
-            0 => return Turn::Replace(Box::new(super::code::Code::new(site))),
             1 => return self.operand.ask(site.words("OPERAND ="), OPERAND_MAX),
             2 => return self.start(site),
             3 => site.plc.stop(),
             4 => return self.scroll(-(COLUMNS as isize), site),
             5 => return self.scroll(COLUMNS as isize, site),
+            // TRACE IN CODE and END: that page lies below.
             _ => return Turn::Close,
         }
         Turn::Done

@@ -73,8 +73,8 @@ impl Page for MainMenu {
             site.words("EDIT"),
             site.words("TABLE"),
             site.words("TRACE"),
-            site.words("LOGIC DIAGRAM"),
             site.words("COMPILE"),
+            empty(),
             empty(),
             empty(),
             site.words("END"),
@@ -86,8 +86,7 @@ impl Page for MainMenu {
             0 => files::open(Purpose::Edit, site),
             1 => Turn::Open(Box::new(operands::Table::default())),
             2 => Turn::Open(Box::new(code::Code::new(site))),
-            3 => Turn::Open(Box::new(diagram::LogicDiagram::default())),
-            4 => files::open(Purpose::Compile, site),
+            3 => files::open(Purpose::Compile, site),
             _ => Turn::Close,
         }
     }
