@@ -30,10 +30,11 @@ probe direction X+|all              what the next NC start probes; all four dire
 probe datum AXIS VALUE              what was probed becomes this value
 probe angle DEGREES                 rotation angle: the basic rotation, and nominal angle of the next side
 probe end                           leaves the function
-tool-life T MIN                     current life of a tool (CUR.TIME), minutes
+tool-life TOOL MIN                  current life of a tool (CUR.TIME), minutes
 q N VALUE                           a Q parameter, between runs or while one is interrupted
-axis-limit AXIS RANGE MIN MAX|off   AXIS LIMIT of a traverse range 1 to 3, from machine zero
-table T|D|P LINE COLUMN VALUE       the file of a table says something else from now on, and it counts
+axis-limit AXIS RANGE LEAST MOST    AXIS LIMIT of a traverse range 1 to 3, from machine zero
+axis-limit AXIS RANGE off           without it
+table T LINE COLUMN VALUE           a cell of the tool table, with D a datum table, with P the pocket table: it counts at once
 jog MM                              jog increment
 output step FEED, output ramp       what direction keys put out on axes with digital speed controller
 oscilloscope start|stop             recording of --oscilloscope by hand, behind `code 688379`
@@ -130,7 +131,7 @@ mod tests {
     use super::*;
 
     /// What stands for the words in capitals of the list.
-    const EXAMPLES: [(&str, &str); 16] = [
+    const EXAMPLES: [(&str, &str); 21] = [
         ("PROGRAM", "1.H"),
         ("BLOCK", "L X+1"),
         ("RPM", "100"),
@@ -146,7 +147,12 @@ mod tests {
         ("MM", "1"),
         ("N", "5"),
         ("R", "20"),
-        ("T", "3"),
+        ("TOOL", "3"),
+        ("RANGE", "1"),
+        ("LEAST", "-10"),
+        ("MOST", "10"),
+        ("LINE", "1"),
+        ("COLUMN", "L"),
     ];
 
     /// The commands that a form stands for: `probe surface|circle` are two.
