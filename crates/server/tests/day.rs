@@ -8,8 +8,7 @@ mod support;
 use bahn_browser::{Browser, Page};
 use serde_json::{Value, json};
 use std::time::Duration;
-use support::Panel;
-use support::pictures;
+use support::{Panel, pictures, position};
 
 /// How long a person waits; the host may be slow.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -341,14 +340,13 @@ fn a_day_at_the_mill_with_the_mouse() {
     desk.page.mouse_down(jog).unwrap();
     panel.until(|screen| position(screen, "Z") > stood + 0.5);
     desk.page.mouse_up(jog).unwrap();
-    panel.until(|screen| screen["status"]["feed_mm_min"] == 0.0);
+    panel.wait(1.0);
     desk.soft_key("RESTORE POSITION");
     pictures::take(&mut desk.page, "restore");
     desk.machine_key("NC_START");
     desk.speed(20.0);
-    panel.until(|screen| {
-        (position(screen, "Z") - stood).abs() < 0.01 && screen["status"]["feed_mm_min"] == 0.0
-    });
+    panel.until(|screen| (position(screen, "Z") - stood).abs() < 0.01);
+    panel.wait(1.0);
     desk.machine_key("NC_START");
     desk.star("steady");
     desk.speed(50.0);
@@ -364,13 +362,6 @@ fn current(screen: &Value) -> String {
     let line = lines.iter().find(|line| line["current"] == true);
     line.map(|line| line["text"].as_str().unwrap().to_owned())
         .unwrap_or_default()
-}
-
-/// The position of an axis as the screen shows it.
-fn position(screen: &Value, letter: &str) -> f64 {
-    let axes = screen["status"]["axes"].as_array().unwrap();
-    let axis = axes.iter().find(|axis| axis["letter"] == letter).unwrap();
-    axis["value"].as_str().unwrap().parse().unwrap()
 }
 
 #[test]

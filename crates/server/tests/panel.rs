@@ -5,7 +5,7 @@
 mod support;
 
 use serde_json::json;
-use support::Panel;
+use support::{Panel, position};
 
 #[test]
 fn the_screen_has_its_fields_and_keys_change_it() {
@@ -38,12 +38,18 @@ fn the_screen_has_its_fields_and_keys_change_it() {
         (&snapshot["mode"], &snapshot["axes"][0]["referenced"]),
         (&json!("manual"), &json!(true))
     );
-    // A key that is held, until it is let go.
+    // A key that is held, until it is let go; faster, the axis would be at its limit before anybody looks.
     assert_eq!(panel.give(&json!({"speed": 1})), 200);
+    let stood = position(&panel.screen(), "X");
     assert_eq!(panel.give(&json!({"key": "X+", "down": true})), 200);
-    panel.until(|screen| screen["status"]["f"] != "0" && screen["machine"]["held"][0] == "X+");
+    panel.until(|screen| position(screen, "X") > stood + 0.5 && screen["status"]["f"] != "0");
     assert_eq!(panel.give(&json!({"key": "X+", "down": false})), 200);
-    panel.until(|screen| screen["status"]["f"] == "0");
+    // It has run out after a second, and stands.
+    panel.wait(1.0);
+    let stands = position(&panel.screen(), "X");
+    panel.wait(1.0);
+    let moved = position(&panel.screen(), "X") - stands;
+    assert!(moved.abs() < 0.01, "{moved}");
 }
 
 #[test]

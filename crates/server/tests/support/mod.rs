@@ -179,3 +179,10 @@ fn copy(from: &Path, to: &Path) {
         }
     }
 }
+
+/// The position of an axis as the screen shows it.
+pub fn position(screen: &Value, letter: &str) -> f64 {
+    let axes = screen["status"]["axes"].as_array().unwrap();
+    let axis = axes.iter().find(|axis| axis["letter"] == letter).unwrap();
+    axis["value"].as_str().unwrap().parse().unwrap()
+}
