@@ -152,7 +152,6 @@ fn what_was_found_stays_mended() {
         ("dig425", 653_417, "emergency press"),
         ("dig425", 658_234, "voltage off"),
         ("gantry", 603_496, "switch door open"),
-        ("mill-tnc360", 655_214, "fault input I3 bouncing"),
         ("twin", 651_458, "M2482=1"),
     ] {
         let campaign = campaign(machine);
