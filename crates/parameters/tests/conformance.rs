@@ -230,8 +230,10 @@ fn parameters_that_act_are_read_outside_this_room() {
                     .split(['.', '-'])
                     .next()
                     .unwrap_or_default();
-                // Module 9032 reads MP4230 and MP4231 by the number that the PLC gives it [000:14851-14875].
+                // Module 9032 reads MP4230 and MP4231 by the number that the PLC gives it [000:14851-14875]; an entry of
+                // MP7330 and MP7340 is a user parameter only when it names one, which no single change here does.
                 matches!(number, "4230" | "4231")
+                    || matches!(number, "7330" | "7340") && has_word(&sources, ".", "user_parameters")
                     || number.parse::<u32>().is_ok_and(|number| number > 263)
                         && has_word(&sources, "", number)
             };
