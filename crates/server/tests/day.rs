@@ -304,8 +304,8 @@ fn a_day_at_the_mill_with_the_mouse() {
     );
     desk.keys("L Y 6");
     desk.shows("dialogue", "COORDINATES?");
+    desk.until("document.querySelector('[data-region=program] .current').textContent.includes('Y+6')");
     let typed = desk.page.text("[data-region=program] .current").unwrap();
-    assert!(typed.contains("Y+6"), "{typed}");
     desk.page.reload().unwrap();
     desk.shows("dialogue", "COORDINATES?");
     assert_eq!(desk.page.text("[data-region=program] .current").unwrap(), typed);
