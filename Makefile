@@ -6,7 +6,7 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test bench doc pictures conformance faults torture trails tools browser clean
+.PHONY: run test bench doc pictures conformance faults torture trails tools browser axe clean
 
 # Built for the first look: without the screen of `bahn plc watch`, and with the profile for it.
 BAHN := $(CARGO) run --quiet --profile quick -p bahn --no-default-features --
@@ -32,7 +32,7 @@ run:
 
 # Everything that must hold: format, lints, documentation, tests. Of the fuzz targets nothing is linked here: they
 # compile without libFuzzer.
-test: tools browser
+test: tools browser axe
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	$(CARGO) clippy -p bahn --no-default-features --locked -- -D warnings
@@ -91,6 +91,21 @@ browser:
 	{ $$as_root apt-get update -q && \
 		DEBIAN_FRONTEND=noninteractive $$as_root apt-get install -q -y --no-install-recommends chromium; } \
 		>/dev/null 2>&1 || echo "Chromium cannot be installed: the tests of pages are skipped"
+
+# The rules by which the tests look whether the pages can be used by everybody: one file, known by its sum.
+AXE := axe-core-4.14.1
+AXE_SUM := 29348999450cdf2849a8e70b7912fc2da85a849da39c0d0d5394f51d4a9ed95c
+axe:
+	@mkdir -p $(OUT)
+	@echo "$(AXE_SUM)  $(OUT)/axe.min.js" | sha256sum --check --status 2>/dev/null && exit 0; \
+	as_root=; [ "$$(id -u)" = 0 ] || as_root="sudo -n"; \
+	command -v npm >/dev/null 2>&1 || { echo "installing npm, which fetches axe-core"; \
+		$$as_root apt-get update -q && \
+		DEBIAN_FRONTEND=noninteractive $$as_root apt-get install -q -y --no-install-recommends npm; } >/dev/null 2>&1; \
+	{ cd $(OUT) && npm pack --silent $(subst core-,core@,$(AXE)) && \
+		tar xzf $(AXE).tgz --strip-components=1 package/axe.min.js && rm $(AXE).tgz && \
+		echo "$(AXE_SUM)  axe.min.js" | sha256sum --check --status; } >/dev/null 2>&1 || \
+		{ rm -f $(OUT)/axe.min.js; echo "axe-core cannot be fetched: its rules are skipped"; }
 
 clean:
 	$(CARGO) clean

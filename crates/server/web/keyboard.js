@@ -26,7 +26,8 @@ export function build(station, press) {
       const button = element("button", "key", CAPTIONS[key.name] ?? key.name.replaceAll("_", " "));
       button.type = "button";
       button.dataset.key = key.name;
-      button.setAttribute("aria-label", key.label);
+      // What stands on a key belongs to its name: somebody may say it to press it.
+      button.setAttribute("aria-label", `${button.textContent}: ${key.label}`);
       button.title = key.label;
       button.addEventListener("click", () => press(key.name));
       block.append(button);

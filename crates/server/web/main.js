@@ -60,10 +60,10 @@ function press(key) {
 
 keyboard.listen(press);
 
-for (const tab of document.querySelectorAll("[data-tab]")) {
+for (const tab of document.querySelectorAll(".tabs [data-tab]")) {
   tab.addEventListener("click", () => {
     document.body.dataset.tab = tab.dataset.tab;
-    for (const other of document.querySelectorAll("[data-tab]")) {
+    for (const other of document.querySelectorAll(".tabs [data-tab]")) {
       other.setAttribute("aria-pressed", String(other === tab));
     }
   });

@@ -109,6 +109,8 @@ function drawLine(node, line) {
 
 function largePositions(lines, status) {
   const axes = status?.axes ?? [];
+  // Lines of another kind of window may stand there.
+  for (const line of [...lines.children]) if (!line.classList.contains("axis")) line.remove();
   const nodes = children(lines, axes.length, () => {
     const line = element("li", "axis");
     line.append(element("span", "star"), element("span", "letter"), element("span", "value"));

@@ -120,6 +120,6 @@ function drawer(send) {
 
 /** Why the machine stands. */
 export function why(reasons) {
-  const node = document.querySelector('[data-region="why"]');
+  const node = document.querySelector('[data-region="why"] ul');
   node.replaceChildren(...reasons.map((reason) => element("li", "", reason)));
 }

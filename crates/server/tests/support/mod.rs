@@ -150,6 +150,23 @@ impl Viewer {
         self.socket.send(Message::text(message.to_string())).unwrap();
     }
 
+    /// Waits until an input of this number was taken or refused.
+    pub fn answered(&mut self, number: u64) {
+        loop {
+            let Message::Binary(bytes) = self.socket.read().unwrap() else {
+                continue;
+            };
+            let regions = rmpv::decode::read_value(&mut bytes.as_ref()).unwrap();
+            for region in regions.as_array().unwrap() {
+                match region[0].as_str() {
+                    Some("taken") if region[1].as_u64() == Some(number) => return,
+                    Some("refused") => return,
+                    _ => {}
+                }
+            }
+        }
+    }
+
     /// The value of the next region of a name for which something holds.
     pub fn until(&mut self, name: &str, what: impl Fn(&Value) -> bool) -> Value {
         loop {
