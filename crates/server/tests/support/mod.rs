@@ -122,12 +122,7 @@ impl Panel {
 
     /// A viewer of this name.
     pub fn viewer(&self, name: &str) -> Viewer {
-        let url = format!("ws://{}/ws?name={name}", self.address);
-        let (socket, _) = tungstenite::connect(url).unwrap();
-        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
-            stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-        }
-        Viewer { socket }
+        Viewer::of(&format!("ws://{}/ws?name={name}", self.address))
     }
 }
 
@@ -146,6 +141,20 @@ pub struct Viewer {
 }
 
 impl Viewer {
+    /// At an address.
+    pub fn of(url: &str) -> Viewer {
+        let (socket, _) = tungstenite::connect(url).unwrap();
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        }
+        Viewer { socket }
+    }
+
+    /// The next message, whatever it is.
+    pub fn receive(&mut self) {
+        drop(self.socket.read().unwrap());
+    }
+
     pub fn send(&mut self, message: &Value) {
         self.socket.send(Message::text(message.to_string())).unwrap();
     }
