@@ -98,3 +98,35 @@ fn others_need_a_token() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("needs a token"));
 }
+
+/// Presses keys, numbers by their digits.
+fn press(address: &str, keys: &str) {
+    for key in keys.split_whitespace() {
+        let answer = request(address, "POST", "/api/key", &format!("{{\"key\":\"{key}\"}}"));
+        assert!(answer.contains("\"ok\":true"), "{key}: {answer}");
+    }
+}
+
+#[test]
+fn a_killed_panel_has_lost_nothing_of_a_program() {
+    let data = std::env::temp_dir().join(format!("bahn-panel-killed-{}", std::process::id()));
+    let (mut child, address) = start(&data, &[]);
+    until(&address, "POWER INTERRUPTED");
+    press(&address, "CE PROGRAM PGM_NR 7 7 ENT ENT L X 1 5 Y 2 ENT ENT ENT NO_ENT");
+    until(&address, "L X+15 Y+2 R0 FMAX");
+    // In the middle of the next block the process is gone, without a word.
+    press(&address, "L X 4 2");
+    until(&address, "X+42");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let (child, address) = start(&data, &[]);
+    until(&address, "POWER INTERRUPTED");
+    press(&address, "CE PROGRAM PGM_NR 7 7 ENT");
+    until(&address, "L X+15 Y+2 R0 FMAX");
+    // The block that was open is there as it was typed, and goes on.
+    until(&address, "X+42");
+    press(&address, "ENT ENT ENT NO_ENT");
+    until(&address, "L X+42 R0 FMAX");
+    assert_eq!(end(child), 0);
+    std::fs::remove_dir_all(data).unwrap();
+}

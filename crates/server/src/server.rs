@@ -8,6 +8,7 @@ use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::middleware;
 use axum::routing::{any, get, post};
+use axum::serve::ListenerExt as _;
 use bahn_panel::{Link, Live, Replay, Station};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
@@ -103,6 +104,8 @@ impl Server {
             access: Arc::new(Access::new(address, options.token)),
         };
         let router = router(shared);
+        // A screen behind the number of its key would wait until the viewer has acknowledged that, 40 ms.
+        let listener = listener.tap_io(|stream| drop(stream.set_nodelay(true)));
         runtime.spawn(async move {
             // It ends with the runtime.
             let _ = axum::serve(listener, router).await;
