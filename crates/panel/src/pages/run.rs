@@ -7,8 +7,10 @@ use bahn_dialogue::Key;
 use bahn_program::Program;
 
 use crate::graphics::Cut;
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
+use crate::pages::editing::NUMBER;
 use crate::pages::files::{Directory, Purpose};
+use crate::pages::list;
 use crate::pages::number::Number;
 use crate::pages::q_parameters::QParameters;
 use crate::pages::table;
@@ -162,20 +164,11 @@ fn running_block(site: &Site) -> Option<u32> {
 
 /// A program around a block.
 pub(crate) fn listing(name: &str, program: &Program, current: u32, lines: usize) -> Window {
-    let total = program.block_count() as usize;
-    let first = first_in_sight(current as usize, total, lines);
-    let blocks = (first..total).take(lines);
-    Window {
-        title: name.to_owned(),
-        kind: WindowKind::Program,
-        lines: blocks
-            .map(|block| Line {
-                text: program.text_of(block as u32),
-                current: block == current as usize,
-                ..Line::default()
-            })
-            .collect(),
-        first,
-        total,
-    }
+    let cursor = (current as usize, program.block_count() as usize);
+    let line = |block: usize| Line {
+        text: format!("{block:<NUMBER$}{}", program.text_of(block as u32)),
+        current: block == current as usize,
+        ..Line::default()
+    };
+    list::window(name.to_owned(), WindowKind::Program, cursor, lines, line)
 }
