@@ -104,11 +104,10 @@ fn line(row: &Row, words: &[ShownWord]) -> Line {
     let mut text = format!("{number:<NUMBER$}");
     let mut marks = Vec::new();
     if row.current && !words.is_empty() {
-        for (place, word) in words.iter().filter(|word| !word.text.is_empty()).enumerate() {
-            if place > 0 {
-                text.push(' ');
-            }
-            let from = text.chars().count();
+        for word in words {
+            // A word has with it what stands before it; what is highlighted is the word alone.
+            let blanks = word.text.chars().take_while(|c| c.is_whitespace()).count();
+            let from = text.chars().count() + blanks;
             text.push_str(&word.text);
             if word.highlighted {
                 marks.push((from, text.chars().count(), Mark::Cursor));
