@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
-use support::Folder;
+use support::{Folder, copy};
 
 /// What may end otherwise than with 0: part of the command and its exit code.
 const EXCEPTIONS: &[(&str, i32)] = &[
@@ -33,19 +33,6 @@ fn commands(text: &str) -> Vec<String> {
         line.split("   ").next().unwrap_or(line).trim().to_owned()
     };
     lines.map(without_comment).collect()
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        let target = to.join(path.file_name().unwrap());
-        match path.is_dir() {
-            true if path.ends_with("state") => {}
-            true => copy(&path, &target),
-            false => drop(fs::copy(&path, &target).unwrap()),
-        }
-    }
 }
 
 /// Everything that the texts name: the shipped files, and files of the user's own.

@@ -130,3 +130,21 @@ fn a_killed_panel_has_lost_nothing_of_a_program() {
     assert_eq!(end(child), 0);
     std::fs::remove_dir_all(data).unwrap();
 }
+/// A second panel of the same machine is told what helps; it has no option that runs beside the first.
+#[test]
+fn a_second_panel_is_told_what_helps() {
+    let folder = std::env::temp_dir().join(format!("bahn-panel-second-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let (first, _) = start(&folder, &[]);
+    let second = Command::new(env!("CARGO_BIN_EXE_bahn"))
+        .args(["panel", "--listen", "127.0.0.1:0"])
+        .env("XDG_DATA_HOME", &folder)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&second.stderr).into_owned();
+    assert_eq!(second.status.code(), Some(2), "{said}");
+    assert!(said.contains("switched on already"), "{said}");
+    assert!(said.contains("--machine") && !said.contains("--fresh"), "{said}");
+    assert_eq!(end(first), 0);
+    std::fs::remove_dir_all(folder).unwrap();
+}

@@ -134,8 +134,9 @@ pub enum Command {
     RestoreAt(u32),
     /// `code N`: a code number [000:6928-6947].
     Code(u32),
-    /// `key CODE`: a key by its code 58 to 127 [000:7338-7404].
-    Key(u8),
+    /// `key CODE`: a key by its code 58 to 127 [000:7338-7404], or what W516 calls else: `xx50` hexadecimal, M, S,
+    /// TOUCH PROBE [000:7406-7436].
+    Key(u16),
     /// `test NAME`: TEST RUN of a program beside what the machine does [003:1514-1535].
     Test(String),
     /// `end-test`: breaks the test run off.
@@ -230,7 +231,7 @@ impl FromStr for Command {
             "restore-at" => number(name, rest, 0, u32::MAX).map(Command::RestoreAt),
             "code" => number(name, rest, 0, u32::MAX).map(Command::Code),
             "m" => number(name, rest, 0, 999).map(Command::MFunction),
-            "key" => number(name, rest, 58, 127).map(Command::Key),
+            "key" => number(name, rest, 58, 0xFF50).map(Command::Key),
             "s" => value(name, rest, 0.0, 99_999.999).map(Command::Speed),
             "jog" => value(name, rest, 0.0, 50.0).map(Command::JogIncrement),
             "oscilloscope" => match rest {

@@ -604,9 +604,9 @@ impl Control {
         &self.kernel.machine.plc.machine
     }
 
-    /// Takes the key of the keyboard, by its code 58 to 127, that the PLC has simulated and nobody inhibits: it is for
-    /// whoever has the keyboard [000:7406-7440].
-    pub fn take_key(&mut self) -> Option<u8> {
+    /// Takes the key of the keyboard, by its code, that the PLC has simulated and nobody inhibits: it is for whoever has
+    /// the keyboard [000:7406-7440].
+    pub fn take_key(&mut self) -> Option<u16> {
         self.kernel.channels.first_mut().desk.take_key()
     }
 

@@ -30,6 +30,11 @@ const OFFSET_ADJUSTMENT: u32 = 75_368;
 const CODE_84159: u32 = 84_159;
 /// Marker of a key = code + this [000:7326-7404].
 const KEY_MARKER: u16 = 2796;
+const KEYS: std::ops::RangeInclusive<u16> = 58..=127;
+/// Codes of the soft keys M, S and TOUCH PROBE [000:7424-7436].
+const BY_HAND: [u16; 3] = [0x0100, 0x0200, 0x0300];
+/// Lower byte of a code of the alphabetic keyboard; the upper one is the character [000:7406-7410].
+const ALPHABETIC: u8 = 0x50;
 
 /// The operator's side of a channel.
 #[derive(Clone)]
@@ -47,7 +52,7 @@ pub(crate) struct Desk {
     reference: ReferenceRun,
     stylus: Stylus,
     /// The key that was pressed or simulated last, for whoever has the keyboard.
-    key: Option<u8>,
+    key: Option<u16>,
 }
 
 impl Desk {
@@ -302,9 +307,26 @@ impl Desk {
     }
 
     /// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319], whose code is also in
-    /// M2832 to M2839; any other is left for whoever has the keyboard.
-    pub fn press_key(&mut self, code: u8, exchange: &mut Exchange) -> bool {
-        let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + u16::from(code));
+    /// M2832 to M2839; any other is left for whoever has the keyboard. `false` for codes that are none, soft keys that are
+    /// not on the screen, and letters while M2876 inhibits them.
+    pub fn press_key(&mut self, code: u16, exchange: &mut Exchange) -> bool {
+        let [character, kind] = code.to_be_bytes();
+        let is_there = match code {
+            _ if BY_HAND.contains(&code) => matches!(self.mode, Mode::Manual | Mode::Handwheel),
+            _ if kind == ALPHABETIC && character > 0 => {
+                character.is_ascii_graphic() && !exchange.nc().bit(signal::INHIBIT_ALPHA_KEYBOARD)
+            }
+            _ => return KEYS.contains(&code) && self.press_own(code, exchange),
+        };
+        if is_there {
+            self.key = Some(code);
+        }
+        is_there
+    }
+
+    /// A key with a marker of its own.
+    fn press_own(&mut self, code: u16, exchange: &mut Exchange) -> bool {
+        let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + code);
         let inhibited = marker.is_some_and(|marker| exchange.nc().bit(marker));
         if inhibited {
             exchange.nc_put_number(signal::INHIBITED_KEY_CODE, code.into());
@@ -317,7 +339,7 @@ impl Desk {
     }
 
     /// Takes the key that is left.
-    pub fn take_key(&mut self) -> Option<u8> {
+    pub fn take_key(&mut self) -> Option<u16> {
         self.key.take()
     }
 

@@ -159,8 +159,7 @@ pub(crate) fn key(nc: &Image) -> Option<Option<Command>> {
         0x0000 => Some(Command::InternalStop),
         0x0400 => Some(Command::Mode(Mode::Reference)),
         0x0500 => Some(Command::RestorePosition),
-        code @ 58..=127 => u8::try_from(code).ok().map(Command::Key),
-        _ => None,
+        code => u16::try_from(code).ok().map(Command::Key),
     })
 }
 

@@ -222,6 +222,11 @@ impl<'a> ChannelView<'a> {
         commanded
     }
 
+    /// The spindle leads the path: a thread is being cut.
+    pub fn is_in_thread(&self) -> bool {
+        self.channel.run.track.path.is_coupled()
+    }
+
     /// Axes are being brought back to the contour, or are to be.
     pub fn restores(&self) -> bool {
         self.channel.run.restores()

@@ -428,7 +428,7 @@ impl<P: Operable> Host<P> {
     }
 
     /// Takes the key that the PLC has simulated, by its code; see [`Control::take_key`].
-    pub fn take_key(&mut self) -> Option<u8> {
+    pub fn take_key(&mut self) -> Option<u16> {
         self.control.take_key()
     }
 

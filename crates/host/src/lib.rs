@@ -30,6 +30,7 @@
 //! - any number of [`Reader`]s follow [`Notice`]s and snapshots; who is slow is told how much he missed;
 //! - [`Saved`] is a moment to go back to, a [`Timeline`] many of them: [`Host::replay`] reaches any moment again, also of
 //!   another [`Course`] that was kept;
+//! - an [`ExecutedPath`] hands out the elements of the path when they are executed;
 //! - [`State`] is what survives power-off: it is on the medium before the control goes on;
 //! - [`oem_cycles`] are the cycles of the machine builder, [`eprom`] what of them and of the PLC is put into an EPROM, as
 //!   [`s_records`];
@@ -51,6 +52,7 @@ mod digitizing;
 mod edges;
 pub mod eprom;
 mod error;
+mod executed_path;
 mod expectation;
 mod fault;
 mod feed;
@@ -92,6 +94,7 @@ pub use columns::{Cell, TableFault, TextRow, TextTable, canonical};
 pub use deed::{Answer, Deed, DeedError, Operable, Source};
 pub use edges::Edges;
 pub use error::HostError;
+pub use executed_path::{ElementId, ExecutedPath};
 pub use expectation::{Expectation, Relation, Run, Tested, run_name};
 pub use fault::{FileFault, Marked, Severity};
 pub use feed::{Next, Reader};

@@ -165,6 +165,28 @@ impl Console {
         self.went(turn, site);
     }
 
+    /// The soft key with a name, on whichever side shows it, the one with the keys first.
+    pub fn soft_key(&mut self, name: &'static str, site: &mut Site) {
+        let front = self.front();
+        let wanted = site.words(name);
+        for side in [front, front.other()] {
+            self.front = side;
+            let rows = match (side, &self.programming) {
+                (Side::Programming, None) => continue,
+                _ => self.stack().shown().soft_keys(site),
+            };
+            let place_in = |row: &Vec<String>| row.iter().position(|text| *text == wanted);
+            let mut rows = rows.iter().enumerate();
+            let found = rows.find_map(|(row, texts)| Some((row, place_in(texts)?)));
+            if let Some((row, place)) = found {
+                let turn = self.stack().top().soft_key(row, place, site);
+                return self.went(turn, site);
+            }
+        }
+        self.front = front;
+        self.say(site.message(MessageId::KeyNonFunctional));
+    }
+
     fn went(&mut self, turn: Turn, site: &Site) {
         let changes = matches!(
             turn,
@@ -197,6 +219,12 @@ impl Console {
 
     /// Once in every contour cycle.
     pub fn tick(&mut self, site: &mut Site) {
+        // What the control says, too, stands there once.
+        if !self.notes.is_empty() {
+            let shown = site.control().shown().iter();
+            let said: Vec<String> = shown.map(|own| site.translated(own)).collect();
+            self.notes.retain(|note| !said.contains(note));
+        }
         // The PLC, an error or power-off may have chosen another mode.
         if site.mode() != self.mode {
             self.mode = site.mode();

@@ -14,7 +14,7 @@ const SOFT_KEYS: u16 = 2877;
 const SOFT_KEY_ROWS: u16 = 2878;
 
 /// Codes of keys that the manual's example names; its table of the others is lost [000:7446-7535].
-const CODES: [(u8, Key); 6] = [
+const CODES: [(u16, Key); 6] = [
     (60, Key::L),
     (100, Key::Capture),
     (107, Key::Z),
@@ -23,6 +23,20 @@ const CODES: [(u8, Key); 6] = [
     (119, Key::End),
 ];
 
+/// Codes of soft keys by what they do [000:7424-7436]; the control itself does the others.
+const FUNCTIONS: [(u16, &str); 3] = [(0x0100, "M"), (0x0200, "S"), (0x0300, "TOUCH PROBE")];
+/// Lower byte of a code of the alphabetic keyboard; the upper one is the character [000:7406-7410].
+const ALPHABETIC: u8 = 0x50;
+
+/// What the PLC presses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Simulated {
+    /// A key.
+    Key(Key),
+    /// The soft key with this name, wherever it is shown.
+    SoftKey(&'static str),
+}
+
 /// Whether the PLC inhibits a key; it is told that the key was pressed then.
 pub(crate) fn is_inhibited(key: Key, site: &mut Site) -> bool {
     let is_set = |site: &Site, marker| {
@@ -30,7 +44,7 @@ pub(crate) fn is_inhibited(key: Key, site: &mut Site) -> bool {
         marker.is_some_and(|marker| site.control().memory().bit(marker))
     };
     if let Some(code) = code(key) {
-        if is_set(site, KEY_MARKER + u16::from(code)) {
+        if is_set(site, KEY_MARKER + code) {
             site.command(Command::Key(code));
             return true;
         }
@@ -46,16 +60,24 @@ pub(crate) fn is_inhibited(key: Key, site: &mut Site) -> bool {
 }
 
 /// The key that the PLC has simulated in this cycle.
-pub(crate) fn simulated(site: &mut Site) -> Option<Key> {
+pub(crate) fn simulated(site: &mut Site) -> Option<Simulated> {
     let code = site.host.take_key()?;
-    CODES
-        .iter()
-        .find(|(known, _)| *known == code)
-        .map(|(_, key)| *key)
+    let [character, kind] = code.to_be_bytes();
+    if let Some((_, name)) = FUNCTIONS.iter().find(|(known, _)| *known == code) {
+        return Some(Simulated::SoftKey(name));
+    }
+    let key = match kind {
+        ALPHABETIC if character > 0 => Key::of_character(char::from(character)),
+        _ => CODES
+            .iter()
+            .find(|(known, _)| *known == code)
+            .map(|(_, key)| *key),
+    };
+    key.map(Simulated::Key)
 }
 
 /// The code of a key, where one is known.
-fn code(key: Key) -> Option<u8> {
+fn code(key: Key) -> Option<u16> {
     CODES
         .iter()
         .find(|(_, known)| *known == key)

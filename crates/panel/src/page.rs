@@ -15,6 +15,16 @@ pub(crate) enum Side {
     Programming,
 }
 
+impl Side {
+    /// The one beside it.
+    pub fn other(self) -> Side {
+        match self {
+            Side::Machine => Side::Programming,
+            Side::Programming => Side::Machine,
+        }
+    }
+}
+
 /// What came of a key.
 pub(crate) enum Turn {
     /// It was taken.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bahn_control::{Command, Control, Mode};
+use bahn_control::{Command, Control, Mode, Shown};
 use bahn_host::{Answer, Deed, Host, LoadedMachine, Source};
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Axis;
@@ -64,6 +64,11 @@ impl Site<'_> {
     /// A message of the control.
     pub fn message(&self, id: MessageId) -> String {
         texts::translate(self.language(), id.text(self.control().model()))
+    }
+
+    /// A message of the control that is shown, as it stands on the screen.
+    pub fn translated(&self, shown: &Shown) -> String {
+        texts::translate(self.language(), &self.control().shown_text(shown))
     }
 
     /// The axis of a channel's key `X`, `Y`, `Z`, `IV` or `V`, by its place from 0.

@@ -15,10 +15,9 @@ use bahn_plc::PlcWindow;
 
 use crate::console::Console;
 use crate::graphics::{Graphics, Picture};
-use crate::inhibit;
+use crate::inhibit::{self, Simulated};
 use crate::input::{Input, Refusal};
 use crate::lesson::LessonRun;
-use crate::page::Side;
 use crate::plc_mode::PlcMode;
 use crate::programs::ProgramMemory;
 use crate::screen::{MachineState, MessageLine, PlcLine, Screen};
@@ -29,10 +28,8 @@ use crate::timeline::Past;
 use crate::why::Waits;
 use crate::{numbers, status, texts, why};
 
-/// Lines of the large window.
+/// Lines of the large window, and of one beside it.
 const LINES: usize = 16;
-/// Lines of a window beside another one.
-const LINES_BESIDE: usize = 16;
 /// A minute, µs.
 const MINUTE_US: u64 = 60_000_000;
 /// Stands in the status window while a logic diagram is recorded [000:11466].
@@ -189,8 +186,10 @@ impl Station {
         if is_on {
             self.count_time();
             let (console, mut site) = self.parts();
-            if let Some(key) = inhibit::simulated(&mut site) {
-                console.key(key, &mut site);
+            match inhibit::simulated(&mut site) {
+                Some(Simulated::Key(key)) => console.key(key, &mut site),
+                Some(Simulated::SoftKey(name)) => console.soft_key(name, &mut site),
+                None => {}
             }
             console.tick(&mut site);
         }
@@ -313,14 +312,10 @@ impl Station {
         let plc_window = self.plc_window();
         let (console, site) = self.parts();
         let front = console.front();
-        let other = match front {
-            Side::Machine => Side::Programming,
-            Side::Programming => Side::Machine,
-        };
         let view = console.view(front, &site, LINES).unwrap_or_default();
         let graphics = console.cut(front).and_then(|cut| site.graphics.line(cut));
         let beside = match console.split {
-            true => console.view(other, &site, LINES_BESIDE),
+            true => console.view(front.other(), &site, LINES),
             false => None,
         };
         let headings = console.headings(&site);

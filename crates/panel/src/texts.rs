@@ -82,7 +82,7 @@ fn german() -> HashMap<&'static str, &'static str> {
 mod tests {
     use super::*;
 
-    /// Texts in the sources of this crate: what stands in `words("...")`.
+    /// Texts in the sources of this crate: what stands in `words("...")`, and the names of soft keys in tables.
     fn used() -> Vec<String> {
         let mut found = Vec::new();
         let mut folders = vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
@@ -97,6 +97,12 @@ mod tests {
                     let places = source.split("words(").skip(1).map(str::trim_start);
                     let texts = places.filter_map(|rest| rest.strip_prefix('"')?.split('"').next());
                     found.extend(texts.map(str::to_owned));
+                    let tables = source.split("SOFT_KEYS: [&str; ").skip(1);
+                    let tables = tables.filter_map(|rest| rest.split(';').next());
+                    let names = tables.flat_map(|table| table.split('"').skip(1).step_by(2));
+                    // A sign is the same in every language.
+                    let names = names.filter(|name| name.contains(char::is_alphabetic));
+                    found.extend(names.map(str::to_owned));
                 }
             }
         }
@@ -129,6 +135,10 @@ mod tests {
     fn every_text_of_the_panel_is_translated() {
         let used = used();
         assert!(used.len() > 15, "{}", used.len());
+        assert!(
+            used.contains(&"LAST LINE".to_owned()),
+            "tables of soft keys are read"
+        );
         let missing: Vec<_> = used
             .iter()
             .filter(|text| find(Language::German, text).is_none())

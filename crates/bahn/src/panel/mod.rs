@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use bahn_host::LoadedMachine;
 use bahn_host::files::NewFile;
+use bahn_host::{HostError, LoadedMachine};
 use bahn_panel::{Input, Replay, Station};
 use bahn_server::{Server, ServerOptions};
 
@@ -19,6 +19,16 @@ use crate::{Outcome, UsageError, diagnostics, files, machine_folder};
 
 /// How often Ctrl-C is looked for.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// A panel goes on with what the machine has kept: only one at a time can.
+fn in_use(error: HostError) -> UsageError {
+    match error {
+        HostError::SwitchedOn(_) => UsageError(format!(
+            "{error}; end what runs it, or give another folder with --machine (`bahn machine new` makes one)"
+        )),
+        other => other.into(),
+    }
+}
 
 /// Switches the machine on and serves its panel until Ctrl-C.
 pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
@@ -42,7 +52,7 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
         }
     };
     let name = machine.folder.name.clone();
-    let mut station = Station::power_on(machine)?;
+    let mut station = Station::power_on(machine).map_err(in_use)?;
     station
         .input(&Input::Speed(options.speed))
         .map_err(|refusal| UsageError::new(refusal.to_string()))?;

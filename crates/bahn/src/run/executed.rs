@@ -1,12 +1,10 @@
 //! What was executed of the path: the report, the removal and the files that take it element by element.
 
-use std::collections::VecDeque;
-
 use bahn_control::{ChannelView, Control, RunState};
-use bahn_host::Host;
+use bahn_host::{ExecutedPath, Host};
 use bahn_path::{BlockRef, PathElement};
 
-use super::turning::{ElementId, Turning};
+use super::turning::Turning;
 use crate::UsageError;
 use crate::cutting::no_workpiece;
 use crate::report::{Notice, Record};
@@ -20,11 +18,8 @@ pub(super) struct Executed {
     pub record: Record,
     pub cutting: Option<Cutting>,
     pub outputs: Outputs,
-    /// Elements that were prepared and not yet executed.
-    ahead: VecDeque<PathElement>,
+    path: ExecutedPath,
     turning: Turning,
-    /// The element that was executed last, with the way that was left of it.
-    last_seen: Option<(ElementId, f64)>,
     last_stop: bool,
 }
 
@@ -35,9 +30,8 @@ impl Executed {
             record: Record::new(bahn_path::Position::UNKNOWN),
             cutting,
             outputs,
-            ahead: VecDeque::new(),
+            path: ExecutedPath::of(channel),
             turning: Turning::default(),
-            last_seen: None,
             last_stop: false,
         }
     }
@@ -47,10 +41,7 @@ impl Executed {
         if running && self.channel == 0 {
             self.turning.cycle(host.control(), host.plant());
         }
-        if let Some(dropped) = host.take_dropped_path(self.channel) {
-            self.ahead.retain(|element| element.sequence < dropped);
-        }
-        self.ahead.extend(host.take_path(self.channel));
+        self.path.follow(host);
         for warning in host.take_warnings(self.channel) {
             self.record
                 .warn(warning.block, Notice::Program(warning.kind), warning.count);
@@ -58,39 +49,17 @@ impl Executed {
         let Some(channel) = host.control().channel(self.channel) else {
             return Ok(());
         };
-        let all = channel.has_ended();
-        if let Some(element) = channel.element() {
-            self.last_seen = Some((ElementId::of(element), channel.rest_mm()));
-        }
-        let current = channel.element().map(|element| element.sequence);
-        while let Some(element) = self.ahead.front() {
-            if !all && current.is_none_or(|current| element.sequence >= current) {
-                break;
-            }
-            self.take_front(channel)?;
-        }
+        self.hand_on(channel)?;
         self.note_stop(channel);
         Ok(())
     }
 
     /// Of a run that was broken off in a block: what was executed to the end counts, too.
     pub fn finish(&mut self, control: &Control) -> Result<(), UsageError> {
-        /// Way that may be left when an element is done.
-        const DONE_MM: f64 = 1e-6;
-        let Some(((current, rest_mm), channel)) = self.last_seen.zip(control.channel(self.channel)) else {
-            return Ok(());
-        };
-        while let Some(element) = self.ahead.front() {
-            let is_current = ElementId::of(element) == current;
-            if element.sequence > current.sequence || is_current && rest_mm > DONE_MM {
-                break;
-            }
-            self.take_front(channel)?;
-            if is_current {
-                break;
-            }
-        }
-        Ok(())
+        self.path.finish();
+        control
+            .channel(self.channel)
+            .map_or(Ok(()), |channel| self.hand_on(channel))
     }
 
     /// What is written of an element names its program.
@@ -98,11 +67,15 @@ impl Executed {
         !self.outputs.is_empty()
     }
 
-    /// Hands on the next element.
-    fn take_front(&mut self, control: ChannelView) -> Result<(), UsageError> {
-        let Some(element) = self.ahead.pop_front() else {
-            return Ok(());
-        };
+    /// Hands on what is executed.
+    fn hand_on(&mut self, control: ChannelView) -> Result<(), UsageError> {
+        while let Some(element) = self.path.next() {
+            self.element(element, control)?;
+        }
+        Ok(())
+    }
+
+    fn element(&mut self, element: PathElement, control: ChannelView) -> Result<(), UsageError> {
         self.record.path(&element);
         let spindle = self.turning.take(&element);
         if let Some(cutting) = &mut self.cutting {

@@ -4,30 +4,15 @@ use std::collections::VecDeque;
 
 use bahn_control::Control;
 use bahn_exchange::signal;
+use bahn_host::ElementId;
 use bahn_machine::Machine;
-use bahn_path::{OverrideLaw, PathElement, PerAxis};
+use bahn_path::{OverrideLaw, PathElement};
 use bahn_servo::Rotation;
 
 use bahn_workpiece::Spindle;
 
 /// Elements that were seen and are passed over at most, when one of them is looked for.
 const PASSED_OVER: usize = 8;
-
-/// What tells an element from all others of its run. Axes without a position are equal, too, bit by bit.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct ElementId {
-    pub sequence: u64,
-    ends: [PerAxis<u64>; 2],
-}
-
-impl ElementId {
-    pub fn of(element: &PathElement) -> ElementId {
-        ElementId {
-            sequence: element.sequence,
-            ends: [element.start, element.end].map(|position| position.values().map(f64::to_bits)),
-        }
-    }
-}
 
 /// What was seen of the spindle, by elements in their order: as many as were begun and not yet handed on.
 #[derive(Default)]

@@ -7,10 +7,14 @@
     reason = "what fails in the support of tests fails the test"
 )]
 
+#[path = "../../../host/tests/support/copy.rs"]
+mod copy;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicU32, Ordering};
 
+pub use copy::copy;
 use serde_json::Value;
 
 /// A folder that is removed in the end.
@@ -114,22 +118,6 @@ pub fn holds_document(document: &str, command: &str, written_by: &str) {
         written == run.out(),
         "{document} is not what `bahn {command}` prints: {written_by}"
     );
-}
-
-/// Copies a folder, without what a control in it remembers.
-pub fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        let target = to.join(path.file_name().unwrap());
-        match path.is_dir() {
-            true if path.ends_with("state") => {}
-            true => copy(&path, &target),
-            false => {
-                std::fs::copy(&path, target).unwrap();
-            }
-        }
-    }
 }
 
 /// Blocks with BEGIN and END.

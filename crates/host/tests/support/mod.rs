@@ -5,12 +5,15 @@
     reason = "what fails in the support of tests fails the test"
 )]
 
+mod copy;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_control::Programs;
 use bahn_host::{Attendance, Host, Job, LoadedMachine, Operator, PowerOn};
 use bahn_program::Program;
+use copy::copy;
 
 /// Programs from texts.
 pub struct Texts(Vec<Arc<Program>>);
@@ -84,18 +87,5 @@ impl Copy {
 impl Drop for Copy {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let target = to.join(entry.file_name());
-        match entry.path().is_dir() {
-            true if entry.file_name() == "state" => {}
-            true => copy(&entry.path(), &target),
-            false => drop(std::fs::copy(entry.path(), &target).unwrap()),
-        }
     }
 }

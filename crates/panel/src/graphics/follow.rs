@@ -1,11 +1,10 @@
 //! The part of the program run: what the machine has executed is cut.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use bahn_control::{Mode, RunState};
-use bahn_host::Host;
+use bahn_host::{ExecutedPath, Host};
 use bahn_path::PathElement;
 
 use super::stock::{Heard, Stock};
@@ -18,8 +17,7 @@ const WAITING: usize = 4096;
 pub(super) struct Follower {
     /// The part of the run that was started last; `None` before the first one.
     stock: Option<Arc<Stock>>,
-    /// Elements that were prepared and not yet executed.
-    ahead: VecDeque<PathElement>,
+    path: ExecutedPath,
     /// Who cuts, when it is a thread.
     cutter: Option<SyncSender<PathElement>>,
     program: String,
@@ -41,30 +39,18 @@ impl Follower {
         }
         self.last = now;
         self.start_block = control.start_block();
-        if let Some(dropped) = host.take_dropped_path(0) {
-            self.ahead.retain(|element| element.sequence < dropped);
-        }
-        let prepared = host.take_path(0);
+        self.path.follow(host);
         if self.stock.is_none() {
-            return;
+            self.path.clear();
         }
-        self.ahead.extend(prepared);
-        let control = host.control();
-        let all = control.has_ended();
-        let current = control.element().map(|element| element.sequence);
-        while let Some(element) = self.ahead.front() {
-            if !all && current.is_none_or(|current| element.sequence >= current) {
-                break;
-            }
-            if let Some(element) = self.ahead.pop_front() {
-                self.cut(element);
-            }
+        while let Some(element) = self.path.next() {
+            self.cut(element);
         }
     }
 
     /// A run from the beginning has the whole blank, one from another block goes on with the part as it is (inferred).
     fn begin(&mut self, program: String, beside: bool) {
-        self.ahead.clear();
+        self.path.clear();
         self.program = program;
         if self.start_block > 0 && self.stock.is_some() {
             return;

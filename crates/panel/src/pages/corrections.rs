@@ -8,9 +8,13 @@ use bahn_host::{decode, files};
 use bahn_parameters::MessageId;
 
 use crate::entry::Entry;
-use crate::page::{Page, Turn, View, first_in_sight};
-use crate::screen::{Dialogue, Line, Mark, Window, WindowKind};
+use crate::page::{Page, Turn, View};
+use crate::pages::list;
+use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
+
+/// Its soft keys.
+const SOFT_KEYS: [&str; 3] = ["PAGE UP", "PAGE DOWN", "END"];
 
 /// The file of the correction tables.
 struct Corrections {
@@ -72,17 +76,17 @@ impl Corrections {
     }
 
     fn go(&mut self, lines: isize) -> Turn {
-        let last = self.lines.len().saturating_sub(1);
-        self.current = self.current.saturating_add_signed(lines).min(last);
+        self.current = list::moved(self.current, lines, self.lines.len());
         Turn::Done
     }
 }
 
 impl Page for Corrections {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(lines) = list::way_of_key(key) {
+            return self.go(lines);
+        }
         match key {
-            Key::Up => self.go(-1),
-            Key::Down => self.go(1),
             Key::Ent => match self.entry.value() {
                 Some(value) => self.take(value, site),
                 None => self.go(1),
@@ -94,27 +98,20 @@ impl Page for Corrections {
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        vec![vec![
-            site.words("PAGE UP"),
-            site.words("PAGE DOWN"),
-            site.words("END"),
-        ]]
+        vec![list::soft_keys(&SOFT_KEYS, site)]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, _site: &mut Site) -> Turn {
-        match place {
-            0 => self.go(-12),
-            1 => self.go(12),
-            _ => Turn::Close,
-        }
+        let way = list::way_of(list::name_at(&SOFT_KEYS, place));
+        way.map_or(Turn::Close, |lines| self.go(lines))
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {
-        let first = first_in_sight(self.current, self.lines.len(), lines);
-        let line = |(place, text): (usize, &String)| {
+        let line = |place: usize| {
+            let text = self.lines.get(place).map_or("", String::as_str);
             let cursor = value_at(text).filter(|_| place == self.current);
             Line {
-                text: text.clone(),
+                text: text.to_owned(),
                 current: place == self.current,
                 marks: cursor
                     .map(|at| (at.start, at.end, Mark::Cursor))
@@ -122,15 +119,15 @@ impl Page for Corrections {
                     .collect(),
             }
         };
-        let shown = self.lines.iter().enumerate().skip(first).take(lines);
+        let cursor = (self.current, self.lines.len());
         View {
-            window: Some(Window {
-                title: self.name.clone(),
-                kind: WindowKind::Table,
-                lines: shown.map(line).collect(),
-                first,
-                total: self.lines.len(),
-            }),
+            window: Some(list::window(
+                self.name.clone(),
+                WindowKind::Table,
+                cursor,
+                lines,
+                line,
+            )),
             dialogue: Dialogue {
                 prompt: site.words("CORRECTION ="),
                 entry: self.entry.text(),

@@ -4,12 +4,13 @@ use bahn_control::AxisState;
 use bahn_dialogue::{Editor, Key, Reaction, Row, ShownWord, Wanted};
 use bahn_path::Axis;
 
-use crate::page::{Turn, View, first_in_sight};
+use crate::page::{Turn, View};
+use crate::pages::list;
 use crate::screen::{Dialogue, Line, Mark, SoftKeys, Window, WindowKind};
 use crate::site::Site;
 
 /// Width of block numbers.
-const NUMBER: usize = 5;
+pub(crate) const NUMBER: usize = 5;
 /// The axes of an L block with actual positions, where MOD chose none [003:2260-2321].
 const CAPTURED: &str = "XYZ";
 
@@ -68,23 +69,15 @@ pub(crate) fn view(editor: &Editor, title: &str, lines: usize) -> View {
     let view = editor.view(half, half);
     let total = editor.program().block_count() as usize;
     let window = match &view.list {
-        Some(list) => Window {
-            title: title.to_owned(),
-            kind: WindowKind::List,
-            first: first_in_sight(list.at, list.lines.len(), lines),
-            total: list.lines.len(),
-            lines: {
-                let first = first_in_sight(list.at, list.lines.len(), lines);
-                let shown = list.lines.iter().enumerate().skip(first).take(lines);
-                shown
-                    .map(|(place, text)| Line {
-                        text: text.clone(),
-                        current: place == list.at,
-                        ..Line::default()
-                    })
-                    .collect()
-            },
-        },
+        Some(choice) => {
+            let line = |place: usize| Line {
+                text: choice.lines.get(place).cloned().unwrap_or_default(),
+                current: place == choice.at,
+                ..Line::default()
+            };
+            let cursor = (choice.at, choice.lines.len());
+            list::window(title.to_owned(), WindowKind::List, cursor, lines, line)
+        }
         None => Window {
             title: title.to_owned(),
             kind: WindowKind::Program,
@@ -111,11 +104,10 @@ fn line(row: &Row, words: &[ShownWord]) -> Line {
     let mut text = format!("{number:<NUMBER$}");
     let mut marks = Vec::new();
     if row.current && !words.is_empty() {
-        for (place, word) in words.iter().enumerate() {
-            if place > 0 {
-                text.push(' ');
-            }
-            let from = text.chars().count();
+        for word in words {
+            // A word has with it what stands before it; what is highlighted is the word alone.
+            let blanks = word.text.chars().take_while(|c| c.is_whitespace()).count();
+            let from = text.chars().count() + blanks;
             text.push_str(&word.text);
             if word.highlighted {
                 marks.push((from, text.chars().count(), Mark::Cursor));

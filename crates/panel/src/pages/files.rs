@@ -6,11 +6,11 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use crate::frames;
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
 use crate::pages::ask::{Choice, Name};
-use crate::pages::table;
+use crate::pages::{list, table};
 use crate::programs::{Denial, Entry, NAME_MAX, is_program};
-use crate::screen::{Dialogue, Line, Window, WindowKind};
+use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 
 /// What a file is chosen for.
@@ -288,9 +288,11 @@ fn said(denial: Denial, site: &Site) -> String {
 
 impl Page for Directory {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(lines) = list::way_of_key(key) {
+            self.current = list::moved(self.current, lines, self.entries.len());
+            return Turn::Done;
+        }
         match key {
-            Key::Down => self.current = (self.current + 1).min(self.entries.len().saturating_sub(1)),
-            Key::Up => self.current = self.current.saturating_sub(1),
             Key::Ent => return self.choose(site),
             Key::ClPgm if self.purpose == Purpose::Edit => {
                 return self.name().map_or(Turn::Refused, |name| erase(name, site));
@@ -353,9 +355,7 @@ impl Page for Directory {
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {
-        let first = first_in_sight(self.current, self.entries.len(), lines);
-        let shown = self.entries.iter().enumerate().skip(first).take(lines);
-        let line = |(place, entry): (usize, &Entry)| Line {
+        let row = |place: usize, entry: &Entry| Line {
             text: format!(
                 "{:<16} {:<5} {:>10} {}",
                 stem(&entry.name),
@@ -368,14 +368,16 @@ impl Page for Directory {
             current: place == self.current,
             ..Line::default()
         };
+        let line = |place| {
+            let entry = self.entries.get(place);
+            entry.map_or_else(Line::default, |entry| row(place, entry))
+        };
+        let (title, cursor) = (
+            site.words("PROGRAM DIRECTORY"),
+            (self.current, self.entries.len()),
+        );
         View {
-            window: Some(Window {
-                title: site.words("PROGRAM DIRECTORY"),
-                kind: WindowKind::List,
-                lines: shown.map(line).collect(),
-                first,
-                total: self.entries.len(),
-            }),
+            window: Some(list::window(title, WindowKind::List, cursor, lines, line)),
             dialogue: Dialogue {
                 prompt: match self.purpose {
                     Purpose::Erase => site.words("ERASE PROGRAM ="),

@@ -2,9 +2,13 @@
 
 use bahn_dialogue::Key;
 
-use crate::page::{Page, Turn, View, first_in_sight};
-use crate::screen::{Line, Window, WindowKind};
+use crate::page::{Page, Turn, View};
+use crate::pages::list;
+use crate::screen::{Line, WindowKind};
 use crate::site::Site;
+
+/// Soft keys of a menu.
+const SOFT_KEYS: [&str; 8] = ["SELECT", "", "", "", "", "", "", "END"];
 
 /// A line of a menu.
 pub(crate) struct Item {
@@ -70,28 +74,19 @@ impl<I: Items> Menu<I> {
 impl<I: Items> Page for Menu<I> {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
         let count = self.items.items(site).len();
-        match key {
-            Key::Down => self.current = (self.current + 1).min(count.saturating_sub(1)),
-            Key::Up => self.current = self.current.saturating_sub(1),
-            Key::Ent if count > 0 => return self.items.choose(self.current, site),
-            Key::End | Key::NoEnt | Key::Del | Key::Mod => return self.close(site),
-            key => return self.items.key(self.current, key, site),
+        if let Some(lines) = list::way_of_key(key) {
+            self.current = list::moved(self.current, lines, count);
+            return Turn::Done;
         }
-        Turn::Done
+        match key {
+            Key::Ent if count > 0 => self.items.choose(self.current, site),
+            Key::End | Key::NoEnt | Key::Del | Key::Mod => self.close(site),
+            key => self.items.key(self.current, key, site),
+        }
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        let empty = String::new;
-        vec![vec![
-            site.words("SELECT"),
-            empty(),
-            empty(),
-            empty(),
-            empty(),
-            empty(),
-            empty(),
-            site.words("END"),
-        ]]
+        vec![list::soft_keys(&SOFT_KEYS, site)]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
@@ -103,20 +98,17 @@ impl<I: Items> Page for Menu<I> {
 
     fn show(&self, site: &Site, lines: usize) -> View {
         let items = self.items.items(site);
-        let first = first_in_sight(self.current, items.len(), lines);
-        let line = |(place, item): (usize, &Item)| Line {
-            text: format!("{:<34} {}", item.name, item.value).trim_end().to_owned(),
-            current: place == self.current,
-            ..Line::default()
+        let line = |place: usize| {
+            let item = items.get(place);
+            let text = item.map(|item| format!("{:<34} {}", item.name, item.value));
+            Line {
+                text: text.unwrap_or_default().trim_end().to_owned(),
+                current: place == self.current,
+                ..Line::default()
+            }
         };
-        let shown = items.iter().enumerate().skip(first).take(lines);
-        let mut view = View::of(Window {
-            title: self.items.title(site),
-            kind: WindowKind::List,
-            lines: shown.map(line).collect(),
-            first,
-            total: items.len(),
-        });
+        let (title, cursor) = (self.items.title(site), (self.current, items.len()));
+        let mut view = View::of(list::window(title, WindowKind::List, cursor, lines, line));
         view.dialogue.prompt = self.items.prompt(site);
         view
     }

@@ -8,6 +8,7 @@ mod editing;
 mod files;
 mod handwheel;
 mod help;
+mod list;
 mod mdi;
 mod menu;
 mod number;

@@ -5,13 +5,14 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use crate::entry::Entry;
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
-use crate::screen::{Dialogue, Line, Mark, Window, WindowKind};
+use crate::pages::list;
+use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 
-/// Lines that a page goes.
-const PAGE: i32 = 12;
+/// Its soft keys.
+const SOFT_KEYS: [&str; 3] = ["PAGE UP", "PAGE DOWN", "END"];
 
 /// The Q parameters.
 #[derive(Default)]
@@ -26,9 +27,8 @@ impl QParameters {
         site.control().model().limits().q_max + 1
     }
 
-    fn go(&mut self, lines: i32, site: &Site) -> Turn {
-        let last = i32::from(QParameters::count(site)) - 1;
-        let next = (i32::from(self.current) + lines).clamp(0, last.max(0));
+    fn go(&mut self, lines: isize, site: &Site) -> Turn {
+        let next = list::moved(self.current.into(), lines, QParameters::count(site).into());
         self.current = u16::try_from(next).unwrap_or_default();
         self.entry = Entry::default();
         Turn::Done
@@ -47,9 +47,10 @@ impl QParameters {
 
 impl Page for QParameters {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(lines) = list::way_of_key(key) {
+            return self.go(lines, site);
+        }
         match key {
-            Key::Up => self.go(-1, site),
-            Key::Down => self.go(1, site),
             Key::Ent => self.enter(site),
             Key::Goto => self.goto.ask(site.words("GOTO: NUMBER ="), 4),
             Key::End | Key::Del | Key::NoEnt | Key::Q => Turn::Close,
@@ -59,26 +60,19 @@ impl Page for QParameters {
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        vec![vec![
-            site.words("PAGE UP"),
-            site.words("PAGE DOWN"),
-            site.words("END"),
-        ]]
+        vec![list::soft_keys(&SOFT_KEYS, site)]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => self.go(-PAGE, site),
-            1 => self.go(PAGE, site),
-            _ => Turn::Close,
-        }
+        let way = list::way_of(list::name_at(&SOFT_KEYS, place));
+        way.map_or(Turn::Close, |lines| self.go(lines, site))
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {
         let total = usize::from(QParameters::count(site));
-        let first = first_in_sight(self.current.into(), total, lines);
         let channel = site.control().first();
-        let line = |number: u16| {
+        let line = |place: usize| {
+            let number = u16::try_from(place).unwrap_or_default();
             let name = format!("Q{number:<4}= ");
             let current = number == self.current;
             let value = match current && !self.entry.is_empty() {
@@ -99,15 +93,15 @@ impl Page for QParameters {
                 current,
             }
         };
-        let shown = (0..QParameters::count(site)).skip(first).take(lines);
+        let cursor = (self.current.into(), total);
         View {
-            window: Some(Window {
-                title: site.words("Q PARAMETERS"),
-                kind: WindowKind::Table,
-                lines: shown.map(line).collect(),
-                first,
-                total,
-            }),
+            window: Some(list::window(
+                site.words("Q PARAMETERS"),
+                WindowKind::Table,
+                cursor,
+                lines,
+                line,
+            )),
             dialogue: Dialogue {
                 prompt: format!("Q{} =", self.current),
                 entry: self.entry.text(),

@@ -7,8 +7,10 @@ use bahn_dialogue::Key;
 use bahn_program::Program;
 
 use crate::graphics::Cut;
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
+use crate::pages::editing::NUMBER;
 use crate::pages::files::{Directory, Purpose};
+use crate::pages::list;
 use crate::pages::number::Number;
 use crate::pages::q_parameters::QParameters;
 use crate::pages::table;
@@ -63,9 +65,13 @@ impl Page for ProgramRun {
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
+        let there = |there: bool, text: String| if there { text } else { String::new() };
+        let rules = site.parameters().operation_parameters().restart;
+        // Out of a thread MANUAL OPERATION leads the tool in any case.
+        let by_hand = rules.return_to_contour || site.control().first().is_in_thread();
         let keys = match site.control().run_state() {
             RunState::Idle => vec![
-                site.words("RESTORE POS. AT N"),
+                there(rules.block_scan, site.words("RESTORE POS. AT N")),
                 String::new(),
                 String::new(),
                 "Q".to_owned(),
@@ -73,8 +79,8 @@ impl Page for ProgramRun {
             ],
             RunState::Running => Vec::new(),
             _ => vec![
-                site.words("MANUAL OPERATION"),
-                site.words("RESTORE POSITION"),
+                there(by_hand, site.words("MANUAL OPERATION")),
+                there(by_hand || rules.block_scan, site.words("RESTORE POSITION")),
                 site.words("INTERNAL STOP"),
                 "Q".to_owned(),
                 tool_table(site),
@@ -160,22 +166,25 @@ fn running_block(site: &Site) -> Option<u32> {
     (block.program == 0).then_some(block.block)
 }
 
+/// A block as it stands in the file, without the number that it has there.
+fn without_number(text: &str) -> &str {
+    let rest = text.trim_start().trim_start_matches(|c: char| c.is_ascii_digit());
+    match rest.starts_with(char::is_whitespace) {
+        true => rest.trim_start(),
+        false => text,
+    }
+}
+
 /// A program around a block.
 pub(crate) fn listing(name: &str, program: &Program, current: u32, lines: usize) -> Window {
-    let total = program.block_count() as usize;
-    let first = first_in_sight(current as usize, total, lines);
-    let blocks = (first..total).take(lines);
-    Window {
-        title: name.to_owned(),
-        kind: WindowKind::Program,
-        lines: blocks
-            .map(|block| Line {
-                text: program.text_of(block as u32),
-                current: block == current as usize,
-                ..Line::default()
-            })
-            .collect(),
-        first,
-        total,
-    }
+    let cursor = (current as usize, program.block_count() as usize);
+    let line = |block: usize| Line {
+        text: format!(
+            "{block:<NUMBER$}{}",
+            without_number(&program.text_of(block as u32))
+        ),
+        current: block == current as usize,
+        ..Line::default()
+    };
+    list::window(name.to_owned(), WindowKind::Program, cursor, lines, line)
 }

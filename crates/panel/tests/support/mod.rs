@@ -2,10 +2,14 @@
 
 #![allow(dead_code, reason = "each test uses a part")]
 
+#[path = "../../../host/tests/support/copy.rs"]
+mod copy;
+
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use bahn_panel::{Input, InputText, Screen, Station};
+use copy::copy;
 
 /// A station whose time passes as the test says.
 pub struct Trainee {
@@ -176,17 +180,4 @@ fn on(folder: &Path) -> Station {
 
 fn machines() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines")
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let target = to.join(entry.file_name());
-        match entry.file_type().unwrap().is_dir() {
-            true if entry.file_name() == "state" => {}
-            true => copy(&entry.path(), &target),
-            false => drop(std::fs::copy(entry.path(), target).unwrap()),
-        }
-    }
 }

@@ -2,6 +2,9 @@
 
 #![allow(dead_code, reason = "each test uses a part")]
 
+#[path = "../../../host/tests/support/copy.rs"]
+mod copy;
+
 pub mod pictures;
 
 use std::io::{Read, Write};
@@ -12,6 +15,7 @@ use std::time::{Duration, Instant};
 
 use bahn_panel::{Station, load};
 use bahn_server::{Server, ServerOptions};
+use copy::copy;
 use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
@@ -189,19 +193,6 @@ impl Viewer {
                     return region[1].clone();
                 }
             }
-        }
-    }
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let target = to.join(entry.file_name());
-        match entry.file_type().unwrap().is_dir() {
-            true if entry.file_name() == "state" => {}
-            true => copy(&entry.path(), &target),
-            false => drop(std::fs::copy(entry.path(), target).unwrap()),
         }
     }
 }

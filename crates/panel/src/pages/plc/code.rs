@@ -7,13 +7,23 @@ use bahn_parameters::MessageId;
 use bahn_plc::{CodeTrace, Executed, OperandContent, PlcProgram, code_of_line};
 
 use super::diagram::LogicDiagram;
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
-use crate::screen::{Dialogue, Line, Window, WindowKind};
+use crate::pages::list;
+use crate::screen::{Line, WindowKind};
 use crate::site::Site;
 
-/// Lines that a page goes.
-const PAGE: isize = 12;
+/// Its soft keys; while the display stands, the fifth lets it go on.
+const SOFT_KEYS: [&str; 8] = [
+    "LOGIC DIAGRAM",
+    "FIND",
+    "GOTO",
+    "HEX/DECIMAL",
+    "STOP DISPLAY",
+    "PAGE UP",
+    "PAGE DOWN",
+    "END",
+];
 /// Characters of a word to look for at most.
 const WORD_MAX: usize = 32;
 /// Digits of a line number at most.
@@ -45,8 +55,7 @@ impl Code {
     }
 
     fn go(&mut self, lines: isize) -> Turn {
-        let last = self.program.code.len().saturating_sub(1);
-        self.current = self.current.saturating_add_signed(lines).min(last);
+        self.current = list::moved(self.current, lines, self.program.code.len());
         Turn::Done
     }
 
@@ -114,9 +123,10 @@ impl Code {
 
 impl Page for Code {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(lines) = list::way_of_key(key) {
+            return self.go(lines);
+        }
         match key {
-            Key::Up => self.go(-1),
-            Key::Down => self.go(1),
             Key::Goto => self.goto.ask(site.words("GOTO: LINE ="), NUMBER_MAX),
             Key::End | Key::Del | Key::NoEnt => Turn::Close,
             _ => Turn::Refused,
@@ -124,62 +134,42 @@ impl Page for Code {
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        let display = match self.frozen {
-            Some(_) => site.words("START DISPLAY"),
-            None => site.words("STOP DISPLAY"),
-        };
-        vec![vec![
-            site.words("LOGIC DIAGRAM"),
-            site.words("FIND"),
-            site.words("GOTO"),
-            site.words("HEX/DECIMAL"),
-            display,
-            site.words("PAGE UP"),
-            site.words("PAGE DOWN"),
-            site.words("END"),
-        ]]
+        let frozen = self.frozen.is_some();
+        let names = SOFT_KEYS.map(|name| match name {
+            "STOP DISPLAY" if frozen => site.words("START DISPLAY"),
+            name => site.words(name),
+        });
+        vec![names.to_vec()]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => return Turn::Open(Box::new(LogicDiagram::default())),
-            1 => return self.find.ask(site.words("FIND ="), WORD_MAX),
-            2 => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER_MAX),
-            3 => self.hexadecimal = !self.hexadecimal,
-            4 => {
+        match list::name_at(&SOFT_KEYS, place) {
+            "LOGIC DIAGRAM" => return Turn::Open(Box::new(LogicDiagram::default())),
+            "FIND" => return self.find.ask(site.words("FIND ="), WORD_MAX),
+            "GOTO" => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER_MAX),
+            "HEX/DECIMAL" => self.hexadecimal = !self.hexadecimal,
+            "STOP DISPLAY" => {
                 self.frozen = match self.frozen.take() {
                     Some(_) => None,
                     None => Some(site.plc.code().clone()),
                 };
             }
-            5 => return self.go(-PAGE),
-            6 => return self.go(PAGE),
-            _ => return Turn::Close,
+            name => return list::way_of(name).map_or(Turn::Close, |lines| self.go(lines)),
         }
         Turn::Done
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {
-        let total = self.program.code.len();
-        let first = first_in_sight(self.current, total, lines);
         let code = self.frozen.as_ref().unwrap_or_else(|| site.plc.code());
         let file = self
             .program
             .code
             .get(self.current)
             .map(|own| self.program.file_name(own.file));
-        View {
-            window: Some(Window {
-                title: format!("{} {}", site.words("TRACE"), file.unwrap_or_default()),
-                kind: WindowKind::Table,
-                lines: (first..total.min(first + lines))
-                    .map(|at| self.shown(at, code))
-                    .collect(),
-                first,
-                total,
-            }),
-            dialogue: Dialogue::default(),
-        }
+        let title = format!("{} {}", site.words("TRACE"), file.unwrap_or_default());
+        let cursor = (self.current, self.program.code.len());
+        let line = |at| self.shown(at, code);
+        View::of(list::window(title, WindowKind::Table, cursor, lines, line))
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {

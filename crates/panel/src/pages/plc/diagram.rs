@@ -5,9 +5,10 @@ use bahn_exchange::Operand;
 use bahn_host::logic_diagram::{Diagram, OPERANDS_MAX};
 use bahn_parameters::MessageId;
 
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
-use crate::screen::{Dialogue, Line, Window, WindowKind};
+use crate::pages::list;
+use crate::screen::{Dialogue, Line, WindowKind};
 use crate::site::Site;
 
 /// Scans in a line.
@@ -186,16 +187,15 @@ impl Page for LogicDiagram {
 
     fn show(&self, site: &Site, lines: usize) -> View {
         let total = (site.plc.rows.len() + 1).min(OPERANDS_MAX);
-        let first = first_in_sight(self.current, total, lines);
-        let shown = (first..total.min(first + lines)).map(|place| self.row(place, site));
+        let (cursor, line) = ((self.current, total), |place| self.row(place, site));
         View {
-            window: Some(Window {
-                title: self.title(site),
-                kind: WindowKind::Table,
-                lines: shown.collect(),
-                first,
-                total,
-            }),
+            window: Some(list::window(
+                self.title(site),
+                WindowKind::Table,
+                cursor,
+                lines,
+                line,
+            )),
             dialogue: Dialogue {
                 prompt: site.words("OPERAND = ENT / TRIGGER = 1, 0, NO ENT"),
                 ..Dialogue::default()

@@ -6,13 +6,23 @@ use bahn_parameters::MessageId;
 use bahn_plc::check_line;
 
 use super::source::{NotWritten, Source};
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
-use crate::screen::{Dialogue, Line, Mark, Window, WindowKind};
+use crate::pages::list;
+use crate::screen::{Line, Mark, WindowKind};
 use crate::site::Site;
 
-/// Lines that a page goes.
-const PAGE: isize = 12;
+/// Its first row of soft keys; the others have [`CHARACTERS`].
+const SOFT_KEYS: [&str; 8] = [
+    "INSERT/OVERWRITE",
+    "INSERT LINE",
+    "DELETE LINE",
+    "FIND",
+    "GOTO",
+    "PAGE UP",
+    "PAGE DOWN",
+    "END",
+];
 /// Characters of a line in the window, behind its number.
 const WIDTH: usize = 70;
 /// Width of line numbers.
@@ -118,7 +128,7 @@ impl Editor {
         if self.source.lines.is_empty() {
             self.source.lines.push(String::new());
         }
-        self.line = line.min(self.source.lines.len() - 1);
+        self.line = list::moved(line, 0, self.source.lines.len());
         self.column = self.column.min(self.length());
     }
 
@@ -226,17 +236,20 @@ impl Editor {
     }
 
     fn function(&mut self, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => self.overwrites = !self.overwrites,
-            1 => return self.insert_line(site),
-            2 => return self.delete_line(site),
-            3 => return self.find.ask(site.words("FIND ="), WORD_MAX),
-            4 => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER),
-            5 => return self.go(-PAGE, site),
-            6 => return self.go(PAGE, site),
-            _ => return self.finish(site),
+        match list::name_at(&SOFT_KEYS, place) {
+            "INSERT/OVERWRITE" => {
+                self.overwrites = !self.overwrites;
+                Turn::Done
+            }
+            "INSERT LINE" => self.insert_line(site),
+            "DELETE LINE" => self.delete_line(site),
+            "FIND" => self.find.ask(site.words("FIND ="), WORD_MAX),
+            "GOTO" => self.goto.ask(site.words("GOTO: LINE ="), NUMBER),
+            name => match list::way_of(name) {
+                Some(lines) => self.go(lines, site),
+                None => self.finish(site),
+            },
         }
-        Turn::Done
     }
 
     fn finish(&mut self, site: &Site) -> Turn {
@@ -247,9 +260,10 @@ impl Editor {
     }
 
     fn pressed(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(lines) = list::way_of_key(key) {
+            return self.go(lines, site);
+        }
         match key {
-            Key::Up => return self.go(-1, site),
-            Key::Down => return self.go(1, site),
             Key::Left => self.column = self.column.saturating_sub(1),
             Key::Right => self.column = (self.column + 1).min(self.length()),
             Key::Ent => return self.split(site),
@@ -311,18 +325,10 @@ impl Page for Editor {
             "BLANK" => site.words("BLANK"),
             name => name.to_owned(),
         });
-        let functions = vec![
-            site.words("INSERT/OVERWRITE"),
-            site.words("INSERT LINE"),
-            site.words("DELETE LINE"),
-            site.words("FIND"),
-            site.words("GOTO"),
-            site.words("PAGE UP"),
-            site.words("PAGE DOWN"),
-            site.words("END"),
-        ];
         let rows = names.chunks(8).map(<[String]>::to_vec);
-        std::iter::once(functions).chain(rows).collect()
+        std::iter::once(list::soft_keys(&SOFT_KEYS, site))
+            .chain(rows)
+            .collect()
     }
 
     fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
@@ -347,31 +353,25 @@ impl Page for Editor {
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {
-        let total = self.source.lines.len();
-        let first = first_in_sight(self.line, total, lines);
-        let shown = self.source.lines.iter().enumerate().skip(first).take(lines);
+        let line = |place| {
+            let text = self.source.lines.get(place);
+            self.shown(place, text.map_or("", String::as_str))
+        };
         let mode = match self.overwrites {
             true => site.words("OVERWRITE"),
             false => site.words("INSERT"),
         };
-        View {
-            window: Some(Window {
-                title: format!(
-                    "{} {}  {} {}  {} {}  {mode}",
-                    site.words("FILE"),
-                    self.name,
-                    site.words("LINE"),
-                    self.line + 1,
-                    site.words("COLUMN"),
-                    self.column + 1
-                ),
-                kind: WindowKind::Text,
-                lines: shown.map(|(place, text)| self.shown(place, text)).collect(),
-                first,
-                total,
-            }),
-            dialogue: Dialogue::default(),
-        }
+        let title = format!(
+            "{} {}  {} {}  {} {}  {mode}",
+            site.words("FILE"),
+            self.name,
+            site.words("LINE"),
+            self.line + 1,
+            site.words("COLUMN"),
+            self.column + 1
+        );
+        let cursor = (self.line, self.source.lines.len());
+        View::of(list::window(title, WindowKind::Text, cursor, lines, line))
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {

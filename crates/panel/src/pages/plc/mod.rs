@@ -12,6 +12,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use crate::page::{Page, Turn, View};
+use crate::pages::list;
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 use files::Purpose;
@@ -24,6 +25,9 @@ pub(crate) fn open(site: &mut Site) -> Turn {
     site.plc.entered = true;
     Turn::Open(Box::new(MainMenu))
 }
+
+/// Soft keys of the main menu.
+const SOFT_KEYS: [&str; 8] = ["EDIT", "TABLE", "TRACE", "COMPILE", "", "", "", "END"];
 
 /// The main menu [000:11203-11241].
 struct MainMenu;
@@ -68,25 +72,15 @@ impl Page for MainMenu {
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        let empty = String::new;
-        vec![vec![
-            site.words("EDIT"),
-            site.words("TABLE"),
-            site.words("TRACE"),
-            site.words("COMPILE"),
-            empty(),
-            empty(),
-            empty(),
-            site.words("END"),
-        ]]
+        vec![list::soft_keys(&SOFT_KEYS, site)]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => files::open(Purpose::Edit, site),
-            1 => Turn::Open(Box::new(operands::Table::default())),
-            2 => Turn::Open(Box::new(code::Code::new(site))),
-            3 => files::open(Purpose::Compile, site),
+        match list::name_at(&SOFT_KEYS, place) {
+            "EDIT" => files::open(Purpose::Edit, site),
+            "TABLE" => Turn::Open(Box::new(operands::Table::default())),
+            "TRACE" => Turn::Open(Box::new(code::Code::new(site))),
+            "COMPILE" => files::open(Purpose::Compile, site),
             _ => Turn::Close,
         }
     }

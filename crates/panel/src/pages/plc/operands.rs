@@ -6,13 +6,23 @@ use bahn_exchange::signal::{self, SignalOperand};
 use bahn_exchange::{Assignment, Bit, BitArea, Number, Operand, Size};
 use bahn_parameters::MessageId;
 
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
-use crate::screen::{Dialogue, Line, Mark, Window, WindowKind};
+use crate::pages::list;
+use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 
-/// Lines that a page goes.
-const PAGE: isize = 12;
+/// Its first row of soft keys; the second has the areas.
+const SOFT_KEYS: [&str; 8] = [
+    "SET",
+    "RESET",
+    "HEX/DECIMAL",
+    "GOTO",
+    "PAGE UP",
+    "PAGE DOWN",
+    "",
+    "END",
+];
 /// Characters of a value at most: a sign and ten digits.
 const VALUE_MAX: usize = 11;
 /// Characters of an operand at most.
@@ -106,8 +116,7 @@ impl Table {
     }
 
     fn go(&mut self, lines: isize) -> Turn {
-        let last = self.operands.len().saturating_sub(1);
-        self.current = self.current.saturating_add_signed(lines).min(last);
+        self.current = list::moved(self.current, lines, self.operands.len());
         self.entry = None;
         Turn::Done
     }
@@ -205,9 +214,10 @@ impl Table {
 
 impl Page for Table {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(lines) = list::way_of_key(key) {
+            return self.go(lines);
+        }
         match key {
-            Key::Up => self.go(-1),
-            Key::Down => self.go(1),
             Key::Ent => match self.entry.clone() {
                 Some(entry) => self.set(&entry, site),
                 None => self.go(1),
@@ -224,19 +234,7 @@ impl Page for Table {
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
         let areas = Area::ALL.iter().map(|area| area.letter().to_string());
-        vec![
-            vec![
-                site.words("SET"),
-                site.words("RESET"),
-                site.words("HEX/DECIMAL"),
-                site.words("GOTO"),
-                site.words("PAGE UP"),
-                site.words("PAGE DOWN"),
-                String::new(),
-                site.words("END"),
-            ],
-            areas.collect(),
-        ]
+        vec![list::soft_keys(&SOFT_KEYS, site), areas.collect()]
     }
 
     fn soft_key(&mut self, row: usize, place: usize, site: &mut Site) -> Turn {
@@ -246,36 +244,30 @@ impl Page for Table {
             }
             return Turn::Done;
         }
-        match place {
-            0 | 1 if !matches!(self.operand(), Some(Operand::Bit(_))) => Turn::Refused,
-            0 => self.set("1", site),
-            1 => self.set("0", site),
-            2 => {
+        match list::name_at(&SOFT_KEYS, place) {
+            "SET" | "RESET" if !matches!(self.operand(), Some(Operand::Bit(_))) => Turn::Refused,
+            "SET" => self.set("1", site),
+            "RESET" => self.set("0", site),
+            "HEX/DECIMAL" => {
                 self.hexadecimal = !self.hexadecimal;
                 self.entry = None;
                 Turn::Done
             }
-            3 => self.goto.ask(site.words("GOTO: OPERAND ="), OPERAND_MAX),
-            4 => self.go(-PAGE),
-            5 => self.go(PAGE),
-            _ => Turn::Close,
+            "GOTO" => self.goto.ask(site.words("GOTO: OPERAND ="), OPERAND_MAX),
+            name => list::way_of(name).map_or(Turn::Close, |lines| self.go(lines)),
         }
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {
-        let first = first_in_sight(self.current, self.operands.len(), lines);
-        let shown = self.operands.iter().enumerate().skip(first).take(lines);
+        let line = |place| {
+            let operand = self.operands.get(place);
+            operand.map_or_else(Line::default, |operand| self.line(place, *operand, site))
+        };
+        let title = format!("{} {}", site.words("TABLE"), self.area.letter());
+        let cursor = (self.current, self.operands.len());
         let current = self.operand().map(|operand| format!("{operand} ="));
         View {
-            window: Some(Window {
-                title: format!("{} {}", site.words("TABLE"), self.area.letter()),
-                kind: WindowKind::Table,
-                lines: shown
-                    .map(|(place, operand)| self.line(place, *operand, site))
-                    .collect(),
-                first,
-                total: self.operands.len(),
-            }),
+            window: Some(list::window(title, WindowKind::Table, cursor, lines, line)),
             dialogue: Dialogue {
                 prompt: current.unwrap_or_default(),
                 entry: self.entry.clone().unwrap_or_default(),

@@ -10,17 +10,18 @@ use bahn_dialogue::Key;
 use bahn_host::{LoadedMachine, files};
 use bahn_parameters::{Definition, ListText, MessageId, ParameterId, ParameterList, Reaction};
 
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
-use crate::screen::{Dialogue, Line, Mark, Window, WindowKind};
+use crate::pages::list;
+use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 
 /// Characters of a value at most: a sign, 32 binary digits, blanks.
 const VALUE_MAX: usize = 40;
 /// Lines below the list: what the value under the cursor means.
 const MEANING: usize = 4;
-/// Lines that a page goes.
-const PAGE: isize = 12;
+/// Its soft keys.
+const SOFT_KEYS: [&str; 8] = ["%", "$", "PAGE UP", "PAGE DOWN", "FIND", "", "QUIT", "END"];
 
 /// A line of the editor.
 struct Row {
@@ -134,8 +135,7 @@ impl Parameters {
     fn go(&mut self, rows: isize, site: &Site) -> Turn {
         let turn = self.take(site);
         if matches!(turn, Turn::Done) {
-            let last = self.rows.len().saturating_sub(1);
-            self.current = self.current.saturating_add_signed(rows).min(last);
+            self.current = list::moved(self.current, rows, self.rows.len());
         }
         turn
     }
@@ -343,27 +343,19 @@ impl Page for Parameters {
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        vec![vec![
-            "%".to_owned(),
-            "$".to_owned(),
-            site.words("PAGE UP"),
-            site.words("PAGE DOWN"),
-            site.words("FIND"),
-            String::new(),
-            site.words("QUIT"),
-            site.words("END"),
-        ]]
+        vec![list::soft_keys(&SOFT_KEYS, site)]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => self.radix('%'),
-            1 => self.radix('$'),
-            2 => self.go(-PAGE, site),
-            3 => self.go(PAGE, site),
-            4 => self.find.ask(site.words("FIND ="), 24),
-            6 => Turn::Close,
-            _ => self.finish(site),
+        match list::name_at(&SOFT_KEYS, place) {
+            "%" => self.radix('%'),
+            "$" => self.radix('$'),
+            "FIND" => self.find.ask(site.words("FIND ="), 24),
+            "QUIT" => Turn::Close,
+            name => match list::way_of(name) {
+                Some(rows) => self.go(rows, site),
+                None => self.finish(site),
+            },
         }
     }
 
@@ -378,18 +370,16 @@ impl Page for Parameters {
 
     fn show(&self, _site: &Site, lines: usize) -> View {
         let rows = lines.saturating_sub(MEANING);
-        let first = first_in_sight(self.current, self.rows.len(), rows);
-        let shown = self.rows.iter().enumerate().skip(first).take(rows);
-        let shown = shown.map(|(place, row)| self.line(place, row));
+        let line = |place| {
+            let row = self.rows.get(place);
+            row.map_or_else(Line::default, |row| self.line(place, row))
+        };
+        let cursor = (self.current, self.rows.len());
+        let mut window = list::window(self.title.clone(), WindowKind::Table, cursor, rows, line);
+        window.lines.extend(self.meaning());
         let prompt = self.row().map(|row| format!("{} =", row.definition.id));
         View {
-            window: Some(Window {
-                title: self.title.clone(),
-                kind: WindowKind::Table,
-                lines: shown.chain(self.meaning()).collect(),
-                first,
-                total: self.rows.len(),
-            }),
+            window: Some(window),
             dialogue: Dialogue {
                 prompt: prompt.unwrap_or_default(),
                 entry: self.entry.clone().unwrap_or_default(),

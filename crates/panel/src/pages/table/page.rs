@@ -7,8 +7,9 @@ use bahn_parameters::MessageId;
 use super::cells::{is_mark, read};
 use super::editor::{CELL_MAX, RENEWED, TableEditor, WIDTH};
 use super::{POCKET_FILE, TOOL_FILE, path_of, pockets, tools};
-use crate::page::{Page, Turn, View, first_in_sight};
-use crate::screen::{Dialogue, Line, Mark, Window, WindowKind};
+use crate::page::{Page, Turn, View};
+use crate::pages::list;
+use crate::screen::{Dialogue, Line, Mark, WindowKind};
 use crate::site::Site;
 
 impl TableEditor {
@@ -29,16 +30,8 @@ impl TableEditor {
     }
 
     fn go(&mut self, rows: isize, columns: isize) -> Turn {
-        let last = |count: usize| count.saturating_sub(1);
-        self.row = self
-            .row
-            .saturating_add_signed(rows)
-            .min(last(self.shown.rows.len()));
-        self.column = self
-            .column
-            .saturating_add_signed(columns)
-            .min(last(self.shown.names.len()))
-            .max(1);
+        self.row = list::moved(self.row, rows, self.shown.rows.len());
+        self.column = list::moved(self.column, columns, self.shown.names.len()).max(1);
         self.entry = None;
         Turn::Done
     }
@@ -166,14 +159,22 @@ impl TableEditor {
     }
 }
 
-/// Lines that PAGE UP and PAGE DOWN go.
-const PAGE: isize = 12;
+/// Its soft keys; behind them stand the table that belongs to this one, and END.
+const SOFT_KEYS: [&str; 6] = [
+    "BEGIN",
+    "LAST LINE",
+    "PAGE UP",
+    "PAGE DOWN",
+    "INSERT LINE",
+    "DELETE LINE",
+];
 
 impl Page for TableEditor {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(rows) = list::way_of_key(key) {
+            return self.leave_cell(rows, 0, site);
+        }
         match key {
-            Key::Up => self.leave_cell(-1, 0, site),
-            Key::Down => self.leave_cell(1, 0, site),
             Key::Left => self.leave_cell(0, -1, site),
             Key::Right => self.leave_cell(0, 1, site),
             Key::Ent => self.enter(site),
@@ -203,27 +204,16 @@ impl Page for TableEditor {
             POCKET_FILE => site.words("TOOL TABLE"),
             _ => String::new(),
         };
-        vec![vec![
-            site.words("BEGIN"),
-            site.words("LAST LINE"),
-            site.words("PAGE UP"),
-            site.words("PAGE DOWN"),
-            site.words("INSERT LINE"),
-            site.words("DELETE LINE"),
-            other,
-            site.words("END"),
-        ]]
+        let mut keys = list::soft_keys(&SOFT_KEYS, site);
+        keys.extend([other, site.words("END")]);
+        vec![keys]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => self.leave_cell(isize::MIN, 0, site),
-            1 => self.leave_cell(isize::MAX, 0, site),
-            2 => self.leave_cell(-PAGE, 0, site),
-            3 => self.leave_cell(PAGE, 0, site),
-            4 => self.insert(site),
-            5 => self.delete(site),
-            6 => {
+        match list::name_at(&SOFT_KEYS, place) {
+            "INSERT LINE" => self.insert(site),
+            "DELETE LINE" => self.delete(site),
+            _ if place == SOFT_KEYS.len() => {
                 let other = if self.name == TOOL_FILE {
                     pockets(site)
                 } else {
@@ -234,7 +224,10 @@ impl Page for TableEditor {
                     other => other,
                 }
             }
-            _ => self.key(Key::End, site),
+            name => match list::way_of(name) {
+                Some(rows) => self.leave_cell(rows, 0, site),
+                None => self.key(Key::End, site),
+            },
         }
     }
 
@@ -249,21 +242,19 @@ impl Page for TableEditor {
     fn show(&self, site: &Site, lines: usize) -> View {
         let columns = self.columns_in_sight();
         let rows = lines.saturating_sub(1);
-        let first = first_in_sight(self.row, self.shown.rows.len(), rows);
         let heading = Line {
             marks: vec![(0, WIDTH, Mark::Quiet)],
             ..self.row_line(usize::MAX, &self.shown.names, &columns)
         };
-        let shown = self.shown.rows.iter().enumerate().skip(first).take(rows);
-        let shown = shown.map(|(place, row)| self.row_line(place, row, &columns));
+        let line = |place| {
+            let row = self.shown.rows.get(place);
+            row.map_or_else(Line::default, |row| self.row_line(place, row, &columns))
+        };
+        let (title, cursor) = (format!("{}  MM", self.name), (self.row, self.shown.rows.len()));
+        let mut window = list::window(title, WindowKind::Table, cursor, rows, line);
+        window.lines.insert(0, heading);
         View {
-            window: Some(Window {
-                title: format!("{}  MM", self.name),
-                kind: WindowKind::Table,
-                lines: [heading].into_iter().chain(shown).collect(),
-                first,
-                total: self.shown.rows.len(),
-            }),
+            window: Some(window),
             dialogue: Dialogue {
                 prompt: self.prompt(site),
                 entry: self.entry.clone().unwrap_or_default(),

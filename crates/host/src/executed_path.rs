@@ -1,0 +1,100 @@
+//! The path of a channel as it is executed: elements are prepared ahead of the axes, and wait here for them.
+
+use std::collections::VecDeque;
+
+use bahn_path::{PathElement, PerAxis};
+
+use crate::Host;
+
+/// Way that may be left of an element that is done, mm.
+const DONE_MM: f64 = 1e-6;
+
+/// What tells an element from all others of its run. Axes without a position are equal, too, bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElementId {
+    /// Its place in the run.
+    pub sequence: u64,
+    ends: [PerAxis<u64>; 2],
+}
+
+impl ElementId {
+    /// Of an element.
+    pub fn of(element: &PathElement) -> ElementId {
+        ElementId {
+            sequence: element.sequence,
+            ends: [element.start, element.end].map(|position| position.values().map(f64::to_bits)),
+        }
+    }
+}
+
+/// The elements of a channel that were executed to their end, in their order, as an iterator: behind
+/// [`ExecutedPath::follow`] it has those of the cycle. The host must [keep the path](Host::keep_path).
+#[derive(Debug, Default)]
+pub struct ExecutedPath {
+    channel: usize,
+    /// Prepared and not yet handed out.
+    ahead: VecDeque<PathElement>,
+    /// So many of them, from the front, are executed.
+    done: usize,
+    /// The element that was executed last, with the way that was left of it.
+    last_seen: Option<(ElementId, f64)>,
+}
+
+impl ExecutedPath {
+    /// Of a channel, from 0.
+    pub fn of(channel: usize) -> ExecutedPath {
+        ExecutedPath {
+            channel,
+            ..ExecutedPath::default()
+        }
+    }
+
+    /// Takes what a cycle has prepared, and looks how far the axes are.
+    pub fn follow(&mut self, host: &mut Host) {
+        if let Some(dropped) = host.take_dropped_path(self.channel) {
+            self.ahead.retain(|element| element.sequence < dropped);
+        }
+        self.ahead.extend(host.take_path(self.channel));
+        let Some(channel) = host.control().channel(self.channel) else {
+            return;
+        };
+        let current = channel.element();
+        if let Some(element) = current {
+            self.last_seen = Some((ElementId::of(element), channel.rest_mm()));
+        }
+        let before = match (channel.has_ended(), current) {
+            (true, _) => u64::MAX,
+            (false, Some(current)) => current.sequence,
+            (false, None) => 0,
+        };
+        let executed = self.ahead.iter().take_while(|element| element.sequence < before);
+        self.done = executed.count();
+    }
+
+    /// Of a run that was broken off in a block: what was executed to the end counts, too, and is handed out next.
+    pub fn finish(&mut self) {
+        self.done = self.last_seen.map_or(0, |(current, rest_mm)| {
+            let is_current = |element: &&PathElement| ElementId::of(element) == current;
+            let before = self.ahead.iter();
+            let before = before.take_while(|own| own.sequence <= current.sequence && !is_current(own));
+            let count = before.count();
+            let last = self.ahead.get(count).filter(is_current);
+            count + usize::from(last.is_some() && rest_mm <= DONE_MM)
+        });
+    }
+
+    /// Another run begins: what waited is not of it.
+    pub fn clear(&mut self) {
+        self.ahead.clear();
+        self.done = 0;
+    }
+}
+
+impl Iterator for ExecutedPath {
+    type Item = PathElement;
+
+    fn next(&mut self) -> Option<PathElement> {
+        self.done = self.done.checked_sub(1)?;
+        self.ahead.pop_front()
+    }
+}

@@ -1,0 +1,66 @@
+//! Elements of the path are handed out when they are executed, each once and in their order.
+#![allow(clippy::unwrap_used, reason = "tests fail by panic")]
+
+mod support;
+
+use bahn_control::{Command, RunState};
+use bahn_host::{Answer, Deed, ElementId, ExecutedPath, Host, Source};
+
+/// Two lines that the axes need seconds for, behind one that they do not move on.
+const LINES: &str = "1 L Z+50 R0 F MAX\n2 L X+10 Y+0 R0 F600\n3 L X+20 R0\n4 L X+60 R0";
+
+/// The sequences that a run hands out, as long as `goes_on` says so.
+fn handed_out(host: &mut Host, path: &mut ExecutedPath, goes_on: impl Fn(&Host) -> bool) -> Vec<u64> {
+    let mut seen = Vec::new();
+    while goes_on(host) {
+        host.step().unwrap();
+        path.follow(host);
+        let control = host.control();
+        for element in path.by_ref() {
+            let current = control.element();
+            assert!(
+                control.has_ended()
+                    || current.is_some_and(|current| ElementId::of(current).sequence > element.sequence),
+                "element {} is handed out before it is executed",
+                element.sequence
+            );
+            seen.push(element.sequence);
+        }
+    }
+    seen
+}
+
+#[test]
+fn a_run_hands_out_each_element_once() {
+    let mut host = support::mill(LINES);
+    host.keep_path();
+    let mut path = ExecutedPath::of(0);
+    let seen = handed_out(&mut host, &mut path, |host| !host.control().has_ended());
+    assert!(seen.len() >= 4, "{seen:?}");
+    assert!(seen.windows(2).all(|pair| pair[0] < pair[1]), "{seen:?}");
+    assert_eq!(path.next(), None);
+}
+
+/// Block 4 is not done when the run is broken off in it; what was before it is, and what waits is forgotten.
+#[test]
+fn what_is_broken_off_is_not_handed_out() {
+    let mut host = support::mill(LINES);
+    host.keep_path();
+    let mut path = ExecutedPath::of(0);
+    let in_block_4 = |host: &Host| host.control().element().is_some_and(|own| own.block.block == 4);
+    let seen = handed_out(&mut host, &mut path, |host| !in_block_4(host));
+    support::seconds(&mut host, 0.5);
+    path.follow(&mut host);
+    path.finish();
+    assert_eq!(path.next(), None, "behind {seen:?}");
+    let stop = Deed::parse("key NC_STOP tap").unwrap();
+    for deed in [stop, Deed::Command(0, Command::InternalStop)] {
+        let answer = host.act(Source::Client("test".to_owned()), deed);
+        assert!(matches!(answer, Ok(Answer::Done)));
+        support::seconds(&mut host, 1.0);
+    }
+    path.follow(&mut host);
+    path.clear();
+    path.finish();
+    assert_eq!((host.control().run_state(), path.next()), (RunState::Idle, None));
+}
