@@ -118,7 +118,6 @@ impl Machine {
             .map(|(name, section)| Device::read(name, section))
             .collect();
         let index = |letter| axes.iter().position(|axis| axis.letter == letter);
-        let chain = Chain::read(&root);
         let mut machine = Machine {
             name: root.text("name").unwrap_or("machine").to_owned(),
             step_us,
@@ -132,12 +131,12 @@ impl Machine {
                 .into_iter()
                 .map(|section| Spindle::read(section, step_s, seed))
                 .collect(),
+            chain: Chain::read(&root),
             magazine: root
                 .section("magazine")
                 .map(|section| Magazine::read(section, &devices)),
             devices,
             voltage_key: None,
-            chain,
             panel: Panel::read(&root),
             probe: root.section("probe").map(Probe::read),
             tool_probe: root.section("tool_probe").map(ToolProbe::read),
@@ -192,7 +191,8 @@ impl Machine {
         }
     }
 
-    /// What is wired to inputs and outputs of the PLC, in the order of the description.
+    /// What is wired to inputs and outputs of the PLC, in the order in which it is read: the seeds of the fault campaign count
+    /// on it.
     pub fn wires(&self) -> &[Wire] {
         &self.wires
     }

@@ -89,3 +89,34 @@ impl Drop for Copy {
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
+
+/// A copy of the mill that runs its PLC program in the form of the TNC 355, as machines/mill/README.md says.
+pub fn old_mill() -> (Copy, LoadedMachine) {
+    let copy = Copy::of("mill", "tnc355");
+    let edit = |file: &str, edits: &[(&str, &str)]| {
+        let path = copy.path().join(file);
+        let mut text = std::fs::read_to_string(&path).unwrap();
+        for (from, to) in edits {
+            assert!(text.contains(from), "{file}: {from}");
+            text = text.replacen(from, to, 1);
+        }
+        std::fs::write(path, text).unwrap();
+    };
+    edit(
+        "machine.toml",
+        &[("plc = \"plc/MAIN.PLC\"", "plc = \"plc355/MAIN.PLC\"")],
+    );
+    edit(
+        "parameters.mp",
+        &[
+            ("MP4210.1 : 0\n", "MP4210.1 : 440\n"),
+            ("MP4210.2 : 0\n", "MP4210.2 : 300\n"),
+            ("MP4210.3 : 0\n", "MP4210.3 : 100\n"),
+            ("MP4210.4 : 0\n", "MP4210.4 : 200\n"),
+            ("MP4210.31: 0\n", "MP4210.31: 90\n"),
+            ("MP4210.32: 0\n", "MP4210.32: 5\n"),
+        ],
+    );
+    let machine = LoadedMachine::load(copy.path()).unwrap().unwrap();
+    (copy, machine)
+}
