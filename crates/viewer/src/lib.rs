@@ -5,7 +5,7 @@
 //! - [`Recording`]: collects path and part while a program runs, in bounded memory;
 //! - [`About`], [`Listing`], [`Remark`]: what else there is to say of the run;
 //! - [`write_page`]: one file with all of it, which needs no network and nothing else;
-//! - [`FILES`]: the modules and styles by themselves, for a server.
+//! - [`FILES`]: the modules and styles by themselves, for a server; [`escaped`], [`base64`]: text and bytes in a page.
 //!
 //! Heights have 16 bits: a step is 1/65535 of the thickness of the blank. They are sent in tiles of 64 x 64 cells,
 //! each cell that changed as its difference from what its neighbours let expect, with a mark that tells the tool which cut it.
@@ -29,6 +29,6 @@ mod track;
 
 pub use bytes::base64;
 pub use coder::PartCoder;
-pub use page::{FILES, WebFile, write_page};
+pub use page::{FILES, WebFile, escaped, write_page};
 pub use scene::{About, Listing, Recording, Remark};
 pub use sheet::{TILE, WHOLE};
