@@ -15,6 +15,7 @@ use tokio::sync::{Semaphore, watch};
 
 use crate::about::About;
 use crate::access::Access;
+use crate::part::PartFeed;
 use crate::regions::Regions;
 use crate::shared::Shared;
 use crate::{api, assets, gate, socket};
@@ -96,6 +97,7 @@ impl Server {
         };
         let shared = Shared {
             regions: follow(live.link()),
+            part: PartFeed::start(live.link()),
             link: live.link(),
             about,
             crew: Arc::default(),
@@ -138,6 +140,7 @@ fn router(shared: Shared) -> Router {
     Router::new()
         .route("/", get(assets::page))
         .route("/web/{name}", get(assets::module))
+        .route("/web/viewer/{name}", get(assets::viewer))
         .route("/api/station", get(api::station))
         .route("/api/screen", get(api::screen))
         .route("/api/snapshot", get(api::snapshot))
