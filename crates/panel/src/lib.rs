@@ -5,7 +5,7 @@
 //! - [`Live`] is a station on a thread of its own, by the clock on the wall, which any number of viewers watch;
 //! - `console` says who has the keys, `page` what takes them and shows itself, `pages` are the operating modes, menus and
 //!   tables; each is given a `site`, what it may touch;
-//! - [`Picture`] is what the graphics show of the part that a test or a run cuts, to be drawn on any thread;
+//! - [`Picture`] is what the graphics show of the part that a test or a run cuts, to be drawn on any thread, [`BeingCut`] that part itself;
 //! - [`Recorder`] and [`Replay`] keep a session and show it again; a [`TimeLine`] leads back to any moment;
 //! - [`Reason`]s say what a standing machine waits for; [`Breakable`]s are what a teacher can break, a [`LessonRun`] is an
 //!   exercise;
@@ -62,7 +62,7 @@ mod wiring;
 
 pub use bahn_dialogue::{Key, KeyGroup};
 pub use drawer::{Breakable, Breaking};
-pub use graphics::Picture;
+pub use graphics::{BeingCut, Picture};
 pub use input::{Input, InputText, Refusal};
 pub use lesson::{Lesson, LessonRun, check_lesson};
 pub use live::{Link, Live, Seen};

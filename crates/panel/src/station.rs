@@ -14,7 +14,7 @@ use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
 
 use crate::console::Console;
-use crate::graphics::{Graphics, Picture};
+use crate::graphics::{BeingCut, Graphics, Picture};
 use crate::inhibit::{self, Simulated};
 use crate::input::{Input, Refusal};
 use crate::lesson::LessonRun;
@@ -255,6 +255,14 @@ impl Station {
         let (console, site) = self.parts();
         let cut = console.cut(console.front())?;
         site.graphics.picture(cut, third_angle)
+    }
+
+    /// The part of the test or the run that the operator looks at, whether he looks at its graphics or not; `None` in
+    /// other operating modes, and before anything is cut.
+    pub fn being_cut(&mut self) -> Option<BeingCut> {
+        let (console, site) = self.parts();
+        let cut = console.cut(console.front())?;
+        site.graphics.being_cut(cut, site.host.control())
     }
 
     /// The screen as it is now. Its serial counts on when it is another one.

@@ -16,12 +16,14 @@ macro_rules! modules {
 /// The modules by name.
 const MODULES: &[(&str, &str)] = &modules![
     "style.css",
+    "part.css",
     "main.js",
     "connection.js",
     "messagepack.js",
     "screen.js",
     "keyboard.js",
     "machine.js",
+    "part.js",
     "timeline.js",
     "teacher.js",
 ];
@@ -45,6 +47,17 @@ pub(crate) async fn module(Path(name): Path<String>) -> Response {
         false => "text/javascript; charset=utf-8",
     };
     served(kind, text)
+}
+
+/// One of the modules of the viewer.
+pub(crate) async fn viewer(Path(name): Path<String>) -> Response {
+    let modules = bahn_viewer::FILES
+        .iter()
+        .filter(|file| file.mime == "text/javascript");
+    match modules.into_iter().find(|file| file.name == name) {
+        Some(file) => served("text/javascript; charset=utf-8", file.text),
+        None => StatusCode::NOT_FOUND.into_response(),
+    }
 }
 
 fn served(kind: &'static str, text: &'static str) -> Response {

@@ -3,6 +3,7 @@
 //! - [`Server`] listens, serves the page and its modules, which are embedded, and the interface of docs/panel-api.md;
 //! - `access` says who may come in, `gate` asks it: on loopback whoever comes from the page itself, anywhere else with a token;
 //! - `regions` is a screen in parts, each encoded once for all viewers, who are sent what has changed;
+//! - `part` is the part that is being cut, coded once for those who look at it from every side;
 //! - `crew` knows the viewers, and which of them operates;
 //! - `socket` is one viewer, `api` what programs ask for; both have what is `shared`.
 //!
@@ -34,6 +35,7 @@ mod api;
 mod assets;
 mod crew;
 mod gate;
+mod part;
 mod regions;
 mod server;
 mod shared;

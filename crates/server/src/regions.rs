@@ -53,13 +53,20 @@ impl Regions {
     /// What has changed behind a screen, as one message: an array of regions.
     pub fn since(&self, serial: u64) -> Vec<u8> {
         let news = self.parts.iter().filter(|(since, _)| *since > serial);
-        let count = news.clone().count();
-        // Fewer than 16 regions: the array has a head of one byte.
-        let head = 0x90 | (count & 0x0f) as u8;
-        let mut message = vec![head];
-        news.for_each(|(_, bytes)| message.extend_from_slice(bytes));
-        message
+        let news: Vec<&[u8]> = news.map(|(_, bytes)| &**bytes).collect();
+        message(&news)
     }
+}
+
+/// An array of regions that are encoded already.
+pub(crate) fn message(regions: &[&[u8]]) -> Vec<u8> {
+    let mut message = Vec::new();
+    // Nothing but memory is written to.
+    let _ = rmp::encode::write_array_len(&mut message, regions.len() as u32);
+    regions
+        .iter()
+        .for_each(|region| message.extend_from_slice(region));
+    message
 }
 
 /// Structures become maps by name; what cannot be encoded is left out, which no screen can be.
@@ -86,5 +93,22 @@ mod tests {
         // The time, which has the serial, and the dialogue.
         assert_eq!(second.since(1)[0], 0x92);
         assert_eq!(second.since(0)[0], 0x9c);
+    }
+
+    /// The head of an array has one byte up to 15 elements, three bytes from 16 on.
+    #[test]
+    fn any_number_of_regions_is_an_array() {
+        for count in [0, 1, 15, 16, 17, 40, 70_000] {
+            let regions: Vec<Vec<u8>> = (0..count).map(|k| encode("region", &k)).collect();
+            let regions: Vec<&[u8]> = regions.iter().map(Vec::as_slice).collect();
+            let bytes = message(&regions);
+            let read: Vec<(String, u32)> = rmp_serde::from_slice(&bytes).unwrap();
+            assert_eq!(read.len(), count as usize);
+            assert!(
+                (0..)
+                    .zip(&read)
+                    .all(|(k, (name, value))| name == "region" && *value == k)
+            );
+        }
     }
 }

@@ -16,6 +16,7 @@ use tokio::sync::{Semaphore, watch};
 
 use crate::about::About;
 use crate::access::Access;
+use crate::part::PartFeed;
 use crate::regions::Regions;
 use crate::shared::Shared;
 use crate::{api, assets, gate, socket};
@@ -97,6 +98,7 @@ impl Server {
         };
         let shared = Shared {
             regions: follow(live.link()),
+            part: PartFeed::start(live.link()),
             link: live.link(),
             about,
             crew: Arc::default(),
@@ -141,6 +143,7 @@ fn router(shared: Shared) -> Router {
     Router::new()
         .route("/", get(assets::page))
         .route("/web/{name}", get(assets::module))
+        .route("/web/viewer/{name}", get(assets::viewer))
         .route("/api/station", get(api::station))
         .route("/api/screen", get(api::screen))
         .route("/api/snapshot", get(api::snapshot))

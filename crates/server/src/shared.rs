@@ -8,6 +8,7 @@ use tokio::sync::{Semaphore, watch};
 use crate::about::About;
 use crate::access::Access;
 use crate::crew::Crew;
+use crate::part::PartFeed;
 use crate::regions::Regions;
 
 /// What all requests share.
@@ -16,6 +17,7 @@ pub(crate) struct Shared {
     pub link: Link,
     pub about: Arc<About>,
     pub regions: watch::Receiver<Arc<Regions>>,
+    pub part: PartFeed,
     pub crew: Arc<Mutex<Crew>>,
     pub viewers: Arc<Semaphore>,
     pub access: Arc<Access>,

@@ -2,8 +2,9 @@
 //!
 //! The server sends MessagePack: an array of regions that have changed, `[name, value]` each; besides those of the
 //! screen there is `crew`, who operates, and `taken`, the number of the last input that was taken. The viewer sends JSON: inputs with
-//! a number that grows, `{"n":7,"key":"ENT"}`, which are done once however often they arrive, and `{"operate":true}`
-//! or `{"hand_over":true}`.
+//! a number that grows, `{"n":7,"key":"ENT"}`, which are done once however often they arrive, `{"operate":true}` or
+//! `{"hand_over":true}`, and `{"part":true}` to look at the part that is being cut. What a viewer is too slow for is left
+//! out: he gets what is newest when he has taken what was sent before.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -16,6 +17,8 @@ use bahn_panel::{Input, InputText};
 use serde::{Deserialize, Serialize};
 
 use crate::crew::{Crew, Taking};
+use crate::part::Looking;
+use crate::regions::message;
 use crate::shared::Shared;
 
 /// Longest message of a viewer, bytes.
@@ -39,6 +42,7 @@ struct Sent {
     n: u64,
     operate: Option<bool>,
     hand_over: Option<bool>,
+    part: Option<bool>,
     #[serde(flatten)]
     input: serde_json::Map<String, serde_json::Value>,
 }
@@ -85,6 +89,7 @@ pub(crate) async fn open(
                 shared,
                 seen: 0,
                 role: Vec::new(),
+                looking: None,
                 rate: Rate::default(),
             };
             viewer.follow(socket).await;
@@ -101,6 +106,8 @@ struct Viewer {
     taken: u64,
     /// The role that was sent.
     role: Vec<u8>,
+    /// He looks at the part that is being cut.
+    looking: Option<Looking>,
     rate: Rate,
 }
 
@@ -136,6 +143,13 @@ impl Viewer {
                     Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
                     _ => return,
                 },
+                () = part_changes(&mut self.looking) => {
+                    if let Some(news) = self.news_of_the_part().await
+                        && socket.send(news).await.is_err()
+                    {
+                        return;
+                    }
+                }
                 _ = pulse.tick() => {}
             }
             if let Some(role) = self.news_of_the_crew()
@@ -151,6 +165,10 @@ impl Viewer {
         let Ok(sent) = serde_json::from_str::<Sent>(text) else {
             return refused("this is no input");
         };
+        if let Some(looks) = sent.part {
+            self.looking = looks.then(|| self.shared.part.look());
+            return self.taken_message();
+        }
         match (sent.operate, sent.hand_over) {
             (Some(_), _) => lock(&self.shared.crew).ask(&self.name),
             (_, Some(yes)) => lock(&self.shared.crew).answer(&self.name, yes),
@@ -188,6 +206,12 @@ impl Viewer {
         region("taken", &self.taken)
     }
 
+    async fn news_of_the_part(&mut self) -> Option<Message> {
+        let (looking, news) = self.looking.take()?.next().await?;
+        self.looking = Some(looking);
+        Some(Message::Binary(message(&[&news?]).into()))
+    }
+
     fn news_of_the_crew(&mut self) -> Option<Message> {
         let crew = lock(&self.shared.crew);
         let (operator, asks) = crew.roles();
@@ -202,6 +226,16 @@ impl Viewer {
             Message::Binary(encoded.into())
         })
     }
+}
+
+/// Waits for another part; for ever, when he does not look at it.
+async fn part_changes(looking: &mut Option<Looking>) {
+    if let Some(looking) = looking
+        && looking.news.changed().await.is_ok()
+    {
+        return;
+    }
+    std::future::pending().await
 }
 
 fn refused(why: &str) -> Message {

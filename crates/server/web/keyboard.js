@@ -48,7 +48,7 @@ const REAL = {
 const ALT = {
   1: "MANUAL", 2: "HANDWHEEL", 3: "MDI", 4: "SINGLE", 5: "FULL", 6: "PROGRAM", 7: "TEST",
   n: "PGM_NR", d: "CYCL_DEF", c: "CYCL_CALL", t: "TOOL_CALL", f: "TOOL_DEF", l: "LBL_SET", k: "LBL_CALL", s: "STOP",
-  g: "GOTO", m: "MOD", b: "BLK_FORM", a: "CAPTURE", r: "RND", x: "CR", y: "CT", z: "CC", p: "PGM_CALL", h: "HELP",
+  g: "GOTO", m: "MOD", b: "BLK_FORM", a: "CAPTURE", r: "RND", x: "CR", y: "CT", z: "CC", p: "PGM_CALL", h: "HELP", v: "3D_VIEW",
 };
 
 /** The key of the control that a key of a real keyboard presses. */
@@ -61,6 +61,8 @@ export function keyOf(event) {
 
 export function listen(press) {
   document.addEventListener("keydown", (event) => {
+    // A view of the part that has the focus takes its own keys.
+    if (event.defaultPrevented) return;
     const inField = event.target.closest("input, select, textarea, dialog[open]");
     // A button that has the focus is pressed by Enter, as everywhere.
     const onButton = event.target.closest("button") && (event.key === "Enter" || event.key === " ");

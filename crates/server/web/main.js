@@ -3,6 +3,7 @@
 import { Connection } from "/web/connection.js";
 import * as keyboard from "/web/keyboard.js";
 import * as machine from "/web/machine.js";
+import { PartWindow } from "/web/part.js";
 import * as screen from "/web/screen.js";
 import * as teacher from "/web/teacher.js";
 import * as timeline from "/web/timeline.js";
@@ -34,11 +35,16 @@ const draw = {
   timeline: timeline.draw,
   why: teacher.why,
   lesson: teacher.lesson,
+  part: (news) => part.take(news),
   crew: crew,
   refused: (why) => line(why),
 };
 
 const connection = await begin();
+const part = new PartWindow(document.querySelector(".stage"), (looks) => {
+  screen.modern(looks);
+  connection.ask({ part: looks });
+});
 
 async function begin() {
   const station = await (await fetch("/api/station")).json();
@@ -50,11 +56,16 @@ async function begin() {
   teacher.build(send);
   return new Connection(
     (name, value) => draw[name]?.(value),
-    (connected) => line(connected ? "" : "The station does not answer; it is asked again."),
+    (connected) => {
+      line(connected ? "" : "The station does not answer; it is asked again.");
+      if (connected) part.connected();
+    },
   );
 }
 
 function press(key) {
+  // A key of the page.
+  if (key === "3D_VIEW") return part.turnOn(!part.on);
   connection.input({ key });
 }
 

@@ -1,4 +1,4 @@
-// Reads MessagePack, as far as the server writes it: no extensions, no binary values.
+// Reads MessagePack, as far as the server writes it: no extensions.
 
 const text = new TextDecoder();
 
@@ -14,6 +14,7 @@ export function decode(buffer) {
     return value;
   };
   const string = (length) => take(length, (from) => text.decode(bytes.subarray(from, from + length)));
+  const binary = (length) => take(length, (from) => bytes.subarray(from, from + length));
   const array = (length) => Array.from({ length }, value);
   const map = (length) => Object.fromEntries(Array.from({ length }, () => [value(), value()]));
   const unsigned = (size) => {
@@ -40,6 +41,7 @@ export function decode(buffer) {
       case 0xc0: return null;
       case 0xc2: return false;
       case 0xc3: return true;
+      case 0xc4: case 0xc5: case 0xc6: return binary(unsigned(1 << (head - 0xc4)));
       case 0xca: return take(4, (from) => view.getFloat32(from));
       case 0xcb: return take(8, (from) => view.getFloat64(from));
       case 0xcc: case 0xcd: case 0xce: case 0xcf: return unsigned(1 << (head - 0xcc));

@@ -199,7 +199,8 @@ const picture = { wanted: 0, loading: 0 };
 /** The part as the graphics show it: a picture is asked for when there is another one, and never two at once. */
 export function graphics(shown) {
   const node = region("graphics");
-  node.hidden = !shown;
+  node.dataset.control = shown ? "shown" : "";
+  node.querySelector(".made").hidden = !shown;
   if (!shown) {
     picture.wanted = 0;
     return;
@@ -215,8 +216,15 @@ export function graphics(shown) {
   loadPicture(node, image);
 }
 
+/** The operator looks at the part from every side, or at what the control shows of it. */
+export function modern(on) {
+  const node = region("graphics");
+  node.dataset.modern = on ? "shown" : "";
+  if (!on) loadPicture(node, node.querySelector("img"));
+}
+
 function loadPicture(node, image) {
-  if (picture.loading || !picture.wanted || picture.wanted === Number(image.dataset.serial)) return;
+  if (node.dataset.modern || picture.loading || !picture.wanted || picture.wanted === Number(image.dataset.serial)) return;
   picture.loading = picture.wanted;
   const done = (loaded) => {
     image.dataset.serial = picture.loading;

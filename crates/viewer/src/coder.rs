@@ -21,13 +21,21 @@ use crate::sheet::Sheet;
 #[derive(Clone, Debug)]
 pub struct PartCoder {
     sheet: Sheet,
+    /// How often the part was another one.
+    version: u64,
+    /// For each tile the version since which it is as it is.
+    since: Vec<u64>,
 }
 
 impl PartCoder {
     /// For whoever has the untouched blank of this part.
     pub fn new(part: &Part) -> PartCoder {
+        let sheet = Sheet::blank_of(part);
+        let [across, along] = sheet.tiles();
         PartCoder {
-            sheet: Sheet::blank_of(part),
+            since: vec![0; across * along],
+            sheet,
+            version: 0,
         }
     }
 
@@ -38,6 +46,12 @@ impl PartCoder {
         if changes.is_empty() {
             return None;
         }
+        self.version += 1;
+        for change in &changes {
+            if let Some(since) = self.since.get_mut(change.tile) {
+                *since = self.version;
+            }
+        }
         let mut out = Vec::new();
         self.sheet.write(&changes, &mut out);
         Some(out)
@@ -47,6 +61,19 @@ impl PartCoder {
     pub fn whole(&self) -> Vec<u8> {
         let mut out = Vec::new();
         self.sheet.write(&self.sheet.whole(), &mut out);
+        out
+    }
+
+    /// How often [`PartCoder::changes`] found something new.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// The tiles that changed behind a version, as they are now, for whoever has that one.
+    pub fn since(&self, version: u64) -> Vec<u8> {
+        let changed = |tile: usize| self.since.get(tile).is_some_and(|since| *since > version);
+        let mut out = Vec::new();
+        self.sheet.write(&self.sheet.as_they_are(changed), &mut out);
         out
     }
 

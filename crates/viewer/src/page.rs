@@ -94,8 +94,12 @@ fn as_one(module: &str) -> String {
     text
 }
 
-/// Text in which nothing is taken for HTML.
-fn escaped(text: &str) -> String {
+/// Text in which nothing is taken for HTML, neither between tags nor in the value of an attribute.
+///
+/// ```
+/// assert_eq!(bahn_viewer::escaped("R<6 & \"T1\""), "R&lt;6 &amp; &quot;T1&quot;");
+/// ```
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
         match character {

@@ -3,15 +3,16 @@
 use std::io::{self, Write};
 
 use bahn_path::{Axis, BlockRef, PathElement};
-use bahn_workpiece::Part;
+use bahn_workpiece::{CutBy, Part};
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::history::History;
 use crate::sheet::{TILE, WHOLE};
-use crate::track::Track;
+use crate::track::{Track, TrackTool};
+use crate::trail;
 
 /// Bytes of the part's moments that a page may have; when there are more, every other moment is left out.
 const MOST_BYTES: usize = 1_100_000;
@@ -148,11 +149,7 @@ impl Frame {
             axes,
             min,
             size: [0, 1, 2].map(|k| f64::max(max[k] - min[k], 1e-3)),
-            order: axes.map(|axis| match axis {
-                Axis::X => 0,
-                Axis::Y => 1,
-                _ => 2,
-            }),
+            order: trail::order(axes),
         }
     }
 }
@@ -173,7 +170,7 @@ pub(crate) fn write(recording: Recording, part: Option<&Part>, about: &About) ->
     }
     let frame = Frame::of(part, &track);
     let rows = Rows::of(&about.listings);
-    let path = track.written(frame.order, frame.min, |block| rows.row(block));
+    let path = track.written(0, frame.order, frame.min, |block| rows.row(block));
     let listing = listing(about);
     let head = head(about, &rows, &frame, part, &track, history.as_ref());
     let mut head = head;
@@ -194,7 +191,7 @@ fn head(
     part: Option<&Part>,
     track: &Track,
     history: Option<&History>,
-) -> serde_json::Value {
+) -> Value {
     let remark = |remark: &Remark| {
         let row = remark.block.and_then(|block| rows.row(block));
         json!(RemarkRow {
@@ -213,25 +210,7 @@ fn head(
         })
         .collect();
     let cutters = part.map(Part::cutters).unwrap_or_default();
-    let colour_of = |number: Option<u32>| {
-        let cutter = cutters.iter().find(|cutter| cutter.tool == number);
-        cutter.map(|cutter| cutter.colours[0])
-    };
-    let tools: Vec<_> = track
-        .tools()
-        .iter()
-        .map(|tool| {
-            json!({
-                "number": tool.number, "axis": tool.axis.to_string(), "radius": tool.shape.radius,
-                "corner": tool.shape.corner_radius, "length": tool.shape.length,
-                "point": tool.shape.point_angle_deg, "colour": colour_of(tool.number),
-            })
-        })
-        .collect();
-    let marks: Vec<_> = cutters
-        .iter()
-        .map(|cutter| json!({ "tool": cutter.tool, "marks": cutter.marks, "colours": cutter.colours }))
-        .collect();
+    let (tools, marks) = (tools(track.tools(), &cutters), marks(&cutters));
     json!({
         "title": about.title, "model": about.model, "facts": about.facts, "time_s": about.time_s,
         "error": about.error.as_ref().map(remark),
@@ -241,6 +220,29 @@ fn head(
         "cells": history.map(|history| history.sheet().columns),
         "removed_mm3": part.map(Part::removed_mm3), "tile": TILE, "whole": WHOLE,
     })
+}
+
+/// The tools of a path with the colours in which the part shows them.
+pub(crate) fn tools(tools: &[TrackTool], cutters: &[CutBy]) -> Vec<Value> {
+    let colour_of = |number: Option<u32>| {
+        let cutter = cutters.iter().find(|cutter| cutter.tool == number);
+        cutter.map(|cutter| cutter.colours[0])
+    };
+    let told = |tool: &TrackTool| {
+        json!({
+            "number": tool.number, "axis": tool.axis.to_string(), "radius": tool.shape.radius,
+            "corner": tool.shape.corner_radius, "length": tool.shape.length,
+            "point": tool.shape.point_angle_deg, "colour": colour_of(tool.number),
+        })
+    };
+    tools.iter().map(told).collect()
+}
+
+/// The marks of cells with their colours.
+pub(crate) fn marks(cutters: &[CutBy]) -> Vec<Value> {
+    let told =
+        |cutter: &CutBy| json!({ "tool": cutter.tool, "marks": cutter.marks, "colours": cutter.colours });
+    cutters.iter().map(told).collect()
 }
 
 /// A line for each block, in the order of the rows.

@@ -131,8 +131,16 @@ impl Sheet {
 
     /// All tiles that are not untouched, as they are.
     pub fn whole(&self) -> Vec<Change> {
+        let mut changes = self.as_they_are(|_| true);
+        changes.retain(|change| change.cells.iter().any(|cell| *cell != (WHOLE, 0)));
+        changes
+    }
+
+    /// Some tiles with all their cells.
+    pub fn as_they_are(&self, wanted: impl Fn(usize) -> bool) -> Vec<Change> {
         let [across, along] = self.tiles();
-        let changes = (0..across * along).map(|tile| {
+        let tiles = (0..across * along).filter(|tile| wanted(*tile));
+        let changes = tiles.map(|tile| {
             let mut change = Change::none(tile);
             let Place { size, .. } = self.place(tile);
             for cell in 0..size[0] * size[1] {
@@ -140,9 +148,7 @@ impl Sheet {
             }
             change
         });
-        changes
-            .filter(|change| change.cells.iter().any(|cell| *cell != (WHOLE, 0)))
-            .collect()
+        changes.collect()
     }
 
     fn cell(&self, tile: usize, cell: usize) -> (u16, u8) {

@@ -6,7 +6,7 @@ use crate::bytes::{differences, varint};
 
 /// How far lines may be from an arc, mm; for drawing only.
 const FIRST_TOLERANCE_MM: f64 = 0.02;
-/// Points that are kept; when there are more, the tolerance is doubled and they become fewer.
+/// Points of a page.
 const MOST_POINTS: usize = 250_000;
 /// Points in a row that may be left out.
 const MOST_LEFT_OUT: usize = 64;
@@ -59,10 +59,21 @@ pub(crate) struct Track {
     /// Of chords, and of what is left out when there are too many points: of those before `thinned`.
     tolerance_mm: f64,
     thinned: usize,
+    /// How often points were left out.
+    times_thinned: u32,
+    /// Points that are kept; when there are more, the tolerance is doubled and they become fewer.
+    most: usize,
 }
 
 impl Default for Track {
     fn default() -> Track {
+        Track::of_points(MOST_POINTS)
+    }
+}
+
+impl Track {
+    /// With so many points at most; more than those of two arcs.
+    pub fn of_points(most: usize) -> Track {
         Track {
             points: Vec::new(),
             tools: vec![TrackTool {
@@ -73,11 +84,11 @@ impl Default for Track {
             tool: 0,
             tolerance_mm: FIRST_TOLERANCE_MM,
             thinned: 0,
+            times_thinned: 0,
+            most,
         }
     }
-}
 
-impl Track {
     /// Takes an element that ends at a time.
     pub fn element(&mut self, element: &PathElement, end_s: f64) {
         for function in element.functions() {
@@ -95,7 +106,7 @@ impl Track {
         } else {
             begin_s
         };
-        if self.points.len() + MOST_CHORDS as usize > MOST_POINTS {
+        if self.points.len() + MOST_CHORDS as usize > self.most {
             self.thin();
         }
         self.draw(element, begin_s, end_s);
@@ -212,7 +223,8 @@ impl Track {
 
     /// Leaves out points that are near the line between their neighbours, with a tolerance that grows until few are left.
     fn thin(&mut self) {
-        const ENOUGH: usize = MOST_POINTS / 2;
+        let enough = self.most / 2;
+        self.times_thinned = self.times_thinned.wrapping_add(1);
         const COARSEST_MM: f64 = 1e4;
         loop {
             let all = self.points.split_off(self.thinned.min(self.points.len()));
@@ -225,7 +237,7 @@ impl Track {
                 }
                 first = last;
             }
-            if self.points.len() <= ENOUGH || self.tolerance_mm > COARSEST_MM {
+            if self.points.len() <= enough || self.tolerance_mm > COARSEST_MM {
                 // The last one may still begin a line.
                 self.thinned = self.points.len().saturating_sub(1);
                 return;
@@ -245,6 +257,31 @@ impl Track {
                 && matches!(point.kind, Kind::Rapid | Kind::Feed)
                 && off_line(point.at, from.at, to.at) <= self.tolerance_mm
         })
+    }
+
+    /// Forgets the path; the tool stays.
+    pub fn clear(&mut self) {
+        self.points.clear();
+        self.thinned = 0;
+        self.tolerance_mm = FIRST_TOLERANCE_MM;
+    }
+
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    pub fn times_thinned(&self) -> u32 {
+        self.times_thinned
+    }
+
+    /// Where the tool stands.
+    pub fn last(&self) -> Option<[f64; 3]> {
+        self.points.last().map(|point| point.at)
+    }
+
+    /// Which of the tools is in the spindle.
+    pub fn tool(&self) -> usize {
+        usize::from(self.tool)
     }
 
     pub fn tools(&self) -> &[TrackTool] {
@@ -280,11 +317,17 @@ impl Track {
         })
     }
 
-    /// The points as bytes: their count, then column after column, each number as its difference from the one before:
+    /// The points from one on as bytes: their count, then column after column, each number as its difference from the one before:
     /// place on three axes from `min` in µm, time in ms, row of the list; then for each point kind, end and tool in a byte.
-    pub fn written(&self, axes: [usize; 3], min: [f64; 3], row: impl Fn(BlockRef) -> Option<u32>) -> Vec<u8> {
+    pub fn written(
+        &self,
+        from: usize,
+        axes: [usize; 3],
+        min: [f64; 3],
+        row: impl Fn(BlockRef) -> Option<u32>,
+    ) -> Vec<u8> {
         let mut out = Vec::new();
-        let points = &self.points;
+        let points = self.points.get(from..).unwrap_or_default();
         varint(&mut out, points.len() as u64);
         for (axis, min) in axes.into_iter().zip(min) {
             let place = |point: &Point| point.at.get(axis).copied().unwrap_or_default() - min;
@@ -328,7 +371,7 @@ fn filled(start: &Position, end: &Position) -> Position {
 }
 
 /// X, Y, Z; a parallel axis carries the tool in the same direction, so both add up (inferred) [003:5397-5432].
-fn place(position: &Position) -> Option<[f64; 3]> {
+pub(crate) fn place(position: &Position) -> Option<[f64; 3]> {
     let along = |main: Axis, parallel: Axis| match (position.get(main), position.get(parallel)) {
         (Some(a), Some(b)) => Some(a + b),
         (a, b) => a.or(b),

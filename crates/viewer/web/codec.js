@@ -1,7 +1,7 @@
 // The data of a page, and the tiles of a part: the other side of the Rust files of these names.
 
 const TILE = 64;
-const WHOLE = 65535;
+export const WHOLE = 65535;
 const ALL_ALIKE = 0, ALL_CELLS = 1;
 
 // Numbers from bytes.
@@ -192,6 +192,33 @@ export function readPath(bytes) {
   const ends = [];
   for (let k = 0; k < count; k++) if (kinds[k] & 0x80) ends.push(k);
   return { count, places, times, rows, kinds: kinds.map(kind => kind & 0x7f), tools, ends: Int32Array.from(ends) };
+}
+
+// A path that grows: columns as those of `readPath`, with room for more.
+export class GrowingPath {
+  constructor() {
+    this.count = 0;
+    this.room(1024);
+  }
+
+  room(points) {
+    const grown = { places: new Float32Array(3 * points), times: new Float64Array(points), kinds: new Uint8Array(points), tools: new Uint8Array(points) };
+    for (const [name, column] of Object.entries(grown)) {
+      if (this[name]) column.set(this[name].subarray(0, Math.min(column.length, this[name].length)));
+      this[name] = column;
+    }
+  }
+
+  // Takes the points from one on as they were sent.
+  take(from, bytes) {
+    const { count, places, times, kinds, tools } = readPath(bytes);
+    this.count = from + count;
+    if (this.count > this.times.length) this.room(2 * this.count);
+    this.places.set(places, 3 * from);
+    this.times.set(times, from);
+    this.kinds.set(kinds, from);
+    this.tools.set(tools, from);
+  }
 }
 
 // Everything in the data of a page.

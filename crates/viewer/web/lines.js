@@ -15,6 +15,9 @@ export class Lines {
     this.colours = new Float32Array(64 * 4).fill(0.8);
     this.rapid = [0.8, 0.2, 0.2, 1];
     this.box = [0.5, 0.5, 0.5, 1];
+    // Segments of the path as numbers, and how many end at a point or before it.
+    this.numbers = new Float32Array(0);
+    this.upTo = [];
   }
 
   set() {
@@ -39,17 +42,52 @@ export class Lines {
     set.count = numbers.length / NUMBERS;
   }
 
-  path(path) {
+  // The path; from a point on it is another one than before.
+  path(path, from = 0) {
     const { places, kinds, tools, times, count } = path;
-    const numbers = [];
-    let way = 0;
-    for (let k = 1; k < count; k++) {
-      if (kinds[k] !== RAPID && kinds[k] !== FEED) continue;
-      const from = places.subarray(3 * k - 3, 3 * k), to = places.subarray(3 * k, 3 * k + 3);
-      numbers.push(...from, ...to, kinds[k], tools[k], way, times[k - 1], times[k]);
-      way = (way + Math.hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2])) % 1e4;
+    const { upTo } = this;
+    let number = from > 0 ? upTo[from - 1] : 0;
+    const first = number;
+    if (this.numbers.length < NUMBERS * (number + count - from)) {
+      const grown = new Float32Array(NUMBERS * 2 * (number + count - from));
+      grown.set(this.numbers.subarray(0, NUMBERS * number));
+      this.numbers = grown;
+      from = Math.max(from, 1);
+      this.grown = true;
     }
-    this.fill(this.sets.path, Float32Array.from(numbers));
+    const { numbers } = this;
+    upTo[0] = 0;
+    let way = number > 0 ? this.wayBehind(number - 1) : 0;
+    for (let k = Math.max(from, 1); k < count; k++) {
+      if (kinds[k] === RAPID || kinds[k] === FEED) {
+        const at = NUMBERS * number++;
+        numbers.set(places.subarray(3 * k - 3, 3 * k + 3), at);
+        numbers.set([kinds[k], tools[k], way, times[k - 1], times[k]], at + 6);
+        way = this.wayBehind(number - 1);
+      }
+      upTo[k] = number;
+    }
+    upTo.length = count;
+    this.upload(first, number);
+  }
+
+  // How far the tool has gone behind a segment; it matters for dashes only.
+  wayBehind(segment) {
+    const [x0, y0, z0, x1, y1, z1, , , way] = this.numbers.subarray(NUMBERS * segment, NUMBERS * (segment + 1));
+    return (way + Math.hypot(x1 - x0, y1 - y0, z1 - z0)) % 1e4;
+  }
+
+  // Only what is new goes to the graphics card.
+  upload(first, count) {
+    const { gl, numbers } = this;
+    const set = this.sets.path;
+    gl.bindBuffer(gl.ARRAY_BUFFER, set.buffer);
+    if (this.grown) gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.DYNAMIC_DRAW);
+    else if (count > first) {
+      gl.bufferSubData(gl.ARRAY_BUFFER, 4 * NUMBERS * first, numbers, NUMBERS * first, NUMBERS * (count - first));
+    }
+    this.grown = false;
+    set.count = count;
   }
 
   // The edges of a box from the origin.

@@ -1,7 +1,7 @@
 // A part on a canvas. Whoever has one says what is to be seen; it draws when something has changed, and never else.
 
 import { Camera } from './camera.js';
-import { Sheet, readTiles } from './codec.js';
+import { Sheet, readTiles, WHOLE } from './codec.js';
 import { Relief } from './relief.js';
 import { Lines } from './lines.js';
 import { Tool } from './tool.js';
@@ -65,6 +65,14 @@ export class PartView {
     this.tilesChanged(tiles.map(([tile]) => tile));
   }
 
+  // The untouched blank again.
+  whole() {
+    const { sheet } = this;
+    const all = Array.from({ length: sheet.tiles }, (_, tile) => tile);
+    for (const tile of all) sheet.fill(tile, WHOLE, 0);
+    this.tilesChanged(all);
+  }
+
   tilesChanged(tiles) {
     if (tiles.length === 0) return;
     this.relief.update(tiles);
@@ -79,9 +87,10 @@ export class PartView {
     this.changed();
   }
 
-  path(path) {
+  // The path; from a point on it is another one than before.
+  path(path, from = 0) {
     this.drawnPath = path;
-    this.lines.path(path);
+    this.lines.path(path, from);
     this.changed();
   }
 

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use bahn_viewer::base64;
+use bahn_viewer::{base64, escaped};
 
 use super::Totals;
 use super::crew::Done;
@@ -202,30 +202,4 @@ fn list<'a>(class: &str, items: impl Iterator<Item = &'a str>) -> String {
         return String::new();
     }
     format!("<ul class=\"{class}\">{}</ul>", items.join(""))
-}
-
-/// Text in which nothing is taken for HTML.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            other if other.is_control() => out.push(' '),
-            other => out.push(other),
-        }
-    }
-    out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_no_markup() {
-        assert_eq!(escaped("<b>&\"\u{1b}"), "&lt;b&gt;&amp;&quot; ");
-    }
 }

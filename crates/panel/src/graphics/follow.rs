@@ -65,7 +65,7 @@ impl Follower {
         match (&self.cutter, &self.stock) {
             // It ends only after the sender.
             (Some(cutter), _) => drop(cutter.send(element)),
-            (None, Some(stock)) => stock.cut(&element, &mut Heard::default()),
+            (None, Some(stock)) => stock.cut(&element, 0.0, &mut Heard::default()),
             (None, None) => {}
         }
     }
@@ -96,7 +96,7 @@ fn cutter(stock: Arc<Stock>) -> SyncSender<PathElement> {
     let (sender, receiver): (_, Receiver<PathElement>) = sync_channel(WAITING);
     std::thread::spawn(move || {
         for element in receiver {
-            stock.cut(&element, &mut Heard::default());
+            stock.cut(&element, 0.0, &mut Heard::default());
         }
     });
     sender

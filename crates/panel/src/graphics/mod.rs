@@ -7,6 +7,7 @@
 //! By the clock on the wall both cut on threads of their own; by the free clock with the machine, so that the same
 //! inputs give the same screens.
 
+mod being_cut;
 mod follow;
 mod picture;
 mod stock;
@@ -17,6 +18,7 @@ use bahn_dialogue::Key;
 use bahn_host::Host;
 
 use crate::screen::{GraphicsLine, GraphicsView};
+pub use being_cut::BeingCut;
 pub use picture::Picture;
 pub(crate) use picture::Sight;
 
@@ -198,6 +200,20 @@ impl Graphics {
             sections: self.sight.sections,
             serial: self.serial,
         })
+    }
+
+    /// The part itself, whatever the graphics show of it; `None` before there is one.
+    pub fn being_cut(&self, cut: Cut, control: &Control) -> Option<BeingCut> {
+        match cut {
+            Cut::Test => {
+                let trial = self.trial.as_ref()?;
+                Some(BeingCut::new(trial.stock(), trial.program()))
+            }
+            Cut::Run => {
+                let cut = BeingCut::new(self.follower.stock()?, self.follower.program());
+                Some(cut.on_the_way(control))
+            }
+        }
     }
 
     /// What is to be seen, to be drawn by whoever wants it; `None` as with [`Graphics::line`], and without a part.

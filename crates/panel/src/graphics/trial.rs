@@ -182,7 +182,8 @@ impl Run {
 
     fn element(&mut self, element: &PathElement) {
         let mut heard = Heard::default();
-        self.stock.cut(element, &mut heard);
+        let end_s = self.progress.machining_time_s;
+        self.stock.cut(element, end_s, &mut heard);
         self.progress.not_shown |= heard.0;
         self.progress.elements += 1;
         if element.block.program == 0 && self.blocks > 0 {

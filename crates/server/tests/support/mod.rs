@@ -55,6 +55,29 @@ impl Panel {
         }
     }
 
+    /// The heights of the part that is being cut, as the page has them: 16 bits, 0 a hole, 65535 untouched, a step
+    /// 1/65535 of the thickness of the blank; of a page that has so many cells along an axis, each of them the middle
+    /// one of as many columns.
+    pub fn heights(&self, along: usize) -> Vec<u16> {
+        let link = self.server.as_ref().unwrap().link();
+        let cut = link.with(Station::being_cut).unwrap().unwrap();
+        let part = cut.part().unwrap();
+        let top = part.max()[2] - part.min()[2];
+        let code = |height: &f32| match f64::from(*height) {
+            none if none <= 0.0 => 0,
+            whole if whole >= top => 65535,
+            other => (other / top * 65535.0).round().clamp(1.0, 65534.0) as u16,
+        };
+        let [nx, ny] = part.columns();
+        let stride = nx.div_ceil(along);
+        let middle =
+            |count: usize| (0..count.div_ceil(stride)).map(move |k| (k * stride + stride / 2).min(count - 1));
+        middle(ny)
+            .flat_map(|j| middle(nx).map(move |i| j * nx + i))
+            .map(|column| code(&part.heights_mm()[column]))
+            .collect()
+    }
+
     /// A file of the machine's folder.
     pub fn file(&self, name: &str) -> String {
         std::fs::read_to_string(self.folder.join(name)).unwrap()

@@ -1,0 +1,193 @@
+//! The part that is being cut, coded once for all viewers that look at it from every side.
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use bahn_panel::{BeingCut, Link, Station};
+use bahn_viewer::{PartStream, Sent};
+use serde::Serialize;
+use tokio::sync::watch;
+
+/// Between two looks at the part: 15 a second.
+const EVERY: Duration = Duration::from_millis(66);
+/// Looking takes this part of a core at most, however large the part is.
+const SHARE: u32 = 4;
+/// While nobody looks, whether the server has ended is found out so often.
+const IDLE: Duration = Duration::from_secs(1);
+
+/// The part, for all viewers.
+#[derive(Clone)]
+pub(crate) struct PartFeed {
+    shared: Arc<Shared>,
+    news: watch::Receiver<u64>,
+}
+
+struct Shared {
+    state: Mutex<State>,
+    /// Somebody wants to look.
+    wanted: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    viewers: usize,
+    seen: Option<Seen>,
+    /// Parts so far.
+    parts: u64,
+}
+
+/// The part that was seen last.
+struct Seen {
+    cut: BeingCut,
+    version: u64,
+    stream: Option<PartStream>,
+}
+
+/// Somebody looks, until this is dropped.
+pub(crate) struct Looking {
+    shared: Arc<Shared>,
+    pub news: watch::Receiver<u64>,
+    sent: Sent,
+}
+
+/// Encoded as MessagePack: an array of a name and a value, or of a name and nothing.
+type Region = Vec<u8>;
+
+impl PartFeed {
+    /// Follows the part of a station while somebody looks, on a thread of its own.
+    pub fn start(link: Link) -> PartFeed {
+        let shared = Arc::new(Shared {
+            state: Mutex::default(),
+            wanted: Condvar::new(),
+        });
+        let (sender, news) = watch::channel(0);
+        let own = Arc::clone(&shared);
+        std::thread::spawn(move || own.follow(&link, &sender));
+        PartFeed { shared, news }
+    }
+
+    /// Somebody looks.
+    pub fn look(&self) -> Looking {
+        lock(&self.shared).viewers += 1;
+        self.shared.wanted.notify_all();
+        let mut news = self.news.clone();
+        // What is there already is news for him.
+        news.mark_changed();
+        Looking {
+            shared: Arc::clone(&self.shared),
+            news,
+            sent: Sent::default(),
+        }
+    }
+}
+
+impl Shared {
+    fn follow(&self, link: &Link, sender: &watch::Sender<u64>) {
+        while !sender.is_closed() {
+            let state = lock(self);
+            let waited = self
+                .wanted
+                .wait_timeout_while(state, IDLE, |state| state.viewers == 0);
+            let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
+            if state.viewers == 0 {
+                continue;
+            }
+            drop(state);
+            let begun = Instant::now();
+            let Ok(cut) = link.with(Station::being_cut) else {
+                // The station has ended, or is busy.
+                std::thread::sleep(EVERY);
+                continue;
+            };
+            if lock(self).take(cut) {
+                sender.send_modify(|count| *count += 1);
+            }
+            std::thread::sleep(EVERY.max(begun.elapsed() * SHARE));
+        }
+    }
+}
+
+impl State {
+    /// Looks at the part; whether there may be news. In operating modes without a part the last one stays to be seen.
+    fn take(&mut self, cut: Option<BeingCut>) -> bool {
+        let Some(cut) = cut else { return false };
+        let version = cut.version();
+        let before = self.seen.take();
+        let mut seen = match before {
+            Some(mut seen) if seen.cut.is(&cut) => {
+                let moved = seen.cut.tool_at() != cut.tool_at();
+                if seen.version == version {
+                    seen.cut = cut;
+                    self.seen = Some(seen);
+                    return moved;
+                }
+                (seen.cut, seen.version) = (cut, version);
+                seen
+            }
+            _ => Seen {
+                cut,
+                version,
+                stream: None,
+            },
+        };
+        let part = seen.cut.part();
+        match (&mut seen.stream, &part) {
+            (Some(stream), Some(part)) if stream.fits(part) => {
+                seen.cut.with_trail(|trail| stream.take(part, trail));
+            }
+            (stream, Some(part)) => {
+                self.parts += 1;
+                let program = seen.cut.program();
+                *stream = Some(
+                    seen.cut
+                        .with_trail(|trail| PartStream::new(self.parts, program, part, trail)),
+                );
+            }
+            (stream, None) => *stream = None,
+        }
+        self.seen = Some(seen);
+        true
+    }
+
+    fn news(&self, sent: &mut Sent) -> Option<Region> {
+        let seen = self.seen.as_ref();
+        let Some((seen, stream)) = seen.and_then(|seen| Some((seen, seen.stream.as_ref()?))) else {
+            // There is no part; that is said once.
+            let first = *sent != Sent::default();
+            *sent = Sent::default();
+            return first.then(|| encode(&None::<()>));
+        };
+        let at = seen.cut.tool_at();
+        let news = seen.cut.with_trail(|trail| stream.news(trail, at, sent))?;
+        Some(encode(&news))
+    }
+}
+
+impl Looking {
+    /// What he lacks, and how to ask the next time.
+    pub async fn next(mut self) -> Option<(Looking, Option<Region>)> {
+        // A large part takes a while, which others do not wait for.
+        let coded = tokio::task::spawn_blocking(move || {
+            let mut sent = self.sent;
+            let news = lock(&self.shared).news(&mut sent);
+            self.sent = sent;
+            (self, news)
+        });
+        coded.await.ok()
+    }
+}
+
+impl Drop for Looking {
+    fn drop(&mut self) {
+        let mut state = lock(&self.shared);
+        state.viewers = state.viewers.saturating_sub(1);
+    }
+}
+
+fn encode<T: Serialize>(value: &T) -> Region {
+    rmp_serde::to_vec_named(&("part", value)).unwrap_or_default()
+}
+
+fn lock(shared: &Shared) -> MutexGuard<'_, State> {
+    shared.state.lock().unwrap_or_else(PoisonError::into_inner)
+}
