@@ -39,7 +39,13 @@ const fn slot(glue: &'static str, address: &'static str, ask: Ask, prompt: &'sta
         prompt,
         need,
         working: false,
+        of: "",
     }
+}
+
+/// A word that only some models have, by its name in their registry.
+const fn of(name: &'static str, slot: Slot) -> Slot {
+    Slot { of: name, ..slot }
 }
 
 const fn number(glue: &'static str, address: &'static str, prompt: &'static str, need: Need) -> Slot {
@@ -61,6 +67,7 @@ pub(crate) const fn coordinates(most: Most, incremental: bool) -> Ask {
         signs: Signs::Always,
         incremental,
         most,
+        table: false,
     }
 }
 
@@ -129,6 +136,24 @@ const OWN_FEED: Slot = slot(" ", "F", Ask::Feed { max: false }, "feed", Optional
 const M: Slot = slot(" ", "M", Ask::M, "m", Optional);
 const TARGET: Slot = slot(" ", "Q", Ask::Integer { q: false }, "result", Required);
 const LABEL: Slot = slot(" ", "", Ask::Integer { q: false }, "label", Required);
+
+/// Oversizes of a tool call, in the registry of the models.
+const OVERSIZE: &str = "TOOL CALL DL DR";
+/// Lines with surface normals there.
+pub(crate) const NORMALS: &str = "LN (surface normals)";
+/// What a cycle of the machine builder is there that acts at its call.
+pub(crate) const DIALOG_CALL: &str = "DLG-CALL";
+/// ENT answers DLG-DEF, NO ENT DLG-CALL [000:17732-17744].
+const DIALOG: Ask = Ask::Choice(&[
+    Choice {
+        value: "DLG-CALL",
+        key: Some(Key::NoEnt),
+    },
+    Choice {
+        value: "DLG-DEF",
+        key: None,
+    },
+]);
 
 const fn unasked(slot: Slot) -> Slot {
     Slot {
@@ -212,7 +237,8 @@ pub(crate) static BLOCKS: &[BlockRow] = &[
     row("TOOL CALL", Some(Key::ToolCall), "", false, &[line("TOOL CALL", &[
         slot(" ", "", Ask::Integer { q: true }, "tool_number", Optional),
         slot(" ", "", Ask::Axes(1), "tool_axis", Optional), plain(" ", "S", "speed", Optional),
-        unasked(number(" ", "DL", "delta_length", Optional)), unasked(number(" ", "DR", "delta_radius", Optional)),
+        of(OVERSIZE, number(" ", "DL", "delta_length", Optional)),
+        of(OVERSIZE, number(" ", "DR", "delta_radius", Optional)),
     ])]),
     row("LBL", Some(Key::LblSet), "", false, &[line("LBL", &[LABEL])]),
     row("CALL LBL", Some(Key::LblCall), "", false, &[
@@ -251,5 +277,8 @@ pub(crate) static BLOCKS: &[BlockRow] = &[
     row("FORMULA", None, "", false, &[
         line("", &[Slot { glue: "", ..TARGET }, slot(" = ", "", Ask::Text, "formula", Required)]),
     ]),
+    row("DLG", None, "", false, &[line("", &[
+        slot("", "", DIALOG, "dialog", Required), slot(" ", "", Ask::Texts, "dialog_texts", Required),
+    ])]),
     row("TEXT", None, "", false, &[line("", &[slot("", "", Ask::Text, "text", Required)])]),
 ];

@@ -37,7 +37,7 @@ impl Editor {
     }
 
     fn insert_position(&mut self, position: &[(Axis, f64)]) -> Result<Reaction, MessageId> {
-        let dialogue = Dialogue::of_id("L").ok_or(KeyNonFunctional)?;
+        let dialogue = Dialogue::of_id("L", &self.setting).ok_or(KeyNonFunctional)?;
         let mut line = dialogue.lines.into_iter().next().ok_or(KeyNonFunctional)?;
         let field = line.field_mut(0).ok_or(KeyNonFunctional)?;
         if position.is_empty() || position.len() > field.slot.ask.most(self.setting.model.limits()) {

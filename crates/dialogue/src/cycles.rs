@@ -1,18 +1,98 @@
 //! What cycles and probe functions ask: derived from the table of cycles.
 
-use bahn_program::{Cycle, CycleFunction, CycleParameter, Quantity, Sign, cycle};
+use bahn_program::{
+    Cycle, CycleBlock, CycleFunction, CycleParameter, CycleWord, Quantity, Sign, assigned_parameters, cycle,
+};
 
 use crate::blocks::{SIGNED, TURN, UNSIGNED, coordinates};
 use crate::field::{Ask, Field, Most, Need, Signs, Slot};
 use crate::line::Line;
 use crate::prompt::prompt;
+use crate::{OEM_CYCLES, Setting};
 
-/// The words of all blocks of a cycle or probe function; of cycles that the table does not know, like those of the
-/// machine builder, their `Qn=` words as text.
-pub(crate) fn cycle_lines(function: CycleFunction, number: u16) -> Vec<Line> {
+/// The prompt of a parameter of a cycle of the machine builder that has no text of its own.
+pub(crate) const PARAMETER: &str = "parameter";
+
+const SHIFT: Ask = Ask::Coordinates {
+    prefix: "",
+    signs: Signs::Always,
+    incremental: true,
+    most: Most::Count(1),
+    table: true,
+};
+const FACTORS: Ask = Ask::Coordinates {
+    prefix: "",
+    signs: Signs::None,
+    incremental: false,
+    most: Most::Count(3),
+    table: false,
+};
+const CENTRE: Ask = Ask::Coordinates {
+    prefix: "CC",
+    signs: Signs::Always,
+    incremental: false,
+    most: Most::Count(3),
+    table: false,
+};
+/// Assignments in a block, as the example of the manual has them [000:17953-17964].
+const ASSIGNMENTS: usize = 3;
+
+/// The words of all blocks of a cycle or probe function; of those of the machine builder that the machine does not have,
+/// their `Qn=` words as text.
+pub(crate) fn cycle_lines(function: CycleFunction, number: u16, setting: &Setting) -> Vec<Line> {
+    let builder = setting
+        .builder_cycle(number)
+        .filter(|_| function == CycleFunction::Definition);
+    let numbers: Vec<u16> = match builder {
+        Some(cycle) => cycle.parameters.iter().map(|(number, _)| *number).collect(),
+        None if function == CycleFunction::Definition => {
+            let parameters = assigned_parameters(number).iter();
+            parameters.map(|parameter| parameter.number).collect()
+        }
+        None => Vec::new(),
+    };
+    if builder.is_some() || !numbers.is_empty() {
+        let name = builder.map(|cycle| cycle.name.as_str());
+        let first = match name {
+            Some(name) => Line::new(format!("CYCL DEF {number}.0 {name}").trim_end(), Vec::new()),
+            None => cycle_line(function, number, 0),
+        };
+        let blocks = (1..).zip(numbers.chunks(ASSIGNMENTS));
+        let blocks = blocks.map(|(sub, numbers)| assigned_line(number, sub, numbers));
+        return std::iter::once(first).chain(blocks).collect();
+    }
     let known = cycle(function, number);
     let last = known.and_then(Cycle::last_block).unwrap_or(1);
     (0..=last).map(|sub| cycle_line(function, number, sub)).collect()
+}
+
+/// A block of assignments to Q parameters.
+pub(crate) fn assigned_line(cycle: u16, sub: u16, numbers: &[u16]) -> Line {
+    let field = |number: &u16| {
+        let ids = [format!("cycle {cycle} Q{number}"), format!("cycle Q{number}")];
+        let found = ids.iter().find_map(|id| prompt(id));
+        // The texts of the machine builder come from the machine.
+        let id = found
+            .filter(|_| !OEM_CYCLES.contains(&cycle))
+            .map_or(PARAMETER, |prompt| prompt.id());
+        let mut field = Field::new(slot(SIGNED, id, Need::Required));
+        field.glue = format!(" Q{number}=").into();
+        field
+    };
+    Line::new(
+        &format!("CYCL DEF {cycle}.{sub}"),
+        numbers.iter().map(field).collect(),
+    )
+}
+
+/// The numbers of the Q parameters that a block assigns to and nothing else.
+pub(crate) fn assigned(block: &CycleBlock) -> Option<Vec<u16>> {
+    let numbers = block.words.iter().map(|word| match word {
+        CycleWord::Assignment(number, _) => Some(*number),
+        _ => None,
+    });
+    let numbers: Vec<u16> = numbers.collect::<Option<_>>()?;
+    (block.sub > 0 && !numbers.is_empty()).then_some(numbers)
 }
 
 /// The words of one block.
@@ -52,7 +132,11 @@ pub(crate) fn cycle_line(function: CycleFunction, number: u16, sub: u16) -> Line
 }
 
 /// Whether a block like the last one may follow it: a datum shift has one for each axis [003:6222].
-pub(crate) fn repeats(function: CycleFunction, number: u16) -> bool {
+pub(crate) fn repeats(function: CycleFunction, number: u16, setting: &Setting) -> bool {
+    let fixed = setting.builder_cycle(number).is_some() || !assigned_parameters(number).is_empty();
+    if function == CycleFunction::Definition && fixed {
+        return false;
+    }
     let last = cycle(function, number).and_then(|cycle| cycle.blocks.last());
     let shifts = |parameter: &CycleParameter| parameter.quantity == Quantity::Shift;
     last.is_none_or(|block| block.iter().any(shifts))
@@ -66,6 +150,7 @@ fn slot(ask: Ask, prompt: &'static str, need: Need) -> Slot {
         prompt,
         need,
         working: false,
+        of: "",
     }
 }
 
@@ -102,7 +187,7 @@ impl Place {
         match parameter.quantity {
             Quantity::Coordinates => one(coordinates(Most::Count(3), true), "coordinates"),
             Quantity::Side => one(coordinates(Most::Count(1), false), "side"),
-            Quantity::Shift => one(coordinates(Most::Count(1), true), "shift"),
+            Quantity::Shift => one(SHIFT, "shift"),
             Quantity::Axes => {
                 let most = match self.function {
                     CycleFunction::Definition => 3,
@@ -122,20 +207,8 @@ impl Place {
                 fields
             }
             Quantity::AxisFactors => {
-                let factors = Ask::Coordinates {
-                    prefix: "",
-                    signs: Signs::None,
-                    incremental: false,
-                    most: Most::Count(3),
-                };
-                let centre = Ask::Coordinates {
-                    prefix: "CC",
-                    signs: Signs::Always,
-                    incremental: false,
-                    most: Most::Count(3),
-                };
-                let mut fields = one(factors, "factors");
-                fields.push(Field::new(slot(centre, id("centre"), Need::Optional)));
+                let mut fields = one(FACTORS, "factors");
+                fields.push(Field::new(slot(CENTRE, id("centre"), Need::Optional)));
                 fields
             }
             Quantity::Feed => {
@@ -147,6 +220,13 @@ impl Place {
                 vec![Field::new(Slot {
                     address: "DR",
                     ..slot
+                })]
+            }
+            Quantity::Target => {
+                let target = slot(Ask::Integer { q: false }, "probe target", need);
+                vec![Field::new(Slot {
+                    address: "Q",
+                    ..target
                 })]
             }
             Quantity::Labels => named(name, one(Ask::Labels, name)),
@@ -167,6 +247,7 @@ impl Place {
             | Quantity::Milliseconds
             | Quantity::Angle
             | Quantity::Orientation
+            | Quantity::Choice
             | Quantity::Factor => named(name, vec![self.number(parameter, need)]),
         }
     }
@@ -222,12 +303,14 @@ fn named(name: &str, mut fields: Vec<Field>) -> Vec<Field> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bahn_parameters::{ControlModel, ParameterList};
     use bahn_program::CYCLES;
 
     #[test]
     fn every_parameter_of_every_cycle_has_its_question() {
+        let setting = Setting::of(&ParameterList::reference(ControlModel::Tnc425));
         for cycle in CYCLES {
-            for line in cycle_lines(cycle.function, cycle.number) {
+            for line in cycle_lines(cycle.function, cycle.number, &setting) {
                 for field in line.fields() {
                     let id = field.slot.prompt;
                     assert!(prompt(id).is_some(), "{} has no prompt", line.head());
@@ -238,7 +321,8 @@ mod tests {
 
     #[test]
     fn a_cycle_asks_block_by_block() {
-        let lines = cycle_lines(CycleFunction::Definition, 4);
+        let setting = Setting::of(&ParameterList::reference(ControlModel::Tnc360));
+        let lines = cycle_lines(CycleFunction::Definition, 4, &setting);
         let asked: Vec<Vec<&str>> = lines
             .iter()
             .map(|line| line.fields().iter().map(|field| field.slot.prompt).collect())
@@ -250,6 +334,9 @@ mod tests {
         let feeds = cycle_line(CycleFunction::Definition, 16, 2);
         let ids: Vec<_> = feeds.fields().iter().map(|field| field.slot.prompt).collect();
         assert_eq!(ids, ["cycle PECKG", "cycle 16.2 F", "cycle DR", "cycle 16.2 F 2"]);
-        assert!(repeats(CycleFunction::Definition, 7) && !repeats(CycleFunction::Definition, 1));
+        assert!(
+            repeats(CycleFunction::Definition, 7, &setting)
+                && !repeats(CycleFunction::Definition, 1, &setting)
+        );
     }
 }

@@ -3,13 +3,16 @@
 use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
 use bahn_program::CycleFunction;
 
-use crate::blocks::{BlockRow, block_row};
+use crate::blocks::{BlockRow, DIALOG_CALL, NORMALS, block_row};
 use crate::check::Context;
 use crate::cycles::{cycle_line, cycle_lines, repeats};
-use crate::field::{Ask, Field, Need};
+use crate::field::{Ask, Field, Need, TABLE_LINE};
 use crate::line::Line;
 use crate::typing::Typing;
-use crate::{Key, Setting, Wanted, Word};
+use crate::{Key, OEM_CYCLES, Setting, Wanted, Word};
+
+/// Number of the program of a cycle of the machine builder less its own [000:17728-17730].
+const BUILDER_PROGRAMS: u32 = 99_999_900;
 
 /// Most blocks of one cycle.
 const LINES_MAX: usize = 64;
@@ -64,11 +67,12 @@ pub(crate) struct Dialogue {
 
 impl Dialogue {
     /// New blocks.
-    pub(crate) fn new(source: Source) -> Dialogue {
-        let lines = match source {
+    pub(crate) fn new(source: Source, setting: &Setting) -> Dialogue {
+        let mut lines = match source {
             Source::Row(row) => Line::of_row(row.id),
-            Source::Cycle(function, number) => cycle_lines(function, number),
+            Source::Cycle(function, number) => cycle_lines(function, number, setting),
         };
+        lines.iter_mut().for_each(|line| line.fit(setting));
         let mut dialogue = Dialogue {
             source,
             replaces: None,
@@ -84,12 +88,13 @@ impl Dialogue {
     }
 
     /// The dialogue of a row by its id.
-    pub(crate) fn of_id(id: &str) -> Option<Dialogue> {
-        Some(Dialogue::new(Source::Row(block_row(id)?)))
+    pub(crate) fn of_id(id: &str, setting: &Setting) -> Option<Dialogue> {
+        Some(Dialogue::new(Source::Row(block_row(id)?), setting))
     }
 
     /// The dialogue of a block that stands in the program, from a field on.
-    pub(crate) fn of_line(line: Line, block: u32, field: usize) -> Option<Dialogue> {
+    pub(crate) fn of_line(mut line: Line, block: u32, field: usize, setting: &Setting) -> Option<Dialogue> {
+        line.fit(setting);
         let source = Source::Row(block_row("TEXT")?);
         let mut dialogue = Dialogue {
             source,
@@ -169,9 +174,9 @@ impl Dialogue {
     }
 
     fn other(&mut self, key: Key, setting: &Setting) -> Result<Step, MessageId> {
-        if let Some(other) = self.other_block(key) {
+        if let Some(other) = self.other_block(key, setting) {
             *self = other;
-            if key == Key::P {
+            if matches!(key, Key::P | Key::N) {
                 return Ok(Step::Stay);
             }
         }
@@ -180,9 +185,9 @@ impl Dialogue {
         Ok(Step::Stay)
     }
 
-    /// The block that a key makes of one in which nothing is entered yet: P the polar one, and a number without an
-    /// axis behind L is a chamfer [003:2685].
-    fn other_block(&self, key: Key) -> Option<Dialogue> {
+    /// The block that a key makes of one in which nothing is entered yet: P the polar one, N behind L that with surface
+    /// normals, and a number without an axis behind L is a chamfer [003:2685].
+    fn other_block(&self, key: Key, setting: &Setting) -> Option<Dialogue> {
         let Source::Row(row) = self.source else {
             return None;
         };
@@ -191,8 +196,9 @@ impl Dialogue {
         match key {
             _ if !untouched || self.typing != Typing::default() => None,
             Key::P if self.is_text() => None,
-            Key::P => Dialogue::of_id(row.polar),
-            _ if chamfer => Dialogue::of_id("CHF"),
+            Key::P => Dialogue::of_id(row.polar, setting),
+            Key::N if row.id == "L" && setting.has(NORMALS) => Dialogue::of_id("LN", setting),
+            _ if chamfer => Dialogue::of_id("CHF", setting),
             _ => None,
         }
     }
@@ -278,8 +284,20 @@ impl Dialogue {
     }
 
     fn skip(&mut self, context: Context<'_>) -> Result<Step, MessageId> {
+        if let Some(other) = self.dialog_block(context) {
+            *self = other;
+            return Ok(Step::Stay);
+        }
         let (field, typing) = self.parts().ok_or(KeyNonFunctional)?;
+        let answer = match field.slot.ask {
+            Ask::Choice(choices) => choices.iter().find(|choice| choice.key == Some(Key::NoEnt)),
+            _ => None,
+        };
         match field.slot.need {
+            _ if answer.is_some() => {
+                typing.take(field, answer.map_or("", |answer| answer.value));
+                self.next(context)
+            }
             Need::Required => Err(KeyNonFunctional),
             _ => {
                 field.words.clear();
@@ -287,6 +305,20 @@ impl Dialogue {
                 self.next(context)
             }
         }
+    }
+
+    /// LBL SET and NO ENT in the program of a cycle of the machine builder: its dialogue block [000:17732-17744].
+    fn dialog_block(&self, context: Context<'_>) -> Option<Dialogue> {
+        let Source::Row(row) = self.source else {
+            return None;
+        };
+        let untouched = self.replaces.is_none() && self.lines.iter().all(Line::is_empty);
+        let here = row.id == "LBL" && untouched && context.setting.has(DIALOG_CALL);
+        let number = context.program.name().split('.').next()?.parse::<u32>().ok()?;
+        let cycle = number.checked_sub(BUILDER_PROGRAMS)?.try_into().ok()?;
+        (here && OEM_CYCLES.contains(&cycle))
+            .then(|| Dialogue::of_id("DLG", context.setting))
+            .flatten()
     }
 
     fn forward(&mut self, context: Context<'_>) -> Result<Step, MessageId> {
@@ -315,10 +347,14 @@ impl Dialogue {
         let Some(last) = self.lines.last().filter(|line| !line.is_empty()) else {
             return false;
         };
+        let whole = |word: &Word| word.address == TABLE_LINE;
+        if last.fields().iter().flat_map(|field| &field.words).any(whole) {
+            return false;
+        }
         let by_axis = last
             .field(0)
             .is_some_and(|field| matches!(field.slot.ask, Ask::Coordinates { .. }));
-        if (by_axis && self.lines.len() > setting.axes.len()) || !self.add_line() {
+        if (by_axis && self.lines.len() > setting.axes.len()) || !self.add_line(setting) {
             return false;
         }
         self.go_on(self.lines.len() - 1, 0)
@@ -361,9 +397,9 @@ impl Dialogue {
     }
 
     /// Adds a word to a field; whether there is such a field.
-    pub(crate) fn answer(&mut self, line: usize, field: usize, word: Word) -> bool {
+    pub(crate) fn answer(&mut self, line: usize, field: usize, word: Word, setting: &Setting) -> bool {
         while line >= self.lines.len() {
-            if !self.add_line() {
+            if !self.add_line(setting) {
                 return false;
             }
         }
@@ -375,11 +411,12 @@ impl Dialogue {
     }
 
     /// Adds a block like the last, where the cycle takes more of them.
-    fn add_line(&mut self) -> bool {
+    fn add_line(&mut self, setting: &Setting) -> bool {
         let Source::Cycle(function, number) = self.source else {
             return false;
         };
-        let more = self.replaces.is_none() && self.lines.len() < LINES_MAX && repeats(function, number);
+        let more =
+            self.replaces.is_none() && self.lines.len() < LINES_MAX && repeats(function, number, setting);
         if more {
             let mut line = cycle_line(function, number, self.lines.len() as u16);
             line.make_optional();

@@ -126,13 +126,13 @@ impl Editor {
             return Some(Open::Highlight(Box::new(highlight)));
         }
         let mut dialogue = match draft.source.as_str() {
-            "" => Dialogue::of_line(self.line_of(draft.block)?, draft.block, 0)?,
+            "" => Dialogue::of_line(self.line_of(draft.block)?, draft.block, 0, &self.setting)?,
             _ if draft.block >= self.last() => return None,
-            source => Dialogue::new(source_of(source)?),
+            source => Dialogue::new(source_of(source)?, &self.setting),
         };
         dialogue.clear();
         for (line, field, word) in &draft.words {
-            if !dialogue.answer(*line, *field, word.clone()) {
+            if !dialogue.answer(*line, *field, word.clone(), &self.setting) {
                 return None;
             }
         }

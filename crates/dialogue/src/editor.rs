@@ -291,11 +291,16 @@ impl Editor {
         }
         if let Some(row) = BLOCKS.iter().find(|row| row.key == Some(key)) {
             self.may_insert()?;
-            return self.show(Open::Dialogue(Box::new(Dialogue::new(Source::Row(row)))));
+            return self.show(Open::Dialogue(Box::new(Dialogue::new(
+                Source::Row(row),
+                &self.setting,
+            ))));
         }
         let id = match self.setting.axis(key) {
             Some(_) if self.setting.paraxial_inhibited => return Err(KeyNonFunctional),
             Some(_) => "AXIS",
+            // I before the axis key [003:2585-2587].
+            None if key == Key::I && !self.setting.paraxial_inhibited => "AXIS",
             None if key.group() == KeyGroup::Letter => "TEXT",
             None => return Err(KeyNonFunctional),
         };
@@ -305,7 +310,7 @@ impl Editor {
 
     /// Opens a dialogue with the first key in it.
     fn new_block(&mut self, id: &str, key: Key) -> Result<Reaction, MessageId> {
-        let mut dialogue = Dialogue::of_id(id).ok_or(KeyNonFunctional)?;
+        let mut dialogue = Dialogue::of_id(id, &self.setting).ok_or(KeyNonFunctional)?;
         dialogue.key(key, self.context(None))?;
         self.show(Open::Dialogue(Box::new(dialogue)))
     }
@@ -335,7 +340,7 @@ impl Editor {
     }
 
     fn menu_key(&mut self, mut menu: Box<Menu>, key: Key) -> Result<Reaction, MessageId> {
-        let choice = menu.key(key);
+        let choice = menu.key(key, &self.setting);
         match choice {
             Ok(Choice::Close) => Ok(Reaction::Shown),
             Ok(Choice::Open(dialogue)) => self.show(Open::Dialogue(dialogue)),

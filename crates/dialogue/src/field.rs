@@ -5,7 +5,13 @@ use std::borrow::Cow;
 use bahn_parameters::Limits;
 use bahn_path::Axis;
 
+use crate::typing::is_address;
 use crate::{Key, Wanted};
+
+/// Stands before the line of a datum table.
+pub(crate) const TABLE_LINE: &str = "#";
+/// Most dialogue texts of a cycle: its name and 14 parameters [000:17742].
+const DIALOG_TEXTS_MAX: usize = 15;
 
 /// A word of a block in its parts, as it is being entered.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -73,6 +79,8 @@ pub(crate) enum Ask {
         signs: Signs,
         incremental: bool,
         most: Most,
+        /// A line of a datum table may stand in their place, behind `#` [000:6898-6904].
+        table: bool,
     },
     /// Axes alone.
     Axes(u8),
@@ -86,6 +94,8 @@ pub(crate) enum Ask {
     M,
     /// Whole numbers, one after the other.
     Labels,
+    /// Numbers of dialogue texts, one after the other.
+    Texts,
     /// Numbers and Q parameters, one after the other.
     Items,
     /// The name of a program.
@@ -118,6 +128,8 @@ pub(crate) struct Slot {
     pub(crate) need: Need,
     /// Its sign is that of the working direction [003:4902].
     pub(crate) working: bool,
+    /// Name of the word in the registry of the control models, where not all of them have it.
+    pub(crate) of: &'static str,
 }
 
 /// A slot with the words that stand in it.
@@ -133,7 +145,7 @@ impl Ask {
     /// What stands between several words.
     fn separator(self) -> &'static str {
         match self {
-            Ask::Labels | Ask::Items => "/",
+            Ask::Labels | Ask::Items | Ask::Texts => "/",
             _ => " ",
         }
     }
@@ -145,13 +157,14 @@ impl Ask {
             Ask::Axes(count) => usize::from(count),
             Ask::Labels => usize::from(limits.contour_labels_max),
             Ask::Items => usize::from(limits.print_items_max),
+            Ask::Texts => DIALOG_TEXTS_MAX,
             _ => 1,
         }
     }
 
     /// Whether ENT behind one word asks for the next.
     pub(crate) fn is_list(self) -> bool {
-        matches!(self, Ask::Labels | Ask::Items)
+        matches!(self, Ask::Labels | Ask::Items | Ask::Texts)
     }
 
     /// Whether letters write text.
@@ -195,7 +208,11 @@ impl Ask {
 
     /// Whether its values are numbers.
     pub(crate) fn is_number(self) -> bool {
-        self.has_decimals() || matches!(self, Ask::Integer { .. } | Ask::Repeat | Ask::Labels | Ask::M)
+        self.has_decimals()
+            || matches!(
+                self,
+                Ask::Integer { .. } | Ask::Repeat | Ask::Labels | Ask::Texts | Ask::M
+            )
     }
 
     /// Whether digits write a value without an axis before.
@@ -226,7 +243,16 @@ impl Ask {
             Ask::Choice(choices) => choices.iter().any(|choice| choice.value == value),
             Ask::Feed { .. } if value == "MAX" => true,
             Ask::Name | Ask::Text => !value.trim().is_empty(),
-            Ask::M => value.starts_with(|c: char| c.is_ascii_digit()),
+            Ask::M => {
+                let mut words = value.split(' ');
+                let code = words
+                    .next()
+                    .is_some_and(|code| value_length(code) == Some(code.len()));
+                code && words.all(|word| {
+                    let number = word.trim_start_matches(is_address);
+                    value_length(number) == Some(number.len())
+                })
+            }
             _ => value_length(value) == Some(value.len()),
         }
     }
@@ -256,6 +282,13 @@ impl Ask {
                 })?;
                 rest.literal(found.value)?;
                 word.value = found.value.to_owned();
+            }
+            Ask::Coordinates { table: true, .. } if text.starts_with(TABLE_LINE) => {
+                rest.literal(TABLE_LINE)?;
+                // Listings set the number off.
+                while rest.literal(":").or_else(|| rest.literal(" ")).is_some() {}
+                word.address = TABLE_LINE.to_owned();
+                word.value = rest.value()?.to_owned();
             }
             Ask::Coordinates { prefix, .. } => {
                 word.incremental = rest.literal("I").is_some();
@@ -375,12 +408,30 @@ fn settled(value: &str) -> String {
     }
 }
 
+/// A word that belongs to an M function, with its number in the shortest form.
+fn settled_word(word: &str) -> String {
+    let number = word.trim_start_matches(is_address);
+    let address = word.strip_suffix(number).unwrap_or_default();
+    match value_length(number) == Some(number.len()) {
+        true => format!("{address}{}", settled(number)),
+        false => word.to_owned(),
+    }
+}
+
 impl Field {
     pub(crate) fn new(slot: Slot) -> Field {
         Field {
             slot,
             glue: slot.glue.into(),
             words: Vec::new(),
+        }
+    }
+
+    /// The address of its words, or the name that stands before them.
+    pub(crate) fn address(&self) -> &str {
+        match self.slot.address {
+            "" => self.glue.trim(),
+            address => address,
         }
     }
 
@@ -392,7 +443,8 @@ impl Field {
     /// A word as the block shows it.
     pub(crate) fn written(&self, word: &Word) -> String {
         let incremental = if word.incremental { "I" } else { "" };
-        let plus = self.slot.ask.signs() == Signs::Always && !word.value.starts_with('-');
+        let signed = self.slot.ask.signs() == Signs::Always && word.address != TABLE_LINE;
+        let plus = signed && !word.value.starts_with('-');
         let plus = if plus { "+" } else { "" };
         let value = &word.value;
         let left = match self.slot.ask {
@@ -461,7 +513,10 @@ impl Field {
     /// Its numbers without what does not count: `.50` is `0.5`.
     pub(crate) fn settle(&mut self) {
         for word in &mut self.words {
-            if !self.slot.ask.is_text() && value_length(&word.value) == Some(word.value.len()) {
+            if self.slot.ask == Ask::M {
+                let parts: Vec<String> = word.value.split(' ').map(settled_word).collect();
+                word.value = parts.join(" ");
+            } else if !self.slot.ask.is_text() && value_length(&word.value) == Some(word.value.len()) {
                 word.value = settled(&word.value);
             }
         }

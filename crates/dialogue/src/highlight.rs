@@ -48,8 +48,48 @@ impl Highlight {
         places.get(at.checked_add_signed(by)?).copied()
     }
 
-    /// What a key enters.
+    /// What a key enters: a value for the word, else the key of an address adds its word at its place, or goes to it
+    /// where it stands [003:1779-1780].
     pub(crate) fn key(&mut self, key: Key, setting: &Setting) -> Result<(), MessageId> {
+        let before = (self.line.clone(), self.place, self.typing);
+        let entered = self.enter(key, setting);
+        if entered.is_err() {
+            (self.line, self.place, self.typing) = before;
+            return self.add(key, setting).or(entered);
+        }
+        entered
+    }
+
+    /// Adds the word of an address, or goes to it; what was begun of another without a value goes.
+    fn add(&mut self, key: Key, setting: &Setting) -> Result<(), MessageId> {
+        if self.line.is_text() {
+            return Err(KeyNonFunctional);
+        }
+        let mut line = self.line.clone();
+        line.drop_empty();
+        let index = line.field_of(key, setting).ok_or(KeyNonFunctional)?;
+        let field = line.field_mut(index).ok_or(KeyNonFunctional)?;
+        let mut typing = Typing::default();
+        match field.slot.ask {
+            Ask::Coordinates { .. } | Ask::Axes(_) | Ask::Direction => typing.key(field, key, setting)?,
+            Ask::Choice(choices) => {
+                let last = choices.last().map_or("", |choice| choice.value);
+                // R of RL and RR is R0, D the address of DR, which SIGN turns.
+                let kept = !field.words.is_empty() && !field.address().is_empty();
+                if typing.key(field, key, setting).is_err() && !kept {
+                    typing.take(field, last);
+                }
+            }
+            _ if field.words.is_empty() => typing.begin(field),
+            _ => typing = Typing::over(field.words.len() - 1),
+        }
+        (self.line, self.typing) = (line, typing);
+        self.follow(index);
+        Ok(())
+    }
+
+    /// What a key enters into the word.
+    fn enter(&mut self, key: Key, setting: &Setting) -> Result<(), MessageId> {
         let (index, _) = self.place.ok_or(KeyNonFunctional)?;
         let field = self.line.field_mut(index).ok_or(KeyNonFunctional)?;
         match key {
@@ -125,8 +165,19 @@ impl Highlight {
         Some(self.line.field(field)?.slot.ask)
     }
 
-    /// Numbers in their shortest form.
+    /// Numbers in their shortest form; a word that was added without a value goes.
     pub(crate) fn settle(&mut self) {
+        if self.is_changed() {
+            self.line.drop_empty();
+        }
+        if self.place.is_some() && self.line.word(self.place).is_none() {
+            let places = self.line.places();
+            let behind = places.iter().find(|place| **place >= self.place);
+            self.place = behind.or(places.last()).copied().flatten();
+            self.typing = self
+                .place
+                .map_or_else(Typing::default, |(_, word)| Typing::over(word));
+        }
         if let Some((index, _)) = self.place
             && let Some(field) = self.line.field_mut(index)
         {

@@ -4,7 +4,7 @@
 //! - [`Key`]: every key of the control, by name, with what it does;
 //! - [`Editor`]: takes keys, changes a program, and says with [`View`] what is to be shown;
 //! - [`Reaction`]: what a key did;
-//! - [`Setting`]: what an editor has to know of its control and machine;
+//! - [`Setting`]: what an editor has to know of its control and machine, [`BuilderCycle`] its own cycles;
 //! - [`Draft`]: what is still open, to be kept and taken up again;
 //! - [`prompts`]: the texts of the dialogue in English and German.
 //!
@@ -40,6 +40,8 @@
 mod blocks;
 mod capture;
 mod check;
+#[cfg(test)]
+mod complete;
 mod cycles;
 mod dialogue;
 mod draft;
@@ -66,5 +68,8 @@ pub use field::Word;
 pub use key::{Key, KeyGroup, Tongue};
 pub use prompt::{Prompt, prompts};
 pub use reaction::{Reaction, Wanted};
-pub use setting::Setting;
+pub use setting::{BuilderCycle, Setting};
 pub use view::{List, Question, Row, ShownWord, View};
+
+/// Cycles of the machine builder [003:4904-4906].
+const OEM_CYCLES: std::ops::RangeInclusive<u16> = 68..=99;

@@ -4,6 +4,7 @@ use bahn_program::{Block, FormatOptions, Language};
 
 use crate::blocks::block_row;
 use crate::field::{Ask, Field, Need, Word};
+use crate::{Key, Setting};
 
 /// A block with its fields.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +72,11 @@ impl Line {
         self.skip = block.skip;
         self.comment.clone_from(&block.comment);
         self
+    }
+
+    /// Makes the block optional, or not so any more.
+    pub(crate) fn toggle_skip(&mut self) {
+        self.skip = !self.skip;
     }
 
     pub(crate) fn head(&self) -> &str {
@@ -161,10 +167,53 @@ impl Line {
         }
     }
 
+    /// Words that the control does not have are not asked for.
+    pub(crate) fn fit(&mut self, setting: &Setting) {
+        for field in &mut self.fields {
+            if field.slot.need == Need::Optional && !setting.has(field.slot.of) {
+                field.slot.need = Need::Unasked;
+            }
+        }
+    }
+
     /// The block may stay away.
     pub(crate) fn make_optional(&mut self) {
         for field in &mut self.fields {
             field.slot.need = Need::Optional;
+        }
+    }
+
+    /// The field to which the key of an address belongs: its axis, its answer, or the first letter of its words, the
+    /// first that has none before those that have.
+    pub(crate) fn field_of(&self, key: Key, setting: &Setting) -> Option<usize> {
+        let takes = |field: &Field| match field.slot.ask {
+            _ if !setting.has(field.slot.of) && field.words.is_empty() => false,
+            Ask::Coordinates { .. } | Ask::Axes(_) | Ask::Direction => setting.axis(key).is_some(),
+            Ask::Choice(choices) if field.address().is_empty() => choices.iter().any(|choice| {
+                choice.key == Some(key)
+                    || key
+                        .character()
+                        .is_some_and(|letter| choice.value.starts_with(letter))
+            }),
+            ask => {
+                !ask.is_text()
+                    && key
+                        .character()
+                        .is_some_and(|letter| field.address().starts_with(letter))
+            }
+        };
+        let fields = || self.fields.iter().enumerate().filter(|(_, field)| takes(field));
+        let empty = fields().find(|(_, field)| field.words.is_empty());
+        empty.or_else(|| fields().next()).map(|(index, _)| index)
+    }
+
+    /// Words whose value was never entered go.
+    pub(crate) fn drop_empty(&mut self) {
+        for field in &mut self.fields {
+            let valued = |ask: Ask| !matches!(ask, Ask::Axes(_));
+            if valued(field.slot.ask) {
+                field.words.retain(|word| !word.value.is_empty());
+            }
         }
     }
 

@@ -1,15 +1,14 @@
 //! Lists to choose from: cycles, probe functions, functions of Q parameters.
 
 use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
+use bahn_parameters::conformance::{Kind, find};
 use bahn_program::{CYCLES, CycleFunction};
 
 use crate::blocks::{BLOCKS, block_row};
 use crate::dialogue::{Dialogue, Source};
 use crate::prompt::text_of;
-use crate::{Key, Setting};
+use crate::{Key, OEM_CYCLES, Setting};
 
-/// Cycles of the machine builder [003:4904-4906].
-const OEM_CYCLES: std::ops::RangeInclusive<u16> = 68..=99;
 /// Most digits of a number.
 const DIGITS_MAX: usize = 3;
 
@@ -69,13 +68,17 @@ impl Menu {
         }
     }
 
-    pub(crate) fn key(&mut self, key: Key) -> Result<Choice, MessageId> {
+    pub(crate) fn key(&mut self, key: Key, setting: &Setting) -> Result<Choice, MessageId> {
         match key {
             Key::Up => self.at = self.at.saturating_sub(1),
             Key::Down => self.at = (self.at + 1).min(self.items.len().saturating_sub(1)),
             // GOTO and a number, or the number alone [003:4822-4829].
             Key::Goto | Key::Ce => self.typed.clear(),
-            Key::Ent => return self.chosen().map(|dialogue| Choice::Open(Box::new(dialogue))),
+            Key::Ent => {
+                return self
+                    .chosen(setting)
+                    .map(|dialogue| Choice::Open(Box::new(dialogue)));
+            }
             Key::NoEnt | Key::End | Key::Del => return Ok(Choice::Close),
             _ => {
                 let digit = key.digit().and(key.character()).ok_or(KeyNonFunctional)?;
@@ -99,19 +102,20 @@ impl Menu {
         self.at = found.unwrap_or(self.at);
     }
 
-    fn chosen(&self) -> Result<Dialogue, MessageId> {
+    fn chosen(&self, setting: &Setting) -> Result<Dialogue, MessageId> {
         if self.typed.is_empty() {
             let item = self.items.get(self.at).ok_or(KeyNonFunctional)?;
-            return Ok(Dialogue::new(item.source));
+            return Ok(Dialogue::new(item.source, setting));
         }
         let number = self.typed.parse::<u16>().map_err(|_| EntryValueIncorrect)?;
         if let Some(item) = self.items.iter().find(|item| item.number == Some(number)) {
-            return Ok(Dialogue::new(item.source));
+            return Ok(Dialogue::new(item.source, setting));
         }
         match self.kind {
-            MenuKind::Cycles if OEM_CYCLES.contains(&number) => {
-                Ok(Dialogue::new(Source::Cycle(CycleFunction::Definition, number)))
-            }
+            MenuKind::Cycles if OEM_CYCLES.contains(&number) => Ok(Dialogue::new(
+                Source::Cycle(CycleFunction::Definition, number),
+                setting,
+            )),
             _ => Err(EntryValueIncorrect),
         }
     }
@@ -124,7 +128,7 @@ fn cycles(function: CycleFunction, setting: &Setting) -> Vec<MenuItem> {
         CycleFunction::Definition => {
             limits.has_cycle(u32::from(number)) && !setting.inhibited_cycles.contains(&number)
         }
-        CycleFunction::Probe => true,
+        CycleFunction::Probe => find(setting.model, Kind::Cycle, &format!("TCH PROBE {number}")).is_some(),
     };
     let all = CYCLES
         .iter()
@@ -144,6 +148,13 @@ fn cycles(function: CycleFunction, setting: &Setting) -> Vec<MenuItem> {
             }
         })
         .collect();
+    if function == CycleFunction::Definition {
+        items.extend(setting.builder_cycles.iter().map(|cycle| MenuItem {
+            number: Some(cycle.number),
+            text: format!("{} {}", cycle.number, cycle.name),
+            source: Source::Cycle(function, cycle.number),
+        }));
+    }
     items.sort_by_key(|item| item.number);
     items
 }
@@ -186,8 +197,9 @@ mod tests {
             .flat_map(|row| row.lines)
             .flat_map(|line| line.slots);
         let mut ids: BTreeSet<&'static str> = slots.map(|slot| slot.prompt).collect();
+        let setting = Setting::of(&ParameterList::reference(ControlModel::Tnc425));
         for cycle in CYCLES {
-            for line in cycle_lines(cycle.function, cycle.number) {
+            for line in cycle_lines(cycle.function, cycle.number, &setting) {
                 ids.extend(line.fields().iter().map(|field| field.slot.prompt));
             }
         }
@@ -200,7 +212,16 @@ mod tests {
         for id in &used {
             assert!(prompt(id).is_some(), "{id} has no text");
         }
-        used.extend(["cycles", "probes", "functions", "goto", "find", "FN FORMULA"]);
+        used.extend([
+            "cycles",
+            "probes",
+            "functions",
+            "goto",
+            "find",
+            "FN FORMULA",
+            "parameter",
+            "parameters",
+        ]);
         let mut unused = Vec::new();
         for row in prompts() {
             let id = row.id();

@@ -2,7 +2,7 @@
 
 use bahn_program::{Block, CycleFunction, FormatOptions, Language, MotionKind, Operation};
 
-use crate::cycles::cycle_line;
+use crate::cycles::{assigned, assigned_line, cycle_line};
 use crate::line::{Line, written};
 
 /// Reads a block. One that the table does not know, or that stands in other words, is a line of text; BEGIN and END are
@@ -30,6 +30,9 @@ fn template(operation: &Operation) -> Option<Option<Line>> {
     let id = match operation {
         Operation::Begin(_) | Operation::End(_) => return None,
         Operation::Cycle(block) => {
+            if let Some(numbers) = assigned(block) {
+                return Some(Some(assigned_line(block.number, block.sub, &numbers)));
+            }
             return Some(Some(cycle_line(
                 CycleFunction::Definition,
                 block.number,
@@ -41,7 +44,10 @@ fn template(operation: &Operation) -> Option<Option<Line>> {
         }
         Operation::BlankMin(..) => "BLK FORM",
         Operation::BlankMax(_) => return Some(Line::of_row("BLK FORM").pop()),
-        Operation::Motion(motion) => motion_id(motion.kind),
+        Operation::Motion(motion) => match motion.kind {
+            MotionKind::Paraxial => "AXIS",
+            kind => kind.word(),
+        },
         Operation::CircleCentre(_) => "CC",
         Operation::Rounding { .. } => "RND",
         Operation::Chamfer { .. } => "CHF",
@@ -58,23 +64,10 @@ fn template(operation: &Operation) -> Option<Option<Line>> {
         Operation::Print(_) => "FN 15",
         Operation::Plc { .. } => "FN 19",
         Operation::Calculate { .. } | Operation::Jump { .. } => return Some(function_line(operation)),
-        Operation::Dialog(_) | Operation::Comment(_) | Operation::Invalid(_) => "TEXT",
+        Operation::Dialog(_) => "DLG",
+        Operation::Comment(_) | Operation::Invalid(_) => "TEXT",
     };
     Some(Line::of_row(id).into_iter().next())
-}
-
-fn motion_id(kind: MotionKind) -> &'static str {
-    match kind {
-        MotionKind::Line => "L",
-        MotionKind::Circle => "C",
-        MotionKind::CircleRadius => "CR",
-        MotionKind::CircleTangential => "CT",
-        MotionKind::LinePolar => "LP",
-        MotionKind::CirclePolar => "CP",
-        MotionKind::CircleTangentialPolar => "CTP",
-        MotionKind::LineNormal => "LN",
-        MotionKind::Paraxial => "AXIS",
-    }
 }
 
 /// FN 0 to 13 by the number that the listing shows.

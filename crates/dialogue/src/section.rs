@@ -94,7 +94,7 @@ impl Editor {
                 }
                 let line = self.line_of(block).ok_or(KeyNonFunctional)?;
                 let field = highlight.place.map_or(0, |(field, _)| field);
-                match Dialogue::of_line(line, block, field) {
+                match Dialogue::of_line(line, block, field, &self.setting) {
                     Some(dialogue) => self.show(Open::Dialogue(Box::new(dialogue)))?,
                     // Nothing is asked from here on.
                     None => Reaction::Shown,
@@ -257,8 +257,13 @@ impl Editor {
             Function::Find => return self.show(Open::Find(String::new())),
             Function::Text => {
                 self.may_insert()?;
-                let dialogue = Dialogue::of_id("TEXT").ok_or(KeyNonFunctional)?;
+                let dialogue = Dialogue::of_id("TEXT", &self.setting).ok_or(KeyNonFunctional)?;
                 return self.show(Open::Dialogue(Box::new(dialogue)));
+            }
+            Function::Skip => {
+                let mut line = self.line_of(self.cursor).ok_or(KeyNonFunctional)?;
+                line.toggle_skip();
+                return self.replace(self.cursor, &line.text());
             }
             Function::Undo | Function::Redo => {
                 let version = match function {

@@ -1,11 +1,23 @@
 //! What an editor has to know of its control and machine.
 
+use bahn_parameters::conformance::{Kind, find};
 use bahn_parameters::machining::Decimal;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, AxisSet};
 use bahn_program::{Program, Reading};
 
 use crate::{Key, Tongue};
+
+/// A cycle of the machine builder, with the texts of its dialogue [000:17691-17984].
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BuilderCycle {
+    /// Its number, 68 to 99.
+    pub number: u16,
+    /// Its name.
+    pub name: String,
+    /// Its parameters: Q parameter and text of the question.
+    pub parameters: Vec<(u16, String)>,
+}
 
 /// What an editor has to know of its control and machine.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +38,8 @@ pub struct Setting {
     pub paraxial_inhibited: bool,
     /// Cycles that the machine builder has inhibited.
     pub inhibited_cycles: Vec<u16>,
+    /// The cycles of the machine builder.
+    pub builder_cycles: Vec<BuilderCycle>,
     /// Bytes that a program may have in the memory of the control.
     pub bytes_max: u64,
 }
@@ -60,6 +74,7 @@ impl Setting {
             inhibited_cycles: (0..=CYCLE_MAX)
                 .filter(|cycle| list.cycle_inhibited(u32::from(*cycle)))
                 .collect(),
+            builder_cycles: Vec::new(),
             bytes_max: Program::MAX_BYTES,
         }
     }
@@ -75,6 +90,16 @@ impl Setting {
             Key::V => self.fifth.or_else(|| lettered(key)),
             _ => lettered(key),
         }
+    }
+
+    /// A cycle of the machine builder by its number.
+    pub(crate) fn builder_cycle(&self, number: u16) -> Option<&BuilderCycle> {
+        self.builder_cycles.iter().find(|cycle| cycle.number == number)
+    }
+
+    /// Whether the model has a word or block, by its name in the registry.
+    pub(crate) fn has(&self, word: &str) -> bool {
+        word.is_empty() || find(self.model, Kind::Word, word).is_some()
     }
 
     /// The word for rapid traverse: `MAX`, or the feed that means it where there is no such word [001:471].

@@ -2,6 +2,7 @@
 
 use bahn_program::{Block, Operation, Program};
 
+use crate::cycles::PARAMETER;
 use crate::dialogue::Dialogue;
 use crate::editor::{Editor, Open};
 use crate::field::Field;
@@ -158,7 +159,10 @@ impl Editor {
         Some(Question {
             id,
             about: self.about(),
-            prompt: text_of(id, tongue),
+            prompt: self
+                .builder_text()
+                .unwrap_or_else(|| text_of(id, tongue))
+                .to_owned(),
             entered,
         })
     }
@@ -169,6 +173,33 @@ impl Editor {
             "feed_max" if self.setting.rapid() != "MAX" => "feed",
             prompt => prompt,
         }
+    }
+
+    /// The machine builder's text for the parameter of his cycle that is asked for.
+    fn builder_text(&self) -> Option<&str> {
+        let Open::Dialogue(dialogue) = &self.open else {
+            return None;
+        };
+        let field = dialogue
+            .current()
+            .filter(|field| field.slot.prompt == PARAMETER)?;
+        let head = dialogue
+            .lines
+            .get(dialogue.line)?
+            .head()
+            .strip_prefix("CYCL DEF ")?;
+        let cycle = self
+            .setting
+            .builder_cycle(head.split('.').next()?.parse().ok()?)?;
+        let number: u16 = field
+            .glue
+            .trim()
+            .strip_prefix('Q')?
+            .strip_suffix('=')?
+            .parse()
+            .ok()?;
+        let parameter = cycle.parameters.iter().find(|(of, _)| *of == number)?;
+        Some(parameter.1.as_str()).filter(|text| !text.is_empty())
     }
 
     /// What is being made.

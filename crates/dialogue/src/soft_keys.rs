@@ -1,7 +1,7 @@
 //! What the soft keys offer.
 
 use crate::dialogue::Dialogue;
-use crate::field::Ask;
+use crate::field::{Ask, TABLE_LINE};
 use crate::prompt::text_of;
 use crate::{Setting, Tongue};
 
@@ -26,6 +26,7 @@ pub(crate) enum Function {
     Undo,
     Redo,
     Text,
+    Skip,
 }
 
 /// M functions that are offered; any other is entered as a number.
@@ -33,6 +34,9 @@ const M_FUNCTIONS: &[&str] = &[
     "0", "2", "3", "4", "5", "6", "8", "9", "13", "14", "30", "89", "90", "91", "92", "99", "93", "94", "97",
     "98",
 ];
+
+/// Lines of datum tables in the registry of the models.
+const TABLE_WORD: &str = "CYCL DEF # (line of a datum table)";
 
 /// Characters that the alpha keyboard lacks, a blank first.
 const CHARACTERS: &[&str] = &[
@@ -58,6 +62,9 @@ pub(crate) fn answers(ask: Ask, address: &str, setting: &Setting) -> Vec<Labelle
         Ask::Feed { max: true } => {
             let rapid = setting.rapid();
             vec![labelled(format!("F {rapid}"), &rapid)]
+        }
+        Ask::Coordinates { table: true, .. } if setting.has(TABLE_WORD) => {
+            vec![labelled(TABLE_LINE.to_owned(), TABLE_LINE)]
         }
         Ask::M => {
             let all = M_FUNCTIONS.iter();
@@ -87,7 +94,7 @@ pub(crate) fn of_dialogue(dialogue: &Dialogue, setting: &Setting) -> Vec<Labelle
 
 /// The soft keys while nothing is open.
 pub(crate) fn of_program(marked: bool, tongue: Tongue) -> Vec<Labelled> {
-    use Function::{Copy, Cut, Find, Mark, Paste, Redo, Text, Undo, Unmark};
+    use Function::{Copy, Cut, Find, Mark, Paste, Redo, Skip, Text, Undo, Unmark};
     let mark = if marked {
         ("soft unmark", Unmark)
     } else {
@@ -102,6 +109,7 @@ pub(crate) fn of_program(marked: bool, tongue: Tongue) -> Vec<Labelled> {
         ("soft undo", Undo),
         ("soft redo", Redo),
         ("soft text", Text),
+        ("soft skip", Skip),
     ];
     let all = all.into_iter();
     all.map(|(id, function)| (text_of(id, tongue).to_owned(), Soft::Function(function)))

@@ -2,8 +2,9 @@
 
 use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
 
-use crate::field::{Ask, Choice, Field, Signs, Word};
+use crate::field::{Ask, Choice, Field, Signs, TABLE_LINE, Word};
 use crate::{Key, Setting};
+use bahn_program::m_words;
 
 /// Most characters of a number, with sign and point.
 const NUMBER_MAX: usize = 14;
@@ -26,6 +27,11 @@ pub(crate) enum Fresh {
     Yes,
     /// It takes its place, negative: the sign was keyed first.
     Negative,
+}
+
+/// Part of the address of a word that belongs to an M function: `T`, `TIME`.
+pub(crate) fn is_address(character: char) -> bool {
+    character.is_ascii_alphabetic() && character != 'Q'
 }
 
 /// The word that is being entered.
@@ -59,10 +65,14 @@ impl Typing {
         if let Ask::Choice(choices) = ask {
             return self.choose(field, choices, key);
         }
+        if ask == Ask::M && self.m_word(field, key) {
+            return Ok(());
+        }
         if let Some(axis) = setting.axis(key) {
             return self.axis(field, axis.letter(), setting);
         }
         match key {
+            Key::Q if ask == Ask::M => self.m_parameter(field),
             Key::Sign => self.sign(field),
             Key::Q if ask.takes_q() => {
                 let fresh = self.fresh;
@@ -79,7 +89,7 @@ impl Typing {
                 self.make_incremental(field);
                 Ok(())
             }
-            Key::Point if ask.has_decimals() => self.digit(field, '.'),
+            Key::Point if ask.has_decimals() || ask == Ask::M => self.digit(field, '.'),
             _ => {
                 let digit = key.digit().and(key.character()).ok_or(KeyNonFunctional)?;
                 self.digit(field, digit)
@@ -87,10 +97,43 @@ impl Typing {
         }
     }
 
+    /// Begins a word that belongs to the M function that is entered, by its letter; whether there is one.
+    fn m_word(&mut self, field: &mut Field, key: Key) -> bool {
+        let word = self.word.and_then(|word| field.words.get_mut(word));
+        let (Some(word), Some(letter)) = (word, key.character()) else {
+            return false;
+        };
+        let mut words = word.value.split(' ');
+        let code = words
+            .next()
+            .and_then(|code| code.parse().ok())
+            .unwrap_or_default();
+        let rest = m_words(code)
+            .find(|(known, _)| *known == letter)
+            .map(|(_, rest)| rest);
+        let twice = words.any(|word| word.starts_with(letter));
+        let Some(rest) = rest.filter(|_| !twice) else {
+            return false;
+        };
+        word.value = format!("{} {letter}{rest}", word.value);
+        self.fresh = Fresh::No;
+        true
+    }
+
+    /// A Q parameter as the value of such a word.
+    fn m_parameter(&mut self, field: &mut Field) -> Result<(), MessageId> {
+        let word = self.word.and_then(|word| field.words.get_mut(word));
+        let word = word.ok_or(KeyNonFunctional)?;
+        let last = word.value.rsplit_once(' ').map(|(_, last)| last);
+        let begun = last.is_some_and(|last| last.trim_start_matches(is_address).is_empty());
+        begun.then(|| word.value.push('Q')).ok_or(KeyNonFunctional)
+    }
+
     /// `I` stands before the axis key [003:2585-2587]: behind a value it is for the axis that comes next.
     fn make_incremental(&mut self, field: &mut Field) {
         let axes = matches!(field.slot.ask, Ask::Coordinates { .. });
         match self.word.and_then(|word| field.words.get_mut(word)) {
+            Some(word) if word.address == TABLE_LINE => {}
             Some(word) if !axes || word.value.is_empty() || self.fresh != Fresh::No => {
                 word.incremental = !word.incremental
             }
@@ -160,21 +203,34 @@ impl Typing {
         field.words.get_mut(index).ok_or(KeyNonFunctional)
     }
 
+    /// Begins a word of the field's address, with no value yet.
+    pub(crate) fn begin(&mut self, field: &mut Field) {
+        self.take(field, "");
+        self.fresh = Fresh::No;
+    }
+
     fn digit(&mut self, field: &mut Field, digit: char) -> Result<(), MessageId> {
         let m = field.slot.ask == Ask::M;
         let word = self.begun(field)?;
+        let whole = word.address == TABLE_LINE;
         match std::mem::take(&mut self.fresh) {
             Fresh::No if word.value != "MAX" => {}
             Fresh::Negative => word.value = "-".to_owned(),
             _ => word.value.clear(),
         }
-        let parameter = word.value.trim_start_matches('-').strip_prefix('Q');
-        let full = match parameter {
+        // Words that belong to an M function stand behind it, each with its letter.
+        let (behind_m, number) = match word.value.rsplit_once(' ').filter(|_| m) {
+            Some((_, last)) => (true, last.trim_start_matches(is_address)),
+            None => (false, word.value.trim_start_matches('-')),
+        };
+        let full = match number.strip_prefix('Q') {
             Some(_) if digit == '.' => return Err(KeyNonFunctional),
             Some(digits) => digits.len() >= Q_DIGITS_MAX,
-            None if digit == '.' && word.value.contains('.') => return Err(KeyNonFunctional),
-            None if m => word.value.len() >= M_DIGITS_MAX,
-            None => word.value.len() >= NUMBER_MAX,
+            None if digit == '.' && (number.contains('.') || whole || m != behind_m) => {
+                return Err(KeyNonFunctional);
+            }
+            None if m && !behind_m => number.len() >= M_DIGITS_MAX,
+            None => number.len() >= NUMBER_MAX,
         };
         if full {
             return Err(EntryValueIncorrect);
@@ -194,6 +250,9 @@ impl Typing {
             return Err(KeyNonFunctional);
         }
         let word = self.begun(field)?;
+        if word.address == TABLE_LINE {
+            return Err(KeyNonFunctional);
+        }
         word.value = match word.value.strip_prefix('-') {
             Some(number) => number.to_owned(),
             None => format!("-{}", word.value),
@@ -260,8 +319,16 @@ impl Typing {
         Ok(())
     }
 
-    /// Takes an answer as it is.
+    /// Takes an answer as it is; of coordinates the address.
     pub(crate) fn take(&mut self, field: &mut Field, value: &str) {
+        if let Ask::Coordinates { .. } = field.slot.ask {
+            field.words = vec![Word {
+                address: value.to_owned(),
+                ..Word::default()
+            }];
+            (self.word, self.fresh) = (Some(0), Fresh::No);
+            return;
+        }
         field.words = vec![Word {
             incremental: false,
             address: field.slot.address.to_owned(),

@@ -31,8 +31,8 @@ pub struct Question {
     pub id: &'static str,
     /// What is being made: `L`, `CYCL DEF 4`, `TCH PROBE 0`; empty where no block is.
     pub about: String,
-    /// The prompt.
-    pub prompt: &'static str,
+    /// The prompt; that of a cycle of the machine builder is his text.
+    pub prompt: String,
     /// What was entered so far.
     pub entered: String,
 }

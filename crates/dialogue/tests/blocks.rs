@@ -17,7 +17,7 @@ fn block(keys: &str) -> String {
 }
 
 /// The prompts that keys lead through; an ENT, NO_ENT or END asks for the next.
-fn prompts(keys: &str) -> Vec<&'static str> {
+fn prompts(keys: &str) -> Vec<String> {
     let mut desk = Desk::new();
     let mut prompts = Vec::new();
     for key in keys.split_whitespace() {
@@ -260,7 +260,7 @@ fn prompts_come_in_the_order_of_the_manual() {
     assert_eq!(prompts("PGM_CALL"), ["PROGRAM NUMBER?"]);
     assert_eq!(
         prompts("CYCL_DEF 17 ENT -2 ENT -30 ENT").last(),
-        Some(&"THREAD PITCH?")
+        Some(&"THREAD PITCH?".to_owned())
     );
     let digitizing = prompts("TOUCH_PROBE 7 ENT 1 ENT X 1 ENT X ENT Y ENT 1 ENT 1 ENT");
     assert_eq!(

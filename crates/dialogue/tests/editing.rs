@@ -283,7 +283,6 @@ fn entries_keep_to_the_limits_of_the_model() {
         ("LBL_SET Q", KeyNonFunctional),
         ("RND SIGN", KeyNonFunctional),
         ("PGM_CALL A B C D E F G H J", EntryValueIncorrect),
-        ("I", KeyNonFunctional),
         ("5", KeyNonFunctional),
         ("RL", KeyNonFunctional),
         ("ENT", KeyNonFunctional),

@@ -1,18 +1,17 @@
 //! The table of cycles and probe functions: what stands in which block of them. Reading, writing, checking and
 //! executing derive from it what they have to know of one.
 
+use crate::assigned_parameters;
 use CycleFunction::{Definition, Probe};
 use Sign::{Signed, Unsigned, Working};
 
 /// Cycles from this number on are written in one block with `Qn=value` words; blocks of later controls.
 pub(crate) const FIRST_PARAMETER_CYCLE: u16 = 200;
 
-/// The SL cycles with contour data have them, too, in as many blocks as are written, and cycle 27.
-const CONTOUR_DATA_CYCLES: &[u16] = &[20, 21, 22, 23, 24, 25, 27];
-
-/// Whether `Qn=value` words may stand in block n.0, behind the name.
+/// Whether `Qn=value` words may stand in block n.0, behind the name; the cycles that the table gives assignments have
+/// them in as many blocks as are written.
 pub(crate) fn takes_assignments(number: u16) -> bool {
-    number >= FIRST_PARAMETER_CYCLE || CONTOUR_DATA_CYCLES.contains(&number)
+    number >= FIRST_PARAMETER_CYCLE || !assigned_parameters(number).is_empty()
 }
 
 /// Which blocks a cycle is made of.
@@ -57,6 +56,10 @@ pub enum Quantity {
     Feed,
     /// Sense of rotation.
     Turn,
+    /// 0 or 1.
+    Choice,
+    /// The Q parameter that takes a result.
+    Target,
     /// Label numbers.
     Labels,
     /// The name of a program.
@@ -66,10 +69,10 @@ pub enum Quantity {
 impl Quantity {
     /// Whether it is written as a number without an address.
     pub fn is_number(self) -> bool {
-        use Quantity::{Angle, Dwell, Factor, Length, Milliseconds, Orientation, Rotation};
+        use Quantity::{Angle, Choice, Dwell, Factor, Length, Milliseconds, Orientation, Rotation};
         matches!(
             self,
-            Length | Dwell | Milliseconds | Rotation | Angle | Orientation | Factor
+            Length | Dwell | Milliseconds | Rotation | Angle | Orientation | Factor | Choice
         )
     }
 }
@@ -168,6 +171,10 @@ const RADIUS: CycleParameter = parameter("RADIUS", Quantity::Length, Unsigned);
 const TRAVEL: CycleParameter = parameter("TRAVEL:", Quantity::Length, Unsigned);
 const SPACING: CycleParameter = parameter("L.SPAC:", Quantity::Length, Unsigned);
 const INTERVAL: CycleParameter = parameter("P.P. INT:", Quantity::Length, Unsigned);
+const HEIGHT: CycleParameter = parameter("HEIGHT:", Quantity::Length, Signed);
+const CHECK: CycleParameter = parameter("CHECK:", Quantity::Choice, Unsigned);
+const TEETH: CycleParameter = parameter("PROBING THE TEETH:", Quantity::Choice, Unsigned);
+const RESULT: CycleParameter = optional(parameter("", Quantity::Target, Unsigned));
 const POINT: CycleParameter = parameter("", Quantity::Coordinates, Signed);
 
 const fn optional(parameter: CycleParameter) -> CycleParameter {
@@ -271,7 +278,7 @@ pub const CYCLES: &[Cycle] = &[
         &[parameter("PGM NAME:", Quantity::Program, Signed)],
         &[parameter("", Quantity::Axes, Signed), POINT],
         &[POINT],
-        &[parameter("HEIGHT:", Quantity::Length, Signed)],
+        &[HEIGHT],
     ]),
     // [003:6690-6696] [000:7854]
     probe(6, "MEANDER", &[&[parameter("DIRECTN:", Quantity::Axes, Signed)], &[TRAVEL, SPACING, INTERVAL]]),
@@ -281,4 +288,8 @@ pub const CYCLES: &[Cycle] = &[
         &[parameter("ORDER", Quantity::Directions, Signed)],
         &[TRAVEL, SPACING, INTERVAL],
     ]),
+    // Tool measurement [000:7960-8058]; words of later controls
+    probe(30, "TT CALIBRATION", &[&[HEIGHT]]),
+    probe(31, "TOOL LENGTH", &[&[CHECK, RESULT], &[HEIGHT], &[TEETH]]),
+    probe(32, "TOOL RADIUS", &[&[CHECK, RESULT], &[HEIGHT], &[TEETH]]),
 ];

@@ -31,6 +31,7 @@
 //!
 //! Reading never fails: a block that cannot be read is [`Operation::Invalid`], an error when it is executed.
 
+mod assigned;
 mod bulk;
 mod check;
 mod cycles;
@@ -55,6 +56,7 @@ mod sequence;
 mod survey;
 mod text;
 
+pub use assigned::{AssignedParameter, assigned_parameters};
 pub use check::{LimitFault, Reading, check_limits, each_parameter};
 pub use cycles::{CYCLES, Cycle, CycleFunction, CycleParameter, Quantity, Sign, cycle, cycle_parameters};
 pub use diagnostics::{Diagnostic, MAX_DIAGNOSTICS, Severity, Uncounted};
@@ -67,6 +69,7 @@ pub use inch_feed::FeedDoubt;
 pub use language::{Landmark, Language, ParsedBlock, WordKind, WordSpan};
 pub use lines::{BlockText, Lines, RawBlock};
 pub use operation::*;
+pub use parse::m_words;
 pub use plain::PlainLanguage;
 pub use program::{Chunk, NumberedBlock, Program};
 pub use rounding::InputSteps;

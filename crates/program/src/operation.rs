@@ -397,6 +397,42 @@ pub enum MotionKind {
     Paraxial,
 }
 
+impl MotionKind {
+    /// All of them, in the order of the manual.
+    pub const ALL: [MotionKind; 9] = [
+        MotionKind::Line,
+        MotionKind::Circle,
+        MotionKind::CircleRadius,
+        MotionKind::CircleTangential,
+        MotionKind::LinePolar,
+        MotionKind::CirclePolar,
+        MotionKind::CircleTangentialPolar,
+        MotionKind::LineNormal,
+        MotionKind::Paraxial,
+    ];
+
+    /// The word that opens its blocks; empty where the axis word does.
+    ///
+    /// ```
+    /// use bahn_program::MotionKind;
+    ///
+    /// assert_eq!(MotionKind::CircleTangentialPolar.word(), "CTP");
+    /// ```
+    pub const fn word(self) -> &'static str {
+        match self {
+            MotionKind::Line => "L",
+            MotionKind::Circle => "C",
+            MotionKind::CircleRadius => "CR",
+            MotionKind::CircleTangential => "CT",
+            MotionKind::LinePolar => "LP",
+            MotionKind::CirclePolar => "CP",
+            MotionKind::CircleTangentialPolar => "CTP",
+            MotionKind::LineNormal => "LN",
+            MotionKind::Paraxial => "",
+        }
+    }
+}
+
 /// Sense of rotation: DR+ counter-clockwise, DR- clockwise [003:2715-2720].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {

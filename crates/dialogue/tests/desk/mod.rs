@@ -65,11 +65,11 @@ impl Desk {
         assert_eq!(self.editor.message(), Some(message));
     }
 
-    pub fn prompt(&self) -> &'static str {
+    pub fn prompt(&self) -> String {
         self.editor
             .view(0, 0)
             .question
-            .map_or("", |question| question.prompt)
+            .map_or_else(String::new, |question| question.prompt)
     }
 
     /// The text between BEGIN and END.

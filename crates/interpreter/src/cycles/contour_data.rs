@@ -4,6 +4,7 @@
 
 use bahn_parameters::MessageId;
 use bahn_path::Position;
+use bahn_program::{AssignedParameter, assigned_parameters};
 
 use super::machining::Heights;
 use crate::definition::{Definition, Resolved};
@@ -17,83 +18,9 @@ pub(super) const CONTOUR_DATA: u16 = 20;
 /// The cycle with a contour on a cylinder.
 pub(crate) const CYLINDER_SURFACE: u16 = 27;
 
-/// What each cycle must be given: number of the Q parameter and its name in the dialogue.
-const PARAMETERS: &[(u16, &[(u16, &str)])] = &[
-    (
-        CONTOUR_DATA,
-        &[
-            (1, "MILLING DEPTH"),
-            (2, "TOOL PATH OVERLAP"),
-            (3, "ALLOWANCE FOR SIDE"),
-            (4, "ALLOWANCE FOR FLOOR"),
-            (5, "SURFACE COORDINATE"),
-            (6, "SET-UP CLEARANCE"),
-            (7, "CLEARANCE HEIGHT"),
-            (8, "ROUNDING RADIUS"),
-            (9, "DIRECTION OF ROTATION"),
-        ],
-    ),
-    (
-        21,
-        &[
-            (10, "PLUNGING DEPTH"),
-            (11, "FEED RATE FOR PLUNGING"),
-            (13, "ROUGH-OUT TOOL"),
-        ],
-    ),
-    (
-        22,
-        &[
-            (10, "PLUNGING DEPTH"),
-            (11, "FEED RATE FOR PLUNGING"),
-            (12, "FEED RATE FOR ROUGHING"),
-        ],
-    ),
-    (
-        23,
-        &[(11, "FEED RATE FOR PLUNGING"), (12, "FEED RATE FOR ROUGHING")],
-    ),
-    (
-        24,
-        &[
-            (9, "DIRECTION OF ROTATION"),
-            (10, "PLUNGING DEPTH"),
-            (11, "FEED RATE FOR PLUNGING"),
-            (12, "FEED RATE FOR MILLING"),
-            (14, "ALLOWANCE FOR SIDE"),
-        ],
-    ),
-    (
-        25,
-        &[
-            (1, "MILLING DEPTH"),
-            (3, "ALLOWANCE FOR SIDE"),
-            (5, "SURFACE COORDINATE"),
-            (7, "CLEARANCE HEIGHT"),
-            (10, "PLUNGING DEPTH"),
-            (11, "FEED RATE FOR PLUNGING"),
-            (12, "FEED RATE FOR MILLING"),
-            (15, "CLIMB OR UP-CUT"),
-        ],
-    ),
-    (
-        CYLINDER_SURFACE,
-        &[
-            (1, "MILLING DEPTH"),
-            (3, "ALLOWANCE FOR SIDE"),
-            (6, "SET-UP CLEARANCE"),
-            (10, "PLUNGING DEPTH"),
-            (11, "FEED RATE FOR PLUNGING"),
-            (12, "FEED RATE FOR MILLING"),
-            (16, "CYLINDER RADIUS"),
-            (17, "TYPE OF DIMENSION"),
-        ],
-    ),
-];
-
 /// Whether the cycle takes its parameters from assignments to Q parameters.
 pub(super) fn is_assigned(number: u16) -> bool {
-    PARAMETERS.iter().any(|(cycle, _)| *cycle == number)
+    !assigned_parameters(number).is_empty()
 }
 
 /// Whether the tool is to reach the floor to and fro, with the feed Q19: not here.
@@ -118,10 +45,9 @@ pub(super) fn check(modal: &Modal, definition: &Definition) -> Result<(), Fault>
 }
 
 fn is_complete(definition: &Definition) -> Result<(), Fault> {
-    let row = PARAMETERS.iter().find(|(cycle, _)| *cycle == definition.number);
-    let mut wanted = row.map_or(&[][..], |(_, parameters)| parameters).iter();
-    match wanted.find(|(number, _)| definition.assigned(*number).is_none()) {
-        Some((number, name)) => {
+    let mut wanted = assigned_parameters(definition.number).iter();
+    match wanted.find(|parameter| definition.assigned(parameter.number).is_none()) {
+        Some(AssignedParameter { number, name }) => {
             let detail = format!("CYCL DEF {}: Q{number} {name} is missing", definition.number);
             Err(Fault::new(MessageId::CyclIncomplete, detail))
         }

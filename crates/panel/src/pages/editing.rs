@@ -93,7 +93,7 @@ pub(crate) fn view(editor: &Editor, title: &str, lines: usize) -> View {
             open: question.is_some(),
             prompt: question
                 .as_ref()
-                .map_or_else(String::new, |question| question.prompt.to_owned()),
+                .map_or_else(String::new, |question| question.prompt.clone()),
             entry: question.map(|question| question.entered).unwrap_or_default(),
         },
     }

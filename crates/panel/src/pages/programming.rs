@@ -2,7 +2,8 @@
 //! complete, and what is still open of one is kept, too.
 
 use bahn_control::RunState;
-use bahn_dialogue::{Draft, Editor, Key, Setting};
+use bahn_dialogue::{BuilderCycle, Draft, Editor, Key, Setting};
+use bahn_host::oem_cycles;
 use serde_json::Value;
 
 use crate::page::{Page, Turn, View};
@@ -67,6 +68,7 @@ impl Open {
         let program = site.programs.read(&name)?;
         let mut setting = Setting::of(site.parameters());
         setting.tongue = site.language();
+        setting.builder_cycles = builder_cycles(site);
         Some(Open {
             name,
             editor: Editor::new(program, setting),
@@ -93,6 +95,28 @@ impl Open {
                 .selected_program()
                 .is_some_and(|selected| selected.eq_ignore_ascii_case(stem))
     }
+}
+
+/// The cycles of the machine builder with their dialogue texts; a folder that cannot be read has none.
+fn builder_cycles(site: &Site) -> Vec<BuilderCycle> {
+    let folder = site.machine.programs(0);
+    let found = oem_cycles::find(&folder, &site.machine.plc_dialogues, site.parameters());
+    let shown = found
+        .unwrap_or_default()
+        .into_iter()
+        .filter(|cycle| !cycle.is_hidden);
+    let cycles = shown.filter_map(|cycle| {
+        let dialog = cycle.dialog?;
+        let parameters = dialog.parameters.into_iter();
+        Some(BuilderCycle {
+            number: u16::try_from(cycle.number).ok()?,
+            name: dialog.name.text,
+            parameters: parameters
+                .filter_map(|(number, text)| Some((u16::try_from(number).ok()?, text.text)))
+                .collect(),
+        })
+    });
+    cycles.collect()
 }
 
 impl Page for Programming {

@@ -6,17 +6,7 @@ use crate::{Compensation, Direction, Motion, MotionKind, Word};
 impl Output {
     pub(super) fn motion(&mut self, motion: &Motion) {
         let start = self.text.len();
-        self.text.push_str(match motion.kind {
-            MotionKind::Line => "L",
-            MotionKind::Circle => "C",
-            MotionKind::CircleRadius => "CR",
-            MotionKind::CircleTangential => "CT",
-            MotionKind::LinePolar => "LP",
-            MotionKind::CirclePolar => "CP",
-            MotionKind::CircleTangentialPolar => "CTP",
-            MotionKind::LineNormal => "LN",
-            MotionKind::Paraxial => "",
-        });
+        self.text.push_str(motion.kind.word());
         self.polar_word("PR", motion.polar_radius);
         self.polar_word("PA", motion.polar_angle);
         self.coordinates(&motion.coordinates);

@@ -35,6 +35,20 @@ pub(crate) fn rest_of_word(code: u16, letter: char) -> &'static str {
     }
 }
 
+/// Address letters of the words that an M function takes, and what each is written with behind its letter.
+///
+/// ```
+/// use bahn_program::m_words;
+///
+/// let words: Vec<_> = m_words(203).collect();
+/// assert_eq!(words, [('V', ""), ('T', "IME")]);
+/// ```
+pub fn m_words(code: u16) -> impl Iterator<Item = (char, &'static str)> {
+    let row = ARGUMENTS.iter().find(|(with_words, _)| *with_words == code);
+    let letters = row.map_or(&[][..], |(_, letters)| letters).iter();
+    letters.map(move |letter| (char::from(*letter), rest_of_word(code, char::from(*letter))))
+}
+
 /// A block of M functions only: `M8`, `M3 M8`.
 pub(super) fn block(c: &mut Cursor) -> Parsed<Option<Operation>> {
     if c.peek_at(1).is_ascii_alphabetic() {

@@ -30,6 +30,7 @@ use cursor::{Cursor, Fault, Parsed, code_length, with_help};
 pub(crate) use faults::faults;
 pub(crate) use foreign::{is_din_iso, whole_program};
 pub(crate) use formula::FUNCTIONS;
+pub use m_function::m_words;
 pub(crate) use m_function::rest_of_word;
 pub(crate) use words::block_words;
 
