@@ -222,6 +222,11 @@ impl OwnAxes<'_> {
         self.iter().all(AxisUnit::stands)
     }
 
+    /// Some were taken over from where they are while a path was interrupted, and go back to it with NC start.
+    pub fn are_away(&self) -> bool {
+        self.iter().any(|unit| unit.left_at.is_some())
+    }
+
     /// Where the axes stand, machine coordinates; unknown where there is no axis.
     pub fn machine_position(&self) -> Position {
         machine_position(self.iter())

@@ -38,10 +38,10 @@ enum Restore {
     Stopped { block: u32 },
     /// The axes must be brought to a place, machine coordinates: waiting for RESTORE POSITION.
     Ready { target: Position },
-    /// RESTORE POSITION was given: waiting for NC start.
+    /// RESTORE POSITION was given, or the movement was stopped: waiting for NC start.
     Armed { target: Position },
-    /// The axes move.
-    Moving { target: Position },
+    /// The axes move, or come to a standstill when they are `stopped`.
+    Moving { target: Position, stopped: bool },
 }
 
 /// Why a scan ends before its block.
@@ -66,6 +66,11 @@ impl Restoration {
         self.0.is_some()
     }
 
+    /// Every axis is where the path has left it: the program may go on from where they stand.
+    pub fn is_over(&self, axes: &OwnAxes) -> bool {
+        self.0.is_none() && !axes.are_away()
+    }
+
     /// The block is not found yet.
     pub fn scans(&self) -> bool {
         matches!(self.0, Some(Restore::Scan { .. } | Restore::Stopped { .. }))
@@ -86,21 +91,10 @@ impl Restoration {
     /// back to where the path left them before it goes on (inferred).
     pub fn return_to_path(&mut self, axes: &mut OwnAxes) {
         let mut target = axes.machine_position();
-        let mut away = false;
-        for unit in axes.iter_mut() {
-            if let Some(left_at) = unit.left_at.take() {
-                // What is clamped stays where its clamp holds it, unless it was moved (inferred).
-                let held = !unit.servo.closed()
-                    && (left_at - unit.nominal).abs() <= unit.parameters.monitoring.standstill_mm;
-                if held {
-                    unit.stand(left_at);
-                }
-                target[unit.axis] = left_at;
-                away |= left_at != unit.nominal;
-            }
-        }
+        let away = take_left(axes, &mut target);
         if away && self.0.is_none() {
-            self.0 = Some(Restore::Moving { target });
+            let stopped = false;
+            self.0 = Some(Restore::Moving { target, stopped });
         }
     }
 
@@ -108,7 +102,11 @@ impl Restoration {
     pub fn arm(&mut self, may: bool, track: &Track, site: &mut Site) -> bool {
         let target = match &self.0 {
             Some(Restore::Ready { target }) => *target,
-            None if may => site.chain.to_axes(&track.path.position()),
+            None if may => {
+                let mut target = site.chain.to_axes(&track.stands_at());
+                take_left(&mut site.axes, &mut target);
+                target
+            }
             _ => return false,
         };
         site.exchange.nc_put(signal::MANUAL_OPERATION_PRESSED, false);
@@ -218,18 +216,24 @@ impl Restoration {
                 return;
             }
             Some(Restore::Armed { target }) if start => {
-                self.0 = Some(Restore::Moving { target: *target });
+                let (target, stopped) = (*target, false);
+                self.0 = Some(Restore::Moving { target, stopped });
             }
             _ => {}
         }
-        let Some(Restore::Moving { target }) = self.0 else {
+        let Some(Restore::Moving { target, stopped }) = &mut self.0 else {
             return;
         };
-        if lead_to(&target, site) {
+        // What has stopped moves again with NC start only.
+        *stopped |= now.stop;
+        let (target, stopped) = (*target, *stopped);
+        if lead_to(&target, stopped, site) {
             site.axes.release(|mover| mover == Mover::Positioning);
             self.0 = None;
             site.exchange.nc_put(signal::RESTORE_POSITION_ACTIVE, false);
             track.regain(site);
+        } else if stopped && site.axes.stand() {
+            self.0 = Some(Restore::Armed { target });
         }
     }
 }
@@ -243,8 +247,27 @@ fn scan_to(block: u32) -> Restore {
     }
 }
 
-/// Leads the axes to a place for a cycle; whether they stand there.
-fn lead_to(target: &Position, site: &mut Site) -> bool {
+/// The places at which an interrupted path has left axes that were taken over from where they are, which are none of its
+/// any more; whether one is somewhere else.
+fn take_left(axes: &mut OwnAxes, target: &mut Position) -> bool {
+    let mut away = false;
+    for unit in axes.iter_mut() {
+        if let Some(left_at) = unit.left_at.take() {
+            // What is clamped stays where its clamp holds it, unless it was moved (inferred).
+            let held = !unit.servo.closed()
+                && (left_at - unit.nominal).abs() <= unit.parameters.monitoring.standstill_mm;
+            if held {
+                unit.stand(left_at);
+            }
+            target[unit.axis] = left_at;
+            away |= left_at != unit.nominal;
+        }
+    }
+    away
+}
+
+/// Leads the axes to a place for a cycle, or to a standstill; whether they stand there.
+fn lead_to(target: &Position, stopped: bool, site: &mut Site) -> bool {
     let now = site.now;
     let tool_axis = site.chain.offsets.tool_axis;
     let axes = &mut site.axes;
@@ -271,7 +294,7 @@ fn lead_to(target: &Position, site: &mut Site) -> bool {
         }
         unit.mover = Mover::Positioning;
         let feed = (unit.parameters.motion.plc_mm_min * now.feed_percent / 100.0).min(now.rapid_limit_mm_min);
-        if now.stop || !turn {
+        if stopped || !turn {
             unit.drive(now.time_s, Aim::Feed(0.0), unit.parameters.motion.rapid_mm_min);
         } else {
             unit.drive(now.time_s, Aim::Position(target[unit.axis]), feed);

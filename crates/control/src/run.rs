@@ -283,7 +283,8 @@ impl ProgramRun {
         let zero = machine_zero(&site.axes, site.chain);
         let limits = (site.axes.traverse_box(), site.axes.programmable());
         feeder.set_datum(site.chain.offsets.datum, zero, limits);
-        if let Some(answer) = self.answer.take() {
+        let is_back = self.restoration.is_over(&site.axes);
+        if let Some(answer) = self.answer.take_if(|_| is_back) {
             let probed = answer.touch.is_some();
             if !probed {
                 // The PLC may have moved the axes, or corrected the datum [000:8914].
@@ -484,8 +485,8 @@ impl ProgramRun {
 
     /// What the path came to in this cycle.
     fn take_state(&mut self, state: State, drive: &Drive, wear: Option<MessageId>, site: &mut Site) {
-        let settled = drive.in_position;
         let all_output = self.track.has_output_all() && site.handshakes.is_idle();
+        let done = drive.in_position && all_output && self.restoration.is_over(&site.axes);
         match state {
             State::Gate(_) if all_output && !site.positioning.is_on() => {
                 self.track.path.release();
@@ -498,7 +499,7 @@ impl ProgramRun {
                 self.abort(Resume::Block(block), site);
             }
             State::Clamped => self.track.ask_to_unclamp(drive.clamped, &mut site.axes),
-            State::BlockEnd if settled && self.progress.goes_on() => {
+            State::BlockEnd if drive.in_position && self.progress.goes_on() => {
                 if let Some(message) = wear {
                     self.show(Message::Plain(message), site);
                 }
@@ -510,9 +511,7 @@ impl ProgramRun {
                     self.track.path.go_on();
                 }
             }
-            State::Stopped if settled && all_output && !site.handshakes.inhibit_read_in() => {
-                self.take_stop(site);
-            }
+            State::Stopped if done && !site.handshakes.inhibit_read_in() => self.take_stop(site),
             _ => {}
         }
     }

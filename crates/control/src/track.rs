@@ -197,11 +197,24 @@ impl Track {
         }
     }
 
+    /// Where the path stands. Behind the output of a tool call that is where its element ends: the tip stands elsewhere
+    /// without a movement.
+    pub fn stands_at(&self) -> Position {
+        let mut at = self.path.position();
+        let element = self.path.element().filter(|element| element.curve == Curve::Hold);
+        if let Some(element) = element.filter(|_| self.path.has_begun() && self.waiting.is_empty()) {
+            for axis in element.end.known().iter() {
+                at[axis] = element.end[axis];
+            }
+        }
+        at
+    }
+
     /// The axes stand elsewhere than the path: the PLC has moved them, corrected the datum or changed the
     /// tool length. The path then goes on from where they are, within the traverse range as it is now.
     pub fn regain(&mut self, site: &Site) {
         // Axes that were taken over from where an EMERGENCY STOP left them go back to the path with NC start.
-        if self.path.is_coupled() || site.axes.iter().any(|unit| unit.left_at.is_some()) {
+        if self.path.is_coupled() || site.axes.are_away() {
             return;
         }
         // A tool call lets the tip stand elsewhere without a movement.

@@ -7,7 +7,7 @@ use bahn_control::{Control, RunState, Signal};
 use bahn_host::{Deed, Host, PowerOn, Source};
 use bahn_parameters::fault::FaultId;
 use bahn_path::Axis;
-use support::{host, machine, mill, seconds};
+use support::{host, machine, mill, old_mill, seconds};
 
 fn give(host: &mut Host, what: &str) {
     host.act(Source::Script, Deed::parse(what).unwrap()).unwrap();
@@ -462,12 +462,14 @@ fn place(host: &Host) -> f64 {
     host.plant().axis('W').unwrap().position
 }
 
-/// EMERGENCY STOP for 20 ms while the spindle starts up for M13, which no scan need see at I3: the PLC program sees that the
-/// control holds no axis, takes its order back, and gives it anew. Its M13 is acknowledged, and the run goes on.
+/// An EMERGENCY STOP that is over as soon as the control has opened its loops, while the spindle starts up for M13: no scan
+/// need see it at I3. The PLC program sees that the control holds no axis, takes its order back, and gives it anew. Its M13
+/// is acknowledged, and the run goes on.
 #[test]
 fn a_short_emergency_stop_does_not_leave_the_spindle_standing() {
-    for name in ["mill", "mill-tnc360", "dig425"] {
-        let machine = machine(name);
+    let (_copy, old_mill) = old_mill();
+    let shipped = ["mill", "mill-tnc360", "dig425"].map(|name| (name, machine(name)));
+    for (name, machine) in shipped.into_iter().chain([("plc355", old_mill)]) {
         let blocks = "TOOL CALL 1 Z S3000\nL Z+100 R0 FMAX\nL X+10 FMAX M13\nL X+20 F1000";
         let mut host = host(&machine, PowerOn::fresh(&machine), blocks);
         until(&mut host, "M13", |control| {
@@ -476,17 +478,20 @@ fn a_short_emergency_stop_does_not_leave_the_spindle_standing() {
         });
         seconds(&mut host, 0.1);
         let begun = host.save();
-        // Scans are 20 ms apart, contour cycles 3 or 6 ms; relays take 20 ms to drop out and 10 ms to pull in.
-        let cycle_s = f64::from(host.control().cycle_us()) * 1e-6;
-        for (cycles, more) in (0..7).flat_map(|cycles| [(cycles, 0.0), (cycles, 1.0)]) {
+        // Scans are 20 ms apart, contour cycles 3 or 6 ms; relays take 10 ms to pull in.
+        for (cycles, more) in (0..7).flat_map(|cycles| [(cycles, 0), (cycles, 1)]) {
             host.restore(&begun).unwrap();
             for _ in 0..cycles {
                 host.step().unwrap();
             }
             give(&mut host, "emergency press");
-            seconds(&mut host, 0.019 + more * cycle_s);
+            until(&mut host, "the open loops", |control| !control.loops_closed());
+            for _ in 0..more {
+                host.step().unwrap();
+            }
             give(&mut host, "emergency release");
             seconds(&mut host, 1.0);
+            assert_eq!(host.control().run_state(), RunState::Interrupted, "{name}");
             give(&mut host, "ce");
             seconds(&mut host, 0.3);
             give(&mut host, "key NC_START tap");
@@ -520,4 +525,129 @@ fn a_start_waits_for_the_drives() {
         give(&mut host, "key NC_START release");
         until(&mut host, "the end", Control::has_ended);
     }
+}
+
+/// The control voltage goes, or the program is stopped, while a tool change by hand begins; MANUAL OPERATION, with a stop X
+/// away by hand, and RESTORE POSITION. The new tool is 5 mm shorter: Z stays where it is, at 50 + 60 of the old one, and the
+/// block behind brings it to 50 + 55.
+#[test]
+fn the_way_back_to_a_tool_change_leaves_the_tool_axis() {
+    let digital = machine("dig425");
+    let blocks = "TOOL CALL 1 Z S1600\nL Z+50 R0 FMAX\nL X-25 Y-25 FMAX\nTOOL CALL 2 Z S3000\nL Z+50 R0 FMAX\nL X+50 Y+35 FMAX";
+    let z = |host: &Host| {
+        let mut axes = host.control().first().watch();
+        axes.find(|axis| axis.axis == Axis::Z).unwrap().commanded
+    };
+    let in_block = |block| {
+        move |control: &Control| {
+            control
+                .element()
+                .is_some_and(|element| element.block.block == block)
+        }
+    };
+    let mut host = host(&digital, PowerOn::fresh(&digital), blocks);
+    until(&mut host, "the third block", in_block(3));
+    until(&mut host, "the second tool change", |control| {
+        commanded(control, Axis::Y) == -25.0
+    });
+    let begun = host.save();
+    let before = z(&host);
+    let stops = [("voltage off", "voltage on"), ("key NC_STOP tap", "key X+ press")];
+    for (cycles, (stop, on)) in (0..7).flat_map(|cycles| stops.map(|stop| (cycles, stop))) {
+        host.restore(&begun).unwrap();
+        for _ in 0..cycles {
+            host.step().unwrap();
+        }
+        give(&mut host, stop);
+        seconds(&mut host, 0.5);
+        give(&mut host, "manual-operation");
+        give(&mut host, on);
+        seconds(&mut host, 0.5);
+        give(&mut host, "key X+ release");
+        give(&mut host, "ce");
+        seconds(&mut host, 0.5);
+        give(&mut host, "restore-position");
+        seconds(&mut host, 0.3);
+        give(&mut host, "key NC_START tap");
+        let end_us = host.control().time_us() + 4_000_000;
+        while host.control().time_us() < end_us {
+            host.step().unwrap();
+            assert!((z(&host) - before).abs() < 0.001, "{cycles} {stop}: {}", z(&host));
+        }
+        assert_eq!(commanded(host.control(), Axis::X), -25.0, "{cycles} {stop}");
+        give(&mut host, "key NC_START tap");
+        until(&mut host, "the block behind", in_block(6));
+        assert_eq!(z(&host), before - 5.0, "{cycles} {stop}");
+        until(&mut host, "the end", Control::has_ended);
+    }
+}
+
+/// M0 has stopped the program, the control voltage goes, and X is pushed away. NC start leads it back before the program goes
+/// on: its next block counts from where it was.
+#[test]
+fn a_programmed_stop_goes_on_from_where_it_was() {
+    let mut host = mill("L X+10 Y+20 Z+100 R0 FMAX\nL X+20 F1000 M0\nL IX+30\nL IX-5");
+    until(&mut host, "the stop", |control| {
+        control.run_state() == RunState::Stopped
+    });
+    pushed_away(&mut host);
+    give(&mut host, "key NC_START tap");
+    until(&mut host, "the block behind", |control| {
+        control.element().is_some_and(|element| element.block.block == 3) && !control.first().restores()
+    });
+    let from = commanded(host.control(), Axis::X);
+    assert!((20.0..20.2).contains(&from), "{from}");
+    until(&mut host, "the end", Control::has_ended);
+    assert_eq!(commanded(host.control(), Axis::X), 45.0);
+}
+
+/// The control voltage goes while X is on its way back to the contour. Behind CE it stands until NC start.
+#[test]
+fn what_was_stopped_on_its_way_back_waits_for_nc_start() {
+    for (stop, on) in [("voltage off", "voltage on"), ("key NC_STOP tap", "ce")] {
+        let mut host = mill("L X+10 Y+20 Z+100 R0 FMAX\nL X+20 F1000 M0\nL IX+30");
+        until(&mut host, "the stop", |control| {
+            control.run_state() == RunState::Stopped
+        });
+        pushed_away(&mut host);
+        give(&mut host, "key NC_START tap");
+        until(&mut host, "the way back", |control| {
+            commanded(control, Axis::X) < 22.0
+        });
+        give(&mut host, stop);
+        seconds(&mut host, 0.5);
+        give(&mut host, on);
+        seconds(&mut host, 0.5);
+        give(&mut host, "ce");
+        seconds(&mut host, 0.3);
+        let stands = commanded(host.control(), Axis::X);
+        assert!(stands > 20.5, "{stop}: {stands}");
+        seconds(&mut host, 1.0);
+        assert_eq!(commanded(host.control(), Axis::X), stands, "{stop}");
+        give(&mut host, "key NC_START tap");
+        seconds(&mut host, 1.0);
+        assert_eq!(commanded(host.control(), Axis::X), 20.0, "{stop}");
+        give(&mut host, "key NC_START tap");
+        until(&mut host, "the end", Control::has_ended);
+        assert_eq!(commanded(host.control(), Axis::X), 50.0, "{stop}");
+    }
+}
+
+/// The control voltage goes while a program stands, and X is pushed by more than a millimetre meanwhile.
+fn pushed_away(host: &mut Host) {
+    give(host, "voltage off");
+    seconds(host, 0.5);
+    give(host, "force X 4000");
+    let at = |host: &Host| host.plant().axis('X').unwrap().position;
+    let before = at(host);
+    while (at(host) - before).abs() < 1.0 {
+        host.step().unwrap();
+    }
+    give(host, "force X 0");
+    give(host, "voltage on");
+    seconds(host, 0.5);
+    give(host, "ce");
+    seconds(host, 0.5);
+    let away = (commanded(host.control(), Axis::X) - 20.0).abs();
+    assert!(away > 1.0, "{away}");
 }

@@ -137,7 +137,8 @@ fn a_plc_program_that_fails_breaks_no_rule() {
 /// its drive while the spindle was on its ramp (its PLC program asked M2004 for the 5th axis, which is M2016), the path of
 /// `twin` began from where its table had been before the other channel had it. EMERGENCY STOP while the pallet shuttle passed its
 /// marks, or while a spindle started up, too short for a scan; a start before the drives had power; the door while a head swivels;
-/// programs that do not meet; an operator who chose his mode while the marks were to be passed.
+/// programs that do not meet; an operator who chose his mode while the marks were to be passed; a tool change that waits, whose
+/// new length RESTORE POSITION took for a way.
 #[test]
 fn what_was_found_stays_mended() {
     for (machine, seed, what) in [
@@ -151,7 +152,9 @@ fn what_was_found_stays_mended() {
         ("dig425", 646_728, "emergency press"),
         ("dig425", 653_417, "emergency press"),
         ("dig425", 658_234, "voltage off"),
+        ("dig425", 722_266, "voltage off"),
         ("gantry", 603_496, "switch door open"),
+        ("mill-tnc360", 655_214, "fault input I3 bouncing"),
         ("twin", 651_458, "M2482=1"),
     ] {
         let campaign = campaign(machine);

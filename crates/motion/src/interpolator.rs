@@ -641,6 +641,11 @@ impl<E> Interpolator<E> {
         self.ring.current().map(|item| &item.element)
     }
 
+    /// That element has begun: what it puts out first is output.
+    pub fn has_begun(&self) -> bool {
+        self.phase != Phase::Begin
+    }
+
     /// The element after it, as far as it is known.
     pub fn next_element(&self) -> Option<&PathElement> {
         self.ring.following().map(|item| &item.element)
