@@ -204,7 +204,10 @@ fn groups_of_keys_are_inhibited() {
     trainee.press("SK1");
     assert_eq!(trainee.screen().dialogue.prompt, "MISCELLANEOUS FUNCTION M =");
     // The table of the PLC mode has two rows.
-    trainee.press("END PROGRAM MOD ENT").number("807667").press("ENT SK2");
+    trainee
+        .press("END PROGRAM MOD ENT")
+        .number("807667")
+        .press("ENT SK2");
     let row = |trainee: &mut Trainee| trainee.screen().soft_keys.row;
     let rows = trainee.screen().soft_keys.rows;
     assert!(rows > 1 && row(&mut trainee) == 0);

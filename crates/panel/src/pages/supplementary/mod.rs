@@ -9,6 +9,7 @@ mod parameters;
 mod timers;
 
 pub(crate) use interface::transfer;
+pub(crate) use parameters::all as machine_parameters;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
