@@ -198,7 +198,6 @@ const UNSAID: &[&str] = &[
     // Names that the test puts together: axes, keys, functions, messages with an axis.
     "control::analogue_inputs_of_the_extensions",
     "control::encoder_signals",
-    "control::inhibited_keys",
     "control::jog_increment",
     "control::one_mark_from_the_cam",
     "control::positioning_error_in_a_program",

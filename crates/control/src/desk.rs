@@ -1,6 +1,6 @@
 //! What the operator has of a channel: operating mode, panel, overrides, the axes by hand, the reference run.
 
-use bahn_exchange::{Exchange, Image, signal};
+use bahn_exchange::{Bit, BitArea, Exchange, Image, signal};
 use bahn_parameters::ParameterList;
 use bahn_parameters::operation::OperationParameters;
 use bahn_path::{Axis, BlockRef, Position};
@@ -307,28 +307,21 @@ impl Desk {
     }
 
     /// A key of the keyboard: inhibited ones only tell the PLC, with M2182 and W274 [000:7319], whose code is also in
-    /// M2832 to M2839; any other is left for whoever has the keyboard. `false` for codes that are none, soft keys that are
-    /// not on the screen, and letters while M2876 inhibits them.
+    /// M2832 to M2839; any other is left for whoever has the keyboard. `false` for codes that are none and soft keys that
+    /// are not on the screen.
     pub fn press_key(&mut self, code: u16, exchange: &mut Exchange) -> bool {
         let [character, kind] = code.to_be_bytes();
-        let is_there = match code {
-            _ if BY_HAND.contains(&code) => matches!(self.mode, Mode::Manual | Mode::Handwheel),
-            _ if kind == ALPHABETIC && character > 0 => {
-                character.is_ascii_graphic() && !exchange.nc().bit(signal::INHIBIT_ALPHA_KEYBOARD)
+        let marker = match code {
+            _ if BY_HAND.contains(&code) => {
+                let is_shown = matches!(self.mode, Mode::Manual | Mode::Handwheel);
+                self.key = is_shown.then_some(code).or(self.key);
+                return is_shown;
             }
-            _ => return KEYS.contains(&code) && self.press_own(code, exchange),
+            _ if kind == ALPHABETIC && character.is_ascii_graphic() => Some(signal::INHIBIT_ALPHA_KEYBOARD),
+            _ if KEYS.contains(&code) => Bit::new(BitArea::M, KEY_MARKER + code),
+            _ => return false,
         };
-        if is_there {
-            self.key = Some(code);
-        }
-        is_there
-    }
-
-    /// A key with a marker of its own.
-    fn press_own(&mut self, code: u16, exchange: &mut Exchange) -> bool {
-        let marker = bahn_exchange::Bit::new(bahn_exchange::BitArea::M, KEY_MARKER + code);
-        let inhibited = marker.is_some_and(|marker| exchange.nc().bit(marker));
-        if inhibited {
+        if marker.is_some_and(|marker| exchange.nc().bit(marker)) {
             exchange.nc_put_number(signal::INHIBITED_KEY_CODE, code.into());
             marker_codes::INHIBITED_KEY.put(code.into(), exchange);
             exchange.nc_set(signal::INHIBITED_KEY_PRESSED, true);

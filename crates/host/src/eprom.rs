@@ -3,7 +3,10 @@
 //! How the control lays out its EPROM no manual says: here it is a directory in the words of the list, with the size of each
 //! file, an empty line, and the files one after the other (inferred).
 
+use std::path::{Path, PathBuf};
+
 use crate::s_records::Image;
+use crate::{HostError, LoadedMachine, files, oem_cycles};
 
 /// Bytes of an EPROM without SIZE 2MB, and with it: 1 and 2 Mbit (inferred).
 const SIZES: [usize; 2] = [1 << 17, 1 << 18];
@@ -191,4 +194,52 @@ impl LoadList {
         })?;
         Ok((list, contents))
     }
+}
+
+/// What is in the files of the list, and which of them are not there or not as they should be.
+///
+/// # Errors
+/// When a file that is there cannot be read.
+pub fn contents(
+    machine: &LoadedMachine,
+    list: &LoadList,
+) -> Result<(Vec<Vec<u8>>, Vec<ListFault>), HostError> {
+    let cycles = oem_cycles::find(&machine.programs(0), &machine.plc_dialogues, &machine.parameters)?;
+    let (mut contents, mut faults) = (Vec::new(), Vec::new());
+    for file in &list.files {
+        let mut fault = |message: String| {
+            faults.push(ListFault {
+                line: file.line,
+                column: 1,
+                message,
+            });
+        };
+        let Some(path) = find(machine, file) else {
+            fault(format!("there is no file {}", file.name));
+            continue;
+        };
+        let own = cycles.iter().find(|cycle| cycle.path == path);
+        own.into_iter()
+            .flat_map(|cycle| cycle.faults(true))
+            .for_each(&mut fault);
+        contents.push(files::read_description(&path)?);
+    }
+    Ok((contents, faults))
+}
+
+/// Where a file of the control is.
+fn find(machine: &LoadedMachine, file: &ListedFile) -> Option<PathBuf> {
+    let plc = machine.root.join(&machine.folder.plc);
+    let programs = machine.programs(0);
+    let folders = [
+        plc.parent().map(Path::to_path_buf),
+        Some(programs.clone()),
+        Some(programs.join("eprom")),
+        Some(machine.root.clone()),
+    ];
+    folders.into_iter().flatten().find_map(|folder| {
+        let mut entries = std::fs::read_dir(folder).ok()?.flatten();
+        let entry = entries.find(|entry| entry.file_name().eq_ignore_ascii_case(&file.name))?;
+        entry.path().is_file().then(|| entry.path())
+    })
 }

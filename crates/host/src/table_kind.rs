@@ -136,6 +136,14 @@ impl TableForm {
         }
     }
 
+    /// The ending by which MP7224 protects and disables its files: pockets belong to the tools (inferred).
+    pub fn protected_with(self) -> &'static str {
+        match self {
+            TableForm::Pocket => TableForm::Tool.ending(),
+            other => other.ending(),
+        }
+    }
+
     /// The columns that a control knows, the first is the number of the line.
     pub fn columns(self) -> &'static [KnownColumn] {
         match self {

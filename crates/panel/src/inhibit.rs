@@ -53,7 +53,14 @@ pub(crate) fn is_inhibited(key: Key, site: &mut Site) -> bool {
     let group = match key {
         Key::SkLeft | Key::SkRight => SOFT_KEY_ROWS,
         _ if key.soft_key().is_some() => SOFT_KEYS,
-        _ if key.group() == KeyGroup::Letter => ALPHABET,
+        _ if key.group() == KeyGroup::Letter => {
+            let inhibited = is_set(site, ALPHABET);
+            let letter = key.character().and_then(|letter| u8::try_from(letter).ok());
+            if let Some(letter) = letter.filter(|_| inhibited) {
+                site.command(Command::Key(u16::from_be_bytes([letter, ALPHABETIC])));
+            }
+            return inhibited;
+        }
         _ => return false,
     };
     is_set(site, group)

@@ -47,6 +47,82 @@ impl PositionType {
     }
 }
 
+/// Which device is connected to a data interface [000:17216-17228] [003:7048-7060].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub(crate) enum InterfaceMode {
+    /// Floppy disk unit, whose directory is asked for.
+    #[default]
+    Fe1,
+    /// Floppy disk unit.
+    Fe2,
+    /// Magnetic tape unit.
+    Me,
+    /// Any device, as MP5020.0 ff. say.
+    Ext1,
+    /// Any device, as MP5020.1 ff. say.
+    Ext2,
+    /// A PC that leads.
+    Lsv2,
+    /// No device: of a control with one interface.
+    None,
+}
+
+impl InterfaceMode {
+    /// Those of a control with a single interface, or with two.
+    pub fn all(single: bool) -> &'static [InterfaceMode] {
+        use InterfaceMode::{Ext1, Ext2, Fe1, Fe2, Lsv2, Me, None};
+        match single {
+            true => &[Fe1, Me, Ext1, None],
+            false => &[Fe1, Fe2, Me, Ext1, Ext2, Lsv2],
+        }
+    }
+
+    /// As it stands on the screen; a control with a single interface has one FE and one EXT.
+    pub fn name(self, single: bool) -> &'static str {
+        match self {
+            InterfaceMode::Fe1 if single => "FE",
+            InterfaceMode::Ext1 if single => "EXT",
+            InterfaceMode::Fe1 => "FE1",
+            InterfaceMode::Fe2 => "FE2",
+            InterfaceMode::Me => "ME",
+            InterfaceMode::Ext1 => "EXT1",
+            InterfaceMode::Ext2 => "EXT2",
+            InterfaceMode::Lsv2 => "LSV/2",
+            InterfaceMode::None => "",
+        }
+    }
+}
+
+/// Baud rates of the data interfaces [003:7043].
+pub(crate) const BAUD_RATES: [u32; 10] = [110, 150, 300, 600, 1200, 2400, 4800, 9600, 19_200, 38_400];
+
+/// How a data interface is set up; at first FE1 [000:10011] with 9600 baud (inferred).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub(crate) struct Interface {
+    pub mode: InterfaceMode,
+    pub baud: u32,
+}
+
+impl Default for Interface {
+    fn default() -> Interface {
+        Interface {
+            mode: InterfaceMode::default(),
+            baud: 9600,
+        }
+    }
+}
+
+/// A kind of transfer, which takes one of both interfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TransferOf {
+    /// Of whole files.
+    Files,
+    /// Of a program that is executed meanwhile.
+    ProgramRun,
+}
+
 /// What the operator has chosen.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -59,6 +135,10 @@ pub(crate) struct Settings {
     pub language: Option<String>,
     /// PROGRAM INPUT: ISO.
     pub iso: bool,
+    /// RS-232-C/V.24 and RS-422/V.11.
+    pub interfaces: [Interface; 2],
+    /// Transfers of files, and of programs that run meanwhile, take the second interface.
+    pub second_interface: [bool; 2],
     /// AXIS SELECTION: letters of the axes that go into an L block with actual position capture, at most three.
     pub captured_axes: String,
     /// Minutes that the control was on, a program ran, the spindle turned [003:7030].
@@ -95,6 +175,25 @@ impl Settings {
             file.finish()
         };
         write().map_err(|error: bahn_host::HostError| error.to_string())
+    }
+
+    /// The interface of a kind of transfer, from 0.
+    pub fn assigned_port(&self, transfer: TransferOf) -> usize {
+        let [files, program_run] = self.second_interface;
+        usize::from(match transfer {
+            TransferOf::Files => files,
+            TransferOf::ProgramRun => program_run,
+        })
+    }
+
+    /// A kind of transfer takes the other interface.
+    pub fn swap_port(&mut self, transfer: TransferOf) {
+        let [files, program_run] = &mut self.second_interface;
+        let own = match transfer {
+            TransferOf::Files => files,
+            TransferOf::ProgramRun => program_run,
+        };
+        *own = !*own;
     }
 
     /// The language of the dialogue.

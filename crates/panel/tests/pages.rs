@@ -171,6 +171,50 @@ fn soft_keys_and_letters_are_pressed_by_the_plc() {
     }
     assert_eq!(trainee.screen().dialogue.entry, "CIRCLE");
     trainee.give("{\"deed\":\"M2876=1\"}").wait(0.1);
-    assert!(!simulate(&mut trainee, 0x4150));
+    simulate(&mut trainee, 0x4150);
     assert_eq!(trainee.screen().dialogue.entry, "CIRCLE");
+    // No code of a key.
+    assert!(!simulate(&mut trainee, 0x0600));
+}
+
+/// M2876 inhibits the letters, M2877 the soft keys, M2878 those that change the row; a letter is reported by its code
+/// [000:7319-7336] [000:7406-7410].
+#[test]
+fn groups_of_keys_are_inhibited() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    let set = |trainee: &mut Trainee, marker: &str, to: u8| {
+        trainee.give(&format!("{{\"deed\":\"{marker}={to}\"}}")).wait(0.1);
+    };
+    trainee.press("PROGRAM PGM_NR");
+    set(&mut trainee, "M2876", 1);
+    trainee.press("B");
+    assert_eq!(trainee.screen().dialogue.entry, "");
+    let memory = trainee.station.control().memory();
+    assert!(memory.bit("M2182".parse().unwrap()));
+    assert_eq!(memory.number("W274".parse().unwrap()), 0x4250);
+    set(&mut trainee, "M2876", 0);
+    trainee.press("B");
+    assert_eq!(trainee.screen().dialogue.entry, "B");
+    trainee.press("END MANUAL");
+    set(&mut trainee, "M2877", 1);
+    trainee.press("SK1");
+    assert_eq!(trainee.screen().dialogue.prompt, "");
+    set(&mut trainee, "M2877", 0);
+    trainee.press("SK1");
+    assert_eq!(trainee.screen().dialogue.prompt, "MISCELLANEOUS FUNCTION M =");
+    // The table of the PLC mode has two rows.
+    trainee
+        .press("END PROGRAM MOD ENT")
+        .number("807667")
+        .press("ENT SK2");
+    let row = |trainee: &mut Trainee| trainee.screen().soft_keys.row;
+    let rows = trainee.screen().soft_keys.rows;
+    assert!(rows > 1 && row(&mut trainee) == 0);
+    set(&mut trainee, "M2878", 1);
+    trainee.press("SK_RIGHT");
+    assert_eq!(row(&mut trainee), 0);
+    set(&mut trainee, "M2878", 0);
+    trainee.press("SK_RIGHT");
+    assert_eq!(row(&mut trainee), 1);
 }

@@ -99,7 +99,9 @@ pub mod operation {
 
 /// Of tables in the NC memory: [`ParameterList::table_parameters`](crate::ParameterList::table_parameters).
 pub mod tables {
-    pub use crate::settings::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
+    pub use crate::settings::{
+        FILE_TYPES, FileTypes, POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements,
+    };
 }
 
 /// Of the PLC: [`ParameterList::plc_parameters`](crate::ParameterList::plc_parameters).

@@ -64,6 +64,11 @@ impl ControlModel {
         )
     }
 
+    /// Has a second data interface, RS-422/V.11, beside RS-232-C/V.24 [000:16712-16722].
+    pub const fn has_rs_422(self) -> bool {
+        self.has_plc_mode()
+    }
+
     /// Has an oscilloscope behind code number 688 379 [000:18640].
     pub const fn has_oscilloscope(self) -> bool {
         matches!(

@@ -38,7 +38,7 @@ pub use spindle_parameters::{
     FreeOutput, Gear, GearSignal, OrientationParameters, SpeedCodes, SpindleOutput, SpindleParameters,
     SpindlePolarity, SpindleRamps, TappingParameters,
 };
-pub use tables::{POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
+pub use tables::{FILE_TYPES, FileTypes, POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
 pub use tool_probe::{ProbeOrientation, ToolProbeParameters, ToolProbeTolerance};
 
 use crate::{Numbering, ParameterList};

@@ -1,12 +1,12 @@
 //! `bahn oem export`: S records for an EPROM.
 
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use bahn_host::eprom::{ListFault, ListedFile, LoadList};
+use bahn_host::eprom::{self, ListFault, LoadList};
 use bahn_host::files::{self, NewFile};
 use bahn_host::s_records::Image;
-use bahn_host::{FileFault, LoadedMachine, Marked, Severity, decode, oem_cycles};
+use bahn_host::{FileFault, Marked, Severity, decode};
 
 use super::options::ExportOptions;
 use crate::{Outcome, UsageError, console, diagnostics};
@@ -25,7 +25,7 @@ pub(super) fn command(options: &ExportOptions) -> Result<Outcome, UsageError> {
         Ok(list) => list,
         Err(faults) => return Ok(print(faults.into_iter().map(fault).collect())),
     };
-    let (contents, faults) = contents(&machine, &list)?;
+    let (contents, faults) = eprom::contents(&machine, &list)?;
     if !faults.is_empty() {
         return Ok(print(faults.into_iter().map(fault).collect()));
     }
@@ -59,48 +59,6 @@ pub(super) fn command(options: &ExportOptions) -> Result<Outcome, UsageError> {
         }
     }
     Ok(Outcome::Fine)
-}
-
-/// What is in the files of the list, and which of them are not there or not as they should be.
-fn contents(machine: &LoadedMachine, list: &LoadList) -> Result<(Vec<Vec<u8>>, Vec<ListFault>), UsageError> {
-    let cycles = oem_cycles::find(&machine.programs(0), &machine.plc_dialogues, &machine.parameters)?;
-    let (mut contents, mut faults) = (Vec::new(), Vec::new());
-    for file in &list.files {
-        let mut fault = |message: String| {
-            faults.push(ListFault {
-                line: file.line,
-                column: 1,
-                message,
-            });
-        };
-        let Some(path) = find(machine, file) else {
-            fault(format!("there is no file {}", file.name));
-            continue;
-        };
-        let own = cycles.iter().find(|cycle| cycle.path == path);
-        own.into_iter()
-            .flat_map(|cycle| cycle.faults(true))
-            .for_each(&mut fault);
-        contents.push(files::read_description(&path)?);
-    }
-    Ok((contents, faults))
-}
-
-/// Where a file of the control is.
-fn find(machine: &LoadedMachine, file: &ListedFile) -> Option<PathBuf> {
-    let plc = machine.root.join(&machine.folder.plc);
-    let programs = machine.programs(0);
-    let folders = [
-        plc.parent().map(Path::to_path_buf),
-        Some(programs.clone()),
-        Some(programs.join("eprom")),
-        Some(machine.root.clone()),
-    ];
-    folders.into_iter().flatten().find_map(|folder| {
-        let mut entries = std::fs::read_dir(folder).ok()?.flatten();
-        let entry = entries.find(|entry| entry.file_name().eq_ignore_ascii_case(&file.name))?;
-        entry.path().is_file().then(|| entry.path())
-    })
 }
 
 fn of_list(path: &Path, text: &str, fault: ListFault) -> FileFault {

@@ -79,14 +79,12 @@ fn refused(path: &Path, kind: TableForm) -> Option<&'static str> {
     let mut folders = path.ancestors().skip(1).take(2);
     let root = folders.find(|folder| folder.join(MachineFolder::FILE).exists())?;
     let machine = LoadedMachine::load(root).ok()?.ok()?;
-    let [tools, datums, pallets] = machine.parameters.table_parameters().protected;
-    let protected = match kind {
-        TableForm::Tool | TableForm::Pocket => tools,
-        TableForm::Datum => datums,
-        TableForm::Pallet => pallets,
-        TableForm::Point => false,
-    };
-    if protected {
+    if machine
+        .parameters
+        .table_parameters()
+        .types
+        .is_protected(kind.protected_with())
+    {
         return Some("is protected (MP7224.1)");
     }
     machine

@@ -67,7 +67,12 @@ impl Directory {
                 self.entries.retain(|entry| is_program(&entry.name));
             }
         }
-        self.current = self.current.min(self.entries.len().saturating_sub(1));
+        self.entries
+            .retain(|entry| !table::is_disabled(&entry.name, site));
+        for entry in &mut self.entries {
+            entry.protected |= table::is_protected(&entry.name, site);
+        }
+        self.current = list::moved(self.current, 0, self.entries.len());
     }
 
     /// The name that is typed, else the one that is highlighted.
@@ -82,6 +87,9 @@ impl Directory {
         let Some(name) = self.name() else {
             return Turn::Refused;
         };
+        if table::is_disabled(&name, site) {
+            return Turn::Say(site.message(MessageId::ProgramNotFound));
+        }
         let there = site.programs.has(&name);
         let chosen = match self.purpose {
             Purpose::Erase => return erase(name, site),
@@ -128,7 +136,10 @@ impl Directory {
         let prompt = format!("{} {}", site.words("NEW FILE NAME ="), ending(&old));
         Turn::Open(Name::ask(prompt, NAME_MAX, move |new, site| {
             let new = like(&new, &old);
-            let renamed = site.programs.rename(&old, &new);
+            let renamed = match table::is_protected(&old, site) {
+                true => Err(Denial::Message(MessageId::ProtectedPgm)),
+                false => site.programs.rename(&old, &new),
+            };
             if renamed.is_ok() && site.settings.edited.as_ref() == Some(&old) {
                 site.settings.edited = Some(new);
             }

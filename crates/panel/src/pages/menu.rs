@@ -7,8 +7,8 @@ use crate::pages::list;
 use crate::screen::{Line, WindowKind};
 use crate::site::Site;
 
-/// Soft keys of a menu.
-const SOFT_KEYS: [&str; 8] = ["SELECT", "", "", "", "", "", "", "END"];
+/// Soft keys of a menu, before and behind those of its own.
+const SOFT_KEYS: [&str; 2] = ["SELECT", "END"];
 
 /// A line of a menu.
 pub(crate) struct Item {
@@ -38,6 +38,14 @@ pub(crate) trait Items: Send {
     fn choose(&mut self, place: usize, site: &mut Site) -> Turn;
     /// Any other key on a line.
     fn key(&mut self, _place: usize, _key: Key, _site: &mut Site) -> Turn {
+        Turn::Refused
+    }
+    /// Soft keys of its own; what has no name is not there.
+    fn own_keys(&self) -> [&'static str; 6] {
+        [""; 6]
+    }
+    /// A soft key of its own on a line.
+    fn own_key(&mut self, _name: &str, _place: usize, _site: &mut Site) -> Turn {
         Turn::Refused
     }
     /// It is left.
@@ -86,13 +94,19 @@ impl<I: Items> Page for Menu<I> {
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        vec![list::soft_keys(&SOFT_KEYS, site)]
+        let [select, end] = SOFT_KEYS.map(|name| site.words(name));
+        let own = list::soft_keys(&self.items.own_keys(), site);
+        vec![[vec![select], own, vec![end]].concat()]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => self.items.choose(self.current, site),
-            _ => self.close(site),
+        let own = self.items.own_keys();
+        match place.checked_sub(1) {
+            None => self.items.choose(self.current, site),
+            Some(place) => match own.get(place) {
+                Some(name) => self.items.own_key(name, self.current, site),
+                None => self.close(site),
+            },
         }
     }
 

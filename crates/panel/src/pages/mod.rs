@@ -46,6 +46,7 @@ pub(crate) fn everywhere(key: Key, side: Side, note: Option<&str>, site: &mut Si
     match key {
         Key::Mod => Turn::Open(supplementary::menu(side)),
         Key::Help => help::key(note, site),
+        Key::Ext => supplementary::transfer(side, site),
         _ => Turn::Refused,
     }
 }

@@ -53,6 +53,10 @@ messages! {
         cause "The external device does not answer.";
         remedy "Connect and switch on the device; check the data interface settings.";
         source "[003:7873-7875]";
+    BaudRateNotPossible: "BAUD RATE NOT POSSIBLE";
+        cause "One interface is at 19,200 baud and the other is to be at 38,400.";
+        remedy "Choose another baud rate for one of both.";
+        source "[000:17552-17576]";
     FurtherProgramEntryImpossible: "FURTHER PROGRAM ENTRY IMPOSSIBLE";
         cause "The program memory is full, or a program is larger than the control can hold.";
         remedy "Erase programs that are no longer needed, or transfer the program blockwise.";

@@ -1,6 +1,5 @@
 //! Settings of the tables in the NC memory: how many lines they have, and which columns the control shows.
 
-use super::bit_of;
 use crate::ParameterList;
 
 /// Tables of the NC memory [000:6884-6905] [000:9103-9149].
@@ -16,8 +15,35 @@ pub struct TableParameters {
     /// Where each element of the pocket table is shown, in the order of [`POCKET_ELEMENTS`]; 0 is not shown: MP7267
     /// [000:9141-9149].
     pub pocket_columns: [u8; 5],
-    /// Tool tables, datum tables, pallet files are protected from editing: MP7224.1 bits 2, 3, 4 [000:6870-6880].
-    pub protected: [bool; 3],
+    /// Types of files that are disabled, and such that are protected from editing: MP7224 [000:6857-6880].
+    pub types: FileTypes,
+}
+
+/// What MP7224 says of the types of files, a bit for each of [`FILE_TYPES`] [000:6857-6880].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FileTypes {
+    disabled: u8,
+    protected: u8,
+}
+
+/// The endings of files in the order of the bits of MP7224 [000:6838-6847].
+pub const FILE_TYPES: [&str; 8] = ["H", "I", "T", "D", "P", "A", "HLP", "PNT"];
+
+impl FileTypes {
+    /// Files with this ending are not to be seen: MP7224.0.
+    pub fn is_disabled(self, ending: &str) -> bool {
+        has(self.disabled, ending)
+    }
+
+    /// Files with this ending are not to be changed: MP7224.1.
+    pub fn is_protected(self, ending: &str) -> bool {
+        has(self.protected, ending)
+    }
+}
+
+fn has(bits: u8, ending: &str) -> bool {
+    let bit = FILE_TYPES.iter().position(|own| own.eq_ignore_ascii_case(ending));
+    bit.is_some_and(|bit| bits >> bit & 1 == 1)
 }
 
 /// The elements of the tool table in the order of MP7266 [000:9118-9139].
@@ -44,13 +70,16 @@ impl ParameterList {
             let index = u8::try_from(index).unwrap_or(u8::MAX);
             self.get_new(number, index).unwrap_or_default() as u8
         };
-        let protected = self.get_new(7224, 1).unwrap_or_default();
+        let types = |index| self.get_new(7224, index).unwrap_or_default() as u8;
         TableParameters {
             pallet_lines: self.get_new(7226, 0).map(|lines| lines as u16),
             datum_lines: self.get_new(7226, 1).map(|lines| lines as u16),
             tool_columns: std::array::from_fn(|index| place(7266, index)),
             pocket_columns: std::array::from_fn(|index| place(7267, index)),
-            protected: [2, 3, 4].map(|bit| bit_of(protected, bit)),
+            types: FileTypes {
+                disabled: types(0),
+                protected: types(1),
+            },
         }
     }
 }
@@ -60,6 +89,22 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may fail")]
     use super::*;
     use crate::ControlModel;
+
+    /// A bit for each type, in the order of the endings [000:6838-6847].
+    #[test]
+    fn types_of_files_have_their_bits() {
+        for (bit, ending) in FILE_TYPES.into_iter().enumerate() {
+            let mut list = ParameterList::reference(ControlModel::Tnc415b);
+            list.set(7224, 0, f64::from(1_u8 << bit)).unwrap();
+            list.set(7224, 1, f64::from(!(1_u8 << bit))).unwrap();
+            let types = list.table_parameters().types;
+            for own in FILE_TYPES {
+                assert_eq!(types.is_disabled(own), own == ending);
+                assert_eq!(types.is_protected(&own.to_lowercase()), own != ending);
+            }
+            assert!(!types.is_disabled("TCH") && !types.is_protected("TCH"));
+        }
+    }
 
     #[test]
     fn columns_are_shown_by_their_places() {

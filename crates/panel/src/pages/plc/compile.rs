@@ -13,12 +13,7 @@ use crate::site::Site;
 
 /// Compiles a main file and what it links; the machine's own program takes effect at the next power-on.
 pub(super) fn run(name: &str, site: &mut Site) -> Turn {
-    let memory = match site.parameters().plc_parameters().from_eprom {
-        true => ProgramMemory::Eprom,
-        false => ProgramMemory::Ram,
-    };
-    let options = Options::for_model(site.control().model()).stored_in(memory);
-    let mut compiled = PlcSource::compile(&source::path(name, site), None, options);
+    let mut compiled = source_of(name, site);
     let faults: Vec<Fault> = compiled.faults().into_iter().map(Fault::of).collect();
     let Some(program) = compiled.compilation.program.take() else {
         return Turn::Replace(Box::new(Menu::new(Faults { faults })));
@@ -39,6 +34,16 @@ pub(super) fn run(name: &str, site: &mut Site) -> Turn {
         "{said}; {}",
         site.words("COMPILED, RUNS FROM THE NEXT POWER-ON")
     ))
+}
+
+/// A main file and what it links, compiled as the machine does it.
+pub(super) fn source_of(name: &str, site: &Site) -> PlcSource {
+    let memory = match site.parameters().plc_parameters().from_eprom {
+        true => ProgramMemory::Eprom,
+        false => ProgramMemory::Ram,
+    };
+    let options = Options::for_model(site.control().model()).stored_in(memory);
+    PlcSource::compile(&source::path(name, site), None, options)
 }
 
 struct Fault {

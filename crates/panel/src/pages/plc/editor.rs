@@ -5,6 +5,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_plc::check_line;
 
+use super::binary;
 use super::source::{NotWritten, Source};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
@@ -271,6 +272,9 @@ impl Editor {
             Key::Del => self.delete(),
             Key::Goto => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER),
             Key::End => return self.finish(site),
+            Key::Ext if self.name == binary::LIST => {
+                return binary::write(&self.source.lines.join("\n"), site);
+            }
             key => match key.character() {
                 Some(character) if self.put(character) => {}
                 _ => return Turn::Refused,

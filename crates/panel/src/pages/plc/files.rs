@@ -1,11 +1,14 @@
 //! The directory of the PLC's source files: one is edited, or compiled as main program.
 
-use super::compile;
 use super::editor::Editor;
 use super::source;
+use super::{compile, convert};
 use crate::page::Turn;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::site::Site;
+
+/// Soft keys that make another form of the file [000:11330-11366].
+const SOFT_KEYS: [&str; 6] = ["LISTING", "CROSSREF", "LISTING+CROSSREF", "", "", ""];
 
 /// What a file is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +59,20 @@ impl Items for SourceFiles {
             )
         };
         self.names.iter().map(runtime).collect()
+    }
+
+    fn own_keys(&self) -> [&'static str; 6] {
+        match self.purpose {
+            Purpose::Edit => SOFT_KEYS,
+            Purpose::Compile => [""; 6],
+        }
+    }
+
+    fn own_key(&mut self, key: &str, place: usize, site: &mut Site) -> Turn {
+        match self.names.get(place) {
+            Some(name) => convert::ask(name, key.starts_with("LISTING"), key.ends_with("CROSSREF"), site),
+            None => Turn::Refused,
+        }
     }
 
     fn choose(&mut self, place: usize, site: &mut Site) -> Turn {

@@ -1,18 +1,22 @@
 //! The PLC mode behind code number 807 667: EDIT, TABLE, TRACE, COMPILE [000:11187-11480].
 
+mod binary;
 mod code;
 mod compile;
+mod convert;
 mod diagram;
 mod editor;
 mod files;
 mod operands;
 mod source;
+mod texts;
 
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
+use crate::pages::supplementary::machine_parameters;
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 use files::Purpose;
@@ -27,7 +31,16 @@ pub(crate) fn open(site: &mut Site) -> Turn {
 }
 
 /// Soft keys of the main menu.
-const SOFT_KEYS: [&str; 8] = ["EDIT", "TABLE", "TRACE", "COMPILE", "", "", "", "END"];
+const SOFT_KEYS: [&str; 8] = [
+    "EDIT",
+    "TABLE",
+    "TRACE",
+    "COMPILE",
+    "OUTPUT BINARY CODE",
+    "SELECT .DI1/.ER1",
+    "MP EDIT",
+    "END",
+];
 
 /// The main menu [000:11203-11241].
 struct MainMenu;
@@ -81,6 +94,9 @@ impl Page for MainMenu {
             "TABLE" => Turn::Open(Box::new(operands::Table::default())),
             "TRACE" => Turn::Open(Box::new(code::Code::new(site))),
             "COMPILE" => files::open(Purpose::Compile, site),
+            "OUTPUT BINARY CODE" => binary::open(site),
+            "SELECT .DI1/.ER1" => texts::open(site),
+            "MP EDIT" => machine_parameters(site),
             _ => Turn::Close,
         }
     }

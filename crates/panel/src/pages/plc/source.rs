@@ -4,7 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use bahn_host::files;
+use bahn_parameters::MessageId;
 
+use crate::programs::is_name;
 use crate::site::Site;
 
 /// Bytes of a source file at most.
@@ -126,9 +128,35 @@ pub(super) fn main_file<'a>(site: &'a Site<'_>) -> &'a str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
+/// How `machine.toml` names a file of the folder.
+pub(super) fn named(name: &str, site: &Site) -> String {
+    let folder = site.machine.folder.plc.rsplit_once('/');
+    folder.map_or_else(|| name.to_owned(), |(folder, _)| format!("{folder}/{name}"))
+}
+
 /// Where a main file lies; its name comes from [`list`].
 pub(super) fn path(name: &str, site: &Site) -> PathBuf {
     folder(site).join(name)
+}
+
+/// Writes a file of the folder, whether there is one of this name or not.
+///
+/// # Errors
+/// In words.
+pub(super) fn replace(name: &str, text: &str, site: &Site) -> Result<(), String> {
+    files::write_whole(&folder(site).join(name), text.as_bytes()).map_err(|error| error.to_string())
+}
+
+/// Writes a new file of the folder.
+///
+/// # Errors
+/// In words, when there is one of this name, or the medium does not take it.
+pub(super) fn create(name: &str, text: &str, site: &Site) -> Result<(), String> {
+    let path = folder(site).join(name);
+    if !is_name(name) || path.exists() {
+        return Err(site.message(MessageId::EntryValueIncorrect));
+    }
+    files::write_whole(&path, text.as_bytes()).map_err(|error| error.to_string())
 }
 
 /// The files of the program's folder by name: plain files that are not hidden and not too long. Links lead out of it and are none.

@@ -2,10 +2,14 @@
 
 mod axis_limit;
 mod code;
+mod interface;
 mod offsets;
 mod oscilloscope;
 mod parameters;
 mod timers;
+
+pub(crate) use interface::transfer;
+pub(crate) use parameters::all as machine_parameters;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -39,6 +43,8 @@ enum Function {
     /// PLC EDIT: without the code number, once it was entered [000:11195-11197].
     Plc,
     Help,
+    /// RS-232/RS-422 SETUP [000:17216-17218].
+    Interfaces,
 }
 
 /// Functions of the machine operating modes.
@@ -63,6 +69,7 @@ const PROGRAMMING: &[Function] = &[
     Function::Code,
     Function::UserParameters,
     Function::CapturedAxes,
+    Function::Interfaces,
     Function::Language,
     Function::NcNumber,
     Function::PlcNumber,
@@ -130,7 +137,11 @@ impl Function {
                 if settings.inch { "INCH" } else { "MM" },
             ),
             Function::Input => {
-                let language = if settings.iso { "ISO" } else { "HEIDENHAIN" };
+                let language = if settings.iso && has_iso() {
+                    "ISO"
+                } else {
+                    "HEIDENHAIN"
+                };
                 Item::new(site.words("PROGRAM INPUT"), language)
             }
             Function::Language => Item::new(site.words("DIALOGUE LANGUAGE"), site.words("ENGLISH")),
@@ -147,6 +158,7 @@ impl Function {
             Function::Plc => Item::new(site.words("PLC EDIT"), ""),
             Function::Code => Item::new(site.words("CODE NUMBER"), ""),
             Function::Help => Item::new(site.words("HELP"), ""),
+            Function::Interfaces => Item::new(site.words("DATA INTERFACES"), ""),
         }
     }
 
@@ -162,7 +174,8 @@ impl Function {
                 site.settings.position_type = next_type(site.settings.position_type, on);
             }
             Function::Unit => site.settings.inch = !site.settings.inch,
-            Function::Input => site.settings.iso = !site.settings.iso,
+            Function::Input if has_iso() => site.settings.iso = !site.settings.iso,
+            Function::Input => return Turn::Say(site.words("DIN/ISO PROGRAMS CANNOT BE ENTERED")),
             Function::Language => {
                 let other = match site.language() {
                     Language::English => Language::German,
@@ -176,10 +189,17 @@ impl Function {
             Function::Code => return code::ask(site),
             Function::Plc => return plc::open(site),
             Function::Help => return help::files(site),
+            Function::Interfaces => return Turn::Open(interface::page()),
             Function::NcNumber | Function::PlcNumber => return Turn::Refused,
         }
         Turn::Done
     }
+}
+
+/// Programs can be written in DIN/ISO.
+fn has_iso() -> bool {
+    let mut types = bahn_program::FILE_TYPES.iter();
+    types.any(|own| own.extension == "I" && own.language.is_some())
 }
 
 /// The next type of positions, or the one before.

@@ -43,7 +43,7 @@ struct Parameters {
 }
 
 /// The whole list.
-pub(super) fn all(site: &Site) -> Turn {
+pub(crate) fn all(site: &Site) -> Turn {
     editor(site, |_| true)
 }
 

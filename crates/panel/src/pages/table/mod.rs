@@ -60,14 +60,23 @@ fn form_of(name: &str) -> Option<TableForm> {
     TableForm::ALL.into_iter().find(is_meant)
 }
 
-/// MP7224.1 protects the tables of a kind [000:6870-6880].
+/// MP7224.1 protects the files of a type [000:6870-6880].
 pub(crate) fn is_protected(name: &str, site: &Site) -> bool {
-    let [tools, datums, pallets] = site.parameters().table_parameters().protected;
+    let types = site.parameters().table_parameters().types;
+    types.is_protected(type_of(name))
+}
+
+/// MP7224.0 lets nobody see the files of a type [000:6857-6868].
+pub(crate) fn is_disabled(name: &str, site: &Site) -> bool {
+    let types = site.parameters().table_parameters().types;
+    types.is_disabled(type_of(name))
+}
+
+/// The ending by which MP7224 knows a file.
+fn type_of(name: &str) -> &str {
     match form_of(name) {
-        Some(TableForm::Tool | TableForm::Pocket) => tools,
-        Some(TableForm::Datum) => datums,
-        Some(TableForm::Pallet) => pallets,
-        Some(TableForm::Point) | None => false,
+        Some(form) => form.protected_with(),
+        None => name.rsplit_once('.').map_or("", |(_, ending)| ending),
     }
 }
 

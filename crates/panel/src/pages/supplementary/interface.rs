@@ -1,0 +1,222 @@
+//! The data interfaces: which device is connected to each, how fast it is, and which of both a transfer takes
+//! [000:16975-16995] [000:17216-17228] [003:7035-7062].
+//!
+//! What is chosen here is kept. Nothing is connected to the interfaces: where a transfer would begin, the key EXT says so.
+
+use bahn_dialogue::Key;
+use bahn_parameters::{MessageId, ParameterList};
+
+use crate::page::{Page, Side, Turn};
+use crate::pages::menu::{Item, Items, Menu};
+use crate::settings::{BAUD_RATES, Interface, InterfaceMode, TransferOf};
+use crate::site::Site;
+
+/// Names of the interfaces, and the value of MP5000 that inhibits each [000:16984-16989].
+const PORTS: [(&str, f64); 2] = [("RS-232", 1.0), ("RS-422", 2.0)];
+/// Baud rates that the two interfaces cannot have together [000:17552-17554].
+const NOT_TOGETHER: [u32; 2] = [19_200, 38_400];
+/// ME 101 has this baud rate and no other [003:7048].
+const ME_BAUD: u32 = 2_400;
+
+/// A line of the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Row {
+    /// Mode of operation of an interface.
+    Mode(usize),
+    /// Its baud rate.
+    Baud(usize),
+    /// The interface of a kind of transfer.
+    Assigned(TransferOf),
+    /// What the parameters say of EXT1 and EXT2.
+    Ext(u8),
+}
+
+/// The page.
+pub(super) fn page() -> Box<dyn Page> {
+    Box::new(Menu::new(Interfaces))
+}
+
+/// EXT where a transfer would begin: no device answers [003:7873-7875].
+pub(crate) fn transfer(side: Side, site: &Site) -> Turn {
+    let runs = matches!(
+        site.mode(),
+        bahn_control::Mode::SingleBlock | bahn_control::Mode::FullSequence
+    );
+    match side == Side::Programming || runs {
+        true => Turn::Say(site.message(MessageId::ExtInOutputNotReady)),
+        false => Turn::Refused,
+    }
+}
+
+struct Interfaces;
+
+/// The lines of a control: one with a single interface assigns nothing, and its EXT is EXT1.
+fn rows(site: &Site) -> Vec<Row> {
+    use Row::{Assigned, Baud, Ext, Mode};
+    match site.control().model().has_rs_422() {
+        true => vec![
+            Mode(0),
+            Baud(0),
+            Mode(1),
+            Baud(1),
+            Assigned(TransferOf::Files),
+            Assigned(TransferOf::ProgramRun),
+            Ext(0),
+            Ext(1),
+        ],
+        false => vec![Baud(0), Mode(0), Ext(0)],
+    }
+}
+
+fn is_inhibited(port: usize, list: &ParameterList) -> bool {
+    let inhibited = list.get(5000, 0).filter(|value| *value > 0.0);
+    PORTS.get(port).map(|(_, value)| *value) == inhibited && inhibited.is_some()
+}
+
+/// The baud rate in force.
+fn baud(port: usize, site: &Site) -> u32 {
+    let interface = site.settings.interfaces.get(port).copied().unwrap_or_default();
+    match interface.mode {
+        InterfaceMode::Me => ME_BAUD,
+        _ => interface.baud,
+    }
+}
+
+/// `8E1 DC3 STANDARD`: data bits, parity and stop bits (MP5020), what stops the transfer, and its protocol (MP5030)
+/// [000:17073-17105].
+fn format(ext: u8, site: &Site) -> String {
+    let list = site.parameters();
+    let bits = list.get(5020, ext).unwrap_or_default() as u8;
+    let is_set = |bit: u8| bits >> bit & 1 == 1;
+    let data = if is_set(0) { '8' } else { '7' };
+    let parity = match (is_set(5), is_set(4)) {
+        (false, _) => 'N',
+        (true, false) => 'E',
+        (true, true) => 'O',
+    };
+    let stop = match (is_set(6), is_set(7)) {
+        (false, false) => "1.5",
+        (true, false) => "2",
+        (_, true) => "1",
+    };
+    let mut text = format!("{data}{parity}{stop}");
+    for (bit, name) in [(2, " RTS"), (3, " DC3")] {
+        text.push_str(if is_set(bit) { name } else { "" });
+    }
+    let blockwise = list.get(5030, ext) == Some(1.0);
+    let protocol = match blockwise {
+        true => site.words("BLOCKWISE"),
+        false => site.words("STANDARD"),
+    };
+    format!("{text} {protocol}")
+}
+
+impl Items for Interfaces {
+    fn title(&self, site: &Site) -> String {
+        site.words("DATA INTERFACES")
+    }
+
+    fn items(&self, site: &Site) -> Vec<Item> {
+        let single = !site.control().model().has_rs_422();
+        let name = |port: usize| PORTS.get(port).map_or("", |(name, _)| *name);
+        let item = |row: &Row| match *row {
+            Row::Mode(port) => {
+                let mode = site.settings.interfaces.get(port).map(|own| own.mode);
+                let value = match is_inhibited(port, site.parameters()) {
+                    true => site.words("INHIBITED (MP5000)"),
+                    false => mode.unwrap_or_default().name(single).to_owned(),
+                };
+                Item::new(format!("{} {}", name(port), site.words("INTERFACE")), value)
+            }
+            Row::Baud(port) => Item::new(
+                format!("{} {}", name(port), site.words("BAUD RATE")),
+                baud(port, site).to_string(),
+            ),
+            Row::Assigned(transfer) => {
+                let words = match transfer {
+                    TransferOf::Files => site.words("ASSIGNMENT: FILES"),
+                    TransferOf::ProgramRun => site.words("ASSIGNMENT: PROGRAM RUN"),
+                };
+                Item::new(words, name(site.settings.assigned_port(transfer)))
+            }
+            Row::Ext(ext) => Item::new(
+                format!("EXT{} (MP5020.{ext}, MP5030.{ext})", ext + 1),
+                format(ext, site),
+            ),
+        };
+        rows(site).iter().map(item).collect()
+    }
+
+    fn choose(&mut self, place: usize, site: &mut Site) -> Turn {
+        change(place, true, site)
+    }
+
+    /// ENT and RIGHT go to the next setting, LEFT back.
+    fn key(&mut self, place: usize, key: Key, site: &mut Site) -> Turn {
+        match key {
+            Key::Right => change(place, true, site),
+            Key::Left => change(place, false, site),
+            _ => Turn::Refused,
+        }
+    }
+}
+
+/// Goes to the next setting of a line, or the one before.
+fn change(place: usize, on: bool, site: &mut Site) -> Turn {
+    let Some(row) = rows(site).get(place).copied() else {
+        return Turn::Refused;
+    };
+    let single = !site.control().model().has_rs_422();
+    match row {
+        Row::Mode(port) | Row::Baud(port) if is_inhibited(port, site.parameters()) => Turn::Refused,
+        Row::Mode(port) => change_mode(port, on, single, site),
+        Row::Baud(port) => change_baud(port, on, site),
+        Row::Assigned(transfer) => {
+            site.settings.swap_port(transfer);
+            Turn::Done
+        }
+        Row::Ext(_) => Turn::Refused,
+    }
+}
+
+fn change_mode(port: usize, on: bool, single: bool, site: &mut Site) -> Turn {
+    let own = site.settings.interfaces.get(port).copied().unwrap_or_default();
+    let mode = neighbour(InterfaceMode::all(single), own.mode, on);
+    take(port, Interface { mode, ..own }, site)
+}
+
+fn change_baud(port: usize, on: bool, site: &mut Site) -> Turn {
+    let own = site.settings.interfaces.get(port).copied().unwrap_or_default();
+    if own.mode == InterfaceMode::Me {
+        return Turn::Refused;
+    }
+    let baud = neighbour(&BAUD_RATES, own.baud, on);
+    take(port, Interface { baud, ..own }, site)
+}
+
+/// Takes a setting, unless the other interface excludes its baud rate.
+fn take(port: usize, wanted: Interface, site: &mut Site) -> Turn {
+    let before = site.settings.interfaces;
+    if let Some(own) = site.settings.interfaces.get_mut(port) {
+        *own = wanted;
+    }
+    if excludes(site) {
+        site.settings.interfaces = before;
+        return Turn::Say(site.message(MessageId::BaudRateNotPossible));
+    }
+    Turn::Done
+}
+
+/// Whether the interfaces cannot have the baud rates that they have.
+fn excludes(site: &Site) -> bool {
+    let both = [baud(0, site), baud(1, site)];
+    let apart = both.iter().all(|own| NOT_TOGETHER.contains(own)) && both[0] != both[1];
+    apart && site.control().model().has_rs_422()
+}
+
+/// The next one of all, or the one before; behind the last comes the first.
+fn neighbour<T: Copy + PartialEq + Default>(all: &[T], own: T, on: bool) -> T {
+    let at = all.iter().position(|other| *other == own).unwrap_or(0);
+    let next = (at + if on { 1 } else { all.len() - 1 }) % all.len().max(1);
+    all.get(next).copied().unwrap_or_default()
+}
