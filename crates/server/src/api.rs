@@ -88,9 +88,8 @@ pub(crate) async fn graphics(State(shared): State<Shared>, Query(size): Query<Si
             ([(CONTENT_TYPE, "image/png"), (CACHE_CONTROL, "no-store")], png).into_response()
         }
         Ok(Ok(Some(Err(error)))) => (StatusCode::BAD_REQUEST, error.to_string()).into_response(),
-        Ok(Ok(None | Some(Ok(None)))) => {
-            (StatusCode::NOT_FOUND, "there is nothing to be seen").into_response()
-        }
+        // Nothing is to be seen, which is no fault.
+        Ok(Ok(None | Some(Ok(None)))) => StatusCode::NO_CONTENT.into_response(),
         Ok(Err(refusal)) => refused(&refusal),
         Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
     }
