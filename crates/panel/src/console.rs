@@ -321,10 +321,11 @@ impl Console {
 
     /// The part that the graphics of a side show.
     pub fn cut(&self, side: Side) -> Option<Cut> {
-        match side {
-            Side::Machine => self.machine.base.cut(),
-            Side::Programming => self.programming.as_ref().and_then(|(_, stack)| stack.base.cut()),
-        }
+        let stack = match side {
+            Side::Machine => &self.machine,
+            Side::Programming => self.programming.as_ref().map(|(_, stack)| stack)?,
+        };
+        stack.shown().cut().or_else(|| stack.base.cut())
     }
 
     /// The soft-key row of the side that has the keys.

@@ -34,6 +34,7 @@
     allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")
 )]
 
+mod colours;
 mod console;
 mod drawer;
 mod entry;
@@ -62,15 +63,15 @@ mod wiring;
 
 pub use bahn_dialogue::{Key, KeyGroup};
 pub use drawer::{Breakable, Breaking};
-pub use graphics::{BeingCut, Picture};
+pub use graphics::{BeingCut, Picture, PictureError};
 pub use input::{Input, InputText, Refusal};
 pub use lesson::{Lesson, LessonRun, check_lesson};
 pub use live::{Link, Live, Seen};
 pub use replay::{Ending, Replay, check_session};
 pub use screen::{
-    AxisLine, BranchLine, CheckLine, Dialogue, GraphicsLine, GraphicsView, Heading, LessonLine, LessonState,
-    Line, MachineState, Mark, MarkKind, MessageLine, PlcLine, Screen, SoftKeys, Star, Status, TimeLine,
-    TimeMark, Window, WindowKind,
+    AxisLine, BranchLine, CheckLine, Dialogue, GraphicsLine, GraphicsView, Heading, Layout, LessonLine,
+    LessonState, Line, Look, MachineState, Mark, MarkKind, MessageLine, PlcLine, Screen, SoftKeys, Star,
+    Status, TimeLine, TimeMark, Window, WindowKind,
 };
 pub use session::{Head, Recorder};
 pub use settings::PositionType;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bahn_control::Control;
+use bahn_control::{Control, ServoSampler};
 use bahn_exchange::{Content, Operand};
 use bahn_host::Host;
 use bahn_host::logic_diagram::{Diagram, DiagramRecorder, Trigger};
@@ -84,13 +84,17 @@ impl PlcMode {
         &self.code
     }
 
-    /// One contour cycle of the machine, with what somebody wants to see in it.
-    pub fn cycle(&mut self, host: &mut Host) -> Result<(), bahn_host::HostError> {
+    /// One contour cycle of the machine, with what somebody wants to see in it, and who looks at its servo steps.
+    pub fn cycle(
+        &mut self,
+        host: &mut Host,
+        sampler: Option<&mut dyn ServoSampler>,
+    ) -> Result<(), bahn_host::HostError> {
         host.show_plc_window(IN_SIGHT);
         host.begin()?;
         let cycled = match std::mem::take(&mut self.code_wanted) {
-            true => host.cycle_traced(Some(&mut self.code)),
-            false => host.cycle(),
+            true => host.cycle_watched(Some(&mut self.code), sampler),
+            false => host.cycle_watched(None, sampler),
         };
         self.follow(host.control());
         cycled

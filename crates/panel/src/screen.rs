@@ -41,6 +41,29 @@ pub struct Screen {
     pub why: Vec<String>,
     /// The lesson, while there is one.
     pub lesson: Option<LessonLine>,
+    /// How the screen of the control is made.
+    pub look: Look,
+}
+
+/// How the screen of a control model is made.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Look {
+    /// What stands beside what.
+    pub layout: Layout,
+    /// MP7350 to MP7363 as `7352.1` and `#d28220`; none on a screen without colours.
+    pub colours: BTreeMap<String, String>,
+}
+
+/// What stands beside what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Layout {
+    /// Windows side by side, on the 14 inch screen of the TNC 407 and later [000:2784-2833].
+    #[default]
+    Windows,
+    /// One column of text, on the 12 inch screens before: one operating mode at a time, and graphics in the place of the
+    /// program (inferred).
+    OneColumn,
 }
 
 /// An operating mode in the header.
@@ -218,12 +241,12 @@ pub struct SoftKeys {
     pub rows: usize,
 }
 
-/// The graphics [003:854-945].
+/// The graphics [003:854-945], or the curves of the oscilloscope [000:18638-18794].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GraphicsLine {
     /// How the part is shown.
     pub view: GraphicsView,
-    /// A test is on its way.
+    /// A test is on its way, or a recording.
     pub running: bool,
     /// How far it has come, 0 to 1; 0 in a program run.
     pub progress: f64,
@@ -249,6 +272,8 @@ pub enum GraphicsView {
     ThreePlanes,
     /// 3D view.
     Solid,
+    /// No part: the curves of the oscilloscope.
+    Oscilloscope,
 }
 
 /// A line of the PLC window.

@@ -10,7 +10,7 @@ use bahn_control::{Command, Control, Programs, RunState};
 use bahn_dialogue::Key;
 use bahn_host::{Answer, Attendance, Clock, Deed, Host, HostError, LoadedMachine, Operator, PowerOn, Source};
 use bahn_machine::KeyAction;
-use bahn_parameters::{MessageId, ParameterList};
+use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_plc::PlcWindow;
 
 use crate::console::Console;
@@ -20,13 +20,13 @@ use crate::input::{Input, Refusal};
 use crate::lesson::LessonRun;
 use crate::plc_mode::PlcMode;
 use crate::programs::ProgramMemory;
-use crate::screen::{MachineState, MessageLine, PlcLine, Screen};
+use crate::screen::{Layout, Look, MachineState, MessageLine, PlcLine, Screen};
 use crate::session::Recorder;
 use crate::settings::Settings;
 use crate::site::Site;
 use crate::timeline::Past;
 use crate::why::Waits;
-use crate::{numbers, status, texts, why};
+use crate::{colours, numbers, status, texts, why};
 
 /// Lines of the large window, and of one beside it.
 const LINES: usize = 16;
@@ -174,7 +174,9 @@ impl Station {
     /// # Errors
     /// When what survives power-off cannot be written; the machine goes on all the same.
     pub fn cycle(&mut self) -> Result<(), HostError> {
-        let cycled = self.plc.cycle(&mut self.host);
+        let keys = self.host.control().oscilloscope();
+        let sampler = self.graphics.scope.sampler(keys);
+        let cycled = self.plc.cycle(&mut self.host, sampler);
         self.follow_plc();
         let is_on = !self.host.control().is_off();
         if self.is_on && !is_on {
@@ -251,10 +253,9 @@ impl Station {
 
     /// What the graphics show, to be drawn; `None` while the operator does not look at them, and without a part.
     pub fn picture(&mut self) -> Option<Picture> {
-        let third_angle = self.parameters().graphics().third_angle;
         let (console, site) = self.parts();
         let cut = console.cut(console.front())?;
-        site.graphics.picture(cut, third_angle)
+        site.graphics.picture(cut, site.parameters())
     }
 
     /// The part of the test or the run that the operator looks at, whether he looks at its graphics or not; `None` in
@@ -278,6 +279,7 @@ impl Station {
         screen.machine = self.machine_state();
         screen.time_s = self.host.control().time_us() as f64 / 1e6;
         screen.lamps = self.lamps();
+        screen.look = self.look();
         screen.serial = self.shown.serial;
         // Time alone makes no other screen.
         self.shown.time_s = screen.time_s;
@@ -318,11 +320,12 @@ impl Station {
             status.flags.push(RECORDING.to_owned());
         }
         let plc_window = self.plc_window();
+        let layout = self.layout();
         let (console, site) = self.parts();
         let front = console.front();
         let view = console.view(front, &site, LINES).unwrap_or_default();
         let graphics = console.cut(front).and_then(|cut| site.graphics.line(cut));
-        let beside = match console.split {
+        let beside = match console.split && layout == Layout::Windows {
             true => console.view(front.other(), &site, LINES),
             false => None,
         };
@@ -340,6 +343,20 @@ impl Station {
             plc_window,
             graphics,
             ..Screen::default()
+        }
+    }
+
+    fn layout(&self) -> Layout {
+        match self.control().model() < ControlModel::Tnc407 {
+            true => Layout::OneColumn,
+            false => Layout::Windows,
+        }
+    }
+
+    fn look(&self) -> Look {
+        Look {
+            layout: self.layout(),
+            colours: colours::all(self.parameters()),
         }
     }
 

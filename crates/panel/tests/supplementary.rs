@@ -213,7 +213,7 @@ fn code_numbers_open_their_pages() {
         ("123", "MACHINE PARAMETERS"),
         ("86357", "PROGRAM DIRECTORY"),
         ("857282", "MACHINE TIME"),
-        ("688379", "OSCILLOSCOPE: SIGNALS"),
+        ("688379", "OSCILLOSCOPE"),
         ("75368", "OFFSET ADJUSTMENT (1 = 0.15 mV)"),
     ] {
         code(&mut trainee, number);

@@ -69,6 +69,12 @@ mod tests {
                 assert!(texts.insert(text), "{text} is printed for two ids on {model}");
                 assert_eq!(text, text.to_uppercase(), "messages are shown in capitals");
                 assert!(!id.cause().is_empty() && !id.remedy().is_empty(), "{id:?}");
+                for shown in [text, id.cause(), id.remedy()] {
+                    assert!(
+                        !shown.contains("[0"),
+                        "{id:?}: a citation is not for the screen: {shown}"
+                    );
+                }
                 assert!(
                     id.is_own() || id.source().starts_with('['),
                     "{id:?}: {}",

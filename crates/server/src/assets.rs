@@ -17,6 +17,7 @@ macro_rules! modules {
 const MODULES: &[(&str, &str)] = &modules![
     "style.css",
     "part.css",
+    "scheme.css",
     "main.js",
     "connection.js",
     "messagepack.js",
@@ -24,6 +25,7 @@ const MODULES: &[(&str, &str)] = &modules![
     "keyboard.js",
     "machine.js",
     "part.js",
+    "scheme.js",
     "timeline.js",
     "teacher.js",
 ];

@@ -36,6 +36,7 @@ impl Regions {
             encode("timeline", &(&line.marks, &line.branches)),
             encode("why", &screen.why),
             encode("lesson", &screen.lesson),
+            encode("look", &screen.look),
         ];
         let parts = encoded
             .into_iter()
@@ -85,14 +86,14 @@ mod tests {
             ..Screen::default()
         };
         let first = Regions::default().next(&screen);
-        assert_eq!(first.since(0)[0], 0x9c, "all twelve regions");
+        assert_eq!(first.since(0)[0], 0x9d, "all thirteen regions");
         assert_eq!(first.since(1), [0x90]);
         screen.serial = 2;
         screen.dialogue.prompt = "PROGRAM NUMBER =".to_owned();
         let second = first.next(&screen);
         // The time, which has the serial, and the dialogue.
         assert_eq!(second.since(1)[0], 0x92);
-        assert_eq!(second.since(0)[0], 0x9c);
+        assert_eq!(second.since(0)[0], 0x9d);
     }
 
     /// The head of an array has one byte up to 15 elements, three bytes from 16 on.

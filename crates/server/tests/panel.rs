@@ -69,6 +69,66 @@ fn what_is_wrong_is_said() {
     }
 }
 
+/// `/api/drawer`, `/api/lessons`, `/api/graphics.png`: what they say, and what they say when there is nothing.
+#[test]
+fn drawer_lessons_and_picture_are_told() {
+    let panel = Panel::start();
+    let drawer = panel.get("/api/drawer");
+    let drawer = drawer.as_array().unwrap();
+    assert!(drawer.iter().any(|thing| thing["name"] == "X"));
+    for thing in drawer {
+        assert!(
+            thing["group"].is_string() && thing["words"].is_string(),
+            "{thing}"
+        );
+        let faults = thing["faults"].as_array().unwrap();
+        assert!(
+            !faults.is_empty() && faults.iter().all(|way| way["words"].is_string()),
+            "{thing}"
+        );
+        // What it offers can be done.
+        assert_eq!(panel.give(&json!({"deed": faults[0]["deed"]})), 200, "{thing}");
+        assert_eq!(panel.give(&json!({"deed": thing["repair"]})), 200, "{thing}");
+    }
+    let lessons = panel.get("/api/lessons");
+    for lesson in lessons.as_array().unwrap() {
+        let name = lesson["name"].as_str().unwrap();
+        let text = panel.file(&format!("lessons/{name}.lesson"));
+        assert!(text.contains(lesson["title"].as_str().unwrap()), "{lesson}");
+    }
+
+    // Nothing is looked at.
+    assert_eq!(panel.request("GET", "/api/graphics.png", &[], "").0, 204);
+    let panel = Panel::start();
+    panel.to_manual();
+    panel.press("TEST");
+    panel.press("GRAPHICS");
+    assert_eq!(
+        panel.request("GET", "/api/graphics.png", &[], "").0,
+        204,
+        "nothing was cut"
+    );
+    let picture = |size: &str| {
+        let (status, headers, body) = panel.bytes(&format!("/api/graphics.png?{size}"));
+        (status, headers.contains("image/png"), body)
+    };
+    panel.choose("BRACKET");
+    panel.press("START");
+    panel.until(|screen| screen["graphics"]["progress"] == 1.0);
+    for (width, height) in [(640_u32, 480_u32), (900, 700)] {
+        let (status, is_png, body) = picture(&format!("width={width}&height={height}"));
+        assert!(status == 200 && is_png);
+        // The head of a PNG has its size.
+        let number = |at: usize| u32::from_be_bytes(body[at..at + 4].try_into().unwrap());
+        assert_eq!(
+            (&body[1..4], number(16), number(20)),
+            (&b"PNG"[..], width, height)
+        );
+    }
+    assert_eq!(picture("width=1&height=1").0, 400);
+    assert_eq!(picture("width=many").0, 400);
+}
+
 #[test]
 fn nobody_comes_in_who_should_not() {
     let panel = Panel::start();

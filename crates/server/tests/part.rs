@@ -70,18 +70,6 @@ fn same(panel: &Panel, page: &mut Page) {
     }
 }
 
-fn to_manual(panel: &Panel) {
-    panel.until(|screen| screen["messages"][0]["text"] == "POWER INTERRUPTED");
-    panel.press("CE");
-    panel.until(|screen| screen["mode"] == "PASS OVER REFERENCE MARKS");
-    panel.until(|screen| screen["messages"].as_array().is_some_and(Vec::is_empty));
-    panel.wait(1.0);
-    assert_eq!(panel.give(&json!({"speed": 100})), 200);
-    panel.press("NC_START");
-    panel.until(|screen| screen["mode"] == "MANUAL OPERATION");
-    assert_eq!(panel.give(&json!({"speed": 1})), 200);
-}
-
 fn open(panel: &Panel, browser: &Browser) -> Page {
     let mut page = browser.page().unwrap();
     page.viewport(1440, 900, false).unwrap();
@@ -113,7 +101,7 @@ fn a_test_run_is_seen_while_it_cuts() {
         return;
     };
     let panel = panel(400);
-    to_manual(&panel);
+    panel.to_manual();
     let mut page = open(&panel, &browser);
     choose(&panel, "TEST");
     page.click("[data-key=\"3D_VIEW\"]").unwrap();
@@ -156,7 +144,7 @@ fn a_program_run_is_seen_on_a_phone() {
         return;
     };
     let panel = panel(12);
-    to_manual(&panel);
+    panel.to_manual();
     let mut page = open(&panel, &browser);
     page.viewport(390, 800, true).unwrap();
     choose(&panel, "FULL");

@@ -4,6 +4,7 @@ import { Connection } from "/web/connection.js";
 import * as keyboard from "/web/keyboard.js";
 import * as machine from "/web/machine.js";
 import { PartWindow } from "/web/part.js";
+import * as scheme from "/web/scheme.js";
 import * as screen from "/web/screen.js";
 import * as teacher from "/web/teacher.js";
 import * as timeline from "/web/timeline.js";
@@ -13,7 +14,10 @@ let windows = null;
 
 const draw = {
   time: timeline.time,
-  header: (value) => screen.header(value, press),
+  header: (value) => {
+    screen.header(value, press);
+    scheme.side(value[1]);
+  },
   dialogue: screen.dialogue,
   program: (value) => {
     windows = value;
@@ -35,6 +39,7 @@ const draw = {
   timeline: timeline.draw,
   why: teacher.why,
   lesson: teacher.lesson,
+  look: scheme.look,
   part: (news) => part.take(news),
   crew: crew,
   refused: (why) => line(why),
@@ -70,6 +75,7 @@ function press(key) {
 }
 
 keyboard.listen(press);
+scheme.build(() => part.tint());
 
 for (const tab of document.querySelectorAll(".tabs [data-tab]")) {
   tab.addEventListener("click", () => {

@@ -127,7 +127,7 @@ function largePositions(lines, status) {
 
 const ITEMS = [
   ["position", (status) => status.position_type + (status.inch ? " INCH" : "")],
-  ["axes", (status) => status.axes.map((axis) => `${axis.locked ? "*" : ""}${axis.letter} ${axis.value}`).join("  ")],
+  ["axes", () => ""],
   ["tool", (status) => `T ${status.tool}${status.tool_axis ? ` ${status.tool_axis}` : ""}`],
   ["speed", (status) => `S ${Math.round(status.s)}${status.gear ? `/${status.gear}` : ""}`],
   ["feed", (status) => `F ${status.f}`],
@@ -142,13 +142,20 @@ export function drawStatus(status) {
   const nodes = children(node, ITEMS.length + 2, (place) =>
     place < ITEMS.length ? element("span", ITEMS[place][0]) : bar(place === ITEMS.length ? "F" : "S"));
   ITEMS.forEach(([name, text], place) => {
-    setText(nodes[place], text(status));
+    if (name === "axes") axes(nodes[place], status.axes);
+    else setText(nodes[place], text(status));
     nodes[place].hidden = !nodes[place].textContent;
     if (name === "star") nodes[place].classList.toggle("blinking", status.star === "blinking");
   });
   const [feed, speed] = nodes.slice(ITEMS.length);
   setBar(feed, status.feed_mm_min, status.programmed_feed_mm_min, status.overrides[0]);
   setBar(speed, Math.abs(status.spindle_rpm), status.s, status.overrides[1]);
+}
+
+// A line breaks between axes, never within one.
+function axes(node, shown) {
+  const nodes = children(node, shown.length, () => element("span", "axis-value"));
+  shown.forEach((axis, place) => setText(nodes[place], `${axis.locked ? "*" : ""}${axis.letter} ${axis.value} `));
 }
 
 function bar(name) {
@@ -193,23 +200,29 @@ export function plcWindow(lines) {
   });
 }
 
-const VIEWS = { plan: "Plan view", three_planes: "Projection in three planes", solid: "3D view" };
+const VIEWS = {
+  plan: "Plan view of the part", three_planes: "Projection of the part in three planes", solid: "3D view of the part",
+  oscilloscope: "Curves of the oscilloscope",
+};
 const picture = { wanted: 0, loading: 0 };
 
 /** The part as the graphics show it: a picture is asked for when there is another one, and never two at once. */
 export function graphics(shown) {
   const node = region("graphics");
   node.dataset.control = shown ? "shown" : "";
+  // Curves are no part: they stand in the window whatever else is looked at.
+  node.dataset.view = shown?.view ?? "";
   node.querySelector(".made").hidden = !shown;
   if (!shown) {
     picture.wanted = 0;
     return;
   }
   const image = node.querySelector("img");
-  image.alt = `${VIEWS[shown.view]} of the part${shown.magn > 1 ? `, magnified ${shown.magn} times` : ""}`;
+  image.alt = `${VIEWS[shown.view]}${shown.magn > 1 ? `, magnified ${shown.magn} times` : ""}`;
   const bar = node.querySelector("progress");
   bar.hidden = !shown.running;
   bar.value = shown.progress;
+  bar.setAttribute("aria-label", shown.view === "oscilloscope" ? "Recording" : "Test run");
   const seconds = shown.machining_time_s;
   setText(node.querySelector(".time"), seconds === null ? "" : `Machining time ${clock(seconds)}`);
   picture.wanted = shown.serial;
@@ -224,7 +237,7 @@ export function modern(on) {
 }
 
 function loadPicture(node, image) {
-  if (node.dataset.modern || picture.loading || !picture.wanted || picture.wanted === Number(image.dataset.serial)) return;
+  if ((node.dataset.modern && node.dataset.view !== "oscilloscope") || picture.loading || !picture.wanted || picture.wanted === Number(image.dataset.serial)) return;
   picture.loading = picture.wanted;
   const done = (loaded) => {
     image.dataset.serial = picture.loading;

@@ -2,7 +2,8 @@
 //! cut while it runs, and how the operator looks at them.
 //!
 //! - `stock` is the part that is being cut, which pictures are made of meanwhile;
-//! - `trial` tests a program with it, `follow` cuts what the machine has executed.
+//! - `trial` tests a program with it, `follow` cuts what the machine has executed;
+//! - `scope` is the oscilloscope, whose curves stand in the same window.
 //!
 //! By the clock on the wall both cut on threads of their own; by the free clock with the machine, so that the same
 //! inputs give the same screens.
@@ -10,17 +11,21 @@
 mod being_cut;
 mod follow;
 mod picture;
+mod scope;
 mod stock;
 mod trial;
 
 use bahn_control::Control;
 use bahn_dialogue::Key;
 use bahn_host::Host;
+use bahn_parameters::ParameterList;
 
+use crate::colours::colour;
 use crate::screen::{GraphicsLine, GraphicsView};
 pub use being_cut::BeingCut;
-pub use picture::Picture;
 pub(crate) use picture::Sight;
+pub use picture::{Picture, PictureError};
+pub(crate) use scope::{Content, Scope, TriggerOn, signal_name};
 
 use follow::Follower;
 use trial::Trial;
@@ -39,6 +44,8 @@ pub(crate) enum Cut {
     Test,
     /// That of the program run.
     Run,
+    /// None: the curves of the oscilloscope.
+    Oscilloscope,
 }
 
 /// The graphics of a station.
@@ -50,6 +57,8 @@ pub(crate) struct Graphics {
     sight: Sight,
     /// Threads cut, not the machine's own one.
     beside: bool,
+    /// The oscilloscope.
+    pub scope: Scope,
     serial: u64,
     /// What the last picture showed, and when it was made.
     shown: (u64, u64),
@@ -65,6 +74,7 @@ impl Graphics {
             view: None,
             sight: Sight::default(),
             beside: false,
+            scope: Scope::new(host.control()),
             serial: 0,
             shown: (0, 0),
         }
@@ -82,6 +92,7 @@ impl Graphics {
             trial.cycle();
         }
         let now_us = host.control().time_us();
+        self.scope.cycle(now_us);
         let progress = self.trial.as_ref().map(Trial::progress).unwrap_or_default();
         let cut = progress.elements + self.follower.elements();
         let (seen, then_us) = self.shown;
@@ -113,6 +124,7 @@ impl Graphics {
     /// The machine was brought to another moment: what it had cut by then is not known.
     pub fn machine_is_elsewhere(&mut self) {
         self.follower = Follower::default();
+        self.scope.break_off();
         self.serial += 1;
     }
 
@@ -123,7 +135,7 @@ impl Graphics {
                 None => Some(GraphicsView::Plan),
                 Some(GraphicsView::Plan) => Some(GraphicsView::ThreePlanes),
                 Some(GraphicsView::ThreePlanes) => Some(GraphicsView::Solid),
-                Some(GraphicsView::Solid) => None,
+                _ => None,
             };
             self.serial += 1;
             return true;
@@ -156,6 +168,7 @@ impl Graphics {
                 }
             }
             Cut::Run => self.follower.restore(),
+            Cut::Oscilloscope => {}
         }
         true
     }
@@ -187,6 +200,9 @@ impl Graphics {
 
     /// What the screen says of it; `None` while the operator looks at the program alone.
     pub fn line(&self, cut: Cut) -> Option<GraphicsLine> {
+        if cut == Cut::Oscilloscope {
+            return Some(self.scope.line());
+        }
         let view = self.view?;
         let progress = self.trial.as_ref().map(Trial::progress).unwrap_or_default();
         let test = cut == Cut::Test;
@@ -213,11 +229,16 @@ impl Graphics {
                 let cut = BeingCut::new(self.follower.stock()?, self.follower.program());
                 Some(cut.on_the_way(control))
             }
+            Cut::Oscilloscope => None,
         }
     }
 
     /// What is to be seen, to be drawn by whoever wants it; `None` as with [`Graphics::line`], and without a part.
-    pub fn picture(&self, cut: Cut, third_angle: bool) -> Option<Picture> {
+    pub fn picture(&self, cut: Cut, list: &ParameterList) -> Option<Picture> {
+        if cut == Cut::Oscilloscope {
+            let colours = [0, 1, 2, 3, 4].map(|index| colour(list, 7361, index).unwrap_or_default());
+            return Some(Picture::curves(self.scope.curves(), colours));
+        }
         let view = self.view?;
         let (stock, program, time_s) = match cut {
             Cut::Test => {
@@ -226,6 +247,7 @@ impl Graphics {
                 (trial.stock(), trial.program(), Some(time_s))
             }
             Cut::Run => (self.follower.stock()?, self.follower.program(), None),
+            Cut::Oscilloscope => return None,
         };
         Some(Picture::new(
             stock,
@@ -233,7 +255,7 @@ impl Graphics {
             time_s,
             view,
             self.sight,
-            third_angle,
+            list.graphics().third_angle,
         ))
     }
 }

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use bahn_picture::ImageError;
 use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, ThreePlanes, View3d};
 
+use super::scope::{Curves, ScopeColours};
 use super::stock::Stock;
 use crate::screen::GraphicsView;
 
@@ -43,8 +45,17 @@ impl Sight {
     }
 }
 
-/// A picture that can be drawn on any thread, of the part as it is then.
-pub struct Picture {
+/// A picture that can be drawn on any thread.
+pub struct Picture(Kind);
+
+enum Kind {
+    /// Of the part as it is when it is drawn.
+    Part(PartPicture),
+    /// Of the curves of the oscilloscope.
+    Curves(Curves, ScopeColours),
+}
+
+struct PartPicture {
     stock: Arc<Stock>,
     program: String,
     time_s: Option<f64>,
@@ -52,6 +63,23 @@ pub struct Picture {
     sight: Sight,
     projection: Projection,
 }
+
+/// Why a picture cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// A part has no picture of this size.
+    #[error(transparent)]
+    Page(#[from] PageError),
+    /// A picture of curves is written nowhere.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// Curves are no smaller.
+    #[error("curves have at least {0} x {1} pixels")]
+    TooSmall(u32, u32),
+}
+
+/// The smallest picture of curves, pixels.
+const LEAST: (u32, u32) = (160, 120);
 
 impl Picture {
     pub(super) fn new(
@@ -62,7 +90,7 @@ impl Picture {
         sight: Sight,
         third_angle: bool,
     ) -> Picture {
-        Picture {
+        Picture(Kind::Part(PartPicture {
             stock,
             program: program.to_owned(),
             time_s,
@@ -72,22 +100,43 @@ impl Picture {
                 true => Projection::ThirdAngle,
                 false => Projection::FirstAngle,
             },
-        }
+        }))
     }
 
-    /// The part as it is now; `None` before a BLK FORM was executed.
+    pub(super) fn curves(curves: Curves, colours: ScopeColours) -> Picture {
+        Picture(Kind::Curves(curves, colours))
+    }
+
+    /// The part as it is now; `None` before a BLK FORM was executed, and of a picture of curves.
     pub fn part(&self) -> Option<Part> {
-        self.stock.part()
+        match &self.0 {
+            Kind::Part(picture) => picture.stock.part(),
+            Kind::Curves(..) => None,
+        }
     }
 
     /// Draws it as PNG of so many pixels; `None` without a part.
     ///
     /// # Errors
     /// When there is no picture of this size.
-    pub fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PageError> {
+    pub fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PictureError> {
+        match &self.0 {
+            Kind::Part(picture) => Ok(picture.png(width, height)?),
+            Kind::Curves(..) if width < LEAST.0 || height < LEAST.1 => {
+                Err(PictureError::TooSmall(LEAST.0, LEAST.1))
+            }
+            Kind::Curves(curves, colours) => Ok(Some(curves.png(width, height, colours)?)),
+        }
+    }
+}
+
+impl PartPicture {
+    fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PageError> {
         let title = format!("PGM {}", self.program);
         let page = Page::new(width, height, &title, &self.note())?;
-        let Some(part) = self.part() else { return Ok(None) };
+        let Some(part) = self.stock.part() else {
+            return Ok(None);
+        };
         let part = self.detail(&part).unwrap_or(part);
         let [min, max] = [part.min(), part.max()];
         let side = |k: usize| max[k] - min[k];
@@ -106,7 +155,7 @@ impl Picture {
                 };
                 part.three_planes(&page, &options)
             }
-            GraphicsView::Solid => {
+            GraphicsView::Solid | GraphicsView::Oscilloscope => {
                 let height_factor = match self.sight.stretched {
                     true => STRETCHED * side(0).max(side(1)) / side(2),
                     false => 1.0,

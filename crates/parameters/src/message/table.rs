@@ -301,7 +301,7 @@ messages! {
         remedy "Define the tool before its TOOL CALL, or give a tool table.";
         source "(own message of Bahn)";
     ToolLocked: "TOOL LOCKED";
-        cause "The called tool is locked in column TL of the tool table [000:9135].";
+        cause "The called tool is locked in column TL of the tool table.";
         remedy "Release the tool in the table, or call another one.";
         source "(own message of Bahn)";
     EndlessLoop: "ENDLESS LOOP";

@@ -34,11 +34,18 @@ impl Panel {
 
     /// The same with a folder that something was done to.
     pub fn with(what: impl FnOnce(&Path)) -> Panel {
+        Panel::of("mill", what)
+    }
+
+    /// That of another of the shipped machines.
+    pub fn of(machine: &str, what: impl FnOnce(&Path)) -> Panel {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("bahn-server-{}-{number}", std::process::id());
         let folder = std::env::temp_dir().join(name);
-        let machines = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/mill");
+        let machines = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../machines")
+            .join(machine);
         copy(&machines, &folder);
         what(&folder);
         let station = Station::power_on(load(&folder).unwrap()).unwrap();
@@ -105,6 +112,37 @@ impl Panel {
         (status.unwrap_or_default(), body.to_owned())
     }
 
+    /// Status, head and body of what is not text.
+    pub fn bytes(&self, path: &str) -> (u16, String, Vec<u8>) {
+        let mut stream = TcpStream::connect(self.address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+        let request = format!(
+            "GET {path} HTTP/1.1\r\nConnection: close\r\nHost: {}\r\n\r\n",
+            self.address
+        );
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        let end = answer.windows(4).position(|four| four == b"\r\n\r\n").unwrap();
+        let head = String::from_utf8_lossy(&answer[..end]).into_owned();
+        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+        (status, head, answer.split_off(end + 4))
+    }
+
+    /// Chooses a program in the operating mode that is on.
+    pub fn choose(&self, name: &str) {
+        self.press("PGM_NR");
+        for letter in name.chars() {
+            self.press(&letter.to_string());
+        }
+        self.press("ENT");
+        self.until(|screen| {
+            screen["program"]["title"]
+                .as_str()
+                .is_some_and(|title| title.contains(name))
+        });
+    }
+
     pub fn get(&self, path: &str) -> Value {
         let (status, body) = self.request("GET", path, &[], "");
         assert_eq!(status, 200, "{path}: {body}");
@@ -145,6 +183,20 @@ impl Panel {
         while now() < end {
             std::thread::sleep(Duration::from_millis(20));
         }
+    }
+
+    /// From POWER INTERRUPTED to MANUAL OPERATION.
+    pub fn to_manual(&self) {
+        self.until(|screen| screen["messages"][0]["text"] == "POWER INTERRUPTED");
+        self.press("CE");
+        self.until(|screen| screen["mode"] == "PASS OVER REFERENCE MARKS");
+        self.until(|screen| screen["messages"].as_array().is_some_and(Vec::is_empty));
+        // The drives are ready a moment after the control voltage.
+        self.wait(1.0);
+        assert_eq!(self.give(&json!({"speed": 100})), 200);
+        self.press("NC_START");
+        self.until(|screen| screen["mode"] == "MANUAL OPERATION");
+        assert_eq!(self.give(&json!({"speed": 1})), 200);
     }
 
     /// A viewer of this name.

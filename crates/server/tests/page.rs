@@ -1,0 +1,316 @@
+//! What stands around the screen, in a real browser: the time line, the lessons, the teacher's drawer, the colours, and that
+//! everything is in sight on windows of all sizes.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panic")]
+
+mod support;
+
+use std::time::Duration;
+
+use bahn_browser::{Browser, Page};
+use serde_json::json;
+use support::{Panel, pictures, position};
+
+/// How long a person waits; the host may be slow.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn open(panel: &Panel, browser: &Browser) -> Page {
+    let mut page = browser.page().unwrap();
+    page.viewport(1440, 900, false).unwrap();
+    page.dark(false).unwrap();
+    page.open(&format!("http://{}/", panel.address)).unwrap();
+    ready(&mut page);
+    page
+}
+
+fn ready(page: &mut Page) {
+    until(
+        page,
+        "document.querySelectorAll('[data-region=softkeys] button').length === 10",
+    );
+}
+
+fn until(page: &mut Page, condition: &str) {
+    page.wait_until(condition, PATIENCE).unwrap();
+}
+
+/// Chooses an option by a piece of its text; as a person does, with an event.
+fn choose(page: &mut Page, selector: &str, text: &str) {
+    let script = format!(
+        "(() => {{ const list = document.querySelector('{selector}'); \
+         const option = [...list.options].find(option => option.textContent.includes('{text}')); \
+         list.value = option.value; list.dispatchEvent(new Event('change', {{ bubbles: true }})); return true; }})()"
+    );
+    until(
+        page,
+        &format!(
+            "[...document.querySelector('{selector}').options].some(option => option.textContent.includes('{text}'))"
+        ),
+    );
+    page.evaluate(&script).unwrap();
+}
+
+#[test]
+fn the_time_line_leads_back_and_on() {
+    let Some(browser) = Browser::for_test().unwrap() else {
+        return;
+    };
+    let panel = Panel::start();
+    panel.to_manual();
+    let mut page = open(&panel, &browser);
+    let began = panel.get("/api/snapshot")["t"].as_f64().unwrap();
+    let stood = position(&panel.screen(), "X");
+    assert_eq!(panel.give(&json!({"key": "X+", "down": true})), 200);
+    panel.until(|screen| position(screen, "X") > stood + 2.0);
+    assert_eq!(panel.give(&json!({"key": "X+", "down": false})), 200);
+    panel.wait(1.0);
+    let moved = position(&panel.screen(), "X");
+
+    // Dragged back to before the axis moved: time stands there, and the axis stands where it stood.
+    let slider = "document.querySelector('[data-region=timeline] input')";
+    let back = format!("{slider}.value = {began}; {slider}.dispatchEvent(new Event('input'))");
+    page.evaluate(&back).unwrap();
+    panel.until(|screen| screen["machine"]["paused"] == true && (position(screen, "X") - stood).abs() < 0.01);
+    until(
+        &mut page,
+        "document.querySelector('[data-region=timeline] .moment').textContent.includes(' of ')",
+    );
+    let on = "[...document.querySelectorAll('[data-region=timeline] button')].find(button => button.textContent === 'Go on')";
+    until(&mut page, &format!("!{on}.disabled"));
+    // To the newest moment, back again, and on from there: another way, and the old one can still be gone to.
+    let newest = "[...document.querySelectorAll('[data-region=timeline] button')].find(button => button.textContent === 'Newest')";
+    until(&mut page, &format!("!{newest}.disabled"));
+    page.evaluate(&format!("{newest}.click()")).unwrap();
+    panel.until(|screen| (position(screen, "X") - moved).abs() < 0.01);
+    page.evaluate(&back).unwrap();
+    panel.until(|screen| (position(screen, "X") - stood).abs() < 0.01);
+    page.evaluate(&format!("{on}.click()")).unwrap();
+    panel.until(|screen| screen["machine"]["paused"] == false);
+    assert_eq!(panel.give(&json!({"key": "Y+", "down": true})), 200);
+    panel.wait(0.3);
+    assert_eq!(panel.give(&json!({"key": "Y+", "down": false})), 200);
+    let branches = "[data-region=timeline] select:last-of-type";
+    choose(&mut page, branches, "Way 1");
+    panel.until(|screen| (position(screen, "X") - moved).abs() < 0.01);
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+#[test]
+fn a_lesson_is_begun_hinted_and_ended() {
+    let Some(browser) = Browser::for_test().unwrap() else {
+        return;
+    };
+    let panel = Panel::start();
+    let known = panel.get("/api/lessons");
+    let known = known.as_array().unwrap();
+    assert_eq!(known.len(), 10);
+    let title = known
+        .iter()
+        .find_map(|lesson| {
+            lesson["name"]
+                .as_str()?
+                .contains("door")
+                .then(|| lesson["title"].as_str())?
+        })
+        .unwrap();
+    let mut page = open(&panel, &browser);
+    page.click(".lessons summary").unwrap();
+    choose(&mut page, ".lessons select", title);
+    page.click(".lessons .choose button").unwrap();
+    until(
+        &mut page,
+        "document.querySelector('.lesson h2')?.checkVisibility()",
+    );
+    assert_eq!(page.text(".lesson h2").unwrap(), title);
+    panel.until(|screen| screen["lesson"]["title"] == title && screen["lesson"]["state"] == "running");
+    // Hints come one after the other, and none before it is asked for.
+    assert_eq!(
+        page.number("document.querySelectorAll('.lesson .hints li').length")
+            .unwrap(),
+        0.0
+    );
+    page.click(".lesson .hint").unwrap();
+    until(
+        &mut page,
+        "document.querySelectorAll('.lesson .hints li').length === 1",
+    );
+    // Nothing was done: it is not passed.
+    page.click(".lesson .hand-in").unwrap();
+    until(
+        &mut page,
+        "document.querySelector('.lesson .state').textContent.startsWith('Not passed')",
+    );
+    page.click(".lesson .end").unwrap();
+    until(&mut page, "!document.querySelector('.lesson h2')");
+    assert!(panel.screen()["lesson"].is_null());
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+#[test]
+fn the_drawer_breaks_and_repairs() {
+    let Some(browser) = Browser::for_test().unwrap() else {
+        return;
+    };
+    let panel = Panel::start();
+    panel.to_manual();
+    // All that the page offers is what the interface says.
+    let drawer = panel.get("/api/drawer");
+    let drawer = drawer.as_array().unwrap();
+    let of = |name: &str, group: &str| {
+        let found = drawer
+            .iter()
+            .find(|thing| thing["name"] == name && thing["group"] == group);
+        found.unwrap_or_else(|| panic!("{name} {group}: {drawer:#?}"))
+    };
+    let encoder = of("X", "axes and spindle");
+    let way = &encoder["faults"][0];
+    assert!(way["deed"].as_str().unwrap().starts_with("fault "), "{way}");
+    let mut page = open(&panel, &browser);
+    page.click(".drawer summary").unwrap();
+    until(
+        &mut page,
+        &format!(
+            "document.querySelectorAll('.drawer .things option').length === {}",
+            drawer.len()
+        ),
+    );
+    let words = format!("X: {}", encoder["words"].as_str().unwrap());
+    choose(&mut page, ".drawer .things", &words);
+    choose(&mut page, ".drawer .ways", way["words"].as_str().unwrap());
+    page.click(".drawer .break").unwrap();
+    panel.until(|screen| !screen["messages"].as_array().unwrap().is_empty());
+    page.click(".drawer .repair").unwrap();
+    let marks = panel.until(|screen| {
+        let marks = screen["timeline"]["marks"].as_array().unwrap();
+        marks.iter().filter(|mark| mark["kind"] == "deed").count() >= 2
+    });
+    assert!(
+        marks["timeline"]["marks"]
+            .to_string()
+            .contains(way["deed"].as_str().unwrap())
+    );
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+/// Everything that is worked with is in sight, nothing is wider than the window and no line of the program is cut.
+#[test]
+fn all_is_in_sight_on_windows_of_all_sizes() {
+    let Some(browser) = Browser::for_test().unwrap() else {
+        return;
+    };
+    let lines: String = (0..40).map(|k| format!("L X+{k} Y+{k} F100\n")).collect();
+    let program = format!("BEGIN PGM LINES MM\n{lines}END PGM LINES MM\n");
+    let panel = Panel::with(|folder| std::fs::write(folder.join("programs/LINES.H"), program).unwrap());
+    panel.to_manual();
+    let mut page = open(&panel, &browser);
+    panel.press("TEST");
+    panel.choose("LINES");
+    panel.until(|screen| screen["program"]["lines"].as_array().unwrap().len() == 16);
+    let inside = |selector: &str, in_what: &str| {
+        format!(
+            "(() => {{ const a = document.querySelector('{selector}').getBoundingClientRect(), b = {in_what}; \
+             return a.top >= b.top - 0.5 && a.bottom <= b.bottom + 0.5 && a.left >= b.left - 0.5 && a.right <= b.right + 0.5; }})()"
+        )
+    };
+    let window = "{ top: 0, left: 0, bottom: innerHeight, right: innerWidth }";
+    for (width, height) in [(1280, 800), (1440, 900), (3840, 2160)] {
+        page.viewport(width, height, false).unwrap();
+        pictures::take(&mut page, &format!("window-{width}"));
+        for seen in [
+            ".emergency",
+            "[data-key=\"NC_START\"]",
+            "[data-key=\"X+\"]",
+            ".speed select",
+            "[data-region=softkeys]",
+            "[data-key=\"W\"]",
+        ] {
+            assert_eq!(
+                page.evaluate(&inside(seen, window)).unwrap(),
+                true,
+                "{width}: {seen}"
+            );
+        }
+        let last = inside(
+            "[data-region=program] .lines li:nth-child(16)",
+            "document.querySelector('[data-region=program]').getBoundingClientRect()",
+        );
+        assert_eq!(page.evaluate(&last).unwrap(), true, "{width}: the last line");
+    }
+    for width in [360, 390] {
+        page.viewport(width, 800, true).unwrap();
+        pictures::take(&mut page, &format!("window-{width}"));
+        let wide = page.number("document.documentElement.scrollWidth").unwrap();
+        assert!(wide <= f64::from(width), "{width}: {wide}");
+        // The arrows of the soft keys stand as they point; an axis stands on one line.
+        let left_of = "document.querySelector('[data-key=SK_LEFT]').getBoundingClientRect().right <= \
+                       document.querySelector('[data-key=SK_RIGHT]').getBoundingClientRect().left";
+        assert_eq!(page.evaluate(left_of).unwrap(), true);
+        let whole = "[...document.querySelectorAll('.axis-value')].every(axis => axis.getClientRects().length === 1 && \
+                     axis.getBoundingClientRect().right <= innerWidth)";
+        assert_eq!(page.evaluate(whole).unwrap(), true);
+    }
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+/// The colours of the control are those of its machine parameters, and the page keeps the choice.
+#[test]
+fn the_colours_of_the_control_are_its_parameters() {
+    let Some(browser) = Browser::for_test().unwrap() else {
+        return;
+    };
+    // MP7356.1, the axis positions: $0003F00 is green.
+    let panel = Panel::with(|folder| {
+        let path = folder.join("parameters.mp");
+        let text = std::fs::read_to_string(&path).unwrap();
+        let set: String = text
+            .lines()
+            .map(|line| match line.starts_with("MP7356.1") {
+                true => "MP7356.1 : $0003F00\n".to_owned(),
+                false => format!("{line}\n"),
+            })
+            .collect();
+        assert_ne!(set, text);
+        std::fs::write(path, set).unwrap();
+    });
+    panel.to_manual();
+    let mut page = open(&panel, &browser);
+    let colour = "getComputedStyle(document.querySelector('[data-region=status] .axes')).color";
+    let calm = page.evaluate(colour).unwrap();
+    choose(&mut page, "#scheme", "control");
+    assert_eq!(page.evaluate(colour).unwrap(), "rgb(0, 255, 0)");
+    page.reload().unwrap();
+    ready(&mut page);
+    until(&mut page, &format!("{colour} === 'rgb(0, 255, 0)'"));
+    pictures::take(&mut page, "colours-of-the-control");
+    choose(&mut page, "#scheme", "Calm");
+    assert_eq!(page.evaluate(colour).unwrap(), calm);
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+/// A TNC 360 has one column of text: one operating mode, and graphics in the place of the program.
+#[test]
+fn a_small_screen_has_one_column() {
+    let Some(browser) = Browser::for_test().unwrap() else {
+        return;
+    };
+    let panel = Panel::of("mill-tnc360", |_| {});
+    panel.to_manual();
+    let look = json!({"layout": "one_column", "colours": {}});
+    assert_eq!(panel.screen()["look"], look);
+    let mut page = open(&panel, &browser);
+    choose(&mut page, "#scheme", "control");
+    panel.press("TEST");
+    panel.until(|screen| screen["mode"] == "TEST RUN");
+    panel.press("GRAPHICS");
+    let shown = "[...document.querySelectorAll('.windows > .window')].filter(window => window.checkVisibility()).map(window => window.dataset.region).join()";
+    until(&mut page, &format!("{shown} === 'graphics'"));
+    let headings =
+        "[...document.querySelectorAll('.heading')].filter(heading => heading.checkVisibility()).length";
+    assert_eq!(page.number(headings).unwrap(), 1.0);
+    pictures::take(&mut page, "one-column");
+    for _ in 0..3 {
+        panel.press("GRAPHICS");
+    }
+    until(&mut page, &format!("{shown} === 'program'"));
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
