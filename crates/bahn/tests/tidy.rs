@@ -63,6 +63,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "control",
             "host",
             "workpiece",
+            "picture",
             "viewer",
             "interpreter",
             "motion",

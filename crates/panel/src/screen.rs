@@ -249,6 +249,10 @@ pub enum GraphicsView {
     ThreePlanes,
     /// 3D view.
     Solid,
+    /// No part: the lines of the program that is being written.
+    Lines,
+    /// No part: the drawing of the cycle whose words are asked for.
+    Figure,
 }
 
 /// A line of the PLC window.

@@ -252,10 +252,10 @@ impl Station {
 
     /// What the graphics show, to be drawn; `None` while the operator does not look at them, and without a part.
     pub fn picture(&mut self) -> Option<Picture> {
-        let third_angle = self.parameters().graphics().third_angle;
+        let settings = self.parameters().graphics();
         let (console, site) = self.parts();
         let cut = console.cut(console.front())?;
-        site.graphics.picture(cut, third_angle)
+        site.graphics.picture(cut, &settings)
     }
 
     /// The screen as it is now. Its serial counts on when it is another one.

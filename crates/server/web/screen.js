@@ -192,6 +192,7 @@ export function plcWindow(lines) {
 }
 
 const VIEWS = { plan: "Plan view", three_planes: "Projection in three planes", solid: "3D view" };
+const DRAWINGS = { lines: "Contour of the program", figure: "Drawing of the cycle" };
 const picture = { wanted: 0, loading: 0 };
 
 /** The part as the graphics show it: a picture is asked for when there is another one, and never two at once. */
@@ -203,7 +204,7 @@ export function graphics(shown) {
     return;
   }
   const image = node.querySelector("img");
-  image.alt = `${VIEWS[shown.view]} of the part${shown.magn > 1 ? `, magnified ${shown.magn} times` : ""}`;
+  image.alt = DRAWINGS[shown.view] ?? `${VIEWS[shown.view]} of the part${shown.magn > 1 ? `, magnified ${shown.magn} times` : ""}`;
   const bar = node.querySelector("progress");
   bar.hidden = !shown.running;
   bar.value = shown.progress;

@@ -2,24 +2,36 @@
 //! cut while it runs, and how the operator looks at them.
 //!
 //! - `stock` is the part that is being cut, which pictures are made of meanwhile;
-//! - `trial` tests a program with it, `follow` cuts what the machine has executed.
+//! - `trial` tests a program with it, `follow` cuts what the machine has executed;
+//! - `contour` is a program that is being written as lines, `drawing` their picture; `figure` draws the cycle that
+//!   is asked for.
 //!
 //! By the clock on the wall both cut on threads of their own; by the free clock with the machine, so that the same
 //! inputs give the same screens.
 
+mod contour;
+mod drawing;
+mod figure;
 mod follow;
 mod picture;
 mod stock;
 mod trial;
 
-use bahn_control::Control;
+use std::sync::{Arc, Mutex};
+
+use bahn_control::{Control, Programs};
 use bahn_dialogue::Key;
-use bahn_host::Host;
+use bahn_host::{Host, LoadedMachine};
+use bahn_parameters::machining::GraphicsSettings;
+
+use crate::programs::ProgramMemory;
 
 use crate::screen::{GraphicsLine, GraphicsView};
 pub use picture::Picture;
 pub(crate) use picture::Sight;
 
+pub(crate) use contour::Wish;
+use contour::{Lines, Sketch};
 use follow::Follower;
 use trial::Trial;
 
@@ -37,11 +49,35 @@ pub(crate) enum Cut {
     Test,
     /// That of the program run.
     Run,
+    /// The program that is being written, as lines.
+    Contour,
+}
+
+/// Another drawing takes the place of one that is shown when it is whole, or after this time, µs (inferred).
+const DRAWN_US: u64 = 300_000;
+
+/// The drawing of a cycle: its number, and the id of the prompt that is open.
+pub(crate) type Asked = (u16, &'static str);
+
+/// The graphics while programming.
+#[derive(Default)]
+struct Programmed {
+    /// The operator looks at them.
+    on: bool,
+    sketch: Option<Sketch>,
+    /// What is shown until the next one has something: its lines, title and last block.
+    shown: Option<(Arc<Mutex<Lines>>, String, Option<u32>)>,
+    begun_us: u64,
+    /// Lines of the picture that was shown last.
+    lines: usize,
 }
 
 /// The graphics of a station.
 pub(crate) struct Graphics {
     trial: Option<Trial>,
+    programmed: Programmed,
+    /// The cycle whose drawing is shown.
+    asked: Option<Asked>,
     follower: Follower,
     /// How it is looked at; `None` shows the program alone.
     view: Option<GraphicsView>,
@@ -59,6 +95,8 @@ impl Graphics {
         host.keep_path();
         Graphics {
             trial: None,
+            programmed: Programmed::default(),
+            asked: None,
             follower: Follower::default(),
             view: None,
             sight: Sight::default(),
@@ -80,6 +118,7 @@ impl Graphics {
             trial.cycle();
         }
         let now_us = host.control().time_us();
+        self.serial += u64::from(self.programmed.cycle(now_us));
         let progress = self.trial.as_ref().map(Trial::progress).unwrap_or_default();
         let cut = progress.elements + self.follower.elements();
         let (seen, then_us) = self.shown;
@@ -114,14 +153,53 @@ impl Graphics {
         self.serial += 1;
     }
 
+    /// Draws a program that is being written.
+    pub fn draw(
+        &mut self,
+        wish: Wish,
+        control: &Control,
+        machine: &LoadedMachine,
+        programs: &Arc<ProgramMemory>,
+    ) {
+        let programs = Arc::clone(programs) as Arc<dyn Programs>;
+        let sketch = Sketch::begin(wish, contour::settings(control, machine), programs, self.beside);
+        self.programmed.sketch = Some(sketch);
+        self.programmed.begun_us = control.time_us();
+    }
+
+    /// Shows what is being written beside the program, or no more.
+    pub fn show_programmed(&mut self, on: bool) {
+        self.programmed.on = on;
+        if !on {
+            self.programmed = Programmed::default();
+        }
+        self.serial += 1;
+    }
+
+    /// Shows the drawing of a cycle instead, or no more.
+    pub fn show_cycle(&mut self, asked: Option<Asked>) {
+        self.serial += u64::from(self.asked != asked);
+        self.asked = asked;
+    }
+
+    /// Whether it is shown.
+    pub fn shows_programmed(&self) -> bool {
+        self.programmed.on
+    }
+
     /// Takes a key; `false` when it is not for the graphics.
     pub fn key(&mut self, cut: Cut, key: Key) -> bool {
+        if cut == Cut::Contour {
+            let taken = key == Key::Magn && self.programmed.on && self.magnify();
+            self.serial += u64::from(taken);
+            return taken;
+        }
         if key == Key::Graphics {
             self.view = match self.view {
                 None => Some(GraphicsView::Plan),
                 Some(GraphicsView::Plan) => Some(GraphicsView::ThreePlanes),
                 Some(GraphicsView::ThreePlanes) => Some(GraphicsView::Solid),
-                Some(GraphicsView::Solid) => None,
+                Some(GraphicsView::Solid | GraphicsView::Lines | GraphicsView::Figure) => None,
             };
             self.serial += 1;
             return true;
@@ -154,6 +232,7 @@ impl Graphics {
                 }
             }
             Cut::Run => self.follower.restore(),
+            Cut::Contour => {}
         }
         true
     }
@@ -185,6 +264,24 @@ impl Graphics {
 
     /// What the screen says of it; `None` while the operator looks at the program alone.
     pub fn line(&self, cut: Cut) -> Option<GraphicsLine> {
+        if cut == Cut::Contour {
+            let drawing = self.asked.map(|_| GraphicsView::Figure);
+            let view = drawing.or(self.programmed.on.then_some(GraphicsView::Lines));
+            return view.map(|view| GraphicsLine {
+                view,
+                running: self
+                    .programmed
+                    .sketch
+                    .as_ref()
+                    .is_some_and(|sketch| !sketch.progress().1),
+                progress: 0.0,
+                machining_time_s: None,
+                magn: self.sight.magn,
+                azimuth_deg: 0.0,
+                sections: self.sight.sections,
+                serial: self.serial,
+            });
+        }
         let view = self.view?;
         let progress = self.trial.as_ref().map(Trial::progress).unwrap_or_default();
         let test = cut == Cut::Test;
@@ -201,7 +298,15 @@ impl Graphics {
     }
 
     /// What is to be seen, to be drawn by whoever wants it; `None` as with [`Graphics::line`], and without a part.
-    pub fn picture(&self, cut: Cut, third_angle: bool) -> Option<Picture> {
+    pub fn picture(&self, cut: Cut, settings: &GraphicsSettings) -> Option<Picture> {
+        if let (Cut::Contour, Some((cycle, id))) = (cut, self.asked) {
+            return Picture::of_cycle(cycle, id);
+        }
+        if cut == Cut::Contour {
+            let (lines, title, upto) = self.programmed.shown.as_ref().filter(|_| self.programmed.on)?;
+            let (magn, turned) = (self.sight.magn, settings.plane_rotated);
+            return Some(Picture::of_lines(Arc::clone(lines), title, *upto, magn, turned));
+        }
         let view = self.view?;
         let (stock, program, time_s) = match cut {
             Cut::Test => {
@@ -209,7 +314,7 @@ impl Graphics {
                 let time_s = trial.progress().machining_time_s;
                 (trial.stock(), trial.program(), Some(time_s))
             }
-            Cut::Run => (self.follower.stock()?, self.follower.program(), None),
+            Cut::Run | Cut::Contour => (self.follower.stock()?, self.follower.program(), None),
         };
         Some(Picture::new(
             stock,
@@ -217,7 +322,34 @@ impl Graphics {
             time_s,
             view,
             self.sight,
-            third_angle,
+            settings.third_angle,
         ))
+    }
+}
+
+impl Programmed {
+    /// Goes on; whether there is another picture.
+    fn cycle(&mut self, now_us: u64) -> bool {
+        let Some(sketch) = &mut self.sketch else {
+            return false;
+        };
+        sketch.cycle();
+        let (count, ended) = sketch.progress();
+        let lines = sketch.lines();
+        let is_shown = self
+            .shown
+            .as_ref()
+            .is_some_and(|(shown, ..)| Arc::ptr_eq(shown, &lines));
+        let due = ended || now_us.abs_diff(self.begun_us) >= DRAWN_US;
+        if !due || (is_shown && count == self.lines && !ended) {
+            return false;
+        }
+        self.begun_us = now_us;
+        self.lines = count;
+        self.shown = Some((lines, format!("PGM {}", sketch.name), sketch.upto));
+        if ended {
+            self.sketch = None;
+        }
+        true
     }
 }

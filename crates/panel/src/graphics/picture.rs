@@ -1,9 +1,14 @@
 //! What is to be seen of a part, drawn by whoever wants it.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
+use bahn_dialogue::FigurePart;
+use bahn_picture::Image;
 use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, ThreePlanes, View3d};
 
+use super::contour::Lines;
+use super::drawing::{Sheet, draw};
+use super::figure;
 use super::stock::Stock;
 use crate::screen::GraphicsView;
 
@@ -43,8 +48,28 @@ impl Sight {
     }
 }
 
-/// A picture that can be drawn on any thread, of the part as it is then.
+/// A picture that can be drawn on any thread, of the part, or of the lines of a program, as they are then.
 pub struct Picture {
+    what: What,
+}
+
+enum What {
+    Part(Box<PartPicture>),
+    Lines(LinesPicture),
+    /// A cycle, with the id of the prompt that is open.
+    Cycle(u16, Vec<&'static FigurePart>, &'static str),
+}
+
+/// Lines of a program that is being written.
+struct LinesPicture {
+    lines: Arc<Mutex<Lines>>,
+    title: String,
+    current: Option<u32>,
+    magn: u8,
+    turned: bool,
+}
+
+struct PartPicture {
     stock: Arc<Stock>,
     program: String,
     time_s: Option<f64>,
@@ -62,7 +87,7 @@ impl Picture {
         sight: Sight,
         third_angle: bool,
     ) -> Picture {
-        Picture {
+        let part = PartPicture {
             stock,
             program: program.to_owned(),
             time_s,
@@ -72,12 +97,44 @@ impl Picture {
                 true => Projection::ThirdAngle,
                 false => Projection::FirstAngle,
             },
+        };
+        Picture {
+            what: What::Part(Box::new(part)),
         }
     }
 
-    /// The part as it is now; `None` before a BLK FORM was executed.
+    pub(super) fn of_lines(
+        lines: Arc<Mutex<Lines>>,
+        title: &str,
+        current: Option<u32>,
+        magn: u8,
+        turned: bool,
+    ) -> Picture {
+        Picture {
+            what: What::Lines(LinesPicture {
+                lines,
+                title: title.to_owned(),
+                current,
+                magn,
+                turned,
+            }),
+        }
+    }
+
+    /// The drawing of a cycle; `None` for one that has none.
+    pub(super) fn of_cycle(cycle: u16, asked: &'static str) -> Option<Picture> {
+        let parts = bahn_dialogue::figure(cycle)?;
+        Some(Picture {
+            what: What::Cycle(cycle, parts, asked),
+        })
+    }
+
+    /// The part as it is now; `None` before a BLK FORM was executed, and of lines.
     pub fn part(&self) -> Option<Part> {
-        self.stock.part()
+        match &self.what {
+            What::Part(picture) => picture.part(),
+            What::Lines(_) | What::Cycle(..) => None,
+        }
     }
 
     /// Draws it as PNG of so many pixels; `None` without a part.
@@ -85,6 +142,44 @@ impl Picture {
     /// # Errors
     /// When there is no picture of this size.
     pub fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PageError> {
+        match &self.what {
+            What::Part(picture) => picture.png(width, height),
+            What::Lines(picture) => picture.png(width, height),
+            What::Cycle(cycle, parts, asked) => {
+                Page::new(width, height, "", "")?;
+                let title = format!("CYCL DEF {cycle}");
+                Ok(written(&figure::draw(parts, asked, [width, height], &title)))
+            }
+        }
+    }
+}
+
+impl LinesPicture {
+    fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PageError> {
+        // The same sizes as those of a part.
+        Page::new(width, height, "", "")?;
+        let image = {
+            let lines = super::contour::lock(&self.lines);
+            let size = [f64::from(width), f64::from(height)];
+            let sheet = Sheet::of(&lines, size, f64::from(self.magn), self.turned);
+            draw(&lines, &sheet, [width, height], &self.title, self.current)
+        };
+        Ok(written(&image))
+    }
+}
+
+/// An image as PNG; nothing but memory is written to.
+fn written(image: &Image) -> Option<Vec<u8>> {
+    let mut png = Vec::new();
+    image.write_png(&mut png).is_ok().then_some(png)
+}
+
+impl PartPicture {
+    fn part(&self) -> Option<Part> {
+        self.stock.part()
+    }
+
+    fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PageError> {
         let title = format!("PGM {}", self.program);
         let page = Page::new(width, height, &title, &self.note())?;
         let Some(part) = self.part() else { return Ok(None) };
@@ -92,7 +187,9 @@ impl Picture {
         let [min, max] = [part.min(), part.max()];
         let side = |k: usize| max[k] - min[k];
         let image = match self.view {
-            GraphicsView::Plan => part.plan_view(&page, &PlanView::default()),
+            GraphicsView::Plan | GraphicsView::Lines | GraphicsView::Figure => {
+                part.plan_view(&page, &PlanView::default())
+            }
             GraphicsView::ThreePlanes => {
                 // A detail has its sections in its middle.
                 let at = |k: usize| match self.sight.magn {
