@@ -102,13 +102,11 @@ fn part(image: &mut Image, sheet: &Sheet, part: &FigurePart, asked: bool) {
         Shape::Text(at) => [at[0] - 4.0, at[1]],
     };
     let size = if asked { 16.0 } else { 12.0 };
-    image.text(
-        sheet.at(label_at),
-        Anchor::Left,
-        size,
-        colour(DIMENSION),
-        part.label,
-    );
+    let [x, y] = sheet.at(label_at);
+    // Nothing runs through words.
+    let end = x + text_width(part.label, size);
+    image.rectangle([x - 1.0, y - 0.5 * size], [end + 1.0, y + 0.5 * size], BACKGROUND);
+    image.text([x, y], Anchor::Left, size, colour(DIMENSION), part.label);
 }
 
 /// Where the label of a line stands: to the right of its middle, above a level one.

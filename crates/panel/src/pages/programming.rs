@@ -75,23 +75,23 @@ impl Programming {
     /// stand in a row behind those of the editor (inferred).
     fn graphics_key(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
         let editor = &self.open.as_ref()?.editor;
-        let (row, rows) = editor.view(0, 0).soft_row;
-        let outermost = match key {
-            Key::SkRight => row + 1 >= rows,
-            _ => row == 0,
-        };
         match key {
-            Key::SkLeft | Key::SkRight if !editor.is_open() && !self.drawn.keys && outermost => {
-                self.drawn.keys = true;
-            }
+            Key::SkLeft | Key::SkRight if editor.is_open() => return None,
             Key::SkLeft | Key::SkRight => {
-                // Behind the last row comes the first one, where the editor may stand already.
-                let arrived = match key {
-                    Key::SkRight => row == 0,
-                    _ => row + 1 >= rows,
+                let (row, rows) = editor.view(0, 0).soft_row;
+                let (first, last) = (row == 0, row + 1 >= rows);
+                let (leaves, arrived) = match key {
+                    Key::SkRight => (last, first),
+                    _ => (first, last),
                 };
-                let left = std::mem::take(&mut self.drawn.keys);
-                return (left && arrived).then_some(Turn::Done);
+                // Behind the last row comes the first one, where the editor may stand already.
+                if std::mem::take(&mut self.drawn.keys) {
+                    return arrived.then_some(Turn::Done);
+                }
+                self.drawn.keys = leaves;
+                if !leaves {
+                    return None;
+                }
             }
             Key::Graphics => self.switch(!self.drawn.auto, site),
             Key::Start => self.draw(None, site),
@@ -114,7 +114,7 @@ impl Programming {
 
     /// The cycle whose words are asked for, where it has a drawing, and the prompt.
     fn asked(&self) -> Option<Asked> {
-        let question = self.open.as_ref()?.editor.view(0, 0).question?;
+        let question = self.open.as_ref()?.editor.question()?;
         let cycle = question.about.strip_prefix("CYCL DEF ")?.split('.').next()?;
         let cycle = cycle.parse::<u16>().ok()?;
         bahn_dialogue::figure(cycle).map(|_| (cycle, question.id))
