@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 
-use bahn_dialogue::{Draft, Editor, Key, Reaction, Setting};
+use bahn_dialogue::{BuilderCycle, Draft, Editor, Key, Reaction, Setting};
 use bahn_fuzz as _;
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_program::{Operation, Program};
@@ -21,6 +21,9 @@ CYCL DEF 7.0 DATUM SHIFT
 CYCL DEF 7.1 X+40
 ; a comment
 / L Z+50 FMAX ; optional
+TOOL CALL 1 Z S500
+CYCL DEF 21.0 PILOT DRILLING
+CYCL DEF 21.1 Q10=+5 Q11=+100 Q13=+1
 FN1: Q1 = +Q2 + -5
 CALL LBL 1 REP 5/5
 END PGM 7 MM
@@ -31,7 +34,13 @@ fuzz_target!(|bytes: &[u8]| {
     let models = ControlModel::ALL;
     let model = models[usize::from(*first) % models.len()];
     let program = Program::from_bytes("7.H", PROGRAM.as_bytes().to_vec());
-    let mut editor = Editor::new(Arc::new(program), Setting::of(&ParameterList::reference(model)));
+    let mut setting = Setting::of(&ParameterList::reference(model));
+    setting.builder_cycles = vec![BuilderCycle {
+        number: 68,
+        name: "Bolt hole circle".to_owned(),
+        parameters: (1..=7).map(|number| (number, format!("PARAMETER {number}?"))).collect(),
+    }];
+    let mut editor = Editor::new(Arc::new(program), setting);
     for key in keys.iter().filter_map(|byte| Key::ALL.get(usize::from(*byte))) {
         let before = Arc::clone(editor.program());
         let reaction = editor.key(*key);

@@ -8,7 +8,7 @@ use crate::blocks::{SIGNED, TURN, UNSIGNED, coordinates};
 use crate::field::{Ask, Field, Most, Need, Signs, Slot};
 use crate::line::Line;
 use crate::prompt::prompt;
-use crate::{OEM_CYCLES, Setting};
+use crate::{BuilderCycle, OEM_CYCLES, Setting};
 
 /// The prompt of a parameter of a cycle of the machine builder that has no text of its own.
 pub(crate) const PARAMETER: &str = "parameter";
@@ -40,9 +40,22 @@ const ASSIGNMENTS: usize = 3;
 /// The words of all blocks of a cycle or probe function; of those of the machine builder that the machine does not have,
 /// their `Qn=` words as text.
 pub(crate) fn cycle_lines(function: CycleFunction, number: u16, setting: &Setting) -> Vec<Line> {
-    let builder = setting
-        .builder_cycle(number)
-        .filter(|_| function == CycleFunction::Definition);
+    let builder = setting.builder_cycle(number);
+    lines_of(
+        function,
+        number,
+        builder.filter(|_| function == CycleFunction::Definition),
+    )
+}
+
+/// Ids of all that a standard cycle asks.
+pub(crate) fn prompts_of(function: CycleFunction, number: u16) -> Vec<&'static str> {
+    let lines = lines_of(function, number, None);
+    let fields = lines.iter().flat_map(Line::fields);
+    fields.map(|field| field.slot.prompt).collect()
+}
+
+fn lines_of(function: CycleFunction, number: u16, builder: Option<&BuilderCycle>) -> Vec<Line> {
     let numbers: Vec<u16> = match builder {
         Some(cycle) => cycle.parameters.iter().map(|(number, _)| *number).collect(),
         None if function == CycleFunction::Definition => {

@@ -396,12 +396,20 @@ impl Dialogue {
         }
     }
 
-    /// Adds a word to a field; whether there is such a field.
-    pub(crate) fn answer(&mut self, line: usize, field: usize, word: Word, setting: &Setting) -> bool {
+    /// Adds blocks like the last until there is one of a number; whether there is.
+    pub(crate) fn reach(&mut self, line: usize, setting: &Setting) -> bool {
         while line >= self.lines.len() {
             if !self.add_line(setting) {
                 return false;
             }
+        }
+        true
+    }
+
+    /// Adds a word to a field; whether there is such a field.
+    pub(crate) fn answer(&mut self, line: usize, field: usize, word: Word, setting: &Setting) -> bool {
+        if !self.reach(line, setting) {
+            return false;
         }
         let Some(field) = self.lines.get_mut(line).and_then(|line| line.field_mut(field)) else {
             return false;

@@ -136,6 +136,10 @@ impl Editor {
                 return None;
             }
         }
+        // The question may be that of a block to which nothing was said yet.
+        if !dialogue.reach(line.max(draft.reached), &self.setting) {
+            return None;
+        }
         (dialogue.line, dialogue.field, dialogue.reached) = (line, field, draft.reached);
         dialogue.typing = draft.typing();
         let words = dialogue.current()?.words.len();

@@ -6,6 +6,7 @@
 //! - [`Reaction`]: what a key did;
 //! - [`Setting`]: what an editor has to know of its control and machine, [`BuilderCycle`] its own cycles;
 //! - [`Draft`]: what is still open, to be kept and taken up again;
+//! - [`figure`]: the drawing of a cycle, in which the word that is asked for stands out;
 //! - [`prompts`]: the texts of the dialogue in English and German.
 //!
 //! ```
@@ -47,6 +48,7 @@ mod dialogue;
 mod draft;
 mod editor;
 mod field;
+mod figure;
 mod highlight;
 mod history;
 mod key;
@@ -65,6 +67,7 @@ mod view;
 pub use draft::{Draft, NoDraft};
 pub use editor::Editor;
 pub use field::Word;
+pub use figure::{FIGURE_SIZE, FigurePart, Shape, figure};
 pub use key::{Key, KeyGroup, Tongue};
 pub use prompt::{Prompt, prompts};
 pub use reaction::{Reaction, Wanted};

@@ -137,7 +137,8 @@ impl Editor {
         }
     }
 
-    fn question(&self) -> Option<Question> {
+    /// The open question, which [`Editor::view`] has, too.
+    pub fn question(&self) -> Option<Question> {
         let tongue = self.setting.tongue;
         let (id, entered) = match &self.open {
             Open::Nothing | Open::Highlight(_) => return None,

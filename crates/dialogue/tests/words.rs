@@ -191,3 +191,19 @@ fn words_behind_m_functions_lines_of_datum_tables_and_optional_blocks() {
     desk.enter("SK1");
     assert_eq!(desk.blocks()[0], "L X+1 R0 FMAX M118 X1.5 Y2");
 }
+
+/// What was answered of a cycle with as many blocks as are wanted is kept while the next is asked for.
+#[test]
+fn the_question_of_one_more_block_is_kept() {
+    for keys in ["CYCL_DEF 7 ENT X 5 ENT", "CYCL_DEF 70 ENT Q 1 ENT"] {
+        let mut desk = Desk::with("", Tnc425);
+        desk.enter(keys);
+        let draft = desk.editor.draft().unwrap();
+        let mut again = Editor::new(Arc::clone(desk.editor.program()), desk.editor.setting().clone());
+        assert!(again.restore(&draft), "{draft}");
+        assert_eq!(
+            (again.draft(), again.view(3, 3)),
+            (Some(draft), desk.editor.view(3, 3))
+        );
+    }
+}

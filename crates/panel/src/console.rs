@@ -5,7 +5,7 @@ use bahn_control::{Command, Mode};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
-use crate::graphics::Cut;
+use crate::graphics::Subject;
 use crate::page::{Page, Side, Turn, View};
 use crate::pages;
 use crate::screen::{Heading, SoftKeys};
@@ -320,12 +320,12 @@ impl Console {
     }
 
     /// The part that the graphics of a side show.
-    pub fn cut(&self, side: Side) -> Option<Cut> {
+    pub fn subject(&self, side: Side) -> Option<Subject> {
         let stack = match side {
             Side::Machine => &self.machine,
             Side::Programming => self.programming.as_ref().map(|(_, stack)| stack)?,
         };
-        stack.shown().cut().or_else(|| stack.base.cut())
+        stack.shown().subject().or_else(|| stack.base.subject())
     }
 
     /// The soft-key row of the side that has the keys.

@@ -2,7 +2,7 @@
 
 use bahn_dialogue::Key;
 
-use crate::graphics::Cut;
+use crate::graphics::Subject;
 use crate::screen::{Dialogue, SoftKeys, Window};
 use crate::site::Site;
 
@@ -67,7 +67,7 @@ pub(crate) trait Page: Send {
     fn show(&self, site: &Site, lines: usize) -> View;
 
     /// The part that the graphics show beside it.
-    fn cut(&self) -> Option<Cut> {
+    fn subject(&self) -> Option<Subject> {
         None
     }
 

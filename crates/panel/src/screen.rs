@@ -274,6 +274,10 @@ pub enum GraphicsView {
     Solid,
     /// No part: the curves of the oscilloscope.
     Oscilloscope,
+    /// No part: the lines of the program that is being written.
+    Lines,
+    /// No part: the drawing of the cycle whose words are asked for.
+    Figure,
 }
 
 /// A line of the PLC window.

@@ -254,7 +254,7 @@ impl Station {
     /// What the graphics show, to be drawn; `None` while the operator does not look at them, and without a part.
     pub fn picture(&mut self) -> Option<Picture> {
         let (console, site) = self.parts();
-        let cut = console.cut(console.front())?;
+        let cut = console.subject(console.front())?;
         site.graphics.picture(cut, site.parameters())
     }
 
@@ -262,7 +262,7 @@ impl Station {
     /// other operating modes, and before anything is cut.
     pub fn being_cut(&mut self) -> Option<BeingCut> {
         let (console, site) = self.parts();
-        let cut = console.cut(console.front())?;
+        let cut = console.subject(console.front())?;
         site.graphics.being_cut(cut, site.host.control())
     }
 
@@ -324,7 +324,7 @@ impl Station {
         let (console, site) = self.parts();
         let front = console.front();
         let view = console.view(front, &site, LINES).unwrap_or_default();
-        let graphics = console.cut(front).and_then(|cut| site.graphics.line(cut));
+        let graphics = console.subject(front).and_then(|cut| site.graphics.line(cut));
         let beside = match console.split && layout == Layout::Windows {
             true => console.view(front.other(), &site, LINES),
             false => None,

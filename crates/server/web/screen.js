@@ -202,7 +202,7 @@ export function plcWindow(lines) {
 
 const VIEWS = {
   plan: "Plan view of the part", three_planes: "Projection of the part in three planes", solid: "3D view of the part",
-  oscilloscope: "Curves of the oscilloscope",
+  oscilloscope: "Curves of the oscilloscope", lines: "Contour of the program", figure: "Drawing of the cycle",
 };
 const picture = { wanted: 0, loading: 0 };
 

@@ -3,31 +3,43 @@
 //!
 //! - `stock` is the part that is being cut, which pictures are made of meanwhile;
 //! - `trial` tests a program with it, `follow` cuts what the machine has executed;
+//! - `programmed` is what is seen while programming: `contour` the program as lines, `drawing` their picture, `figure`
+//!   the cycle that is asked for;
 //! - `scope` is the oscilloscope, whose curves stand in the same window.
 //!
 //! By the clock on the wall both cut on threads of their own; by the free clock with the machine, so that the same
 //! inputs give the same screens.
 
 mod being_cut;
+mod contour;
+mod drawing;
+mod figure;
 mod follow;
 mod picture;
+mod programmed;
 mod scope;
 mod stock;
 mod trial;
 
+use std::sync::Arc;
+
 use bahn_control::Control;
 use bahn_dialogue::Key;
-use bahn_host::Host;
+use bahn_host::{Host, LoadedMachine};
 use bahn_parameters::ParameterList;
 
 use crate::colours::colour;
+use crate::programs::ProgramMemory;
 use crate::screen::{GraphicsLine, GraphicsView};
 pub use being_cut::BeingCut;
+pub(crate) use contour::Wish;
 pub(crate) use picture::Sight;
 pub use picture::{Picture, PictureError};
+pub(crate) use programmed::Asked;
 pub(crate) use scope::{Content, Scope, TriggerOn, signal_name};
 
 use follow::Follower;
+use programmed::Programmed;
 use trial::Trial;
 
 /// Between two pictures of a part that is being cut, µs (inferred).
@@ -37,23 +49,44 @@ const SECTION_STEP: f64 = 0.05;
 /// Magnifications that MAGN goes through (inferred) [003:940-945].
 const MAGNIFICATIONS: [u8; 3] = [1, 2, 4];
 
-/// Which part is looked at.
+/// What is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Cut {
-    /// That of TEST RUN.
+pub(crate) enum Subject {
+    /// The part of TEST RUN.
     Test,
-    /// That of the program run.
+    /// The part of the program run.
     Run,
-    /// None: the curves of the oscilloscope.
+    /// What is being written.
+    Programmed,
+    /// The curves of the oscilloscope.
     Oscilloscope,
+}
+
+/// How a part is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PartView {
+    Plan,
+    ThreePlanes,
+    Solid,
+}
+
+impl From<PartView> for GraphicsView {
+    fn from(view: PartView) -> GraphicsView {
+        match view {
+            PartView::Plan => GraphicsView::Plan,
+            PartView::ThreePlanes => GraphicsView::ThreePlanes,
+            PartView::Solid => GraphicsView::Solid,
+        }
+    }
 }
 
 /// The graphics of a station.
 pub(crate) struct Graphics {
     trial: Option<Trial>,
+    programmed: Programmed,
     follower: Follower,
     /// How it is looked at; `None` shows the program alone.
-    view: Option<GraphicsView>,
+    view: Option<PartView>,
     sight: Sight,
     /// Threads cut, not the machine's own one.
     beside: bool,
@@ -70,6 +103,7 @@ impl Graphics {
         host.keep_path();
         Graphics {
             trial: None,
+            programmed: Programmed::default(),
             follower: Follower::default(),
             view: None,
             sight: Sight::default(),
@@ -93,6 +127,7 @@ impl Graphics {
         }
         let now_us = host.control().time_us();
         self.scope.cycle(now_us);
+        self.serial += u64::from(self.programmed.cycle(now_us));
         let progress = self.trial.as_ref().map(Trial::progress).unwrap_or_default();
         let cut = progress.elements + self.follower.elements();
         let (seen, then_us) = self.shown;
@@ -128,30 +163,63 @@ impl Graphics {
         self.serial += 1;
     }
 
+    /// Draws a program that is being written.
+    pub fn draw(
+        &mut self,
+        wish: Wish,
+        control: &Control,
+        machine: &LoadedMachine,
+        programs: &Arc<ProgramMemory>,
+    ) {
+        self.programmed
+            .draw(wish, control, machine, programs, self.beside);
+    }
+
+    /// Shows what is being written beside the program, or no more.
+    pub fn show_programmed(&mut self, on: bool) {
+        self.programmed.show(on);
+        self.serial += 1;
+    }
+
+    /// Shows the drawing of a cycle instead, or no more.
+    pub fn show_cycle(&mut self, asked: Option<Asked>) {
+        self.serial += u64::from(self.programmed.ask(asked));
+    }
+
+    /// Whether it is shown.
+    pub fn shows_programmed(&self) -> bool {
+        self.programmed.is_on()
+    }
+
     /// Takes a key; `false` when it is not for the graphics.
-    pub fn key(&mut self, cut: Cut, key: Key) -> bool {
+    pub fn key(&mut self, subject: Subject, key: Key) -> bool {
+        if subject == Subject::Programmed {
+            let taken = key == Key::Magn && self.programmed.is_on() && self.magnify();
+            self.serial += u64::from(taken);
+            return taken;
+        }
         if key == Key::Graphics {
             self.view = match self.view {
-                None => Some(GraphicsView::Plan),
-                Some(GraphicsView::Plan) => Some(GraphicsView::ThreePlanes),
-                Some(GraphicsView::ThreePlanes) => Some(GraphicsView::Solid),
-                _ => None,
+                None => Some(PartView::Plan),
+                Some(PartView::Plan) => Some(PartView::ThreePlanes),
+                Some(PartView::ThreePlanes) => Some(PartView::Solid),
+                Some(PartView::Solid) => None,
             };
             self.serial += 1;
             return true;
         }
         let Some(view) = self.view else { return false };
         let taken = match (key, view) {
-            (Key::BlkForm, _) => self.restore(cut),
+            (Key::BlkForm, _) => self.restore(subject),
             (Key::Magn, _) => self.magnify(),
-            (Key::Left, GraphicsView::Solid) => self.turn(-1),
-            (Key::Right, GraphicsView::Solid) => self.turn(1),
-            (Key::Up, GraphicsView::Solid) => self.stretch(true),
-            (Key::Down, GraphicsView::Solid) => self.stretch(false),
-            (Key::Left, GraphicsView::ThreePlanes) => self.shift(0, -SECTION_STEP),
-            (Key::Right, GraphicsView::ThreePlanes) => self.shift(0, SECTION_STEP),
-            (Key::Down, GraphicsView::ThreePlanes) => self.shift(1, -SECTION_STEP),
-            (Key::Up, GraphicsView::ThreePlanes) => self.shift(1, SECTION_STEP),
+            (Key::Left, PartView::Solid) => self.turn(-1),
+            (Key::Right, PartView::Solid) => self.turn(1),
+            (Key::Up, PartView::Solid) => self.stretch(true),
+            (Key::Down, PartView::Solid) => self.stretch(false),
+            (Key::Left, PartView::ThreePlanes) => self.shift(0, -SECTION_STEP),
+            (Key::Right, PartView::ThreePlanes) => self.shift(0, SECTION_STEP),
+            (Key::Down, PartView::ThreePlanes) => self.shift(1, -SECTION_STEP),
+            (Key::Up, PartView::ThreePlanes) => self.shift(1, SECTION_STEP),
             _ => false,
         };
         self.serial += u64::from(taken);
@@ -159,16 +227,16 @@ impl Graphics {
     }
 
     /// GRAPHICS and BLK FORM: the programmed blank is whole again [003:931-935].
-    fn restore(&mut self, cut: Cut) -> bool {
-        match cut {
-            Cut::Test => {
+    fn restore(&mut self, subject: Subject) -> bool {
+        match subject {
+            Subject::Test => {
                 self.stop();
                 if let Some(trial) = &self.trial {
                     trial.stock().restore();
                 }
             }
-            Cut::Run => self.follower.restore(),
-            Cut::Oscilloscope => {}
+            Subject::Run => self.follower.restore(),
+            Subject::Oscilloscope | Subject::Programmed => {}
         }
         true
     }
@@ -199,63 +267,73 @@ impl Graphics {
     }
 
     /// What the screen says of it; `None` while the operator looks at the program alone.
-    pub fn line(&self, cut: Cut) -> Option<GraphicsLine> {
-        if cut == Cut::Oscilloscope {
-            return Some(self.scope.line());
-        }
-        let view = self.view?;
-        let progress = self.trial.as_ref().map(Trial::progress).unwrap_or_default();
-        let test = cut == Cut::Test;
-        Some(GraphicsLine {
+    pub fn line(&self, subject: Subject) -> Option<GraphicsLine> {
+        let still = |view, running| GraphicsLine {
             view,
-            running: test && self.trial.is_some() && !progress.ended,
-            progress: if test { progress.part } else { 0.0 },
-            machining_time_s: test.then_some(progress.machining_time_s),
+            running,
+            progress: 0.0,
+            machining_time_s: None,
             magn: self.sight.magn,
             azimuth_deg: self.sight.azimuth_deg(),
             sections: self.sight.sections,
             serial: self.serial,
-        })
+        };
+        match subject {
+            Subject::Oscilloscope => Some(self.scope.line()),
+            Subject::Programmed => Some(still(self.programmed.view()?, self.programmed.is_drawing())),
+            Subject::Run => Some(still(self.view?.into(), false)),
+            Subject::Test => {
+                let progress = self.trial.as_ref().map(Trial::progress).unwrap_or_default();
+                Some(GraphicsLine {
+                    progress: progress.part,
+                    machining_time_s: Some(progress.machining_time_s),
+                    ..still(self.view?.into(), self.trial.is_some() && !progress.ended)
+                })
+            }
+        }
     }
 
     /// The part itself, whatever the graphics show of it; `None` before there is one.
-    pub fn being_cut(&self, cut: Cut, control: &Control) -> Option<BeingCut> {
-        match cut {
-            Cut::Test => {
+    pub fn being_cut(&self, subject: Subject, control: &Control) -> Option<BeingCut> {
+        match subject {
+            Subject::Test => {
                 let trial = self.trial.as_ref()?;
                 Some(BeingCut::new(trial.stock(), trial.program()))
             }
-            Cut::Run => {
+            Subject::Run => {
                 let cut = BeingCut::new(self.follower.stock()?, self.follower.program());
                 Some(cut.on_the_way(control))
             }
-            Cut::Oscilloscope => None,
+            Subject::Oscilloscope | Subject::Programmed => None,
         }
     }
 
     /// What is to be seen, to be drawn by whoever wants it; `None` as with [`Graphics::line`], and without a part.
-    pub fn picture(&self, cut: Cut, list: &ParameterList) -> Option<Picture> {
-        if cut == Cut::Oscilloscope {
-            let colours = [0, 1, 2, 3, 4].map(|index| colour(list, 7361, index).unwrap_or_default());
-            return Some(Picture::curves(self.scope.curves(), colours));
-        }
-        let view = self.view?;
-        let (stock, program, time_s) = match cut {
-            Cut::Test => {
+    pub fn picture(&self, subject: Subject, list: &ParameterList) -> Option<Picture> {
+        let settings = list.graphics();
+        let of_part = |stock, program, time_s| {
+            let view = self.view?;
+            Some(Picture::of_part(
+                stock,
+                program,
+                time_s,
+                view,
+                self.sight,
+                settings.third_angle,
+            ))
+        };
+        match subject {
+            Subject::Oscilloscope => {
+                let colours = [0, 1, 2, 3, 4].map(|index| colour(list, 7361, index).unwrap_or_default());
+                Some(Picture::of_curves(self.scope.curves(), colours))
+            }
+            Subject::Programmed => self.programmed.picture(self.sight.magn, settings.plane_rotated),
+            Subject::Run => of_part(self.follower.stock()?, self.follower.program(), None),
+            Subject::Test => {
                 let trial = self.trial.as_ref()?;
                 let time_s = trial.progress().machining_time_s;
-                (trial.stock(), trial.program(), Some(time_s))
+                of_part(trial.stock(), trial.program(), Some(time_s))
             }
-            Cut::Run => (self.follower.stock()?, self.follower.program(), None),
-            Cut::Oscilloscope => return None,
-        };
-        Some(Picture::new(
-            stock,
-            program,
-            time_s,
-            view,
-            self.sight,
-            list.graphics().third_angle,
-        ))
+        }
     }
 }

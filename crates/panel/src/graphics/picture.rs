@@ -1,13 +1,16 @@
 //! What is to be seen of a part, drawn by whoever wants it.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
+use bahn_dialogue::FigurePart;
 use bahn_picture::ImageError;
 use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, ThreePlanes, View3d};
 
+use super::contour::{Lines, lock};
+use super::drawing::{Sheet, draw};
 use super::scope::{Curves, ScopeColours};
 use super::stock::Stock;
-use crate::screen::GraphicsView;
+use super::{PartView, figure};
 
 /// The eye stands so far beside the first of the four directions: two faces are to be seen (inferred) [003:909-919].
 const BESIDE_DEG: f64 = 30.0;
@@ -51,15 +54,27 @@ pub struct Picture(Kind);
 enum Kind {
     /// Of the part as it is when it is drawn.
     Part(PartPicture),
+    /// Of the lines of a program that is being written.
+    Lines(LinesPicture),
+    /// Of a cycle, with the id of the prompt that is open.
+    Cycle(u16, Vec<&'static FigurePart>, &'static str),
     /// Of the curves of the oscilloscope.
     Curves(Curves, ScopeColours),
+}
+
+struct LinesPicture {
+    lines: Arc<Mutex<Lines>>,
+    title: String,
+    current: Option<u32>,
+    magn: u8,
+    turned: bool,
 }
 
 struct PartPicture {
     stock: Arc<Stock>,
     program: String,
     time_s: Option<f64>,
-    view: GraphicsView,
+    view: PartView,
     sight: Sight,
     projection: Projection,
 }
@@ -70,23 +85,23 @@ pub enum PictureError {
     /// A part has no picture of this size.
     #[error(transparent)]
     Page(#[from] PageError),
-    /// A picture of curves is written nowhere.
+    /// It cannot be written.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// Curves are no smaller.
-    #[error("curves have at least {0} x {1} pixels")]
+    /// Drawings are no smaller.
+    #[error("drawings have at least {0} x {1} pixels")]
     TooSmall(u32, u32),
 }
 
-/// The smallest picture of curves, pixels.
+/// The smallest drawing, pixels.
 const LEAST: (u32, u32) = (160, 120);
 
 impl Picture {
-    pub(super) fn new(
+    pub(super) fn of_part(
         stock: Arc<Stock>,
         program: &str,
         time_s: Option<f64>,
-        view: GraphicsView,
+        view: PartView,
         sight: Sight,
         third_angle: bool,
     ) -> Picture {
@@ -103,15 +118,37 @@ impl Picture {
         }))
     }
 
-    pub(super) fn curves(curves: Curves, colours: ScopeColours) -> Picture {
+    pub(super) fn of_curves(curves: Curves, colours: ScopeColours) -> Picture {
         Picture(Kind::Curves(curves, colours))
     }
 
-    /// The part as it is now; `None` before a BLK FORM was executed, and of a picture of curves.
+    pub(super) fn of_lines(
+        lines: Arc<Mutex<Lines>>,
+        title: &str,
+        current: Option<u32>,
+        magn: u8,
+        turned: bool,
+    ) -> Picture {
+        Picture(Kind::Lines(LinesPicture {
+            lines,
+            title: title.to_owned(),
+            current,
+            magn,
+            turned,
+        }))
+    }
+
+    /// The drawing of a cycle; `None` for one that has none.
+    pub(super) fn of_cycle(cycle: u16, asked: &'static str) -> Option<Picture> {
+        let parts = bahn_dialogue::figure(cycle)?;
+        Some(Picture(Kind::Cycle(cycle, parts, asked)))
+    }
+
+    /// The part as it is now; `None` before a BLK FORM was executed, and of a drawing.
     pub fn part(&self) -> Option<Part> {
         match &self.0 {
             Kind::Part(picture) => picture.stock.part(),
-            Kind::Curves(..) => None,
+            Kind::Lines(_) | Kind::Cycle(..) | Kind::Curves(..) => None,
         }
     }
 
@@ -122,11 +159,30 @@ impl Picture {
     pub fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PictureError> {
         match &self.0 {
             Kind::Part(picture) => Ok(picture.png(width, height)?),
-            Kind::Curves(..) if width < LEAST.0 || height < LEAST.1 => {
-                Err(PictureError::TooSmall(LEAST.0, LEAST.1))
+            _ if width < LEAST.0 || height < LEAST.1 => Err(PictureError::TooSmall(LEAST.0, LEAST.1)),
+            Kind::Lines(picture) => Ok(Some(picture.png(width, height)?)),
+            Kind::Cycle(cycle, parts, asked) => {
+                let title = format!("CYCL DEF {cycle}");
+                let mut png = Vec::new();
+                figure::draw(parts, asked, [width, height], &title).write_png(&mut png)?;
+                Ok(Some(png))
             }
             Kind::Curves(curves, colours) => Ok(Some(curves.png(width, height, colours)?)),
         }
+    }
+}
+
+impl LinesPicture {
+    fn png(&self, width: u32, height: u32) -> Result<Vec<u8>, ImageError> {
+        let image = {
+            let lines = lock(&self.lines);
+            let size = [f64::from(width), f64::from(height)];
+            let sheet = Sheet::of(&lines, size, f64::from(self.magn), self.turned);
+            draw(&lines, &sheet, [width, height], &self.title, self.current)
+        };
+        let mut png = Vec::new();
+        image.write_png(&mut png)?;
+        Ok(png)
     }
 }
 
@@ -141,8 +197,8 @@ impl PartPicture {
         let [min, max] = [part.min(), part.max()];
         let side = |k: usize| max[k] - min[k];
         let image = match self.view {
-            GraphicsView::Plan => part.plan_view(&page, &PlanView::default()),
-            GraphicsView::ThreePlanes => {
+            PartView::Plan => part.plan_view(&page, &PlanView::default()),
+            PartView::ThreePlanes => {
                 // A detail has its sections in its middle.
                 let at = |k: usize| match self.sight.magn {
                     1 => Some(min[k] + self.sight.sections[k] * side(k)),
@@ -155,7 +211,7 @@ impl PartPicture {
                 };
                 part.three_planes(&page, &options)
             }
-            GraphicsView::Solid | GraphicsView::Oscilloscope => {
+            PartView::Solid => {
                 let height_factor = match self.sight.stretched {
                     true => STRETCHED * side(0).max(side(1)) / side(2),
                     false => 1.0,

@@ -1,20 +1,39 @@
 //! PROGRAMMING AND EDITING [003:1692-1790]: a program is written by dialogue. Every block is on the medium when it is
 //! complete, and what is still open of one is kept, too.
 
+use std::sync::Arc;
+
 use bahn_control::RunState;
 use bahn_dialogue::{BuilderCycle, Draft, Editor, Key, Setting};
 use bahn_host::oem_cycles;
+use bahn_program::Program;
 use serde_json::Value;
 
+use crate::graphics::{Asked, Subject, Wish};
 use crate::page::{Page, Turn, View};
 use crate::pages::editing;
 use crate::pages::files::{Directory, Purpose};
 use crate::screen::{SoftKeys, Window, WindowKind};
 use crate::site::Site;
+use crate::texts;
 
 /// A program is edited.
 pub(crate) struct Programming {
     open: Option<Open>,
+    drawn: Drawn,
+}
+
+/// What is drawn beside the program.
+#[derive(Default)]
+struct Drawn {
+    /// AUTO DRAW: each block is drawn when it is complete.
+    auto: bool,
+    /// The program and its last block as they were drawn; the whole program without.
+    last: Option<(Arc<Program>, Option<u32>)>,
+    /// The soft keys of the graphics are shown.
+    keys: bool,
+    /// HELP: cycles are drawn while their words are asked for.
+    cycles: bool,
 }
 
 struct Open {
@@ -33,7 +52,11 @@ impl Programming {
         if let (Some(open), Some(draft)) = (&mut open, kept.and_then(|text| text.parse::<Draft>().ok())) {
             open.editor.restore(&draft);
         }
-        Programming { open }
+        let drawn = Drawn {
+            auto: site.graphics.shows_programmed(),
+            ..Drawn::default()
+        };
+        Programming { open, drawn }
     }
 
     /// What has changed is on the medium before the next key.
@@ -46,6 +69,97 @@ impl Programming {
         };
         open.version = site.programs.version();
         stored.err()
+    }
+
+    /// A key of the graphics: GRAPHICS switches AUTO DRAW on and off, START draws the whole program. Their soft keys
+    /// stand in a row behind those of the editor (inferred).
+    fn graphics_key(&mut self, key: Key, site: &mut Site) -> Option<Turn> {
+        let editor = &self.open.as_ref()?.editor;
+        match key {
+            Key::SkLeft | Key::SkRight if editor.is_open() => return None,
+            Key::SkLeft | Key::SkRight => {
+                let (row, rows) = editor.view(0, 0).soft_row;
+                let (first, last) = (row == 0, row + 1 >= rows);
+                let (leaves, arrived) = match key {
+                    Key::SkRight => (last, first),
+                    _ => (first, last),
+                };
+                // Behind the last row comes the first one, where the editor may stand already.
+                if std::mem::take(&mut self.drawn.keys) {
+                    return arrived.then_some(Turn::Done);
+                }
+                self.drawn.keys = leaves;
+                if !leaves {
+                    return None;
+                }
+            }
+            Key::Graphics => self.switch(!self.drawn.auto, site),
+            Key::Start => self.draw(None, site),
+            Key::Help => {
+                self.asked()?;
+                self.drawn.cycles = !self.drawn.cycles;
+            }
+            Key::Magn => return site.graphics.key(Subject::Programmed, key).then_some(Turn::Done),
+            _ => match key.soft_key().filter(|_| self.drawn.keys && !editor.is_open()) {
+                Some(0) => self.switch(!self.drawn.auto, site),
+                Some(1) => self.draw(None, site),
+                Some(2) => self.draw_next(site),
+                Some(3) => site.graphics.show_programmed(false),
+                Some(_) => return Some(Turn::Refused),
+                None => return None,
+            },
+        }
+        Some(Turn::Done)
+    }
+
+    /// The cycle whose words are asked for, where it has a drawing, and the prompt.
+    fn asked(&self) -> Option<Asked> {
+        let question = self.open.as_ref()?.editor.question()?;
+        let cycle = question.about.strip_prefix("CYCL DEF ")?.split('.').next()?;
+        let cycle = cycle.parse::<u16>().ok()?;
+        bahn_dialogue::figure(cycle).map(|_| (cycle, question.id))
+    }
+
+    /// AUTO DRAW on or off.
+    fn switch(&mut self, on: bool, site: &mut Site) {
+        self.drawn.auto = on;
+        self.drawn.last = None;
+        site.graphics.show_programmed(on);
+    }
+
+    /// Draws the program up to a block, or the whole.
+    fn draw(&mut self, upto: Option<u32>, site: &mut Site) {
+        let Some(open) = &self.open else { return };
+        let program = Arc::clone(open.editor.program());
+        self.drawn.last = Some((Arc::clone(&program), upto));
+        if !site.graphics.shows_programmed() {
+            site.graphics.show_programmed(true);
+        }
+        let name = open.name.clone();
+        let wish = Wish { name, program, upto };
+        site.graphics
+            .draw(wish, site.host.control(), site.machine, site.programs);
+    }
+
+    /// START SINGLE: one block more than is drawn.
+    fn draw_next(&mut self, site: &mut Site) {
+        let upto = self.drawn.last.as_ref().and_then(|(_, upto)| *upto);
+        self.drawn.auto = false;
+        self.draw(Some(upto.map_or(0, |upto| upto + 1)), site);
+    }
+
+    /// AUTO DRAW follows program and cursor.
+    fn follow(&mut self, site: &mut Site) {
+        let Some(open) = self.open.as_ref().filter(|_| self.drawn.auto) else {
+            return;
+        };
+        let (program, cursor) = (open.editor.program(), open.editor.cursor());
+        let same = |(last, upto): &(Arc<Program>, Option<u32>)| {
+            Arc::ptr_eq(last, program) && upto.is_none_or(|upto| upto == cursor)
+        };
+        if !self.drawn.last.as_ref().is_some_and(same) {
+            self.draw(Some(cursor), site);
+        }
     }
 
     fn with(&mut self, site: &mut Site, what: impl FnOnce(&mut Editor, &mut Site) -> (Turn, bool)) -> Turn {
@@ -124,6 +238,7 @@ impl Page for Programming {
         match key {
             Key::ClPgm => Turn::Open(Box::new(Directory::new(Purpose::Erase, site))),
             Key::PgmNr => Turn::Open(Box::new(Directory::new(Purpose::Edit, site))),
+            _ if let Some(turn) = self.graphics_key(key, site) => turn,
             _ => self.with(site, |editor, site| editing::key(editor, key, site)),
         }
     }
@@ -133,7 +248,24 @@ impl Page for Programming {
     }
 
     fn own_soft_keys(&self) -> Option<SoftKeys> {
-        self.open.as_ref().map(|open| editing::soft_keys(&open.editor))
+        let editor = &self.open.as_ref()?.editor;
+        let mut keys = editing::soft_keys(editor);
+        if !editor.is_open() {
+            if self.drawn.keys {
+                let words = |english| texts::words(editor.setting().tongue, english).to_owned();
+                let auto = match self.drawn.auto {
+                    true => "AUTO DRAW OFF",
+                    false => "AUTO DRAW ON",
+                };
+                keys.keys = ["RESET + START", "START SINGLE", "CLEAR GRAPHICS"]
+                    .map(words)
+                    .to_vec();
+                keys.keys.insert(0, words(auto));
+                keys.row = keys.rows;
+            }
+            keys.rows += 1;
+        }
+        Some(keys)
     }
 
     fn show(&self, _site: &Site, lines: usize) -> View {
@@ -159,6 +291,16 @@ impl Page for Programming {
                 site.settings.edited = None;
             }
         }
+        self.follow(site);
+        let asked = match self.drawn.cycles {
+            true => self.asked(),
+            false => None,
+        };
+        site.graphics.show_cycle(asked);
         Turn::Done
+    }
+
+    fn subject(&self) -> Option<Subject> {
+        Some(Subject::Programmed)
     }
 }

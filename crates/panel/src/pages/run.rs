@@ -6,7 +6,7 @@ use bahn_control::{Command, Programs, RunState};
 use bahn_dialogue::Key;
 use bahn_program::Program;
 
-use crate::graphics::Cut;
+use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
 use crate::pages::editing::NUMBER;
 use crate::pages::files::{Directory, Purpose};
@@ -45,7 +45,7 @@ impl ProgramRun {
 
 impl Page for ProgramRun {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
-        if site.graphics.key(Cut::Run, key) {
+        if site.graphics.key(Subject::Run, key) {
             return Turn::Done;
         }
         match key {
@@ -118,8 +118,8 @@ impl Page for ProgramRun {
         }
     }
 
-    fn cut(&self) -> Option<Cut> {
-        Some(Cut::Run)
+    fn subject(&self) -> Option<Subject> {
+        Some(Subject::Run)
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {

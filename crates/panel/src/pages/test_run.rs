@@ -7,7 +7,7 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_program::Program;
 
-use crate::graphics::Cut;
+use crate::graphics::Subject;
 use crate::page::{Page, Turn, View};
 use crate::pages::files::{Directory, Purpose};
 use crate::pages::run::listing;
@@ -64,7 +64,7 @@ const KEYS: [Key; 5] = [Key::Start, Key::Stop, Key::Graphics, Key::BlkForm, Key:
 
 impl Page for TestRun {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
-        if site.graphics.key(Cut::Test, key) {
+        if site.graphics.key(Subject::Test, key) {
             return Turn::Done;
         }
         match key {
@@ -102,8 +102,8 @@ impl Page for TestRun {
         }
     }
 
-    fn cut(&self) -> Option<Cut> {
-        Some(Cut::Test)
+    fn subject(&self) -> Option<Subject> {
+        Some(Subject::Test)
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {

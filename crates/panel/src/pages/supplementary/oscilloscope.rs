@@ -6,7 +6,7 @@ use bahn_dialogue::Key;
 use bahn_host::oscilloscope::SAMPLE_TIME_US;
 use bahn_servo::Timing;
 
-use crate::graphics::{Content, Cut, Scope, TriggerOn, signal_name};
+use crate::graphics::{Content, Scope, Subject, TriggerOn, signal_name};
 use crate::page::{Page, Turn, View, first_in_sight};
 use crate::pages::number::Number;
 use crate::screen::{Line, Window, WindowKind};
@@ -454,8 +454,8 @@ impl Page for Display {
         })
     }
 
-    fn cut(&self) -> Option<Cut> {
-        Some(Cut::Oscilloscope)
+    fn subject(&self) -> Option<Subject> {
+        Some(Subject::Oscilloscope)
     }
 
     fn tick(&mut self, site: &mut Site) -> Turn {
