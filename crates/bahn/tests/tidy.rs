@@ -62,6 +62,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "machine",
             "control",
             "host",
+            "picture",
             "workpiece",
             "viewer",
             "interpreter",
@@ -70,6 +71,7 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("server", &["panel", "viewer"]),
+    ("terminal", &["panel"]),
     (
         "bahn",
         &[
@@ -90,6 +92,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "host",
             "panel",
             "server",
+            "terminal",
         ],
     ),
 ];

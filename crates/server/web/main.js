@@ -9,6 +9,7 @@ import * as timeline from "/web/timeline.js";
 
 let status = null;
 let windows = null;
+let knobs = [100, 100];
 
 const draw = {
   time: timeline.time,
@@ -30,6 +31,7 @@ const draw = {
   machine: (value) => {
     machine.draw(value);
     timeline.paused(value[0].paused);
+    knobs = value[0].knobs;
   },
   timeline: timeline.draw,
   why: teacher.why,
@@ -43,8 +45,9 @@ const connection = await begin();
 async function begin() {
   const station = await (await fetch("/api/station")).json();
   keyboard.build(station, press);
-  keyboard.help();
+  keyboard.help(station);
   const send = (input) => connection.input(input);
+  keyboard.listen(station, press, (key, down) => send({ key, down }), turn);
   machine.build(station, send);
   timeline.build(send);
   teacher.build(send);
@@ -58,7 +61,11 @@ function press(key) {
   connection.input({ key });
 }
 
-keyboard.listen(press);
+// A knob goes from 0 to 150 %.
+function turn({ feed, spindle }) {
+  const to = (knob, step) => Math.max(0, Math.min(150, knob + step));
+  connection.input(feed ? { feed_override: to(knobs[0], feed) } : { spindle_override: to(knobs[1], spindle) });
+}
 
 for (const tab of document.querySelectorAll("[data-tab]")) {
   tab.addEventListener("click", () => {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use bahn_picture::Image;
 use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, ThreePlanes, View3d};
 
 use super::stock::Stock;
@@ -88,11 +89,28 @@ impl Picture {
         let title = format!("PGM {}", self.program);
         let page = Page::new(width, height, &title, &self.note())?;
         let Some(part) = self.part() else { return Ok(None) };
+        let mut png = Vec::new();
+        // Nothing but memory is written to.
+        let written = self.draw(part, &page).write_png(&mut png);
+        Ok(written.is_ok().then_some(png))
+    }
+
+    /// The same without a title, as rows of pixels from the top: red, green, blue.
+    ///
+    /// # Errors
+    /// When there is no picture of this size.
+    pub fn pixels(&self, width: u32, height: u32) -> Result<Option<Vec<[u8; 3]>>, PageError> {
+        let page = Page::new(width, height, "", "")?.without_title();
+        let drawn = self.part().map(|part| self.draw(part, &page));
+        Ok(drawn.map(|image| image.pixels().to_vec()))
+    }
+
+    fn draw(&self, part: Part, page: &Page) -> Image {
         let part = self.detail(&part).unwrap_or(part);
         let [min, max] = [part.min(), part.max()];
         let side = |k: usize| max[k] - min[k];
-        let image = match self.view {
-            GraphicsView::Plan => part.plan_view(&page, &PlanView::default()),
+        match self.view {
+            GraphicsView::Plan => part.plan_view(page, &PlanView::default()),
             GraphicsView::ThreePlanes => {
                 // A detail has its sections in its middle.
                 let at = |k: usize| match self.sight.magn {
@@ -104,7 +122,7 @@ impl Picture {
                     sections: [at(0), at(1)],
                     ..ThreePlanes::default()
                 };
-                part.three_planes(&page, &options)
+                part.three_planes(page, &options)
             }
             GraphicsView::Solid => {
                 let height_factor = match self.sight.stretched {
@@ -116,13 +134,9 @@ impl Picture {
                     height_factor,
                     ..View3d::default()
                 };
-                part.view_3d(&page, &options)
+                part.view_3d(page, &options)
             }
-        };
-        let mut png = Vec::new();
-        // Nothing but memory is written to.
-        let written = image.write_png(&mut png);
-        Ok(written.is_ok().then_some(png))
+        }
     }
 
     /// Machining time and MAGN, as they stand in the title.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
-use bahn_panel::{Station, load};
+use bahn_panel::{Live, Station, load};
 use bahn_server::{Server, ServerOptions};
 use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;
@@ -41,9 +41,8 @@ impl Panel {
         let options = ServerOptions {
             listen: "127.0.0.1:0".parse().unwrap(),
             token: None,
-            replay: None,
         };
-        let server = Server::start(station, options).unwrap();
+        let server = Server::start(Live::start(station), options).unwrap();
         Panel {
             address: server.address(),
             server: Some(server),
