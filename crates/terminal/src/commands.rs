@@ -2,7 +2,7 @@
 
 use bahn_panel::{EMERGENCY_STOP, Input, InputText, Key};
 
-use crate::desk::Machine;
+use crate::machine::Machine;
 
 /// What a command wants.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use bahn_panel::{EMERGENCY_STOP, Input, Key, KeyAction, Press, Screen, Station, shortcut};
+use bahn_panel::{EMERGENCY_STOP, Input, Key, KeyAction, Press, Screen, shortcut};
 use ratatui::crossterm::event::{
     Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers, MouseButton, MouseEvent, MouseEventKind,
 };
@@ -10,50 +10,8 @@ use ratatui::layout::{Position, Rect};
 
 use crate::commands::{self, Order};
 use crate::hold::{Change, Hand, Holds};
+use crate::machine::{Machine, STOP_LETTER};
 
-/// What does not change while a machine is on.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Machine {
-    /// Its name.
-    pub name: String,
-    /// Keys of its operating panel.
-    pub keys: Vec<String>,
-}
-
-impl Machine {
-    /// That of a station.
-    pub fn of_station(station: &mut Station) -> Machine {
-        Machine {
-            name: station.machine().folder.name.clone(),
-            keys: station.machine_keys(),
-        }
-    }
-
-    #[cfg(test)]
-    pub fn of_keys(names: &[&str]) -> Machine {
-        Machine {
-            name: "test".to_owned(),
-            keys: names.iter().map(|name| (*name).to_owned()).collect(),
-        }
-    }
-
-    /// A key of the machine by its name, in whatever letters.
-    pub fn key(&self, name: &str) -> Option<String> {
-        let known = self.keys.iter().map(String::as_str).chain([EMERGENCY_STOP]);
-        let mut found = known.filter(|key| key.eq_ignore_ascii_case(name));
-        found.next().map(str::to_owned)
-    }
-
-    /// The letter that presses a key while the keys are those of the machine.
-    pub fn letter(place: usize) -> Option<char> {
-        LETTERS.chars().nth(place)
-    }
-}
-
-/// Letters of the machine's keys in their order.
-const LETTERS: &str = "abcdefghijklmnopqrstuvwxyz0123456789";
-/// Presses EMERGENCY STOP among them.
-pub(crate) const STOP_LETTER: char = '!';
 /// Characters that turn the knobs there as the real keys with Alt do everywhere.
 const KNOBS: [(char, &str); 4] = [('+', "+"), ('-', "-"), ('*', "."), ('/', ",")];
 /// Counting steps of one turn of the handwheel by a key (inferred).
@@ -226,8 +184,7 @@ impl Desk {
         if let Some(press) = knob.and_then(|(_, real)| shortcut(real, true)) {
             return self.press(press, screen, now);
         }
-        let place = LETTERS.find(character.to_ascii_lowercase());
-        let Some(name) = place.and_then(|place| self.machine.keys.get(place)).cloned() else {
+        let Some(name) = self.machine.lettered(character) else {
             return Vec::new();
         };
         changed(match character.is_ascii_uppercase() {
@@ -240,9 +197,9 @@ impl Desk {
     fn released(&mut self, key: KeyEvent) -> Vec<Input> {
         let alt = key.modifiers.contains(KeyModifiers::ALT);
         let of_letter = match key.code {
-            KeyCode::Char(letter) if self.at_the_machine && letter.is_ascii_lowercase() => LETTERS
-                .find(letter)
-                .and_then(|place| self.machine.keys.get(place).cloned()),
+            KeyCode::Char(letter) if self.at_the_machine && letter.is_ascii_lowercase() => {
+                self.machine.lettered(letter)
+            }
             _ => None,
         };
         let of_table = match real(key.code).and_then(|real| shortcut(&real, alt)) {

@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 use bahn_panel::{Input, Link, Live, Screen};
 
 use crate::TerminalError;
-use crate::desk::{Desk, Machine, let_go};
+use crate::desk::{Desk, let_go};
 use crate::draw::{Drawn, Scene, draw};
 use crate::graphics::{Painter, Wanted};
+use crate::machine::Machine;
 use crate::palette::Palette;
 use crate::window::{self, Events, FullScreen};
 
@@ -100,15 +101,22 @@ impl Panel {
         };
         // A keyboard that is held down does not keep the screen from being drawn.
         let end = Instant::now() + PICTURE;
+        let before = self.link.screen().serial;
+        let mut given = false;
         let mut next = Some(first);
         while let Some(event) = next {
             let now = Instant::now();
             let inputs = self.desk.event(&event?, &self.screen, &self.drawn.targets, now);
+            given |= !inputs.is_empty();
             self.give(inputs);
             next = match now < end && !self.desk.leaves {
                 true => self.events.next(Duration::ZERO),
                 false => None,
             };
+        }
+        if given {
+            // What came of it is what is drawn next.
+            self.link.next_screen(before, LOOK);
         }
         Ok(true)
     }

@@ -4,16 +4,19 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use bahn_panel::{Input, Key, KeyAction, Screen, Station, load};
+use bahn_panel::{
+    CheckLine, Input, Key, KeyAction, LessonLine, LessonState, MessageLine, PlcLine, Screen, Station, load,
+};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Position;
 use ratatui::style::{Color, Modifier};
 
-use crate::desk::{Desk, Machine, Target};
+use crate::desk::{Desk, Target};
 use crate::draw::{Drawn, Scene, draw};
 use crate::graphics::{Mosaic, Wanted, mosaic};
+use crate::machine::Machine;
 use crate::palette::Palette;
 
 /// A machine that is on, by the free clock, and the desk in front of it.
@@ -91,10 +94,14 @@ impl Hall {
 
     fn draw(&mut self, width: u16, height: u16) -> (Buffer, Drawn) {
         let screen = self.screen();
+        self.draw_screen(&screen, width, height)
+    }
+
+    fn draw_screen(&self, screen: &Screen, width: u16, height: u16) -> (Buffer, Drawn) {
         let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
         let mut drawn = Drawn::default();
         let scene = Scene {
-            screen: &screen,
+            screen,
             desk: &self.desk,
             part: self.part.as_ref(),
             palette: self.palette,
@@ -312,6 +319,82 @@ fn short_cuts_and_commands() {
     let (buffer, drawn) = hall.draw(59, 18);
     assert!(text(&buffer).starts_with("The window is too small"));
     assert_eq!(drawn, Drawn::default());
+}
+
+#[test]
+fn the_lesson_and_the_window_of_the_plc() {
+    let mut hall = Hall::new();
+    hall.palette = Palette::Indexed;
+    let mut screen = hall.screen();
+    let check = |text: &str, done| CheckLine {
+        text: text.to_owned(),
+        done,
+    };
+    screen.lesson = Some(LessonLine {
+        title: "The door".to_owned(),
+        task: "Close the door.\nStart the program.".to_owned(),
+        hints: vec!["Look at I24.".to_owned()],
+        checks: vec![
+            check("the door is closed", true),
+            check("the program runs", false),
+        ],
+        state: LessonState::Failed,
+        reason: "The time is over.".to_owned(),
+        ..LessonLine::default()
+    });
+    // A quarter of the bar is green; the text is red behind its third character.
+    let line = PlcLine {
+        text: "OILPRESSURE".to_owned(),
+        colours: [vec![0; 3], vec![4; 8]].concat(),
+        bar: Some([76, 19, 2, 0]),
+    };
+    screen.plc_window = Some(vec![line, PlcLine::default()]);
+    let (buffer, _) = hall.draw_screen(&screen, 80, 40);
+    for text in [
+        "The door  FAILED",
+        "The time is over.",
+        "Close the door.",
+        "✓ the door is closed",
+        "· the program runs",
+        "? Look at I24.",
+    ] {
+        place(&buffer, text);
+    }
+    let bar = place(&buffer, "█");
+    let full = (bar.x..80).take_while(|x| buffer[(*x, bar.y)].symbol() == "█");
+    // 19 columns for 76.
+    assert_eq!(full.count(), 5);
+    assert_eq!(buffer[bar].fg, Color::Green);
+    let text = place(&buffer, "OILPRESSURE");
+    let colour = |column| buffer[(text.x + column, text.y)].fg;
+    assert_eq!((colour(2), colour(3)), (Color::Reset, Color::Red));
+}
+
+#[test]
+fn flashing_messages_come_first_and_none_is_lost() {
+    let mut hall = Hall::new();
+    let mut screen = hall.screen();
+    let message = |text: &str, flashing| MessageLine {
+        text: text.to_owned(),
+        flashing,
+        place: None,
+    };
+    screen.messages = vec![
+        message("OLD", false),
+        message("FAULT OF A DRIVE", true),
+        message("NEW", false),
+    ];
+    let (buffer, _) = hall.draw_screen(&screen, 80, 24);
+    let at = place(&buffer, "FAULT OF A DRIVE  (+2)");
+    assert!(
+        buffer[at]
+            .modifier
+            .contains(Modifier::REVERSED | Modifier::SLOW_BLINK)
+    );
+    // Where there is room, all stand below each other, the new one before the old one.
+    let (buffer, _) = hall.draw_screen(&screen, 80, 40);
+    let rows = ["FAULT OF A DRIVE", "NEW", "OLD"].map(|text| place(&buffer, text).y);
+    assert_eq!(rows, [rows[0], rows[0] + 1, rows[0] + 2]);
 }
 
 /// Whatever the size, nothing is drawn outside and nothing fails.

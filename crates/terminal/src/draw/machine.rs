@@ -7,7 +7,8 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::{Scene, rows};
-use crate::desk::{Machine, STOP_LETTER, Target, Targets};
+use crate::desk::{Target, Targets};
+use crate::machine::{Machine, STOP_LETTER};
 use crate::palette::Role;
 
 /// A key or a lamp as it is drawn.
