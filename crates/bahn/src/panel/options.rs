@@ -8,7 +8,7 @@ use clap::Args;
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   bahn panel --open                                   the mill, in the browser
-  bahn panel --terminal                               the mill, in this terminal: ? lists the short cuts
+  bahn panel --terminal                               the mill, in this terminal; ? shows the keys
   bahn panel --machine machines/mill-tnc360 --speed 5
       Another machine; time passes five times as fast.
   bahn panel --listen 0.0.0.0:8155 --token SECRET     for others, too; they need the token once

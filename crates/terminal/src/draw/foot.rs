@@ -8,8 +8,8 @@ use ratatui::text::{Line, Span};
 use super::{Scene, rows};
 use crate::palette::Role;
 
-const HINT: &str = " ? short cuts  Tab machine keys  : command  Ctrl+C ends";
-const HINT_AT_THE_MACHINE: &str = " + - feed  * / spindle  < > handwheel  capital: stays down  Tab back";
+const HINT: &str = " ? keys  Tab machine  : command  Ctrl+C ends";
+const HINT_AT_THE_MACHINE: &str = " + - F  * / S  < > wheel  A-Z stay down  Tab back";
 
 pub(super) fn draw(frame: &mut Frame, scene: &Scene, area: Rect) {
     let machine = &scene.screen.machine;
