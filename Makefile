@@ -6,9 +6,9 @@ SEED ?= 1
 # What `make run` records.
 SIGNALS := path.speed,S.rpm,X.actual,X.lag,Z.actual,Z.lag,M2045,M2482,M2046,M2483
 
-.PHONY: run test bench doc pictures conformance faults torture trails tools browser axe clean
+.PHONY: run test bench doc pictures conformance faults torture trails tools browser terminal axe clean
 
-# Built for the first look: without the screen of `bahn plc watch`, and with the profile for it.
+# Built for the first look: without the screens in the terminal, and with the profile for it.
 BAHN := $(CARGO) run --quiet --profile quick -p bahn --no-default-features --
 
 # The main job: a program without a machine, then the programs of a machine on it, in closed loop with its
@@ -32,7 +32,7 @@ run:
 
 # Everything that must hold: format, lints, documentation, tests. Of the fuzz targets nothing is linked here: they
 # compile without libFuzzer.
-test: tools browser axe
+test: tools browser terminal axe
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	$(CARGO) clippy -p bahn --no-default-features --locked -- -D warnings
@@ -91,6 +91,15 @@ browser:
 	{ $$as_root apt-get update -q && \
 		DEBIAN_FRONTEND=noninteractive $$as_root apt-get install -q -y --no-install-recommends chromium; } \
 		>/dev/null 2>&1 || echo "Chromium cannot be installed: the tests of pages are skipped"
+
+# The terminal without a window in which the panel is tested; the same of it.
+terminal:
+	@command -v tmux >/dev/null 2>&1 && exit 0; \
+	as_root=; [ "$$(id -u)" = 0 ] || as_root="sudo -n"; \
+	echo "installing tmux for the tests of the panel in the terminal"; \
+	{ $$as_root apt-get update -q && \
+		DEBIAN_FRONTEND=noninteractive $$as_root apt-get install -q -y --no-install-recommends tmux; } \
+		>/dev/null 2>&1 || echo "tmux cannot be installed: the tests of the panel in the terminal are skipped"
 
 # The rules by which the tests look whether the pages can be used by everybody: one file, known by its sum.
 AXE := axe-core-4.14.1

@@ -46,7 +46,7 @@ pub(crate) enum Command {
     /// Run a program on a simulated machine: power-up, reference run, program, with PLC and servo loops.
     #[command(after_help = crate::run::EXAMPLES)]
     Run(Box<RunMachineOptions>),
-    /// Sit down at the operating panel of a machine, in the browser.
+    /// Sit down at the operating panel of a machine, in the browser or in the terminal.
     #[command(after_help = crate::panel::EXAMPLES)]
     Panel(PanelOptions),
     /// Draw recorded signals like an oscilloscope, and sum them up.

@@ -14,6 +14,7 @@ use support::{Folder, copy};
 const EXCEPTIONS: &[(&str, i32)] = &[
     // Wrong use: there is no terminal here.
     ("plc watch", 2),
+    ("panel --terminal", 2),
     // There are differences.
     ("mp diff mill.mp", 1),
 ];

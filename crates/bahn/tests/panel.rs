@@ -112,7 +112,10 @@ fn a_killed_panel_has_lost_nothing_of_a_program() {
     let data = std::env::temp_dir().join(format!("bahn-panel-killed-{}", std::process::id()));
     let (mut child, address) = start(&data, &[]);
     until(&address, "POWER INTERRUPTED");
-    press(&address, "CE PROGRAM PGM_NR 7 7 ENT ENT L X 1 5 Y 2 ENT ENT ENT NO_ENT");
+    press(
+        &address,
+        "CE PROGRAM PGM_NR 7 7 ENT ENT L X 1 5 Y 2 ENT ENT ENT NO_ENT",
+    );
     until(&address, "L X+15 Y+2 R0 FMAX");
     // In the middle of the next block the process is gone, without a word.
     press(&address, "L X 4 2");

@@ -62,6 +62,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "machine",
             "control",
             "host",
+            "picture",
             "workpiece",
             "picture",
             "viewer",
@@ -71,6 +72,7 @@ const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("server", &["panel", "viewer"]),
+    ("terminal", &["panel"]),
     (
         "bahn",
         &[
@@ -91,6 +93,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "host",
             "panel",
             "server",
+            "terminal",
         ],
     ),
 ];

@@ -9,6 +9,7 @@
 //! - [`Recorder`] and [`Replay`] keep a session and show it again; a [`TimeLine`] leads back to any moment;
 //! - [`Reason`]s say what a standing machine waits for; [`Breakable`]s are what a teacher can break, a [`LessonRun`] is an
 //!   exercise;
+//! - [`SHORTCUTS`] say which key of a real keyboard does what;
 //! - texts are in English in the sources, `texts/*.tsv` have the other languages.
 //!
 //! ```no_run
@@ -53,6 +54,7 @@ mod replay;
 mod screen;
 mod session;
 mod settings;
+mod shortcuts;
 mod site;
 mod station;
 mod status;
@@ -62,6 +64,7 @@ mod why;
 mod wiring;
 
 pub use bahn_dialogue::{Key, KeyGroup};
+pub use bahn_machine::KeyAction;
 pub use drawer::{Breakable, Breaking};
 pub use graphics::{BeingCut, Picture, PictureError};
 pub use input::{Input, InputText, Refusal};
@@ -75,5 +78,6 @@ pub use screen::{
 };
 pub use session::{Head, Recorder};
 pub use settings::PositionType;
+pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::{EMERGENCY_STOP, Station, load};
 pub use why::{Reason, Urgency};

@@ -1,6 +1,6 @@
 //! A station on a thread of its own, by the clock on the wall.
 
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, sync_channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -87,6 +87,11 @@ impl Live {
             orders: self.orders.clone(),
             shared: Arc::clone(&self.shared),
         }
+    }
+
+    /// It goes on no more, whatever ended it.
+    pub fn has_ended(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
     /// Ends it; what must survive is on the medium.
@@ -203,10 +208,16 @@ fn run(station: &mut Station, replay: &mut Option<Replay>, orders: &Receiver<Ord
     }
 }
 
-/// What waits; while time stands, waits for it a moment.
+/// What waits; while time stands, waits for it a moment. Without anybody who could give orders it ends.
 fn next(station: &Station, orders: &Receiver<Order>) -> Option<Order> {
     match station.is_paused() {
-        true => orders.recv_timeout(PAUSE).ok(),
-        false => orders.try_recv().ok(),
+        true => match orders.recv_timeout(PAUSE) {
+            Err(RecvTimeoutError::Disconnected) => Some(Order::End),
+            waited => waited.ok(),
+        },
+        false => match orders.try_recv() {
+            Err(TryRecvError::Disconnected) => Some(Order::End),
+            tried => tried.ok(),
+        },
     }
 }

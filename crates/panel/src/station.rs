@@ -453,6 +453,8 @@ impl Station {
             return;
         }
         let (console, mut site) = self.parts();
+        // What the key before has brought is there: keys may come faster than cycles.
+        console.tick(&mut site);
         if !inhibit::is_inhibited(key, &mut site) {
             console.key(key, &mut site);
         }

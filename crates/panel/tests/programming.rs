@@ -36,6 +36,26 @@ fn a_block_is_entered_by_dialogue_and_is_on_the_medium() {
     );
 }
 
+/// Keys of a program or of a fast hand come in one cycle.
+#[test]
+fn keys_need_no_cycle_between_them() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    let at_once = |trainee: &mut Trainee, keys: &str| {
+        for key in keys.split_whitespace() {
+            trainee.give(&format!("{{\"key\":\"{key}\"}}"));
+        }
+    };
+    at_once(&mut trainee, "PROGRAM PGM_NR 4 8 ENT ENT L X 5 END");
+    let text = trainee.file("programs/48.H");
+    assert!(text.contains("L X+5"), "{text}");
+    at_once(&mut trainee, "FULL PGM_NR 4 8 ENT");
+    let screen = trainee.wait(0.1).screen();
+    assert_eq!(screen.mode, "PROGRAM RUN, FULL SEQUENCE");
+    assert_eq!(screen.program.title, "48");
+    assert_eq!(trainee.messages(), [] as [&str; 0]);
+}
+
 #[test]
 fn what_was_typed_of_a_block_survives_a_kill() {
     let mut trainee = Trainee::at("mill");

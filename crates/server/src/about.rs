@@ -1,6 +1,6 @@
 //! What does not change while a station is on.
 
-use bahn_panel::{Key, Station};
+use bahn_panel::{Key, Press, SHORTCUTS, Shortcut, Station};
 use serde::Serialize;
 
 /// What does not change while a station is on.
@@ -16,6 +16,8 @@ pub(crate) struct About {
     machine_keys: Vec<String>,
     /// Axes that a handwheel can move.
     axes: String,
+    /// What keys of a real keyboard do.
+    shortcuts: Vec<ShortcutText>,
     /// The version of this program.
     version: &'static str,
 }
@@ -25,6 +27,41 @@ struct KeyText {
     name: &'static str,
     group: String,
     label: &'static str,
+}
+
+/// Exactly one of `key`, `machine`, `feed` and `spindle` is there.
+#[derive(Clone, Debug, Serialize)]
+struct ShortcutText {
+    real: &'static str,
+    alt: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    key: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    machine: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    feed: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spindle: Option<f64>,
+}
+
+impl ShortcutText {
+    fn of(shortcut: &Shortcut) -> ShortcutText {
+        let mut text = ShortcutText {
+            real: shortcut.real,
+            alt: shortcut.alt,
+            key: None,
+            machine: None,
+            feed: None,
+            spindle: None,
+        };
+        match shortcut.press {
+            Press::Key(key) => text.key = Some(key.name()),
+            Press::Machine(name) => text.machine = Some(name),
+            Press::Feed(step) => text.feed = Some(step),
+            Press::Spindle(step) => text.spindle = Some(step),
+        }
+        text
+    }
 }
 
 impl About {
@@ -41,6 +78,7 @@ impl About {
             keys: Key::ALL.iter().map(key).collect(),
             machine_keys: station.machine_keys(),
             axes: station.control().axis_letters().collect(),
+            shortcuts: SHORTCUTS.iter().map(ShortcutText::of).collect(),
             version: env!("CARGO_PKG_VERSION"),
         }
     }

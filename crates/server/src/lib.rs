@@ -8,13 +8,13 @@
 //! - `socket` is one viewer, `api` what programs ask for; both have what is `shared`.
 //!
 //! ```no_run
-//! use bahn_panel::{Station, load};
+//! use bahn_panel::{Live, Station, load};
 //! use bahn_server::{Server, ServerOptions};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let station = Station::power_on(load("machines/mill".as_ref())?)?;
+//! let live = Live::start(Station::power_on(load("machines/mill".as_ref())?)?);
 //! let listen = "127.0.0.1:8155".parse()?;
-//! let server = Server::start(station, ServerOptions { listen, token: None, replay: None })?;
+//! let server = Server::start(live, ServerOptions { listen, token: None })?;
 //! println!("http://{}/", server.address());
 //! # Ok(())
 //! # }

@@ -9,7 +9,7 @@ use axum::extract::DefaultBodyLimit;
 use axum::middleware;
 use axum::routing::{any, get, post};
 use axum::serve::ListenerExt as _;
-use bahn_panel::{Link, Live, Replay, Station};
+use bahn_panel::{Link, Live, Refusal};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
@@ -34,8 +34,6 @@ pub struct ServerOptions {
     pub listen: SocketAddr,
     /// What others than this computer must know; needed for any address but loopback.
     pub token: Option<String>,
-    /// A session that is shown before anybody can go on.
-    pub replay: Option<Replay>,
 }
 
 impl ServerOptions {
@@ -63,6 +61,9 @@ pub enum ServerError {
     /// No thread can be started.
     #[error("cannot begin: {0}")]
     Runtime(std::io::Error),
+    /// The station does not answer.
+    #[error("cannot begin: {0}")]
+    Station(#[from] Refusal),
 }
 
 /// A station that is served.
@@ -73,11 +74,11 @@ pub struct Server {
 }
 
 impl Server {
-    /// Lets a station run and serves it.
+    /// Serves a station that runs.
     ///
     /// # Errors
     /// [`ServerError`].
-    pub fn start(station: Station, options: ServerOptions) -> Result<Server, ServerError> {
+    pub fn start(live: Live, options: ServerOptions) -> Result<Server, ServerError> {
         options.check()?;
         let listen = options.listen;
         let runtime = tokio::runtime::Builder::new_multi_thread()
@@ -91,11 +92,7 @@ impl Server {
         let address = listener
             .local_addr()
             .map_err(|error| ServerError::Address(listen, error))?;
-        let about = Arc::new(About::of(&station));
-        let live = match options.replay {
-            Some(replay) => Live::replay(station, replay),
-            None => Live::start(station),
-        };
+        let about = Arc::new(live.link().with(|station| About::of(station))?);
         let shared = Shared {
             regions: follow(live.link()),
             part: PartFeed::start(live.link()),
@@ -125,8 +122,8 @@ impl Server {
     }
 
     /// The station.
-    pub fn link(&self) -> Link {
-        self.live.link()
+    pub fn live(&self) -> &Live {
+        &self.live
     }
 
     /// Ends; what must survive is on the medium.

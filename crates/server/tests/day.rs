@@ -17,42 +17,12 @@ const HELD: Duration = Duration::from_millis(120);
 
 /// The part: a contour with tool radius compensation, a pocket, a row of tapped holes by a label. Its keys, and the
 /// block that they give.
-const PART: &[(&str, &str)] = &[
-    (
-        "BLK_FORM Z ENT X 0 Y 0 Z -20 ENT X 100 Y 60 Z 0 ENT",
-        "BLK FORM 0.2 X+100 Y+60 Z+0",
-    ),
-    ("TOOL_CALL 3 ENT Z ENT 2000 ENT", "TOOL CALL 3 Z S2000"),
-    ("L Z 50 ENT ENT ENT 3 ENT", "L Z+50 R0 FMAX M3"),
-    ("L X -20 Y -20 ENT ENT ENT NO_ENT", "L X-20 Y-20 R0 FMAX"),
-    ("L Z -5 ENT ENT ENT NO_ENT", "L Z-5 R0 FMAX"),
-    ("L X 0 Y 0 ENT RL ENT 400 ENT NO_ENT", "L X+0 Y+0 RL F400"),
-    ("L Y 60 END", "L Y+60"),
-    ("RND 8 END", "RND R8"),
-    ("L X 100 END", "L X+100"),
-    ("L Y 0 END", "L Y+0"),
-    ("L X -20 END", "L X-20"),
-    ("L Y -20 ENT ENT ENT NO_ENT", "L Y-20 R0 FMAX"),
-    ("L Z 50 ENT ENT ENT NO_ENT", "L Z+50 R0 FMAX"),
-    (
-        "CYCL_DEF GOTO 4 ENT -2 ENT -6 ENT -3 ENT 150 ENT X 40 ENT Y 24 ENT 500 ENT ENT 6 ENT",
-        "CYCL DEF 4.6 F500 DR- RADIUS 6",
-    ),
-    ("L X 50 Y 30 ENT ENT ENT NO_ENT", "L X+50 Y+30 R0 FMAX"),
-    ("L Z 2 ENT ENT ENT 99 ENT", "L Z+2 R0 FMAX M99"),
-    ("L Z 50 ENT ENT ENT NO_ENT", "L Z+50 R0 FMAX"),
-    (
-        "CYCL_DEF GOTO 2 ENT -2 ENT -8 ENT 0 ENT 300 ENT",
-        "CYCL DEF 2.4 F300",
-    ),
-    ("L X 15 Y 12 ENT ENT ENT NO_ENT", "L X+15 Y+12 R0 FMAX"),
-    ("L Z 2 ENT ENT ENT NO_ENT", "L Z+2 R0 FMAX"),
-    ("LBL_SET 1 ENT", "LBL 1"),
-    ("CYCL_CALL NO_ENT", "CYCL CALL"),
-    ("L I X 20 ENT ENT ENT NO_ENT", "L IX+20 R0 FMAX"),
-    ("LBL_CALL 1 ENT 2 ENT", "CALL LBL 1 REP 2/2"),
-    ("L Z 50 ENT ENT ENT 2 ENT", "L Z+50 R0 FMAX M2"),
-];
+fn part() -> Vec<(&'static str, &'static str)> {
+    let lines = include_str!("day.tsv")
+        .lines()
+        .filter(|line| !line.starts_with('#'));
+    lines.map(|line| line.split_once('\t').unwrap()).collect()
+}
 
 /// What a person uses.
 #[derive(Clone, Copy, PartialEq)]
@@ -297,7 +267,7 @@ fn a_day_at_the_mill_with_the_mouse() {
     pictures::take(&mut desk.page, "manual");
 
     // The program; in the middle of a block the page is loaded anew.
-    let listing = desk.write("PART", &PART[..6]);
+    let listing = desk.write("PART", &part()[..6]);
     assert!(
         listing.contains("\nL Z-5 R0 FMAX\nL X+0 Y+0 RL F400\n"),
         "{listing}"
@@ -313,13 +283,13 @@ fn a_day_at_the_mill_with_the_mouse() {
     desk.keys("0 END");
     desk.shows("program", "L Y+60");
     pictures::take(&mut desk.page, "programming");
-    for (keys, block) in &PART[7..] {
+    for (keys, block) in &part()[7..] {
         desk.keys(keys);
         desk.shows("program", block);
     }
     let listing = panel.file("programs/PART.H");
     assert!(listing.lines().count() > 30, "{listing}");
-    for (_, block) in PART {
+    for (_, block) in part() {
         assert!(listing.contains(block), "{block}: {listing}");
     }
 
@@ -378,7 +348,8 @@ fn the_first_part_by_touch_on_a_phone() {
     desk.shows("header", "KEY NON-FUNCTIONAL");
     desk.keys("CE");
     let end = ("L Z 50 ENT ENT ENT 2 ENT", "L Z+50 R0 FMAX M2");
-    let blocks: Vec<_> = PART[..8].iter().copied().chain([PART[11], end]).collect();
+    let part = part();
+    let blocks: Vec<_> = part[..8].iter().copied().chain([part[11], end]).collect();
     let listing = desk.write("FIRST", &blocks);
     assert!(listing.contains("RND R8\n"), "{listing}");
     pictures::take(&mut desk.page, "phone-programming");

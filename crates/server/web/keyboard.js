@@ -36,55 +36,74 @@ export function build(station, press) {
   }
 }
 
-/** Keys of a real keyboard, without modifiers. */
-const REAL = {
-  Enter: "ENT", Backspace: "CE", Escape: "CE", Delete: "DEL", End: "END", Insert: "NO_ENT",
-  ArrowUp: "UP", ArrowDown: "DOWN", ArrowLeft: "LEFT", ArrowRight: "RIGHT",
-  PageUp: "SK_LEFT", PageDown: "SK_RIGHT", ".": "POINT", ",": "POINT", "-": "SIGN", "+": "SIGN",
-  F1: "SK1", F2: "SK2", F3: "SK3", F4: "SK4", F5: "SK5", F6: "SK6", F7: "SK7", F8: "SK8",
-};
+/** Keys that only this page has. */
+const OWN = [{ real: "v", alt: true, key: "3D_VIEW" }];
 
-/** With Alt. */
-const ALT = {
-  1: "MANUAL", 2: "HANDWHEEL", 3: "MDI", 4: "SINGLE", 5: "FULL", 6: "PROGRAM", 7: "TEST",
-  n: "PGM_NR", d: "CYCL_DEF", c: "CYCL_CALL", t: "TOOL_CALL", f: "TOOL_DEF", l: "LBL_SET", k: "LBL_CALL", s: "STOP",
-  g: "GOTO", m: "MOD", b: "BLK_FORM", a: "CAPTURE", r: "RND", x: "CR", y: "CT", z: "CC", p: "PGM_CALL", h: "HELP", v: "3D_VIEW",
-};
-
-/** The key of the control that a key of a real keyboard presses. */
-export function keyOf(event) {
+/** What a key of a real keyboard does: a line of the table of the station, or a letter or digit that is itself. */
+function meant(shortcuts, event) {
   if (event.ctrlKey || event.metaKey) return null;
-  if (event.altKey) return ALT[event.key.toLowerCase()] ?? null;
-  if (REAL[event.key]) return REAL[event.key];
-  return /^[0-9a-zA-Z]$/.test(event.key) ? event.key.toUpperCase() : null;
+  const real = event.key.toLowerCase();
+  const line = shortcuts.find((line) => line.alt === event.altKey && line.real.toLowerCase() === real);
+  if (line) return line;
+  return !event.altKey && /^[0-9a-z]$/.test(real) ? { key: event.key.toUpperCase() } : null;
 }
 
-export function listen(press) {
+/** Keys are pressed by `press`; those of the machine are held as long as the real ones, knobs are turned by `turn`. */
+export function listen(station, press, hold, turn) {
+  const held = new Map();
+  const release = () => {
+    for (const name of held.values()) hold(name, false);
+    held.clear();
+  };
   document.addEventListener("keydown", (event) => {
     // A view of the part that has the focus takes its own keys.
     if (event.defaultPrevented) return;
     const inField = event.target.closest("input, select, textarea, dialog[open]");
     // A button that has the focus is pressed by Enter, as everywhere.
-    const onButton = event.target.closest("button") && (event.key === "Enter" || event.key === " ");
+    const onButton = event.target.closest("button") && (event.key === "Enter" || event.key === " ") && !event.altKey;
     if (inField || onButton) return;
-    const key = keyOf(event);
-    if (!key) return;
+    const line = meant([...station.shortcuts, ...OWN], event);
+    if (!line || (line.machine && !has(station, line.machine))) return;
     event.preventDefault();
-    press(key);
+    if (line.key) press(line.key);
+    else if (line.machine === "EMERGENCY_STOP") {
+      if (!event.repeat) press(line.machine);
+    } else if (line.machine) {
+      if (held.has(event.code)) return;
+      held.set(event.code, line.machine);
+      hold(line.machine, true);
+    } else turn(line);
   });
+  document.addEventListener("keyup", (event) => {
+    const name = held.get(event.code);
+    if (name) hold(name, false);
+    held.delete(event.code);
+    // Without Alt the key was another one.
+    if (event.key === "Alt") release();
+  });
+  addEventListener("blur", release);
 }
 
-export function help() {
+function has(station, name) {
+  return name === "EMERGENCY_STOP" || station.machine_keys.includes(name);
+}
+
+export function help(station) {
   const dialog = document.querySelector("#help");
-  const rows = [
-    ...Object.entries(REAL).map(([real, key]) => [real, key]),
-    ...Object.entries(ALT).map(([real, key]) => [`Alt+${real.toUpperCase()}`, key]),
-    ["A to Z, 0 to 9", "letters and digits"],
-  ];
+  const called = ({ key, machine, feed, spindle }) =>
+    key ?? machine ?? (feed ? `feed override ${signed(feed)} %` : `spindle override ${signed(spindle)} %`);
+  const rows = [...station.shortcuts, ...OWN]
+    .filter((line) => !line.machine || has(station, line.machine))
+    .map((line) => [`${line.alt ? "Alt+" : ""}${line.real.length === 1 ? line.real.toUpperCase() : line.real}`, called(line)]);
+  rows.push(["A to Z, 0 to 9", "letters and digits"]);
   dialog.querySelector("tbody").replaceChildren(...rows.map(([real, key]) => {
     const row = element("tr");
     row.append(element("td", "", real), element("td", "", key));
     return row;
   }));
   document.querySelector("#help-button").addEventListener("click", () => dialog.showModal());
+}
+
+function signed(number) {
+  return number < 0 ? `−${-number}` : `+${number}`;
 }

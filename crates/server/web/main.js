@@ -11,6 +11,7 @@ import * as timeline from "/web/timeline.js";
 
 let status = null;
 let windows = null;
+let knobs = [100, 100];
 
 const draw = {
   time: timeline.time,
@@ -35,6 +36,7 @@ const draw = {
   machine: (value) => {
     machine.draw(value);
     timeline.paused(value[0].paused);
+    knobs = value[0].knobs;
   },
   timeline: timeline.draw,
   why: teacher.why,
@@ -54,8 +56,9 @@ const part = new PartWindow(document.querySelector(".stage"), (looks) => {
 async function begin() {
   const station = await (await fetch("/api/station")).json();
   keyboard.build(station, press);
-  keyboard.help();
+  keyboard.help(station);
   const send = (input) => connection.input(input);
+  keyboard.listen(station, press, (key, down) => send({ key, down }), turn);
   machine.build(station, send);
   timeline.build(send);
   teacher.build(send);
@@ -74,7 +77,12 @@ function press(key) {
   connection.input({ key });
 }
 
-keyboard.listen(press);
+// A knob goes from 0 to 150 %.
+function turn({ feed, spindle }) {
+  const to = (knob, step) => Math.max(0, Math.min(150, knob + step));
+  connection.input(feed ? { feed_override: to(knobs[0], feed) } : { spindle_override: to(knobs[1], spindle) });
+}
+
 scheme.build(() => part.tint());
 
 for (const tab of document.querySelectorAll(".tabs [data-tab]")) {

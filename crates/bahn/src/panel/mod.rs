@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use bahn_host::files::NewFile;
 use bahn_host::{HostError, LoadedMachine};
-use bahn_panel::{Input, Replay, Station};
+use bahn_panel::{Input, Live, Replay, Station};
 use bahn_server::{Server, ServerOptions};
 
 use crate::interrupt::Interrupt;
@@ -30,16 +30,20 @@ fn in_use(error: HostError) -> UsageError {
     }
 }
 
-/// Switches the machine on and serves its panel until Ctrl-C.
+/// Switches the machine on and shows its panel until Ctrl-C.
 pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
-    let mut served = ServerOptions {
-        listen: options.listen,
+    let served = options.address().map(|listen| ServerOptions {
+        listen,
         token: options.token.clone(),
-        replay: None,
-    };
-    served
-        .check()
-        .map_err(|error| UsageError::new(error.to_string()))?;
+    });
+    if let Some(served) = &served {
+        served
+            .check()
+            .map_err(|error| UsageError::new(error.to_string()))?;
+    }
+    if options.in_the_terminal() {
+        terminal::check()?;
+    }
     let folder = match &options.machine {
         Some(folder) => folder.clone(),
         None => own_mill()?,
@@ -59,43 +63,126 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     if let Some(path) = &options.record {
         station.record(path).map_err(UsageError::new)?;
     }
-    if let Some(path) = &options.replay {
-        served.replay = Some(Replay::read(path).map_err(UsageError::new)?);
-    }
-    for difference in served
-        .replay
-        .iter()
-        .flat_map(|replay| replay.differences(&station))
-    {
-        diagnostics::print_line(&format!("warning: {difference}"));
-    }
     let interrupt = Interrupt::on_ctrl_c();
-    let server = Server::start(station, served).map_err(|error| UsageError::new(error.to_string()))?;
-    let address = page_address(&server, options);
-    diagnostics::print_text(&format!(
-        "{name}: the panel is at {address}; Ctrl-C switches the machine off"
-    ));
-    if options.open {
-        open(&address);
+    let desk = Desk::open(begin(station, options)?, served)?;
+    if let Some(address) = desk.page(options) {
+        let ends = match options.in_the_terminal() {
+            true => "",
+            false => "; Ctrl-C switches the machine off",
+        };
+        diagnostics::print_text(&format!("{name}: the panel is at {address}{ends}"));
+        if options.open {
+            open(&address);
+        }
     }
-    while !interrupt.is_requested() {
-        std::thread::sleep(LOOK);
-    }
-    let recorded = server.link().with(Station::end_recording);
-    recorded
-        .map_err(|refusal| UsageError::new(refusal.to_string()))?
-        .map_err(UsageError::new)?;
-    server.end().map_err(UsageError::new)?;
-    Ok(Outcome::Fine)
+    let shown = match options.in_the_terminal() {
+        true => terminal::show(desk.live(), &interrupt),
+        false => {
+            while !interrupt.is_requested() {
+                std::thread::sleep(LOOK);
+            }
+            Ok(())
+        }
+    };
+    // Whatever became of the terminal, what was done is kept.
+    desk.end()?;
+    shown.map(|()| Outcome::Fine)
 }
 
-/// Where a browser finds the page, with the token.
-fn page_address(server: &Server, options: &PanelOptions) -> String {
-    let address = server.address();
-    match &options.token {
-        Some(token) => format!("http://{address}/?token={token}"),
-        None => format!("http://{address}/"),
+/// A station that runs, with a server or without.
+enum Desk {
+    Served(Server),
+    Alone(Live),
+}
+
+impl Desk {
+    fn open(live: Live, served: Option<ServerOptions>) -> Result<Desk, UsageError> {
+        match served {
+            Some(served) => Server::start(live, served)
+                .map(Desk::Served)
+                .map_err(|error| UsageError::new(error.to_string())),
+            None => Ok(Desk::Alone(live)),
+        }
     }
+
+    fn live(&self) -> &Live {
+        match self {
+            Desk::Served(server) => server.live(),
+            Desk::Alone(live) => live,
+        }
+    }
+
+    /// Where a browser finds the page, with the token.
+    fn page(&self, options: &PanelOptions) -> Option<String> {
+        let Desk::Served(server) = self else {
+            return None;
+        };
+        let address = server.address();
+        Some(match &options.token {
+            Some(token) => format!("http://{address}/?token={token}"),
+            None => format!("http://{address}/"),
+        })
+    }
+
+    /// Ends; what must survive is on the medium.
+    fn end(self) -> Result<(), UsageError> {
+        let recorded = self.live().link().with(Station::end_recording);
+        recorded
+            .map_err(|refusal| UsageError::new(refusal.to_string()))?
+            .map_err(UsageError::new)?;
+        match self {
+            Desk::Served(server) => server.end(),
+            Desk::Alone(live) => live.end(),
+        }
+        .map_err(UsageError::new)
+    }
+}
+
+/// The panel in the terminal.
+#[cfg(feature = "terminal")]
+mod terminal {
+    use bahn_panel::Live;
+
+    use crate::UsageError;
+    use crate::interrupt::Interrupt;
+
+    pub(super) fn check() -> Result<(), UsageError> {
+        bahn_terminal::check().map_err(|error| UsageError::new(error.to_string()))
+    }
+
+    pub(super) fn show(live: &Live, interrupt: &Interrupt) -> Result<(), UsageError> {
+        bahn_terminal::show(live, || interrupt.is_requested())
+            .map_err(|error| UsageError::new(error.to_string()))
+    }
+}
+
+/// Nothing asks for it in a build without it.
+#[cfg(not(feature = "terminal"))]
+mod terminal {
+    use bahn_panel::Live;
+
+    use crate::UsageError;
+    use crate::interrupt::Interrupt;
+
+    pub(super) fn check() -> Result<(), UsageError> {
+        Err(UsageError::new("this build has no panel in the terminal"))
+    }
+
+    pub(super) fn show(_: &Live, _: &Interrupt) -> Result<(), UsageError> {
+        check()
+    }
+}
+
+/// Lets the station run, behind a session that is to be shown.
+fn begin(station: Station, options: &PanelOptions) -> Result<Live, UsageError> {
+    let Some(path) = &options.replay else {
+        return Ok(Live::start(station));
+    };
+    let replay = Replay::read(path).map_err(UsageError::new)?;
+    for difference in replay.differences(&station) {
+        diagnostics::print_line(&format!("warning: {difference}"));
+    }
+    Ok(Live::replay(station, replay))
 }
 
 /// Who has no browser opens the page elsewhere.

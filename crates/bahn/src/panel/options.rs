@@ -1,6 +1,6 @@
 //! Options of `bahn panel`.
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 
 use clap::Args;
@@ -8,6 +8,7 @@ use clap::Args;
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   bahn panel --open                                   the mill, in the browser
+  bahn panel --terminal                               the mill, in this terminal; ? shows the keys
   bahn panel --machine machines/mill-tnc360 --speed 5
       Another machine; time passes five times as fast.
   bahn panel --listen 0.0.0.0:8155 --token SECRET     for others, too; they need the token once
@@ -19,6 +20,7 @@ Examples:
 
 Without --machine a copy of machines/mill runs, in the user's data folder (XDG_DATA_HOME, else ~/.local/share): what is
 programmed and set there is there the next time. Ctrl-C switches the machine off; everything is kept.
+In the terminal NO_COLOR does without colours, and ':' presses any key by its name: ':key NC_START'.
 Exit codes: 0 fine, 1 the machine's folder has a fault, 2 wrong use.";
 
 /// Options of `bahn panel`.
@@ -27,15 +29,20 @@ pub(crate) struct PanelOptions {
     /// Folder of a machine; a copy of machines/mill without it.
     #[arg(long, value_name = "DIR")]
     pub machine: Option<PathBuf>,
-    /// Address to listen on; port 0 takes a free one. Any but loopback needs --token.
-    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8155")]
-    pub listen: SocketAddr,
+    /// Address to listen on; port 0 takes a free one. Any but loopback needs --token [default: 127.0.0.1:8155, none
+    /// with --terminal].
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub listen: Option<SocketAddr>,
     /// What others must know; letters and digits.
     #[arg(long, value_name = "TEXT", value_parser = token)]
     pub token: Option<String>,
     /// Opens the page in the browser.
     #[arg(long)]
     pub open: bool,
+    /// Shows the panel in this terminal. With --listen or --open the page shows the same machine.
+    #[cfg(feature = "terminal")]
+    #[arg(long)]
+    pub terminal: bool,
     /// So many times as fast as the clock on the wall, 0.1 to 100.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed)]
     pub speed: f64,
@@ -46,6 +53,25 @@ pub(crate) struct PanelOptions {
     #[arg(long, value_name = "FILE", conflicts_with = "record")]
     pub replay: Option<PathBuf>,
 }
+
+impl PanelOptions {
+    /// The panel is shown in this terminal.
+    pub fn in_the_terminal(&self) -> bool {
+        #[cfg(feature = "terminal")]
+        return self.terminal;
+        #[cfg(not(feature = "terminal"))]
+        return false;
+    }
+
+    /// Where to listen; nowhere when the terminal alone is wanted.
+    pub fn address(&self) -> Option<SocketAddr> {
+        let serves = !self.in_the_terminal() || self.open;
+        self.listen.or_else(|| serves.then_some(DEFAULT_ADDRESS))
+    }
+}
+
+/// Where the panel is when nobody says otherwise.
+const DEFAULT_ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 8155);
 
 /// A token stands in addresses and cookies.
 fn token(text: &str) -> Result<String, String> {

@@ -7,7 +7,7 @@
 //! - `check`, `run`, `trace`, `diagram`, `watch`, `list`, `xref`, `signals`: the subcommands.
 
 #[cfg_attr(
-    not(feature = "watch"),
+    not(feature = "terminal"),
     expect(dead_code, reason = "what steps a program serves the screen alone")
 )]
 mod bench;
@@ -18,7 +18,7 @@ mod failure;
 mod halt;
 mod list;
 #[cfg_attr(
-    not(feature = "watch"),
+    not(feature = "terminal"),
     expect(dead_code, reason = "part of it serves the screen alone")
 )]
 mod live;
@@ -29,7 +29,7 @@ mod signals;
 mod source;
 mod subject;
 mod trace;
-#[cfg(feature = "watch")]
+#[cfg(feature = "terminal")]
 mod watch;
 mod xref;
 
@@ -49,7 +49,7 @@ pub(crate) fn command(options: &PlcOptions) -> Result<Outcome, UsageError> {
         PlcCommand::Run(options) => run::command(options),
         PlcCommand::Trace(options) => trace::command(options),
         PlcCommand::Diagram(options) => diagram::command(options),
-        #[cfg(feature = "watch")]
+        #[cfg(feature = "terminal")]
         PlcCommand::Watch(options) => watch::command(options),
         PlcCommand::List(options) => list::command(options),
         PlcCommand::Xref(options) => xref::command(options),

@@ -31,7 +31,7 @@ pub(crate) enum PlcCommand {
     #[command(after_help = DIAGRAM_EXAMPLES)]
     Diagram(DiagramOptions),
     /// Watch and set operands while the program runs or is stepped (full screen).
-    #[cfg(feature = "watch")]
+    #[cfg(feature = "terminal")]
     #[command(after_help = WATCH_KEYS)]
     Watch(WatchOptions),
     /// Print the program as formatted listing, with errors below their lines.
@@ -98,7 +98,7 @@ Examples:
   bahn plc diagram machines/mill --part CIRCLE.H --show M2045,W260,M2482,O12 --trigger M2045=1 --before 5 --cycles 60
       The handshake of the first M function in the running control; `bahn plc trace --help` says more.";
 
-#[cfg(feature = "watch")]
+#[cfg(feature = "terminal")]
 const WATCH_KEYS: &str = "\
 Keys: r run, s stop, c one cycle, l one line, n start the program and the script anew, up and down choose
 an operand, enter set it, space turn a bit over, a add operands, d remove one, b set or clear a breakpoint
@@ -285,7 +285,7 @@ pub(crate) struct DiagramOptions {
 }
 
 /// Options of `bahn plc watch`.
-#[cfg(feature = "watch")]
+#[cfg(feature = "terminal")]
 #[derive(Args, Debug)]
 pub(crate) struct WatchOptions {
     #[command(flatten)]

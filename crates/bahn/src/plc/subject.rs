@@ -1,10 +1,10 @@
 //! What is looked at: a PLC program on its bench, or in the control of a machine.
 
-#[cfg(feature = "watch")]
+#[cfg(feature = "terminal")]
 use std::time::Duration;
 
 use bahn_exchange::Exchange;
-#[cfg(feature = "watch")]
+#[cfg(feature = "terminal")]
 use bahn_host::Script;
 use bahn_host::{Content, Operand};
 use bahn_plc::{Machine, Tracer};
@@ -108,7 +108,7 @@ impl Subject {
 }
 
 /// For the screen.
-#[cfg(feature = "watch")]
+#[cfg(feature = "terminal")]
 impl Subject {
     pub fn cycle_time(&self) -> Duration {
         match self {

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use bahn_dialogue::FigurePart;
-use bahn_picture::ImageError;
+use bahn_picture::{Image, ImageError};
 use bahn_workpiece::{Page, PageError, Part, PlanView, Projection, ThreePlanes, View3d};
 
 use super::contour::{Lines, lock};
@@ -157,39 +157,53 @@ impl Picture {
     /// # Errors
     /// When there is no picture of this size.
     pub fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PictureError> {
+        let Some(image) = self.image(width, height, true)? else {
+            return Ok(None);
+        };
+        let mut png = Vec::new();
+        image.write_png(&mut png)?;
+        Ok(Some(png))
+    }
+
+    /// The same, a part without its title, as rows of pixels from the top: red, green, blue.
+    ///
+    /// # Errors
+    /// When there is no picture of this size.
+    pub fn pixels(&self, width: u32, height: u32) -> Result<Option<Vec<[u8; 3]>>, PictureError> {
+        let image = self.image(width, height, false)?;
+        Ok(image.map(|image| image.pixels().to_vec()))
+    }
+
+    fn image(&self, width: u32, height: u32, titled: bool) -> Result<Option<Image>, PictureError> {
+        let size = [width, height];
         match &self.0 {
-            Kind::Part(picture) => Ok(picture.png(width, height)?),
+            Kind::Part(picture) => Ok(picture.draw(size, titled)?),
             _ if width < LEAST.0 || height < LEAST.1 => Err(PictureError::TooSmall(LEAST.0, LEAST.1)),
-            Kind::Lines(picture) => Ok(Some(picture.png(width, height)?)),
+            Kind::Lines(picture) => Ok(Some(picture.draw(size))),
             Kind::Cycle(cycle, parts, asked) => {
                 let title = format!("CYCL DEF {cycle}");
-                let mut png = Vec::new();
-                figure::draw(parts, asked, [width, height], &title).write_png(&mut png)?;
-                Ok(Some(png))
+                Ok(Some(figure::draw(parts, asked, size, &title)))
             }
-            Kind::Curves(curves, colours) => Ok(Some(curves.png(width, height, colours)?)),
+            Kind::Curves(curves, colours) => Ok(Some(curves.draw(width, height, colours))),
         }
     }
 }
 
 impl LinesPicture {
-    fn png(&self, width: u32, height: u32) -> Result<Vec<u8>, ImageError> {
-        let image = {
-            let lines = lock(&self.lines);
-            let size = [f64::from(width), f64::from(height)];
-            let sheet = Sheet::of(&lines, size, f64::from(self.magn), self.turned);
-            draw(&lines, &sheet, [width, height], &self.title, self.current)
-        };
-        let mut png = Vec::new();
-        image.write_png(&mut png)?;
-        Ok(png)
+    fn draw(&self, size: [u32; 2]) -> Image {
+        let lines = lock(&self.lines);
+        let sheet = Sheet::of(&lines, size.map(f64::from), f64::from(self.magn), self.turned);
+        draw(&lines, &sheet, size, &self.title, self.current)
     }
 }
 
 impl PartPicture {
-    fn png(&self, width: u32, height: u32) -> Result<Option<Vec<u8>>, PageError> {
+    fn draw(&self, [width, height]: [u32; 2], titled: bool) -> Result<Option<Image>, PageError> {
         let title = format!("PGM {}", self.program);
-        let page = Page::new(width, height, &title, &self.note())?;
+        let mut page = Page::new(width, height, &title, &self.note())?;
+        if !titled {
+            page = page.without_title();
+        }
         let Some(part) = self.stock.part() else {
             return Ok(None);
         };
@@ -224,10 +238,7 @@ impl PartPicture {
                 part.view_3d(&page, &options)
             }
         };
-        let mut png = Vec::new();
-        // Nothing but memory is written to.
-        let written = image.write_png(&mut png);
-        Ok(written.is_ok().then_some(png))
+        Ok(Some(image))
     }
 
     /// Machining time and MAGN, as they stand in the title.

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
-use bahn_panel::{Station, load};
+use bahn_panel::{Live, Station, load};
 use bahn_server::{Server, ServerOptions};
 use copy::copy;
 use serde_json::{Value, json};
@@ -52,9 +52,8 @@ impl Panel {
         let options = ServerOptions {
             listen: "127.0.0.1:0".parse().unwrap(),
             token: None,
-            replay: None,
         };
-        let server = Server::start(station, options).unwrap();
+        let server = Server::start(Live::start(station), options).unwrap();
         Panel {
             address: server.address(),
             server: Some(server),
@@ -66,7 +65,7 @@ impl Panel {
     /// 1/65535 of the thickness of the blank; of a page that has so many cells along an axis, each of them the middle
     /// one of as many columns.
     pub fn heights(&self, along: usize) -> Vec<u16> {
-        let link = self.server.as_ref().unwrap().link();
+        let link = self.server.as_ref().unwrap().live().link();
         let cut = link.with(Station::being_cut).unwrap().unwrap();
         let part = cut.part().unwrap();
         let top = part.max()[2] - part.min()[2];

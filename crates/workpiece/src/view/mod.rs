@@ -35,6 +35,7 @@ pub struct Page {
     height: u32,
     title: String,
     note: String,
+    is_bare: bool,
     stop: Arc<AtomicBool>,
 }
 
@@ -64,6 +65,7 @@ impl Page {
             height,
             title: title.to_owned(),
             note: note.to_owned(),
+            is_bare: false,
             stop: Arc::default(),
         })
     }
@@ -75,8 +77,15 @@ impl Page {
             height: 800,
             title: title.to_owned(),
             note: note.to_owned(),
+            is_bare: false,
             stop: Arc::default(),
         }
+    }
+
+    /// The same page without a title line.
+    pub fn without_title(mut self) -> Page {
+        self.is_bare = true;
+        self
     }
 
     /// The same page; what is drawn on it is given up, and is no picture, once the flag is set.
@@ -103,6 +112,13 @@ impl Page {
     /// Draws the title line; returns the picture and the free rectangle below the line.
     fn start(&self, background: Colour) -> (Image, Area) {
         let mut image = Image::new(self.width, self.height, background);
+        let whole = Area {
+            min: [0.0, 0.0],
+            max: [f64::from(self.width), f64::from(self.height)],
+        };
+        if self.is_bare {
+            return (image, whole);
+        }
         let size = self.text_size();
         let width = f64::from(self.width);
         let bar = (2.4 * size).round();
@@ -113,13 +129,11 @@ impl Page {
         let title = Image::fitting(&self.title, 1.15 * size, inner - note_width - size);
         image.text([size, 0.5 * bar], Anchor::Left, 1.15 * size, TITLE_TEXT, &title);
         image.text([width - size, 0.5 * bar], Anchor::Right, size, TITLE_NOTE, &note);
-        (
-            image,
-            Area {
-                min: [0.0, bar],
-                max: [width, f64::from(self.height)],
-            },
-        )
+        let below = Area {
+            min: [0.0, bar],
+            ..whole
+        };
+        (image, below)
     }
 }
 

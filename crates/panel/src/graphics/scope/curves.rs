@@ -3,7 +3,7 @@
 
 use bahn_control::ServoSignal;
 use bahn_host::oscilloscope::{CHANNELS, SAMPLES};
-use bahn_picture::{Anchor, Colour, Image, ImageError};
+use bahn_picture::{Anchor, Colour, Image};
 
 use super::{FEWEST, Recorded};
 
@@ -212,11 +212,8 @@ impl Curves {
         self.sight.count as f64 / ACROSS as f64 * f64::from(self.sample_us) * 1e-6
     }
 
-    /// Draws them as PNG of so many pixels.
-    ///
-    /// # Errors
-    /// When it cannot be written.
-    pub fn png(&self, width: u32, height: u32, colours: &ScopeColours) -> Result<Vec<u8>, ImageError> {
+    /// Draws them in so many pixels.
+    pub fn draw(&self, width: u32, height: u32, colours: &ScopeColours) -> Image {
         let [background, grid, others, text, selected] = *colours;
         let mut image = Image::new(width, height, background);
         let (w, h) = (f64::from(width), f64::from(height));
@@ -269,9 +266,7 @@ impl Curves {
             }
         }
         self.foot(&mut image, [left, right, bottom, size], colours);
-        let mut png = Vec::new();
-        image.write_png(&mut png)?;
-        Ok(png)
+        image
     }
 
     /// Time of a division, cursors, and the bar that says which part of the memory is seen.

@@ -1,0 +1,189 @@
+//! Keys of the machine that are held down.
+//!
+//! Most terminals tell that a key was pressed, and tell it again and again while it stays down, but not that it was let
+//! go. A key counts as held as long as it is told again; one that is tapped is down for [`RENEWED`]. Terminals with the
+//! keyboard protocol of kitty tell when a key was let go.
+
+use std::time::{Duration, Instant};
+
+/// A key that is not told again for so long was let go: keys repeat every 30 to 50 ms (inferred).
+pub(crate) const RENEWED: Duration = Duration::from_millis(200);
+/// The same where the terminal tells when a key is let go; until keys begin to repeat 660 ms may pass (inferred).
+const TOLD: Duration = Duration::from_millis(1000);
+/// A switch that turns over is not turned over again by a key that repeats (inferred).
+const STROKE: Duration = Duration::from_millis(700);
+
+/// Who holds a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Hand {
+    /// A key of the keyboard, while it is told again.
+    Keyboard,
+    /// The mouse, until its button is let go.
+    Mouse,
+    /// It stays down until it is let go by an order.
+    Latch,
+}
+
+/// What is to be done with a key of the machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    /// It goes down.
+    Press(String),
+    /// It comes up.
+    Release(String),
+}
+
+#[derive(Debug)]
+struct Held {
+    name: String,
+    hand: Hand,
+    /// When it was told last.
+    told: Instant,
+}
+
+/// The keys that are held.
+#[derive(Debug, Default)]
+pub(crate) struct Holds {
+    held: Vec<Held>,
+    /// The terminal tells when a key was let go.
+    pub releases_are_told: bool,
+    /// A switch that was turned over, and when it was told last.
+    stroke: Option<(String, Instant)>,
+}
+
+impl Holds {
+    /// A key is held, or held on.
+    pub fn press(&mut self, name: &str, hand: Hand, now: Instant) -> Option<Change> {
+        if hand == Hand::Keyboard {
+            // A keyboard repeats only the key that was pressed last.
+            let keys = self.held.iter_mut().filter(|held| held.hand == Hand::Keyboard);
+            let renewed = keys.filter(|held| self.releases_are_told || held.name == name);
+            renewed.for_each(|held| held.told = now);
+        }
+        if self.held.iter().any(|held| held.name == name) {
+            return None;
+        }
+        self.held.push(Held {
+            name: name.to_owned(),
+            hand,
+            told: now,
+        });
+        Some(Change::Press(name.to_owned()))
+    }
+
+    /// A key is let go.
+    pub fn release(&mut self, name: &str) -> Option<Change> {
+        let place = self.held.iter().position(|held| held.name == name)?;
+        Some(Change::Release(self.held.remove(place).name))
+    }
+
+    /// A key that is down comes up, one that is up stays down.
+    pub fn latch(&mut self, name: &str, now: Instant) -> Option<Change> {
+        if !self.strikes(name, now) {
+            return None;
+        }
+        self.release(name).or_else(|| self.press(name, Hand::Latch, now))
+    }
+
+    /// Whether a key that turns something over is struck anew, and does not merely repeat.
+    pub fn strikes(&mut self, name: &str, now: Instant) -> bool {
+        let repeats = matches!(&self.stroke, Some((last, told)) if last == name && now - *told < STROKE);
+        self.stroke = Some((name.to_owned(), now));
+        !repeats
+    }
+
+    /// What the mouse holds is let go.
+    pub fn release_mouse(&mut self) -> Vec<Change> {
+        self.release_where(|held| held.hand == Hand::Mouse)
+    }
+
+    /// Keys of the keyboard that were let go, as far as time tells.
+    pub fn tick(&mut self, now: Instant) -> Vec<Change> {
+        let patience = if self.releases_are_told { TOLD } else { RENEWED };
+        self.release_where(|held| held.hand == Hand::Keyboard && now - held.told >= patience)
+    }
+
+    /// Everything is let go but what is latched.
+    pub fn release_hands(&mut self) -> Vec<Change> {
+        self.release_where(|held| held.hand != Hand::Latch)
+    }
+
+    /// Everything is let go.
+    pub fn release_all(&mut self) -> Vec<Change> {
+        self.release_where(|_| true)
+    }
+
+    fn release_where(&mut self, which: impl Fn(&Held) -> bool) -> Vec<Change> {
+        let released = self.held.extract_if(.., |held| which(held));
+        released.map(|held| Change::Release(held.name)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ms(ms: u64) -> Duration {
+        Duration::from_millis(ms)
+    }
+
+    fn press(name: &str) -> Option<Change> {
+        Some(Change::Press(name.to_owned()))
+    }
+
+    fn release(name: &str) -> Vec<Change> {
+        vec![Change::Release(name.to_owned())]
+    }
+
+    #[test]
+    fn a_key_that_repeats_is_held_and_one_that_does_not_is_let_go() {
+        let (mut holds, start) = (Holds::default(), Instant::now());
+        assert_eq!(holds.press("X+", Hand::Keyboard, start), press("X+"));
+        assert_eq!(holds.tick(start + RENEWED - ms(1)), []);
+        assert_eq!(holds.tick(start + RENEWED), release("X+"));
+        // The keyboard begins to repeat after half a second.
+        let mut now = start + ms(500);
+        assert_eq!(holds.press("X+", Hand::Keyboard, now), press("X+"));
+        for _ in 0..50 {
+            now += ms(40);
+            assert_eq!(holds.tick(now), []);
+            assert_eq!(holds.press("X+", Hand::Keyboard, now), None);
+        }
+        assert_eq!(holds.tick(now + RENEWED), release("X+"));
+        assert_eq!(holds.release_all(), []);
+    }
+
+    #[test]
+    fn a_terminal_that_tells_of_releases_holds_two_keys() {
+        let (mut holds, start) = (Holds::default(), Instant::now());
+        holds.releases_are_told = true;
+        holds.press("RAPID", Hand::Keyboard, start);
+        holds.press("X+", Hand::Keyboard, start + ms(300));
+        let mut now = start + ms(900);
+        for _ in 0..20 {
+            now += ms(40);
+            assert_eq!(holds.press("X+", Hand::Keyboard, now), None);
+            assert_eq!(holds.tick(now), []);
+        }
+        assert_eq!(holds.release("X+"), release("X+").pop());
+        // A release that was lost is made up for.
+        assert_eq!(holds.tick(now + TOLD), release("RAPID"));
+    }
+
+    #[test]
+    fn what_the_mouse_holds_and_what_is_latched_stays() {
+        let (mut holds, start) = (Holds::default(), Instant::now());
+        holds.press("Z-", Hand::Mouse, start);
+        assert_eq!(holds.latch("RAPID", start), press("RAPID"));
+        let late = start + Duration::from_secs(60);
+        assert_eq!(holds.tick(late), []);
+        assert_eq!(holds.release_mouse(), release("Z-"));
+        // The latch turns over once for each stroke, however often its key repeats.
+        assert_eq!(holds.latch("RAPID", late), release("RAPID").pop());
+        assert_eq!(holds.latch("RAPID", late + ms(500)), None);
+        assert_eq!(holds.latch("RAPID", late + ms(540)), None);
+        assert_eq!(holds.latch("RAPID", late + ms(540) + STROKE), press("RAPID"));
+        assert_eq!(holds.release_hands(), []);
+        assert_eq!(holds.release_all(), release("RAPID"));
+    }
+}

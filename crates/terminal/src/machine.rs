@@ -1,0 +1,53 @@
+//! The machine operating panel: its keys, and the letters that press them.
+
+use bahn_panel::{EMERGENCY_STOP, Station};
+
+/// Letters of the machine's keys in their order.
+const LETTERS: &str = "abcdefghijklmnopqrstuvwxyz0123456789";
+/// Presses EMERGENCY STOP among them.
+pub(crate) const STOP_LETTER: char = '!';
+
+/// What does not change while a machine is on.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Machine {
+    /// Its name.
+    pub name: String,
+    /// Keys of its operating panel.
+    pub keys: Vec<String>,
+}
+
+impl Machine {
+    /// That of a station.
+    pub fn of_station(station: &mut Station) -> Machine {
+        Machine {
+            name: station.machine().folder.name.clone(),
+            keys: station.machine_keys(),
+        }
+    }
+
+    #[cfg(test)]
+    pub fn of_keys(names: &[&str]) -> Machine {
+        Machine {
+            name: "test".to_owned(),
+            keys: names.iter().map(|name| (*name).to_owned()).collect(),
+        }
+    }
+
+    /// A key of the machine by its name, in whatever letters.
+    pub fn key(&self, name: &str) -> Option<String> {
+        let known = self.keys.iter().map(String::as_str).chain([EMERGENCY_STOP]);
+        let mut found = known.filter(|key| key.eq_ignore_ascii_case(name));
+        found.next().map(str::to_owned)
+    }
+
+    /// The letter that presses a key while the keys are those of the machine.
+    pub fn letter(place: usize) -> Option<char> {
+        LETTERS.chars().nth(place)
+    }
+
+    /// The key that a letter presses then, small or capital.
+    pub fn lettered(&self, letter: char) -> Option<String> {
+        let place = LETTERS.find(letter.to_ascii_lowercase())?;
+        self.keys.get(place).cloned()
+    }
+}
