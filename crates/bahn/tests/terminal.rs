@@ -156,6 +156,15 @@ impl Desk {
         self.until("command", |screen| !screen.contains(&format!(":{command}")));
     }
 
+    /// The left button of the mouse on a text: `M` goes down, `m` comes up. Its words are those that terminals write.
+    fn mouse(&self, text: &str, button: char) {
+        let screen = self.screen();
+        let mut rows = (1..).zip(screen.lines());
+        let place = rows.find_map(|(row, line)| Some((row, line[..line.find(text)?].chars().count() + 2)));
+        let (row, column) = place.unwrap_or_else(|| panic!("no {text}:\n{screen}"));
+        self.tmux(&["send-keys", "-l", &format!("\u{1b}[<0;{column};{row}{button}")]);
+    }
+
     /// The soft key under which a word stands.
     fn soft_key(&self, word: &str) {
         let is_there = |screen: &str| soft_key(screen, word, self.width).is_some();
@@ -476,11 +485,23 @@ fn terminal_and_page_show_the_same_machine() {
     desk.mode("PASS OVER REFERENCE MARKS");
     desk.keys("PROGRAM");
     desk.mode("PROGRAMMING AND EDITING");
-    let end = Instant::now() + PATIENCE;
-    while !request("GET /api/screen", "").contains("\"mode\":\"PROGRAMMING AND EDITING\"") {
-        assert!(Instant::now() < end);
-        std::thread::sleep(LOOK);
-    }
+    let page_shows = |what: &str| {
+        let end = Instant::now() + PATIENCE;
+        while !request("GET /api/screen", "").contains(what) {
+            assert!(Instant::now() < end, "{what}");
+            std::thread::sleep(LOOK);
+        }
+    };
+    page_shows("\"mode\":\"PROGRAMMING AND EDITING\"");
+    // The keys of the machine, by the mouse: held as long as its button.
+    desk.types(&["Tab".to_owned()]);
+    desk.shows("[RAPID]");
+    desk.mouse("[RAPID]", 'M');
+    page_shows("\"held\":[\"RAPID\"]");
+    desk.mouse("[RAPID]", 'm');
+    page_shows("\"held\":[]");
+    desk.mouse("[EMERGENCY STOP]", 'M');
+    page_shows("\"emergency_stop\":true");
     desk.command("quit");
     assert_eq!(desk.ended(), "0");
 }
