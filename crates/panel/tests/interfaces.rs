@@ -8,38 +8,16 @@ use support::Trainee;
 
 fn menu(trainee: &mut Trainee) {
     trainee.press("PROGRAM MOD");
-    down_to(trainee, "DATA INTERFACES");
+    trainee.down_to("DATA INTERFACES");
     trainee.press("ENT");
     assert_eq!(trainee.screen().program.title, "DATA INTERFACES");
 }
 
-fn down_to(trainee: &mut Trainee, name: &str) {
-    trainee.press(&"UP ".repeat(20));
-    for _ in 0..20 {
-        let lines = trainee.screen().program.lines;
-        if lines
-            .iter()
-            .any(|line| line.current && line.text.starts_with(name))
-        {
-            return;
-        }
-        trainee.press("DOWN");
-    }
-    panic!("no {name}");
-}
-
-/// The value of a line of a menu.
-fn value(trainee: &mut Trainee, name: &str) -> String {
-    let lines = trainee.screen().program.lines;
-    let line = lines.into_iter().find(|line| line.text.starts_with(name));
-    line.unwrap().text[name.len()..].trim().to_owned()
-}
-
 /// Presses RIGHT until a line has a value.
 fn choose(trainee: &mut Trainee, name: &str, wanted: &str) {
-    down_to(trainee, name);
+    trainee.down_to(name);
     for _ in 0..12 {
-        if value(trainee, name) == wanted {
+        if trainee.menu_value(name) == wanted {
             return;
         }
         trainee.press("RIGHT");
@@ -76,17 +54,17 @@ fn the_interfaces_are_set_up_and_kept() {
         ("EXT1 (MP5020.0, MP5030.0)", "8E1 DC3 STANDARD"),
         ("EXT2 (MP5020.1, MP5030.1)", "7N1.5 BLOCKWISE"),
     ] {
-        assert_eq!(value(&mut trainee, name), expected, "{name}");
+        assert_eq!(trainee.menu_value(name), expected, "{name}");
     }
-    down_to(&mut trainee, "RS-232 INTERFACE");
+    trainee.down_to("RS-232 INTERFACE");
     for expected in ["FE2", "ME", "EXT1", "EXT2", "LSV/2", "FE1"] {
         trainee.press("RIGHT");
-        assert_eq!(value(&mut trainee, "RS-232 INTERFACE"), expected);
+        assert_eq!(trainee.menu_value("RS-232 INTERFACE"), expected);
     }
     // ME has 2400 baud, and no other.
     choose(&mut trainee, "RS-232 INTERFACE", "ME");
-    assert_eq!(value(&mut trainee, "RS-232 BAUD RATE"), "2400");
-    down_to(&mut trainee, "RS-232 BAUD RATE");
+    assert_eq!(trainee.menu_value("RS-232 BAUD RATE"), "2400");
+    trainee.down_to("RS-232 BAUD RATE");
     trainee.press("RIGHT");
     assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
     trainee.press("CE");
@@ -96,9 +74,9 @@ fn the_interfaces_are_set_up_and_kept() {
     choose(&mut trainee, "RS-422 BAUD RATE", "19200");
     trainee.press("RIGHT");
     assert_eq!(trainee.messages(), ["BAUD RATE NOT POSSIBLE"]);
-    assert_eq!(value(&mut trainee, "RS-422 BAUD RATE"), "19200");
+    assert_eq!(trainee.menu_value("RS-422 BAUD RATE"), "19200");
     trainee.press("CE LEFT LEFT");
-    assert_eq!(value(&mut trainee, "RS-422 BAUD RATE"), "4800");
+    assert_eq!(trainee.menu_value("RS-422 BAUD RATE"), "4800");
     choose(&mut trainee, "ASSIGNMENT: PROGRAM RUN", "RS-422");
     let mut trainee = trainee.killed();
     trainee.ready();
@@ -110,7 +88,7 @@ fn the_interfaces_are_set_up_and_kept() {
         ("ASSIGNMENT: FILES", "RS-232"),
         ("ASSIGNMENT: PROGRAM RUN", "RS-422"),
     ] {
-        assert_eq!(value(&mut trainee, name), expected, "{name}");
+        assert_eq!(trainee.menu_value(name), expected, "{name}");
     }
 }
 
@@ -119,8 +97,8 @@ fn an_inhibited_interface_is_not_set_up() {
     let mut trainee = Trainee::with("mill", |folder| set(folder, &["MP5000 : 2"]));
     trainee.ready();
     menu(&mut trainee);
-    assert_eq!(value(&mut trainee, "RS-422 INTERFACE"), "INHIBITED (MP5000)");
-    down_to(&mut trainee, "RS-422 INTERFACE");
+    assert_eq!(trainee.menu_value("RS-422 INTERFACE"), "INHIBITED (MP5000)");
+    trainee.down_to("RS-422 INTERFACE");
     trainee.press("RIGHT");
     assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
     trainee.press("CE");
@@ -135,10 +113,10 @@ fn a_tnc_360_has_one_interface() {
     menu(&mut trainee);
     let lines = trainee.screen().program.lines;
     assert!(lines.iter().all(|line| !line.text.starts_with("RS-422")));
-    down_to(&mut trainee, "RS-232 INTERFACE");
+    trainee.down_to("RS-232 INTERFACE");
     for expected in ["ME", "EXT", "", "FE"] {
         trainee.press("RIGHT");
-        assert_eq!(value(&mut trainee, "RS-232 INTERFACE"), expected);
+        assert_eq!(trainee.menu_value("RS-232 INTERFACE"), expected);
     }
 }
 
@@ -160,7 +138,7 @@ fn no_device_answers() {
     trainee.press("END CE");
     // In German, too.
     trainee.press("MANUAL MOD");
-    down_to(&mut trainee, "DIALOGUE LANGUAGE");
+    trainee.down_to("DIALOGUE LANGUAGE");
     trainee.press("ENT MOD PROGRAM EXT");
     assert_eq!(trainee.messages(), ["EXT. AUS-/EINGABE NICHT BEREIT"]);
     trainee.press("CE MOD");
@@ -176,18 +154,18 @@ fn din_iso_is_refused_as_long_as_it_cannot_be_written() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     trainee.press("MOD");
-    down_to(&mut trainee, "PROGRAM INPUT");
-    assert_eq!(value(&mut trainee, "PROGRAM INPUT"), "HEIDENHAIN");
+    trainee.down_to("PROGRAM INPUT");
+    assert_eq!(trainee.menu_value("PROGRAM INPUT"), "HEIDENHAIN");
     trainee.press("ENT");
     let iso = bahn_program::FILE_TYPES
         .iter()
         .find(|own| own.extension == "I")
         .unwrap();
     match iso.language {
-        Some(_) => assert_eq!(value(&mut trainee, "PROGRAM INPUT"), "ISO"),
+        Some(_) => assert_eq!(trainee.menu_value("PROGRAM INPUT"), "ISO"),
         None => {
             assert_eq!(trainee.messages(), ["DIN/ISO PROGRAMS CANNOT BE ENTERED"]);
-            assert_eq!(value(&mut trainee, "PROGRAM INPUT"), "HEIDENHAIN");
+            assert_eq!(trainee.menu_value("PROGRAM INPUT"), "HEIDENHAIN");
         }
     }
 }

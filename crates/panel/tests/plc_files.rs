@@ -15,44 +15,17 @@ fn plc_mode(trainee: &mut Trainee) {
     assert_eq!(trainee.screen().program.title, "PLC PROGRAMMING");
 }
 
-fn soft(trainee: &mut Trainee, name: &str) {
-    let keys = trainee.screen().soft_keys.keys;
-    let place = keys.iter().position(|key| key == name);
-    let place = place.unwrap_or_else(|| panic!("no {name}: {keys:?}"));
-    trainee.press(&format!("SK{}", place + 1));
-}
-
-fn typed(trainee: &mut Trainee, word: &str) {
-    for character in word.chars() {
-        trainee.press(&character.to_string());
-    }
-}
-
-fn to(trainee: &mut Trainee, name: &str) {
-    for _ in 0..40 {
-        let lines = trainee.screen().program.lines;
-        if lines
-            .iter()
-            .any(|line| line.current && line.text.starts_with(name))
-        {
-            return;
-        }
-        trainee.press("DOWN");
-    }
-    panic!("no {name}: {:#?}", trainee.screen().program);
-}
-
 fn last_message(trainee: &mut Trainee) -> String {
     trainee.messages().last().cloned().unwrap_or_default()
 }
 
 /// Converts the main file to a text of this name, and reads it.
 fn converted(trainee: &mut Trainee, key: &str, name: &str) -> String {
-    soft(trainee, "EDIT");
-    to(trainee, "MAIN.PLC");
-    soft(trainee, key);
+    trainee.soft("EDIT");
+    trainee.down_to("MAIN.PLC");
+    trainee.soft(key);
     assert_eq!(trainee.screen().dialogue.prompt, "DESTINATION FILE = .A");
-    typed(trainee, name);
+    trainee.typed(name);
     trainee.press("ENT");
     assert_eq!(last_message(trainee), format!("MAIN.PLC -> {name}.A"));
     trainee.press("CE END");
@@ -98,10 +71,10 @@ fn a_listing_has_line_numbers_and_references() {
     }
     assert!(seen > 20, "{seen}");
     // A name that is taken is refused.
-    soft(&mut trainee, "EDIT");
-    to(&mut trainee, "MAIN.PLC");
-    soft(&mut trainee, "LISTING");
-    typed(&mut trainee, "L");
+    trainee.soft("EDIT");
+    trainee.down_to("MAIN.PLC");
+    trainee.soft("LISTING");
+    trainee.typed("L");
     trainee.press("ENT");
     assert_eq!(last_message(&mut trainee), "ENTRY VALUE INCORRECT");
     assert_eq!(trainee.file("plc/L.A"), listing);
@@ -111,7 +84,7 @@ fn a_listing_has_line_numbers_and_references() {
 fn binary_code_is_written_for_an_eprom() {
     let mut trainee = Trainee::at("mill");
     plc_mode(&mut trainee);
-    soft(&mut trainee, "OUTPUT BINARY CODE");
+    trainee.soft("OUTPUT BINARY CODE");
     assert!(trainee.screen().program.title.starts_with("FILE EPROM.A"));
     // The names there are stand in it already; the number is overwritten.
     let preset = trainee.file("plc/EPROM.A");
@@ -133,7 +106,7 @@ fn binary_code_is_written_for_an_eprom() {
     // A fault names its line, and nothing is written.
     trainee.write("plc/EPROM.A", "IDENT 123 456 99\nLOAD NOTHING.PLC\n");
     trainee.press("CE CE END");
-    soft(&mut trainee, "OUTPUT BINARY CODE");
+    trainee.soft("OUTPUT BINARY CODE");
     trainee.press("EXT");
     assert_eq!(
         last_message(&mut trainee),
@@ -150,7 +123,7 @@ fn the_file_of_messages_is_selected() {
     });
     let before = trainee.file("machine.toml");
     plc_mode(&mut trainee);
-    soft(&mut trainee, "SELECT .DI1/.ER1");
+    trainee.soft("SELECT .DI1/.ER1");
     let lines = |trainee: &mut Trainee| -> Vec<String> {
         let lines = trainee.screen().program.lines;
         lines.into_iter().map(|line| line.text).collect()
@@ -162,7 +135,7 @@ fn the_file_of_messages_is_selected() {
         "{shown:?}"
     );
     assert_eq!(shown[2], "OTHER.ER1");
-    to(&mut trainee, "OTHER.ER1");
+    trainee.down_to("OTHER.ER1");
     trainee.press("ENT");
     assert_eq!(
         last_message(&mut trainee),
@@ -182,7 +155,7 @@ fn the_file_of_messages_is_selected() {
 fn the_machine_parameters_are_a_key_away() {
     let mut trainee = Trainee::at("mill");
     plc_mode(&mut trainee);
-    soft(&mut trainee, "MP EDIT");
+    trainee.soft("MP EDIT");
     assert_eq!(trainee.screen().program.title, "MACHINE PARAMETERS");
     trainee.press("END");
     assert_eq!(trainee.screen().program.title, "PLC PROGRAMMING");

@@ -12,36 +12,8 @@ const HIGH: char = '\u{2580}';
 /// Enters the code number; the main menu has the keys.
 fn plc_mode(trainee: &mut Trainee) {
     trainee.press("PROGRAM MOD");
-    current(trainee, "CODE NUMBER");
+    trainee.down_to("CODE NUMBER");
     trainee.press("ENT").number("807667").press("ENT");
-}
-
-/// Goes down a list to the line that begins so.
-fn current(trainee: &mut Trainee, name: &str) {
-    for _ in 0..40 {
-        let lines = trainee.screen().program.lines;
-        if lines
-            .iter()
-            .any(|line| line.current && line.text.starts_with(name))
-        {
-            return;
-        }
-        trainee.press("DOWN");
-    }
-    panic!("no {name}: {:#?}", trainee.screen().program);
-}
-
-/// Presses the soft key of this text, whatever row it is in.
-fn soft(trainee: &mut Trainee, name: &str) {
-    for _ in 0..trainee.screen().soft_keys.rows.max(1) {
-        let keys = trainee.screen().soft_keys.keys;
-        if let Some(place) = keys.iter().position(|key| key == name) {
-            trainee.press(&format!("SK{}", place + 1));
-            return;
-        }
-        trainee.press("SK_RIGHT");
-    }
-    panic!("no soft key {name}: {:?}", trainee.screen().soft_keys);
 }
 
 fn line(trainee: &mut Trainee) -> String {
@@ -63,13 +35,6 @@ fn value(trainee: &Trainee, operand: &str) -> String {
     operand
         .read(trainee.station.control().exchange().plc())
         .to_string()
-}
-
-/// Types letters and digits, each by its key.
-fn typed(trainee: &mut Trainee, word: &str) {
-    for character in word.chars() {
-        trainee.press(&character.to_string());
-    }
 }
 
 #[test]
@@ -99,9 +64,9 @@ fn the_code_number_opens_the_mode_until_power_off() {
     }
     // The program is told the code number in D276.
     assert_eq!(value(&trainee, "D276"), "807667");
-    soft(&mut trainee, "END");
+    trainee.soft("END");
     assert!(has_edit(&mut trainee), "the menu has it without the number");
-    current(&mut trainee, "PLC EDIT");
+    trainee.down_to("PLC EDIT");
     trainee.press("ENT");
     assert_eq!(title(&mut trainee), "PLC PROGRAMMING");
     trainee.press("END END");
@@ -125,7 +90,7 @@ fn the_table_shows_and_sets_operands() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     plc_mode(&mut trainee);
-    soft(&mut trainee, "TABLE");
+    trainee.soft("TABLE");
     // M3000 is message 76 of the PLC, which the program leaves alone: M2924 + n.
     trainee.press("GOTO").number("3000").press("ENT");
     assert!(
@@ -133,7 +98,7 @@ fn the_table_shows_and_sets_operands() {
         "{}",
         line(&mut trainee)
     );
-    soft(&mut trainee, "SET");
+    trainee.soft("SET");
     assert!(
         line(&mut trainee).starts_with("M3000   1"),
         "{}",
@@ -146,30 +111,30 @@ fn the_table_shows_and_sets_operands() {
     assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
     trainee.press("CE CE");
     // A word, hexadecimal and decimal.
-    soft(&mut trainee, "GOTO");
+    trainee.soft("GOTO");
     trainee.press("W").number("900").press("ENT");
     assert_eq!(
         (title(&mut trainee).as_str(), line(&mut trainee).as_str()),
         ("TABLE W", "W900    0")
     );
-    soft(&mut trainee, "HEX/DECIMAL");
-    typed(&mut trainee, "1F");
+    trainee.soft("HEX/DECIMAL");
+    trainee.typed("1F");
     trainee.press("ENT");
     assert_eq!(
         (line(&mut trainee).as_str(), value(&trainee, "W900").as_str()),
         ("W900    001F", "31")
     );
-    soft(&mut trainee, "HEX/DECIMAL");
+    trainee.soft("HEX/DECIMAL");
     trainee.number("-2").press("ENT");
     assert_eq!(
         (line(&mut trainee).as_str(), value(&trainee, "B900").as_str()),
         ("W900    -2", "-1")
     );
     // What the control itself writes is live, with its name.
-    soft(&mut trainee, "I");
+    trainee.soft("I");
     assert_eq!(title(&mut trainee), "TABLE I");
     trainee.press("GOTO");
-    typed(&mut trainee, "S1");
+    trainee.typed("S1");
     trainee.press("ENT");
     assert_eq!(
         trainee.messages(),
@@ -188,7 +153,7 @@ fn begin_of(main: &str) -> usize {
 
 /// Opens the main file at its first instruction.
 fn edit(trainee: &mut Trainee, line: usize) {
-    soft(trainee, "EDIT");
+    trainee.soft("EDIT");
     trainee.press("ENT GOTO").number(&line.to_string()).press("ENT");
     assert_eq!(
         title(trainee),
@@ -205,13 +170,13 @@ fn a_faulty_line_is_found_and_mended() {
     let begin = begin_of(&main);
     edit(&mut trainee, begin);
     // `LN M3100`, `= M3001` by keys, then a line that no PLC knows.
-    typed(&mut trainee, "LN");
-    soft(&mut trainee, "BLANK");
-    typed(&mut trainee, "M3100");
+    trainee.typed("LN");
+    trainee.soft("BLANK");
+    trainee.typed("M3100");
     trainee.press("ENT");
-    soft(&mut trainee, "=");
-    soft(&mut trainee, "BLANK");
-    typed(&mut trainee, "M3001");
+    trainee.soft("=");
+    trainee.soft("BLANK");
+    trainee.typed("M3001");
     trainee.press("ENT");
     assert_eq!(trainee.messages(), [""; 0]);
     text(&mut trainee, "XYZ M1\n");
@@ -224,13 +189,13 @@ fn a_faulty_line_is_found_and_mended() {
     expected.splice(begin - 1..begin - 1, typed_lines);
     assert_eq!(edited.lines().collect::<Vec<_>>(), expected);
     // Half a line is on the medium, too.
-    typed(&mut trainee, "EM");
+    trainee.typed("EM");
     let half = trainee.file("plc/MAIN.PLC");
     assert_eq!(half.len(), edited.len() + 2);
     assert!(half.lines().nth(begin + 2).unwrap().starts_with("EM "));
     trainee.press("CE CE END");
     assert_eq!(trainee.file("plc/MAIN.PLC"), edited);
-    soft(&mut trainee, "COMPILE");
+    trainee.soft("COMPILE");
     trainee.press("ENT");
     assert_eq!(title(&mut trainee), "COMPILE: ERRORS");
     let (shown, wrong) = (line(&mut trainee), begin + 2);
@@ -238,9 +203,9 @@ fn a_faulty_line_is_found_and_mended() {
     assert!(shown.starts_with(&expected), "{shown}");
     trainee.press("ENT");
     assert_eq!(line(&mut trainee), format!("{wrong:>6} XYZ M1"));
-    soft(&mut trainee, "DELETE LINE");
+    trainee.soft("DELETE LINE");
     trainee.press("END");
-    soft(&mut trainee, "COMPILE");
+    trainee.soft("COMPILE");
     trainee.press("ENT");
     let said = trainee.messages();
     assert!(said[0].starts_with("MAIN.PLC: 0 ERRORS, "), "{said:?}");
@@ -264,7 +229,7 @@ fn what_was_compiled_runs_from_the_next_power_on() {
     edit(&mut trainee, begin_of(&main));
     text(&mut trainee, "LN M3100\n= M3001\n");
     trainee.press("ENT END");
-    soft(&mut trainee, "COMPILE");
+    trainee.soft("COMPILE");
     trainee.press("ENT CE").wait(1.0);
     assert_eq!(trainee.messages(), [""; 0], "the program of before runs on");
     let lines = trainee.screen().program.lines;
@@ -312,9 +277,9 @@ fn the_window_of_the_plc_is_seen_and_the_plc_knows() {
     trainee.press("PROGRAM").wait(0.1);
     assert_eq!(value(&trainee, "W902"), "3");
     plc_mode(&mut trainee);
-    soft(&mut trainee, "TABLE");
+    trainee.soft("TABLE");
     trainee.press("GOTO").number("3112").press("ENT");
-    soft(&mut trainee, "SET");
+    trainee.soft("SET");
     trainee.wait(0.5);
     assert_eq!(trainee.screen().plc_window, None);
 }
@@ -324,10 +289,10 @@ fn what_somebody_else_has_written_is_not_lost() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     plc_mode(&mut trainee);
-    soft(&mut trainee, "EDIT");
+    trainee.soft("EDIT");
     trainee.press("ENT");
     trainee.write("plc/MAIN.PLC", "EM\n");
-    typed(&mut trainee, "A");
+    trainee.typed("A");
     assert_eq!(
         trainee.messages(),
         ["FILE WAS CHANGED OUTSIDE, AND IS READ AGAIN"]
@@ -340,13 +305,13 @@ fn what_somebody_else_has_written_is_not_lost() {
     trainee.press("CE END");
     let latin = b"L I4 ;T\xfcr\r\n= O2\r\nEM\r\n";
     std::fs::write(trainee.folder().join("plc/MAIN.PLC"), latin).unwrap();
-    soft(&mut trainee, "EDIT");
+    trainee.soft("EDIT");
     trainee.press("ENT");
-    soft(&mut trainee, "FIND");
-    typed(&mut trainee, "O2");
+    trainee.soft("FIND");
+    trainee.typed("O2");
     trainee.press("ENT");
     assert_eq!(line(&mut trainee), "     2 = O2");
-    soft(&mut trainee, "INSERT/OVERWRITE");
+    trainee.soft("INSERT/OVERWRITE");
     trainee.press("RIGHT RIGHT RIGHT 3 END");
     let written = std::fs::read(trainee.folder().join("plc/MAIN.PLC")).unwrap();
     assert_eq!(written, b"L I4 ;T\xfcr\r\n= O3\r\nEM\r\n");
@@ -357,7 +322,7 @@ fn trace_shows_what_the_latest_scan_did() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     plc_mode(&mut trainee);
-    soft(&mut trainee, "TRACE");
+    trainee.soft("TRACE");
     assert_eq!(title(&mut trainee), "TRACE MAIN.PLC");
     // M2719 is set since the first scan: instruction, operand, logic accumulator.
     let words = |text: String| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
@@ -367,8 +332,8 @@ fn trace_shows_what_the_latest_scan_did() {
     assert_eq!(first[1..6].join(" "), format!("{number} L M2719 1 1"));
     assert_eq!(first[0], "*");
     // What belongs to the first scan after power-on is passed by.
-    soft(&mut trainee, "FIND");
-    typed(&mut trainee, "M2487");
+    trainee.soft("FIND");
+    trainee.typed("M2487");
     trainee.press("ENT");
     let passed = line(&mut trainee);
     assert!(
@@ -376,15 +341,15 @@ fn trace_shows_what_the_latest_scan_did() {
         "{passed}"
     );
     // A display that stands does not follow.
-    soft(&mut trainee, "GOTO");
+    trainee.soft("GOTO");
     trainee.number(&number.to_string()).press("ENT");
     assert!(line(&mut trainee).contains("L M2719"));
-    soft(&mut trainee, "STOP DISPLAY");
+    trainee.soft("STOP DISPLAY");
     let stands = trainee.screen().program.lines;
     trainee.wait(0.5);
     assert_eq!(trainee.screen().program.lines, stands);
-    soft(&mut trainee, "START DISPLAY");
-    soft(&mut trainee, "LOGIC DIAGRAM");
+    trainee.soft("START DISPLAY");
+    trainee.soft("LOGIC DIAGRAM");
     assert_eq!(title(&mut trainee), "LOGIC DIAGRAM");
 }
 
@@ -393,30 +358,30 @@ fn the_diagram_catches_an_edge() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     plc_mode(&mut trainee);
-    soft(&mut trainee, "TRACE");
-    soft(&mut trainee, "LOGIC DIAGRAM");
+    trainee.soft("TRACE");
+    trainee.soft("LOGIC DIAGRAM");
     for operand in ["M3100", "M2719"] {
         trainee.press("ENT");
-        typed(&mut trainee, operand);
+        trainee.typed(operand);
         trainee.press("ENT DOWN");
     }
     trainee.press("UP UP 1");
     assert_eq!(line(&mut trainee), "M3100  1");
-    soft(&mut trainee, "START TRACE");
+    trainee.soft("START TRACE");
     trainee.wait(11.0);
     let records = |trainee: &mut Trainee| trainee.screen().status.flags.contains(&"PCTR".to_owned());
     assert!(records(&mut trainee), "it waits for the event");
-    soft(&mut trainee, "TRACE IN CODE");
+    trainee.soft("TRACE IN CODE");
     assert_eq!(title(&mut trainee), "TRACE MAIN.PLC");
     trainee.press("END");
-    soft(&mut trainee, "TABLE");
+    trainee.soft("TABLE");
     trainee.press("GOTO").number("3100").press("ENT");
-    soft(&mut trainee, "SET");
+    trainee.soft("SET");
     assert!(records(&mut trainee));
     trainee.press("END").wait(11.0);
     assert!(!records(&mut trainee), "512 scans of 20 ms are behind it");
-    soft(&mut trainee, "TRACE");
-    soft(&mut trainee, "LOGIC DIAGRAM");
+    trainee.soft("TRACE");
+    trainee.soft("LOGIC DIAGRAM");
     let expected = format!("M3100  1  {}{}", "_".repeat(32), HIGH.to_string().repeat(32));
     assert_eq!(line(&mut trainee), expected);
     let lines = trainee.screen().program.lines;
@@ -430,13 +395,13 @@ fn the_diagram_catches_an_edge() {
         title(&mut trainee)
     );
     // To the left there are only scans before it.
-    soft(&mut trainee, "<");
+    trainee.soft("<");
     assert_eq!(line(&mut trainee), format!("M3100  1  {}", "_".repeat(64)));
     // DEL erases a row; a word has no place in it.
     trainee.press("DEL");
     assert!(line(&mut trainee).starts_with("M2719"), "{}", line(&mut trainee));
-    soft(&mut trainee, "OPERAND");
-    typed(&mut trainee, "W900");
+    trainee.soft("OPERAND");
+    trainee.typed("W900");
     trainee.press("ENT");
     assert_eq!(trainee.messages(), ["ENTRY VALUE INCORRECT"]);
 }

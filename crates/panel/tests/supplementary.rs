@@ -6,33 +6,9 @@ mod support;
 
 use support::Trainee;
 
-/// The value of a line of a menu.
-fn value(trainee: &mut Trainee, name: &str) -> String {
-    let lines = trainee.screen().program.lines;
-    let line = lines
-        .into_iter()
-        .find(|line| line.text.starts_with(name))
-        .unwrap();
-    line.text[name.len()..].trim().to_owned()
-}
-
-fn down_to(trainee: &mut Trainee, name: &str) {
-    for _ in 0..20 {
-        let lines = trainee.screen().program.lines;
-        if lines
-            .iter()
-            .any(|line| line.current && line.text.starts_with(name))
-        {
-            return;
-        }
-        trainee.press("DOWN");
-    }
-    panic!("no {name}");
-}
-
 fn code(trainee: &mut Trainee, code: &str) {
     trainee.press("PROGRAM MOD");
-    down_to(trainee, "CODE NUMBER");
+    trainee.down_to("CODE NUMBER");
     trainee.press("ENT").number(code).press("ENT");
 }
 
@@ -45,11 +21,11 @@ fn display_unit_and_language() {
     assert_eq!(trainee.screen().program.title, "SUPPLEMENTARY FUNCTIONS");
     for expected in ["NOML", "LAG", "DIST", "REF", "ACTL"] {
         trainee.press("ENT");
-        assert_eq!(value(&mut trainee, "POSITION DISPLAY"), expected);
+        assert_eq!(trainee.menu_value("POSITION DISPLAY"), expected);
         assert_eq!(trainee.screen().status.position_type, expected);
     }
     trainee.press("LEFT");
-    assert_eq!(value(&mut trainee, "POSITION DISPLAY"), "REF");
+    assert_eq!(trainee.menu_value("POSITION DISPLAY"), "REF");
     trainee.press("RIGHT DOWN ENT");
     // 25.4 mm are an inch.
     assert_eq!(
@@ -57,10 +33,10 @@ fn display_unit_and_language() {
         (true, "+1.0000")
     );
     trainee.press("ENT");
-    down_to(&mut trainee, "DIALOGUE LANGUAGE");
+    trainee.down_to("DIALOGUE LANGUAGE");
     trainee.press("ENT");
     assert_eq!(trainee.screen().mode, "MANUELLER BETRIEB");
-    assert_eq!(value(&mut trainee, "DIALOG-SPRACHE"), "DEUTSCH");
+    assert_eq!(trainee.menu_value("DIALOG-SPRACHE"), "DEUTSCH");
     // It is kept, and MOD leaves the menu.
     trainee.press("MOD");
     assert_eq!(trainee.screen().program.title, "");
@@ -74,13 +50,17 @@ fn software_numbers_and_axes_for_l_blocks() {
     trainee.ready();
     trainee.press("PROGRAM MOD");
     assert_eq!(
-        value(&mut trainee, "NC SOFTWARE NUMBER"),
+        trainee.menu_value("NC SOFTWARE NUMBER"),
         format!("BAHN {}", env!("CARGO_PKG_VERSION"))
     );
-    assert!(value(&mut trainee, "PLC SOFTWARE NUMBER").starts_with("MAIN.PLC 2"));
-    down_to(&mut trainee, "AXES FOR L BLOCK");
+    assert!(
+        trainee
+            .menu_value("PLC SOFTWARE NUMBER")
+            .starts_with("MAIN.PLC 2")
+    );
+    trainee.down_to("AXES FOR L BLOCK");
     trainee.press("X Z X Y Z Z");
-    assert_eq!(value(&mut trainee, "AXES FOR L BLOCK"), "YZ");
+    assert_eq!(trainee.menu_value("AXES FOR L BLOCK"), "YZ");
     trainee.press("X IV");
     assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"], "three at most");
 }
@@ -90,20 +70,20 @@ fn axis_limit_stops_an_axis() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();
     trainee.press("MOD");
-    down_to(&mut trainee, "AXIS LIMIT 1");
+    trainee.down_to("AXIS LIMIT 1");
     trainee.press("ENT");
-    assert_eq!(value(&mut trainee, "X+"), "+30000.000");
+    assert_eq!(trainee.menu_value("X+"), "+30000.000");
     // CAPTURE takes REF: where the axis stands.
     let snapshot = trainee.station.control().snapshot();
     let machine = snapshot.axes[0].machine;
-    down_to(&mut trainee, "X+");
+    trainee.down_to("X+");
     trainee
         .press("ENT")
         .number(&format!("{:.3}", machine + 5.0))
         .press("ENT");
-    assert_eq!(value(&mut trainee, "X+"), format!("{:+.3}", machine + 5.0));
+    assert_eq!(trainee.menu_value("X+"), format!("{:+.3}", machine + 5.0));
     trainee.press("UP CAPTURE");
-    let least: f64 = value(&mut trainee, "X-").parse().unwrap();
+    let least: f64 = trainee.menu_value("X-").parse().unwrap();
     assert!((least - machine).abs() < 0.0021, "{least}, {machine}");
     // Least above greatest.
     trainee.press("ENT").number("29000").press("ENT");
@@ -131,9 +111,9 @@ fn axis_limit_stops_an_axis() {
     let mut trainee = trainee.killed();
     trainee.ready();
     trainee.press("MOD");
-    down_to(&mut trainee, "AXIS LIMIT 1");
+    trainee.down_to("AXIS LIMIT 1");
     trainee.press("ENT");
-    assert_eq!(value(&mut trainee, "X+"), format!("{:+.3}", machine + 5.0));
+    assert_eq!(trainee.menu_value("X+"), format!("{:+.3}", machine + 5.0));
 }
 
 #[test]
@@ -256,12 +236,12 @@ fn machine_times_are_counted_and_kept() {
     let on = trainee.station.control().time_us() / 60_000_000;
     trainee.wait(61.0);
     code(&mut trainee, "857282");
-    assert_eq!(value(&mut trainee, "CONTROL ON"), format!("0:{:02}", on + 1));
-    assert_eq!(value(&mut trainee, "PROGRAM RUN"), "0:00");
+    assert_eq!(trainee.menu_value("CONTROL ON"), format!("0:{:02}", on + 1));
+    assert_eq!(trainee.menu_value("PROGRAM RUN"), "0:00");
     let mut trainee = trainee.killed();
     trainee.ready();
     code(&mut trainee, "857282");
-    assert_eq!(value(&mut trainee, "CONTROL ON"), format!("0:{:02}", on + 1));
+    assert_eq!(trainee.menu_value("CONTROL ON"), format!("0:{:02}", on + 1));
 }
 
 #[test]
@@ -324,7 +304,7 @@ fn user_parameters_have_their_dialogues() {
     let mut trainee = trainee.killed();
     trainee.ready();
     trainee.press("PROGRAM MOD");
-    down_to(&mut trainee, "USER PARAMETERS");
+    trainee.down_to("USER PARAMETERS");
     trainee.press("ENT");
     let lines = trainee.screen().program.lines;
     assert!(

@@ -97,6 +97,10 @@ pub mod operation {
     };
 }
 
+/// Of the data interfaces: [`ParameterList::interface_parameters`](crate::ParameterList::interface_parameters).
+pub mod interfaces {
+    pub use crate::settings::{InterfaceParameters, TransferFormat};
+}
 /// Of tables in the NC memory: [`ParameterList::table_parameters`](crate::ParameterList::table_parameters).
 pub mod tables {
     pub use crate::settings::{

@@ -9,6 +9,7 @@ mod axes;
 mod axis_parameters;
 mod axis_reader;
 mod characteristics;
+mod interfaces;
 mod machining;
 mod operation;
 mod plc_parameters;
@@ -24,6 +25,7 @@ pub use axis_parameters::{
     ReferenceType, Synchronization, TravelParameters,
 };
 pub use characteristics::Characteristics;
+pub use interfaces::{InterfaceParameters, TransferFormat};
 pub use machining::{
     ContourPocket, Decimal, DigitizingSettings, GraphicsSettings, MFunctions, MeasuringProbe, ProbeSettings,
     ProbeTurn, ProgramEndClearing, ScaledAxes,

@@ -12,6 +12,7 @@ mod list;
 mod mdi;
 mod menu;
 mod number;
+mod parameters;
 mod plc;
 mod probe;
 mod programming;

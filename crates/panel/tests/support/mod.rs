@@ -84,6 +84,54 @@ impl Trainee {
         self
     }
 
+    /// Types letters and digits, each by its key.
+    pub fn typed(&mut self, word: &str) -> &mut Trainee {
+        for character in word.chars() {
+            self.press(&character.to_string());
+        }
+        self
+    }
+
+    /// Goes to the line of a list that begins so: down, or from its top.
+    pub fn down_to(&mut self, name: &str) {
+        for way in ["", "UP"] {
+            for _ in 0..60 {
+                self.press(way);
+            }
+            for _ in 0..60 {
+                let lines = self.screen().program.lines;
+                if lines
+                    .iter()
+                    .any(|line| line.current && line.text.starts_with(name))
+                {
+                    return;
+                }
+                self.press("DOWN");
+            }
+        }
+        panic!("no {name}: {:#?}", self.screen().program);
+    }
+
+    /// What a line of a menu stands at.
+    pub fn menu_value(&mut self, name: &str) -> String {
+        let lines = self.screen().program.lines;
+        let line = lines.into_iter().find(|line| line.text.starts_with(name));
+        line.unwrap().text[name.len()..].trim().to_owned()
+    }
+
+    /// Presses the soft key of this text, whatever row it is in.
+    pub fn soft(&mut self, name: &str) {
+        for _ in 0..self.screen().soft_keys.rows.max(1) {
+            let keys = self.screen().soft_keys.keys;
+            if let Some(place) = keys.iter().position(|key| key == name) {
+                self.press(&format!("SK{}", place + 1));
+                return;
+            }
+            self.press("SK_RIGHT");
+        }
+        panic!("no soft key {name}: {:?}", self.screen().soft_keys);
+    }
+
     /// Gives an input.
     pub fn give(&mut self, json: &str) -> &mut Trainee {
         let text: InputText = serde_json::from_str(json).unwrap();

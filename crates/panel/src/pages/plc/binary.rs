@@ -8,7 +8,7 @@ use crate::page::Turn;
 use crate::site::Site;
 
 /// The list, among the files of the PLC.
-pub(super) const LIST: &str = "EPROM.A";
+const LIST: &str = "EPROM.A";
 /// Ending of binary files [000:11345].
 const ENDING: &str = ".BIN";
 
@@ -21,7 +21,7 @@ pub(super) fn open(site: &mut Site) -> Turn {
         return Turn::Say(why);
     }
     match Editor::open(LIST, 1, site) {
-        Ok(editor) => Turn::Open(Box::new(editor)),
+        Ok(editor) => Turn::Open(Box::new(editor.with_output(write))),
         Err(why) => Turn::Say(why),
     }
 }
@@ -37,7 +37,7 @@ fn preset(names: &[String], site: &Site) -> String {
 }
 
 /// EXT on the list: no interface has a device, so that the records become a file beside it.
-pub(super) fn write(text: &str, site: &Site) -> Turn {
+fn write(text: &str, site: &Site) -> Turn {
     let line = |line: u32, message: &str| Turn::Say(format!("{LIST}:{line} {message}"));
     let list = match LoadList::parse(text) {
         Ok(list) => list,

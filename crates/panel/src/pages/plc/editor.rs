@@ -5,7 +5,6 @@ use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 use bahn_plc::check_line;
 
-use super::binary;
 use super::source::{NotWritten, Source};
 use crate::page::{Page, Turn, View};
 use crate::pages::ask::Later;
@@ -53,6 +52,8 @@ pub(super) struct Editor {
     find: Later,
     goto: Later,
     word: String,
+    /// What EXT does with the text, where it does something.
+    output: Option<fn(&str, &Site) -> Turn>,
 }
 
 impl Editor {
@@ -77,7 +78,16 @@ impl Editor {
             find: Later::default(),
             goto: Later::default(),
             word: String::new(),
+            output: None,
         })
+    }
+
+    /// EXT puts the text out.
+    pub fn with_output(self, output: fn(&str, &Site) -> Turn) -> Editor {
+        Editor {
+            output: Some(output),
+            ..self
+        }
     }
 
     fn current(&self) -> &str {
@@ -272,8 +282,9 @@ impl Editor {
             Key::Del => self.delete(),
             Key::Goto => return self.goto.ask(site.words("GOTO: LINE ="), NUMBER),
             Key::End => return self.finish(site),
-            Key::Ext if self.name == binary::LIST => {
-                return binary::write(&self.source.lines.join("\n"), site);
+            Key::Ext => {
+                let text = self.source.lines.join("\n");
+                return self.output.map_or(Turn::Refused, |output| output(&text, site));
             }
             key => match key.character() {
                 Some(character) if self.put(character) => {}

@@ -16,7 +16,7 @@ use bahn_parameters::MessageId;
 
 use crate::page::{Page, Turn, View};
 use crate::pages::list;
-use crate::pages::supplementary::machine_parameters;
+use crate::pages::parameters;
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
 use files::Purpose;
@@ -96,7 +96,7 @@ impl Page for MainMenu {
             "COMPILE" => files::open(Purpose::Compile, site),
             "OUTPUT BINARY CODE" => binary::open(site),
             "SELECT .DI1/.ER1" => texts::open(site),
-            "MP EDIT" => machine_parameters(site),
+            "MP EDIT" => parameters::all(site),
             _ => Turn::Close,
         }
     }

@@ -3,12 +3,12 @@
 use bahn_control::{Command, RunState};
 use bahn_parameters::MessageId;
 
-use super::{offsets, oscilloscope, parameters, timers};
+use super::{offsets, oscilloscope, timers};
 use crate::page::Turn;
 use crate::pages::ask::{Choice, Name};
 use crate::pages::corrections;
 use crate::pages::files::{Directory, Purpose};
-use crate::pages::plc;
+use crate::pages::{parameters, plc};
 use crate::site::Site;
 
 const USER_PARAMETERS: u32 = 123;

@@ -4,15 +4,15 @@
 //! What is chosen here is kept. Nothing is connected to the interfaces: where a transfer would begin, the key EXT says so.
 
 use bahn_dialogue::Key;
-use bahn_parameters::{MessageId, ParameterList};
+use bahn_parameters::MessageId;
 
 use crate::page::{Page, Side, Turn};
 use crate::pages::menu::{Item, Items, Menu};
 use crate::settings::{BAUD_RATES, Interface, InterfaceMode, TransferOf};
 use crate::site::Site;
 
-/// Names of the interfaces, and the value of MP5000 that inhibits each [000:16984-16989].
-const PORTS: [(&str, f64); 2] = [("RS-232", 1.0), ("RS-422", 2.0)];
+/// Names of the interfaces.
+const PORTS: [&str; 2] = ["RS-232", "RS-422"];
 /// Baud rates that the two interfaces cannot have together [000:17552-17554].
 const NOT_TOGETHER: [u32; 2] = [19_200, 38_400];
 /// ME 101 has this baud rate and no other [003:7048].
@@ -28,7 +28,7 @@ enum Row {
     /// The interface of a kind of transfer.
     Assigned(TransferOf),
     /// What the parameters say of EXT1 and EXT2.
-    Ext(u8),
+    Ext(usize),
 }
 
 /// The page.
@@ -68,9 +68,9 @@ fn rows(site: &Site) -> Vec<Row> {
     }
 }
 
-fn is_inhibited(port: usize, list: &ParameterList) -> bool {
-    let inhibited = list.get(5000, 0).filter(|value| *value > 0.0);
-    PORTS.get(port).map(|(_, value)| *value) == inhibited && inhibited.is_some()
+fn is_inhibited(port: usize, site: &Site) -> bool {
+    let inhibited = site.parameters().interface_parameters().inhibited;
+    inhibited.get(port).is_some_and(|own| *own)
 }
 
 /// The baud rate in force.
@@ -84,31 +84,24 @@ fn baud(port: usize, site: &Site) -> u32 {
 
 /// `8E1 DC3 STANDARD`: data bits, parity and stop bits (MP5020), what stops the transfer, and its protocol (MP5030)
 /// [000:17073-17105].
-fn format(ext: u8, site: &Site) -> String {
-    let list = site.parameters();
-    let bits = list.get(5020, ext).unwrap_or_default() as u8;
-    let is_set = |bit: u8| bits >> bit & 1 == 1;
-    let data = if is_set(0) { '8' } else { '7' };
-    let parity = match (is_set(5), is_set(4)) {
-        (false, _) => 'N',
-        (true, false) => 'E',
-        (true, true) => 'O',
+fn format(ext: usize, site: &Site) -> String {
+    let formats = site.parameters().interface_parameters().formats;
+    let Some(format) = formats.get(ext) else {
+        return String::new();
     };
-    let stop = match (is_set(6), is_set(7)) {
-        (false, false) => "1.5",
-        (true, false) => "2",
-        (_, true) => "1",
+    let parity = match format.odd {
+        None => 'N',
+        Some(false) => 'E',
+        Some(true) => 'O',
     };
-    let mut text = format!("{data}{parity}{stop}");
-    for (bit, name) in [(2, " RTS"), (3, " DC3")] {
-        text.push_str(if is_set(bit) { name } else { "" });
-    }
-    let blockwise = list.get(5030, ext) == Some(1.0);
-    let protocol = match blockwise {
+    let rts = if format.stop_by_rts { " RTS" } else { "" };
+    let dc3 = if format.stop_by_dc3 { " DC3" } else { "" };
+    let protocol = match format.blockwise {
         true => site.words("BLOCKWISE"),
         false => site.words("STANDARD"),
     };
-    format!("{text} {protocol}")
+    let stop = f64::from(format.half_stop_bits) / 2.0;
+    format!("{}{parity}{stop}{rts}{dc3} {protocol}", format.data_bits)
 }
 
 impl Items for Interfaces {
@@ -118,11 +111,11 @@ impl Items for Interfaces {
 
     fn items(&self, site: &Site) -> Vec<Item> {
         let single = !site.control().model().has_rs_422();
-        let name = |port: usize| PORTS.get(port).map_or("", |(name, _)| *name);
+        let name = |port: usize| PORTS.get(port).copied().unwrap_or_default();
         let item = |row: &Row| match *row {
             Row::Mode(port) => {
                 let mode = site.settings.interfaces.get(port).map(|own| own.mode);
-                let value = match is_inhibited(port, site.parameters()) {
+                let value = match is_inhibited(port, site) {
                     true => site.words("INHIBITED (MP5000)"),
                     false => mode.unwrap_or_default().name(single).to_owned(),
                 };
@@ -168,7 +161,7 @@ fn change(place: usize, on: bool, site: &mut Site) -> Turn {
     };
     let single = !site.control().model().has_rs_422();
     match row {
-        Row::Mode(port) | Row::Baud(port) if is_inhibited(port, site.parameters()) => Turn::Refused,
+        Row::Mode(port) | Row::Baud(port) if is_inhibited(port, site) => Turn::Refused,
         Row::Mode(port) => change_mode(port, on, single, site),
         Row::Baud(port) => change_baud(port, on, site),
         Row::Assigned(transfer) => {

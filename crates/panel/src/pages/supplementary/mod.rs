@@ -5,11 +5,9 @@ mod code;
 mod interface;
 mod offsets;
 mod oscilloscope;
-mod parameters;
 mod timers;
 
 pub(crate) use interface::transfer;
-pub(crate) use parameters::all as machine_parameters;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -18,7 +16,7 @@ use bahn_dialogue::Key;
 use crate::page::{Page, Side, Turn};
 use crate::pages::ask::Name;
 use crate::pages::menu::{Item, Items, Menu};
-use crate::pages::{help, plc};
+use crate::pages::{help, parameters, plc};
 use crate::settings::PositionType;
 use crate::site::Site;
 use crate::texts::{self, Language};

@@ -48,12 +48,12 @@ pub(crate) fn all(site: &Site) -> Turn {
 }
 
 /// What the manual lets the operator change.
-pub(super) fn of_code(site: &Site) -> Turn {
+pub(crate) fn of_code(site: &Site) -> Turn {
     editor(site, |definition| definition.user)
 }
 
 /// Up to sixteen that the machine builder has chosen, with his dialogues [000:6907-6926].
-pub(super) fn user(site: &Site) -> Turn {
+pub(crate) fn user(site: &Site) -> Turn {
     let list = site.parameters();
     let row = |own: bahn_parameters::operation::UserParameter| {
         let definition = Definition::named(list.model(), own.id).ok()?;
