@@ -217,6 +217,12 @@ impl Curves {
     /// # Errors
     /// When it cannot be written.
     pub fn png(&self, width: u32, height: u32, colours: &ScopeColours) -> Result<Vec<u8>, ImageError> {
+        let mut png = Vec::new();
+        self.image(width, height, colours).write_png(&mut png)?;
+        Ok(png)
+    }
+
+    fn image(&self, width: u32, height: u32, colours: &ScopeColours) -> Image {
         let [background, grid, others, text, selected] = *colours;
         let mut image = Image::new(width, height, background);
         let (w, h) = (f64::from(width), f64::from(height));
@@ -269,9 +275,7 @@ impl Curves {
             }
         }
         self.foot(&mut image, [left, right, bottom, size], colours);
-        let mut png = Vec::new();
-        image.write_png(&mut png)?;
-        Ok(png)
+        image
     }
 
     /// Time of a division, cursors, and the bar that says which part of the memory is seen.
@@ -373,5 +377,34 @@ mod tests {
             ["T1 0.0 MS  1.0000 mm/min", "T2 1200.0 MS  4.0000 mm/min"]
         );
         assert!((curves.time_of_division_s() - 4096.0 * 6e-5).abs() < 1e-12);
+    }
+
+    /// MP7361.0 to .4: ground, grid, other channels, cursors and text, the selected channel.
+    #[test]
+    fn curves_have_the_colours_of_mp7361() {
+        let wave = |factor: f64| (0..SAMPLES).map(|k| (k as f64 * factor).sin()).collect();
+        let mut other = lane(wave(0.01));
+        other.number = 1;
+        let mut curves = Curves {
+            lanes: vec![lane(wave(0.004)), other],
+            sample_us: 600,
+            trigger: None,
+            sight: Sight::default(),
+        };
+        curves.sight.cursors[0] = Some(2000);
+        let colours = [[1, 2, 3], [40, 0, 0], [0, 90, 0], [0, 0, 200], [250, 250, 0]];
+        let image = curves.image(640, 480, &colours);
+        let count = |colour: Colour| image.pixels().iter().filter(|pixel| **pixel == colour).count();
+        let [ground, grid, others, text, selected] = colours.map(count);
+        assert!(ground > 640 * 480 / 2, "{ground}");
+        assert!(
+            grid.min(others).min(selected) > 200 && text > 200,
+            "{grid} {others} {text} {selected}"
+        );
+        // Another channel is selected: the colours change places.
+        curves.sight.selected = 1;
+        let image = curves.image(640, 480, &colours);
+        let count = |colour: Colour| image.pixels().iter().filter(|pixel| **pixel == colour).count();
+        assert!((count(colours[4]) as f64 - others as f64).abs() < 0.5 * others as f64);
     }
 }
