@@ -24,7 +24,7 @@
 //! # }
 //! ```
 //!
-//! Nothing here knows sockets, pixels or terminals.
+//! Nothing here knows sockets or terminals; pictures are drawn by whoever wants them.
 
 #![allow(
     rustdoc::broken_intra_doc_links,

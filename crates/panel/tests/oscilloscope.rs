@@ -42,11 +42,8 @@ fn picture(trainee: &mut Trainee) -> Vec<u8> {
     trainee.station.picture().unwrap().png(640, 480).unwrap().unwrap()
 }
 
-#[test]
-fn curves_are_seen_while_the_axis_moves() {
-    let mut trainee = Trainee::at("mill");
-    trainee.ready();
-    open(&mut trainee);
+/// Channel 1: V NOMINAL of X; it triggers from 100 mm/min on, with a quarter of the memory before it. Channel 2: D DIFF.
+fn set_up(trainee: &mut Trainee) {
     // The start screen of the manual.
     let shown: Vec<String> = trainee
         .screen()
@@ -67,12 +64,11 @@ fn curves_are_seen_while_the_axis_moves() {
         ]
     );
     // Nothing is to be recorded.
-    soft_key(&mut trainee, "OSZI");
-    soft_key(&mut trainee, "START");
+    soft_key(trainee, "OSZI");
+    soft_key(trainee, "START");
     assert!(!trainee.station.control().oscilloscope().records);
     trainee.press("CE");
-    soft_key(&mut trainee, "SET UP");
-    // Channel 1: V NOMINAL of X; it triggers from 100 mm/min on, with a quarter of the memory before it.
+    soft_key(trainee, "SET UP");
     trainee.press("DOWN DOWN DOWN DOWN ENT ENT");
     assert_eq!(current(&trainee.screen()), "V NOMINAL [mm/min]");
     trainee.press("DOWN DOWN ENT ENT ENT ENT ENT");
@@ -83,7 +79,14 @@ fn curves_are_seen_while_the_axis_moves() {
     assert_eq!(current(&trainee.screen()), "TRIGGER THRESHOLD +100 mm/min");
     trainee.press("DOWN DOWN ENT");
     assert_eq!(current(&trainee.screen()), "PRE-TRIGGER 25 %");
+}
 
+#[test]
+fn curves_are_seen_while_the_axis_moves() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    open(&mut trainee);
+    set_up(&mut trainee);
     soft_key(&mut trainee, "OSZI");
     soft_key(&mut trainee, "START");
     trainee.wait(0.1);

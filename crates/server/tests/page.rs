@@ -252,38 +252,133 @@ fn all_is_in_sight_on_windows_of_all_sizes() {
     assert_eq!(page.complaints(), [] as [String; 0]);
 }
 
+/// Where a colour of MP7350 to MP7358 is seen: the parameter, a selector and a property; first in MANUAL OPERATION, then in
+/// PROGRAMMING AND EDITING.
+const COLOURED: [&[(&str, &str, &str)]; 2] = [
+    &[
+        ("MP7350", "[data-region=status]", "borderTopColor"),
+        ("MP7351", ".message", "color"),
+        ("MP7352.0", ".headings", "backgroundColor"),
+        ("MP7352.1", ".heading", "color"),
+        ("MP7352.2", "[data-region=dialogue]", "color"),
+        ("MP7354.0", ".display", "backgroundColor"),
+        ("MP7354.1", ".display", "color"),
+        ("MP7356.0", "[data-region=status]", "backgroundColor"),
+        ("MP7356.1", "[data-region=status] .axes", "color"),
+        ("MP7356.2", "[data-region=status]", "color"),
+        ("MP7357.0", "[data-region=softkeys]", "backgroundColor"),
+        ("MP7357.1", ".key.soft", "color"),
+    ],
+    &[
+        ("MP7353.0", ".headings", "backgroundColor"),
+        ("MP7353.1", ".heading", "color"),
+        ("MP7353.2", "[data-region=dialogue]", "color"),
+        ("MP7355.0", ".display", "backgroundColor"),
+        ("MP7355.1", ".display", "color"),
+        ("MP7358.0", "[data-region=softkeys]", "backgroundColor"),
+        ("MP7358.1", ".key.soft", "color"),
+    ],
+];
+
 /// The colours of the control are those of its machine parameters, and the page keeps the choice.
 #[test]
 fn the_colours_of_the_control_are_its_parameters() {
     let Some(browser) = Browser::for_test().unwrap() else {
         return;
     };
-    // MP7356.1, the axis positions: $0003F00 is green.
+    // MP7350, MP7351, MP7352, MP7353, MP7354, MP7355, MP7356, MP7357 and MP7358: each index gets a red of its own,
+    // $0RR0000, six bits, of which 3F is 255.
+    let all: Vec<&str> = COLOURED.into_iter().flatten().map(|(name, ..)| *name).collect();
+    let red = |name: &str| all.iter().position(|own| *own == name).unwrap() as u32 + 20;
     let panel = Panel::with(|folder| {
         let path = folder.join("parameters.mp");
         let text = std::fs::read_to_string(&path).unwrap();
-        let set: String = text
-            .lines()
-            .map(|line| match line.starts_with("MP7356.1") {
-                true => "MP7356.1 : $0003F00\n".to_owned(),
-                false => format!("{line}\n"),
-            })
-            .collect();
-        assert_ne!(set, text);
-        std::fs::write(path, set).unwrap();
+        let set = |line: &str| match line.split([' ', ':']).next() {
+            Some(name) if all.contains(&name) => format!("{name} : $0{:02X}0000\n", red(name)),
+            _ => format!("{line}\n"),
+        };
+        std::fs::write(path, text.lines().map(set).collect::<String>()).unwrap();
     });
     panel.to_manual();
     let mut page = open(&panel, &browser);
-    let colour = "getComputedStyle(document.querySelector('[data-region=status] .axes')).color";
-    let calm = page.evaluate(colour).unwrap();
+    let colour = |(_, selector, property): (&str, &str, &str)| {
+        format!("getComputedStyle(document.querySelector('{selector}')).{property}")
+    };
+    let ink = colour(("", ".display", "color"));
+    let calm = page.evaluate(&ink).unwrap();
     choose(&mut page, "#scheme", "control");
-    assert_eq!(page.evaluate(colour).unwrap(), "rgb(0, 255, 0)");
+    panel.press("RL");
+    until(&mut page, "document.querySelector('.message') !== null");
+    for (mode, seen) in ["MANUAL", "PROGRAM"].into_iter().zip(COLOURED) {
+        panel.press(mode);
+        if mode == "MANUAL" {
+            panel.press("RL");
+        }
+        let programming = mode == "PROGRAM";
+        until(
+            &mut page,
+            &format!(
+                "document.querySelector('.display').classList.contains('programming') === {programming}"
+            ),
+        );
+        for own in seen {
+            let expected = format!("rgb({}, 0, 0)", red(own.0) * 255 / 63);
+            until(&mut page, &format!("{} === '{expected}'", colour(*own)));
+        }
+    }
     page.reload().unwrap();
     ready(&mut page);
-    until(&mut page, &format!("{colour} === 'rgb(0, 255, 0)'"));
-    pictures::take(&mut page, "colours-of-the-control");
+    let expected = format!("rgb({}, 0, 0)", red("MP7355.1") * 255 / 63);
+    until(&mut page, &format!("{ink} === '{expected}'"));
     choose(&mut page, "#scheme", "Calm");
-    assert_eq!(page.evaluate(colour).unwrap(), calm);
+    assert_eq!(page.evaluate(&ink).unwrap(), calm);
+    assert_eq!(page.complaints(), [] as [String; 0]);
+}
+
+/// The oscilloscope shows its curves in the window of the graphics while it records.
+#[test]
+fn curves_of_the_oscilloscope_are_seen() {
+    let Some(browser) = Browser::for_test().unwrap() else {
+        return;
+    };
+    let panel = Panel::start();
+    panel.to_manual();
+    let mut page = open(&panel, &browser);
+    panel.press("MOD");
+    let menu = panel.until(|screen| screen["program"]["kind"] == "list");
+    let lines = menu["program"]["lines"].as_array().unwrap();
+    let code = lines
+        .iter()
+        .position(|line| line["text"].as_str().unwrap().starts_with("CODE NUMBER"));
+    for _ in 0..code.unwrap() {
+        panel.press("DOWN");
+    }
+    for key in ["ENT", "6", "8", "8", "3", "7", "9", "ENT"] {
+        panel.press(key);
+    }
+    panel.until(|screen| screen["program"]["title"] == "OSCILLOSCOPE");
+    // Channel 1: V NOMINAL, channel 2: D DIFF.
+    for key in "DOWN DOWN DOWN DOWN ENT ENT DOWN DOWN ENT ENT ENT ENT ENT SK1 SK7".split(' ') {
+        panel.press(key);
+    }
+    panel.until(|screen| screen["graphics"]["running"] == true);
+    let picture = "document.querySelector('[data-region=graphics] img')";
+    until(
+        &mut page,
+        &format!("{picture}.checkVisibility() && {picture}.naturalWidth > 300"),
+    );
+    assert_eq!(panel.give(&json!({"key": "X+", "down": true})), 200);
+    let first = page.number(&format!("Number({picture}.dataset.serial)")).unwrap();
+    until(
+        &mut page,
+        &format!("Number({picture}.dataset.serial) > {first} + 3"),
+    );
+    assert_eq!(panel.give(&json!({"key": "X+", "down": false})), 200);
+    panel.wait(0.5);
+    panel.press("SK7");
+    panel.until(|screen| screen["graphics"]["running"] == false);
+    std::thread::sleep(Duration::from_millis(500));
+    pictures::take(&mut page, "oscilloscope");
     assert_eq!(page.complaints(), [] as [String; 0]);
 }
 

@@ -369,4 +369,33 @@ mod tests {
         );
         assert!((curves.time_of_division_s() - 4096.0 * 6e-5).abs() < 1e-12);
     }
+
+    /// MP7361.0 to .4: ground, grid, other channels, cursors and text, the selected channel.
+    #[test]
+    fn curves_have_the_colours_of_mp7361() {
+        let wave = |factor: f64| (0..SAMPLES).map(|k| (k as f64 * factor).sin()).collect();
+        let mut other = lane(wave(0.01));
+        other.number = 1;
+        let mut curves = Curves {
+            lanes: vec![lane(wave(0.004)), other],
+            sample_us: 600,
+            trigger: None,
+            sight: Sight::default(),
+        };
+        curves.sight.cursors[0] = Some(2000);
+        let colours = [[1, 2, 3], [40, 0, 0], [0, 90, 0], [0, 0, 200], [250, 250, 0]];
+        let image = curves.draw(640, 480, &colours);
+        let count = |colour: Colour| image.pixels().iter().filter(|pixel| **pixel == colour).count();
+        let [ground, grid, others, text, selected] = colours.map(count);
+        assert!(ground > 640 * 480 / 2, "{ground}");
+        assert!(
+            grid.min(others).min(selected) > 200 && text > 200,
+            "{grid} {others} {text} {selected}"
+        );
+        // Another channel is selected: the colours change places.
+        curves.sight.selected = 1;
+        let image = curves.draw(640, 480, &colours);
+        let count = |colour: Colour| image.pixels().iter().filter(|pixel| **pixel == colour).count();
+        assert!((count(colours[4]) as f64 - others as f64).abs() < 0.5 * others as f64);
+    }
 }
