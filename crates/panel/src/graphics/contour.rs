@@ -2,7 +2,7 @@
 //! drawn, in the standard colours of the interactive graphics [000:6361-6366]; subprograms have one of their own.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use bahn_control::{Control, Programs, Tool};
@@ -55,8 +55,14 @@ pub(crate) struct Lines {
     /// Least and greatest corner of the blank in the plane, mm.
     pub blank: Option<[Point2; 2]>,
     pub strokes: Vec<Stroke>,
+}
+
+/// How far a drawing has come: the machine looks at it without waiting for whoever makes a picture.
+#[derive(Debug, Default)]
+struct Progress {
+    strokes: AtomicUsize,
     /// There is no more to come.
-    pub ended: bool,
+    ended: AtomicBool,
 }
 
 /// What is to be drawn.
@@ -100,6 +106,7 @@ pub(super) struct Sketch {
     pub name: String,
     pub upto: Option<u32>,
     lines: Arc<Mutex<Lines>>,
+    progress: Arc<Progress>,
     stop: Arc<AtomicBool>,
     /// `None` while a thread has it, and behind the end.
     run: Option<Box<Run>>,
@@ -109,12 +116,14 @@ impl Sketch {
     /// Begins a drawing, on a thread of its own or step by step. Nothing is read here: a key does not wait.
     pub fn begin(wish: Wish, settings: Settings, programs: Arc<dyn Programs>, beside: bool) -> Sketch {
         let lines: Arc<Mutex<Lines>> = Arc::default();
+        let progress: Arc<Progress> = Arc::default();
         let stop = Arc::new(AtomicBool::new(false));
         let run = Run {
             start: Some((wish.program, settings, programs)),
             upto: wish.upto,
             interpreter: None,
             lines: Arc::clone(&lines),
+            progress: Arc::clone(&progress),
             stop: Arc::clone(&stop),
             elements: 0,
         };
@@ -122,6 +131,7 @@ impl Sketch {
             name: wish.name,
             upto: wish.upto,
             lines,
+            progress,
             stop,
             run: Some(Box::new(run)),
         };
@@ -145,8 +155,8 @@ impl Sketch {
 
     /// Lines so far, and whether that is all.
     pub fn progress(&self) -> (usize, bool) {
-        let lines = lock(&self.lines);
-        (lines.strokes.len(), lines.ended)
+        let ended = self.progress.ended.load(Ordering::Acquire);
+        (self.progress.strokes.load(Ordering::Relaxed), ended)
     }
 }
 
@@ -167,6 +177,7 @@ struct Run {
     upto: Option<u32>,
     interpreter: Option<Interpreter>,
     lines: Arc<Mutex<Lines>>,
+    progress: Arc<Progress>,
     stop: Arc<AtomicBool>,
     elements: u64,
 }
@@ -194,7 +205,10 @@ impl Run {
         let room = LINES_MAX.saturating_sub(lines.strokes.len());
         lines.strokes.extend(drawn.strokes.into_iter().take(room));
         more &= lines.strokes.len() < LINES_MAX && self.elements < ELEMENTS_MAX;
-        lines.ended = !more;
+        self.progress
+            .strokes
+            .store(lines.strokes.len(), Ordering::Relaxed);
+        self.progress.ended.store(!more, Ordering::Release);
         more
     }
 

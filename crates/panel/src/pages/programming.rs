@@ -104,7 +104,7 @@ impl Programming {
                 Some(0) => self.switch(!self.drawn.auto, site),
                 Some(1) => self.draw(None, site),
                 Some(2) => self.draw_next(site),
-                Some(3) => site.graphics.show_programmed(false),
+                Some(3) => self.switch(false, site),
                 Some(_) => return Some(Turn::Refused),
                 None => return None,
             },
