@@ -122,6 +122,10 @@ const NOT_OF_AXES: &[(&str, &str)] = &[
         "control/src/handwheel.rs",
         "the rapid traverses from which on a factor is possible, the positions of a switch",
     ),
+    (
+        "panel/src/pages/supplementary/oscilloscope.rs",
+        "the parts of a memory before its trigger",
+    ),
     ("path/src/region/offset.rs", "the places of segments"),
     ("plc/src/modules/coordinates.rs", "the coordinates of a spindle"),
     (

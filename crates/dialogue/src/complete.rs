@@ -163,7 +163,7 @@ fn answer(editor: &mut Editor, field: &Field, word: &Word) {
             digits(editor, words.next().unwrap());
             for word in words {
                 press(editor, Key::of_character(word.chars().next().unwrap()).unwrap());
-                digits(editor, word.trim_start_matches(crate::typing::is_address));
+                digits(editor, word.trim_start_matches(crate::field::is_address));
             }
         }
         Ask::Name | Ask::Text => letters(editor, &word.value),
@@ -314,7 +314,10 @@ fn every_block_of_every_model_is_entered_by_keys() {
             }
         }
     }
-    enter(&setting(ControlModel::Tnc425), "L X+1 RR F100 M118 X1 Y0.5 Z2");
+    enter(
+        &setting(ControlModel::ALL[ControlModel::ALL.len() - 1]),
+        "L X+1 RR F100 M118 X1 Y0.5 Z2",
+    );
     // What the tables of this room have and never ask.
     for row in BLOCKS {
         for slot in row

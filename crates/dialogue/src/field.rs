@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use bahn_parameters::Limits;
 use bahn_path::Axis;
 
-use crate::typing::is_address;
 use crate::{Key, Wanted};
 
 /// Stands before the line of a datum table.
@@ -406,6 +405,11 @@ fn settled(value: &str) -> String {
         "" => format!("{sign}{q}{whole}"),
         decimals => format!("{sign}{q}{whole}.{decimals}"),
     }
+}
+
+/// Part of the address of a word that belongs to an M function: `T`, `TIME`.
+pub(crate) fn is_address(character: char) -> bool {
+    character.is_ascii_alphabetic() && character != 'Q'
 }
 
 /// A word that belongs to an M function, with its number in the shortest form.

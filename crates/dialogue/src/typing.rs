@@ -2,7 +2,7 @@
 
 use bahn_parameters::MessageId::{self, EntryValueIncorrect, KeyNonFunctional};
 
-use crate::field::{Ask, Choice, Field, Signs, TABLE_LINE, Word};
+use crate::field::{Ask, Choice, Field, Signs, TABLE_LINE, Word, is_address};
 use crate::{Key, Setting};
 use bahn_program::m_words;
 
@@ -27,11 +27,6 @@ pub(crate) enum Fresh {
     Yes,
     /// It takes its place, negative: the sign was keyed first.
     Negative,
-}
-
-/// Part of the address of a word that belongs to an M function: `T`, `TIME`.
-pub(crate) fn is_address(character: char) -> bool {
-    character.is_ascii_alphabetic() && character != 'Q'
 }
 
 /// The word that is being entered.

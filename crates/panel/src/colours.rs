@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bahn_parameters::{ControlModel, ParameterList};
+use bahn_parameters::ParameterList;
 
 /// The parameters, and how many indices each has.
 const COLOURS: &[(u16, u8)] = &[
@@ -32,7 +32,7 @@ pub(crate) fn colour(list: &ParameterList, number: u16, index: u8) -> Option<[u8
 /// All of them, as `7352.1` and `#d28220`; none on a control before the TNC 407, whose screen of 12 inches has no
 /// colours (inferred).
 pub(crate) fn all(list: &ParameterList) -> BTreeMap<String, String> {
-    if list.model() < ControlModel::Tnc407 {
+    if !list.model().has_windows() {
         return BTreeMap::new();
     }
     let indices = COLOURS
@@ -51,6 +51,7 @@ pub(crate) fn all(list: &ParameterList) -> BTreeMap<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bahn_parameters::ControlModel;
 
     /// The standard colours of the manual's list: MP7350 is $030200C, MP7351 $03F3F0F.
     #[test]

@@ -10,7 +10,7 @@ use bahn_control::{Command, Control, Programs, RunState};
 use bahn_dialogue::Key;
 use bahn_host::{Answer, Attendance, Clock, Deed, Host, HostError, LoadedMachine, Operator, PowerOn, Source};
 use bahn_machine::KeyAction;
-use bahn_parameters::{ControlModel, MessageId, ParameterList};
+use bahn_parameters::{MessageId, ParameterList};
 use bahn_plc::PlcWindow;
 
 use crate::console::Console;
@@ -347,9 +347,9 @@ impl Station {
     }
 
     fn layout(&self) -> Layout {
-        match self.control().model() < ControlModel::Tnc407 {
-            true => Layout::OneColumn,
-            false => Layout::Windows,
+        match self.control().model().has_windows() {
+            true => Layout::Windows,
+            false => Layout::OneColumn,
         }
     }
 

@@ -69,6 +69,14 @@ impl ControlModel {
         self.has_plc_mode()
     }
 
+    /// Has the screen of 14 inches: windows side by side, in colours [000:6289-6306] [000:2784-2833].
+    pub const fn has_windows(self) -> bool {
+        matches!(
+            self,
+            ControlModel::Tnc407 | ControlModel::Tnc415b | ControlModel::Tnc425
+        )
+    }
+
     /// Has an oscilloscope behind code number 688 379 [000:18640].
     pub const fn has_oscilloscope(self) -> bool {
         matches!(
