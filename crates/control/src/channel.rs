@@ -197,6 +197,7 @@ impl Channel {
             loops_closed: machine.loops_closed,
             feed_enable: self.desk.panel().feed_enable,
             monitoring_off,
+            runs: self.run.progress().goes_on(),
         };
         let nc = machine.memory.of(self.number).nc();
         loops::follow(&mut machine.axes.of(self.number), nc, permission);

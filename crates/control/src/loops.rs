@@ -19,6 +19,8 @@ pub(crate) struct Permission {
     pub feed_enable: bool,
     /// The monitoring is switched off.
     pub monitoring_off: bool,
+    /// A program runs, and is not stopped.
+    pub runs: bool,
 }
 
 /// Opens and closes the loop of each axis as the PLC asks for, and gives the feed enable
@@ -28,7 +30,8 @@ pub(crate) fn follow(axes: &mut OwnAxes, nc: &Image, permission: Permission) {
     let by_axis = nc.number(signal::FEED_ENABLE_AXES);
     for unit in axes.iter_mut().filter(|unit| unit.parameters.controlled) {
         let open = OPEN_LOOP.get(unit.index).is_some_and(|marker| nc.bit(*marker));
-        hold(unit, permission.loops_closed && !open && !all_open);
+        let closed = permission.loops_closed && !open && !all_open;
+        hold(unit, closed, permission.runs);
         enable(unit, permission.feed_enable || by_axis >> unit.index & 1 != 0);
         let suppressed = MONITORING_OFF
             .get(unit.index)
@@ -39,18 +42,23 @@ pub(crate) fn follow(axes: &mut OwnAxes, nc: &Image, permission: Permission) {
 }
 
 /// Closes the loop of an axis when that is wanted and nothing is wrong with it, or opens it.
-fn hold(unit: &mut AxisUnit, wanted: bool) {
+fn hold(unit: &mut AxisUnit, wanted: bool, runs: bool) {
     let sound = unit.servo.fault().is_none_or(Fault::keeps_loop);
     if wanted && sound && !unit.servo.closed() {
-        // A clamped axis goes back to its nominal position, unless it was moved meanwhile.
-        let moved = (unit.servo.actual_mm() - unit.nominal).abs();
-        if moved > unit.parameters.monitoring.standstill_mm {
-            // The path goes on from there: nothing goes back.
+        // A clamped axis goes back to its nominal position. One that was moved meanwhile has lost its place in a program
+        // that runs, which the standstill monitoring says: values are transferred by hand only [000:5423-5434]. Else the
+        // path goes on from there: nothing goes back.
+        let moved = (unit.servo.actual_mm() - unit.nominal).abs() > unit.parameters.monitoring.standstill_mm;
+        let lost = moved && runs && unit.mover == Mover::Path;
+        if moved && !lost {
             let left_at = unit.left_at;
             unit.transfer();
             unit.left_at = left_at;
         }
-        unit.servo.close();
+        match lost {
+            true => unit.servo.close_again(),
+            false => unit.servo.close(),
+        }
     } else if !wanted && unit.servo.closed() {
         unit.servo.open();
         unit.way_back.end();

@@ -651,3 +651,38 @@ fn pushed_away(host: &mut Host) {
     let away = (commanded(host.control(), Axis::X) - 20.0).abs();
     assert!(away > 1.0, "{away}");
 }
+
+/// The table is pushed when its clamp is released and its loop is still open: in a program that runs its place is lost, which
+/// is told like any deviation of that size [000:5289-5293], before a hole is drilled beside its place.
+#[test]
+fn a_table_that_is_pushed_between_clamp_and_loop_is_told() {
+    let blocks =
+        "L C+45 F2000 M11\nL Z+100 R0 FMAX M10\nL Z+60 F3000\nL Z+80 FMAX M11\nL Z+40 F300\nL IC+45 F2000";
+    let mut host = mill(blocks);
+    let c = |control: &Control| {
+        let mut axes = control.first().watch();
+        axes.find(|axis| axis.axis == Axis::C).unwrap()
+    };
+    until(&mut host, "the place above", |control| {
+        commanded(control, Axis::Z) > 95.0
+    });
+    until(&mut host, "the clamp", |control| {
+        commanded(control, Axis::Z) < 70.0 && !c(control).closed
+    });
+    let clamped = |host: &Host| host.control().exchange().plc().bit("I14".parse().unwrap());
+    while clamped(&host) {
+        host.step().unwrap();
+    }
+    give(&mut host, "force C 300");
+    while (c(host.control()).actual - 45.0).abs() < 0.5 && !c(host.control()).closed {
+        host.step().unwrap();
+    }
+    give(&mut host, "force C 0");
+    assert!(!c(host.control()).closed, "{:?}", c(host.control()));
+    until(&mut host, "the message", |control| {
+        let mut shown = control.shown().iter().map(|shown| control.shown_text(shown));
+        shown.any(|text| text.starts_with("GROSS POSITIONING ERROR C"))
+    });
+    // Z has not gone down below where it was.
+    assert!(commanded(host.control(), Axis::Z) > 59.99);
+}

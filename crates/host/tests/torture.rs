@@ -138,7 +138,7 @@ fn a_plc_program_that_fails_breaks_no_rule() {
 /// `twin` began from where its table had been before the other channel had it. EMERGENCY STOP while the pallet shuttle passed its
 /// marks, or while a spindle started up, too short for a scan; a start before the drives had power; the door while a head swivels;
 /// programs that do not meet; an operator who chose his mode while the marks were to be passed; a tool change that waits, whose
-/// new length RESTORE POSITION took for a way.
+/// new length RESTORE POSITION took for a way; a table that is pushed between its clamp and its loop.
 #[test]
 fn what_was_found_stays_mended() {
     for (machine, seed, what) in [
@@ -154,6 +154,7 @@ fn what_was_found_stays_mended() {
         ("dig425", 658_234, "voltage off"),
         ("dig425", 722_266, "voltage off"),
         ("gantry", 603_496, "switch door open"),
+        ("mill", 1_000_171, "force C 4000"),
         ("mill-tnc360", 655_214, "fault input I3 bouncing"),
         ("twin", 651_458, "M2482=1"),
     ] {

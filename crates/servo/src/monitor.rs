@@ -72,6 +72,11 @@ impl Monitor {
         self.steps = 0;
     }
 
+    /// The axis has reached its window before.
+    pub(crate) fn rest(&mut self) {
+        self.phase = Phase::Rest;
+    }
+
     pub(crate) fn shift(&mut self, way: f64) {
         self.origin_mm += way;
         if let Phase::Start { origin_mm, .. } = &mut self.phase {
