@@ -44,7 +44,7 @@ manual-operation                    axes may be moved while a run is interrupted
 restore-position                    back to the contour with NC start
 restore-at N                        block scan to block N
 code N                              a code number
-key CODE                            a key of the keyboard by its code, 58 to 127
+key CODE                            a key of the keyboard by its code, 58 to 127, or as W516 has it
 test PROGRAM                        TEST RUN beside what the machine does
 end-test                            breaks it off
 offset adjust|off                   answers to code number 75368
