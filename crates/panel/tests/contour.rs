@@ -80,6 +80,11 @@ fn soft_keys_draw_the_whole_program_and_block_by_block() {
     assert_ne!(pictures[5], pictures[6]);
     // The whole has no current block that stands out.
     assert_ne!(pictures[6], whole);
+    // Behind the last block there is none.
+    assert!(trainee.messages().is_empty());
+    (0..20).for_each(|_| drop(trainee.press("SK3")));
+    assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
+    trainee.press("CE");
     trainee.press("SK_RIGHT");
     assert_eq!(trainee.screen().soft_keys.row, 0);
     trainee.press("SK_LEFT SK1").wait(0.3);

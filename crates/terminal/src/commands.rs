@@ -30,6 +30,8 @@ enum Takes {
     Nothing(fn() -> Order),
     /// A number for a field.
     Number(fn(f64) -> InputText),
+    /// A whole number for a field.
+    Count(fn(u32) -> InputText),
     /// On or off; without a word on.
     Switch(fn(bool) -> InputText),
     /// Everything that follows, as text.
@@ -128,8 +130,8 @@ pub(crate) const COMMANDS: &[Command] = &[
         "cycles",
         "COUNT",
         "so many contour cycles, while time stands",
-        Takes::Number(|count| InputText {
-            cycles: Some(count as u32),
+        Takes::Count(|count| InputText {
+            cycles: Some(count),
             ..InputText::default()
         }),
     ),
@@ -223,6 +225,7 @@ pub(crate) fn read(line: &str, machine: &Machine) -> Result<Vec<Order>, String> 
             let number = rest.parse().ok().filter(|number: &f64| number.is_finite());
             give(field(number.ok_or_else(|| usage(command))?))
         }
+        Takes::Count(field) => give(field(rest.parse().map_err(|_| usage(command))?)),
         Takes::Switch(field) => match rest {
             "" | "on" => give(field(true)),
             "off" => give(field(false)),
@@ -241,17 +244,18 @@ fn handwheel(rest: &str) -> Option<InputText> {
     let mut words = rest.split_whitespace();
     let first = words.next()?;
     let mut text = InputText::default();
-    match first.parse() {
-        Ok(steps) => text.handwheel = Some(steps),
-        Err(_) => {
-            text.handwheel_axis = first.to_ascii_uppercase().chars().next();
+    match (first.parse(), first.as_bytes()) {
+        (Ok(steps), _) => text.handwheel = Some(steps),
+        (Err(_), [axis]) => {
+            text.handwheel_axis = Some(char::from(axis.to_ascii_uppercase()));
             text.factor = match words.next() {
                 Some(factor) => Some(factor.parse().ok()?),
                 None => None,
             };
         }
+        _ => return None,
     }
-    Some(text)
+    words.next().is_none().then_some(text)
 }
 
 /// Keys of control and machine by their names, and numbers by their digits.
@@ -342,6 +346,7 @@ mod tests {
             ("spindle 110.5", Input::SpindleOverride(110.5)),
             ("handwheel -250", Input::Handwheel(-250)),
             ("handwheel y 5", Input::HandwheelAxis('Y', 5)),
+            ("cycles 25", Input::Cycles(25)),
             ("power off", Input::Power(false)),
             ("pause", Input::Pause(true)),
             ("speed 0.5", Input::Speed(0.5)),
@@ -360,7 +365,19 @@ mod tests {
         );
         assert_eq!(read("q", &machine()), Ok(vec![Order::Quit]));
         assert_eq!(read("", &machine()), Ok(vec![]));
-        for wrong in ["feed", "feed fast", "feed nan", "power maybe", "handwheel"] {
+        for wrong in [
+            "feed",
+            "feed fast",
+            "feed nan",
+            "power maybe",
+            "handwheel",
+            "handwheel XY 3",
+            "handwheel X fast",
+            "handwheel X 3 4",
+            "handwheel 500 3",
+            "cycles 0.5",
+            "cycles -3",
+        ] {
             assert!(read(wrong, &machine()).is_err(), "{wrong}");
         }
     }

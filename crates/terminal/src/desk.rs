@@ -92,7 +92,12 @@ impl Desk {
                 line.extend(text.chars().filter(|character| !character.is_control()));
                 Vec::new()
             }
-            None => text.lines().map(|line| Input::Text(line.to_owned())).collect(),
+            // Terminals end the lines of what is pasted as the key Enter does.
+            None => text
+                .split(['\r', '\n'])
+                .filter(|line| !line.is_empty())
+                .map(|line| Input::Text(line.to_owned()))
+                .collect(),
         }
     }
 
@@ -185,6 +190,7 @@ impl Desk {
             return self.press(press, screen, now);
         }
         let Some(name) = self.machine.lettered(character) else {
+            self.notice = format!("no key of the machine has the letter {character}");
             return Vec::new();
         };
         changed(match character.is_ascii_uppercase() {
@@ -260,7 +266,10 @@ impl Desk {
                         Order::Hold(name) => {
                             inputs.extend(changed(self.holds.press(&name, Hand::Latch, now)))
                         }
-                        Order::Release(name) => inputs.extend(changed(self.holds.release(&name))),
+                        Order::Release(name) => match self.holds.release(&name) {
+                            Some(change) => inputs.extend(changed([change])),
+                            None => self.notice = format!("{name} is not held"),
+                        },
                         Order::Help => self.help = Some(0),
                         Order::Quit => self.leaves = true,
                     }
@@ -285,9 +294,9 @@ fn turn(knob: f64, step: f64) -> f64 {
 fn turned(scrolled: u16, code: KeyCode) -> Option<u16> {
     Some(match code {
         KeyCode::Up => scrolled.saturating_sub(1),
-        KeyCode::Down => scrolled + 1,
+        KeyCode::Down => scrolled.saturating_add(1),
         KeyCode::PageUp => scrolled.saturating_sub(10),
-        KeyCode::PageDown | KeyCode::Char(' ') => scrolled + 10,
+        KeyCode::PageDown | KeyCode::Char(' ') => scrolled.saturating_add(10),
         KeyCode::Home => 0,
         _ => return None,
     })
@@ -398,6 +407,24 @@ mod tests {
         plain(&mut desk, KeyCode::Tab);
         assert_eq!(key(&mut desk, KeyCode::Up, KeyModifiers::ALT, now), []);
         assert!(desk.notice.contains("Y+"));
+        // So is a letter that presses none.
+        plain(&mut desk, KeyCode::Tab);
+        assert_eq!(plain(&mut desk, KeyCode::Char('z')), []);
+        assert!(desk.notice.contains("letter z"), "{}", desk.notice);
+    }
+
+    /// Terminals end pasted lines by CR, some by LF or both.
+    #[test]
+    fn pasted_lines_are_typed_one_after_the_other() {
+        let mut desk = desk();
+        let mut paste = |text: &str| {
+            let event = Event::Paste(text.to_owned());
+            desk.event(&event, &Screen::default(), &Targets::default(), Instant::now())
+        };
+        let typed = ["L X+1", "L Y+2"].map(|line| Input::Text(line.to_owned()));
+        for text in ["L X+1\rL Y+2\r", "L X+1\nL Y+2", "L X+1\r\n\r\nL Y+2\r\n"] {
+            assert_eq!(paste(text), typed, "{text:?}");
+        }
     }
 
     #[test]
@@ -462,6 +489,8 @@ mod tests {
         let (inputs, line, notice, _) = typed("x\n");
         assert_eq!((inputs.len(), line), (0, None));
         assert!(notice.contains("cyclx"), "{notice}");
+        let (inputs, _, notice, _) = typed(":release rapid\n");
+        assert_eq!((inputs.len(), notice.as_str()), (0, "RAPID is not held"));
         assert!(typed(":quit\n").3);
     }
 }

@@ -4,7 +4,7 @@ use ratatui::style::{Color, Modifier, Style};
 
 /// What the terminal can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Palette {
+pub(crate) enum Palette {
     /// No colours: bold, dim and reverse video only.
     Plain,
     /// The 16 colours of the terminal's own scheme, and 216 for pictures.
@@ -72,7 +72,7 @@ impl Palette {
     }
 
     /// How something is drawn.
-    pub(crate) fn style(self, role: Role) -> Style {
+    pub fn style(self, role: Role) -> Style {
         let (modifier, colour) = match role {
             Role::Active => (Modifier::BOLD | Modifier::REVERSED, Some(Color::Cyan)),
             Role::Beside | Role::Frame => (Modifier::empty(), Some(Color::Cyan)),

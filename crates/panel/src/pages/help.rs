@@ -4,7 +4,8 @@ use bahn_control::{Command, Message};
 use bahn_dialogue::Key;
 use bahn_parameters::MessageId;
 
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
+use crate::pages::list;
 use crate::pages::menu::{Item, Items, Menu};
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
@@ -17,6 +18,9 @@ const NO_FILE: i32 = -1;
 const NO_NUMBER: i32 = -2;
 /// Characters of a line of an explanation.
 const WIDTH: usize = 72;
+/// Soft keys of a help file, and of an explanation.
+const FILE_KEYS: [&str; 3] = ["PAGE UP", "PAGE DOWN", "END"];
+const EXPLANATION_KEYS: [&str; 2] = ["HELP FILES", "END"];
 
 /// The key HELP: the message that is shown, else the help files.
 pub(crate) fn key(note: Option<&str>, site: &mut Site) -> Turn {
@@ -120,8 +124,7 @@ fn number_of(line: &str) -> Option<i32> {
 
 impl HelpFile {
     fn go(&mut self, lines: isize, site: &mut Site) -> Turn {
-        let last = self.lines.len().saturating_sub(1);
-        self.current = self.current.saturating_add_signed(lines).min(last);
+        self.current = list::moved(self.current, lines, self.lines.len());
         let number = self.lines.get(self.current).and_then(|line| number_of(line));
         tell(number.unwrap_or(NO_NUMBER), site);
         Turn::Done
@@ -142,32 +145,40 @@ fn tell(number: i32, site: &mut Site) {
 
 impl Page for HelpFile {
     fn key(&mut self, key: Key, site: &mut Site) -> Turn {
+        if let Some(lines) = list::way_of_key(key) {
+            return self.go(lines, site);
+        }
         match key {
-            Key::Up => self.go(-1, site),
-            Key::Down => self.go(1, site),
             Key::End | Key::Del | Key::NoEnt | Key::Help | Key::Mod => HelpFile::close(site),
             _ => Turn::Refused,
         }
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        vec![vec![
-            site.words("PAGE UP"),
-            site.words("PAGE DOWN"),
-            site.words("END"),
-        ]]
+        vec![list::soft_keys(&FILE_KEYS, site)]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => self.go(-12, site),
-            1 => self.go(12, site),
-            _ => HelpFile::close(site),
+        match list::way_of(list::name_at(&FILE_KEYS, place)) {
+            Some(lines) => self.go(lines, site),
+            None => HelpFile::close(site),
         }
     }
 
     fn show(&self, _site: &Site, lines: usize) -> View {
-        text_view(&self.name, &self.lines, Some(self.current), lines)
+        let line = |place: usize| Line {
+            text: self.lines.get(place).cloned().unwrap_or_default(),
+            current: place == self.current,
+            ..Line::default()
+        };
+        let cursor = (self.current, self.lines.len());
+        View::of(list::window(
+            self.name.clone(),
+            WindowKind::Text,
+            cursor,
+            lines,
+            line,
+        ))
     }
 }
 
@@ -216,56 +227,41 @@ fn wrapped(text: &str) -> Vec<String> {
 
 impl Page for Explanation {
     fn key(&mut self, key: Key, _site: &mut Site) -> Turn {
-        match key {
-            Key::Down => self.first = (self.first + 1).min(self.lines.len().saturating_sub(1)),
-            Key::Up => self.first = self.first.saturating_sub(1),
-            Key::End | Key::Del | Key::NoEnt | Key::Ent | Key::Help => return Turn::Close,
-            _ => return Turn::Refused,
+        if let Some(lines) = list::way_of_key(key) {
+            self.first = list::moved(self.first, lines, self.lines.len());
+            return Turn::Done;
         }
-        Turn::Done
+        match key {
+            Key::End | Key::Del | Key::NoEnt | Key::Ent | Key::Help => Turn::Close,
+            _ => Turn::Refused,
+        }
     }
 
     fn soft_keys(&self, site: &Site) -> Vec<Vec<String>> {
-        vec![vec![site.words("HELP FILES"), site.words("END")]]
+        vec![list::soft_keys(&EXPLANATION_KEYS, site)]
     }
 
     fn soft_key(&mut self, _row: usize, place: usize, site: &mut Site) -> Turn {
-        match place {
-            0 => files(site),
+        match list::name_at(&EXPLANATION_KEYS, place) {
+            "HELP FILES" => files(site),
             _ => Turn::Close,
         }
     }
 
+    /// It has no cursor: the keys move its first line.
     fn show(&self, _site: &Site, lines: usize) -> View {
-        let mut view = text_view(
-            &self.title,
-            self.lines.get(self.first..).unwrap_or_default(),
-            None,
-            lines,
-        );
-        if let Some(window) = &mut view.window {
-            (window.first, window.total) = (self.first, self.lines.len());
-        }
-        view
+        let line = |text: &String| Line {
+            text: text.clone(),
+            ..Line::default()
+        };
+        View::of(Window {
+            title: self.title.clone(),
+            kind: WindowKind::Text,
+            lines: self.lines.iter().skip(self.first).take(lines).map(line).collect(),
+            first: self.first,
+            total: self.lines.len(),
+        })
     }
-}
-
-/// Lines of a text, one of which may be the current one.
-fn text_view(title: &str, text: &[String], current: Option<usize>, lines: usize) -> View {
-    let first = first_in_sight(current.unwrap_or(0), text.len(), lines);
-    let shown = text.iter().enumerate().skip(first).take(lines);
-    let line = |(place, text): (usize, &String)| Line {
-        text: text.clone(),
-        current: Some(place) == current,
-        ..Line::default()
-    };
-    View::of(Window {
-        title: title.to_owned(),
-        kind: WindowKind::Text,
-        lines: shown.map(line).collect(),
-        first,
-        total: text.len(),
-    })
 }
 
 #[cfg(test)]

@@ -103,7 +103,7 @@ impl Programming {
             _ => match key.soft_key().filter(|_| self.drawn.keys && !editor.is_open()) {
                 Some(0) => self.switch(!self.drawn.auto, site),
                 Some(1) => self.draw(None, site),
-                Some(2) => self.draw_next(site),
+                Some(2) => return Some(self.draw_next(site)),
                 Some(3) => self.switch(false, site),
                 Some(_) => return Some(Turn::Refused),
                 None => return None,
@@ -141,11 +141,20 @@ impl Programming {
             .draw(wish, site.host.control(), site.machine, site.programs);
     }
 
-    /// START SINGLE: one block more than is drawn.
-    fn draw_next(&mut self, site: &mut Site) {
+    /// START SINGLE: one block more than is drawn, as long as there is one.
+    fn draw_next(&mut self, site: &mut Site) -> Turn {
         let upto = self.drawn.last.as_ref().and_then(|(_, upto)| *upto);
+        let next = upto.map_or(0, |upto| upto + 1);
+        let count = self
+            .open
+            .as_ref()
+            .map_or(0, |open| open.editor.program().block_count());
+        if next >= count {
+            return Turn::Refused;
+        }
         self.drawn.auto = false;
-        self.draw(Some(upto.map_or(0, |upto| upto + 1)), site);
+        self.draw(Some(next), site);
+        Turn::Done
     }
 
     /// AUTO DRAW follows program and cursor.

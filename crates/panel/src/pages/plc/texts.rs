@@ -90,14 +90,16 @@ fn select(name: &str, site: &Site) -> Result<(), String> {
     let before = files::read_table(&path).map_err(|error| error.to_string())?;
     let text = with_entry(&String::from_utf8_lossy(&before), key, &source::named(name, site));
     files::write_whole(&path, text.as_bytes()).map_err(|error| error.to_string())?;
-    let loaded = LoadedMachine::load(&site.machine.root).map_err(|error| error.to_string())?;
-    let Err(faults) = loaded else {
-        return Ok(());
+    let why = match LoadedMachine::load(&site.machine.root) {
+        Ok(Ok(_)) => return Ok(()),
+        Ok(Err(faults)) => faults
+            .first()
+            .map_or_else(String::new, |fault| format!("{}: {}", fault.title, fault.label)),
+        Err(error) => error.to_string(),
     };
     // A machine that could not be switched on again stays as it is.
     files::write_whole(&path, &before).map_err(|error| error.to_string())?;
-    let fault = faults.first();
-    Err(fault.map_or_else(String::new, |fault| format!("{}: {}", fault.title, fault.label)))
+    Err(why)
 }
 
 /// The text with another value of an entry, which stands before the first table when it is new.

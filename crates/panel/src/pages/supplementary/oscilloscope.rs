@@ -7,7 +7,8 @@ use bahn_host::oscilloscope::SAMPLE_TIME_US;
 use bahn_servo::Timing;
 
 use crate::graphics::{Content, Scope, Subject, TriggerOn, signal_name};
-use crate::page::{Page, Turn, View, first_in_sight};
+use crate::page::{Page, Turn, View};
+use crate::pages::list;
 use crate::pages::number::Number;
 use crate::screen::{Line, Window, WindowKind};
 use crate::site::Site;
@@ -278,20 +279,13 @@ impl Page for MainDisplay {
     }
 
     fn show(&self, site: &Site, lines: usize) -> View {
-        let first = first_in_sight(self.current, ITEMS.len(), lines);
-        let line = |(place, item): (usize, &Item)| Line {
-            text: item.line(site),
+        let line = |place: usize| Line {
+            text: ITEMS.get(place).map_or_else(String::new, |item| item.line(site)),
             current: place == self.current,
             ..Line::default()
         };
-        let seen = ITEMS.iter().enumerate().skip(first).take(lines);
-        View::of(Window {
-            title: site.words("OSCILLOSCOPE"),
-            kind: WindowKind::List,
-            lines: seen.map(line).collect(),
-            first,
-            total: ITEMS.len(),
-        })
+        let (title, cursor) = (site.words("OSCILLOSCOPE"), (self.current, ITEMS.len()));
+        View::of(list::window(title, WindowKind::List, cursor, lines, line))
     }
 }
 
