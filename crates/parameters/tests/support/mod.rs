@@ -48,6 +48,7 @@ pub fn readings(list: &ParameterList) -> Readings {
             &[0, 1].map(|place| list.plc_number(place, index)),
         );
     }
+    note(&mut all, "interface_parameters", &list.interface_parameters());
     note(&mut all, "swivel_links", &list.swivel_links());
     note(&mut all, "axes", &list.axes());
     note(
