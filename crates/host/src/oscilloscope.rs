@@ -200,12 +200,23 @@ impl Oscilloscope {
         SAMPLES as u64 * u64::from(self.setup.pre_trigger_percent) / 100
     }
 
+    /// The number of the first sample that counts.
+    fn first(&self) -> u64 {
+        let oldest = self.taken.saturating_sub(SAMPLES as u64);
+        let wanted = self
+            .triggered
+            .map(|triggered| triggered.saturating_sub(self.before_trigger()));
+        oldest.max(wanted.unwrap_or(0))
+    }
+
+    /// How many samples are in the memory.
+    pub fn filled(&self) -> usize {
+        self.taken.saturating_sub(self.first()) as usize
+    }
+
     /// What is in the memory now.
     pub fn record(&self) -> OscilloscopeRecord {
-        let mut first = self.taken.saturating_sub(SAMPLES as u64);
-        if let Some(triggered) = self.triggered {
-            first = first.max(triggered.saturating_sub(self.before_trigger()));
-        }
+        let first = self.first();
         let place = |number: u64| {
             self.memory
                 .get(number as usize % SAMPLES)

@@ -121,7 +121,9 @@ impl Console {
             Key::Program => self.program(Programming::Edit, site),
             Key::Test => self.program(Programming::Test, site),
             Key::Ce if !self.notes.is_empty() => drop(self.notes.pop()),
-            Key::Screen => self.split = !self.split,
+            // A screen of one column is not split.
+            Key::Screen if site.control().model().has_windows() => self.split = !self.split,
+            Key::Screen => self.say(site.message(MessageId::KeyNonFunctional)),
             Key::SkLeft | Key::SkRight => self.turn_row(key, site),
             _ => self.pass_on(key, site),
         }

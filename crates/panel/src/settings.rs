@@ -1,4 +1,5 @@
-//! What the operator chooses for himself and the control keeps: display, dimensions, language, axes of L blocks.
+//! What the operator chooses for himself and the control keeps: display, dimensions, language, axes of L blocks, data
+//! interfaces.
 
 use std::io::Write;
 use std::path::Path;

@@ -82,7 +82,9 @@ fn soft_keys_draw_the_whole_program_and_block_by_block() {
     assert_ne!(pictures[6], whole);
     // Behind the last block there is none.
     assert!(trainee.messages().is_empty());
-    (0..20).for_each(|_| drop(trainee.press("SK3")));
+    for _ in 0..20 {
+        trainee.press("SK3");
+    }
     assert_eq!(trainee.messages(), ["KEY NON-FUNCTIONAL"]);
     trainee.press("CE");
     trainee.press("SK_RIGHT");

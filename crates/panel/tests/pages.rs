@@ -49,6 +49,17 @@ fn the_program_run_shows_block_numbers() {
 }
 
 #[test]
+fn a_screen_of_one_column_is_not_split() {
+    for (machine, said) in [("mill", vec![]), ("mill-tnc360", vec!["KEY NON-FUNCTIONAL"])] {
+        let mut trainee = Trainee::at(machine);
+        trainee.ready();
+        trainee.press("PROGRAM SCREEN").wait(0.1);
+        assert_eq!(trainee.messages(), said, "{machine}");
+        assert_eq!(trainee.screen().beside.is_some(), said.is_empty(), "{machine}");
+    }
+}
+
+#[test]
 fn an_empty_word_leaves_no_blank_in_the_current_block() {
     let mut trainee = Trainee::at("mill");
     trainee.ready();

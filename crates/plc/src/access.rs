@@ -131,65 +131,88 @@ impl From<NumberOperand> for Subject {
     }
 }
 
-/// The operands of an instruction.
-pub fn accesses(op: &Op) -> Vec<(Subject, Access)> {
-    match op {
-        Op::LoadBit { bit, .. } | Op::GateBit { bit, .. } | Op::PushBit { bit } => {
-            vec![((*bit).into(), Access::Read)]
-        }
-        Op::AssignBit { bit, .. } => vec![((*bit).into(), assignment(bit.indexed))],
-        Op::SetBit { bit, .. } | Op::PullBit { bit } => vec![((*bit).into(), Access::Change)],
+/// What an instruction names in its line.
+#[derive(Clone, Copy)]
+pub(crate) enum Named<'a> {
+    /// A bit.
+    Bit(BitOperand),
+    /// So many bits, one after the other.
+    Bits(BitOperand, u8),
+    /// A number.
+    Value(Value),
+    /// A text that is read.
+    Text(&'a TextOperand),
+    /// A string that is written, and whether the index register is added to its number.
+    String(u8, bool),
+}
+
+/// The operand of an instruction with what is done to it; what is counted is read before.
+pub(crate) fn operand(op: &Op) -> Option<(Named<'_>, Access)> {
+    use Access::{Assign, Change, Read};
+    let number = |number: &NumberOperand| Named::Value(Value::Number(*number));
+    Some(match op {
+        Op::LoadBit { bit, .. } | Op::GateBit { bit, .. } | Op::PushBit { bit } => (Named::Bit(*bit), Read),
+        Op::AssignBit { bit, .. } => (Named::Bit(*bit), Assign),
+        Op::SetBit { bit, .. } | Op::PullBit { bit } => (Named::Bit(*bit), Change),
+        Op::LoadBits { first, count } => (Named::Bits(*first, *count), Read),
+        Op::AssignBits { first, count } => (Named::Bits(*first, *count), Assign),
         Op::Load { value, .. }
         | Op::GateWord { value, .. }
         | Op::Arithmetic { value, .. }
         | Op::BitOperation { value, .. }
         | Op::TestBit { value }
         | Op::Compare { value, .. }
-        | Op::Push { value } => match value {
-            Value::Number(number) => vec![((*number).into(), Access::Read)],
-            Value::Constant(_) => Vec::new(),
-        },
-        Op::LoadBits { first, count } => bits(*first, *count, Access::Read),
-        Op::AssignBits { first, count } => bits(*first, *count, assignment(first.indexed)),
-        Op::Assign { number, .. } => vec![((*number).into(), assignment(number.indexed))],
-        Op::StepNumber { number, .. } => {
-            vec![
-                ((*number).into(), Access::Read),
-                ((*number).into(), Access::Change),
-            ]
+        | Op::Push { value } => (Named::Value(*value), Read),
+        Op::Case { number: of, .. } | Op::Reply { number: of } | Op::Cancel { number: of } => {
+            (number(of), Read)
         }
-        Op::Pull { number } => vec![((*number).into(), Access::Change)],
-        Op::Case { number, .. } | Op::Reply { number } | Op::Cancel { number } => {
-            vec![((*number).into(), Access::Read)]
+        Op::Assign { number: of, .. } => (number(of), Assign),
+        Op::StepNumber { number: of, .. } | Op::Pull { number: of } => (number(of), Change),
+        Op::LoadText { text } | Op::AppendText { text } | Op::CompareText { text, .. } => {
+            (Named::Text(text), Read)
         }
-        Op::LoadText { text } | Op::AppendText { text } | Op::CompareText { text, .. } => match text {
-            TextOperand::Memory { string, indexed } => vec![(self::text(*string, *indexed), Access::Read)],
-            TextOperand::Part { string } => vec![(self::text(*string, false), Access::Read)],
-            _ => Vec::new(),
-        },
-        Op::AssignText { string, indexed } => vec![(text(*string, *indexed), assignment(*indexed))],
-        Op::OverwriteText { string, indexed } => vec![(text(*string, *indexed), Access::Change)],
-        _ => Vec::new(),
-    }
+        Op::AssignText { string, indexed } => (Named::String(*string, *indexed), Assign),
+        Op::OverwriteText { string, indexed } => (Named::String(*string, *indexed), Change),
+        _ => return None,
+    })
 }
 
-fn text(string: u8, indexed: bool) -> Subject {
-    Subject::Text { string, indexed }
-}
-
-/// Which of many operands is assigned is not known.
-fn assignment(indexed: bool) -> Access {
-    if indexed { Access::Change } else { Access::Assign }
+/// The operands of an instruction.
+pub fn accesses(op: &Op) -> Vec<(Subject, Access)> {
+    let Some((named, access)) = operand(op) else {
+        return Vec::new();
+    };
+    let text = |string, indexed| vec![Subject::Text { string, indexed }];
+    let subjects = match named {
+        Named::Bit(bit) => vec![bit.into()],
+        Named::Bits(first, count) => bits(first, count),
+        Named::Value(Value::Number(number)) => vec![number.into()],
+        Named::Text(TextOperand::Memory { string, indexed }) => text(*string, *indexed),
+        Named::Text(TextOperand::Part { string }) => text(*string, false),
+        Named::String(string, indexed) => text(string, indexed),
+        Named::Value(Value::Constant(_)) | Named::Text(_) => Vec::new(),
+    };
+    let reads_first = matches!(op, Op::StepNumber { .. });
+    let of = |subject: Subject| {
+        // Which of many operands is assigned is not known.
+        let access = match access {
+            Access::Assign if subject.is_indexed() => Access::Change,
+            access => access,
+        };
+        let read = reads_first.then_some((subject, Access::Read));
+        read.into_iter().chain([(subject, access)])
+    };
+    subjects.into_iter().flat_map(of).collect()
 }
 
 /// Consecutive bits; with an index they start anywhere.
-fn bits(first: BitOperand, count: u8, access: Access) -> Vec<(Subject, Access)> {
+fn bits(first: BitOperand, count: u8) -> Vec<Subject> {
     if first.indexed {
-        return vec![(first.into(), access)];
+        return vec![first.into()];
     }
     (0..u16::from(count))
         .filter_map(|offset| Bit::new(first.bit.area(), first.bit.number().checked_add(offset)?))
-        .map(|bit| (Subject::Bit { bit, indexed: false }, access))
+        .map(|bit| Subject::Bit { bit, indexed: false })
         .collect()
 }
 

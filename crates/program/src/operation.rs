@@ -398,19 +398,6 @@ pub enum MotionKind {
 }
 
 impl MotionKind {
-    /// All of them, in the order of the manual.
-    pub const ALL: [MotionKind; 9] = [
-        MotionKind::Line,
-        MotionKind::Circle,
-        MotionKind::CircleRadius,
-        MotionKind::CircleTangential,
-        MotionKind::LinePolar,
-        MotionKind::CirclePolar,
-        MotionKind::CircleTangentialPolar,
-        MotionKind::LineNormal,
-        MotionKind::Paraxial,
-    ];
-
     /// The word that opens its blocks; empty where the axis word does.
     ///
     /// ```

@@ -23,14 +23,15 @@ pub(crate) struct PartFeed {
 }
 
 struct Shared {
-    state: Mutex<State>,
+    /// Apart from the part, so that nobody who comes or goes waits while one is coded.
+    viewers: Mutex<usize>,
     /// Somebody wants to look.
     wanted: Condvar,
+    state: Mutex<State>,
 }
 
 #[derive(Default)]
 struct State {
-    viewers: usize,
     seen: Option<Seen>,
     /// Parts so far.
     parts: u64,
@@ -57,8 +58,9 @@ impl PartFeed {
     /// Follows the part of a station while somebody looks, on a thread of its own.
     pub fn start(link: Link) -> PartFeed {
         let shared = Arc::new(Shared {
-            state: Mutex::default(),
+            viewers: Mutex::default(),
             wanted: Condvar::new(),
+            state: Mutex::default(),
         });
         let (sender, news) = watch::channel(0);
         let own = Arc::clone(&shared);
@@ -68,7 +70,7 @@ impl PartFeed {
 
     /// Somebody looks.
     pub fn look(&self) -> Looking {
-        lock(&self.shared).viewers += 1;
+        *lock(&self.shared.viewers) += 1;
         self.shared.wanted.notify_all();
         let mut news = self.news.clone();
         // What is there already is news for him.
@@ -84,22 +86,22 @@ impl PartFeed {
 impl Shared {
     fn follow(&self, link: &Link, sender: &watch::Sender<u64>) {
         while !sender.is_closed() {
-            let state = lock(self);
+            let viewers = lock(&self.viewers);
             let waited = self
                 .wanted
-                .wait_timeout_while(state, IDLE, |state| state.viewers == 0);
-            let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
-            if state.viewers == 0 {
+                .wait_timeout_while(viewers, IDLE, |viewers| *viewers == 0);
+            let (viewers, _) = waited.unwrap_or_else(PoisonError::into_inner);
+            if *viewers == 0 {
                 continue;
             }
-            drop(state);
+            drop(viewers);
             let begun = Instant::now();
             let Ok(cut) = link.with(Station::being_cut) else {
                 // The station has ended, or is busy.
                 std::thread::sleep(EVERY);
                 continue;
             };
-            if lock(self).take(cut) {
+            if lock(&self.state).take(cut) {
                 sender.send_modify(|count| *count += 1);
             }
             std::thread::sleep(EVERY.max(begun.elapsed() * SHARE));
@@ -166,10 +168,10 @@ impl State {
 impl Looking {
     /// What he lacks, and how to ask the next time.
     pub async fn next(mut self) -> Option<(Looking, Option<Region>)> {
-        // A large part takes a while, which others do not wait for.
+        // A large part takes a while, for which nothing else of the server waits.
         let coded = tokio::task::spawn_blocking(move || {
             let mut sent = self.sent;
-            let news = lock(&self.shared).news(&mut sent);
+            let news = lock(&self.shared.state).news(&mut sent);
             self.sent = sent;
             (self, news)
         });
@@ -179,8 +181,8 @@ impl Looking {
 
 impl Drop for Looking {
     fn drop(&mut self) {
-        let mut state = lock(&self.shared);
-        state.viewers = state.viewers.saturating_sub(1);
+        let mut viewers = lock(&self.shared.viewers);
+        *viewers = viewers.saturating_sub(1);
     }
 }
 
@@ -188,6 +190,6 @@ fn encode<T: Serialize>(value: &T) -> Region {
     rmp_serde::to_vec_named(&("part", value)).unwrap_or_default()
 }
 
-fn lock(shared: &Shared) -> MutexGuard<'_, State> {
-    shared.state.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

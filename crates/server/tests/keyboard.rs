@@ -28,6 +28,13 @@ fn short_cuts_press_hold_and_turn() {
     page.press("Alt+1").unwrap();
     panel.until(|screen| screen["headings"][0]["active"] == true);
 
+    // A key that only the page has.
+    let looks = |on: bool| format!("document.querySelector('[data-key=\"3D_VIEW\"]').ariaPressed === '{on}'");
+    for on in [true, false] {
+        page.press("Alt+9").unwrap();
+        page.wait_until(&looks(on), Duration::from_secs(10)).unwrap();
+    }
+
     // A key of the machine is down as long as the real one.
     page.key_down("Alt").unwrap();
     page.key_down("ArrowRight").unwrap();

@@ -36,8 +36,8 @@ export function build(station, press) {
   }
 }
 
-/** Keys that only this page has. */
-const OWN = [{ real: "v", alt: true, key: "3D_VIEW" }];
+/** Keys that only this page has, on real keys that the table leaves free. */
+const OWN = [{ real: "9", alt: true, key: "3D_VIEW" }];
 
 /** What a key of a real keyboard does: a line of the table of the station, or a letter or digit that is itself. */
 function meant(shortcuts, event) {

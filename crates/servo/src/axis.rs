@@ -425,8 +425,8 @@ impl Axis {
         self.monitor.reset();
     }
 
-    /// Closes the loop of an axis that was in position when it was opened, as a clamped one: when it was moved farther
-    /// than MP1110 meanwhile, that is a gross positioning error [000:5289-5293].
+    /// Closes the loop of an axis that stood in position when it was opened: moved farther than MP1110 meanwhile, it has
+    /// a gross positioning error [000:5289-5293].
     pub fn close_again(&mut self) {
         self.close();
         self.monitor.rest();

@@ -2,10 +2,11 @@
 
 use bahn_exchange::Image;
 
-use super::memory::{read, read_bit, read_bits, read_number};
+use super::memory::{read, read_bit, read_bits};
 use super::registers::Registers;
+use crate::access::{Named, operand};
 use crate::operand::TextOperand;
-use crate::program::{Instruction, Op, PlcProgram};
+use crate::program::{Instruction, PlcProgram};
 
 /// Sees every executed instruction.
 pub trait Tracer {
@@ -93,41 +94,16 @@ impl Tracer for CodeTrace {
 impl TraceStep<'_> {
     /// The content of the operand after the instruction; `None` for instructions without one.
     pub fn operand(&self) -> Option<OperandContent> {
+        let (named, _) = operand(&self.instruction.op)?;
         let index = self.registers.index;
-        Some(match &self.instruction.op {
-            Op::LoadBit { bit, .. }
-            | Op::GateBit { bit, .. }
-            | Op::AssignBit { bit, .. }
-            | Op::SetBit { bit, .. }
-            | Op::PushBit { bit }
-            | Op::PullBit { bit } => OperandContent::Bit(read_bit(self.image, *bit, index)),
-            Op::LoadBits { first, count } | Op::AssignBits { first, count } => {
-                OperandContent::Number(read_bits(self.image, *first, *count, index))
+        Some(match named {
+            Named::Bit(bit) => OperandContent::Bit(read_bit(self.image, bit, index)),
+            Named::Bits(first, count) => OperandContent::Number(read_bits(self.image, first, count, index)),
+            Named::Value(value) => OperandContent::Number(read(self.image, value, index)),
+            Named::Text(text) => self.text_content(text, index),
+            Named::String(string, indexed) => {
+                self.text_content(&TextOperand::Memory { string, indexed }, index)
             }
-            Op::Load { value, .. }
-            | Op::GateWord { value, .. }
-            | Op::Arithmetic { value, .. }
-            | Op::BitOperation { value, .. }
-            | Op::TestBit { value }
-            | Op::Compare { value, .. }
-            | Op::Push { value } => OperandContent::Number(read(self.image, *value, index)),
-            Op::Assign { number, .. }
-            | Op::StepNumber { number, .. }
-            | Op::Pull { number }
-            | Op::Case { number, .. }
-            | Op::Reply { number }
-            | Op::Cancel { number } => OperandContent::Number(read_number(self.image, *number, index)),
-            Op::LoadText { text } | Op::AppendText { text } | Op::CompareText { text, .. } => {
-                self.text_content(text, index)
-            }
-            Op::AssignText { string, indexed } | Op::OverwriteText { string, indexed } => {
-                let text = TextOperand::Memory {
-                    string: *string,
-                    indexed: *indexed,
-                };
-                self.text_content(&text, index)
-            }
-            _ => return None,
         })
     }
 

@@ -200,14 +200,11 @@ impl Scope {
 
     /// What the screen says of it.
     pub fn line(&self) -> GraphicsLine {
-        let taken = self
-            .recorder
-            .as_ref()
-            .map(|recorder| recorder.record().samples.len());
+        let filled = self.recorder.as_ref().map(Oscilloscope::filled);
         GraphicsLine {
             view: GraphicsView::Oscilloscope,
             running: self.records,
-            progress: taken.unwrap_or(0) as f64 / SAMPLES as f64,
+            progress: filled.unwrap_or(0) as f64 / SAMPLES as f64,
             machining_time_s: None,
             magn: 1,
             azimuth_deg: 0.0,
