@@ -76,7 +76,13 @@ function drawWindow(node, shown, status) {
   const nodes = children(lines, shown.lines.length, () => element("li"));
   shown.lines.forEach((line, place) => drawLine(nodes[place], line));
   keepInSight(node, nodes[shown.lines.findIndex((line) => line.current)]);
+  sizes.observe(node);
 }
+
+/** Graphics that open beside a program, or a window that is turned, leave its current line in sight. */
+const sizes = new ResizeObserver((changed) => {
+  for (const { target } of changed) keepInSight(target, target.querySelector("li.current"));
+});
 
 // A small window is scrolled to the current line, and nothing else moves.
 function keepInSight(window, line) {
