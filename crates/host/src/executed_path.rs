@@ -62,23 +62,33 @@ impl ExecutedPath {
         if let Some(element) = current {
             self.last_seen = Some((ElementId::of(element), channel.rest_mm()));
         }
-        let before = match (channel.has_ended(), current) {
-            (true, _) => u64::MAX,
-            (false, Some(current)) => current.sequence,
+        self.done = match (channel.has_ended(), current) {
+            (true, _) => self.ahead.len(),
+            (false, Some(current)) => self.before(ElementId::of(current)),
             (false, None) => 0,
         };
-        let executed = self.ahead.iter().take_while(|element| element.sequence < before);
-        self.done = executed.count();
+    }
+
+    /// So many stand before an element. A cycle has many of one place in the run.
+    fn before(&self, current: ElementId) -> usize {
+        let own = self.ahead.iter();
+        let earlier = own
+            .clone()
+            .take_while(|own| own.sequence < current.sequence)
+            .count();
+        let same = own
+            .skip(earlier)
+            .take_while(|own| own.sequence == current.sequence)
+            .position(|own| ElementId::of(own) == current);
+        earlier + same.unwrap_or(0)
     }
 
     /// Of a run that was broken off in a block: what was executed to the end counts, too, and is handed out next.
     pub fn finish(&mut self) {
         self.done = self.last_seen.map_or(0, |(current, rest_mm)| {
-            let is_current = |element: &&PathElement| ElementId::of(element) == current;
-            let before = self.ahead.iter();
-            let before = before.take_while(|own| own.sequence <= current.sequence && !is_current(own));
-            let count = before.count();
-            let last = self.ahead.get(count).filter(is_current);
+            let count = self.before(current);
+            let last = self.ahead.get(count);
+            let last = last.filter(|element| ElementId::of(element) == current);
             count + usize::from(last.is_some() && rest_mm <= DONE_MM)
         });
     }

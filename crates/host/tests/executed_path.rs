@@ -64,3 +64,23 @@ fn what_is_broken_off_is_not_handed_out() {
     path.finish();
     assert_eq!((host.control().run_state(), path.next()), (RunState::Idle, None));
 }
+
+/// The movements of a cycle are handed out while it goes on, not with its last one: who looks on sees the pocket grow.
+#[test]
+fn a_cycle_is_handed_out_movement_by_movement() {
+    let mut host = support::mill(
+        "TOOL DEF 9 L+0 R+4\nTOOL CALL 9 Z S2000\nL Z+100 R0 FMAX M3\nL X+50 Y+50 FMAX\n\
+         CYCL DEF 4.0 POCKET MILLING\nCYCL DEF 4.1 SET UP 2\nCYCL DEF 4.2 DEPTH -4\nCYCL DEF 4.3 PECKG 2 F500\n\
+         CYCL DEF 4.4 X+30\nCYCL DEF 4.5 Y+20\nCYCL DEF 4.6 F2000 DR+\nL Z+2 FMAX\nCYCL CALL\nL Z+100 FMAX",
+    );
+    host.keep_path();
+    let mut path = ExecutedPath::of(0);
+    let mut during = 0;
+    while !host.control().has_ended() {
+        host.step().unwrap();
+        path.follow(&mut host);
+        let current = host.control().element().map(|element| element.sequence);
+        during += path.by_ref().filter(|own| Some(own.sequence) == current).count();
+    }
+    assert!(during > 10, "{during}");
+}

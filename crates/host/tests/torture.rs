@@ -157,6 +157,7 @@ fn what_was_found_stays_mended() {
         ("mill", 1_000_171, "force C 4000"),
         ("mill-tnc360", 655_214, "fault input I3 bouncing"),
         ("twin", 651_458, "M2482=1"),
+        ("twin", 2_016_504, "key Z+ press"),
     ] {
         let campaign = campaign(machine);
         let mut worker = campaign.worker().unwrap();

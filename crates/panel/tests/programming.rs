@@ -92,3 +92,24 @@ fn a_block_of_mdi_moves_the_axis() {
     let at: f64 = trainee.position('X').parse().unwrap();
     assert!((at - 250.0).abs() < 0.002, "{at}");
 }
+
+/// A word is added to a block that stands there: the highlight is on a word, the letter of the address begins the new one.
+#[test]
+fn a_letter_adds_its_word_to_a_block_that_stands_there() {
+    let mut trainee = Trainee::at("mill");
+    trainee.ready();
+    trainee.write(
+        "programs/4711.H",
+        "0 BEGIN PGM 4711 MM\n1 L Z-5 R0 FMAX\n2 END PGM 4711 MM\n",
+    );
+    trainee.press("PROGRAM PGM_NR 4 7 1 1 ENT DOWN RIGHT M").wait(0.1);
+    let screen = trainee.screen();
+    let current = screen.program.lines.iter().find(|line| line.current);
+    assert_eq!(
+        current.map(|line| line.text.trim_end()),
+        Some("1    L Z-5 R0 FMAX M")
+    );
+    trainee.press("8 END").wait(0.1);
+    let text = trainee.file("programs/4711.H");
+    assert!(text.contains("L Z-5 R0 FMAX M8\n"), "{text}");
+}

@@ -25,6 +25,8 @@ use crate::shared::Shared;
 const MESSAGE: usize = 16 << 10;
 /// Messages of a viewer in a second.
 const RATE: u32 = 400;
+/// A viewer that asks for the part again is sent all of it behind this time (inferred).
+const AGAIN: Duration = Duration::from_millis(500);
 /// Length of a name.
 const NAME: usize = 64;
 
@@ -89,6 +91,7 @@ pub(crate) async fn open(
                 shared,
                 seen: 0,
                 role: Vec::new(),
+                looked: Instant::now(),
                 looking: None,
                 rate: Rate::default(),
             };
@@ -106,6 +109,8 @@ struct Viewer {
     taken: u64,
     /// The role that was sent.
     role: Vec<u8>,
+    /// When he last asked for the part.
+    looked: Instant,
     /// He looks at the part that is being cut.
     looking: Option<Looking>,
     rate: Rate,
@@ -166,7 +171,12 @@ impl Viewer {
             return refused("this is no input");
         };
         if let Some(looks) = sent.part {
-            self.looking = looks.then(|| self.shared.part.look());
+            // Whoever asks again is sent all of it anew, which takes its time: soon again he has what he gets.
+            let again = looks && self.looking.is_some() && self.looked.elapsed() < AGAIN;
+            if !again {
+                self.looking = looks.then(|| self.shared.part.look());
+                self.looked = Instant::now();
+            }
             return self.taken_message();
         }
         match (sent.operate, sent.hand_over) {

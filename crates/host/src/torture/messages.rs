@@ -138,7 +138,7 @@ impl Messages {
             );
             return Err(Violation::new(Rule::Reaction, control.time_us(), values));
         }
-        if usual || self.explains(fault) {
+        if usual || self.explains(fault, control) {
             return Ok(());
         }
         let text = control.shown_text(shown);
@@ -148,7 +148,7 @@ impl Messages {
     }
 
     /// What was done may lead to a fault.
-    fn explains(&self, fault: FaultId) -> bool {
+    fn explains(&self, fault: FaultId, control: &Control) -> bool {
         let any = |kinds: &[Kind]| kinds.iter().any(|kind| self.causes.contains(kind));
         let stopped = any(&[Kind::Emergency, Kind::Power]);
         any(&[Kind::Fault])
@@ -159,6 +159,8 @@ impl Messages {
                 | FaultId::GrossMovement
                 | FaultId::GrossStandstill => any(&[Kind::Emergency]),
                 FaultId::PowerInterrupted => any(&[Kind::Power]),
+                // Before its reference marks an axis has no software limits: a key may move it onto the switch behind them.
+                FaultId::ExternalEmergencyStop if any(&[Kind::AxisKey]) && is_without_limits(control) => true,
                 FaultId::VoltageMissing | FaultId::ExternalEmergencyStop => stopped,
                 FaultId::PlcMessage => stopped || any(&[Kind::Thing, Kind::Plc, Kind::Use, Kind::AxisKey]),
                 FaultId::PlcMessageFlashing
@@ -210,4 +212,10 @@ impl Messages {
 pub(super) fn is_fatal(control: &Control) -> bool {
     let mut shown = control.shown().iter();
     shown.any(|shown| shown.fault().row().reaction == Reaction::ControlReadyOff)
+}
+
+/// Some axis has no software limits.
+fn is_without_limits(control: &Control) -> bool {
+    let mut channels = (0..control.channels()).filter_map(|number| control.channel(number));
+    channels.any(|channel| channel.watch().any(|axis| axis.limits.is_none()))
 }
