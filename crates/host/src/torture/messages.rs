@@ -139,6 +139,10 @@ impl Messages {
             return Err(Violation::new(Rule::Reaction, control.time_us(), values));
         }
         if usual || self.explains(fault, control) {
+            if fault == FaultId::ExternalEmergencyStop {
+                // What follows it follows it, whoever has made it.
+                self.causes.insert(Kind::Emergency);
+            }
             return Ok(());
         }
         let text = control.shown_text(shown);
